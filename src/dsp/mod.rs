@@ -1,0 +1,1 @@
+//! Pure numerics: no events, no files, no threads.

@@ -1,0 +1,3 @@
+//! The command `sprung`.
+
+fn main() {}

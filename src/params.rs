@@ -1,0 +1,423 @@
+//! The parameter table: every parameter's id, name, unit, range, curve, default and smoothing, defined once.
+//!
+//! The engine, the command, preset files, the documentation and any plugin shell derive from [`PARAMS`].
+//! Ids are part of every saved preset and song: a test pins them, and an id that goes is never used again.
+
+use crate::units::{key_from_note_name, split_quantity};
+use libm::{log, pow};
+
+/// What a parameter's number counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// A plain number.
+    Number,
+    /// A whole number.
+    Count,
+    /// An index into [`ParamInfo::choices`].
+    Choice,
+    /// Decibels.
+    Decibels,
+    /// Decibels per octave.
+    DecibelsPerOctave,
+    /// Seconds; written in milliseconds below 1 s.
+    Seconds,
+    /// Hertz.
+    Hertz,
+    /// Per cent.
+    Percent,
+    /// Semitones.
+    Semitones,
+    /// Cents.
+    Cents,
+}
+
+impl Unit {
+    /// The unit's symbol as written after a number; empty for plain numbers and choices.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Unit::Number | Unit::Count | Unit::Choice => "",
+            Unit::Decibels => "dB",
+            Unit::DecibelsPerOctave => "dB/oct",
+            Unit::Seconds => "s",
+            Unit::Hertz => "Hz",
+            Unit::Percent => "%",
+            Unit::Semitones => "st",
+            Unit::Cents => "ct",
+        }
+    }
+
+    /// What one of the given unit suffix is in this unit, or `None` if the suffix does not belong to it.
+    fn scale_of(self, suffix: &str) -> Option<f64> {
+        let suffix = suffix.to_lowercase();
+        match (self, suffix.as_str()) {
+            (_, "") => Some(1.0),
+            (Unit::Decibels, "db") | (Unit::DecibelsPerOctave, "db/oct" | "db/octave" | "db") => Some(1.0),
+            (Unit::Seconds, "s" | "sec" | "seconds") => Some(1.0),
+            (Unit::Seconds, "ms") => Some(1e-3),
+            (Unit::Seconds, "us" | "µs") => Some(1e-6),
+            (Unit::Hertz, "hz") => Some(1.0),
+            (Unit::Hertz, "khz") => Some(1e3),
+            (Unit::Percent, "%") => Some(1.0),
+            (Unit::Semitones, "st" | "semi" | "semitones" | "semitone") => Some(1.0),
+            (Unit::Semitones, "ct" | "cents" | "cent") => Some(0.01),
+            (Unit::Semitones, "oct" | "octaves" | "octave") => Some(12.0),
+            (Unit::Cents, "ct" | "cents" | "cent") => Some(1.0),
+            (Unit::Cents, "st" | "semi" | "semitones" | "semitone") => Some(100.0),
+            _ => None,
+        }
+    }
+}
+
+/// How a knob's travel maps to the parameter's range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curve {
+    /// Equal steps.
+    Linear,
+    /// Equal ratios; the range must be positive.
+    Logarithmic,
+}
+
+/// When a change is heard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// By the notes that start after it.
+    NextNote,
+    /// At once, reaching its new value over this many milliseconds.
+    Smoothed(u16),
+}
+
+/// One row of the parameter table.
+#[derive(Debug)]
+pub struct ParamInfo {
+    /// The parameter that this row describes.
+    pub param: Param,
+    /// Stable identifier in presets, on the command line and in plugin state.
+    pub id: &'static str,
+    /// Name shown to people.
+    pub name: &'static str,
+    /// Group that it is shown in.
+    pub section: &'static str,
+    /// What the number counts.
+    pub unit: Unit,
+    /// Smallest value.
+    pub min: f32,
+    /// Largest value.
+    pub max: f32,
+    /// Value of a new patch.
+    pub default: f32,
+    /// Knob mapping.
+    pub curve: Curve,
+    /// When a change is heard.
+    pub change: Change,
+    /// Names of the values when `unit` is [`Unit::Choice`].
+    pub choices: &'static [&'static str],
+    /// One sentence for tooltips and tables.
+    pub help: &'static str,
+}
+
+macro_rules! params {
+    ($($section:literal {
+        $($param:ident $id:literal $name:literal, $unit:ident $min:literal..$max:literal = $default:literal,
+          $curve:ident, $change:expr, [$($choice:literal),*], $help:literal;)*
+    })*) => {
+        /// A parameter, in table order.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Param {
+            $($(#[doc = $help] $param,)*)*
+        }
+
+        /// The parameter table, indexed by `Param as usize`.
+        pub static PARAMS: &[ParamInfo] = &[
+            $($(ParamInfo {
+                param: Param::$param, id: $id, name: $name, section: $section, unit: Unit::$unit,
+                min: $min, max: $max, default: $default, curve: Curve::$curve, change: $change,
+                choices: &[$($choice),*], help: $help,
+            },)*)*
+        ];
+
+        /// Number of parameters.
+        pub const PARAM_COUNT: usize = [$($(Param::$param,)*)*].len();
+    };
+}
+
+use Change::{NextNote, Smoothed};
+
+params! {
+    "Exciter" {
+        Exciter "exciter" "Exciter", Choice 0.0..3.0 = 0.0, Linear, NextNote, ["impulse", "strike", "pluck", "noise"],
+            "What moves the masses: a one-sample impulse, a mallet's force pulse, a pulled-and-released displacement, or a noise burst.";
+        Hardness "hardness" "Hardness", Percent 0.0..100.0 = 70.0, Linear, NextNote, [],
+            "Mallet or plectrum hardness: contact time from 10 ms (0 %) to 0.05 ms (100 %).";
+        HardnessVelocity "hardness_velocity" "Velocity to hardness", Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
+            "How much softer quiet notes strike.";
+        Position "position" "Pluck position", Percent 1.0..50.0 = 50.0, Linear, NextNote, [],
+            "Where along the string it is plucked; 50 % is the middle and silences even harmonics.";
+        NoiseLevel "noise_level" "Noise level", Decibels -60.0..24.0 = 0.0, Linear, NextNote, [],
+            "Strength of the noise burst against a strike of the same velocity.";
+        NoiseTime "noise_time" "Noise time", Seconds 0.001..1.0 = 0.02, Logarithmic, NextNote, [],
+            "Length of the noise burst.";
+        Velocity "velocity" "Velocity to force", Percent 0.0..100.0 = 100.0, Linear, NextNote, [],
+            "How much velocity sets the force: 100 % is the square of velocity, 0 % is full force always.";
+    }
+    "Body" {
+        Decay "decay" "Decay", Seconds 0.005..60.0 = 1.0, Logarithmic, Smoothed(20), [],
+            "Time in which a held note falls by 60 dB (T60).";
+        Release "release" "Release", Seconds 0.005..60.0 = 0.3, Logarithmic, Smoothed(20), [],
+            "Longest T60 once the note is released: the damper.";
+        NoteOff "note_off" "Note off", Choice 0.0..1.0 = 0.0, Linear, NextNote, ["damp", "ring"],
+            "Whether a released note is damped or rings on as a drum does.";
+        DecayKey "decay_key" "Decay by key", Percent -100.0..100.0 = 0.0, Linear, NextNote, [],
+            "How higher keys decay faster: at 100 % the T60 halves per octave above C4.";
+        DecayTilt "decay_tilt" "Decay by mode", Number 0.0..2.0 = 0.0, Linear, NextNote, [],
+            "How higher modes decay faster: the T60 of a mode is divided by its ratio to this power.";
+        Tilt "tilt" "Brightness", DecibelsPerOctave -24.0..24.0 = 0.0, Linear, NextNote, [],
+            "Tilts the levels of the modes by their ratio.";
+        Stretch "stretch" "Stretch", Number 0.5..2.0 = 1.0, Linear, NextNote, [],
+            "Raises the ratios of the modes to this power: spreads or squeezes the spectrum.";
+        Width "width" "Width", Percent 0.0..100.0 = 100.0, Linear, NextNote, [],
+            "How far apart the modes are panned.";
+        Coefficients "coefficients" "Coefficients", Choice 0.0..1.0 = 0.0, Linear, NextNote, ["exact", "classic"],
+            "Exact tuning and decay, or the original formulas with their drift, clamped short of exploding.";
+    }
+    "Pitch" {
+        Tune "tune" "Tune", Semitones -48.0..48.0 = 0.0, Linear, Smoothed(10), [],
+            "Transposition.";
+        Fine "fine" "Fine tune", Cents -100.0..100.0 = 0.0, Linear, Smoothed(10), [],
+            "Fine transposition.";
+        Tuning "tuning" "Tuning A4", Hertz 400.0..480.0 = 440.0, Linear, NextNote, [],
+            "Frequency of A4.";
+        KeyTrack "key_track" "Key tracking", Percent 0.0..100.0 = 100.0, Linear, NextNote, [],
+            "How far pitch follows the key, about C4; 0 % gives every key the pitch of C4.";
+        Sweep "sweep" "Sweep", Semitones -60.0..60.0 = 0.0, Linear, NextNote, [],
+            "Where the pitch starts, above or below the note.";
+        SweepTime "sweep_time" "Sweep time", Seconds 0.001..10.0 = 0.1, Logarithmic, NextNote, [],
+            "Time until the sweep has arrived at the note.";
+        SweepCurve "sweep_curve" "Sweep curve", Percent -100.0..100.0 = 50.0, Linear, NextNote, [],
+            "0 % is a straight line; above, the sweep falls fast and settles slowly; below, the reverse.";
+        SweepVelocity "sweep_velocity" "Velocity to sweep", Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
+            "How much velocity scales the depth of the sweep.";
+        Vibrato "vibrato" "Vibrato", Cents 0.0..1200.0 = 0.0, Linear, Smoothed(20), [],
+            "Vibrato depth, each way.";
+        VibratoRate "vibrato_rate" "Vibrato rate", Hertz 0.05..20.0 = 5.0, Logarithmic, Smoothed(20), [],
+            "Vibrato frequency.";
+        VibratoDelay "vibrato_delay" "Vibrato delay", Seconds 0.0..5.0 = 0.0, Linear, NextNote, [],
+            "Time over which the patch's own vibrato fades in; wheel and pressure act at once.";
+        Glide "glide" "Glide", Seconds 0.0..10.0 = 0.0, Linear, NextNote, [],
+            "Time to slide from the note before; 0 is off.";
+    }
+    "Control" {
+        BendRange "bend_range" "Bend range", Semitones 0.0..48.0 = 2.0, Linear, Smoothed(0), [],
+            "Pitch-bend range, unless the channel has set its own (RPN 0).";
+        WheelVibrato "wheel_vibrato" "Wheel to vibrato", Cents 0.0..1200.0 = 50.0, Linear, Smoothed(20), [],
+            "Vibrato that the modulation wheel adds.";
+        PressureVibrato "pressure_vibrato" "Pressure to vibrato", Cents 0.0..1200.0 = 0.0, Linear, Smoothed(20), [],
+            "Vibrato that pressure adds.";
+        PressureDamping "pressure_damping" "Pressure to damping", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
+            "How far pressure damps the note: at 100 % full pressure damps as a release does.";
+        ReleaseVelocity "release_velocity" "Release velocity", Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
+            "How much a quick release shortens, and a slow one lengthens, the release time.";
+    }
+    "Voices" {
+        Voices "voices" "Voices", Count 1.0..64.0 = 16.0, Linear, NextNote, [],
+            "How many notes sound at once.";
+        Mode "mode" "Mode", Choice 0.0..2.0 = 0.0, Linear, NextNote, ["poly", "mono", "legato"],
+            "Many notes, one note struck each time, or one note struck only after a rest.";
+        Choke "choke" "Choke group", Count 0.0..16.0 = 0.0, Linear, NextNote, [],
+            "Notes of a choke group silence each other; 0 is none.";
+    }
+    "Output" {
+        Gain "gain" "Gain", Decibels -60.0..12.0 = -6.0, Linear, Smoothed(20), [],
+            "Output level.";
+        Pan "pan" "Pan", Percent -100.0..100.0 = 0.0, Linear, Smoothed(20), [],
+            "Output position, left to right.";
+    }
+}
+
+impl Param {
+    /// This parameter's row of the table.
+    pub fn info(self) -> &'static ParamInfo {
+        &PARAMS[self as usize]
+    }
+
+    /// The parameter with this id.
+    pub fn from_id(id: &str) -> Option<Param> {
+        PARAMS.iter().find(|info| info.id == id).map(|info| info.param)
+    }
+}
+
+impl ParamInfo {
+    /// The nearest value that the parameter can take: in range, whole where it must be; the default for NaN.
+    /// Real-time safe.
+    pub fn clamp(&self, value: f32) -> f32 {
+        let value = if value.is_nan() { self.default } else { value.clamp(self.min, self.max) };
+        if matches!(self.unit, Unit::Count | Unit::Choice) { libm::roundf(value) } else { value }
+    }
+
+    /// The value itself if the parameter can take it, else a message that says the range.
+    pub fn check(&self, value: f32) -> Result<f32, String> {
+        if value == self.clamp(value) {
+            return Ok(value);
+        }
+        if self.unit == Unit::Choice {
+            return Err(format!("‘{value}’ is not one of {}", self.choices.join(", ")));
+        }
+        let whole = if self.unit == Unit::Count { "a whole number " } else { "" };
+        Err(format!(
+            "{value} is out of range: expected {whole}from {} to {}",
+            self.format(self.min),
+            self.format(self.max)
+        ))
+    }
+
+    /// Reads a value with or without its unit: `"-12 dB"`, `"440 Hz"`, `"250 ms"`, `"50 %"`, `"strike"`.
+    /// [`Unit::Hertz`] also takes note names (`"A4"`). The error says what was expected.
+    pub fn parse(&self, text: &str) -> Result<f32, String> {
+        let text = text.trim();
+        if self.unit == Unit::Choice {
+            let found = self.choices.iter().position(|choice| choice.eq_ignore_ascii_case(text));
+            return match found {
+                Some(index) => Ok(index as f32),
+                None => Err(format!("‘{text}’ is not one of {}", self.choices.join(", "))),
+            };
+        }
+        if self.unit == Unit::Hertz
+            && let Some(key) = key_from_note_name(text)
+        {
+            return self.check(crate::units::frequency_from_key(f64::from(key), 440.0) as f32);
+        }
+        let quantity = split_quantity(text).and_then(|(value, suffix)| Some(value * self.unit.scale_of(suffix)?));
+        match quantity {
+            Some(value) => self.check(value as f32),
+            None => {
+                let unit = self.unit.symbol();
+                let unit = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
+                Err(format!("‘{text}’ is not a number{unit}"))
+            }
+        }
+    }
+
+    /// Writes a value with its unit, so that [`ParamInfo::parse`] reads it back to the precision shown.
+    pub fn format(&self, value: f32) -> String {
+        let value = self.clamp(value);
+        let symbol = self.unit.symbol();
+        match self.unit {
+            Unit::Choice => self.choices[value as usize].to_owned(),
+            Unit::Count => format!("{value:.0}"),
+            Unit::Number => trim_zeros(format!("{value:.3}")),
+            // At 999.95 ms and above, three decimals of a second carry more than one of a millisecond.
+            Unit::Seconds if value < 0.9995 => format!("{} ms", trim_zeros(format!("{:.2}", f64::from(value) * 1e3))),
+            Unit::Seconds => format!("{} s", trim_zeros(format!("{value:.3}"))),
+            Unit::Decibels | Unit::DecibelsPerOctave | Unit::Percent | Unit::Cents => {
+                format!("{} {symbol}", trim_zeros(format!("{value:.2}")))
+            }
+            Unit::Hertz | Unit::Semitones => format!("{} {symbol}", trim_zeros(format!("{value:.3}"))),
+        }
+    }
+
+    /// Knob position 0–1 of a value.
+    pub fn normalise(&self, value: f32) -> f64 {
+        let (value, min, max) = (f64::from(self.clamp(value)), f64::from(self.min), f64::from(self.max));
+        match self.curve {
+            Curve::Linear => (value - min) / (max - min),
+            Curve::Logarithmic => log(value / min) / log(max / min),
+        }
+    }
+
+    /// Value of a knob position 0–1.
+    pub fn denormalise(&self, position: f64) -> f32 {
+        let (min, max) = (f64::from(self.min), f64::from(self.max));
+        let position = position.clamp(0.0, 1.0);
+        let value = match self.curve {
+            Curve::Linear => min + position * (max - min),
+            Curve::Logarithmic => min * pow(max / min, position),
+        };
+        self.clamp(value as f32)
+    }
+}
+
+/// `"1.500"` → `"1.5"`, `"-0.00"` → `"0"`.
+fn trim_zeros(number: String) -> String {
+    let short = if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { &number };
+    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Ids are in people's presets: this list only grows.
+    #[test]
+    fn ids_are_pinned() {
+        let ids: Vec<_> = PARAMS.iter().map(|info| info.id).collect();
+        let pinned = "exciter hardness hardness_velocity position noise_level noise_time velocity \
+            decay release note_off decay_key decay_tilt tilt stretch width coefficients \
+            tune fine tuning key_track sweep sweep_time sweep_curve sweep_velocity \
+            vibrato vibrato_rate vibrato_delay glide \
+            bend_range wheel_vibrato pressure_vibrato pressure_damping release_velocity \
+            voices mode choke gain pan";
+        assert_eq!(ids, pinned.split_whitespace().collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn the_table_is_consistent() {
+        for (index, info) in PARAMS.iter().enumerate() {
+            assert_eq!(info.param as usize, index, "{}", info.id);
+            assert_eq!(Param::from_id(info.id), Some(info.param));
+            assert!(info.min < info.max && (info.min..=info.max).contains(&info.default), "{}", info.id);
+            assert!(info.curve == Curve::Linear || info.min > 0.0, "{}", info.id);
+            assert_eq!(info.unit == Unit::Choice, !info.choices.is_empty(), "{}", info.id);
+            if info.unit == Unit::Choice {
+                assert_eq!(info.max as usize + 1, info.choices.len(), "{}", info.id);
+            }
+        }
+        assert_eq!(PARAMS.len(), PARAM_COUNT);
+    }
+
+    #[test]
+    fn values_are_read_in_the_units_people_write() {
+        for (param, text, value) in [
+            (Param::Gain, "-12 dB", -12.0),
+            (Param::Tuning, "442 Hz", 442.0),
+            (Param::Tuning, "A4", 440.0),
+            (Param::Decay, "1.5 s", 1.5),
+            (Param::Decay, "250ms", 0.25),
+            (Param::Width, "50 %", 50.0),
+            (Param::Sweep, "2 oct", 24.0),
+            (Param::Vibrato, "1 st", 100.0),
+            (Param::Exciter, "Pluck", 2.0),
+            (Param::Voices, "8", 8.0),
+        ] {
+            assert_eq!(param.info().parse(text), Ok(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn bad_values_say_what_would_be_right() {
+        for (param, text, expected) in [
+            (Param::Gain, "99 dB", "99 is out of range: expected from -60 dB to 12 dB"),
+            (Param::Gain, "loud", "‘loud’ is not a number in dB"),
+            (Param::Gain, "NaN", "‘NaN’ is not a number in dB"),
+            (Param::Decay, "3 Hz", "‘3 Hz’ is not a number in s"),
+            (Param::Voices, "2.5", "2.5 is out of range: expected a whole number from 1 to 64"),
+            (Param::Mode, "solo", "‘solo’ is not one of poly, mono, legato"),
+        ] {
+            assert_eq!(param.info().parse(text), Err(expected.to_owned()), "{text}");
+        }
+        assert!(Param::Gain.info().check(f32::NAN).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn text_and_knob_go_both_ways(index in 0..PARAM_COUNT, position in 0.0..=1.0f64) {
+            let info = &PARAMS[index];
+            let value = info.denormalise(position);
+            prop_assert!(info.check(value).is_ok());
+            let text = info.format(value);
+            let read = info.parse(&text).map_err(TestCaseError::fail)?;
+            prop_assert_eq!(info.format(read), text);
+            let back = info.denormalise(info.normalise(value));
+            prop_assert!((back - value).abs() <= 1e-5 * value.abs().max(1e-3), "{back} {value}");
+        }
+    }
+}

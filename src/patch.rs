@@ -1,0 +1,135 @@
+//! A patch: one value per parameter and the table of modes. Plain data of fixed size, so that the audio thread can copy it.
+
+use crate::params::{PARAM_COUNT, PARAMS, Param};
+
+/// Most modes that a voice can have.
+pub const MAX_MODES: usize = 64;
+
+/// One mode of the body: one mass on its spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// Frequency as a multiple of the note's.
+    pub ratio: f32,
+    /// Amplitude after a strike of full force; negative turns the phase round.
+    pub level: f32,
+    /// T60 as a multiple of the patch's `decay`.
+    pub decay: f32,
+    /// Share of the excitation that is the strike or pluck; the rest is the noise burst.
+    pub strike: f32,
+    /// Position from −1 (left) to 1 (right).
+    pub pan: f32,
+}
+
+impl Mode {
+    /// The one mass of an `init` patch: at the note's pitch, full level, the patch's own decay, struck, centred.
+    pub const UNIT: Mode = Mode { ratio: 1.0, level: 1.0, decay: 1.0, strike: 1.0, pan: 0.0 };
+
+    /// Field names, ranges and accessors: what the preset file reads, checks and writes.
+    pub(crate) const FIELDS: [(&'static str, f32, f32); 5] = [
+        ("ratio", 0.01, 1000.0),
+        ("level", -1.0, 1.0),
+        ("decay", 0.001, 10.0),
+        ("strike", 0.0, 1.0),
+        ("pan", -1.0, 1.0),
+    ];
+
+    /// The fields in the order of [`Mode::FIELDS`].
+    pub(crate) fn fields(&self) -> [f32; 5] {
+        [self.ratio, self.level, self.decay, self.strike, self.pan]
+    }
+
+    /// The reverse of [`Mode::fields`].
+    pub(crate) fn from_fields([ratio, level, decay, strike, pan]: [f32; 5]) -> Self {
+        Self { ratio, level, decay, strike, pan }
+    }
+}
+
+/// A body: one to [`MAX_MODES`] modes.
+#[derive(Clone, Copy, Debug)]
+pub struct ModeTable {
+    modes: [Mode; MAX_MODES],
+    len: usize,
+}
+
+impl ModeTable {
+    /// The first [`MAX_MODES`] of `modes`, or the unit mode if there are none. Ranges are the caller's to check.
+    pub fn new(modes: &[Mode]) -> Self {
+        let modes = if modes.is_empty() { &[Mode::UNIT] } else { modes };
+        let len = modes.len().min(MAX_MODES);
+        let mut table = Self { modes: [Mode::UNIT; MAX_MODES], len };
+        table.modes[..len].copy_from_slice(&modes[..len]);
+        table
+    }
+
+    /// The modes in use.
+    pub fn as_slice(&self) -> &[Mode] {
+        &self.modes[..self.len]
+    }
+}
+
+impl PartialEq for ModeTable {
+    fn eq(&self, other: &Self) -> bool {
+        self.as_slice() == other.as_slice()
+    }
+}
+
+/// A sound: a value for each parameter and the modes of its body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch {
+    values: [f32; PARAM_COUNT],
+    /// The body.
+    pub modes: ModeTable,
+}
+
+impl Default for Patch {
+    /// Every parameter at its default and one mass: the preset `init`.
+    fn default() -> Self {
+        let mut values = [0.0; PARAM_COUNT];
+        for (value, info) in values.iter_mut().zip(PARAMS) {
+            *value = info.default;
+        }
+        Self { values, modes: ModeTable::new(&[Mode::UNIT]) }
+    }
+}
+
+impl Patch {
+    /// The value of a parameter, in the table's unit. Real-time safe.
+    pub fn get(&self, param: Param) -> f32 {
+        self.values[param as usize]
+    }
+
+    /// Sets a parameter to the nearest value that it can take. Real-time safe. Callers with a person behind them
+    /// use [`crate::params::ParamInfo::check`] or `parse` first, to tell of a value out of range.
+    pub fn set(&mut self, param: Param, value: f32) {
+        self.values[param as usize] = param.info().clamp(value);
+    }
+
+    /// The patch with a parameter set, for building one in an expression.
+    #[must_use]
+    pub fn with(mut self, param: Param, value: f32) -> Self {
+        self.set(param, value);
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_outside_the_range_become_the_nearest_inside() {
+        let mut patch = Patch::default();
+        patch.set(Param::Gain, 1e9);
+        assert_eq!(patch.get(Param::Gain), 12.0);
+        patch.set(Param::Gain, f32::NAN);
+        assert_eq!(patch.get(Param::Gain), Param::Gain.info().default);
+        patch.set(Param::Mode, 1.4);
+        assert_eq!(patch.get(Param::Mode), 1.0);
+    }
+
+    #[test]
+    fn a_table_has_between_one_and_64_modes() {
+        assert_eq!(ModeTable::new(&[]).as_slice(), &[Mode::UNIT]);
+        assert_eq!(ModeTable::new(&[Mode::UNIT; 100]).as_slice().len(), MAX_MODES);
+    }
+}
