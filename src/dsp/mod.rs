@@ -1,9 +1,17 @@
 //! Pure numerics: no events, no files, no threads. Everything in it is real-time safe.
 
 pub mod coefficients;
+pub mod exciter;
+pub mod mode_bank;
 pub mod oscillator;
+pub mod pitch;
+pub mod ramp;
 pub mod random;
 pub mod real;
 
 pub use coefficients::Coefficients;
+pub use mode_bank::ModeBank;
 pub use oscillator::HarmonicOscillator;
+
+/// Frames between two control ticks. Frozen: pitch and gain move in straight lines between ticks.
+pub const CONTROL_FRAMES: usize = 32;
