@@ -1,9 +1,7 @@
 //! A patch: one value per parameter and the table of modes. Plain data of fixed size, so that the audio thread can copy it.
 
+pub use crate::dsp::mode_bank::MAX_MODES;
 use crate::params::{PARAM_COUNT, PARAMS, Param};
-
-/// Most modes that a voice can have.
-pub const MAX_MODES: usize = 64;
 
 /// One mode of the body: one mass on its spring.
 #[derive(Clone, Copy, Debug, PartialEq)]

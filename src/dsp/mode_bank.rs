@@ -124,9 +124,9 @@ impl ModeBank {
         }
     }
 
-    /// Fills the bank with modes at rest, at a pitch ratio of `ratio`. Modes beyond [`MAX_MODES`] are left out.
-    pub fn load(&mut self, law: Law, ratio: f64, modes: impl Iterator<Item = ModeSetup>) {
-        *self = Self { law, ratio, ..Self::new(self.sample_rate) };
+    /// Fills the bank with modes at rest, at a pitch ratio of 1. Modes beyond [`MAX_MODES`] are left out.
+    pub fn load(&mut self, law: Law, modes: impl Iterator<Item = ModeSetup>) {
+        *self = Self { law, ..Self::new(self.sample_rate) };
         for (m, mode) in modes.take(MAX_MODES).enumerate() {
             self.len = m + 1;
             let (group, lane) = (m / LANES, m % LANES);
@@ -134,11 +134,8 @@ impl ModeBank {
             self.left[group][lane] = mode.left;
             self.right[group][lane] = mode.right;
             self.set_t60(m, mode.t60);
-            let (sweep, level) = self.swept(m, ratio);
-            self.sweep[group][lane] = sweep;
-            self.level[group][lane] = level;
         }
-        self.rest_sweep();
+        self.jump_to(1.0);
     }
 
     /// Number of modes.
@@ -244,6 +241,18 @@ impl ModeBank {
         if arrived {
             self.rest_sweep();
         }
+    }
+
+    /// Puts every mode at a pitch ratio at once: for modes at rest.
+    pub fn jump_to(&mut self, ratio: f64) {
+        self.ratio = ratio;
+        self.line_frames = 0;
+        for m in 0..self.len {
+            let (group, lane) = (m / LANES, m % LANES);
+            (self.sweep[group][lane], self.level[group][lane]) = self.swept(m, ratio);
+            (self.sweep_step[group][lane], self.level_step[group][lane]) = (0.0, 0.0);
+        }
+        self.rest_sweep();
     }
 
     /// Sweeps and levels are where they belong; notices whether they are all exactly 1.
@@ -366,7 +375,7 @@ mod tests {
         let mut bank = ModeBank::new(RATE);
         let setup =
             |(frequency, t60): &(f64, f64)| ModeSetup { frequency: *frequency, t60: *t60, left: 1.0, right: 1.0 };
-        bank.load(law, 1.0, modes.iter().map(setup));
+        bank.load(law, modes.iter().map(setup));
         (0..bank.len()).for_each(|m| bank.set_coupling(m, Coupling { push: 1.0, ..Coupling::default() }));
         bank
     }
@@ -483,7 +492,7 @@ mod tests {
             if case % 10_000 == 0 {
                 let mut bank = ModeBank::new(rate);
                 let frequency = theta * rate / (2.0 * PI);
-                bank.load(Law::Exact, 1.0, [ModeSetup { frequency, t60, left: 1.0, right: 1.0 }].into_iter());
+                bank.load(Law::Exact, [ModeSetup { frequency, t60, left: 1.0, right: 1.0 }].into_iter());
                 bank.set_coupling(0, Coupling { push: 1.0, ..Coupling::default() });
                 let mut peak = run(&mut bank, 1024, Some(&strike())).iter().fold(0.0_f32, |a, b| a.max(b.abs()));
                 assert!(peak < 1.001, "{case}: {peak} from {frequency} Hz, {t60} s at {rate} Hz");

@@ -2,8 +2,14 @@
 //!
 //! Knows no files, no command line and no audio device. Everything here is real-time safe once built.
 
+mod channel;
+mod controls;
 pub mod ensemble;
 pub mod event;
+pub mod synth;
+mod voice;
+pub mod voice_manager;
 
 pub use ensemble::Ensemble;
 pub use event::{Event, EventKind};
+pub use synth::Synth;

@@ -1,0 +1,105 @@
+//! The parameters that sounding voices follow, smoothed.
+
+use super::channel::pan_gains;
+use crate::dsp::ramp::Ramp;
+use crate::params::{Change, PARAM_COUNT, PARAMS, Param};
+use crate::patch::Patch;
+use crate::units::gain_from_db;
+
+/// Every parameter on its way to the value it was last given. Real-time safe.
+pub(crate) struct Smoother {
+    sample_rate: f64,
+    ramps: [Ramp; PARAM_COUNT],
+}
+
+impl Smoother {
+    /// All at rest at the values of `patch`.
+    pub(crate) fn new(sample_rate: f64, patch: &Patch) -> Self {
+        Self { sample_rate, ramps: std::array::from_fn(|index| Ramp::at_rest(patch.get(PARAMS[index].param))) }
+    }
+
+    /// Moves one parameter towards a value.
+    pub(crate) fn set(&mut self, param: Param, value: f32) {
+        let ramp = &mut self.ramps[param as usize];
+        if let Change::Smoothed(milliseconds) = param.info().change
+            && ramp.after(u32::MAX) != value
+        {
+            ramp.set(value, (f64::from(milliseconds) * 1e-3 * self.sample_rate) as u32);
+        }
+    }
+
+    /// Lets `frames` frames pass.
+    pub(crate) fn advance(&mut self, frames: u32) {
+        self.ramps.iter_mut().for_each(|ramp| ramp.advance(frames));
+    }
+
+    /// What voices follow, `frames` frames from now.
+    pub(crate) fn after(&self, frames: u32) -> Controls {
+        let value = |param: Param| self.ramps[param as usize].after(frames);
+        let gain = gain_from_db(value(Param::Gain).into()) as f32;
+        let (left, right) = pan_gains(value(Param::Pan) * 0.005 + 0.5);
+        Controls {
+            decay: value(Param::Decay).into(),
+            release: value(Param::Release).into(),
+            tune: f64::from(value(Param::Tune)) + f64::from(value(Param::Fine)) * 0.01,
+            vibrato: f64::from(value(Param::Vibrato)) * 0.01,
+            vibrato_rate: value(Param::VibratoRate).into(),
+            wheel_vibrato: f64::from(value(Param::WheelVibrato)) * 0.01,
+            pressure_vibrato: f64::from(value(Param::PressureVibrato)) * 0.01,
+            pressure_damping: f64::from(value(Param::PressureDamping)) * 0.01,
+            bend_range: value(Param::BendRange),
+            gain_left: gain * left,
+            gain_right: gain * right,
+        }
+    }
+}
+
+/// The live parameters at one instant, in the units that voices use them in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Controls {
+    /// T60 in seconds.
+    pub(crate) decay: f64,
+    /// T60 in seconds.
+    pub(crate) release: f64,
+    /// Semitones.
+    pub(crate) tune: f64,
+    /// Semitones.
+    pub(crate) vibrato: f64,
+    /// Hz.
+    pub(crate) vibrato_rate: f64,
+    /// Semitones.
+    pub(crate) wheel_vibrato: f64,
+    /// Semitones.
+    pub(crate) pressure_vibrato: f64,
+    /// 0–1.
+    pub(crate) pressure_damping: f64,
+    /// Semitones.
+    pub(crate) bend_range: f32,
+    /// Amplitude ratio.
+    pub(crate) gain_left: f32,
+    /// Amplitude ratio.
+    pub(crate) gain_right: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_changed_parameter_arrives_after_its_time_and_no_sooner() {
+        let patch = Patch::default();
+        let mut smoother = Smoother::new(48_000.0, &patch);
+        smoother.set(Param::Decay, 2.0);
+        assert_eq!(smoother.after(0).decay, 1.0);
+        assert!((smoother.after(480).decay - 1.5).abs() < 1e-6);
+        smoother.advance(480);
+        smoother.set(Param::Decay, 2.0);
+        assert_eq!(smoother.after(480).decay, 2.0, "setting the same target again does not start anew");
+    }
+
+    #[test]
+    fn the_default_patch_is_centred_and_untuned() {
+        let controls = Smoother::new(48_000.0, &Patch::default().with(Param::Gain, 0.0)).after(0);
+        assert_eq!((controls.gain_left, controls.gain_right, controls.tune), (1.0, 1.0, 0.0));
+    }
+}

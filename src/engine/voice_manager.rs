@@ -1,0 +1,550 @@
+//! Who plays what: polyphony, stealing, re-striking, pedals, choke groups. Knows no DSP.
+
+/// A note as the manager hands it to a voice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Note {
+    /// MIDI channel, 0–15.
+    pub channel: u8,
+    /// MIDI key, 0–127.
+    pub key: u8,
+    /// Offset from the key in semitones.
+    pub detune: f32,
+    /// 0–1.
+    pub velocity: f32,
+    /// Whether the soft pedal was down.
+    pub soft: bool,
+    /// The host's identifier, or −1.
+    pub id: i32,
+    /// Counts the notes of a synth.
+    pub serial: u64,
+    /// Counts the patches of a synth; notes of different patches never share a voice.
+    pub patch: u32,
+    /// Choke group, 0 for none.
+    pub choke: u8,
+}
+
+/// Something that sounds one note at a time. All methods are called on the audio thread.
+pub trait Voice {
+    /// What a voice needs to know of the instrument when a note starts.
+    type Context;
+    /// Starts a note from rest.
+    fn start(&mut self, context: &Self::Context, note: &Note);
+    /// Strikes the sounding voice again, perhaps at another pitch.
+    fn restrike(&mut self, context: &Self::Context, note: &Note);
+    /// Moves the sounding voice to another pitch without striking it.
+    fn retune(&mut self, context: &Self::Context, note: &Note);
+    /// Lets go of the note, with a release velocity 0–1.
+    fn release(&mut self, velocity: f32);
+    /// Silences the voice within a few milliseconds, without a click.
+    fn fade(&mut self);
+    /// How loud the voice is, in any unit that orders voices.
+    fn energy(&self) -> f64;
+    /// Whether the voice will be silent until it is struck again.
+    fn is_over(&self) -> bool;
+}
+
+/// How notes share voices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlayMode {
+    /// A voice for every note.
+    Poly,
+    /// One voice, struck by every note.
+    Mono,
+    /// One voice, struck by the first note and retuned by those that overlap it.
+    Legato,
+}
+
+/// Most notes that sound at once.
+pub const MAX_VOICES: usize = 64;
+
+/// Voices beyond those, for stolen notes to fade out in.
+const FADING_VOICES: usize = 16;
+
+/// Held keys that a monophonic voice can return to.
+const MAX_HELD_KEYS: usize = 32;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Free,
+    /// The key is down, or a pedal holds the note.
+    Held,
+    Released,
+    Fading,
+}
+
+struct Slot<V> {
+    voice: V,
+    note: Note,
+    state: State,
+    key_down: bool,
+    sostenuto: bool,
+}
+
+impl<V> Slot<V> {
+    fn is_sounding(&self) -> bool {
+        matches!(self.state, State::Held | State::Released)
+    }
+
+    fn is_on(&self, channel: u8, key: u8) -> bool {
+        self.is_sounding() && self.note.channel == channel && self.note.key == key
+    }
+}
+
+/// Deals notes to a fixed set of voices. Real-time safe after [`VoiceManager::new`].
+pub struct VoiceManager<V> {
+    slots: Vec<Slot<V>>,
+    sustain: [bool; 16],
+    polyphony: usize,
+    mode: PlayMode,
+    /// Keys down in a monophonic mode, oldest first.
+    held: [Note; MAX_HELD_KEYS],
+    held_len: usize,
+    peak: usize,
+}
+
+impl<V: Voice> VoiceManager<V> {
+    /// A manager of voices made by `voice`. Allocates.
+    pub fn new(mut voice: impl FnMut() -> V) -> Self {
+        let note =
+            Note { channel: 0, key: 0, detune: 0.0, velocity: 0.0, soft: false, id: -1, serial: 0, patch: 0, choke: 0 };
+        let slot = || Slot { voice: voice(), note, state: State::Free, key_down: false, sostenuto: false };
+        Self {
+            slots: std::iter::repeat_with(slot).take(MAX_VOICES + FADING_VOICES).collect(),
+            sustain: [false; 16],
+            polyphony: MAX_VOICES,
+            mode: PlayMode::Poly,
+            held: [note; MAX_HELD_KEYS],
+            held_len: 0,
+            peak: 0,
+        }
+    }
+
+    /// Stops everything at once, pedals included.
+    pub fn reset(&mut self) {
+        self.slots.iter_mut().for_each(|slot| slot.state = State::Free);
+        self.sustain = [false; 16];
+        self.held_len = 0;
+        self.peak = 0;
+    }
+
+    /// Sets how many notes sound at once (1 to [`MAX_VOICES`]) and how they share voices, from the next note on.
+    pub fn configure(&mut self, polyphony: usize, mode: PlayMode) {
+        self.polyphony = polyphony.clamp(1, MAX_VOICES);
+        if mode != self.mode {
+            self.held_len = 0;
+        }
+        self.mode = mode;
+    }
+
+    /// The voices that are not free, in their fixed order.
+    pub fn active(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
+        self.slots.iter_mut().filter(|slot| slot.state != State::Free).map(|slot| (&slot.note, &mut slot.voice))
+    }
+
+    /// Whether every voice is free.
+    pub fn is_silent(&self) -> bool {
+        self.slots.iter().all(|slot| slot.state == State::Free)
+    }
+
+    /// Most notes that have sounded at once, fading ones not counted.
+    pub fn peak(&self) -> usize {
+        self.peak
+    }
+
+    /// Frees the voices that are over.
+    pub fn free_finished(&mut self) {
+        for slot in &mut self.slots {
+            if slot.state != State::Free && slot.voice.is_over() {
+                slot.state = State::Free;
+            }
+        }
+    }
+
+    /// A key goes down.
+    pub fn note_on(&mut self, context: &V::Context, note: Note) {
+        for slot in self.slots.iter_mut().filter(|slot| slot.is_sounding()) {
+            if note.choke != 0 && slot.note.choke == note.choke && !slot.is_on(note.channel, note.key) {
+                fade(slot);
+            }
+        }
+        match self.mode {
+            PlayMode::Poly => self.note_on_poly(context, note),
+            PlayMode::Mono | PlayMode::Legato => self.note_on_mono(context, note),
+        }
+        self.peak = self.peak.max(self.sounding());
+    }
+
+    fn note_on_poly(&mut self, context: &V::Context, note: Note) {
+        let same = |slot: &&mut Slot<V>| slot.is_on(note.channel, note.key) && slot.note.patch == note.patch;
+        if let Some(slot) = self.slots.iter_mut().find(same) {
+            slot.voice.restrike(context, &note);
+            hold(slot, note);
+        } else {
+            while self.sounding() >= self.polyphony {
+                self.steal(&note);
+            }
+            self.start(context, note);
+        }
+    }
+
+    fn note_on_mono(&mut self, context: &V::Context, note: Note) {
+        self.forget_key(note.channel, note.key);
+        if self.held_len == MAX_HELD_KEYS {
+            self.held.rotate_left(1);
+            self.held_len -= 1;
+        }
+        self.held[self.held_len] = note;
+        self.held_len += 1;
+
+        let mut playing = None;
+        for (index, slot) in self.slots.iter_mut().enumerate().filter(|(_, slot)| slot.is_sounding()) {
+            // Left over from another patch or from polyphony: make room.
+            if playing.is_some() || slot.note.patch != note.patch {
+                fade(slot);
+            } else {
+                playing = Some(index);
+            }
+        }
+        let Some(index) = playing else { return self.start(context, note) };
+        let slot = &mut self.slots[index];
+        if self.mode == PlayMode::Legato && slot.state == State::Held {
+            slot.voice.retune(context, &note);
+        } else {
+            slot.voice.restrike(context, &note);
+        }
+        hold(slot, note);
+    }
+
+    /// A key comes up; `id` −1 stands for any note on it.
+    pub fn note_off(&mut self, context: &V::Context, channel: u8, key: u8, id: i32, velocity: f32) {
+        if self.mode != PlayMode::Poly {
+            self.forget_key(channel, key);
+            // The key before is still down: a release never strikes, it returns.
+            if let Some(note) = self.held[..self.held_len].last().copied()
+                && let Some(slot) = self.slots.iter_mut().find(|slot| slot.key_down && slot.is_on(channel, key))
+            {
+                slot.voice.retune(context, &note);
+                slot.note = note;
+                return;
+            }
+        }
+        for slot in self.slots.iter_mut().filter(|slot| slot.is_on(channel, key)) {
+            if id == -1 || slot.note.id == -1 || slot.note.id == id {
+                slot.key_down = false;
+                release_unless_held(slot, &self.sustain, velocity);
+            }
+        }
+    }
+
+    /// The sustain pedal (controller 64).
+    pub fn sustain(&mut self, channel: u8, down: bool) {
+        self.sustain[usize::from(channel)] = down;
+        self.release_let_go(channel);
+    }
+
+    /// The sostenuto pedal (controller 66): holds the notes whose keys are down when it goes down.
+    pub fn sostenuto(&mut self, channel: u8, down: bool) {
+        for slot in self.slots.iter_mut().filter(|slot| slot.note.channel == channel) {
+            slot.sostenuto = down && slot.state == State::Held && (slot.key_down || slot.sostenuto);
+        }
+        self.release_let_go(channel);
+    }
+
+    /// Controller 123: every key of the channel comes up.
+    pub fn all_notes_off(&mut self, channel: u8) {
+        self.forget_keys(channel);
+        self.slots.iter_mut().filter(|slot| slot.note.channel == channel).for_each(|slot| slot.key_down = false);
+        self.release_let_go(channel);
+    }
+
+    /// Controller 120: the channel is silenced.
+    pub fn all_sound_off(&mut self, channel: u8) {
+        self.forget_keys(channel);
+        self.slots.iter_mut().filter(|slot| slot.is_sounding() && slot.note.channel == channel).for_each(fade);
+    }
+
+    /// Silences the notes of a choke group (0 is none).
+    pub fn choke(&mut self, group: u8) {
+        self.slots
+            .iter_mut()
+            .filter(|slot| group != 0 && slot.is_sounding() && slot.note.choke == group)
+            .for_each(fade);
+    }
+
+    /// Notes whose keys are up and that no pedal holds any more are released.
+    fn release_let_go(&mut self, channel: u8) {
+        for slot in self.slots.iter_mut().filter(|slot| slot.note.channel == channel && !slot.key_down) {
+            release_unless_held(slot, &self.sustain, MIDDLE_VELOCITY);
+        }
+    }
+
+    fn sounding(&self) -> usize {
+        self.slots.iter().filter(|slot| slot.is_sounding()).count()
+    }
+
+    /// Fades the note that will be missed least: one on the same key, else the quietest, of equals the oldest.
+    fn steal(&mut self, note: &Note) {
+        let rank = |slot: &Slot<V>| (!slot.is_on(note.channel, note.key), slot.voice.energy(), slot.note.serial);
+        let victim = self.slots.iter_mut().filter(|slot| slot.is_sounding()).min_by(|a, b| {
+            let (a, b) = (rank(a), rank(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))
+        });
+        if let Some(slot) = victim {
+            fade(slot);
+        }
+    }
+
+    /// Starts a note in a free voice. If so many notes were stolen within a few milliseconds that all the spare ones
+    /// still fade, the oldest of those is cut off.
+    fn start(&mut self, context: &V::Context, note: Note) {
+        let slot = match self.slots.iter().position(|slot| slot.state == State::Free) {
+            Some(free) => Some(&mut self.slots[free]),
+            None => {
+                self.slots.iter_mut().filter(|slot| slot.state == State::Fading).min_by_key(|slot| slot.note.serial)
+            }
+        };
+        if let Some(slot) = slot {
+            slot.voice.start(context, &note);
+            slot.sostenuto = false;
+            hold(slot, note);
+        }
+    }
+
+    fn forget_keys(&mut self, channel: u8) {
+        while let Some(key) =
+            self.held[..self.held_len].iter().find(|held| held.channel == channel).map(|held| held.key)
+        {
+            self.forget_key(channel, key);
+        }
+    }
+
+    fn forget_key(&mut self, channel: u8, key: u8) {
+        if let Some(index) =
+            self.held[..self.held_len].iter().position(|held| held.channel == channel && held.key == key)
+        {
+            self.held[index..self.held_len].rotate_left(1);
+            self.held_len -= 1;
+        }
+    }
+}
+
+/// Release velocity where nobody gave one.
+const MIDDLE_VELOCITY: f32 = 0.5;
+
+fn hold<V>(slot: &mut Slot<V>, note: Note) {
+    slot.note = note;
+    slot.state = State::Held;
+    slot.key_down = true;
+}
+
+fn fade<V: Voice>(slot: &mut Slot<V>) {
+    slot.voice.fade();
+    slot.state = State::Fading;
+    slot.key_down = false;
+}
+
+fn release_unless_held<V: Voice>(slot: &mut Slot<V>, sustain: &[bool; 16], velocity: f32) {
+    if slot.state == State::Held && !slot.key_down && !slot.sostenuto && !sustain[usize::from(slot.note.channel)] {
+        slot.voice.release(velocity);
+        slot.state = State::Released;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::RefCell;
+    use std::rc::Rc;
+
+    type Log = Rc<RefCell<Vec<String>>>;
+
+    /// A voice that writes down what it is told.
+    struct FakeVoice {
+        log: Log,
+        key: u8,
+        energy: f64,
+        over: bool,
+    }
+
+    impl Voice for FakeVoice {
+        type Context = ();
+        fn start(&mut self, _: &(), note: &Note) {
+            (self.key, self.over, self.energy) = (note.key, false, f64::from(note.velocity));
+            self.log.borrow_mut().push(format!("start {}", note.key));
+        }
+        fn restrike(&mut self, _: &(), note: &Note) {
+            self.log.borrow_mut().push(format!("restrike {} as {}", self.key, note.key));
+            self.key = note.key;
+        }
+        fn retune(&mut self, _: &(), note: &Note) {
+            self.log.borrow_mut().push(format!("retune {} to {}", self.key, note.key));
+            self.key = note.key;
+        }
+        fn release(&mut self, velocity: f32) {
+            self.log.borrow_mut().push(format!("release {} at {velocity}", self.key));
+        }
+        fn fade(&mut self) {
+            self.log.borrow_mut().push(format!("fade {}", self.key));
+        }
+        fn energy(&self) -> f64 {
+            self.energy
+        }
+        fn is_over(&self) -> bool {
+            self.over
+        }
+    }
+
+    enum Do {
+        On(u8, f32),
+        /// Key and choke group.
+        OnChoke(u8, u8),
+        OnPatch(u8, u32),
+        Off(u8),
+        OffId(u8, i32),
+        Sustain(bool),
+        Sostenuto(bool),
+        NotesOff,
+        SoundOff,
+        Over(u8),
+    }
+    use Do::*;
+
+    /// Plays a script and returns what the voices were told.
+    fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
+        let log = Log::default();
+        let mut manager = VoiceManager::new(|| FakeVoice { log: log.clone(), key: 0, energy: 0.0, over: false });
+        manager.configure(polyphony, mode);
+        for (serial, action) in script.iter().enumerate() {
+            let on = |key, velocity, choke, patch| Note {
+                channel: 0,
+                key,
+                detune: 0.0,
+                velocity,
+                soft: false,
+                id: i32::from(key) + 1000,
+                serial: serial as u64,
+                patch,
+                choke,
+            };
+            match *action {
+                On(key, velocity) => manager.note_on(&(), on(key, velocity, 0, 0)),
+                OnChoke(key, group) => manager.note_on(&(), on(key, 1.0, group, 0)),
+                OnPatch(key, patch) => manager.note_on(&(), on(key, 1.0, 0, patch)),
+                Off(key) => manager.note_off(&(), 0, key, -1, 0.25),
+                OffId(key, id) => manager.note_off(&(), 0, key, id, 0.25),
+                Sustain(down) => manager.sustain(0, down),
+                Sostenuto(down) => manager.sostenuto(0, down),
+                NotesOff => manager.all_notes_off(0),
+                SoundOff => manager.all_sound_off(0),
+                Over(key) => {
+                    let voices = manager.active().filter(|(note, _)| note.key == key);
+                    voices.for_each(|(_, voice)| voice.over = true);
+                    manager.free_finished();
+                }
+            }
+        }
+        log.take()
+    }
+
+    #[track_caller]
+    fn check(polyphony: usize, mode: PlayMode, script: &[Do], expected: &[&str]) {
+        assert_eq!(play(polyphony, mode, script), expected);
+    }
+
+    #[test]
+    fn a_second_strike_on_a_sounding_key_joins_it() {
+        let script = [On(60, 1.0), On(60, 1.0), Off(60), On(60, 1.0), Over(60), On(60, 1.0)];
+        let expected = ["start 60", "restrike 60 as 60", "release 60 at 0.25", "restrike 60 as 60", "start 60"];
+        check(16, PlayMode::Poly, &script, &expected);
+    }
+
+    #[test]
+    fn notes_of_another_patch_do_not_share_a_voice() {
+        check(16, PlayMode::Poly, &[OnPatch(60, 0), OnPatch(60, 1)], &["start 60", "start 60"]);
+        check(16, PlayMode::Mono, &[OnPatch(60, 0), OnPatch(62, 1)], &["start 60", "fade 60", "start 62"]);
+    }
+
+    #[test]
+    fn stealing_takes_the_same_key_then_the_quietest_then_the_oldest() {
+        check(
+            2,
+            PlayMode::Poly,
+            &[On(60, 0.9), On(61, 0.2), On(62, 0.5)],
+            &["start 60", "start 61", "fade 61", "start 62"],
+        );
+        check(
+            2,
+            PlayMode::Poly,
+            &[On(60, 0.5), On(61, 0.5), On(62, 0.5)],
+            &["start 60", "start 61", "fade 60", "start 62"],
+        );
+        check(
+            2,
+            PlayMode::Poly,
+            &[OnPatch(60, 0), On(61, 0.1), OnPatch(60, 1)],
+            &["start 60", "start 61", "fade 60", "start 60"],
+        );
+    }
+
+    #[test]
+    fn more_steals_than_spare_voices_cut_the_oldest_and_go_on() {
+        let script: Vec<_> = (0..100).map(|key| On(key, 1.0)).collect();
+        let told = play(1, PlayMode::Poly, &script);
+        assert_eq!(told.iter().filter(|line| line.starts_with("start")).count(), 100);
+    }
+
+    #[test]
+    fn choke_groups_silence_their_own_and_no_others() {
+        let script = [OnChoke(42, 1), OnChoke(38, 0), OnChoke(46, 1), OnChoke(46, 1), OnChoke(50, 2)];
+        let expected = ["start 42", "start 38", "fade 42", "start 46", "restrike 46 as 46", "start 50"];
+        check(16, PlayMode::Poly, &script, &expected);
+    }
+
+    #[test]
+    fn the_sustain_pedal_holds_until_it_is_lifted() {
+        let script = [On(60, 1.0), Sustain(true), Off(60), On(62, 1.0), Sustain(false), Off(62)];
+        check(16, PlayMode::Poly, &script, &["start 60", "start 62", "release 60 at 0.5", "release 62 at 0.25"]);
+    }
+
+    #[test]
+    fn sostenuto_holds_only_the_keys_that_were_down() {
+        let script = [On(60, 1.0), Sostenuto(true), On(62, 1.0), Off(60), Off(62), Sostenuto(false)];
+        check(16, PlayMode::Poly, &script, &["start 60", "start 62", "release 62 at 0.25", "release 60 at 0.5"]);
+        let both = [On(60, 1.0), Sostenuto(true), Sustain(true), Off(60), Sostenuto(false), Sustain(false)];
+        check(16, PlayMode::Poly, &both, &["start 60", "release 60 at 0.5"]);
+    }
+
+    #[test]
+    fn note_ids_are_told_apart() {
+        check(16, PlayMode::Poly, &[On(60, 1.0), OffId(60, 7), OffId(60, 1060)], &["start 60", "release 60 at 0.25"]);
+    }
+
+    #[test]
+    fn mono_strikes_each_key_and_returns_to_held_ones_without_striking() {
+        let script = [On(60, 1.0), On(64, 1.0), Off(64), Off(60)];
+        let expected = ["start 60", "restrike 60 as 64", "retune 64 to 60", "release 60 at 0.25"];
+        check(16, PlayMode::Mono, &script, &expected);
+        let inner = [On(60, 1.0), On(64, 1.0), Off(60), Off(64)];
+        check(16, PlayMode::Mono, &inner, &["start 60", "restrike 60 as 64", "release 64 at 0.25"]);
+    }
+
+    #[test]
+    fn legato_strikes_only_after_a_rest() {
+        let script = [On(60, 1.0), On(64, 1.0), Off(60), Off(64), On(62, 1.0)];
+        let expected = ["start 60", "retune 60 to 64", "release 64 at 0.25", "restrike 64 as 62"];
+        check(16, PlayMode::Legato, &script, &expected);
+    }
+
+    #[test]
+    fn a_held_note_that_died_away_is_started_anew() {
+        check(16, PlayMode::Mono, &[On(60, 1.0), Over(60), On(62, 1.0)], &["start 60", "start 62"]);
+    }
+
+    #[test]
+    fn all_notes_off_respects_the_pedal_and_all_sound_off_does_not() {
+        let script = [On(60, 1.0), Sustain(true), NotesOff, Sustain(false)];
+        check(16, PlayMode::Poly, &script, &["start 60", "release 60 at 0.5"]);
+        let script = [On(60, 1.0), Sustain(true), Off(60), SoundOff, Sustain(false)];
+        check(16, PlayMode::Poly, &script, &["start 60", "fade 60"]);
+    }
+}

@@ -1,0 +1,170 @@
+//! The engine as its users see it: any division into blocks, any event, any time.
+
+use proptest::prelude::*;
+use sprung::engine::{Event, EventKind, Synth};
+use sprung::params::{PARAMS, Param};
+use sprung::patch::{Mode, ModeTable, Patch};
+
+fn event(frame: u32, kind: EventKind) -> Event {
+    Event { frame, channel: 0, kind }
+}
+
+fn on(frame: u32, key: u8, velocity: f32) -> Event {
+    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 })
+}
+
+fn off(frame: u32, key: u8) -> Event {
+    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+}
+
+/// Renders `frames` frames in blocks whose lengths `block` gives, one after the other.
+fn render(patch: &Patch, events: &[Event], frames: usize, mut block: impl FnMut() -> usize) -> (Vec<f32>, Vec<f32>) {
+    let mut synth = Synth::new(48_000.0, 1);
+    synth.set_patch(patch);
+    let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
+    let (mut start, mut next) = (0, 0);
+    while start < frames {
+        let end = frames.min(start + block());
+        let inside: Vec<Event> = events[next..]
+            .iter()
+            .take_while(|event| (event.frame as usize) < end)
+            .map(|event| Event { frame: event.frame - start as u32, ..*event })
+            .collect();
+        next += inside.len();
+        synth.process(&inside, &mut left[start..end], &mut right[start..end]);
+        start = end;
+    }
+    (left, right)
+}
+
+fn any_event(frames: u32) -> impl Strategy<Value = Event> {
+    let key = 36..84u8;
+    let kind = prop_oneof![
+        8 => (key.clone(), -0.5..0.5f32, 0.0..1.0f32)
+            .prop_map(|(key, detune, velocity)| EventKind::NoteOn { key, detune, velocity, id: -1 }),
+        4 => key.clone().prop_map(|key| EventKind::NoteOff { key, velocity: 0.3, id: -1 }),
+        1 => (key, 0.0..1.0f32).prop_map(|(key, pressure)| EventKind::PolyPressure { key, pressure }),
+        1 => (0.0..1.0f32).prop_map(EventKind::ChannelPressure),
+        2 => (-1.0..1.0f32).prop_map(EventKind::PitchBend),
+        3 => (prop::sample::select(vec![1, 6, 7, 10, 11, 38, 64, 66, 67, 100, 101, 120, 121, 123]), 0.0..1.0f32)
+            .prop_map(|(controller, value)| EventKind::Control { controller, value }),
+        3 => (0..PARAMS.len(), 0.0..1.0f64).prop_map(|(index, position)| EventKind::Param {
+            param: PARAMS[index].param,
+            value: PARAMS[index].denormalise(position),
+        }),
+    ];
+    (0..frames, kind).prop_map(|(frame, kind)| event(frame, kind))
+}
+
+fn any_patch() -> impl Strategy<Value = Patch> {
+    let mode = (0.5..20.0f32, -1.0..1.0f32, 0.01..4.0f32, 0.0..1.0f32, -1.0..1.0f32)
+        .prop_map(|(ratio, level, decay, strike, pan)| Mode { ratio, level, decay, strike, pan });
+    (prop::collection::vec(mode, 1..20), prop::collection::vec(0.0..1.0f64, PARAMS.len())).prop_map(
+        |(modes, positions)| {
+            let mut patch = Patch::default();
+            patch.modes = ModeTable::new(&modes);
+            for (info, position) in PARAMS.iter().zip(positions) {
+                patch.set(info.param, info.denormalise(position));
+            }
+            patch
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn blocks_make_no_difference(
+        patch in any_patch(),
+        mut events in prop::collection::vec(any_event(9600), 1..40),
+        sizes in prop::collection::vec(prop_oneof![Just(1_usize), 0..8_usize, 1..700_usize], 1..20),
+    ) {
+        events.sort_by_key(|event| event.frame);
+        let whole = render(&patch, &events, 9600, || 9600);
+        let mut sizes = sizes.into_iter().chain([480]).cycle();
+        let parts = render(&patch, &events, 9600, || sizes.next().unwrap());
+        prop_assert!(whole == parts);
+        prop_assert!(whole.0.iter().chain(&whole.1).all(|sample| sample.is_finite()));
+    }
+}
+
+#[test]
+fn garbage_in_events_never_comes_out() {
+    let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1e30, 1e30];
+    let mut events = vec![];
+    for (n, value) in bad.into_iter().enumerate() {
+        let frame = n as u32 * 500;
+        events.push(event(frame, EventKind::NoteOn { key: 255, detune: value, velocity: value, id: -1 }));
+        events.push(on(frame, 60, 1.0));
+        for kind in [
+            EventKind::PitchBend(value),
+            EventKind::ChannelPressure(value),
+            EventKind::PolyPressure { key: 60, pressure: value },
+            EventKind::Control { controller: 7, value },
+            EventKind::Control { controller: 1, value },
+            EventKind::Choke { group: 255 },
+        ] {
+            events.push(Event { frame, channel: 255, kind });
+            events.push(event(frame, kind));
+        }
+        events.extend(PARAMS.iter().map(|info| event(frame, EventKind::Param { param: info.param, value })));
+    }
+    let (left, right) = render(&Patch::default(), &events, 9600, || 480);
+    assert!(left.iter().chain(&right).all(|sample| sample.is_finite()));
+}
+
+#[test]
+fn events_beyond_the_block_are_taken_at_its_last_frame() {
+    let late = render(&Patch::default(), &[on(479, 60, 1.0)], 480, || 480);
+    let mut synth = Synth::new(48_000.0, 1);
+    synth.set_patch(&Patch::default());
+    let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
+    synth.process(&[on(9999, 60, 1.0)], &mut left, &mut right);
+    assert_eq!((left, right), late);
+}
+
+#[test]
+fn a_note_starts_at_its_frame() {
+    for frame in [0, 1, 31, 32, 33, 400] {
+        let (left, _) = render(&Patch::default(), &[on(frame, 60, 1.0)], 480, || 480);
+        assert_eq!(left.iter().position(|sample| *sample != 0.0), Some(frame as usize));
+    }
+}
+
+#[test]
+fn reset_and_prepare_bring_back_the_beginning() {
+    let patch = Patch::default().with(Param::Exciter, 3.0).with(Param::Vibrato, 50.0);
+    let events = [on(10, 60, 1.0), on(700, 64, 0.4), off(900, 60), event(950, EventKind::PitchBend(0.5))];
+    let mut synth = Synth::new(48_000.0, 1);
+    synth.set_patch(&patch);
+    let mut first = [vec![0.0; 4800], vec![0.0; 4800]];
+    let mut again = first.clone();
+    let run = |synth: &mut Synth, out: &mut [Vec<f32>; 2]| {
+        let [left, right] = out;
+        synth.process(&events, left, right);
+    };
+    synth.reset();
+    run(&mut synth, &mut first);
+    synth.reset();
+    run(&mut synth, &mut again);
+    assert_eq!(first, again);
+    synth.prepare(48_000.0);
+    run(&mut synth, &mut again);
+    assert_eq!(first, again);
+    assert_eq!(synth.patch(), &patch);
+}
+
+#[test]
+fn a_synth_falls_silent_by_itself_and_stays_silent() {
+    let patch = Patch::default().with(Param::Decay, 0.1);
+    let mut synth = Synth::new(48_000.0, 1);
+    synth.set_patch(&patch);
+    let (mut left, mut right) = (vec![0.0; 48_000], vec![0.0; 48_000]);
+    synth.process(&[on(0, 60, 1.0)], &mut left, &mut right);
+    assert!(synth.is_silent());
+    let end = left.iter().rposition(|sample| *sample != 0.0).unwrap();
+    // −120 dBFS is two T60s, of 4,800 frames each, after a peak that the gain has brought down 6 dB.
+    assert!((9_400..=9_700).contains(&end), "{end}");
+    assert!(left[end].abs() < 1e-6);
+}
