@@ -1,0 +1,60 @@
+//! The audio thread never allocates: playing everything at once under an allocator that forbids it.
+
+use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
+use sprung::engine::{Ensemble, Event, EventKind};
+use sprung::params::PARAMS;
+use sprung::patch::{Mode, ModeTable, Patch};
+
+#[global_allocator]
+static ALLOCATOR: AllocDisabler = AllocDisabler;
+
+/// Every kind of event, on every channel, stealing and choking all the while.
+fn storm(block: u32) -> Vec<Event> {
+    let mut events = vec![];
+    for n in 0..96_u32 {
+        let (frame, channel) = (n * 5, (n % 16) as u8);
+        let key = (30 + (n * 7 + block * 11) % 60) as u8;
+        let value = (n % 11) as f32 / 10.0;
+        let param = &PARAMS[((n + block * 13) as usize) % PARAMS.len()];
+        for kind in [
+            EventKind::NoteOn { key, detune: 0.1, velocity: value, id: n as i32 },
+            EventKind::NoteOff { key: key - 5, velocity: value, id: -1 },
+            EventKind::PitchBend(value),
+            EventKind::ChannelPressure(value),
+            EventKind::PolyPressure { key, pressure: value },
+            EventKind::Control {
+                controller: [1, 6, 7, 10, 11, 64, 66, 67, 100, 101, 120, 121, 123][n as usize % 13],
+                value,
+            },
+            EventKind::Param { param: param.param, value: param.denormalise(value.into()) },
+            EventKind::Choke { group: (n % 3) as u8 },
+            EventKind::Program((n % 4) as u8),
+        ] {
+            events.push(Event { frame, channel, kind });
+        }
+    }
+    events
+}
+
+#[test]
+fn processing_does_not_allocate() {
+    let mut patch = Patch::default();
+    patch.modes = ModeTable::new(&[Mode { strike: 0.5, ..Mode::UNIT }; 64]);
+    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[patch, Patch::default(), patch]);
+    let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
+    let blocks: Vec<_> = (0..40).map(storm).collect();
+    let mut loudest = 0.0_f32;
+    for events in &blocks {
+        assert_no_alloc(|| ensemble.process(events, &mut left, &mut right));
+        loudest = left.iter().fold(loudest, |peak, sample| peak.max(sample.abs()));
+    }
+    assert!(loudest > 0.1, "something sounded");
+    assert_no_alloc(|| std::hint::black_box((ensemble.is_silent(), ensemble.voices_used())));
+    assert_eq!(violation_count(), 0, "allocations on the audio thread");
+}
+
+#[test]
+fn the_ban_bites() {
+    assert_no_alloc(|| drop(std::hint::black_box(vec![0_u8; 10])));
+    assert_ne!(violation_count(), 0);
+}

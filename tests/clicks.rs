@@ -1,0 +1,136 @@
+//! Nothing clicks: the largest jump between two samples stays within that of the undisturbed sound plus −60 dBFS.
+
+use sprung::engine::{Ensemble, Event, EventKind};
+use sprung::params::Param;
+use sprung::patch::{Mode, ModeTable, Patch};
+
+const RATE: f64 = 48_000.0;
+const FRAMES: usize = 24_000;
+/// −60 dBFS.
+const ALLOWANCE: f32 = 0.001;
+
+fn event(frame: u32, kind: EventKind) -> Event {
+    Event { frame, channel: 0, kind }
+}
+
+fn on(frame: u32, key: u8) -> Event {
+    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 })
+}
+
+fn off(frame: u32, key: u8) -> Event {
+    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+}
+
+fn pedal(frame: u32, controller: u8, value: f32) -> Event {
+    event(frame, EventKind::Control { controller, value })
+}
+
+fn largest_jump(patch: &Patch, programs: &[Patch], events: &[Event]) -> f32 {
+    let mut ensemble = Ensemble::new(RATE, 1, patch, programs);
+    let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
+    ensemble.process(events, &mut left, &mut right);
+    assert!(left.iter().any(|sample| sample.abs() > 0.01), "something sounds");
+    left.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max)
+}
+
+/// The sounds that the disturbances are tried on: a sine, a mallet of several modes, a kick that sweeps.
+fn patches() -> [(&'static str, Patch); 3] {
+    let sine = Patch::default().with(Param::Decay, 3.0).with(Param::Gain, 0.0);
+    let mut mallet = sine.with(Param::Exciter, 1.0).with(Param::Hardness, 60.0);
+    let modes = [(1.0, 0.6), (3.93, 0.25), (9.6, 0.1), (17.0, 0.05)];
+    mallet.modes = ModeTable::new(&modes.map(|(ratio, level)| Mode { ratio, level, ..Mode::UNIT }));
+    let kick = sine.with(Param::Sweep, 24.0).with(Param::SweepTime, 0.08).with(Param::Decay, 0.5);
+    [("sine", sine), ("mallet", mallet), ("kick", kick)]
+}
+
+/// Compares the jumps of `disturbed` to those of `undisturbed`, both made for a key and a moment, on every patch,
+/// several keys, and moments all round the phase.
+fn check(
+    change: impl Fn(Patch) -> Patch,
+    undisturbed: impl Fn(u8, u32) -> Vec<Event>,
+    disturbed: impl Fn(u8, u32) -> Vec<Event>,
+) {
+    for (name, patch) in patches() {
+        let free = patch.with(Param::Voices, 16.0);
+        let programs = [Patch::default().with(Param::Gain, -20.0).with(Param::Exciter, 3.0)];
+        for key in [28, 40, 60, 84] {
+            for moment in [4800, 4811, 4907, 5003, 5151] {
+                let before = largest_jump(&free, &programs, &undisturbed(key, moment));
+                let after = largest_jump(&change(patch), &programs, &disturbed(key, moment));
+                assert!(
+                    after <= before + ALLOWANCE,
+                    "{name}, key {key}, frame {moment}: a jump of {after} where {before} is the sound's own"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn stealing_does_not_click() {
+    let notes = |key, moment| vec![on(0, key), on(moment, key + 7)];
+    check(|patch| patch.with(Param::Voices, 1.0), notes, notes);
+}
+
+#[test]
+fn choking_does_not_click() {
+    let notes = |key, moment| vec![on(0, key), on(moment, key + 7)];
+    check(|patch| patch.with(Param::Choke, 1.0), notes, notes);
+}
+
+#[test]
+fn striking_a_sounding_note_does_not_click() {
+    // Undisturbed are two masses of one pitch struck at once: a swept sound takes what still rings up with it.
+    let other = |frame, key| Event { channel: 1, ..on(frame, key) };
+    check(|patch| patch, |key, _| vec![on(0, key), other(0, key)], |key, moment| vec![on(0, key), on(moment, key)]);
+}
+
+#[test]
+fn lifting_a_pedal_does_not_click() {
+    for controller in [64, 66] {
+        check(
+            |patch| patch.with(Param::Release, 0.05),
+            |key, _| vec![on(0, key)],
+            |key, moment| vec![on(0, key), pedal(10, controller, 1.0), off(100, key), pedal(moment, controller, 0.0)],
+        );
+    }
+}
+
+#[test]
+fn releasing_does_not_click() {
+    check(
+        |patch| patch.with(Param::Release, 0.05),
+        |key, _| vec![on(0, key)],
+        |key, moment| vec![on(0, key), off(moment, key)],
+    );
+}
+
+#[test]
+fn changing_the_preset_does_not_click() {
+    check(
+        |patch| patch,
+        |key, _| vec![on(0, key)],
+        |key, moment| vec![on(0, key), event(moment, EventKind::Program(0))],
+    );
+}
+
+#[test]
+fn silencing_a_channel_does_not_click() {
+    check(
+        |patch| patch,
+        |key, _| vec![on(0, key)],
+        |key, moment| vec![on(0, key), event(moment, EventKind::Control { controller: 120, value: 0.0 })],
+    );
+}
+
+#[test]
+fn turning_volume_and_gain_does_not_click() {
+    for kind in [
+        EventKind::Control { controller: 7, value: 0.0 },
+        EventKind::Control { controller: 10, value: 1.0 },
+        EventKind::Param { param: Param::Gain, value: -60.0 },
+        EventKind::Param { param: Param::Decay, value: 0.05 },
+    ] {
+        check(|patch| patch, |key, _| vec![on(0, key)], |key, moment| vec![on(0, key), event(moment, kind)]);
+    }
+}
