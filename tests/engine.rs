@@ -168,3 +168,30 @@ fn a_synth_falls_silent_by_itself_and_stays_silent() {
     assert!((9_400..=9_700).contains(&end), "{end}");
     assert!(left[end].abs() < 1e-6);
 }
+
+#[test]
+fn every_rate_and_block_size_plays_in_tune() {
+    for rate in [8_000.0, 11_025.0, 44_100.0, 96_000.0, 384_000.0, 768_000.0] {
+        let mut synth = Synth::new(rate, 1);
+        let frames = rate as usize;
+        let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
+        synth.process(&[], &mut [], &mut []);
+        synth.handle(&on(0, 69, 1.0));
+        synth.process(&[], &mut [], &mut []);
+        for (left, right) in left.chunks_mut(65_536).zip(right.chunks_mut(65_536)) {
+            synth.process(&[], left, right);
+        }
+        let crossings = left.windows(2).filter(|pair| pair[0] < 0.0 && pair[1] >= 0.0).count();
+        assert!((439..=441).contains(&crossings), "{crossings} periods at {rate} Hz");
+    }
+}
+
+#[test]
+fn a_sample_rate_out_of_range_is_brought_into_it() {
+    for rate in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e9] {
+        let mut synth = Synth::new(rate, 1);
+        let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
+        synth.process(&[on(0, 69, 1.0)], &mut left, &mut right);
+        assert!(left.iter().all(|sample| sample.is_finite()) && left[100] != 0.0, "{rate}");
+    }
+}
