@@ -6,6 +6,7 @@ mod channel;
 mod controls;
 pub mod ensemble;
 pub mod event;
+mod fader;
 pub mod synth;
 mod voice;
 pub mod voice_manager;

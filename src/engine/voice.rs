@@ -2,8 +2,8 @@
 
 use super::channel::Channel;
 use super::controls::Controls;
+use super::fader::Fader;
 use super::voice_manager::{Note, Voice};
-use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::exciter::{Drive, Exciter};
 use crate::dsp::mode_bank::{Coupling, Law, MAX_MODES, ModeBank, ModeSetup};
 use crate::dsp::pitch::{Glide, SweepEnvelope};
@@ -104,12 +104,9 @@ pub(crate) struct SynthVoice {
     pub(crate) pressure: f32,
     damping: Damping,
 
-    gain: [f32; 2],
-    gain_step: [f32; 2],
+    fader: Fader,
     /// Pitch and gain are taken as they are at the first control, not slid to.
     fresh: bool,
-    fade_frames: u32,
-    faded: u32,
 }
 
 impl SynthVoice {
@@ -143,11 +140,8 @@ impl SynthVoice {
             release_velocity: 0.0,
             pressure: 0.0,
             damping: Damping { decay: 1.0, release: 1.0, amount: 0.0 },
-            gain: [0.0; 2],
-            gain_step: [0.0; 2],
+            fader: Fader::CLOSED,
             fresh: true,
-            fade_frames: 0,
-            faded: 0,
         }
     }
 
@@ -205,11 +199,10 @@ impl SynthVoice {
 
         let (left, right) = channel.gains_after(frames as u32);
         let target = [self.controls.gain_left * left, self.controls.gain_right * right];
-        for ((gain, step), target) in self.gain.iter_mut().zip(&mut self.gain_step).zip(target) {
-            if self.fresh {
-                *gain = target;
-            }
-            *step = (target - *gain) / frames as f32;
+        if self.fresh {
+            self.fader.jump(target);
+        } else {
+            self.fader.aim(target, frames);
         }
         self.fresh = false;
     }
@@ -225,33 +218,12 @@ impl SynthVoice {
     /// Adds the next frames, at most [`CONTROL_FRAMES`], to `left` and `right`.
     pub(crate) fn render(&mut self, left: &mut [f32], right: &mut [f32]) {
         let frames = left.len();
-        let (mut bank_left, mut bank_right) = ([0.0; CONTROL_FRAMES], [0.0; CONTROL_FRAMES]);
-        let (bank_left, bank_right) = (&mut bank_left[..frames], &mut bank_right[..frames]);
-        if self.exciter.is_active() {
+        let drive = self.exciter.is_active().then(|| {
             self.exciter.fill(frames, &mut self.drive);
-            self.bank.render(Some(&self.drive), bank_left, bank_right);
-        } else {
-            self.bank.render(None, bank_left, bank_right);
-        }
+            &self.drive
+        });
+        self.fader.mix(self.bank.render(drive, frames), [left, right]);
         self.age += frames as u64;
-        for i in 0..frames {
-            for side in 0..2 {
-                self.gain[side] += self.gain_step[side];
-            }
-            let fade = self.next_fade();
-            left[i] += bank_left[i] * (self.gain[0] * fade);
-            right[i] += bank_right[i] * (self.gain[1] * fade);
-        }
-    }
-
-    /// Gain of the fade that ends a stolen or choked voice: an S-curve, so that neither end has a corner.
-    fn next_fade(&mut self) -> f32 {
-        if self.fade_frames == 0 {
-            return 1.0;
-        }
-        self.faded = (self.faded + 1).min(self.fade_frames);
-        let u = self.faded as f32 / self.fade_frames as f32;
-        1.0 - u * u * (3.0 - 2.0 * u)
     }
 
     /// Reads what the patch says of a strike, and strikes.
@@ -382,7 +354,7 @@ impl Voice for SynthVoice {
     }
 
     fn fade(&mut self) {
-        self.fade_frames = (FADE_SECONDS * self.sample_rate) as u32;
+        self.fader.fade((FADE_SECONDS * self.sample_rate) as u32);
     }
 
     fn energy(&self) -> f64 {
@@ -390,10 +362,9 @@ impl Voice for SynthVoice {
     }
 
     fn is_over(&self) -> bool {
-        let faded = self.fade_frames > 0 && self.faded >= self.fade_frames;
         // n amplitudes whose squares sum to E add up to √(n E) at most.
         let loudest = self.energy * self.bank.len() as f64;
-        let gain = f64::from(self.gain[0].max(self.gain[1])).max(1.0);
-        faded || (self.pending_energy == 0.0 && loudest * gain * gain < SILENCE * SILENCE)
+        let gain = f64::from(self.fader.loudest()).max(1.0);
+        self.fader.is_closed() || (self.pending_energy == 0.0 && loudest * gain * gain < SILENCE * SILENCE)
     }
 }

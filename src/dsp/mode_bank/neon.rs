@@ -1,0 +1,75 @@
+//! Vectors of AArch64: four numbers, fused by the instruction set.
+
+use super::vector::Vector;
+use std::arch::aarch64::*;
+
+/// Four numbers.
+#[derive(Clone, Copy)]
+pub(super) struct Neon(float32x4_t);
+
+/// Operations of two vectors that are one instruction each.
+macro_rules! binary {
+    ($($name:ident: $intrinsic:ident),*) => {
+        $(#[inline(always)]
+        fn $name(self, other: Self) -> Self {
+            // SAFETY: NEON belongs to AArch64.
+            Self(unsafe { $intrinsic(self.0, other.0) })
+        })*
+    };
+}
+
+impl Vector for Neon {
+    const WIDTH: usize = 4;
+    const INTERLEAVE: usize = 4;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        // SAFETY: NEON belongs to AArch64.
+        Self(unsafe { vdupq_n_f32(value) })
+    }
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        let from = &from[..4];
+        // SAFETY: NEON belongs to AArch64; the slice has the four numbers that are read.
+        Self(unsafe { vld1q_f32(from.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        let to = &mut to[..4];
+        // SAFETY: NEON belongs to AArch64; the slice has the four numbers that are written.
+        unsafe { vst1q_f32(to.as_mut_ptr(), self.0) }
+    }
+    #[inline(always)]
+    fn splat_pair(pair: &[f32; 2]) -> Self {
+        // SAFETY: NEON belongs to AArch64; the array has the two numbers that are read.
+        unsafe {
+            let pair = vld1_f32(pair.as_ptr());
+            Self(vcombine_f32(pair, pair))
+        }
+    }
+    #[inline(always)]
+    fn store_pairs(self, other: Self, to: &mut [f32]) {
+        let to = &mut to[..8];
+        // SAFETY: NEON belongs to AArch64; the slice has the eight numbers that are written.
+        unsafe {
+            vst1q_f32(to.as_mut_ptr(), vzip1q_f32(self.0, other.0));
+            vst1q_f32(to[4..].as_mut_ptr(), vzip2q_f32(self.0, other.0));
+        }
+    }
+    binary!(add_pairs: vpaddq_f32, add: vaddq_f32, sub: vsubq_f32, mul: vmulq_f32, div: vdivq_f32, min: vminq_f32, max: vmaxq_f32);
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: NEON belongs to AArch64.
+        Self(unsafe { vsqrtq_f32(self.0) })
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        // SAFETY: NEON belongs to AArch64.
+        Self(unsafe { vfmaq_f32(term.0, self.0, factor.0) })
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, factor: Self, term: Self) -> Self {
+        // SAFETY: NEON belongs to AArch64.
+        Self(unsafe { vfmsq_f32(term.0, self.0, factor.0) })
+    }
+}

@@ -1,0 +1,239 @@
+//! What the kernels ask of a CPU: a few operations on a vector of single-precision numbers, each rounded exactly.
+
+/// Modes whose partial sums are kept side by side. Frozen, like everything that an order of summation depends on.
+pub(super) const LANES: usize = 16;
+
+/// The partial sums of one frame: lane `l` has those of the modes `m` with `m mod 16 = l`.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Partial(pub(super) [f32; LANES]);
+
+/// A vector of 1 to [`LANES`] single-precision numbers.
+///
+/// Values of an implementer are made only inside the functions of `levels`, which run only on a CPU that has its
+/// instructions. Every operation is one that IEEE 754 defines to the bit, so all implementers give the same.
+pub(super) trait Vector: Copy {
+    /// How many numbers.
+    const WIDTH: usize;
+    /// How many vectors of modes the registers hold at once.
+    const INTERLEAVE: usize;
+
+    /// `value` in every lane.
+    fn splat(value: f32) -> Self;
+    /// The first numbers of `from`.
+    fn load(from: &[f32]) -> Self;
+    /// Writes to the first numbers of `to`.
+    fn store(self, to: &mut [f32]);
+    /// `pair` over and over.
+    fn splat_pair(pair: &[f32; 2]) -> Self;
+    /// Writes the lanes of `self` and `other` in turn: twice as many numbers.
+    fn store_pairs(self, other: Self, to: &mut [f32]);
+    /// The sums of neighbouring lanes, of `self` and then of `other`.
+    fn add_pairs(self, other: Self) -> Self;
+    /// `self + other`.
+    fn add(self, other: Self) -> Self;
+    /// `self − other`.
+    fn sub(self, other: Self) -> Self;
+    /// `self · other`.
+    fn mul(self, other: Self) -> Self;
+    /// `self / other`.
+    fn div(self, other: Self) -> Self;
+    /// `√self`.
+    fn sqrt(self) -> Self;
+    /// The lesser; the arguments are numbers.
+    fn min(self, other: Self) -> Self;
+    /// The greater; the arguments are numbers.
+    fn max(self, other: Self) -> Self;
+    /// `self · factor + term`, rounded once.
+    fn mul_add(self, factor: Self, term: Self) -> Self;
+    /// `term − self · factor`, rounded once.
+    fn neg_mul_add(self, factor: Self, term: Self) -> Self;
+
+    /// Adds up the partial sums of each frame, by halves: lane `l` and `l + 8`, then `l + 4`, `l + 2`, `l + 1`.
+    #[inline(always)]
+    fn sum_lanes(frames: &[Partial], sums: &mut [f32]) {
+        sum_frames(frames, sums);
+    }
+}
+
+/// [`Vector::sum_lanes`] in any CPU's terms.
+#[inline(always)]
+pub(super) fn sum_frames(frames: &[Partial], sums: &mut [f32]) {
+    for (Partial(p), sum) in frames.iter().zip(sums) {
+        let (mut eight, mut four) = ([0.0; 8], [0.0; 4]);
+        for l in 0..8 {
+            eight[l] = p[l] + p[l + 8];
+        }
+        for l in 0..4 {
+            four[l] = eight[l] + eight[l + 4];
+        }
+        *sum = (four[0] + four[2]) + (four[1] + four[3]);
+    }
+}
+
+/// Four numbers in plain Rust: for CPUs without a kernel of their own, and the reference for those with one.
+#[derive(Clone, Copy)]
+pub(super) struct Scalar([f32; 4]);
+
+impl Vector for Scalar {
+    const WIDTH: usize = 4;
+    const INTERLEAVE: usize = 1;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self([value; 4])
+    }
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        Self([from[0], from[1], from[2], from[3]])
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        to[..4].copy_from_slice(&self.0);
+    }
+    #[inline(always)]
+    fn splat_pair([a, b]: &[f32; 2]) -> Self {
+        Self([*a, *b, *a, *b])
+    }
+    #[inline(always)]
+    fn store_pairs(self, other: Self, to: &mut [f32]) {
+        for l in 0..4 {
+            (to[2 * l], to[2 * l + 1]) = (self.0[l], other.0[l]);
+        }
+    }
+    #[inline(always)]
+    fn add_pairs(self, other: Self) -> Self {
+        let (Self([a, b, c, d]), Self([e, f, g, h])) = (self, other);
+        Self([a + b, c + d, e + f, g + h])
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let mut result = self.0;
+        for l in 0..4 {
+            result[l] = self.0[l] + other.0[l];
+        }
+        Self(result)
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        let mut result = self.0;
+        for l in 0..4 {
+            result[l] = self.0[l] - other.0[l];
+        }
+        Self(result)
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let mut result = self.0;
+        for l in 0..4 {
+            result[l] = self.0[l] * other.0[l];
+        }
+        Self(result)
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let mut result = self.0;
+        for l in 0..4 {
+            result[l] = self.0[l] / other.0[l];
+        }
+        Self(result)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let mut result = self.0;
+        for l in 0..4 {
+            result[l] = self.0[l].sqrt();
+        }
+        Self(result)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        let mut result = self.0;
+        for l in 0..4 {
+            result[l] = if self.0[l] < other.0[l] { self.0[l] } else { other.0[l] };
+        }
+        Self(result)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        let mut result = self.0;
+        for l in 0..4 {
+            result[l] = if self.0[l] > other.0[l] { self.0[l] } else { other.0[l] };
+        }
+        Self(result)
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        let mut result = self.0;
+        for l in 0..4 {
+            result[l] = fused(self.0[l], factor.0[l], term.0[l]);
+        }
+        Self(result)
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, factor: Self, term: Self) -> Self {
+        let mut result = self.0;
+        for l in 0..4 {
+            result[l] = fused(-self.0[l], factor.0[l], term.0[l]);
+        }
+        Self(result)
+    }
+}
+
+/// `a · b + c` rounded once, without an instruction for it.
+///
+/// The product is exact in double precision. Its sum with `c`, rounded to odd, still tells on which side of a
+/// midpoint the exact sum lies, so rounding that to single precision is right (Boldo and Melquiond 2008, "Emulation
+/// of a FMA and correctly rounded sums"). The system's `fmaf` may be a call a hundred times as slow.
+#[inline(always)]
+pub(super) fn fused(a: f32, b: f32, c: f32) -> f32 {
+    let (product, c) = (f64::from(a) * f64::from(b), f64::from(c));
+    let sum = product + c;
+    // Knuth's TwoSum: what rounding took away.
+    let part = sum - product;
+    let error = (product - (sum - part)) + (c - part);
+    let bits = sum.to_bits();
+    let towards = if (error.to_bits() ^ bits) >> 63 == 0 { bits.wrapping_add(1) } else { bits.wrapping_sub(1) };
+    let odd = if error != 0.0 && bits & 1 == 0 { towards } else { bits };
+    f64::from_bits(odd) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dsp::random::{key, uniform};
+
+    /// Cases that rounding twice gets wrong, and a million random ones of every magnitude.
+    #[test]
+    fn emulated_fusing_rounds_once() {
+        let check = |a: f32, b: f32, c: f32| {
+            let (expected, found) = (a.mul_add(b, c), fused(a, b, c));
+            assert!(expected.to_bits() == found.to_bits(), "{a:e} · {b:e} + {c:e}: {expected:e}, not {found:e}");
+        };
+        let tie = 1.0 + f32::EPSILON;
+        for tiny in [1e-30_f32, -1e-30, f32::MIN_POSITIVE, 1e-44] {
+            check(tie, tie, tiny);
+            check(tiny, tiny, tie);
+            check(16_777_217.0, 1.0, tiny);
+            check(1.0 + 4_096.0 * f32::EPSILON, 1.0 - 4_096.0 * f32::EPSILON, tiny);
+        }
+        let stream = key(11, 0);
+        for n in 0..1_000_000_u64 {
+            let number = |k: u64| {
+                let exponent = (uniform(stream, 6 * n + 2 * k + 1) * 40.0) as f64;
+                uniform(stream, 6 * n + 2 * k) * libm::exp2(exponent) as f32
+            };
+            let (a, b) = (number(0), number(1));
+            check(a, b, number(2));
+            check(a, b, -(a * b));
+        }
+    }
+
+    #[test]
+    fn lanes_are_summed_by_halves() {
+        let frame = Partial(std::array::from_fn(|l| (l * l) as f32));
+        let mut sums = [0.0; 2];
+        Scalar::sum_lanes(&[frame; 2], &mut sums);
+        assert_eq!(sums, [1240.0; 2]);
+    }
+}

@@ -1,0 +1,111 @@
+//! The gain of a voice: straight lines between control ticks, and the fade that ends a voice early.
+
+/// Gain to the left and right. A function of elapsed frames, however they are divided. Real-time safe.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fader {
+    from: [f32; 2],
+    step: [f32; 2],
+    /// Frames since the line was set out on.
+    elapsed: u32,
+    /// Length of the fade, 0 for none, and how much of it has passed.
+    fade_frames: u32,
+    faded: u32,
+}
+
+impl Fader {
+    /// Silent, to be put somewhere by [`Fader::jump`].
+    pub(crate) const CLOSED: Fader = Fader { from: [0.0; 2], step: [0.0; 2], elapsed: 0, fade_frames: 0, faded: 0 };
+
+    /// The gain of the last frame.
+    fn now(&self) -> [f32; 2] {
+        [0, 1].map(|side| self.from[side] + self.step[side] * self.elapsed as f32)
+    }
+
+    /// Puts the gain at `target`.
+    pub(crate) fn jump(&mut self, target: [f32; 2]) {
+        (self.from, self.step, self.elapsed) = (target, [0.0; 2], 0);
+    }
+
+    /// Sets out for `target`, to be there in `frames` frames.
+    pub(crate) fn aim(&mut self, target: [f32; 2], frames: usize) {
+        let from = self.now();
+        let step = [0, 1].map(|side| (target[side] - from[side]) / frames as f32);
+        (self.from, self.step, self.elapsed) = (from, step, 0);
+    }
+
+    /// Begins to fade out.
+    pub(crate) fn fade(&mut self, frames: u32) {
+        self.fade_frames = frames;
+    }
+
+    /// Whether the fade has come to its end.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.fade_frames > 0 && self.faded >= self.fade_frames
+    }
+
+    /// The greater of the two gains.
+    pub(crate) fn loudest(&self) -> f32 {
+        let [left, right] = self.now();
+        left.max(right)
+    }
+
+    /// Adds the next frames of a voice to a mix.
+    pub(crate) fn mix(&mut self, voice: [&[f32]; 2], into: [&mut [f32]; 2]) {
+        let (mut frames, elapsed, faded, length) = (0, self.elapsed, self.faded, self.fade_frames);
+        for (side, (voice, into)) in voice.into_iter().zip(into).enumerate() {
+            let (from, step) = (self.from[side], self.step[side]);
+            frames = into.len() as u32;
+            let pairs = into.iter_mut().zip(voice);
+            if length > 0 {
+                for (i, (into, voice)) in (1..).zip(pairs) {
+                    let gain = from + step * (elapsed + i) as f32;
+                    *into += voice * (gain * fade_after(faded + i, length));
+                }
+            } else if step == 0.0 {
+                pairs.for_each(|(into, voice)| *into += voice * from);
+            } else {
+                for (i, (into, voice)) in (1..).zip(pairs) {
+                    *into += voice * (from + step * (elapsed + i) as f32);
+                }
+            }
+        }
+        self.elapsed += frames;
+        if length > 0 {
+            self.faded = length.min(self.faded + frames);
+        }
+    }
+}
+
+/// An S-curve, so that neither end of a fade has a corner.
+fn fade_after(frames: u32, length: u32) -> f32 {
+    let u = frames.min(length) as f32 / length as f32;
+    1.0 - u * u * (3.0 - 2.0 * u)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn render(fader: &mut Fader, frames: usize) -> Vec<f32> {
+        let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
+        let voice = vec![1.0; frames];
+        fader.mix([&voice, &voice], [&mut left, &mut right]);
+        left
+    }
+
+    #[test]
+    fn a_line_arrives_on_time_however_it_is_divided() {
+        let mut whole = Fader::CLOSED;
+        whole.jump([0.25, 1.0]);
+        assert_eq!(render(&mut whole, 3), [0.25; 3]);
+        whole.aim([1.0, 0.0], 30);
+        whole.fade(40);
+        let mut parts = whole;
+        let expected = render(&mut whole, 30);
+        assert_eq!([1, 13, 0, 16].map(|frames| render(&mut parts, frames)).concat(), expected);
+        assert_eq!(whole.now(), [1.0, 0.0]);
+        assert!(!whole.is_closed());
+        let end = render(&mut whole, 10);
+        assert!(whole.is_closed() && end[9] == 0.0 && end[8] > 0.0);
+    }
+}
