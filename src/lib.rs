@@ -13,9 +13,11 @@
 pub mod dsp;
 pub mod engine;
 pub mod error;
+pub mod io;
 pub mod params;
 pub mod patch;
 pub mod preset;
+pub mod render;
 pub mod units;
 
 pub use error::{Error, Result};

@@ -1,0 +1,94 @@
+//! Songs: events in the order of their times, as a MIDI file or a chord of notes gives them.
+
+use crate::engine::{Event, EventKind};
+
+/// An event of a song.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SongEvent {
+    /// Seconds from the start of the song.
+    pub seconds: f64,
+    /// MIDI channel, 0–15.
+    pub channel: u8,
+    /// What happens.
+    pub kind: EventKind,
+}
+
+impl SongEvent {
+    /// The frame that the event is nearest to.
+    pub fn frame(&self, sample_rate: f64) -> u64 {
+        frames(self.seconds, sample_rate)
+    }
+
+    /// The event at a frame of a block.
+    pub fn at(&self, frame: u32) -> Event {
+        Event { frame, channel: self.channel, kind: self.kind }
+    }
+}
+
+/// The whole number of frames nearest to a time; what does not fit into a `u64` becomes its largest.
+pub fn frames(seconds: f64, sample_rate: f64) -> u64 {
+    (seconds * sample_rate).round() as u64
+}
+
+/// Events in the order of their times, and how long they last.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Song {
+    /// In order; those of one time are in the order of the file's tracks and of each track's events.
+    pub events: Vec<SongEvent>,
+    /// Length in seconds: the time of the last event, end-of-track marks included.
+    pub seconds: f64,
+}
+
+impl Song {
+    /// Notes struck together at the start and released together at the end. `keys` are fractional MIDI keys, also
+    /// beyond the keyboard: each takes the nearest key from 0 to 127 and the rest as its detune.
+    pub fn chord(keys: &[f64], velocity: f32, seconds: f64) -> Self {
+        let event = |seconds, kind| SongEvent { seconds, channel: 0, kind };
+        let nearest = |key: f64| key.round().clamp(0.0, 127.0);
+        let on = keys.iter().zip(0..).map(|(&key, id)| {
+            let detune = (key - nearest(key)) as f32;
+            event(0.0, EventKind::NoteOn { key: nearest(key) as u8, detune, velocity, id })
+        });
+        let off = keys
+            .iter()
+            .zip(0..)
+            .map(|(&key, id)| event(seconds, EventKind::NoteOff { key: nearest(key) as u8, velocity: 0.5, id }));
+        Self { events: on.chain(off).collect(), seconds }
+    }
+
+    /// The song's length in frames.
+    pub fn frames(&self, sample_rate: f64) -> u64 {
+        frames(self.seconds, sample_rate)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_chord_is_struck_and_released_at_once() {
+        let song = Song::chord(&[60.0, 69.25, 140.5], 0.5, 2.0);
+        let expected = [(60, 0.0, 0), (69, 0.25, 1), (127, 13.5, 2)];
+        for ((on, off), (key, detune, id)) in song.events[..3].iter().zip(&song.events[3..]).zip(expected) {
+            assert_eq!(
+                *on,
+                SongEvent { seconds: 0.0, channel: 0, kind: EventKind::NoteOn { key, detune, velocity: 0.5, id } }
+            );
+            assert_eq!(
+                *off,
+                SongEvent { seconds: 2.0, channel: 0, kind: EventKind::NoteOff { key, velocity: 0.5, id } }
+            );
+        }
+        assert_eq!(song.frames(44_100.0), 88_200);
+    }
+
+    #[test]
+    fn times_become_the_nearest_frame() {
+        for (seconds, sample_rate, expected) in
+            [(0.1, 44_100.0, 4410), (1.0 / 3.0, 48_000.0, 16_000), (0.00001, 48_000.0, 0), (1e300, 48_000.0, u64::MAX)]
+        {
+            assert_eq!(frames(seconds, sample_rate), expected);
+        }
+    }
+}
