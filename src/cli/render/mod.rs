@@ -35,7 +35,7 @@ pub(super) struct Args {
     #[arg(long, value_delimiter = ',', value_parser = quantity::note, allow_negative_numbers = true)]
     note: Vec<String>,
     /// Velocity of the notes, 1-127
-    #[arg(long, default_value_t = 100, conflicts_with = "song", value_parser = clap::value_parser!(u8).range(1..=127))]
+    #[arg(long, default_value_t = 100, allow_negative_numbers = true, conflicts_with = "song", value_parser = clap::value_parser!(u8).range(1..=127))]
     velocity: u8,
     /// How long the notes are held, 0-86400 s
     #[arg(long, default_value = "2.0", value_name = "SECONDS", conflicts_with = "song",
@@ -71,10 +71,10 @@ pub(super) struct Args {
     #[arg(long, default_value_t = 0.0, value_name = "DB", value_parser = quantity::gain_db, allow_negative_numbers = true)]
     gain_db: f64,
     /// Seed of all randomness, 0-18446744073709551615
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
     seed: u64,
     /// Frames processed at once, 1-65536; the samples do not depend on it
-    #[arg(long, default_value_t = 1024, value_name = "N", value_parser = clap::value_parser!(u32)
+    #[arg(long, default_value_t = 1024, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
         .range(*BLOCKS.start() as i64..=*BLOCKS.end() as i64))]
     block: u32,
     /// Overwrite an existing file
