@@ -58,7 +58,11 @@ fn parse(bytes: &[u8]) -> Result<Song, String> {
     let mut found = 0;
     for track in tracks.take(declared) {
         found += 1;
-        reader.track(track.map_err(invalid)?).map_err(|message| format!("track {found}: {message}"))?;
+        let track = track.map_err(|error| {
+            let reason = error.kind().message();
+            format!("not a whole MIDI file: track {found} of {declared} is cut off or damaged ({reason})")
+        })?;
+        reader.track(track).map_err(|message| format!("track {found}: {message}"))?;
     }
     if found < declared || declared == 0 {
         return Err(format!("not a whole MIDI file: it declares {declared} tracks and has {found}"));

@@ -41,19 +41,28 @@ pub struct Song {
 
 impl Song {
     /// Notes struck together at the start and released together at the end. `keys` are fractional MIDI keys, also
-    /// beyond the keyboard: each takes the nearest key from 0 to 127 and the rest as its detune.
+    /// beyond the keyboard: each takes the nearest key from 0 to 127 that no note before it has, so that none strikes
+    /// another's voice again, and the rest as its detune. Beyond 128 notes, keys are shared.
     pub fn chord(keys: &[f64], velocity: f32, seconds: f64) -> Self {
+        let mut taken = [false; 128];
+        let mut nearest_free = |key: f64| {
+            let distance = |candidate: &u8| (f64::from(*candidate) - key).abs();
+            let free = (0..128u8).filter(|candidate| !taken[usize::from(*candidate)]);
+            let nearest =
+                free.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(key.clamp(0.0, 127.0) as u8);
+            taken[usize::from(nearest)] = true;
+            nearest
+        };
         let event = |seconds, kind| SongEvent { seconds, channel: 0, kind };
-        let nearest = |key: f64| key.round().clamp(0.0, 127.0);
-        let on = keys.iter().zip(0..).map(|(&key, id)| {
-            let detune = (key - nearest(key)) as f32;
-            event(0.0, EventKind::NoteOn { key: nearest(key) as u8, detune, velocity, id })
-        });
-        let off = keys
-            .iter()
-            .zip(0..)
-            .map(|(&key, id)| event(seconds, EventKind::NoteOff { key: nearest(key) as u8, velocity: 0.5, id }));
-        Self { events: on.chain(off).collect(), seconds }
+        let (mut on, mut off) = (Vec::new(), Vec::new());
+        for (&pitch, id) in keys.iter().zip(0..) {
+            let key = nearest_free(pitch);
+            let detune = (pitch - f64::from(key)) as f32;
+            on.push(event(0.0, EventKind::NoteOn { key, detune, velocity, id }));
+            off.push(event(seconds, EventKind::NoteOff { key, velocity: 0.5, id }));
+        }
+        on.extend(off);
+        Self { events: on, seconds }
     }
 
     /// The song's length in frames.
@@ -68,9 +77,10 @@ mod tests {
 
     #[test]
     fn a_chord_is_struck_and_released_at_once() {
-        let song = Song::chord(&[60.0, 69.25, 140.5], 0.5, 2.0);
-        let expected = [(60, 0.0, 0), (69, 0.25, 1), (127, 13.5, 2)];
-        for ((on, off), (key, detune, id)) in song.events[..3].iter().zip(&song.events[3..]).zip(expected) {
+        let song = Song::chord(&[60.0, 69.25, 140.5, 60.25], 0.5, 2.0);
+        // The last of them finds its nearest key taken.
+        let expected = [(60, 0.0, 0), (69, 0.25, 1), (127, 13.5, 2), (61, -0.75, 3)];
+        for ((on, off), (key, detune, id)) in song.events[..4].iter().zip(&song.events[4..]).zip(expected) {
             assert_eq!(
                 *on,
                 SongEvent { seconds: 0.0, channel: 0, kind: EventKind::NoteOn { key, detune, velocity: 0.5, id } }

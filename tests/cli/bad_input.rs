@@ -14,11 +14,11 @@ fn midi_files() {
     let noise: Vec<u8> = (0..5000u32).map(|n| (n.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
     let endless = song(&vec![note_on(0x0fff_ffff, 0, 60); 40]);
     for (name, bytes, message) in [
-        ("truncated", good[..good.len() - 3].to_vec(), "invalid chunk"),
+        ("truncated", good[..good.len() - 3].to_vec(), "is cut off or damaged"),
         ("headless", good[..10].to_vec(), "invalid midi header"),
         ("empty", vec![], "not a midi file"),
         ("huge", huge, "too large for a MIDI file: expected at most 64 MiB"),
-        ("claims", claims_too_much, "invalid chunk"),
+        ("claims", claims_too_much, "is cut off or damaged"),
         ("noise", noise.clone(), "not a midi file"),
         ("framed", [b"MThd\0\0\0\x06\0\x01\0\x01\0\x60MTrk\0\0\x13\x88".to_vec(), noise].concat(), "malformed"),
         ("endless", endless, "bytes, and a WAV file holds at most"),

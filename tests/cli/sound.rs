@@ -96,6 +96,13 @@ fn a_frequency_is_that_frequency_in_every_tuning() {
 }
 
 #[test]
+fn notes_closer_than_a_key_all_sound() {
+    let sandbox = Sandbox::new();
+    let report = report(&sandbox, "render --note 60,60.25,59.9,60 --length 0.1 -o out.wav");
+    assert_eq!(report["voices_used"], 4);
+}
+
+#[test]
 fn program_changes_pick_presets_by_number() {
     let sandbox = Sandbox::new();
     let program = |number: u8| midi(0, 9, MidiMessage::ProgramChange { program: number.into() });

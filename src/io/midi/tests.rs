@@ -132,7 +132,7 @@ fn unfit_files_are_refused_with_a_reason() {
         (with(12, 0x80), "found 128"),
         (with(12, 0x90), "invalid midi header"),
         (with(23, 0xf5), "track 1: event 1 (after tick 0) is malformed"),
-        (whole[..whole.len() - 1].to_vec(), "invalid chunk"),
+        (whole[..whole.len() - 1].to_vec(), "is cut off or damaged"),
         (zero_tempo, "the tempo at tick 7 is 0"),
     ] {
         let error = Song::parse(&bytes, "song.mid").unwrap_err().to_string();
