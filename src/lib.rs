@@ -32,6 +32,8 @@
 //! # }
 //! ```
 
+#[cfg(feature = "analysis")]
+pub mod analysis;
 pub mod dsp;
 pub mod engine;
 pub mod error;
