@@ -3,6 +3,7 @@
 mod bless;
 mod setup;
 mod shell;
+mod songs;
 mod test;
 
 use clap::{Parser, Subcommand};
@@ -27,6 +28,12 @@ enum Chore {
         /// Only this case.
         case: Option<String>,
     },
+    /// Write the demo songs to assets/midi.
+    Songs {
+        /// Write nothing; fail if the files are not what would be written.
+        #[arg(long)]
+        check: bool,
+    },
 }
 
 fn main() -> ExitCode {
@@ -34,6 +41,7 @@ fn main() -> ExitCode {
         Chore::Setup => setup::run(),
         Chore::Test => test::run(),
         Chore::Bless { case } => bless::run(case.as_deref()),
+        Chore::Songs { check } => songs::run(check),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
