@@ -7,9 +7,11 @@ mod suite;
 use crate::shell::root;
 use std::fs;
 
-/// Files and the scores that fill them.
-const SONGS: [(&str, fn() -> Result<Vec<u8>, String>); 2] =
-    [("groove.mid", groove::compose), ("suite.mid", suite::compose)];
+/// Makes the bytes of a song's file.
+type Compose = fn() -> Result<Vec<u8>, String>;
+
+/// Names of the files and what composes them.
+const SONGS: [(&str, Compose); 2] = [("groove.mid", groove::compose), ("suite.mid", suite::compose)];
 
 /// Writes the songs, or with `check` compares what is there with what would be written.
 pub(crate) fn run(check: bool) -> Result<(), String> {

@@ -178,7 +178,7 @@ fn lead() -> Result<Part, String> {
 fn bass() -> Result<Part, String> {
     let mut part = Part::new("Bass", 3, "Sub Bass", 85, 64)?;
     for (at, (root, _)) in bars().filter(|(at, _)| *at >= 8.0) {
-        if at < THIRD_AT || at >= CLOSE_AT {
+        if !(THIRD_AT..CLOSE_AT).contains(&at) {
             part.note(at, 3.8, *root, 78);
         } else {
             part.note(at, 1.4, *root, 86);
