@@ -108,7 +108,7 @@ fn bars() -> impl Iterator<Item = (f64, &'static Chord)> {
 
 /// Broken chords in eighths, three, three and two; in sixteenths' company they rest in bars 9–16's second halves.
 fn marimba() -> Result<Part, String> {
-    let mut part = Part::new("Marimba", 0, "Marimba", 106, 46)?.loosen(0.01, 8.0);
+    let mut part = Part::new("Marimba", 0, "Marimba", 112, 46)?.loosen(0.01, 8.0);
     const TURN: [usize; 8] = [0, 2, 4, 1, 3, 4, 2, 3];
     for (at, (_, chord)) in bars().filter(|(at, _)| *at < END - 4.0) {
         for (step, note) in TURN.iter().enumerate() {
@@ -126,7 +126,7 @@ fn marimba() -> Result<Part, String> {
 
 /// Chords on the pedal, lifted just before the next.
 fn vibraphone() -> Result<Part, String> {
-    let mut part = Part::new("Vibraphone", 1, "Vibraphone", 118, 80)?.loosen(0.01, 6.0);
+    let mut part = Part::new("Vibraphone", 1, "Vibraphone", 104, 80)?.loosen(0.01, 6.0);
     for (at, (_, chord)) in bars() {
         let sings = (SECOND_AT..THIRD_AT).contains(&at);
         part.pedal(at, if at == END - 4.0 { 7.0 } else { 3.9 });
@@ -256,7 +256,7 @@ fn shaker() -> Result<Part, String> {
 }
 
 fn rim() -> Result<Part, String> {
-    let mut part = Part::new("Rim", 10, "Rim", 108, 58)?.loosen(0.01, 8.0);
+    let mut part = Part::new("Rim", 10, "Rim", 118, 58)?.loosen(0.01, 8.0);
     for bar in 0..8u32 {
         let at = THIRD_AT + 4.0 * f64::from(bar);
         part.note(at + 1.0, 0.1, 60, 62);
