@@ -9,13 +9,39 @@
 //! | [`params`], [`patch`], [`preset`] | what can be set, a set of values, and its file |
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
 //! | [`io`], [`render`](mod@render) | MIDI files in, WAV files out, and the offline renderer between them |
+//!
+//! A note, rendered:
+//!
+//! ```
+//! use sprung::engine::{Event, EventKind, Synth};
+//! use sprung::params::Param;
+//! use sprung::preset::Preset;
+//!
+//! # fn main() -> sprung::Result<()> {
+//! let kick = Preset::find("kick")?;
+//! let mut synth = Synth::new(48_000.0, 0);
+//! synth.set_patch(&kick.patch.with(Param::Gain, -9.0));
+//!
+//! let on = EventKind::NoteOn { key: 36, detune: 0.0, velocity: 0.8, id: -1 };
+//! let (mut left, mut right) = ([0.0; 480], [0.0; 480]);
+//! synth.process(&[Event { frame: 100, channel: 0, kind: on }], &mut left, &mut right);
+//!
+//! assert!(left[..100].iter().all(|sample| *sample == 0.0), "events fall on their frame");
+//! assert!(left[100..].iter().any(|sample| sample.abs() > 0.01));
+//! # Ok(())
+//! # }
+//! ```
 
+#[cfg(feature = "analysis")]
+pub mod analysis;
 pub mod dsp;
 pub mod engine;
 pub mod error;
+pub mod io;
 pub mod params;
 pub mod patch;
 pub mod preset;
+pub mod render;
 pub mod units;
 
 pub use error::{Error, Result};

@@ -1,3 +1,7 @@
 //! The command `sprung`.
 
-fn main() {}
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}

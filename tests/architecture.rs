@@ -14,7 +14,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("engine", &["engine", "dsp", "params", "patch", "units"]),
     ("io", &["io", "dsp", "engine", "error", "units", "Error", "Result"]),
     ("render", &["render", "dsp", "engine", "error", "io", "params", "patch", "preset", "units", "Error", "Result"]),
-    ("analysis", &["analysis", "error", "Error", "Result"]),
+    ("analysis", &["analysis", "error", "units", "Error", "Result"]),
 ];
 
 /// Crates that only the named modules may use.

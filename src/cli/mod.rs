@@ -1,0 +1,130 @@
+//! The command line: one file a subcommand.
+
+mod interrupt;
+mod manual;
+mod parameters;
+mod presets;
+mod progress;
+mod quantity;
+mod render;
+
+use clap::{Parser, Subcommand};
+use sprung::{Error, Result};
+use std::fmt::Display;
+use std::io::{ErrorKind, Write};
+use std::process::ExitCode;
+
+/// What the shell reports for a program that Ctrl-C has ended.
+const INTERRUPTED: u8 = 130;
+
+#[derive(Parser)]
+#[command(
+    name = "sprung",
+    version,
+    about = "A synthesizer whose only sound source is a mass on a spring",
+    after_help = EXAMPLES,
+    arg_required_else_help = true
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  sprung render song.mid -o song.wav
+  sprung render --note C2 --preset Kick -o kick.wav
+  sprung presets list
+  sprung params
+
+Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.";
+
+#[derive(Subcommand)]
+enum Command {
+    /// Render a MIDI file or some notes to a WAV file
+    #[command(after_help = render::EXAMPLES)]
+    Render(Box<render::Args>),
+    /// List, show or check presets
+    #[command(after_help = presets::EXAMPLES)]
+    Presets(presets::Args),
+    /// Print the table of parameters
+    #[command(after_help = parameters::EXAMPLES)]
+    Params(parameters::Args),
+    /// Print a completion script for a shell
+    #[command(after_help = manual::COMPLETION_EXAMPLES)]
+    Completions(manual::CompletionArgs),
+    /// Print the manual page, or write one page per subcommand
+    #[command(after_help = manual::EXAMPLES)]
+    Man(manual::Args),
+}
+
+pub(crate) fn run() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Render(args) => render::run(&args),
+        Command::Presets(args) => presets::run(&args),
+        Command::Params(args) => parameters::run(&args),
+        Command::Completions(args) => manual::completions(&args),
+        Command::Man(args) => manual::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            complain("error", &error);
+            if matches!(error, Error::Interrupted) { ExitCode::from(INTERRUPTED) } else { ExitCode::FAILURE }
+        }
+    }
+}
+
+/// Says something on stderr; if that is closed, there is nobody left to tell.
+fn complain(severity: &str, message: impl Display) {
+    let _ = writeln!(std::io::stderr(), "sprung: {severity}: {message}");
+}
+
+/// Writes to stdout. A reader that has gone away, as `head` does, has what it wanted: that is no error.
+fn print(text: &str) -> Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("stdout", error)),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        <Cli as clap::CommandFactory>::command().debug_assert();
+    }
+
+    /// The arguments of a shell's simple command: split at spaces outside quotes, up to a pipe or redirection.
+    fn words(line: &str) -> Vec<String> {
+        let mut words = Vec::new();
+        for (index, part) in line.split(['"', '\'']).enumerate() {
+            let quoted = index % 2 == 1;
+            match words.last_mut() {
+                Some(last) if quoted => *last += part,
+                _ => words.extend(part.split_whitespace().map(str::to_owned)),
+            }
+        }
+        words.into_iter().take_while(|word| word != "|" && word != ">").collect()
+    }
+
+    #[test]
+    fn every_example_is_a_valid_command_line() {
+        let examples = [
+            EXAMPLES,
+            render::EXAMPLES,
+            presets::EXAMPLES,
+            parameters::EXAMPLES,
+            manual::EXAMPLES,
+            manual::COMPLETION_EXAMPLES,
+        ];
+        for example in examples.iter().flat_map(|text| text.lines()).filter(|line| line.starts_with("  sprung")) {
+            if let Err(error) = Cli::try_parse_from(words(example)) {
+                panic!("{example}: {error}");
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! `sprung presets`: the factory's, and checks of one's own.
+
+use clap::Subcommand;
+use sprung::preset::Preset;
+use sprung::{Error, Result};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  sprung presets list
+  sprung presets show Kick > mine.toml
+  sprung presets check *.toml";
+
+#[derive(clap::Args)]
+#[command(arg_required_else_help = true)]
+pub(super) struct Args {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Subcommand)]
+enum Action {
+    /// List the factory presets: MIDI program number, name, tags, what it is
+    List,
+    /// Print a preset's file, to start one's own from
+    Show {
+        /// Name of a factory preset, or a file ending in .toml
+        name: String,
+    },
+    /// Check preset files and report what is wrong with each
+    Check {
+        /// Preset files
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+    },
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
+    match &args.action {
+        Action::List => super::print(&list(Preset::factory())),
+        Action::Show { name } => super::print(&load(name)?.to_toml()),
+        Action::Check { files } => check(files),
+    }
+}
+
+/// The preset that a user names: a file if it looks like one, else the factory's.
+pub(super) fn load(name: &str) -> Result<Preset> {
+    let path = Path::new(name);
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) || path.components().count() > 1
+    {
+        Preset::load(path)
+    } else {
+        Preset::find(name).cloned()
+    }
+}
+
+fn list(presets: &[Preset]) -> String {
+    let tags = |preset: &Preset| preset.tags.join(", ");
+    let names = presets.iter().map(|preset| preset.name.chars().count()).max().unwrap_or(0);
+    let tag_width = presets.iter().map(|preset| tags(preset).chars().count()).max().unwrap_or(0);
+    let mut out = String::new();
+    for (number, preset) in presets.iter().enumerate() {
+        let comment = preset.comment.lines().next().unwrap_or_default();
+        let _ = writeln!(out, "{number:3}  {:names$}  {:tag_width$}  {comment}", preset.name, tags(preset));
+    }
+    out
+}
+
+fn check(files: &[PathBuf]) -> Result<()> {
+    let mut wrong = 0;
+    for path in files {
+        match Preset::load(path) {
+            Ok(preset) => super::print(&format!("{}: ‘{}’ is in order\n", path.display(), preset.name))?,
+            Err(error) => {
+                wrong += 1;
+                super::complain("error", error);
+            }
+        }
+    }
+    if wrong == 0 { Ok(()) } else { Err(Error::value("presets", format!("{wrong} of {} cannot be used", files.len()))) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_is_aligned_and_numbered() {
+        let list = list(Preset::factory());
+        let column = |line: &str| line.chars().skip(5).collect::<String>();
+        assert!(list.lines().next().is_some_and(|line| line.starts_with("  0  init")), "{list}");
+        assert_eq!(list.lines().count(), Preset::factory().len());
+        assert!(list.lines().zip(Preset::factory()).all(|(line, preset)| column(line).starts_with(&preset.name)));
+    }
+}

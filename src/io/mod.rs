@@ -1,0 +1,12 @@
+//! Files: MIDI songs in, WAV sound out, and the care with which outputs appear on disk.
+
+pub mod midi;
+pub mod output;
+mod riff;
+pub mod song;
+mod tempo;
+pub mod wav;
+
+pub use output::{Output, Target};
+pub use song::{Song, SongEvent};
+pub use wav::{SampleFormat, WavFormat, WavWriter};

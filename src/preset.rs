@@ -1,1 +1,0 @@
-//! Preset files: a patch with its name, author, tags and comment, in TOML.

@@ -1,0 +1,98 @@
+//! The presets built into the library.
+
+use super::Preset;
+use std::sync::OnceLock;
+
+macro_rules! embed {
+    ($($name:literal)*) => {
+        &[$(($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/presets/", $name, ".toml"))),)*]
+    };
+}
+
+/// File names (without `.toml`) and texts. The place in the list is the MIDI program number: only append.
+const FILES: &[(&str, &str)] = embed! {
+    "00-init"
+    "01-kick"
+    "02-deep-kick"
+    "03-click-kick"
+    "04-long-kick"
+    "05-low-tom"
+    "06-high-tom"
+    "07-snare"
+    "08-tight-snare"
+    "09-closed-hat"
+    "10-open-hat"
+    "11-clap"
+    "12-rim"
+    "13-cowbell"
+    "14-woodblock"
+    "15-clave"
+    "16-shaker"
+    "17-triangle"
+    "18-blip"
+    "19-zap"
+    "20-laser"
+    "21-droplet"
+    "22-sine-lead"
+    "23-sub-bass"
+    "24-pluck-bass"
+    "25-plucked-string"
+    "26-swell"
+    "27-marimba"
+    "28-vibraphone"
+    "29-xylophone"
+    "30-glockenspiel"
+    "31-kalimba"
+    "32-music-box"
+    "33-chimes"
+    "34-timpani"
+    "35-membrane"
+    "36-free-bar"
+    "37-church-bell"
+    "38-gong"
+    "39-wine-glass"
+};
+
+pub(super) fn presets() -> &'static [Preset] {
+    static PRESETS: OnceLock<Vec<Preset>> = OnceLock::new();
+    PRESETS.get_or_init(|| {
+        let parsed = FILES.iter().map(|(name, text)| Preset::parse(text, name));
+        parsed.collect::<Result<_, _>>().expect("the embedded presets are checked by a test")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_factory_preset_is_complete_and_named_once() {
+        let mut names = Vec::new();
+        for (index, (file, text)) in FILES.iter().enumerate() {
+            let preset = Preset::parse(text, file).unwrap_or_else(|error| panic!("{error}"));
+            assert!(file.starts_with(&format!("{index:02}-")), "{file} is not program {index}");
+            for (field, value) in [("author", &preset.author), ("comment", &preset.comment)] {
+                assert!(!value.is_empty(), "{file} has no {field}");
+            }
+            assert!(!preset.tags.is_empty(), "{file} has no tags");
+            names.push(preset.name.to_lowercase());
+        }
+        assert_eq!(names[0], "init");
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), FILES.len(), "two presets have one name");
+        assert_eq!(presets().len(), FILES.len());
+    }
+
+    #[test]
+    fn every_preset_file_is_embedded() {
+        let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/presets");
+        let mut files: Vec<String> = std::fs::read_dir(directory)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
+            .collect();
+        files.sort();
+        assert_eq!(files, FILES.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+    }
+}

@@ -1,0 +1,312 @@
+//! The TOML of a preset file, read key by key so that every error names its place and what would be right.
+
+use super::{FORMAT_VERSION, Preset};
+use crate::error::{Error, nearest};
+use crate::params::{PARAMS, Param, ParamInfo, Unit};
+use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
+use std::fmt::Write;
+use toml::{Table, Value};
+
+const KEYS: [&str; 7] = ["format", "name", "author", "tags", "comment", "modes", "params"];
+
+/// Longest name, author or tag, in characters: what a list can still show.
+const MAX_LABEL: usize = 100;
+
+pub(super) fn parse(text: &str, origin: &str) -> crate::Result<Preset> {
+    let table: Table = toml::from_str(text).map_err(|error| syntax_error(text, origin, &error))?;
+    read(&table).map_err(|message| Error::format(origin, message))
+}
+
+fn syntax_error(text: &str, origin: &str, error: &toml::de::Error) -> Error {
+    let place = error.span().and_then(|span| text.get(..span.start)).map_or(String::new(), |before| {
+        let line = before.matches('\n').count() + 1;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+        format!(":{line}:{column}")
+    });
+    // The TOML reader puts what it expected on a second line.
+    let message: Vec<&str> = error.message().lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    Error::format(format!("{origin}{place}"), format!("not valid TOML: {}", message.join("; ")))
+}
+
+fn read(table: &Table) -> Result<Preset, String> {
+    // The version first: in another version's file, its other keys mean nothing to this one.
+    match table.get("format") {
+        Some(Value::Integer(FORMAT_VERSION)) => {}
+        Some(other) => return Err(format!("format {other} is unknown: this version reads format = {FORMAT_VERSION}")),
+        None => return Err(format!("there is no ‘format’: expected format = {FORMAT_VERSION}")),
+    }
+    check_keys(table, "", &KEYS)?;
+    let name = label(table, "name")?;
+    if name.is_empty() {
+        return Err("there is no ‘name’: expected name = \"…\"".to_owned());
+    }
+    let mut patch = Patch::default();
+    match table.get("params") {
+        Some(Value::Table(params)) => read_params(params, &mut patch)?,
+        Some(other) => return Err(unexpected("params", "a table [params]", other)),
+        None => {}
+    }
+    patch.modes = ModeTable::new(&read_modes(table.get("modes"))?);
+    Ok(Preset { name, author: label(table, "author")?, tags: tags(table)?, comment: text(table, "comment")?, patch })
+}
+
+fn check_keys(table: &Table, place: &str, known: &[&str]) -> Result<(), String> {
+    match table.keys().find(|key| !known.contains(&key.as_str())) {
+        None => Ok(()),
+        Some(key) => Err(match nearest(key, known.iter().copied()) {
+            Some(near) => format!("unknown key ‘{place}{key}’; the nearest is ‘{near}’"),
+            None if known.len() <= 10 => format!("unknown key ‘{place}{key}’: expected one of {}", known.join(", ")),
+            None => format!("unknown key ‘{place}{key}’; ‘sprung params’ shows them all"),
+        }),
+    }
+}
+
+fn unexpected(key: &str, expected: &str, found: &Value) -> String {
+    format!("{key}: expected {expected}, found {} ‘{}’", found.type_str(), found.to_string().trim())
+}
+
+fn text(table: &Table, key: &str) -> Result<String, String> {
+    match table.get(key) {
+        None => Ok(String::new()),
+        Some(Value::String(text)) => Ok(text.clone()),
+        Some(other) => Err(unexpected(key, "a text", other)),
+    }
+}
+
+fn label(table: &Table, key: &str) -> Result<String, String> {
+    text(table, key).and_then(|label| check_label(key, label))
+}
+
+fn check_label(key: &str, label: String) -> Result<String, String> {
+    if label.trim() == label && label.chars().count() <= MAX_LABEL && !label.chars().any(char::is_control) {
+        Ok(label)
+    } else {
+        Err(format!("{key}: expected one line of at most {MAX_LABEL} characters without space around it"))
+    }
+}
+
+fn tags(table: &Table) -> Result<Vec<String>, String> {
+    let tags = match table.get("tags") {
+        None => return Ok(Vec::new()),
+        Some(Value::Array(tags)) => tags,
+        Some(other) => return Err(unexpected("tags", "a list of texts", other)),
+    };
+    let tag = |(index, tag): (usize, &Value)| match tag {
+        Value::String(tag) => check_label(&format!("tags[{index}]"), tag.clone()),
+        other => Err(unexpected(&format!("tags[{index}]"), "a text", other)),
+    };
+    tags.iter().enumerate().map(tag).collect()
+}
+
+fn read_params(params: &Table, patch: &mut Patch) -> Result<(), String> {
+    check_keys(params, "params.", &PARAMS.iter().map(|info| info.id).collect::<Vec<_>>())?;
+    for (id, value) in params {
+        if let Some(param) = Param::from_id(id) {
+            let value = param_value(param.info(), value).map_err(|message| format!("params.{id}: {message}"))?;
+            patch.set(param, value);
+        }
+    }
+    Ok(())
+}
+
+fn param_value(info: &ParamInfo, value: &Value) -> Result<f32, String> {
+    match (value, info.unit) {
+        (Value::String(text), _) => info.parse(text),
+        (_, Unit::Choice) => Err(format!("‘{}’ is not one of {}", value.to_string().trim(), info.choices.join(", "))),
+        (Value::Integer(number), _) => info.check(*number as f32),
+        (Value::Float(number), _) => info.check(*number as f32),
+        (other, _) => Err(format!("expected a number or a text with a unit, found {}", other.type_str())),
+    }
+}
+
+fn read_modes(modes: Option<&Value>) -> Result<Vec<Mode>, String> {
+    let modes = match modes {
+        None => return Ok(vec![Mode::UNIT]),
+        Some(Value::Array(modes)) => modes,
+        Some(other) => return Err(unexpected("modes", "a list of modes, [{ ratio = … }, …]", other)),
+    };
+    if !(1..=MAX_MODES).contains(&modes.len()) {
+        return Err(format!("modes: {} of them is out of range: expected 1 to {MAX_MODES}", modes.len()));
+    }
+    let mode = |(index, mode): (usize, &Value)| read_mode(&format!("modes[{index}]"), mode);
+    modes.iter().enumerate().map(mode).collect()
+}
+
+fn read_mode(place: &str, mode: &Value) -> Result<Mode, String> {
+    let Value::Table(mode) = mode else {
+        return Err(unexpected(place, "a mode, { ratio = … }", mode));
+    };
+    check_keys(mode, &format!("{place}."), &Mode::FIELDS.map(|(name, ..)| name))?;
+    if !mode.contains_key("ratio") {
+        return Err(format!("{place}: there is no ‘ratio’"));
+    }
+    let mut fields = Mode::UNIT.fields();
+    for ((name, min, max), field) in Mode::FIELDS.into_iter().zip(&mut fields) {
+        *field = match mode.get(name) {
+            None => continue,
+            Some(Value::Integer(number)) => *number as f32,
+            Some(Value::Float(number)) => *number as f32,
+            Some(other) => return Err(unexpected(&format!("{place}.{name}"), "a number", other)),
+        };
+        if !(min..=max).contains(field) {
+            return Err(format!("{place}.{name}: {field} is out of range: expected {min} to {max}"));
+        }
+    }
+    Ok(Mode::from_fields(fields))
+}
+
+pub(super) fn to_toml(preset: &Preset) -> String {
+    let mut out = format!("format = {FORMAT_VERSION}\n");
+    let tags = Value::from(preset.tags.clone());
+    for (key, value) in [
+        ("name", Value::from(preset.name.as_str())),
+        ("author", Value::from(preset.author.as_str())),
+        ("tags", tags),
+        ("comment", Value::from(preset.comment.as_str())),
+    ] {
+        let _ = writeln!(out, "{key} = {value}");
+    }
+    let modes = preset.patch.modes.as_slice();
+    if modes != [Mode::UNIT] {
+        out.push_str("modes = [\n");
+        for mode in modes {
+            let _ = writeln!(out, "    {{ {} }},", mode_fields(mode));
+        }
+        out.push_str("]\n");
+    }
+    out.push_str("\n[params]\n");
+    for info in PARAMS {
+        let value = preset.patch.get(info.param);
+        if value != info.default {
+            let _ = match info.unit {
+                Unit::Choice => writeln!(out, "{} = \"{}\"", info.id, info.choices[value as usize]),
+                Unit::Count => writeln!(out, "{} = {value}", info.id),
+                _ => writeln!(out, "{} = {value:?}", info.id),
+            };
+        }
+    }
+    out
+}
+
+/// The fields that differ from [`Mode::UNIT`]'s, and the ratio. `{:?}` of an `f32` is the shortest text that reads
+/// back as the same number, and valid TOML.
+fn mode_fields(mode: &Mode) -> String {
+    let fields = Mode::FIELDS.iter().zip(mode.fields()).zip(Mode::UNIT.fields());
+    let written: Vec<String> = fields
+        .filter(|(((name, ..), value), unit)| *name == "ratio" || value != unit)
+        .map(|(((name, ..), value), _)| format!("{name} = {value:?}"))
+        .collect();
+    written.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::PARAM_COUNT;
+    use proptest::prelude::*;
+
+    fn error(body: &str) -> String {
+        parse(&format!("format = 1\nname = \"a\"\n{body}"), "x").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn numbers_and_texts_are_read_in_the_unit_of_the_table() {
+        let text = "format = 1\nname = \"a\"\ntags = [\"b\"]\nmodes = [{ ratio = 2, level = -0.5 }]\n\
+                    [params]\ndecay = \"250 ms\"\ngain = -3\nexciter = \"pluck\"\nfine = 1.5";
+        let preset = parse(text, "x").unwrap();
+        let mut expected = Patch::default()
+            .with(Param::Decay, 0.25)
+            .with(Param::Gain, -3.0)
+            .with(Param::Exciter, 2.0)
+            .with(Param::Fine, 1.5);
+        expected.modes = ModeTable::new(&[Mode { ratio: 2.0, level: -0.5, ..Mode::UNIT }]);
+        assert_eq!(preset.patch, expected);
+        assert_eq!((preset.tags, preset.author, preset.comment), (vec!["b".to_owned()], String::new(), String::new()));
+    }
+
+    #[test]
+    fn every_error_says_what_would_be_right() {
+        for (body, expected) in [
+            ("colour = 1", "x: unknown key ‘colour’: expected one of format, name, "),
+            ("comments = 1", "x: unknown key ‘comments’; the nearest is ‘comment’"),
+            ("[params]\ndeacy = 1", "x: unknown key ‘params.deacy’; the nearest is ‘decay’"),
+            ("[params]\nxylophone = 1", "x: unknown key ‘params.xylophone’; ‘sprung params’ shows them all"),
+            ("[params]\ngain = 99", "x: params.gain: 99 is out of range: expected from -60 dB to 12 dB"),
+            ("[params]\ngain = nan", "x: params.gain: NaN is out of range: expected from -60 dB to 12 dB"),
+            ("[params]\ngain = -inf", "x: params.gain: -inf is out of range"),
+            ("[params]\ngain = true", "x: params.gain: expected a number or a text with a unit, found boolean"),
+            ("[params]\nmode = 1", "x: params.mode: ‘1’ is not one of poly, mono, legato"),
+            ("[params]\nmode = \"solo\"", "x: params.mode: ‘solo’ is not one of poly, mono, legato"),
+            ("[params]\nvoices = 2.5", "x: params.voices: 2.5 is out of range: expected a whole number from 1 to 64"),
+            ("params = 3", "x: params: expected a table [params], found integer ‘3’"),
+            ("modes = []", "x: modes: 0 of them is out of range: expected 1 to 64"),
+            ("modes = [{ level = 1 }]", "x: modes[0]: there is no ‘ratio’"),
+            ("modes = [{ ratio = 1 }, { ratio = 0 }]", "x: modes[1].ratio: 0 is out of range: expected 0.01 to 1000"),
+            ("modes = [{ ratio = nan }]", "x: modes[0].ratio: NaN is out of range: expected 0.01 to 1000"),
+            ("modes = [{ ratio = 1, pam = 0 }]", "x: unknown key ‘modes[0].pam’; the nearest is ‘pan’"),
+            ("modes = [{ ratio = \"1\" }]", "x: modes[0].ratio: expected a number, found string"),
+            ("modes = [1]", "x: modes[0]: expected a mode, { ratio = … }, found integer ‘1’"),
+            ("tags = [1]", "x: tags[0]: expected a text, found integer ‘1’"),
+            ("author = \"a\\nb\"", "x: author: expected one line of at most 100 characters"),
+            ("name = 2", "x:3:1: not valid TOML: duplicate key"),
+            ("a = ", "x:3:"),
+        ] {
+            let error = error(body);
+            assert!(error.starts_with(expected), "{body}: {error}");
+            assert_eq!(error.lines().count(), 1, "{error}");
+        }
+        let many = format!("modes = [{}]", "{ ratio = 1 },".repeat(65));
+        assert_eq!(error(&many), "x: modes: 65 of them is out of range: expected 1 to 64");
+    }
+
+    #[test]
+    fn the_version_comes_before_all_else() {
+        for (text, expected) in [
+            ("format = 2\nwarp = 1", "x: format 2 is unknown: this version reads format = 1"),
+            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1"),
+            ("name = \"a\"", "x: there is no ‘format’: expected format = 1"),
+            ("format = 1", "x: there is no ‘name’: expected name = \"…\""),
+        ] {
+            assert_eq!(parse(text, "x").unwrap_err().to_string(), expected);
+        }
+    }
+
+    #[test]
+    fn a_new_preset_names_no_parameter() {
+        let preset = parse("format = 1\nname = \"a\"", "x").unwrap();
+        assert_eq!(preset.patch, Patch::default());
+        assert!(preset.to_toml().ends_with("\n[params]\n"), "{}", preset.to_toml());
+    }
+
+    fn any_mode() -> impl Strategy<Value = Mode> {
+        let field = |index: usize| Mode::FIELDS[index].1..=Mode::FIELDS[index].2;
+        (field(0), field(1), field(2), field(3), field(4))
+            .prop_map(|(a, b, c, d, e)| Mode::from_fields([a, b, c, d, e]))
+    }
+
+    proptest! {
+        #[test]
+        fn presets_survive_their_file_exactly(
+            texts in proptest::collection::vec("[^\\p{C}\\s]{1,20}", 3),
+            comment in ".*\n?.*",
+            positions in proptest::collection::vec(0.0..=1.0f64, PARAM_COUNT),
+            modes in proptest::collection::vec(any_mode(), 1..=MAX_MODES),
+        ) {
+            let mut patch = Patch::default();
+            patch.modes = ModeTable::new(&modes);
+            for (info, position) in PARAMS.iter().zip(positions) {
+                patch.set(info.param, info.denormalise(position));
+            }
+            let [name, author, tag] = <[String; 3]>::try_from(texts).unwrap();
+            let preset = Preset { name, author, tags: vec![tag], comment, patch };
+            let text = preset.to_toml();
+            prop_assert_eq!(parse(&text, "x").map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?, preset);
+        }
+
+        #[test]
+        fn random_text_never_panics(text in "\\PC*", keyed in "(modes|params|tags|name) ?= ?[\\[\\{\\}\\]0-9a-z\",=. ]*") {
+            let _ = parse(&text, "x");
+            let _ = parse(&format!("format = 1\nname = \"a\"\n{keyed}"), "x");
+        }
+    }
+}

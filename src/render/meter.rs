@@ -1,0 +1,95 @@
+//! Levels of a signal: peak, RMS and programme loudness.
+
+use crate::error::{Error, Result};
+use ebur128::{EbuR128, Mode};
+
+/// Measures a signal block by block. Keeps one number for each 100 ms (the gating blocks of loudness), nothing else.
+pub struct Meter {
+    channels: usize,
+    peak: f32,
+    sum_of_squares: f64,
+    samples: u64,
+    loudness: EbuR128,
+}
+
+/// What a [`Meter`] has measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Levels {
+    /// Largest absolute sample; 1 is full scale.
+    pub peak: f64,
+    /// Root of the mean square over all samples of all channels.
+    pub rms: f64,
+    /// Integrated loudness in LUFS (ITU-R BS.1770, EBU R 128); none for silence and for less than 400 ms.
+    pub lufs: Option<f64>,
+}
+
+impl Meter {
+    /// A meter of one or two channels.
+    ///
+    /// # Errors
+    /// [`Error::Value`] for a sample rate that loudness is not defined at.
+    pub fn new(sample_rate: u32, channels: u16) -> Result<Self> {
+        let loudness = EbuR128::new(channels.into(), sample_rate, Mode::I)
+            .map_err(|error| Error::value("loudness", error.to_string()))?;
+        Ok(Self { channels: channels.into(), peak: 0.0, sum_of_squares: 0.0, samples: 0, loudness })
+    }
+
+    /// Measures a block; of one channel, only `left` is looked at.
+    ///
+    /// # Errors
+    /// [`Error::Value`] if the loudness meter fails, for want of memory.
+    pub fn add(&mut self, left: &[f32], right: &[f32]) -> Result<()> {
+        let channels = &[left, right][..self.channels];
+        for frame in 0..left.len() {
+            for channel in channels {
+                let sample = channel[frame];
+                self.peak = self.peak.max(sample.abs());
+                self.sum_of_squares += f64::from(sample) * f64::from(sample);
+            }
+        }
+        self.samples += (left.len() * self.channels) as u64;
+        self.loudness.add_frames_planar_f32(channels).map_err(|error| Error::value("loudness", error.to_string()))
+    }
+
+    /// The levels so far.
+    pub fn levels(&self) -> Levels {
+        let rms = if self.samples == 0 { 0.0 } else { (self.sum_of_squares / self.samples as f64).sqrt() };
+        let lufs = self.loudness.loudness_global().ok().filter(|lufs| lufs.is_finite());
+        Levels { peak: self.peak.into(), rms, lufs }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine(frames: usize, amplitude: f64) -> Vec<f32> {
+        let theta = std::f64::consts::TAU * 997.0 / 48_000.0;
+        (0..frames).map(|n| (amplitude * libm::sin(theta * n as f64)) as f32).collect()
+    }
+
+    #[test]
+    fn a_sine_measures_as_the_standards_say() {
+        // EBU Tech 3341, test 1: a 1 kHz sine of -23 dBFS peak in both channels is -23 LUFS.
+        let amplitude = crate::units::gain_from_db(-23.0);
+        let signal = sine(48_000 * 5, amplitude);
+        let mut meter = Meter::new(48_000, 2).unwrap();
+        for block in signal.chunks(1000) {
+            meter.add(block, block).unwrap();
+        }
+        let levels = meter.levels();
+        assert!((levels.lufs.unwrap() + 23.0).abs() < 0.1, "{levels:?}");
+        assert!((levels.peak / amplitude - 1.0).abs() < 1e-4, "{levels:?}");
+        assert!((levels.rms / amplitude - std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-4, "{levels:?}");
+    }
+
+    #[test]
+    fn silence_and_snippets_have_no_loudness() {
+        let mut meter = Meter::new(48_000, 1).unwrap();
+        assert_eq!(meter.levels(), Levels { peak: 0.0, rms: 0.0, lufs: None });
+        meter.add(&sine(19_000, 0.5), &[]).unwrap();
+        assert_eq!(meter.levels().lufs, None);
+        meter.add(&sine(1_000, 0.5), &[]).unwrap();
+        assert!(meter.levels().lufs.is_some());
+    }
+}

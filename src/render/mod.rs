@@ -1,0 +1,227 @@
+//! The offline renderer: songs to samples, block by block, as fast as the machine can.
+
+pub mod meter;
+mod wav;
+
+pub use meter::{Levels, Meter};
+pub use wav::{Delivery, Level, Progress, Report, to_wav};
+
+use crate::engine::{Ensemble, Event};
+use crate::error::{Error, Result};
+use crate::io::Song;
+use crate::io::song;
+use crate::patch::Patch;
+use std::ops::RangeInclusive;
+
+/// Sample rates that the engine can run at, in Hz.
+pub const SAMPLE_RATES: RangeInclusive<u32> = 8_000..=768_000;
+
+/// Lengths that a block can have, in frames.
+pub const BLOCKS: RangeInclusive<usize> = 1..=65_536;
+
+/// In a tail, silence is looked for each time that this many frames have passed since the end of the song: often
+/// enough for a tight end, and at frames that do not depend on the block.
+const SILENCE_INTERVAL: u64 = 64;
+
+/// How long rendering goes on after the end of the song.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tail {
+    /// Until nothing sounds.
+    Auto,
+    /// Not at all.
+    None,
+    /// For this many seconds.
+    Seconds(f64),
+}
+
+/// How to render.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Frames per second, within [`SAMPLE_RATES`].
+    pub sample_rate: u32,
+    /// Seed of all randomness.
+    pub seed: u64,
+    /// Frames per block, within [`BLOCKS`]. The samples do not depend on it.
+    pub block: usize,
+    /// What follows the song.
+    pub tail: Tail,
+}
+
+/// What to render: a song, the sounds that play it, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Job<'a> {
+    /// The events, in order of their times.
+    pub song: &'a Song,
+    /// The sound that every channel starts with.
+    pub patch: &'a Patch,
+    /// The sounds that program changes choose from.
+    pub programs: &'a [Patch],
+    /// How.
+    pub options: Options,
+}
+
+/// What a rendering came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rendered {
+    /// Length in frames.
+    pub frames: u64,
+    /// How much of it is tail, in frames.
+    pub tail_frames: u64,
+    /// Most voices that sounded at once.
+    pub voices_used: usize,
+}
+
+impl Job<'_> {
+    /// Length of the song alone, in frames.
+    pub fn song_frames(&self) -> u64 {
+        self.song.frames(self.options.sample_rate.into())
+    }
+
+    /// Length of the rendering in frames, unless it depends on the sound ([`Tail::Auto`]).
+    pub fn known_frames(&self) -> Option<u64> {
+        match self.options.tail {
+            Tail::Auto => None,
+            Tail::None => Some(self.song_frames()),
+            Tail::Seconds(tail) => {
+                Some(self.song_frames().saturating_add(song::frames(tail, self.options.sample_rate.into())))
+            }
+        }
+    }
+
+    /// Renders from the start and hands each block, left and right, to `sink`, whose first error ends it.
+    /// Memory does not grow with the length. The same job gives the same samples each time.
+    ///
+    /// # Errors
+    /// [`Error::Value`] if an option is out of range; those of `sink`.
+    pub fn render(&self, mut sink: impl FnMut(&[f32], &[f32]) -> Result<()>) -> Result<Rendered> {
+        self.options.check()?;
+        let sample_rate = f64::from(self.options.sample_rate);
+        let mut ensemble = Ensemble::new(sample_rate, self.options.seed, self.patch, self.programs);
+        let mut left = vec![0.0; self.options.block];
+        let mut right = left.clone();
+        let mut events: Vec<Event> = Vec::new();
+        let mut pending = self.song.events.iter().peekable();
+        let (song_frames, known_frames) = (self.song_frames(), self.known_frames());
+        let mut frame = 0;
+        loop {
+            let end = match known_frames {
+                Some(end) => end,
+                None if frame < song_frames => song_frames,
+                None => {
+                    let into_tail = frame - song_frames;
+                    let may_end = into_tail.is_multiple_of(SILENCE_INTERVAL) && pending.peek().is_none();
+                    if may_end && ensemble.is_silent() {
+                        break;
+                    }
+                    song_frames + (into_tail / SILENCE_INTERVAL + 1) * SILENCE_INTERVAL
+                }
+            };
+            if frame == end {
+                break;
+            }
+            let len = (end - frame).min(self.options.block as u64) as usize;
+            events.clear();
+            while let Some(event) = pending.next_if(|event| event.frame(sample_rate) < frame + len as u64) {
+                events.push(event.at(event.frame(sample_rate).saturating_sub(frame) as u32));
+            }
+            ensemble.process(&events, &mut left[..len], &mut right[..len]);
+            sink(&left[..len], &right[..len])?;
+            frame += len as u64;
+        }
+        let tail_frames = frame - song_frames;
+        Ok(Rendered { frames: frame, tail_frames, voices_used: ensemble.voices_used() })
+    }
+}
+
+impl Options {
+    fn check(&self) -> Result<()> {
+        let range = |name, value: String, low: String, high: String| {
+            Err(Error::value(name, format!("{value} is out of range: expected {low} to {high}")))
+        };
+        if !SAMPLE_RATES.contains(&self.sample_rate) {
+            let (low, high) = SAMPLE_RATES.into_inner();
+            return range("rate", self.sample_rate.to_string(), low.to_string(), high.to_string());
+        }
+        if !BLOCKS.contains(&self.block) {
+            let (low, high) = BLOCKS.into_inner();
+            return range("block", self.block.to_string(), low.to_string(), high.to_string());
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::Param;
+
+    fn options(sample_rate: u32, block: usize, tail: Tail) -> Options {
+        Options { sample_rate, seed: 0, block, tail }
+    }
+
+    fn render(song: &Song, options: Options) -> (Rendered, Vec<f32>) {
+        let patch = Patch::default().with(Param::Decay, 0.2).with(Param::Release, 0.05);
+        let mut samples = Vec::new();
+        let job = Job { song, patch: &patch, programs: &[], options };
+        let rendered = job
+            .render(|left, right| {
+                assert!(left.len() <= options.block && left.len() == right.len());
+                samples.extend(left);
+                Ok(())
+            })
+            .unwrap();
+        assert_eq!(rendered.frames, samples.len() as u64);
+        (rendered, samples)
+    }
+
+    #[test]
+    fn lengths_are_exact() {
+        let song = Song::chord(&[60.0], 1.0, 0.125);
+        for (rate, tail, frames, tail_frames) in [
+            (44_100, Tail::None, 5513, 0),
+            (48_000, Tail::None, 6000, 0),
+            (8_000, Tail::Seconds(0.25), 3000, 2000),
+            (768_000, Tail::Seconds(0.0), 96_000, 0),
+        ] {
+            for block in [1000, 65_536] {
+                let (rendered, _) = render(&song, options(rate, block, tail));
+                assert_eq!((rendered.frames, rendered.tail_frames), (frames, tail_frames), "{rate} {tail:?}");
+            }
+        }
+        assert_eq!(render(&Song::default(), options(48_000, 1, Tail::Auto)).0.frames, 0);
+    }
+
+    #[test]
+    fn an_auto_tail_ends_in_silence_at_a_frame_that_does_not_depend_on_the_block() {
+        let song = Song::chord(&[60.0, 67.5], 1.0, 0.1);
+        let (whole, samples) = render(&song, options(48_000, 65_536, Tail::Auto));
+        for block in [1, 7, 64, 480] {
+            let (rendered, other) = render(&song, options(48_000, block, Tail::Auto));
+            assert_eq!(rendered, whole, "{block}");
+            assert!(samples.iter().zip(&other).all(|(a, b)| a.to_bits() == b.to_bits()), "{block}");
+        }
+        assert_eq!(whole.voices_used, 2);
+        assert!(samples.iter().any(|sample| sample.abs() > 0.01), "it sounds");
+        assert!(samples[samples.len() - 10..].iter().all(|sample| sample.abs() < 1e-5), "to its end");
+        assert!((1000..48_000).contains(&whole.tail_frames), "{whole:?}");
+    }
+
+    #[test]
+    fn options_out_of_range_and_errors_of_the_sink_end_it() {
+        let song = Song::chord(&[60.0], 1.0, 0.125);
+        let patch = Patch::default();
+        for options in [options(0, 64, Tail::None), options(48_000, 0, Tail::None), options(48_000, 65_537, Tail::None)]
+        {
+            let job = Job { song: &song, patch: &patch, programs: &[], options };
+            assert!(matches!(job.render(|_, _| Ok(())), Err(Error::Value { .. })));
+        }
+        let job = Job { song: &song, patch: &patch, programs: &[], options: options(48_000, 64, Tail::None) };
+        let mut blocks = 0;
+        let result = job.render(|_, _| {
+            blocks += 1;
+            if blocks == 3 { Err(Error::Interrupted) } else { Ok(()) }
+        });
+        assert!(matches!(result, Err(Error::Interrupted)));
+        assert_eq!(blocks, 3);
+    }
+}

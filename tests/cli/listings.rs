@@ -1,0 +1,92 @@
+//! What the command tells about itself: presets, parameters, manual, completions.
+
+use crate::Sandbox;
+use sprung::params::PARAMS;
+use sprung::preset::Preset;
+use std::process::{Command, Stdio};
+
+#[test]
+fn presets_are_listed_shown_and_checked() {
+    let sandbox = Sandbox::new();
+    let list = String::from_utf8(sandbox.succeeds("presets list")).unwrap();
+    assert_eq!(list.lines().count(), Preset::factory().len());
+    assert!(list.contains("  1  Kick  "), "{list}");
+
+    let kick = String::from_utf8(sandbox.succeeds("presets show kick")).unwrap();
+    assert_eq!(&Preset::parse(&kick, "kick").unwrap(), Preset::find("Kick").unwrap());
+    sandbox.write("kick.toml", &kick);
+    assert_eq!(sandbox.succeeds("presets show kick.toml"), kick.as_bytes());
+
+    sandbox.write("bad.toml", "format = 1\nname = \"a\"\ncolour = 1");
+    sandbox.write("worse.toml", "format = 3");
+    let stdout = sandbox.succeeds("presets check kick.toml");
+    assert_eq!(String::from_utf8(stdout).unwrap(), "kick.toml: ‘Kick’ is in order\n");
+    let output = sandbox.sprung("presets check bad.toml kick.toml worse.toml none.toml").assert().code(1);
+    let stderr = String::from_utf8(output.get_output().stderr.clone()).unwrap();
+    for message in ["bad.toml: unknown key ‘colour’", "worse.toml: format 3", "none.toml: ", "3 of 4 cannot be used"]
+    {
+        assert!(stderr.contains(message), "{message}: {stderr}");
+    }
+    sandbox.fails("presets check", 2, "<FILE>");
+}
+
+#[test]
+fn parameters_are_listed_in_every_form() {
+    let sandbox = Sandbox::new();
+    let json: serde_json::Value = serde_json::from_slice(&sandbox.succeeds("params --json")).unwrap();
+    let ids: Vec<&str> = json.as_array().unwrap().iter().map(|row| row["id"].as_str().unwrap()).collect();
+    assert_eq!(ids, PARAMS.iter().map(|info| info.id).collect::<Vec<_>>());
+    for args in ["params", "params --markdown"] {
+        let text = String::from_utf8(sandbox.succeeds(args)).unwrap();
+        assert!(PARAMS.iter().all(|info| text.contains(info.id) && text.contains(info.help)), "{text}");
+    }
+    sandbox.fails("params --json --markdown", 2, "cannot be used with");
+}
+
+#[test]
+fn manual_and_completions_are_written() {
+    let sandbox = Sandbox::new();
+    assert!(sandbox.succeeds("man").starts_with(b".ie"));
+    sandbox.succeeds("man pages/man1");
+    let pages: Vec<_> = std::fs::read_dir(sandbox.path("pages/man1")).unwrap().collect();
+    assert!(pages.len() > 5 && sandbox.path("pages/man1/sprung-render.1").exists());
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = String::from_utf8(sandbox.succeeds(&format!("completions {shell}"))).unwrap();
+        assert!(script.contains("normalize"), "{shell}");
+    }
+    sandbox.write("file", "");
+    sandbox.fails("man file", 1, "file: ");
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_error() {
+    for args in ["presets list", "params", "params --json", "completions bash", "man", "--help"] {
+        let mut child = Command::new(assert_cmd::cargo::cargo_bin!("sprung"))
+            .args(args.split_whitespace())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{args}: {:?}", output.status);
+        assert_eq!(String::from_utf8_lossy(&output.stderr), "", "{args}");
+    }
+}
+
+#[test]
+fn a_full_disk_behind_stdout_is_an_error() {
+    let Ok(full) = std::fs::OpenOptions::new().write(true).open("/dev/full") else {
+        return;
+    };
+    for args in ["presets list", "params --json", "render --note C2 -o -"] {
+        let output = Command::new(assert_cmd::cargo::cargo_bin!("sprung"))
+            .args(args.split_whitespace())
+            .stdout(full.try_clone().unwrap())
+            .output()
+            .unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{args}");
+        assert_eq!(stderr, "sprung: error: stdout: No space left on device (os error 28)\n", "{args}");
+    }
+}

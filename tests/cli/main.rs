@@ -1,0 +1,120 @@
+//! The command `sprung` from outside: what it writes, what it says, how it ends.
+
+mod bad_input;
+mod listings;
+mod outputs;
+mod sound;
+
+use assert_cmd::Command;
+use midly::num::{u4, u7, u15, u28};
+use midly::{Format, Header, MetaMessage, MidiMessage, Smf, Timing, TrackEvent, TrackEventKind};
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// The command, in a directory of its own.
+pub(crate) struct Sandbox(TempDir);
+
+impl Sandbox {
+    pub(crate) fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, contents: impl AsRef<[u8]>) -> PathBuf {
+        std::fs::write(self.path(name), contents).unwrap();
+        self.path(name)
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap()
+    }
+
+    pub(crate) fn files(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// `sprung` with these arguments, split at spaces.
+    pub(crate) fn sprung(&self, args: &str) -> Command {
+        let mut command = Command::cargo_bin("sprung").unwrap();
+        command.current_dir(self.0.path()).args(args.split_whitespace());
+        command
+    }
+
+    /// Runs the command and expects it to work; gives what it wrote to stdout.
+    pub(crate) fn succeeds(&self, args: &str) -> Vec<u8> {
+        self.sprung(args).assert().success().get_output().stdout.clone()
+    }
+
+    /// Runs the command and expects one message, this exit code, and no file more or less than before.
+    pub(crate) fn fails(&self, args: &str, code: i32, message: &str) {
+        let before = self.files();
+        let output = self.sprung(args).assert().code(code).get_output().clone();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert!(stderr.contains(message), "{args}: expected ‘{message}’ in: {stderr}");
+        assert_eq!(stderr.matches("error: ").count(), 1, "{args}: {stderr}");
+        assert!(!stderr.contains("panicked"), "{args}: {stderr}");
+        assert_eq!(String::from_utf8_lossy(&output.stdout), "", "{args}");
+        assert_eq!(self.files(), before, "{args}");
+    }
+
+    /// The frames of a WAV file, its samples as they are stored.
+    pub(crate) fn wav(&self, name: &str) -> Wav {
+        Wav::read(&self.read(name))
+    }
+}
+
+pub(crate) struct Wav {
+    pub(crate) spec: hound::WavSpec,
+    pub(crate) frames: u32,
+    /// Interleaved; integers scaled to ±1.
+    pub(crate) samples: Vec<f64>,
+}
+
+impl Wav {
+    pub(crate) fn read(bytes: &[u8]) -> Self {
+        let reader = hound::WavReader::new(bytes).unwrap();
+        let (spec, frames) = (reader.spec(), reader.duration());
+        let samples = match spec.sample_format {
+            hound::SampleFormat::Float => reader.into_samples::<f32>().map(|sample| sample.unwrap().into()).collect(),
+            hound::SampleFormat::Int => {
+                let full_scale = f64::from(1u32 << (spec.bits_per_sample - 1));
+                reader.into_samples::<i32>().map(|sample| f64::from(sample.unwrap()) / full_scale).collect()
+            }
+        };
+        Self { spec, frames, samples }
+    }
+
+    pub(crate) fn peak(&self) -> f64 {
+        self.samples.iter().fold(0.0, |peak, sample| peak.max(sample.abs()))
+    }
+}
+
+pub(crate) fn note_on(delta: u32, channel: u8, key: u8) -> TrackEvent<'static> {
+    midi(delta, channel, MidiMessage::NoteOn { key: u7::new(key), vel: u7::new(100) })
+}
+
+pub(crate) fn midi(delta: u32, channel: u8, message: MidiMessage) -> TrackEvent<'static> {
+    TrackEvent { delta: u28::new(delta), kind: TrackEventKind::Midi { channel: u4::new(channel), message } }
+}
+
+pub(crate) fn end(delta: u32) -> TrackEvent<'static> {
+    TrackEvent { delta: u28::new(delta), kind: TrackEventKind::Meta(MetaMessage::EndOfTrack) }
+}
+
+/// A MIDI file of one track and 480 ticks per quarter note, 960 a second.
+pub(crate) fn song(events: &[TrackEvent<'static>]) -> Vec<u8> {
+    let header = Header::new(Format::SingleTrack, Timing::Metrical(u15::new(480)));
+    let mut bytes = Vec::new();
+    Smf { header, tracks: vec![events.to_vec()] }.write(&mut bytes).unwrap();
+    bytes
+}
+
+pub(crate) fn exists(path: &str) -> bool {
+    Path::new(path).exists()
+}

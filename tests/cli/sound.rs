@@ -1,0 +1,137 @@
+//! What the command's options do to the sound.
+
+use crate::{Sandbox, end, midi, note_on, song};
+use midly::MidiMessage;
+
+fn report(sandbox: &Sandbox, args: &str) -> serde_json::Value {
+    serde_json::from_slice(&sandbox.succeeds(&format!("{args} --json --force"))).unwrap()
+}
+
+#[test]
+fn an_auto_tail_lasts_until_the_sound_has_died() {
+    let sandbox = Sandbox::new();
+    let report = report(&sandbox, "render --note A4 --length 0.1 --set release=0.5 --set decay=0.5 -o out.wav");
+    // From −6 dBFS to inaudible at 60 dB per 0.5 s: more than half a second, less than two.
+    let tail = report["tail_seconds"].as_f64().unwrap();
+    assert!((0.5..2.0).contains(&tail), "{report}");
+    assert_eq!(report["voices_used"], 1);
+    let wav = sandbox.wav("out.wav");
+    assert!(wav.peak() > 0.1 && wav.samples[wav.samples.len() - 100..].iter().all(|sample| sample.abs() < 1e-5));
+}
+
+#[test]
+fn normalising_hits_its_target() {
+    let sandbox = Sandbox::new();
+    let base = "render --note A3,E4 --length 1 --set decay=5 --bits 32f";
+    let peak = report(&sandbox, &format!("{base} --normalize peak=-1 -o peak.wav"));
+    let target = sprung::units::gain_from_db(-1.0);
+    assert!((sandbox.wav("peak.wav").peak() / target - 1.0).abs() < 1e-6);
+    assert!((peak["peak_dbfs"].as_f64().unwrap() + 1.0).abs() < 1e-5, "{peak}");
+    let loud = report(&sandbox, &format!("{base} --normalize lufs=-14 -o loud.wav"));
+    assert!((loud["lufs"].as_f64().unwrap() + 14.0).abs() < 0.01, "{loud}");
+    // Two passes give the same sound to a pipe.
+    let piped = sandbox.succeeds(&format!("{base} --normalize lufs=-14 -o -"));
+    assert!(piped == sandbox.read("loud.wav"));
+}
+
+#[test]
+fn gain_and_clipping() {
+    let sandbox = Sandbox::new();
+    let base = "render --note A3 --length 0.2 --tail none";
+    let plain = report(&sandbox, &format!("{base} --bits 32f -o plain.wav"))["peak_dbfs"].as_f64().unwrap();
+    let quiet =
+        report(&sandbox, &format!("{base} --bits 32f --gain-db -6 -o quiet.wav"))["peak_dbfs"].as_f64().unwrap();
+    assert!((plain - quiet - 6.0).abs() < 1e-4, "{plain} {quiet}");
+    let clipped = sandbox.sprung(&format!("{base} --gain-db 40 -o out.wav")).assert().success().get_output().clone();
+    assert!(String::from_utf8_lossy(&clipped.stderr).contains("samples clipped; lower the level with --normalize"));
+    let float = report(&sandbox, &format!("{base} --bits 32f --gain-db 40 -o float.wav"));
+    assert_eq!(float["clipped_samples"], 0);
+    assert!(sandbox.wav("float.wav").peak() > 10.0);
+}
+
+#[test]
+fn mono_is_the_mean_of_both_channels() {
+    let sandbox = Sandbox::new();
+    let base = "render --note A3 --length 0.2 --tail none --preset Vibraphone.toml --bits 32f";
+    let preset = sprung::preset::Preset::find("Vibraphone").unwrap();
+    sandbox.write("Vibraphone.toml", preset.to_toml());
+    sandbox.succeeds(&format!("{base} -o stereo.wav"));
+    sandbox.succeeds(&format!("{base} --mono -o mono.wav"));
+    let (stereo, mono) = (sandbox.wav("stereo.wav"), sandbox.wav("mono.wav"));
+    assert!(mono.peak() > 0.01);
+    assert!(stereo.samples.chunks(2).any(|frame| frame[0] != frame[1]), "it is a stereo sound");
+    for (frame, mean) in stereo.samples.chunks(2).zip(&mono.samples) {
+        assert_eq!((0.5 * (frame[0] as f32 + frame[1] as f32)), *mean as f32);
+    }
+}
+
+#[test]
+fn the_samples_do_not_depend_on_the_block() {
+    let sandbox = Sandbox::new();
+    let notes: Vec<_> = (0..20).map(|n| note_on(37, n % 3, 40 + n)).chain([end(100)]).collect();
+    sandbox.write("song.mid", song(&notes));
+    let base = "render song.mid --preset Kick --bits 32f --force -o out.wav";
+    sandbox.succeeds(&format!("{base} --block 1024"));
+    let expected = sandbox.read("out.wav");
+    assert!(sandbox.wav("out.wav").peak() > 0.01);
+    for block in [1, 7, 64, 480, 65_536] {
+        sandbox.succeeds(&format!("{base} --block {block}"));
+        assert!(sandbox.read("out.wav") == expected, "{block}");
+    }
+}
+
+#[test]
+fn a_frequency_is_that_frequency_in_every_tuning() {
+    let sandbox = Sandbox::new();
+    let base = "render --length 0.5 --tail none --bits 32f";
+    sandbox.succeeds(&format!("{base} --note A4 -o a.wav"));
+    sandbox.succeeds(&format!("{base} --note 440Hz --set tuning=452 -o b.wav"));
+    sandbox.succeeds(&format!("{base} --note A4 --set tuning=452 -o c.wav"));
+    let difference = |a: &str, b: &str| {
+        let (a, b) = (sandbox.wav(a), sandbox.wav(b));
+        a.samples.iter().zip(&b.samples).fold(0.0f64, |worst, (a, b)| worst.max((a - b).abs()))
+    };
+    assert!(difference("a.wav", "b.wav") < 1e-4, "{}", difference("a.wav", "b.wav"));
+    assert!(difference("a.wav", "c.wav") > 0.1);
+}
+
+#[test]
+fn notes_closer_than_a_key_all_sound() {
+    let sandbox = Sandbox::new();
+    let report = report(&sandbox, "render --note 60,60.25,59.9,60 --length 0.1 -o out.wav");
+    assert_eq!(report["voices_used"], 4);
+}
+
+#[test]
+fn program_changes_pick_presets_by_number() {
+    let sandbox = Sandbox::new();
+    let program = |number: u8| midi(0, 9, MidiMessage::ProgramChange { program: number.into() });
+    sandbox.write("plain.mid", song(&[note_on(0, 9, 40), end(480)]));
+    sandbox.write("one.mid", song(&[program(1), note_on(0, 9, 40), end(480)]));
+    sandbox.write("beyond.mid", song(&[program(127), program(127), note_on(0, 9, 40), end(480)]));
+    let render = |args: &str| {
+        let output =
+            sandbox.sprung(&format!("render {args} --force -o out.wav")).assert().success().get_output().clone();
+        (sandbox.read("out.wav"), String::from_utf8(output.stderr).unwrap())
+    };
+    let (init, _) = render("plain.mid");
+    let (kick, _) = render("plain.mid --preset kick");
+    assert!(init != kick);
+    assert!(render("one.mid").0 == kick);
+    let (beyond, stderr) = render("beyond.mid");
+    assert!(beyond == init);
+    assert_eq!(stderr.matches("warning: channel 10: there is no program 127").count(), 1, "{stderr}");
+    // Settings hold for the presets that a song picks, too.
+    let (set, _) = render("one.mid --set decay=0.01");
+    assert!(set == render("plain.mid --preset kick --set decay=0.01").0 && set != kick);
+}
+
+#[test]
+fn seeds_choose_the_noise() {
+    let sandbox = Sandbox::new();
+    let render = |args: &str| sandbox.succeeds(&format!("render --note C3 --length 0.1 {args} -o -"));
+    for sound in ["--set exciter=noise", "--bits 16 --dither"] {
+        assert!(render(&format!("{sound} --seed 1")) == render(&format!("{sound} --seed 1")));
+        assert!(render(&format!("{sound} --seed 1")) != render(&format!("{sound} --seed 2")), "{sound}");
+    }
+}

@@ -1,0 +1,84 @@
+//! `cargo xtask setup`: what the test suite needs on the system.
+
+use crate::shell::succeeds;
+use std::process::Command;
+
+/// How something is recognised.
+enum Probe {
+    /// A program that answers to `--version`.
+    Program(&'static str),
+}
+
+/// Something that the suite needs beyond Rust and its crates.
+struct Requirement {
+    probe: Probe,
+    /// Debian package that has it.
+    package: &'static str,
+    why: &'static str,
+}
+
+const REQUIREMENTS: &[Requirement] = &[Requirement {
+    probe: Probe::Program("c++"),
+    package: "g++",
+    why: "compiles the original listing, which the classic coefficients are compared with",
+}];
+
+/// Components of the Rust toolchain, with the command that each brings.
+const COMPONENTS: [(&str, &str); 2] = [("rustfmt", "fmt"), ("clippy", "clippy")];
+
+impl Requirement {
+    fn is_met(&self) -> bool {
+        match self.probe {
+            Probe::Program(program) => succeeds(program, &["--version"]),
+        }
+    }
+}
+
+/// Installs what is missing, or says how to.
+pub(crate) fn run() -> Result<(), String> {
+    let mut problems = Vec::new();
+    for (component, command) in COMPONENTS {
+        if !succeeds("cargo", &[command, "--version"]) {
+            println!("missing: {component}, a component of the Rust toolchain");
+            if !succeeds("rustup", &["component", "add", component]) {
+                problems.push(format!("install it with: rustup component add {component}"));
+            }
+        }
+    }
+    let missing: Vec<&Requirement> = REQUIREMENTS.iter().filter(|requirement| !requirement.is_met()).collect();
+    for Requirement { package, why, .. } in &missing {
+        println!("missing: {package}: {why}");
+    }
+    if !missing.is_empty() {
+        let packages: Vec<&str> = missing.iter().map(|requirement| requirement.package).collect();
+        if let Err(problem) = install(&packages) {
+            problems.push(problem);
+        } else {
+            let still = missing.iter().filter(|requirement| !requirement.is_met());
+            problems
+                .extend(still.map(|r| format!("{} is installed, but what it should bring is not there", r.package)));
+        }
+    }
+    if problems.is_empty() {
+        println!("all that the test suite needs is there");
+        return Ok(());
+    }
+    Err(problems.join("\n"))
+}
+
+/// Installs Debian packages when that needs no password.
+fn install(packages: &[&str]) -> Result<(), String> {
+    let by_hand = format!("install with: sudo apt-get install {}", packages.join(" "));
+    let is_root = Command::new("id").arg("-u").output().is_ok_and(|output| output.stdout.trim_ascii() == b"0");
+    let prefix: &[&str] = match (is_root, succeeds("sudo", &["-n", "true"])) {
+        (true, _) => &[],
+        (false, true) => &["sudo", "-n"],
+        (false, false) => return Err(by_hand),
+    };
+    let apt = |arguments: &[&str]| {
+        let words = [prefix, &["env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "--yes"], arguments].concat();
+        Command::new(words[0]).args(&words[1..]).status().is_ok_and(|status| status.success())
+    };
+    let install = [&["install", "--no-install-recommends"], packages].concat();
+    if apt(&["update"]) && apt(&install) { Ok(()) } else { Err(by_hand) }
+}
