@@ -5,9 +5,10 @@ use sprung::dsp::random::{key, uniform};
 use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{Mode, ModeTable, Patch};
+use sprung::preset::Preset;
 
 const FRAMES: usize = 24_000;
-const SOUNDS: u64 = 60;
+const SOUNDS: u64 = 40;
 
 /// Numbers from 0 to 1, by turns.
 struct Stream {
@@ -26,14 +27,14 @@ impl Stream {
 /// all forms of the kernels come up: mono and stereo, ringing, swept and driven, classic.
 fn patch(stream: &mut Stream, sound: u64) -> Patch {
     let mut patch = Patch::default();
-    if sound % 3 > 0 {
+    if !sound.is_multiple_of(3) {
         for info in PARAMS {
             patch.set(info.param, info.denormalise(stream.next()));
         }
     }
     patch.set(Param::Exciter, (sound % 4) as f32);
     patch.set(Param::Coefficients, f32::from(u8::from(sound % 7 == 6)));
-    let pan = if sound % 2 == 0 { 0.0 } else { 1.0 };
+    let pan = if sound.is_multiple_of(2) { 0.0 } else { 1.0 };
     let modes: Vec<Mode> = (0..1 + (stream.next() * stream.next() * 64.0) as usize)
         .map(|_| Mode {
             ratio: (0.5 + 20.0 * stream.next() * stream.next()) as f32,
@@ -71,12 +72,15 @@ fn events(stream: &mut Stream) -> Vec<Event> {
     events
 }
 
-/// The bits of every sound, mixed into one number (FNV-1a), and the loudest sample.
+/// The bits of every sound, the factory's and random ones, mixed into one number (FNV-1a), and the loudest sample.
 fn render_all() -> (u64, f32) {
     let (mut hash, mut loudest) = (0xCBF2_9CE4_8422_2325_u64, 0.0_f32);
-    for sound in 0..SOUNDS {
+    let factory = Preset::factory();
+    for sound in 0..SOUNDS + factory.len() as u64 {
         let mut stream = Stream { key: key(3, sound), n: 0 };
-        let (patch, events) = (patch(&mut stream, sound), events(&mut stream));
+        let random = patch(&mut stream, sound);
+        let patch = factory.get(sound as usize).map_or(random, |preset| preset.patch);
+        let events = events(&mut stream);
         let mut ensemble = Ensemble::new(48_000.0, sound, &patch, &[]);
         let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
         ensemble.process(&events, &mut left, &mut right);

@@ -8,13 +8,16 @@ pub struct SweepEnvelope {
     semitones: f64,
     seconds: f64,
     steepness: f64,
+    /// `e^−steepness`.
+    end: f64,
 }
 
 impl SweepEnvelope {
     /// A sweep from `semitones` to 0 in `seconds`. `curve` from −1 to 1: 0 is a straight line, above it the sweep
     /// falls fast and settles slowly, below the reverse.
     pub fn new(semitones: f64, seconds: f64, curve: f64) -> Self {
-        Self { semitones, seconds, steepness: 8.0 * curve }
+        let steepness = 8.0 * curve;
+        Self { semitones, seconds, steepness, end: exp(-steepness) }
     }
 
     /// Semitones `time` seconds after the start; exactly 0 from its end on.
@@ -24,7 +27,7 @@ impl SweepEnvelope {
         }
         let progress = time / self.seconds;
         let k = self.steepness;
-        let remaining = if k == 0.0 { 1.0 - progress } else { (exp(-k * progress) - exp(-k)) / (1.0 - exp(-k)) };
+        let remaining = if k == 0.0 { 1.0 - progress } else { (exp(-k * progress) - self.end) / (1.0 - self.end) };
         self.semitones * remaining
     }
 }

@@ -10,12 +10,18 @@ use crate::units::gain_from_db;
 pub(crate) struct Smoother {
     sample_rate: f64,
     ramps: [Ramp; PARAM_COUNT],
+    /// Frames until all have arrived.
+    moving: u32,
+    /// What voices follow once they have.
+    arrived: Controls,
 }
 
 impl Smoother {
     /// All at rest at the values of `patch`.
     pub(crate) fn new(sample_rate: f64, patch: &Patch) -> Self {
-        Self { sample_rate, ramps: std::array::from_fn(|index| Ramp::at_rest(patch.get(PARAMS[index].param))) }
+        let ramps = std::array::from_fn(|index| Ramp::at_rest(patch.get(PARAMS[index].param)));
+        let arrived = Controls::after(&ramps, 0);
+        Self { sample_rate, ramps, moving: 0, arrived }
     }
 
     /// Moves one parameter towards a value.
@@ -24,33 +30,24 @@ impl Smoother {
         if let Change::Smoothed(milliseconds) = param.info().change
             && ramp.after(u32::MAX) != value
         {
-            ramp.set(value, (f64::from(milliseconds) * 1e-3 * self.sample_rate) as u32);
+            let frames = (f64::from(milliseconds) * 1e-3 * self.sample_rate) as u32;
+            ramp.set(value, frames);
+            self.moving = self.moving.max(frames);
+            self.arrived = Controls::after(&self.ramps, u32::MAX);
         }
     }
 
     /// Lets `frames` frames pass.
     pub(crate) fn advance(&mut self, frames: u32) {
-        self.ramps.iter_mut().for_each(|ramp| ramp.advance(frames));
+        if self.moving > 0 {
+            self.ramps.iter_mut().for_each(|ramp| ramp.advance(frames));
+            self.moving = self.moving.saturating_sub(frames);
+        }
     }
 
     /// What voices follow, `frames` frames from now.
     pub(crate) fn after(&self, frames: u32) -> Controls {
-        let value = |param: Param| self.ramps[param as usize].after(frames);
-        let gain = gain_from_db(value(Param::Gain).into()) as f32;
-        let (left, right) = pan_gains(value(Param::Pan) * 0.005 + 0.5);
-        Controls {
-            decay: value(Param::Decay).into(),
-            release: value(Param::Release).into(),
-            tune: f64::from(value(Param::Tune)) + f64::from(value(Param::Fine)) * 0.01,
-            vibrato: f64::from(value(Param::Vibrato)) * 0.01,
-            vibrato_rate: value(Param::VibratoRate).into(),
-            wheel_vibrato: f64::from(value(Param::WheelVibrato)) * 0.01,
-            pressure_vibrato: f64::from(value(Param::PressureVibrato)) * 0.01,
-            pressure_damping: f64::from(value(Param::PressureDamping)) * 0.01,
-            bend_range: value(Param::BendRange),
-            gain_left: gain * left,
-            gain_right: gain * right,
-        }
+        if frames >= self.moving { self.arrived } else { Controls::after(&self.ramps, frames) }
     }
 }
 
@@ -79,6 +76,27 @@ pub(crate) struct Controls {
     pub(crate) gain_left: f32,
     /// Amplitude ratio.
     pub(crate) gain_right: f32,
+}
+
+impl Controls {
+    fn after(ramps: &[Ramp; PARAM_COUNT], frames: u32) -> Self {
+        let value = |param: Param| ramps[param as usize].after(frames);
+        let gain = gain_from_db(value(Param::Gain).into()) as f32;
+        let (left, right) = pan_gains(value(Param::Pan) * 0.005 + 0.5);
+        Self {
+            decay: value(Param::Decay).into(),
+            release: value(Param::Release).into(),
+            tune: f64::from(value(Param::Tune)) + f64::from(value(Param::Fine)) * 0.01,
+            vibrato: f64::from(value(Param::Vibrato)) * 0.01,
+            vibrato_rate: value(Param::VibratoRate).into(),
+            wheel_vibrato: f64::from(value(Param::WheelVibrato)) * 0.01,
+            pressure_vibrato: f64::from(value(Param::PressureVibrato)) * 0.01,
+            pressure_damping: f64::from(value(Param::PressureDamping)) * 0.01,
+            bend_range: value(Param::BendRange),
+            gain_left: gain * left,
+            gain_right: gain * right,
+        }
+    }
 }
 
 #[cfg(test)]

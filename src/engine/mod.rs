@@ -4,6 +4,7 @@
 
 mod channel;
 mod controls;
+mod damping;
 pub mod ensemble;
 pub mod event;
 mod fader;

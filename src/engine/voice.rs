@@ -2,6 +2,7 @@
 
 use super::channel::Channel;
 use super::controls::Controls;
+use super::damping::Damping;
 use super::fader::Fader;
 use super::voice_manager::{Note, Voice};
 use crate::dsp::exciter::{Drive, Exciter};
@@ -41,6 +42,10 @@ const MIDDLE_C: f64 = 60.0;
 /// A voice is over when its modes could not add up to more than this: −120 dBFS.
 const SILENCE: f64 = 1e-6;
 
+/// Stock is taken of a voice's energy every so many control ticks, and at every tick below −110 dBFS.
+const STOCK_TICKS: u32 = 8;
+const NEARLY_SILENT: f64 = 3.2e-6;
+
 /// The time in which a stolen or choked voice is faded out.
 const FADE_SECONDS: f64 = 0.012;
 
@@ -53,23 +58,11 @@ const SOFT_HARDNESS: f64 = 0.3;
 const SOFTEST_CONTACT: f64 = 0.01;
 const HARDEST_CONTACT: f64 = 0.000_05;
 
-/// T60 below which a mode is a click whatever its pitch.
-const SHORTEST_T60: f64 = 0.000_5;
-
-/// How the note is damped.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Damping {
-    /// T60 of a held note of ratio 1, in seconds.
-    decay: f64,
-    /// T60 of a damped mode, in seconds; 0 where `amount` is.
-    release: f64,
-    /// How far it is damped, 0–1.
-    amount: f64,
-}
-
 /// A sounding note.
 pub(crate) struct SynthVoice {
     sample_rate: f64,
+    /// Seconds a frame.
+    period: f64,
     bank: ModeBank,
     exciter: Exciter,
     drive: Drive,
@@ -80,12 +73,17 @@ pub(crate) struct SynthVoice {
     /// Energy that the exciter has still to bring, and that of the bank at the last tick.
     pending_energy: f64,
     energy: f64,
+    /// Control ticks until stock is taken of the energy.
+    until_stock: u32,
 
     /// Frames since the (last) strike, at the last control and now.
     controlled_age: u64,
     age: u64,
     pitch: f64,
     tune: f64,
+    /// Last offset from the pitch in semitones, and its ratio.
+    offset: f64,
+    ratio: f64,
     glide: Glide,
     glide_start: u64,
     sweep: SweepEnvelope,
@@ -114,6 +112,7 @@ impl SynthVoice {
     pub(crate) fn new(sample_rate: f64, controls: Controls) -> Self {
         Self {
             sample_rate,
+            period: 1.0 / sample_rate,
             bank: ModeBank::new(sample_rate),
             exciter: Exciter::REST,
             drive: Drive::NONE,
@@ -121,10 +120,13 @@ impl SynthVoice {
             full_energy: 0.0,
             pending_energy: 0.0,
             energy: 0.0,
+            until_stock: 0,
             controlled_age: 0,
             age: 0,
             pitch: 0.0,
             tune: 0.0,
+            offset: 0.0,
+            ratio: 1.0,
             glide: Glide::new(0.0, 0.0, 0.0),
             glide_start: 0,
             sweep: SweepEnvelope::new(0.0, 0.0, 0.0),
@@ -146,7 +148,8 @@ impl SynthVoice {
     }
 
     fn seconds(&self, frames: u64) -> f64 {
-        frames as f64 / self.sample_rate
+        // A division takes four times as long, and there are a handful a tick.
+        frames as f64 * self.period
     }
 
     /// Offset from the pitch that the bank was loaded at, `ahead` frames from now, in semitones.
@@ -189,13 +192,15 @@ impl SynthVoice {
         if damping != self.damping {
             self.damping = damping;
             for m in 0..self.bank.len() {
-                self.bank.set_t60(m, damped_t60(damping, self.t60_scale[m]));
+                self.bank.set_t60(m, damping.t60(self.t60_scale[m]));
             }
         }
         if self.fresh {
-            self.bank.jump_to(ratio_from_semitones(self.offset(channel, 0)));
+            let ratio = self.ratio(self.offset(channel, 0));
+            self.bank.jump_to(ratio);
         }
-        self.bank.sweep_to(ratio_from_semitones(self.offset(channel, frames)), frames);
+        let ratio = self.ratio(self.offset(channel, frames));
+        self.bank.sweep_to(ratio, frames);
 
         let (left, right) = channel.gains_after(frames as u32);
         let target = [self.controls.gain_left * left, self.controls.gain_right * right];
@@ -207,12 +212,33 @@ impl SynthVoice {
         self.fresh = false;
     }
 
-    /// Takes stock at a control tick: what energy is left, and which modes have come to rest.
+    /// Takes stock at a control tick: what energy is left, and which modes have come to rest. Every few ticks are
+    /// enough, until the voice is nearly silent or its strike has just ended.
     pub(crate) fn settle(&mut self) {
-        self.energy = self.bank.settle();
-        if !self.exciter.is_active() {
-            self.pending_energy = 0.0;
+        let strike_over = self.pending_energy > 0.0 && !self.exciter.is_active();
+        if self.until_stock == 0 || strike_over || self.loudest() < NEARLY_SILENT * NEARLY_SILENT {
+            self.energy = self.bank.settle();
+            self.until_stock = STOCK_TICKS;
+            if !self.exciter.is_active() {
+                self.pending_energy = 0.0;
+            }
         }
+        self.until_stock -= 1;
+    }
+
+    /// The square of what the modes could add up to, were they all in phase: n amplitudes whose squares sum to E add
+    /// up to √(n E) at most.
+    fn loudest(&self) -> f64 {
+        let gain = f64::from(self.fader.loudest()).max(1.0);
+        self.energy * self.bank.len() as f64 * gain * gain
+    }
+
+    /// The pitch ratio of an offset, which seldom changes, in semitones.
+    fn ratio(&mut self, offset: f64) -> f64 {
+        if offset != self.offset {
+            (self.offset, self.ratio) = (offset, ratio_from_semitones(offset));
+        }
+        self.ratio
     }
 
     /// Adds the next frames, at most [`CONTROL_FRAMES`], to `left` and `right`.
@@ -289,19 +315,6 @@ const IMPULSE: u32 = 0;
 const PLUCK: u32 = 2;
 const NOISE: u32 = 3;
 
-/// T60 in seconds of a mode whose T60 is `scale` times the decay: between its own and the damper's, by ratio.
-fn damped_t60(damping: Damping, scale: f64) -> f64 {
-    let held = (damping.decay * scale).max(SHORTEST_T60);
-    let damped = held.min(damping.release).max(SHORTEST_T60);
-    if damping.amount == 0.0 {
-        held
-    } else if damping.amount == 1.0 {
-        damped
-    } else {
-        held * pow(damped / held, damping.amount)
-    }
-}
-
 impl Voice for SynthVoice {
     type Context = Instrument;
 
@@ -328,7 +341,7 @@ impl Voice for SynthVoice {
         let setup = modes.iter().zip(scales).map(|(mode, scale)| {
             let (left, right) = super::channel::pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
             let ratio = if stretch == 1.0 { f64::from(mode.ratio) } else { pow(mode.ratio.into(), stretch) };
-            ModeSetup { frequency: frequency * ratio, t60: damped_t60(damping, scale), left, right }
+            ModeSetup { frequency: frequency * ratio, t60: damping.t60(scale), left, right }
         });
         self.bank.load(law, setup);
         self.excite(instrument, note);
@@ -362,9 +375,6 @@ impl Voice for SynthVoice {
     }
 
     fn is_over(&self) -> bool {
-        // n amplitudes whose squares sum to E add up to √(n E) at most.
-        let loudest = self.energy * self.bank.len() as f64;
-        let gain = f64::from(self.fader.loudest()).max(1.0);
-        self.fader.is_closed() || (self.pending_energy == 0.0 && loudest * gain * gain < SILENCE * SILENCE)
+        self.fader.is_closed() || (self.pending_energy == 0.0 && self.loudest() < SILENCE * SILENCE)
     }
 }
