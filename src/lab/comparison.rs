@@ -5,6 +5,7 @@ use super::method::Method;
 use super::system::{State, System};
 use super::trajectory::{MOST_STEPS, Trajectory, run_against, step_count, truth};
 use crate::error::{Error, Result};
+use std::io::{self, Write};
 
 /// What to compare.
 #[derive(Clone, Debug)]
@@ -103,18 +104,18 @@ impl Comparison {
         change(&run.states) / change(&run.truth)
     }
 
-    /// One row per method, step and state.
-    pub fn csv(&self) -> String {
-        let mut csv = String::from("method,step_s,t_s,x_m,v_m_per_s,true_x_m,true_v_m_per_s,error_m,energy_j\n");
+    /// Writes one row per method, step and state.
+    pub fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
+        writeln!(out, "method,step_s,t_s,x_m,v_m_per_s,true_x_m,true_v_m_per_s,error_m,energy_j")?;
         for run in self.runs.iter().flatten() {
             for (n, (state, truth)) in run.states.iter().zip(&run.truth).enumerate() {
                 let energy = Energy::of(&self.setup.system, *state).total();
                 let (key, h, t) = (run.method.key(), run.h, n as f64 * run.h);
                 let error = state.x - truth.x;
-                csv += &format!("{key},{h},{t},{},{},{},{},{error},{energy}\n", state.x, state.v, truth.x, truth.v);
+                writeln!(out, "{key},{h},{t},{},{},{},{},{error},{energy}", state.x, state.v, truth.x, truth.v)?;
             }
         }
-        csv
+        Ok(())
     }
 }
 
@@ -138,7 +139,9 @@ mod tests {
         assert_eq!(comparison.runs.len(), 12);
         assert!(comparison.runs.iter().all(|runs| runs.len() == 3));
         assert!((comparison.size() - 0.5).abs() < 1e-12);
-        let csv = comparison.csv();
+        let mut csv = Vec::new();
+        comparison.write_csv(&mut csv).unwrap();
+        let csv = String::from_utf8(csv).unwrap();
         assert_eq!(csv.lines().count(), 1 + 12 * (501 + 101 + 35));
         assert!(csv.contains("\nrk4,0.05,0,0.5,0,0.5,0,0,6.25\n"));
         let ratio = |method: usize| comparison.energy_ratio(&comparison.runs[method][0]);

@@ -38,7 +38,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         _ => Ok(svg::svg(&animation).into_bytes()),
     };
     let text = format!("{} masses, {} frames at {} per second\n", animation.tracks.len(), animation.len(), args.fps);
-    deliveries.finish(figure, &csv(&animation), &text)
+    deliveries.finish(figure, |out| out.write_all(csv(&animation).as_bytes()), &text)
 }
 
 /// One row per mass and frame.

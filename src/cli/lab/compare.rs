@@ -37,12 +37,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let methods = args.methods.for_system(&system, &args.steps)?;
     let deliveries = args.files.open(&["html", "svg", "png"])?;
     let comparison = Comparison::new(Setup { system, start, end: args.end, steps: args.steps.clone(), methods })?;
-    let csv = if deliveries.wants_csv() { comparison.csv() } else { String::new() };
     let figure = |format: &str| match format {
         "html" => Ok(report::html(&comparison).into_bytes()),
         _ => drawn(&ComparisonFigure(&comparison), format),
     };
-    deliveries.finish(figure, &csv, &table(&comparison))
+    deliveries.finish(figure, |out| comparison.write_csv(out), &table(&comparison))
 }
 
 fn table(comparison: &Comparison) -> String {

@@ -31,7 +31,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let methods = args.methods.for_system(&system, &steps)?;
     let deliveries = args.files.open(&["svg", "png"])?;
     let found = converge(&methods, &system, start, &steps, args.end)?;
-    deliveries.finish(|format| drawn(&ConvergenceFigure(&found), format), &csv(&found), &table(&found))
+    deliveries.finish(
+        |format| drawn(&ConvergenceFigure(&found), format),
+        |out| out.write_all(csv(&found).as_bytes()),
+        &table(&found),
+    )
 }
 
 fn table(found: &[Convergence]) -> String {

@@ -4,7 +4,7 @@ use super::super::{interrupt, print};
 use sprung::figure::{self, Picture};
 use sprung::io::{Output, Target};
 use sprung::{Error, Result};
-use std::io::{IsTerminal, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// The options of every command's output.
@@ -72,14 +72,20 @@ impl Deliveries {
     }
 
     /// Writes figure and CSV, each only if wanted, and says `text`: on stdout, or on stderr if the CSV goes there.
-    pub(super) fn finish(self, figure: impl FnOnce(&str) -> Result<Vec<u8>>, csv: &str, text: &str) -> Result<()> {
+    pub(super) fn finish(
+        self,
+        figure: impl FnOnce(&str) -> Result<Vec<u8>>,
+        csv: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+        text: &str,
+    ) -> Result<()> {
         let mut whole = Vec::new();
         if let Some((mut output, format)) = self.figure {
-            write(&mut output, &figure(&format)?)?;
+            let bytes = figure(&format)?;
+            write(&mut output, |out| out.write_all(&bytes))?;
             whole.push(output);
         }
         if let Some(mut output) = self.csv {
-            write(&mut output, csv.as_bytes())?;
+            write(&mut output, csv)?;
             whole.push(output);
         }
         interrupt::check()?;
@@ -95,8 +101,10 @@ impl Deliveries {
     }
 }
 
-fn write(output: &mut Output, bytes: &[u8]) -> Result<()> {
-    let written = output.stream().write_all(bytes).and_then(|()| output.stream().flush());
+fn write(output: &mut Output, contents: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    let mut stream = BufWriter::new(output.stream());
+    let written = contents(&mut stream).and_then(|()| stream.flush());
+    drop(stream);
     written.map_err(|error| Error::io(output.name(), error))
 }
 

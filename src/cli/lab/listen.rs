@@ -66,7 +66,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     let title = format!("{} Hz, decay by 60 dB in {} s, at {rate} Hz", short(args.frequency), args.t60);
     let figure = SoundFigure { sounds: &sounds, sample_rate: rate, title: &title };
-    deliveries.finish(|format| drawn(&figure, format), &csv(&sounds), &table(&sounds, path))
+    deliveries.finish(
+        |format| drawn(&figure, format),
+        |out| out.write_all(csv(&sounds).as_bytes()),
+        &table(&sounds, path),
+    )
 }
 
 fn table(sounds: &[Sound], path: impl Fn(&Sound) -> PathBuf) -> String {

@@ -49,7 +49,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     listed.extend(curves.iter().flatten().flatten());
     let first = curves.first().map_or(&[][..], Vec::as_slice);
     let figure = PitchFigure { notes: first, sample_rate: args.rate };
-    deliveries.finish(|format| drawn(&figure, format), &csv(listed.iter()), &text)
+    deliveries.finish(|format| drawn(&figure, format), |out| out.write_all(csv(listed.iter()).as_bytes()), &text)
 }
 
 fn table(args: &Args, notes: &[Vec<Note>], word: fn(&Note) -> String) -> String {

@@ -41,7 +41,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let table = table(&methods)?;
     let drawing = deliveries.format().is_some() || deliveries.wants_csv();
     let regions = if drawing { regions(args, &methods)? } else { Vec::new() };
-    deliveries.finish(|format| drawn(&StabilityFigure(&regions), format), &csv(&regions), &table)
+    deliveries.finish(
+        |format| drawn(&StabilityFigure(&regions), format),
+        |out| out.write_all(csv(&regions).as_bytes()),
+        &table,
+    )
 }
 
 fn regions(args: &Args, methods: &[Method]) -> Result<Vec<Region>> {

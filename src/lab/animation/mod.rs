@@ -19,7 +19,7 @@ pub struct Track {
     pub series: Option<usize>,
     /// State at each frame.
     pub frames: Vec<State>,
-    /// Every state on the way, for the phase plane.
+    /// States on the way, for the phase plane.
     pub path: Vec<State>,
 }
 
@@ -56,7 +56,12 @@ impl Animation {
         let times: Vec<f64> = (0..count as usize).map(|n| n as f64 / rate).collect();
         let track = |title, series, states: &[State], h: f64| {
             let frames = times.iter().map(|t| between(states, t / h)).collect();
-            Track { title, series, frames, path: states.to_vec() }
+            Track {
+                title,
+                series,
+                frames,
+                path: states.iter().step_by(states.len().div_ceil(MOST_FRAMES).max(1)).copied().collect(),
+            }
         };
         let mut tracks = vec![track("truth", None, &comparison.truth, comparison.truth_step)];
         for (n, run) in comparison.runs.iter().filter_map(|runs| runs.first()).enumerate() {

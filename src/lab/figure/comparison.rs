@@ -16,6 +16,8 @@ pub struct ComparisonFigure<'a>(pub &'a Comparison);
 
 /// Height of a method's row in pixels.
 const ROW: u32 = 230;
+/// States of a run that are drawn at most.
+const MOST_POINTS: usize = 5000;
 /// Height of the title and legend.
 const HEAD: u32 = 74;
 /// Energies beyond this multiple of the greatest true one are off the panel.
@@ -86,7 +88,8 @@ impl ComparisonFigure<'_> {
         };
         let mut chart = panel.draw(&differences)?;
         for (n, run) in runs.iter().enumerate() {
-            let points: Vec<_> = run.errors().enumerate().map(|(n, error)| (n as f64 * run.h, error)).collect();
+            let errors = run.errors().enumerate().step_by(stride(run.states.len()));
+            let points: Vec<_> = errors.map(|(n, error)| (n as f64 * run.h, error)).collect();
             line(&mut chart, &points, step_stroke(n))?;
         }
 
@@ -112,12 +115,18 @@ impl ComparisonFigure<'_> {
 }
 
 fn over_time(states: &[State], h: f64, value: impl Fn(&State) -> f64) -> Vec<(f64, f64)> {
-    states.iter().enumerate().map(|(n, state)| (n as f64 * h, value(state))).collect()
+    let stride = stride(states.len());
+    states.iter().enumerate().step_by(stride).map(|(n, state)| (n as f64 * h, value(state))).collect()
+}
+
+/// Every how many of a run's states are drawn.
+fn stride(states: usize) -> usize {
+    states.div_ceil(MOST_POINTS).max(1)
 }
 
 /// Velocity to the right and position upward, so that positions line up with those of the trajectory beside it.
 fn plane(states: &[State]) -> Vec<(f64, f64)> {
-    states.iter().map(|state| (state.v, state.x)).collect()
+    states.iter().step_by(stride(states.len())).map(|state| (state.v, state.x)).collect()
 }
 
 /// The range of some values with a share of it added at either end; never empty.
