@@ -14,7 +14,9 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("engine", &["engine", "dsp", "params", "patch", "units"]),
     ("io", &["io", "dsp", "engine", "error", "units", "Error", "Result"]),
     ("render", &["render", "dsp", "engine", "error", "io", "params", "patch", "preset", "units", "Error", "Result"]),
-    ("analysis", &["analysis", "error", "units", "Error", "Result"]),
+    ("figure", &["figure", "error", "Error", "Result"]),
+    ("analysis", &["analysis", "error", "figure", "units", "Error", "Result"]),
+    ("lab", &["lab", "dsp", "error", "figure", "Error", "Result"]),
 ];
 
 /// Crates that only the named modules may use.
@@ -23,9 +25,9 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("hound", &["io"]),
     ("midly", &["io"]),
     ("toml", &["preset", "analysis"]),
-    ("plotters", &["analysis", "lab"]),
+    ("plotters", &["figure", "analysis", "lab"]),
     ("ebur128", &["render"]),
-    ("std::fs", &["io", "preset", "analysis", "cli", "lab"]),
+    ("std::fs", &["io", "preset", "analysis", "cli"]),
     ("std::thread", &[]),
 ];
 

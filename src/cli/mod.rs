@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand.
 
 mod interrupt;
+mod lab;
 mod manual;
 mod parameters;
 mod presets;
@@ -36,6 +37,7 @@ Examples:
   sprung render --note C2 --preset Kick -o kick.wav
   sprung presets list
   sprung params
+  sprung lab compare -o report.html
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.";
 
@@ -50,6 +52,9 @@ enum Command {
     /// Print the table of parameters
     #[command(after_help = parameters::EXAMPLES)]
     Params(parameters::Args),
+    /// Compare ways to integrate a mass on a spring
+    #[command(after_help = lab::EXAMPLES)]
+    Lab(lab::Args),
     /// Print a completion script for a shell
     #[command(after_help = manual::COMPLETION_EXAMPLES)]
     Completions(manual::CompletionArgs),
@@ -63,6 +68,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Presets(args) => presets::run(&args),
         Command::Params(args) => parameters::run(&args),
+        Command::Lab(args) => lab::run(&args),
         Command::Completions(args) => manual::completions(&args),
         Command::Man(args) => manual::run(&args),
     };
@@ -118,6 +124,7 @@ mod tests {
             render::EXAMPLES,
             presets::EXAMPLES,
             parameters::EXAMPLES,
+            lab::EXAMPLES,
             manual::EXAMPLES,
             manual::COMPLETION_EXAMPLES,
         ];

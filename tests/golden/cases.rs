@@ -1,4 +1,4 @@
-//! The golden cases: every factory preset, and what the engine does beside plain notes.
+//! The golden cases: every factory preset, every song in `assets/midi`, and what the engine does beside plain notes.
 
 use crate::score::Score;
 use sprung::engine::EventKind;
@@ -11,7 +11,9 @@ pub(crate) const INIT: &str = "preset-init";
 
 /// All cases.
 pub(crate) fn all() -> Vec<Score> {
-    let mut cases: Vec<Score> = Preset::factory().iter().map(preset).collect();
+    // The longest first, so that no core waits for them at the end.
+    let mut cases = crate::songs::all();
+    cases.extend(Preset::factory().iter().map(preset));
     cases.extend(engine());
     cases
 }

@@ -1,12 +1,12 @@
 //! Checking a case against what was accepted, accepting anew, and what a failure leaves behind.
 
-use crate::score::{LARGEST_BLOCK, Score};
+use crate::score::{Score, WHOLE};
 use sprung::analysis::figure::{self, Render};
 use sprung::analysis::{diff, digest::Digest, level};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Block sizes that must all give the same bits as the largest possible block.
+/// Block sizes that must all give the same bits as one block of everything.
 const BLOCKS: [usize; 5] = [1, 7, 64, 480, 4096];
 /// Frames of audio that the cases which keep audio keep.
 const KEPT_FRAMES: usize = 12_000;
@@ -65,7 +65,7 @@ fn flaw(case: &Score, audio: &Stereo) -> Result<(), String> {
 
 /// Accepts what a case sounds like now.
 pub(crate) fn bless(store: &Store, case: &Score) {
-    let audio = case.render(LARGEST_BLOCK);
+    let audio = case.render(WHOLE);
     let digest = Digest::of(&audio[0], &audio[1], case.sample_rate);
     std::fs::write(store.digest_path(&case.name), digest.to_toml()).expect("the digest can be written");
     if case.keeps_audio {
@@ -75,7 +75,7 @@ pub(crate) fn bless(store: &Store, case: &Score) {
 
 /// Renders a case with every block size and compares it with what was accepted. The error is for people.
 pub(crate) fn check(store: &Store, case: &Score) -> Result<(), String> {
-    let audio = case.render(LARGEST_BLOCK);
+    let audio = case.render(WHOLE);
     check_audio(store, case, &audio)?;
     for block in BLOCKS {
         let blocks = case.render(block);

@@ -7,6 +7,7 @@ mod cases;
 mod check;
 mod perturbed;
 mod score;
+mod songs;
 
 use check::{Store, bless, check};
 use score::Score;

@@ -3,7 +3,7 @@
 use crate::bless_cases;
 use crate::cases::{INIT, init};
 use crate::check::{Store, bless, check, check_audio};
-use crate::score::LARGEST_BLOCK;
+use crate::score::WHOLE;
 
 /// One part in a million.
 const SLIGHTLY: f64 = 1.0 + 1e-6;
@@ -28,7 +28,7 @@ fn a_pitch_off_by_a_millionth_is_noticed() {
 fn a_level_off_by_a_millionth_is_noticed() {
     let folder = tempfile::tempdir().unwrap();
     let store = store(&folder);
-    let audio = init().render(LARGEST_BLOCK);
+    let audio = init().render(WHOLE);
     assert_eq!(check_audio(&store, &init(), &audio), Ok(()));
     let louder = audio.map(|channel| channel.iter().map(|sample| sample * SLIGHTLY as f32).collect());
     let error = check_audio(&store, &init(), &louder).unwrap_err();

@@ -3,8 +3,8 @@
 use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::patch::Patch;
 
-/// Largest block that the engine takes.
-pub(crate) const LARGEST_BLOCK: usize = 65_536;
+/// The block that is as long as the score.
+pub(crate) const WHOLE: usize = usize::MAX;
 
 /// What a golden case plays.
 #[derive(Clone)]

@@ -1,6 +1,7 @@
 //! `cargo xtask …`: the project's chores.
 
 mod bless;
+mod figures;
 mod setup;
 mod shell;
 mod songs;
@@ -28,6 +29,8 @@ enum Chore {
         /// Only this case.
         case: Option<String>,
     },
+    /// Draw the README's picture of the demo song to assets/demo.png.
+    Figures,
     /// Write the demo songs to assets/midi.
     Songs {
         /// Write nothing; fail if the files are not what would be written.
@@ -41,6 +44,7 @@ fn main() -> ExitCode {
         Chore::Setup => setup::run(),
         Chore::Test => test::run(),
         Chore::Bless { case } => bless::run(case.as_deref()),
+        Chore::Figures => figures::run(),
         Chore::Songs { check } => songs::run(check),
     };
     match result {

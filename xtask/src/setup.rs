@@ -15,13 +15,24 @@ struct Requirement {
     /// Debian package that has it.
     package: &'static str,
     why: &'static str,
+    /// Whether the suite fails without it. Otherwise the tests that need it are ignored, and say so.
+    essential: bool,
 }
 
-const REQUIREMENTS: &[Requirement] = &[Requirement {
-    probe: Probe::Program("c++"),
-    package: "g++",
-    why: "compiles the original listing, which the classic coefficients are compared with",
-}];
+const REQUIREMENTS: &[Requirement] = &[
+    Requirement {
+        probe: Probe::Program("c++"),
+        package: "g++",
+        why: "compiles the original listing, which the classic coefficients are compared with",
+        essential: true,
+    },
+    Requirement {
+        probe: Probe::Program("chromium"),
+        package: "chromium",
+        why: "opens the lab's reports and clicks in them",
+        essential: false,
+    },
+];
 
 /// Components of the Rust toolchain, with the command that each brings.
 const COMPONENTS: [(&str, &str); 2] = [("rustfmt", "fmt"), ("clippy", "clippy")];
@@ -51,16 +62,21 @@ pub(crate) fn run() -> Result<(), String> {
     }
     if !missing.is_empty() {
         let packages: Vec<&str> = missing.iter().map(|requirement| requirement.package).collect();
-        if let Err(problem) = install(&packages) {
-            problems.push(problem);
-        } else {
-            let still = missing.iter().filter(|requirement| !requirement.is_met());
-            problems
-                .extend(still.map(|r| format!("{} is installed, but what it should bring is not there", r.package)));
+        let installed = install(&packages);
+        for Requirement { package, essential, .. } in missing.iter().filter(|requirement| !requirement.is_met()) {
+            let problem = match &installed {
+                Ok(()) => format!("{package} is installed, but what it should bring is not there"),
+                Err(by_hand) => format!("{package} is missing; {by_hand}"),
+            };
+            if *essential {
+                problems.push(problem);
+            } else {
+                println!("{problem}; without it some tests are ignored");
+            }
         }
     }
     if problems.is_empty() {
-        println!("all that the test suite needs is there");
+        println!("all that the test suite cannot do without is there");
         return Ok(());
     }
     Err(problems.join("\n"))

@@ -1,13 +1,13 @@
-//! Figures of renders as PNG or SVG, with axes in units; their one font comes with the crate.
+//! Figures of renders as PNG or SVG, with axes in units.
 
-mod colour;
 mod panel;
 
 use crate::error::{Error, Result};
-use colour::{BLUE, VERMILLION};
-use panel::{Area, Drawn, FONT, Trace, spectrogram_panel, text, waveform};
+use crate::figure::colour::{BLUE, VERMILLION};
+use crate::figure::{Area, Drawn, Picture, png, svg, text};
+use panel::{Trace, spectrogram_panel, waveform};
 use plotters::prelude::*;
-use std::{path::Path, sync::Once};
+use std::path::Path;
 
 /// A stereo render to draw.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +24,7 @@ pub struct Render<'a> {
 /// mean, to a `.png` of 1600 × 900 pixels or an `.svg`.
 pub fn waveform_and_spectrogram(render: Render, title: &str, path: &Path) -> Result<()> {
     let Render { left, right, sample_rate } = render;
-    draw(path, title, Picture { sample_rate, render, against: None, middle: mean(left, right) })
+    save(path, Sheet { title, cell: 1, sample_rate, render, against: None, middle: mean(left, right) })
 }
 
 /// Draws what was expected and what came instead, their difference (at its own scale), and the spectrogram of the
@@ -37,15 +37,15 @@ pub fn comparison(expected: Render, actual: Render, title: &str, path: &Path) ->
         samples
     };
     let difference: Vec<f32> = middle(actual).iter().zip(middle(expected)).map(|(a, e)| a - e).collect();
-    draw(
-        path,
-        title,
-        Picture { sample_rate: actual.sample_rate, render: actual, against: Some(expected), middle: difference },
-    )
+    let sample_rate = actual.sample_rate;
+    save(path, Sheet { title, cell: 1, sample_rate, render: actual, against: Some(expected), middle: difference })
 }
 
 /// What a figure shows.
-struct Picture<'a> {
+struct Sheet<'a> {
+    title: &'a str,
+    /// Pixels to a cell of the spectrogram.
+    cell: usize,
     sample_rate: f64,
     render: Render<'a>,
     /// What `render` is compared with.
@@ -54,11 +54,14 @@ struct Picture<'a> {
     middle: Vec<f32>,
 }
 
-impl Picture<'_> {
-    fn draw<B: DrawingBackend>(&self, area: &Area<B>, title: &str, cell: usize) -> Drawn<B> {
-        area.fill(&WHITE)?;
+impl Picture for Sheet<'_> {
+    fn size(&self) -> (u32, u32) {
+        (1600, 900)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
         let (_, height) = area.dim_in_pixel();
-        area.draw_text(title, &text(24), (20, 14))?;
+        area.draw_text(self.title, &text(24), (20, 14))?;
         let (_, body) = area.split_vertically(46);
         let (upper, lower) =
             body.split_vertically(if self.against.is_some() { height * 11 / 20 } else { height * 2 / 5 });
@@ -85,33 +88,20 @@ impl Picture<'_> {
             };
             waveform(area, &traces, self.sample_rate, label, false)?;
         }
-        spectrogram_panel(&lower, &self.middle, self.sample_rate, cell)?;
-        area.present()
+        spectrogram_panel(&lower, &self.middle, self.sample_rate, self.cell)
     }
 }
 
 /// Draws to the format that the file's extension names.
-fn draw(path: &Path, title: &str, picture: Picture) -> Result<()> {
-    static FONT_READY: Once = Once::new();
-    FONT_READY.call_once(|| {
-        let registered = plotters::style::register_font(FONT, FontStyle::Normal, epaint_default_fonts::HACK_REGULAR);
-        assert!(registered.is_ok(), "the embedded font is a font");
-    });
-    let size = (1600, 900);
+fn save(path: &Path, sheet: Sheet) -> Result<()> {
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
-    let drawn = match extension.as_str() {
-        "png" => {
-            let area = BitMapBackend::new(path, size).into_drawing_area();
-            picture.draw(&area, title, 1).map_err(|error| error.to_string())
-        }
+    let bytes = match extension.as_str() {
+        "png" => png(&sheet)?,
         // A vector image has no pixels: larger cells keep the file small.
-        "svg" => {
-            let area = SVGBackend::new(path, size).into_drawing_area();
-            picture.draw(&area, title, 5).map_err(|error| error.to_string())
-        }
+        "svg" => svg(&Sheet { cell: 5, ..sheet })?.into_bytes(),
         _ => return Err(Error::value("figure", format!("{} must end in .png or .svg", path.display()))),
     };
-    drawn.map_err(|message| Error::io(path.display().to_string(), std::io::Error::other(message)))
+    std::fs::write(path, bytes).map_err(|error| Error::io(path.display().to_string(), error))
 }
 
 /// The mean of two channels.

@@ -1,12 +1,11 @@
 //! The parts that figures are made of: a waveform over time, a spectrogram over time, a scale of colours.
 
-use super::colour::{GRID, INK, viridis};
 use crate::analysis::spectrum::spectrogram;
-use libm::{log10, pow};
-use plotters::{coord::Shift, prelude::*};
+use crate::figure::colour::{GRID, INK, viridis};
+use crate::figure::{Area, Drawn, envelope::envelope, number::short, text};
+use libm::pow;
+use plotters::prelude::*;
 
-/// Name that the figures' font is registered under.
-pub(super) const FONT: &str = "Sprung figures";
 /// Range in dB that the colours of a spectrogram span, down from its loudest bin rounded up to ten.
 const SPAN_DB: f64 = 100.0;
 /// Width in pixels to the left of every panel's axis, so that time axes line up.
@@ -15,16 +14,6 @@ const LABEL_WIDTH: u32 = 84;
 const LEFT_MARGIN: u32 = 14;
 /// Width in pixels to the right of every panel, which a spectrogram uses for its scale of colours.
 pub(super) const RIGHT_MARGIN: u32 = 110;
-
-/// A result of drawing on backend `B`.
-pub(super) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
-/// A part of a figure.
-pub(super) type Area<B> = DrawingArea<B, Shift>;
-
-/// Text of `size` pixels.
-pub(super) fn text(size: i32) -> TextStyle<'static> {
-    TextStyle::from((FONT, size).into_font()).color(&INK)
-}
 
 /// A signal in a waveform panel.
 pub(super) struct Trace<'a> {
@@ -80,27 +69,6 @@ pub(super) fn waveform<B: DrawingBackend>(
         area.draw_text(name, &text(16).color(colour), corner)?;
     }
     Ok(())
-}
-
-/// The samples as points, or the least and the greatest of each of `columns` stretches where there are many.
-fn envelope(samples: &[f32], sample_rate: f64, columns: usize) -> Vec<(f64, f64)> {
-    let seconds = |frame: usize| frame as f64 / sample_rate;
-    let value = |sample: f32| if sample.is_finite() { f64::from(sample) } else { 0.0 };
-    if samples.len() <= 3 * columns.max(1) {
-        return samples.iter().enumerate().map(|(frame, sample)| (seconds(frame), value(*sample))).collect();
-    }
-    // Two stretches a pixel: with one, rounding would leave a column empty here and there.
-    let stretches = 2 * columns.max(1);
-    let start = |index: usize| index * samples.len() / stretches;
-    let mut points = Vec::with_capacity(2 * stretches);
-    for index in 0..stretches {
-        let range = samples[start(index)..start(index + 1)].iter().map(|sample| value(*sample));
-        let (low, high) = range.fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(y), high.max(y)));
-        // Alternating the order keeps the line from crossing the stretch twice.
-        let pair = if index % 2 == 0 { [low, high] } else { [high, low] };
-        points.extend(pair.map(|y| (seconds(start(index)), y)));
-    }
-    points
 }
 
 /// Draws a signal's spectrogram, 30 Hz (or less, at low rates) to Nyquist on a logarithmic axis, in cells of `cell`
@@ -193,38 +161,14 @@ fn scale_of_colours<B: DrawingBackend>(area: &Area<B>, height: usize, top_level:
     Ok(())
 }
 
-/// A number with no more decimals than it needs.
-fn trimmed(value: f64) -> String {
-    // Ticks are sums of steps: what should be zero is a rounding error.
-    let value = if value.abs() < 1e-12 { 0.0 } else { value };
-    let decimals = if value == 0.0 { 0 } else { (4.0 - log10(value.abs()).floor()).clamp(0.0, 6.0) as usize };
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+/// A tick's number. Ticks are sums of steps: what should be zero is a rounding error.
+fn trimmed(tick: f64) -> String {
+    short(if tick.abs() < 1e-12 { 0.0 } else { tick })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_are_short() {
-        for (value, text) in [(0.0, "0"), (0.1 + 0.2, "0.3"), (20_000.0, "20000"), (0.000_25, "0.00025"), (1.5, "1.5")]
-        {
-            assert_eq!(trimmed(value), text);
-        }
-    }
-
-    #[test]
-    fn an_envelope_keeps_the_extremes() {
-        let mut samples = vec![0.0_f32; 10_000];
-        samples[5003] = 0.9;
-        samples[7001] = -0.8;
-        let points = envelope(&samples, 10_000.0, 100);
-        assert_eq!(points.len(), 400);
-        assert_eq!(points.iter().map(|p| p.1 as f32).fold(0.0, f32::max), 0.9);
-        assert_eq!(points.iter().map(|p| p.1 as f32).fold(0.0, f32::min), -0.8);
-        assert_eq!(envelope(&[0.5, f32::NAN], 1.0, 100), [(0.0, 0.5), (1.0, 0.0)]);
-    }
 
     #[test]
     fn a_narrow_peak_is_not_lost_between_pixels() {

@@ -2,14 +2,30 @@
 
 use plotters::style::RGBColor;
 
-/// Blue of Okabe & Ito, "Color Universal Design" (2008): left channels, expected signals.
-pub(super) const BLUE: RGBColor = RGBColor(0, 114, 178);
-/// Vermillion of the same set: right channels, actual signals.
-pub(super) const VERMILLION: RGBColor = RGBColor(213, 94, 0);
 /// Text and axes.
-pub(super) const INK: RGBColor = RGBColor(40, 40, 46);
+pub const INK: RGBColor = RGBColor(40, 40, 46);
 /// Grid lines.
-pub(super) const GRID: RGBColor = RGBColor(226, 226, 230);
+pub const GRID: RGBColor = RGBColor(226, 226, 230);
+
+/// Blue of the set below: left channels, expected signals.
+pub const BLUE: RGBColor = SERIES[0];
+/// Vermillion of the same set: right channels, actual signals.
+pub const VERMILLION: RGBColor = SERIES[1];
+
+/// Six colours of Okabe & Ito, "Color Universal Design" (2008), without black (the truth's) and yellow (too pale).
+const SERIES: [RGBColor; 6] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+];
+
+/// Colour of the `n`-th series, and whether its line is dashed: twelve that differ.
+pub fn series(n: usize) -> (RGBColor, bool) {
+    (SERIES[n % SERIES.len()], (n / SERIES.len()) % 2 == 1)
+}
 
 /// Nine points of the perceptually uniform map "viridis" (S. van der Walt & N. Smith, 2015, public domain).
 const VIRIDIS: [[f64; 3]; 9] = [
@@ -25,7 +41,7 @@ const VIRIDIS: [[f64; 3]; 9] = [
 ];
 
 /// The colour of `position`, from 0 (dark) to 1 (bright): lightness rises evenly, so that it also reads in grey.
-pub(super) fn viridis(position: f64) -> RGBColor {
+pub fn viridis(position: f64) -> RGBColor {
     let position = if position.is_nan() { 0.0 } else { position.clamp(0.0, 1.0) };
     let scaled = position * (VIRIDIS.len() - 1) as f64;
     let index = (scaled as usize).min(VIRIDIS.len() - 2);
