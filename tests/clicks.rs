@@ -1,6 +1,6 @@
 //! Nothing clicks: the largest jump between two samples stays within that of the undisturbed sound plus −60 dBFS.
 
-use sprung::engine::{Ensemble, Event, EventKind};
+use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::params::Param;
 use sprung::patch::{Mode, ModeTable, Patch};
 
@@ -30,7 +30,12 @@ fn largest_jump(patch: &Patch, programs: &[Patch], events: &[Event]) -> f32 {
     let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
     ensemble.process(events, &mut left, &mut right);
     assert!(left.iter().any(|sample| sample.abs() > 0.01), "something sounds");
-    left.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max)
+    jump(&left)
+}
+
+/// The largest jump between two samples.
+fn jump(samples: &[f32]) -> f32 {
+    samples.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max)
 }
 
 /// The sounds that the disturbances are tried on: a sine, a mallet of several modes, a kick that sweeps.
@@ -73,6 +78,21 @@ fn stealing_does_not_click() {
 }
 
 #[test]
+fn stealing_every_voice_at_once_does_not_click() {
+    let patch = patches()[0].1.with(Param::Voices, 64.0).with(Param::Gain, -24.0);
+    let chord = |frame, channel| (20..84).map(move |key| Event { channel, ..on(frame, key) });
+    let events: Vec<Event> = chord(0, 0).chain(chord(4800, 1)).collect();
+    // On an ensemble, each channel has 64 voices of its own; on a synth, the second chord steals all of the first.
+    let undisturbed = largest_jump(&patch, &[], &events);
+    let mut synth = Synth::new(RATE, 1);
+    synth.set_patch(&patch);
+    let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
+    synth.process(&events, &mut left, &mut right);
+    let disturbed = jump(&left);
+    assert!(disturbed <= undisturbed + ALLOWANCE, "a jump of {disturbed} where {undisturbed} is the sound's own");
+}
+
+#[test]
 fn choking_does_not_click() {
     let notes = |key, moment| vec![on(0, key), on(moment, key + 7)];
     check(|patch| patch.with(Param::Choke, 1.0), notes, notes);
@@ -83,6 +103,24 @@ fn striking_a_sounding_note_does_not_click() {
     // Undisturbed are two masses of one pitch struck at once: a swept sound takes what still rings up with it.
     let other = |frame, key| Event { channel: 1, ..on(frame, key) };
     check(|patch| patch, |key, _| vec![on(0, key), other(0, key)], |key, moment| vec![on(0, key), on(moment, key)]);
+}
+
+#[test]
+fn retuning_and_bending_do_not_click() {
+    // Undisturbed is the upper of the two pitches, struck twice: on the way, modes can come to move in step.
+    let upper = |key| vec![on(0, key + 7), Event { channel: 1, ..on(0, key + 7) }];
+    for glide in [0.0, 0.05] {
+        check(
+            |patch| patch.with(Param::Mode, 2.0).with(Param::Glide, glide),
+            |key, _| upper(key),
+            |key, moment| vec![on(0, key), on(moment, key + 7), off(moment + 3000, key + 7)],
+        );
+    }
+    check(
+        |patch| patch.with(Param::BendRange, 7.0),
+        |key, _| upper(key),
+        |key, moment| vec![on(0, key), event(moment, EventKind::PitchBend(1.0))],
+    );
 }
 
 #[test]

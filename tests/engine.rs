@@ -1,7 +1,7 @@
 //! The engine as its users see it: any division into blocks, any event, any time.
 
 use proptest::prelude::*;
-use sprung::engine::{Event, EventKind, Synth};
+use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{Mode, ModeTable, Patch};
 
@@ -193,5 +193,81 @@ fn a_sample_rate_out_of_range_is_brought_into_it() {
         let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
         synth.process(&[on(0, 69, 1.0)], &mut left, &mut right);
         assert!(left.iter().all(|sample| sample.is_finite()) && left[100] != 0.0, "{rate}");
+    }
+}
+
+#[test]
+fn a_block_of_no_frames_brings_its_events() {
+    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[]);
+    let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
+    ensemble.process(&[on(0, 60, 1.0)], &mut [], &mut []);
+    ensemble.process(&[], &mut left, &mut right);
+    assert!(left.iter().any(|sample| sample.abs() > 0.1));
+    ensemble.process(&[off(0, 60)], &mut [], &mut []);
+    (0..100).for_each(|_| ensemble.process(&[], &mut left, &mut right));
+    assert!(ensemble.is_silent());
+}
+
+fn rms(samples: &[f32]) -> f32 {
+    (samples.iter().map(|sample| sample * sample).sum::<f32>() / samples.len() as f32).sqrt()
+}
+
+/// Periods of the lowest mode in a stretch of samples.
+fn periods(samples: &[f32]) -> usize {
+    samples.windows(2).filter(|pair| pair[0] < 0.0 && pair[1] >= 0.0).count()
+}
+
+#[test]
+fn a_monophonic_voice_plays_every_note_as_a_new_one_would() {
+    let tone = |mode: f32, coefficients: f32, keys: &[u8]| {
+        let patch = Patch::default().with(Param::Mode, mode).with(Param::Coefficients, coefficients);
+        let events: Vec<Event> = (0..).zip(keys).map(|(n, key)| on(n * 4800, *key, 1.0)).collect();
+        let (left, _) = render(&patch, &events, 4800 * (keys.len() + 9), || 480);
+        periods(&left[4800 * (keys.len() - 1) + 64..][..38_400])
+    };
+    for coefficients in [0.0, 1.0] {
+        let direct = tone(1.0, coefficients, &[60]);
+        for mode in [1.0, 2.0] {
+            for before in [36, 108, 127] {
+                let after = tone(mode, coefficients, &[before, 60]);
+                assert!(after.abs_diff(direct) <= 1, "{before} before: {after} periods where {direct} are right");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_changed_patch_is_heard_by_a_note_that_strikes_again() {
+    let tuning = event(24_000, EventKind::Param { param: Param::Tuning, value: 480.0 });
+    let events = [on(0, 69, 1.0), tuning, on(24_000, 69, 1.0)];
+    let (left, _) = render(&Patch::default(), &events, 72_064, || 480);
+    assert!(periods(&left[..24_000]).abs_diff(220) <= 1);
+    assert!(periods(&left[24_064..]).abs_diff(480) <= 1, "{}", periods(&left[24_064..]));
+}
+
+#[test]
+fn a_touch_takes_nothing_from_the_stroke_before() {
+    let soft = Patch::default().with(Param::Exciter, 1.0).with(Param::Hardness, 0.0);
+    let (alone, _) = render(&soft, &[on(0, 48, 1.0)], 9600, || 480);
+    let (touched, _) = render(&soft, &[on(0, 48, 1.0), on(240, 48, 0.01)], 9600, || 480);
+    assert!(rms(&touched) > 0.99 * rms(&alone), "{} {}", rms(&touched), rms(&alone));
+}
+
+#[test]
+fn pressure_belongs_to_its_key() {
+    let legato = Patch::default().with(Param::Mode, 2.0).with(Param::PressureDamping, 100.0).with(Param::Decay, 10.0);
+    let pressed = event(4800, EventKind::PolyPressure { key: 57, pressure: 1.0 });
+    let (plain, _) = render(&legato, &[on(0, 57, 1.0), on(4900, 64, 1.0)], 48_000, || 480);
+    let (left, _) = render(&legato, &[on(0, 57, 1.0), pressed, on(4900, 64, 1.0)], 48_000, || 480);
+    assert!(rms(&left[24_000..]) > 0.7 * rms(&plain[24_000..]));
+}
+
+#[test]
+fn a_sweep_from_beyond_the_spectrum_arrives() {
+    let zap = Patch::default().with(Param::Sweep, 60.0).with(Param::SweepTime, 0.05).with(Param::Decay, 2.0);
+    for (key, periods_expected) in [(60, 262), (84, 1047), (108, 4186)] {
+        let (left, _) = render(&zap, &[on(0, key, 1.0)], 57_600, || 480);
+        assert!(periods(&left[9600..]).abs_diff(periods_expected) <= 2, "{key}: {}", periods(&left[9600..]));
+        assert!(rms(&left[9600..14_400]) > 0.1, "{key}: {}", rms(&left[9600..14_400]));
     }
 }

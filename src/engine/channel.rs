@@ -10,8 +10,6 @@ pub(crate) struct Channel {
     pub(crate) bend: f32,
     /// Bend range in semitones set by RPN 0, which overrides the patch's.
     pub(crate) bend_range: Option<f32>,
-    /// Tuning in semitones set by RPN 1 and 2.
-    pub(crate) tuning: f32,
     /// 0–1.
     pub(crate) wheel: f32,
     /// 0–1.
@@ -26,15 +24,39 @@ pub(crate) struct Channel {
     registered: Registered,
 }
 
-/// The registered parameter that data entry goes to, as most and least significant seven bits; 127, 127 is none.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The registered parameters that a channel has: bend range, fine tuning and coarse tuning.
+#[derive(Clone, Copy, Debug)]
 struct Registered {
+    /// Which one data entry goes to, as most and least significant seven bits; 127, 127 is none.
     number: (u8, u8),
-    data: (u8, u8),
+    /// Most and least significant seven bits of each.
+    data: [(u8, u8); 3],
 }
 
 impl Registered {
-    const NONE: Self = Self { number: (127, 127), data: (0, 0) };
+    const NONE: (u8, u8) = (127, 127);
+    const BEND_RANGE: usize = 0;
+    const FINE: usize = 1;
+    const COARSE: usize = 2;
+    /// Two semitones, and in tune.
+    const INITIAL: Self = Self { number: Self::NONE, data: [(2, 0), (64, 0), (64, 0)] };
+
+    /// The data that entry goes to, if there is such a parameter.
+    fn selected(&mut self) -> Option<&mut (u8, u8)> {
+        let (0, number) = self.number else { return None };
+        self.data.get_mut(usize::from(number))
+    }
+
+    fn semitones_and_cents(&self) -> f32 {
+        let (semitones, cents) = self.data[Self::BEND_RANGE];
+        f32::from(semitones) + f32::from(cents) / 100.0
+    }
+
+    fn tuning(&self) -> f32 {
+        let (high, low) = self.data[Self::FINE];
+        let fine = (f32::from(high) * 128.0 + f32::from(low) - 8192.0) / 8192.0;
+        f32::from(self.data[Self::COARSE].0) - 64.0 + fine
+    }
 }
 
 /// Controllers that a channel itself acts on.
@@ -59,7 +81,6 @@ impl Channel {
         Self {
             bend: 0.0,
             bend_range: None,
-            tuning: 0.0,
             wheel: 0.0,
             pressure: 0.0,
             soft: false,
@@ -69,7 +90,7 @@ impl Channel {
             gains: [Ramp::at_rest(1.0); 2],
             // Controllers come in steps of 1/127; 10 ms make a slope of them.
             ramp_frames: (0.01 * sample_rate) as u32,
-            registered: Registered::NONE,
+            registered: Registered::INITIAL,
         }
     }
 
@@ -85,15 +106,9 @@ impl Channel {
             controller::PAN => self.pan = ((value * 127.0 - 1.0) / 126.0).clamp(0.0, 1.0),
             controller::RPN => self.registered.number.0 = data,
             controller::RPN_FINE => self.registered.number.1 = data,
-            controller::NRPN | controller::NRPN_FINE => self.registered = Registered::NONE,
-            controller::DATA => {
-                self.registered.data = (data, 0);
-                self.set_registered();
-            }
-            controller::DATA_FINE => {
-                self.registered.data.1 = data;
-                self.set_registered();
-            }
+            controller::NRPN | controller::NRPN_FINE => self.registered.number = Registered::NONE,
+            controller::DATA => self.enter(|entry| *entry = (data, 0)),
+            controller::DATA_FINE => self.enter(|entry| entry.1 = data),
             controller::RESET => self.reset_controllers(),
             _ => {}
         }
@@ -105,19 +120,19 @@ impl Channel {
         }
     }
 
-    /// RPN 0: bend range, 1: fine tuning, 2: coarse tuning.
-    fn set_registered(&mut self) {
-        let (coarse, fine) = (f32::from(self.registered.data.0), f32::from(self.registered.data.1));
-        match self.registered.number {
-            (0, 0) => self.bend_range = Some(coarse + fine / 100.0),
-            (0, 1) => self.tuning = self.tuning_coarse() + (coarse * 128.0 + fine - 8192.0) / 8192.0,
-            (0, 2) => self.tuning = coarse - 64.0 + (self.tuning - self.tuning_coarse()),
-            _ => {}
+    /// Data entry for the selected registered parameter.
+    fn enter(&mut self, change: impl FnOnce(&mut (u8, u8))) {
+        if let Some(entry) = self.registered.selected() {
+            change(entry);
+            if self.registered.number.1 == Registered::BEND_RANGE as u8 {
+                self.bend_range = Some(self.registered.semitones_and_cents());
+            }
         }
     }
 
-    fn tuning_coarse(&self) -> f32 {
-        libm::roundf(self.tuning)
+    /// Tuning in semitones set by RPN 1 and 2.
+    pub(crate) fn tuning(&self) -> f32 {
+        self.registered.tuning()
     }
 
     /// "Reset all controllers" as RP-015 has it: volume, pan and registered parameters keep their values.
@@ -127,7 +142,7 @@ impl Channel {
         self.pressure = 0.0;
         self.expression = 1.0;
         self.soft = false;
-        self.registered = Registered::NONE;
+        self.registered.number = Registered::NONE;
     }
 
     /// Left and right gain `frames` frames from now.
@@ -166,10 +181,25 @@ mod tests {
     }
 
     #[test]
-    fn rpn_1_and_2_tune() {
+    fn rpn_1_and_2_tune_each_for_itself() {
+        for (entries, semitones) in [
+            (&[(101, 0), (100, 2), (6, 66), (100, 1), (6, 80), (38, 0)][..], 2.25),
+            (&[(101, 0), (100, 1), (6, 112), (38, 0)], 0.75),
+            (&[(101, 0), (100, 1), (6, 16)], -0.75),
+            (&[(101, 0), (100, 2), (6, 66), (100, 1), (6, 127), (38, 127), (6, 64)], 2.0),
+            (&[(101, 0), (100, 0), (6, 12), (100, 1), (38, 0)], 0.0),
+        ] {
+            let mut channel = Channel::new(48_000.0);
+            data(&mut channel, entries);
+            assert!((channel.tuning() - semitones).abs() < 2e-4, "{entries:?}: {}", channel.tuning());
+        }
+    }
+
+    #[test]
+    fn a_fine_entry_alone_keeps_the_semitones() {
         let mut channel = Channel::new(48_000.0);
-        data(&mut channel, &[(101, 0), (100, 2), (6, 66), (100, 1), (6, 80), (38, 0)]);
-        assert!((channel.tuning - 2.25).abs() < 1e-6, "{}", channel.tuning);
+        data(&mut channel, &[(101, 0), (100, 0), (38, 50)]);
+        assert_eq!(channel.bend_range, Some(2.5));
     }
 
     #[test]

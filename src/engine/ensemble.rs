@@ -37,6 +37,10 @@ impl Ensemble {
     /// `events` are in order of their frames.
     pub fn process(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
         let (mut events, frames, mut start) = (events, left.len(), 0);
+        // A block of no frames still brings its events.
+        if frames == 0 {
+            self.process_chunk(events, 0, left, right);
+        }
         while start < frames {
             let end = frames.min(start + CHUNK);
             let now =

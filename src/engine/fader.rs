@@ -43,6 +43,15 @@ impl Fader {
         self.fade_frames > 0 && self.faded >= self.fade_frames
     }
 
+    /// How much of the energy a fade has left.
+    pub(crate) fn remaining(&self) -> f64 {
+        if self.fade_frames == 0 {
+            return 1.0;
+        }
+        let gain = f64::from(fade_after(self.faded, self.fade_frames));
+        gain * gain
+    }
+
     /// The greater of the two gains.
     pub(crate) fn loudest(&self) -> f32 {
         let [left, right] = self.now();

@@ -149,6 +149,10 @@ impl Synth {
             EventKind::Control { controller, value } => self.control(index, controller, unit(value)),
             EventKind::Param { param, value } => {
                 self.instrument.patch.set(param, value);
+                // Sounding voices cannot take these over without a click: notes from now on have their own.
+                if matches!(param, Param::Coefficients | Param::Width) {
+                    self.patch_serial += 1;
+                }
                 self.smoother.set(param, self.instrument.patch.get(param));
                 self.configure();
             }

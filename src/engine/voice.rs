@@ -92,7 +92,7 @@ pub(crate) struct SynthVoice {
 
     controls: Controls,
     patch: u32,
-    decay_key: f64,
+    key: u8,
     key_scale: f64,
     rings_on: bool,
     released: bool,
@@ -134,7 +134,7 @@ impl SynthVoice {
             vibrato_delay: 0.0,
             controls,
             patch: 0,
-            decay_key: 0.0,
+            key: 0,
             key_scale: 1.0,
             rings_on: false,
             released: false,
@@ -167,7 +167,7 @@ impl SynthVoice {
             + self.sweep.at(self.seconds(age))
             + (c.tune - self.tune)
             + f64::from(channel.bend) * f64::from(bend_range)
-            + f64::from(channel.tuning)
+            + f64::from(channel.tuning())
             + vibrato
     }
 
@@ -291,7 +291,7 @@ impl SynthVoice {
         let noise_frames = frames(value(Param::NoiseTime));
         let key = random::key(instrument.seed, note.serial);
         self.exciter.strike(force as f32, pulse_frames, noise_force, noise_frames, key);
-        self.pending_energy = force * force * self.full_energy;
+        self.pending_energy += force * force * self.full_energy;
 
         let depth = value(Param::Sweep) * (1.0 - percent(Param::SweepVelocity) * (1.0 - velocity));
         self.sweep = SweepEnvelope::new(depth, value(Param::SweepTime), percent(Param::SweepCurve));
@@ -300,13 +300,42 @@ impl SynthVoice {
         self.release_velocity = percent(Param::ReleaseVelocity);
     }
 
-    /// Makes the pitch and decay those of `note`, sliding from where the pitch is.
-    fn aim(&mut self, instrument: &Instrument, note: &Note) {
-        let from = self.glide.at(self.seconds(self.age - self.glide_start));
-        self.glide = Glide::new(from, instrument.pitch(note) - self.pitch, instrument.value(Param::Glide));
-        self.glide_start = self.age;
-        self.key_scale = ratio_from_semitones(self.decay_key * (MIDDLE_C - instrument.pitch(note)));
+    /// Takes the pitch and decay of `note`; returns the frequency of a mode of ratio 1.
+    fn place(&mut self, instrument: &Instrument, note: &Note) -> f64 {
+        let value = |param| instrument.value(param);
+        (self.pitch, self.tune) = (instrument.pitch(note), instrument.controls.tune);
+        self.key_scale = ratio_from_semitones(value(Param::DecayKey) * 0.01 * (MIDDLE_C - self.pitch));
+        self.damping = Damping { decay: instrument.controls.decay * self.key_scale, release: 0.0, amount: 0.0 };
+        for (scale, mode) in self.t60_scale.iter_mut().zip(instrument.patch.modes.as_slice()) {
+            *scale = f64::from(mode.decay) * pow(mode.ratio.into(), -value(Param::DecayTilt));
+        }
         self.released = false;
+        frequency_from_key(self.pitch + self.tune, value(Param::Tuning))
+    }
+
+    /// Frequency and T60 of each mode, after [`SynthVoice::place`].
+    fn tuning(&self, instrument: &Instrument, frequency: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
+        let (damping, scales, table) = (self.damping, self.t60_scale, instrument.patch.modes);
+        let stretch = instrument.value(Param::Stretch);
+        scales.into_iter().enumerate().map_while(move |(m, scale)| {
+            let ratio = f64::from(table.as_slice().get(m)?.ratio);
+            let ratio = if stretch == 1.0 { ratio } else { pow(ratio, stretch) };
+            Some((frequency * ratio, damping.t60(scale)))
+        })
+    }
+
+    /// Makes the sounding voice that of `note`, sliding from where its pitch is.
+    fn aim(&mut self, instrument: &Instrument, note: &Note) {
+        let from = self.pitch + self.glide.at(self.seconds(self.age - self.glide_start));
+        if note.key != self.key {
+            self.pressure = 0.0;
+        }
+        self.key = note.key;
+        let frequency = self.place(instrument, note);
+        self.glide = Glide::new(from - self.pitch, 0.0, instrument.value(Param::Glide));
+        self.glide_start = self.age;
+        let tuning = self.tuning(instrument, frequency);
+        self.bank.retune(tuning);
     }
 }
 
@@ -319,29 +348,16 @@ impl Voice for SynthVoice {
     type Context = Instrument;
 
     fn start(&mut self, instrument: &Instrument, note: &Note) {
-        let value = |param| instrument.value(param);
-        let percent = |param| value(param) * 0.01;
-        *self = Self { patch: note.patch, ..Self::new(instrument.sample_rate, instrument.controls) };
-        self.pitch = instrument.pitch(note);
-        self.tune = instrument.controls.tune;
-        self.decay_key = percent(Param::DecayKey);
+        *self = Self { patch: note.patch, key: note.key, ..Self::new(instrument.sample_rate, instrument.controls) };
+        let frequency = self.place(instrument, note);
         let from = instrument.last_pitch.unwrap_or(self.pitch) - self.pitch;
-        self.glide = Glide::new(from, 0.0, value(Param::Glide));
-        self.key_scale = ratio_from_semitones(self.decay_key * (MIDDLE_C - self.pitch));
-        self.damping = Damping { decay: instrument.controls.decay * self.key_scale, release: 0.0, amount: 0.0 };
-
+        self.glide = Glide::new(from, 0.0, instrument.value(Param::Glide));
         let law = if instrument.patch.get(Param::Coefficients) == 0.0 { Law::Exact } else { Law::Classic };
-        let frequency = frequency_from_key(self.pitch + self.tune, value(Param::Tuning));
-        let (stretch, decay_tilt, width) = (value(Param::Stretch), value(Param::DecayTilt), percent(Param::Width));
-        let modes = instrument.patch.modes.as_slice();
-        for (scale, mode) in self.t60_scale.iter_mut().zip(modes) {
-            *scale = f64::from(mode.decay) * pow(mode.ratio.into(), -decay_tilt);
-        }
-        let (damping, scales) = (self.damping, self.t60_scale);
-        let setup = modes.iter().zip(scales).map(|(mode, scale)| {
+        let width = instrument.value(Param::Width) * 0.01;
+        let tuning = self.tuning(instrument, frequency);
+        let setup = tuning.zip(instrument.patch.modes.as_slice()).map(|((frequency, t60), mode)| {
             let (left, right) = super::channel::pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
-            let ratio = if stretch == 1.0 { f64::from(mode.ratio) } else { pow(mode.ratio.into(), stretch) };
-            ModeSetup { frequency: frequency * ratio, t60: damping.t60(scale), left, right }
+            ModeSetup { frequency, t60, left, right }
         });
         self.bank.load(law, setup);
         self.excite(instrument, note);
@@ -371,7 +387,7 @@ impl Voice for SynthVoice {
     }
 
     fn energy(&self) -> f64 {
-        self.energy.max(self.pending_energy)
+        self.energy.max(self.pending_energy) * self.fader.remaining()
     }
 
     fn is_over(&self) -> bool {

@@ -69,6 +69,9 @@ impl Pitch {
             self.compliance.0[m] = (1.0 / omega2) as f32;
             self.rest_level.0[m] = edge as f32;
             self.inverse_bow.0[m] = (1.0 / bow.sqrt()) as f32;
+            // Modes that are beyond the spectrum at a ratio of 1 are struck only while they are swept into it.
+            let within = half_angle[m] < 0.5 * PI;
+            modes.least.0[m] = if within { LEAST_LEVEL / bow.sqrt() } else { 0.0 } as f32;
             self.unit_push.0[m] = unit_push as f32;
             self.unit_pull.0[m] = (unit_push * radius / omega2.sqrt()) as f32;
         }
@@ -115,7 +118,8 @@ impl Pitch {
         while at < len {
             let x = state.x.at::<V>(at).mul(V::splat(1.0 / UNIT));
             let v = state.v.at::<V>(at).mul(V::splat(1.0 / UNIT));
-            let level = modes.level.at::<V>(at);
+            // One that a sweep holds above the spectrum is silent but not at rest.
+            let level = modes.level.at::<V>(at).max(modes.least.at(at));
             let energy = if ahead { x.mul(x).add(v.mul(v)) } else { self.energy(modes, at, x, v) };
             let lane = &mut total.0[at % LANES..];
             V::load(lane).add(energy.mul(level).mul(level)).store(lane);
@@ -142,6 +146,9 @@ impl Pitch {
         form.max(V::splat(0.0)).div(sin2)
     }
 }
+
+/// `√cos(θ/2)` at the top of the spectrum, `θ =` [`TOP_ANGLE`].
+const LEAST_LEVEL: f64 = 0.177_230_806_5;
 
 /// Amplitudes are counted in units of this, so that the squares of the smallest that matter are normal numbers.
 pub(super) const UNIT: f32 = 1.0 / (1_u64 << 40) as f32;

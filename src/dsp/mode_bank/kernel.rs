@@ -57,6 +57,8 @@ pub(super) struct Modes {
     pub(super) sweep_step: Row,
     pub(super) level: Row,
     pub(super) level_step: Row,
+    /// Level below which a mode is struck no more weakly: the one at the top of the spectrum, for those above it.
+    pub(super) least: Row,
     pub(super) left: Row,
     pub(super) right: Row,
     /// Velocity per unit of pulse, displacement per unit of pulse, velocity per unit of noise.
@@ -177,7 +179,7 @@ fn step_some<
     let (mut level, level_step): ([V; N], [V; N]) = (modes.level.every(at), modes.level_step.every(at));
     let (left, right): ([V; N], [V; N]) = (modes.left.every(at), modes.right.every(at));
     let (push, pull): ([V; N], [V; N]) = (modes.push.every(at), modes.pull.every(at));
-    let noise: [V; N] = modes.noise.every(at);
+    let (noise, least): ([V; N], [V; N]) = (modes.noise.every(at), modes.least.every(at));
     for i in 0..frames {
         let mut sum_left = V::load(&partial_left[i].0[lane..]);
         let mut sum_right = if STEREO { V::load(&partial_right[i].0[lane..]) } else { sum_left };
@@ -190,8 +192,9 @@ fn step_some<
                 let (pulse, burst) = (V::splat(drive.pulse[i]), V::splat(drive.noise[i]));
                 if FUSED {
                     if SWEPT {
-                        v[n] = burst.mul_add(noise[n], pulse.mul(push[n])).mul_add(level[n], v[n]);
-                        x[n] = pulse.mul(pull[n]).mul_add(level[n], x[n]);
+                        let struck = level[n].max(least[n]);
+                        v[n] = burst.mul_add(noise[n], pulse.mul(push[n])).mul_add(struck, v[n]);
+                        x[n] = pulse.mul(pull[n]).mul_add(struck, x[n]);
                     } else {
                         v[n] = burst.mul_add(noise[n], pulse.mul_add(push[n], v[n]));
                         x[n] = pulse.mul_add(pull[n], x[n]);

@@ -161,6 +161,7 @@ impl ModeBank {
                 sweep_step: zero(),
                 level: Row::ONE,
                 level_step: zero(),
+                least: zero(),
                 left: Row::ONE,
                 right: Row::ONE,
                 push: zero(),
@@ -238,6 +239,31 @@ impl ModeBank {
         self.modes.push.0[m] = coupling.push * push;
         self.modes.pull.0[m] = coupling.pull * pull;
         self.modes.noise.0[m] = coupling.noise * push;
+    }
+
+    /// Gives the modes, in their order, new frequencies in Hz and T60s in seconds while they ring. What is heard is
+    /// continuous: the pitch stays where it is until [`ModeBank::sweep_to`], which must follow, moves it.
+    pub fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
+        self.leave_tables();
+        let (omega2, inverse_bow) = (self.modes.omega2, self.pitch.inverse_bow);
+        for (m, (frequency, t60)) in modes.take(self.len).enumerate() {
+            self.half_angle[m] = 0.5 * angle_from_frequency(frequency, self.sample_rate);
+            self.set_t60(m, t60);
+        }
+        self.tune();
+        let state = &mut self.states[self.current];
+        for m in 0..self.len {
+            // Sweep times ω, velocity times sweep, and displacement times level are what was before.
+            let stretch = libm::sqrtf(self.modes.omega2.0[m] / omega2.0[m]);
+            let boost = self.pitch.inverse_bow.0[m] / inverse_bow.0[m];
+            self.modes.sweep.0[m] /= stretch;
+            self.modes.level.0[m] *= boost;
+            state.x.0[m] /= boost;
+            state.v.0[m] *= stretch / boost;
+        }
+        // No ratio that comes next is the one that the sweeps are at.
+        (self.ratio, self.line_frames) = (f64::NAN, 0);
+        (self.tabled, self.steady_ticks) = (false, 0);
     }
 
     /// Moves every mode to a pitch ratio, in a straight line of sweep and level over `frames` frames: those until the

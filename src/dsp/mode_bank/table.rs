@@ -139,6 +139,7 @@ mod tests {
             sweep_step: zero,
             level: Row::ONE,
             level_step: zero,
+            least: zero,
             left: Row::ONE,
             right: Row::ONE,
             push: zero,

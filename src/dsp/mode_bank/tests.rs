@@ -152,3 +152,35 @@ fn random_parameter_sets_are_stable() {
         }
     }
 }
+
+#[test]
+fn a_strike_above_the_spectrum_is_heard_when_the_sweep_comes_down() {
+    let mut bank = bank(Law::Exact, &[(2000.0, 60.0)]);
+    bank.jump_to(32.0);
+    assert!(run(&mut bank, 64, Some(&strike())).iter().all(|sample| *sample == 0.0));
+    assert!(bank.settle() > 0.01, "silent, but not at rest");
+    for step in (10..32 * 4).rev() {
+        glide(&mut bank, f64::from(step) / 4.0);
+    }
+    glide(&mut bank, 1.0);
+    glide(&mut bank, 1.0);
+    assert!((bank.settle() - 1.0).abs() < 0.2, "{}", bank.settle());
+}
+
+#[test]
+fn retuning_is_continuous_and_reaches_every_pitch() {
+    for (from, to) in [(440.0, 110.0), (300.0, 4000.0), (9000.0, 50.0)] {
+        let mut bank = bank(Law::Exact, &[(from, 60.0), (from * 5.0, 60.0)]);
+        let before = run(&mut bank, 3217, Some(&strike()));
+        let mut kept = bank.clone();
+        bank.retune([(to, 60.0), (to * 5.0, 60.0)].into_iter());
+        let after = glide(&mut bank, from / to);
+        // The same pitch by other coefficients: the same samples.
+        let expected = run(&mut kept, 32, None);
+        let worst = after.iter().zip(&expected).fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs()));
+        assert!(worst < 2e-3, "{from} to {to}: {worst} after {}", before[3216]);
+        glide(&mut bank, 1.0);
+        let samples = run(&mut bank, 48_000, None);
+        assert!(samples.iter().any(|sample| sample.abs() > 0.1), "{from} to {to}");
+    }
+}

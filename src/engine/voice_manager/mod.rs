@@ -57,8 +57,8 @@ pub enum PlayMode {
 /// Most notes that sound at once.
 pub const MAX_VOICES: usize = 64;
 
-/// Voices beyond those, for stolen notes to fade out in.
-const FADING_VOICES: usize = 16;
+/// Voices beyond those, for stolen notes to fade out in: enough for all of them to be stolen at once.
+const FADING_VOICES: usize = MAX_VOICES;
 
 /// Held keys that a monophonic voice can return to.
 const MAX_HELD_KEYS: usize = 32;
@@ -94,6 +94,7 @@ impl<V> Slot<V> {
 pub struct VoiceManager<V> {
     slots: Vec<Slot<V>>,
     sustain: [bool; 16],
+    sostenuto: [bool; 16],
     polyphony: usize,
     mode: PlayMode,
     /// Keys down in a monophonic mode, oldest first.
@@ -111,6 +112,7 @@ impl<V: Voice> VoiceManager<V> {
         Self {
             slots: std::iter::repeat_with(slot).take(MAX_VOICES + FADING_VOICES).collect(),
             sustain: [false; 16],
+            sostenuto: [false; 16],
             polyphony: MAX_VOICES,
             mode: PlayMode::Poly,
             held: [note; MAX_HELD_KEYS],
@@ -123,6 +125,7 @@ impl<V: Voice> VoiceManager<V> {
     pub fn reset(&mut self) {
         self.slots.iter_mut().for_each(|slot| slot.state = State::Free);
         self.sustain = [false; 16];
+        self.sostenuto = [false; 16];
         self.held_len = 0;
         self.peak = 0;
     }
@@ -163,7 +166,10 @@ impl<V: Voice> VoiceManager<V> {
     /// A key goes down.
     pub fn note_on(&mut self, context: &V::Context, note: Note) {
         for slot in self.slots.iter_mut().filter(|slot| slot.is_sounding()) {
-            if note.choke != 0 && slot.note.choke == note.choke && !slot.is_on(note.channel, note.key) {
+            // What the note is about to strike again or to retune is not choked.
+            let reused =
+                slot.note.patch == note.patch && (self.mode != PlayMode::Poly || slot.is_on(note.channel, note.key));
+            if note.choke != 0 && slot.note.choke == note.choke && !reused {
                 fade(slot);
             }
         }
@@ -224,7 +230,8 @@ impl<V: Voice> VoiceManager<V> {
                 && let Some(slot) = self.slots.iter_mut().find(|slot| slot.key_down && slot.is_on(channel, key))
             {
                 slot.voice.retune(context, &note);
-                slot.note = note;
+                // The voice keeps the sound that it has.
+                slot.note = Note { patch: slot.note.patch, choke: slot.note.choke, ..note };
                 return;
             }
         }
@@ -244,8 +251,12 @@ impl<V: Voice> VoiceManager<V> {
 
     /// The sostenuto pedal (controller 66): holds the notes whose keys are down when it goes down.
     pub fn sostenuto(&mut self, channel: u8, down: bool) {
+        // Pedals that send positions repeat themselves; only going down catches notes.
+        if std::mem::replace(&mut self.sostenuto[usize::from(channel)], down) == down {
+            return;
+        }
         for slot in self.slots.iter_mut().filter(|slot| slot.note.channel == channel) {
-            slot.sostenuto = down && slot.state == State::Held && (slot.key_down || slot.sostenuto);
+            slot.sostenuto = down && slot.state == State::Held && slot.key_down;
         }
         self.release_let_go(channel);
     }
@@ -295,12 +306,13 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     /// Starts a note in a free voice. If so many notes were stolen within a few milliseconds that all the spare ones
-    /// still fade, the oldest of those is cut off.
+    /// still fade, the one that is nearly silent is cut off.
     fn start(&mut self, context: &V::Context, note: Note) {
         let slot = match self.slots.iter().position(|slot| slot.state == State::Free) {
             Some(free) => Some(&mut self.slots[free]),
             None => {
-                self.slots.iter_mut().filter(|slot| slot.state == State::Fading).min_by_key(|slot| slot.note.serial)
+                let fading = self.slots.iter_mut().filter(|slot| slot.state == State::Fading);
+                fading.min_by(|a, b| a.voice.energy().total_cmp(&b.voice.energy()))
             }
         };
         if let Some(slot) = slot {

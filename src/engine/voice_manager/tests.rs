@@ -47,6 +47,8 @@ enum Do {
     /// Key and choke group.
     OnChoke(u8, u8),
     OnPatch(u8, u32),
+    /// Key, choke group and patch.
+    OnChokePatch(u8, u8, u32),
     Off(u8),
     OffId(u8, i32),
     Sustain(bool),
@@ -77,6 +79,7 @@ fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
         match *action {
             On(key, velocity) => manager.note_on(&(), on(key, velocity, 0, 0)),
             OnChoke(key, group) => manager.note_on(&(), on(key, 1.0, group, 0)),
+            OnChokePatch(key, group, patch) => manager.note_on(&(), on(key, 1.0, group, patch)),
             OnPatch(key, patch) => manager.note_on(&(), on(key, 1.0, 0, patch)),
             Off(key) => manager.note_off(&(), 0, key, -1, 0.25),
             OffId(key, id) => manager.note_off(&(), 0, key, id, 0.25),
@@ -146,6 +149,16 @@ fn choke_groups_silence_their_own_and_no_others() {
     let script = [OnChoke(42, 1), OnChoke(38, 0), OnChoke(46, 1), OnChoke(46, 1), OnChoke(50, 2)];
     let expected = ["start 42", "start 38", "fade 42", "start 46", "restrike 46 as 46", "start 50"];
     check(16, PlayMode::Poly, &script, &expected);
+    // The same key of another patch is another sound, and an overlapping legato note is the same one.
+    let told = play_choked(PlayMode::Poly, &[(46, 0), (46, 1)]);
+    assert_eq!(told, ["start 46", "fade 46", "start 46"]);
+    assert_eq!(play_choked(PlayMode::Legato, &[(46, 0), (48, 0)]), ["start 46", "retune 46 to 48"]);
+}
+
+/// Notes of one choke group, each with its key and patch.
+fn play_choked(mode: PlayMode, notes: &[(u8, u32)]) -> Vec<String> {
+    let script: Vec<Do> = notes.iter().map(|(key, patch)| OnChokePatch(*key, 1, *patch)).collect();
+    play(16, mode, &script)
 }
 
 #[test]
@@ -158,6 +171,9 @@ fn the_sustain_pedal_holds_until_it_is_lifted() {
 fn sostenuto_holds_only_the_keys_that_were_down() {
     let script = [On(60, 1.0), Sostenuto(true), On(62, 1.0), Off(60), Off(62), Sostenuto(false)];
     check(16, PlayMode::Poly, &script, &["start 60", "start 62", "release 62 at 0.25", "release 60 at 0.5"]);
+    // A pedal that says again that it is down catches nothing more.
+    let repeated = [Sostenuto(true), On(60, 1.0), Sostenuto(true), Off(60)];
+    check(16, PlayMode::Poly, &repeated, &["start 60", "release 60 at 0.25"]);
     let both = [On(60, 1.0), Sostenuto(true), Sustain(true), Off(60), Sostenuto(false), Sustain(false)];
     check(16, PlayMode::Poly, &both, &["start 60", "release 60 at 0.5"]);
 }
@@ -174,6 +190,13 @@ fn mono_strikes_each_key_and_returns_to_held_ones_without_striking() {
     check(16, PlayMode::Mono, &script, &expected);
     let inner = [On(60, 1.0), On(64, 1.0), Off(60), Off(64)];
     check(16, PlayMode::Mono, &inner, &["start 60", "restrike 60 as 64", "release 64 at 0.25"]);
+}
+
+#[test]
+fn a_return_to_a_held_key_keeps_the_voice_in_its_patch() {
+    let script = [OnPatch(57, 0), OnPatch(64, 1), Off(64), OnPatch(60, 1)];
+    let expected = ["start 57", "fade 57", "start 64", "retune 64 to 57", "retune 57 to 60"];
+    check(16, PlayMode::Legato, &script, &expected);
 }
 
 #[test]
