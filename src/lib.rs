@@ -9,6 +9,7 @@
 //! | [`params`], [`patch`], [`preset`] | what can be set, a set of values, and its file |
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
 //! | [`io`], [`render`](mod@render) | MIDI files in, WAV files out, and the offline renderer between them |
+//! | `realtime` | sound devices, MIDI ports and a terminal to play from (feature `realtime`) |
 //!
 //! A note, rendered:
 //!
@@ -39,6 +40,8 @@ pub mod io;
 pub mod params;
 pub mod patch;
 pub mod preset;
+#[cfg(feature = "realtime")]
+pub mod realtime;
 pub mod render;
 pub mod units;
 

@@ -332,9 +332,15 @@ impl ModeBank {
         total
     }
 
+    /// Where mode `m` is: its displacement as heard, at full level.
+    pub fn displacement(&self, m: usize) -> f32 {
+        let (group, lane) = (m / LANES, m % LANES);
+        self.x[group][lane] * self.level[group][lane]
+    }
+
     /// The squared amplitude of mode `m`, in closed form: [`Coefficients::energy`] with the sweep taken in
     /// (`ω² → s²ω²`, `v → s v`).
-    fn energy(&self, m: usize) -> f64 {
+    pub fn energy(&self, m: usize) -> f64 {
         let (group, lane) = (m / LANES, m % LANES);
         let sweep = f64::from(self.sweep[group][lane]);
         let (x, v) = (f64::from(self.x[group][lane]), f64::from(self.v[group][lane]) * sweep);

@@ -6,10 +6,12 @@ mod channel;
 mod controls;
 pub mod ensemble;
 pub mod event;
+pub mod snapshot;
 pub mod synth;
 mod voice;
 pub mod voice_manager;
 
 pub use ensemble::Ensemble;
 pub use event::{Event, EventKind};
+pub use snapshot::Snapshot;
 pub use synth::Synth;

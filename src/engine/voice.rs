@@ -70,7 +70,7 @@ struct Damping {
 /// A sounding note.
 pub(crate) struct SynthVoice {
     sample_rate: f64,
-    bank: ModeBank,
+    pub(super) bank: ModeBank,
     exciter: Exciter,
     drive: Drive,
     /// T60 of each mode as a multiple of the decay.
