@@ -9,6 +9,7 @@
 //! | [`params`], [`patch`], [`preset`] | what can be set, a set of values, and its file |
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
 //! | [`io`], [`render`](mod@render) | MIDI files in, WAV files out, and the offline renderer between them |
+//! | [`lab`] | ways to integrate a mass on a spring, side by side: what the oscillator is measured against |
 //! | `realtime` | sound devices, MIDI ports and a terminal to play from (feature `realtime`) |
 //!
 //! A note, rendered:
@@ -33,10 +34,15 @@
 //! # }
 //! ```
 
+#[cfg(feature = "analysis")]
+pub mod analysis;
 pub mod dsp;
 pub mod engine;
 pub mod error;
+#[cfg(feature = "figures")]
+pub mod figure;
 pub mod io;
+pub mod lab;
 pub mod params;
 pub mod patch;
 pub mod preset;

@@ -6,20 +6,31 @@ use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::units::key_from_frequency;
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::OnceLock;
 
 /// Sample rate, frequency, decay in frames, amplitude, frames, sweep.
 type Case = (f32, f32, f32, f32, usize, f32);
 
+/// The listing as a program, or `None` on a machine without a C++ compiler. Compiled once: the tests run side by side,
+/// and a program that is being written cannot be run.
+fn program() -> Option<&'static Path> {
+    static PROGRAM: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let compile = || {
+        let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("harmonic_oscillator");
+        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/seed/harmonic_oscillator.cpp");
+        // No fusing: the listing's operations one by one, as on the machines of its time.
+        let compiler = Command::new("c++").args(["-O2", "-ffp-contract=off", source, "-o"]).arg(&program).status();
+        assert!(compiler.as_ref().is_err() || compiler.as_ref().unwrap().success(), "the listing does not compile");
+        compiler.ok().map(|_| program)
+    };
+    PROGRAM.get_or_init(compile).as_deref()
+}
+
 /// What the listing gives for the cases, or `None` on a machine without a C++ compiler.
 fn listing(cases: &[Case]) -> Option<Vec<f32>> {
-    let program = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("harmonic_oscillator");
-    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/seed/harmonic_oscillator.cpp");
-    // No fusing: the listing's operations one by one, as on the machines of its time.
-    let compiler = Command::new("c++").args(["-O2", "-ffp-contract=off", source, "-o"]).arg(&program).status();
-    assert!(compiler.as_ref().is_err() || compiler.as_ref().unwrap().success(), "the listing does not compile");
-    compiler.ok()?;
-    let mut child = Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut child = Command::new(program()?).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut input = child.stdin.take().unwrap();
     let lines: String = cases
         .iter()

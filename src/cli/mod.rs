@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand.
 
 mod interrupt;
+mod lab;
 mod manual;
 mod parameters;
 #[cfg(feature = "realtime")]
@@ -38,6 +39,7 @@ Examples:
   sprung render --note C2 --preset Kick -o kick.wav
   sprung presets list
   sprung params
+  sprung lab compare -o report.html
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.";
 
@@ -56,6 +58,9 @@ enum Command {
     /// Print the table of parameters
     #[command(after_help = parameters::EXAMPLES)]
     Params(parameters::Args),
+    /// Compare ways to integrate a mass on a spring
+    #[command(after_help = lab::EXAMPLES)]
+    Lab(lab::Args),
     /// Print a completion script for a shell
     #[command(after_help = manual::COMPLETION_EXAMPLES)]
     Completions(manual::CompletionArgs),
@@ -71,6 +76,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Play(args) => play::run(&args),
         Command::Presets(args) => presets::run(&args),
         Command::Params(args) => parameters::run(&args),
+        Command::Lab(args) => lab::run(&args),
         Command::Completions(args) => manual::completions(&args),
         Command::Man(args) => manual::run(&args),
     };
@@ -128,6 +134,7 @@ mod tests {
             parameters::EXAMPLES,
             #[cfg(feature = "realtime")]
             play::EXAMPLES,
+            lab::EXAMPLES,
             manual::EXAMPLES,
             manual::COMPLETION_EXAMPLES,
         ];

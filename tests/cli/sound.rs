@@ -52,9 +52,9 @@ fn gain_and_clipping() {
 #[test]
 fn mono_is_the_mean_of_both_channels() {
     let sandbox = Sandbox::new();
-    let base = "render --note A3 --length 0.2 --tail none --preset Two-Masses.toml --bits 32f";
-    let preset = sprung::preset::Preset::find("Two Masses").unwrap();
-    sandbox.write("Two-Masses.toml", preset.to_toml());
+    let base = "render --note A3 --length 0.2 --tail none --preset Vibraphone.toml --bits 32f";
+    let preset = sprung::preset::Preset::find("Vibraphone").unwrap();
+    sandbox.write("Vibraphone.toml", preset.to_toml());
     sandbox.succeeds(&format!("{base} -o stereo.wav"));
     sandbox.succeeds(&format!("{base} --mono -o mono.wav"));
     let (stereo, mono) = (sandbox.wav("stereo.wav"), sandbox.wav("mono.wav"));

@@ -1,3 +1,57 @@
 //! `cargo xtask …`: the project's chores.
 
-fn main() {}
+mod bless;
+mod figures;
+mod setup;
+mod shell;
+mod songs;
+mod test;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// The project's chores.
+#[derive(Parser)]
+#[command(name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Subcommand)]
+enum Chore {
+    /// Find what the test suite needs on this system, and install it where that is possible.
+    Setup,
+    /// Run the whole test suite, setup included.
+    Test,
+    /// Accept what the golden cases sound like now, and verify.
+    Bless {
+        /// Only this case.
+        case: Option<String>,
+    },
+    /// Draw the README's picture of the demo song to assets/demo.png.
+    Figures,
+    /// Write the demo songs to assets/midi.
+    Songs {
+        /// Write nothing; fail if the files are not what would be written.
+        #[arg(long)]
+        check: bool,
+    },
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().chore {
+        Chore::Setup => setup::run(),
+        Chore::Test => test::run(),
+        Chore::Bless { case } => bless::run(case.as_deref()),
+        Chore::Figures => figures::run(),
+        Chore::Songs { check } => songs::run(check),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}

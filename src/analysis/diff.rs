@@ -1,0 +1,78 @@
+//! How two renders differ: where first, and by how much at worst.
+
+use super::level::dbfs;
+
+/// The difference between two stereo renders.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference {
+    /// First frame whose bits differ in either channel, or the end of the shorter render if only the lengths differ.
+    pub first_frame: usize,
+    /// Frame of the largest difference.
+    pub worst_frame: usize,
+    /// Largest difference, in dBFS; what lies beyond the shorter render is compared with silence.
+    pub worst_dbfs: f64,
+    /// Frames of the expected and of the actual render.
+    pub frames: [usize; 2],
+}
+
+/// Compares two stereo renders bit by bit; `None` if they are the same.
+pub fn compare(expected: [&[f32]; 2], actual: [&[f32]; 2]) -> Option<Difference> {
+    let frames = [expected, actual].map(|render| render[0].len().max(render[1].len()));
+    let mut first_frame = None;
+    let mut worst = (0.0, 0);
+    for frame in 0..frames[0].max(frames[1]) {
+        for (expected, actual) in expected.iter().zip(actual) {
+            let pair = (expected.get(frame), actual.get(frame));
+            if pair.0.map(|sample| sample.to_bits()) == pair.1.map(|sample| sample.to_bits()) {
+                continue;
+            }
+            first_frame.get_or_insert(frame);
+            let value = |sample: Option<&f32>| f64::from(sample.copied().unwrap_or(0.0));
+            let error = (value(pair.1) - value(pair.0)).abs();
+            // A NaN is worse than anything.
+            let error = if error.is_nan() { f64::INFINITY } else { error };
+            if error > worst.0 {
+                worst = (error, frame);
+            }
+        }
+    }
+    let first_frame = first_frame?;
+    let worst_frame = if worst.0 > 0.0 { worst.1 } else { first_frame };
+    Some(Difference { first_frame, worst_frame, worst_dbfs: dbfs(worst.0), frames })
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { first_frame, worst_frame, worst_dbfs, frames: [expected, actual] } = self;
+        write!(f, "first differing frame {first_frame}, worst error {worst_dbfs:.1} dBFS at frame {worst_frame}")?;
+        if expected != actual {
+            write!(f, ", {actual} frames where {expected} were expected")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_are_found_where_they_are() {
+        let (zeros, mut other) = ([0.0; 10], [0.0; 10]);
+        assert_eq!(compare([&zeros, &zeros], [&other, &other]), None);
+        other[3] = 0.001;
+        other[7] = -0.1;
+        let found = compare([&zeros, &zeros], [&zeros, &other]).unwrap();
+        assert_eq!((found.first_frame, found.worst_frame), (3, 7));
+        assert!((found.worst_dbfs + 20.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn length_sign_of_zero_and_nan_count() {
+        let short = compare([&[0.5; 4], &[0.5; 4]], [&[0.5; 2], &[0.5; 2]]).unwrap();
+        assert_eq!((short.first_frame, short.frames), (2, [4, 2]));
+        assert!(compare([&[0.0], &[0.0]], [&[-0.0], &[0.0]]).is_some());
+        assert_eq!(compare([&[0.0], &[0.0]], [&[f32::NAN], &[0.0]]).unwrap().worst_dbfs, f64::INFINITY);
+        assert_eq!(compare([&[f32::NAN], &[0.0]], [&[f32::NAN], &[0.0]]), None);
+    }
+}

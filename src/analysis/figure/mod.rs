@@ -1,0 +1,172 @@
+//! Figures of renders as PNG or SVG, with axes in units.
+
+mod panel;
+
+use crate::error::{Error, Result};
+use crate::figure::colour::{BLUE, VERMILLION};
+use crate::figure::{Area, Drawn, Picture, png, svg, text};
+use panel::{Trace, spectrogram_panel, waveform};
+use plotters::prelude::*;
+use std::path::Path;
+
+/// A stereo render to draw.
+#[derive(Clone, Copy, Debug)]
+pub struct Render<'a> {
+    /// Left channel.
+    pub left: &'a [f32],
+    /// Right channel, of the same length.
+    pub right: &'a [f32],
+    /// Hz.
+    pub sample_rate: f64,
+}
+
+/// Draws the waveform of each channel (or of both at once where they are the same) over the spectrogram of their
+/// mean, to a `.png` of 1600 × 900 pixels or an `.svg`.
+pub fn waveform_and_spectrogram(render: Render, title: &str, path: &Path) -> Result<()> {
+    let Render { left, right, sample_rate } = render;
+    save(path, Sheet { title, cell: 1, sample_rate, render, against: None, middle: mean(left, right) })
+}
+
+/// Draws what was expected and what came instead, their difference (at its own scale), and the spectrogram of the
+/// difference.
+pub fn comparison(expected: Render, actual: Render, title: &str, path: &Path) -> Result<()> {
+    let len = expected.left.len().max(actual.left.len());
+    let middle = |render: Render| {
+        let mut samples = mean(render.left, render.right);
+        samples.resize(len, 0.0);
+        samples
+    };
+    let difference: Vec<f32> = middle(actual).iter().zip(middle(expected)).map(|(a, e)| a - e).collect();
+    let sample_rate = actual.sample_rate;
+    save(path, Sheet { title, cell: 1, sample_rate, render: actual, against: Some(expected), middle: difference })
+}
+
+/// What a figure shows.
+struct Sheet<'a> {
+    title: &'a str,
+    /// Pixels to a cell of the spectrogram.
+    cell: usize,
+    sample_rate: f64,
+    render: Render<'a>,
+    /// What `render` is compared with.
+    against: Option<Render<'a>>,
+    /// The signal of the spectrogram: mean of the channels, or of their differences.
+    middle: Vec<f32>,
+}
+
+impl Picture for Sheet<'_> {
+    fn size(&self) -> (u32, u32) {
+        (1600, 900)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
+        let (_, height) = area.dim_in_pixel();
+        area.draw_text(self.title, &text(24), (20, 14))?;
+        let (_, body) = area.split_vertically(46);
+        let (upper, lower) =
+            body.split_vertically(if self.against.is_some() { height * 11 / 20 } else { height * 2 / 5 });
+        let (left, right) = (self.render.left, self.render.right);
+        let strips = match self.against {
+            Some(expected) => vec![
+                ("expected", expected.left, expected.right),
+                ("actual", left, right),
+                ("difference", &self.middle[..], &self.middle[..]),
+            ],
+            None if left == right => vec![("both channels", left, right)],
+            None => vec![("left", left, left), ("right", right, right)],
+        };
+        let areas = upper.split_evenly((strips.len(), 1));
+        for ((label, left, right), area) in strips.into_iter().zip(&areas) {
+            let colour = if label == "right" { VERMILLION } else { BLUE };
+            let traces = if left == right {
+                vec![Trace { name: "", samples: left, colour }]
+            } else {
+                vec![
+                    Trace { name: "left", samples: left, colour: BLUE },
+                    Trace { name: "right", samples: right, colour: VERMILLION },
+                ]
+            };
+            waveform(area, &traces, self.sample_rate, label, false)?;
+        }
+        spectrogram_panel(&lower, &self.middle, self.sample_rate, self.cell)
+    }
+}
+
+/// Draws to the format that the file's extension names.
+fn save(path: &Path, sheet: Sheet) -> Result<()> {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
+    let bytes = match extension.as_str() {
+        "png" => png(&sheet)?,
+        // A vector image has no pixels: larger cells keep the file small.
+        "svg" => svg(&Sheet { cell: 5, ..sheet })?.into_bytes(),
+        _ => return Err(Error::value("figure", format!("{} must end in .png or .svg", path.display()))),
+    };
+    std::fs::write(path, bytes).map_err(|error| Error::io(path.display().to_string(), error))
+}
+
+/// The mean of two channels.
+fn mean(left: &[f32], right: &[f32]) -> Vec<f32> {
+    left.iter().zip(right).map(|(l, r)| 0.5 * (l + r)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decay(frequency: f64, len: usize) -> Vec<f32> {
+        (0..len)
+            .map(|n| {
+                let t = n as f64 / 48_000.0;
+                (0.8 * libm::exp(-6.0 * t) * libm::sin(std::f64::consts::TAU * frequency * t)) as f32
+            })
+            .collect()
+    }
+
+    /// Whether a file is there and of its format, and how long it is.
+    fn check(path: &Path, starts: &[u8]) -> usize {
+        let bytes = std::fs::read(path).unwrap();
+        assert!(bytes.starts_with(starts), "{}", path.display());
+        bytes.len()
+    }
+
+    #[test]
+    fn figures_are_drawn_in_both_formats() {
+        let folder = tempfile::tempdir().unwrap();
+        let (left, right) = (decay(440.0, 24_000), decay(1320.0, 24_000));
+        let render = Render { left: &left, right: &right, sample_rate: 48_000.0 };
+        let same = Render { right: &left, ..render };
+        let png = folder.path().join("a.png");
+        waveform_and_spectrogram(render, "A strike", &png).unwrap();
+        let two_strips = check(&png, b"\x89PNG");
+        waveform_and_spectrogram(same, "A strike", &png).unwrap();
+        assert_ne!(check(&png, b"\x89PNG"), two_strips);
+        comparison(same, render, "A change", &png).unwrap();
+        check(&png, b"\x89PNG");
+        let svg = folder.path().join("a.svg");
+        waveform_and_spectrogram(render, "A strike", &svg).unwrap();
+        check(&svg, b"<svg");
+        assert!(std::fs::read_to_string(&svg).unwrap().contains("frequency / Hz"));
+    }
+
+    #[test]
+    fn empty_short_and_broken_renders_still_draw() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        for samples in [&[][..], &[0.5], &[f32::NAN, f32::INFINITY, 0.5]] {
+            for sample_rate in [8000.0, 768_000.0] {
+                let render = Render { left: samples, right: samples, sample_rate };
+                waveform_and_spectrogram(render, "", &path).unwrap();
+                comparison(render, render, "", &path).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn a_figure_that_cannot_be_written_is_an_error() {
+        let render = Render { left: &[0.0], right: &[0.0], sample_rate: 48_000.0 };
+        for path in ["/nonexistent/folder/a.png", "/nonexistent/folder/a.svg", "figure.gif"] {
+            let error = waveform_and_spectrogram(render, "", Path::new(path)).unwrap_err();
+            assert!(error.to_string().contains(path), "{error}");
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! What the lab's commands write: a figure, a table of numbers as CSV, and one as text.
+
+use super::super::{interrupt, print};
+use sprung::figure::{self, Picture};
+use sprung::io::{Output, Target};
+use sprung::{Error, Result};
+use std::io::{self, BufWriter, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+/// The options of every command's output.
+#[derive(clap::Args)]
+pub(super) struct Files {
+    /// Write the numbers as CSV; - is stdout
+    #[arg(long, value_name = "FILE.csv|-")]
+    csv: Option<PathBuf>,
+    /// Write the figure, in the format that the name ends in
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Overwrite existing files
+    #[arg(long)]
+    force: bool,
+}
+
+/// Outputs that are open and not yet written: what is in the way is found before the work begins.
+pub(super) struct Deliveries {
+    csv: Option<Output>,
+    figure: Option<(Output, String)>,
+    to_stdout: bool,
+    pub(super) force: bool,
+}
+
+impl Files {
+    /// Opens the outputs. An error for a figure whose name does not end in one of `formats`, and for what cannot be
+    /// written.
+    pub(super) fn open(&self, formats: &[&str]) -> Result<Deliveries> {
+        if self.csv.is_some() && self.csv == self.output {
+            return Err(Error::value("--csv", "is the same file as --output: expected two"));
+        }
+        let to_stdout = self.csv.as_deref() == Some(Path::new("-"));
+        if to_stdout && std::io::stdout().is_terminal() {
+            return Err(Error::value("--csv", "stdout is a terminal: expected a file, or stdout sent to one"));
+        }
+        let format = self.output.as_deref().map(|path| format_of(path, formats)).transpose()?;
+        let open = |path: &PathBuf| Output::create(&Target::new(path), self.force);
+        let csv = self.csv.as_ref().map(open).transpose()?;
+        let figure = self.output.as_ref().map(open).transpose()?.zip(format);
+        let removable = csv.iter().chain(figure.iter().map(|(output, _)| output)).all(Output::is_seekable);
+        interrupt::catch(removable)?;
+        Ok(Deliveries { csv, figure, to_stdout, force: self.force })
+    }
+}
+
+/// What a file's name ends in.
+fn format_of(path: &Path, formats: &[&str]) -> Result<String> {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
+    if formats.contains(&extension.as_str()) {
+        return Ok(extension);
+    }
+    let names: Vec<String> = formats.iter().map(|format| format!(".{format}")).collect();
+    Err(Error::value("--output", format!("{}: expected a name that ends in {}", path.display(), names.join(" or "))))
+}
+
+impl Deliveries {
+    /// Format of the figure that is wanted.
+    pub(super) fn format(&self) -> Option<&str> {
+        self.figure.as_ref().map(|(_, format)| format.as_str())
+    }
+
+    /// Whether a CSV is wanted.
+    pub(super) fn wants_csv(&self) -> bool {
+        self.csv.is_some()
+    }
+
+    /// Writes figure and CSV, each only if wanted, and says `text`: on stdout, or on stderr if the CSV goes there.
+    pub(super) fn finish(
+        self,
+        figure: impl FnOnce(&str) -> Result<Vec<u8>>,
+        csv: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+        text: &str,
+    ) -> Result<()> {
+        let mut whole = Vec::new();
+        if let Some((mut output, format)) = self.figure {
+            let bytes = figure(&format)?;
+            write(&mut output, |out| out.write_all(&bytes))?;
+            whole.push(output);
+        }
+        if let Some(mut output) = self.csv {
+            write(&mut output, csv)?;
+            whole.push(output);
+        }
+        interrupt::check()?;
+        for output in whole {
+            output.commit()?;
+        }
+        if self.to_stdout {
+            // If stderr is closed, there is nobody left to tell.
+            let _ = write!(std::io::stderr(), "{text}");
+            return Ok(());
+        }
+        print(text)
+    }
+}
+
+fn write(output: &mut Output, contents: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    let mut stream = BufWriter::new(output.stream());
+    let written = contents(&mut stream).and_then(|()| stream.flush());
+    drop(stream);
+    written.map_err(|error| Error::io(output.name(), error))
+}
+
+/// A picture in the format of that name.
+pub(super) fn drawn(picture: &impl Picture, format: &str) -> Result<Vec<u8>> {
+    if format == "png" { figure::png(picture) } else { figure::svg(picture).map(String::into_bytes) }
+}

@@ -1,0 +1,118 @@
+//! The options that describe what is integrated, and how.
+
+use super::super::complain;
+use clap::ValueEnum;
+use sprung::Result;
+use sprung::lab::method::Method;
+use sprung::lab::system::{Force, Spring, State, System};
+
+/// Law of the spring.
+#[derive(Clone, Copy, ValueEnum)]
+enum Law {
+    Linear,
+    Duffing,
+    Pendulum,
+}
+
+/// Mass, spring, damper, force and start.
+#[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
+pub(super) struct SystemArgs {
+    /// Mass in kg, more than 0
+    #[arg(long, default_value_t = 1.0, value_name = "KG")]
+    mass: f64,
+    /// Stiffness of the spring in N/m, 0 or more
+    #[arg(long, default_value_t = 50.0, value_name = "N/M")]
+    stiffness: f64,
+    /// Damping in kg/s, 0 or more
+    #[arg(long, default_value_t = 0.0, value_name = "KG/S")]
+    damping: f64,
+    /// Position at the start, in m
+    #[arg(long, default_value_t = 0.5, value_name = "M")]
+    x0: f64,
+    /// Velocity at the start, in m/s
+    #[arg(long, default_value_t = 0.0, value_name = "M/S")]
+    v0: f64,
+    /// Where the spring pulls to, in m
+    #[arg(long, default_value_t = 0.0, value_name = "M")]
+    target: f64,
+    /// Law of the spring: a pendulum's force is the stiffness times the sine of the angle
+    #[arg(long, default_value = "linear")]
+    spring: Law,
+    /// Cubic part of a Duffing spring, in N/m³, 0 or more
+    #[arg(long, default_value_t = 0.0, value_name = "N/M³")]
+    cubic: f64,
+    /// Amplitude of a force that drives the mass, in N
+    #[arg(long, default_value_t = 0.0, value_name = "N")]
+    drive: f64,
+    /// Frequency of that force in Hz; 0 is a constant one
+    #[arg(long, default_value_t = 0.0, value_name = "HZ")]
+    drive_frequency: f64,
+}
+
+impl SystemArgs {
+    /// The system and its start. An error that names the option whose value cannot be.
+    pub(super) fn build(&self) -> Result<(System, State)> {
+        let spring = match self.spring {
+            Law::Linear => Spring::Linear,
+            Law::Duffing => Spring::Duffing { cubic: self.cubic },
+            Law::Pendulum => Spring::Pendulum,
+        };
+        let system = System {
+            mass: self.mass,
+            stiffness: self.stiffness,
+            damping: self.damping,
+            target: self.target,
+            spring,
+            force: Force { amplitude: self.drive, frequency: self.drive_frequency, phase: 0.0 },
+        };
+        system.validate()?;
+        Ok((system, State { x: self.x0, v: self.v0 }))
+    }
+}
+
+/// The choice of methods.
+#[derive(clap::Args)]
+pub(super) struct MethodArgs {
+    /// Methods, separated by commas: all, explicit-euler, implicit-euler, symplectic-euler, symplectic-euler-xv, heun,
+    /// rk4, chou-semi-implicit, chou-implicit, synth-seed, synth-exact, verlet, exponential
+    #[arg(long, default_value = "all", value_delimiter = ',', value_name = "all|A,B,…")]
+    methods: Vec<String>,
+}
+
+impl MethodArgs {
+    /// The methods named, in that order and each once.
+    pub(super) fn named(&self) -> Result<Vec<Method>> {
+        if self.is_all() {
+            return Ok(Method::ALL.to_vec());
+        }
+        let mut methods = Vec::new();
+        for key in &self.methods {
+            let method = Method::from_key(key.trim())?;
+            if !methods.contains(&method) {
+                methods.push(method);
+            }
+        }
+        Ok(methods)
+    }
+
+    /// The methods named, of which `all` leaves out, with a note, those that cannot integrate the system.
+    pub(super) fn for_system(&self, system: &System, steps: &[f64]) -> Result<Vec<Method>> {
+        let mut methods = self.named()?;
+        if self.is_all() {
+            methods.retain(|method| {
+                // A step that is wrong for all is told later, as an error.
+                let refused = steps.iter().filter(|h| **h > 0.0).find_map(|h| method.integrator(system, *h).err());
+                if let Some(error) = &refused {
+                    complain("note", format!("without {}: {error}", method.key()));
+                }
+                refused.is_none()
+            });
+        }
+        Ok(methods)
+    }
+
+    fn is_all(&self) -> bool {
+        self.methods.iter().any(|key| key.trim() == "all")
+    }
+}

@@ -1,0 +1,197 @@
+//! What the manager tells its voices, written down by a fake one.
+
+use super::*;
+use std::cell::RefCell;
+use std::rc::Rc;
+
+type Log = Rc<RefCell<Vec<String>>>;
+
+/// A voice that writes down what it is told.
+struct FakeVoice {
+    log: Log,
+    key: u8,
+    energy: f64,
+    over: bool,
+}
+
+impl Voice for FakeVoice {
+    type Context = ();
+    fn start(&mut self, _: &(), note: &Note) {
+        (self.key, self.over, self.energy) = (note.key, false, f64::from(note.velocity));
+        self.log.borrow_mut().push(format!("start {}", note.key));
+    }
+    fn restrike(&mut self, _: &(), note: &Note) {
+        self.log.borrow_mut().push(format!("restrike {} as {}", self.key, note.key));
+        self.key = note.key;
+    }
+    fn retune(&mut self, _: &(), note: &Note) {
+        self.log.borrow_mut().push(format!("retune {} to {}", self.key, note.key));
+        self.key = note.key;
+    }
+    fn release(&mut self, velocity: f32) {
+        self.log.borrow_mut().push(format!("release {} at {velocity}", self.key));
+    }
+    fn fade(&mut self) {
+        self.log.borrow_mut().push(format!("fade {}", self.key));
+    }
+    fn energy(&self) -> f64 {
+        self.energy
+    }
+    fn is_over(&self) -> bool {
+        self.over
+    }
+}
+
+enum Do {
+    On(u8, f32),
+    /// Key and choke group.
+    OnChoke(u8, u8),
+    OnPatch(u8, u32),
+    Off(u8),
+    OffId(u8, i32),
+    Sustain(bool),
+    Sostenuto(bool),
+    NotesOff,
+    SoundOff,
+    Over(u8),
+}
+use Do::*;
+
+/// Plays a script and returns what the voices were told.
+fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
+    let log = Log::default();
+    let mut manager = VoiceManager::new(|| FakeVoice { log: log.clone(), key: 0, energy: 0.0, over: false });
+    manager.configure(polyphony, mode);
+    for (serial, action) in script.iter().enumerate() {
+        let on = |key, velocity, choke, patch| Note {
+            channel: 0,
+            key,
+            detune: 0.0,
+            velocity,
+            soft: false,
+            id: i32::from(key) + 1000,
+            serial: serial as u64,
+            patch,
+            choke,
+        };
+        match *action {
+            On(key, velocity) => manager.note_on(&(), on(key, velocity, 0, 0)),
+            OnChoke(key, group) => manager.note_on(&(), on(key, 1.0, group, 0)),
+            OnPatch(key, patch) => manager.note_on(&(), on(key, 1.0, 0, patch)),
+            Off(key) => manager.note_off(&(), 0, key, -1, 0.25),
+            OffId(key, id) => manager.note_off(&(), 0, key, id, 0.25),
+            Sustain(down) => manager.sustain(0, down),
+            Sostenuto(down) => manager.sostenuto(0, down),
+            NotesOff => manager.all_notes_off(0),
+            SoundOff => manager.all_sound_off(0),
+            Over(key) => {
+                let voices = manager.active().filter(|(note, _)| note.key == key);
+                voices.for_each(|(_, voice)| voice.over = true);
+                manager.free_finished();
+            }
+        }
+    }
+    log.take()
+}
+
+#[track_caller]
+fn check(polyphony: usize, mode: PlayMode, script: &[Do], expected: &[&str]) {
+    assert_eq!(play(polyphony, mode, script), expected);
+}
+
+#[test]
+fn a_second_strike_on_a_sounding_key_joins_it() {
+    let script = [On(60, 1.0), On(60, 1.0), Off(60), On(60, 1.0), Over(60), On(60, 1.0)];
+    let expected = ["start 60", "restrike 60 as 60", "release 60 at 0.25", "restrike 60 as 60", "start 60"];
+    check(16, PlayMode::Poly, &script, &expected);
+}
+
+#[test]
+fn notes_of_another_patch_do_not_share_a_voice() {
+    check(16, PlayMode::Poly, &[OnPatch(60, 0), OnPatch(60, 1)], &["start 60", "start 60"]);
+    check(16, PlayMode::Mono, &[OnPatch(60, 0), OnPatch(62, 1)], &["start 60", "fade 60", "start 62"]);
+}
+
+#[test]
+fn stealing_takes_the_same_key_then_the_quietest_then_the_oldest() {
+    check(
+        2,
+        PlayMode::Poly,
+        &[On(60, 0.9), On(61, 0.2), On(62, 0.5)],
+        &["start 60", "start 61", "fade 61", "start 62"],
+    );
+    check(
+        2,
+        PlayMode::Poly,
+        &[On(60, 0.5), On(61, 0.5), On(62, 0.5)],
+        &["start 60", "start 61", "fade 60", "start 62"],
+    );
+    check(
+        2,
+        PlayMode::Poly,
+        &[OnPatch(60, 0), On(61, 0.1), OnPatch(60, 1)],
+        &["start 60", "start 61", "fade 60", "start 60"],
+    );
+}
+
+#[test]
+fn more_steals_than_spare_voices_cut_the_oldest_and_go_on() {
+    let script: Vec<_> = (0..100).map(|key| On(key, 1.0)).collect();
+    let told = play(1, PlayMode::Poly, &script);
+    assert_eq!(told.iter().filter(|line| line.starts_with("start")).count(), 100);
+}
+
+#[test]
+fn choke_groups_silence_their_own_and_no_others() {
+    let script = [OnChoke(42, 1), OnChoke(38, 0), OnChoke(46, 1), OnChoke(46, 1), OnChoke(50, 2)];
+    let expected = ["start 42", "start 38", "fade 42", "start 46", "restrike 46 as 46", "start 50"];
+    check(16, PlayMode::Poly, &script, &expected);
+}
+
+#[test]
+fn the_sustain_pedal_holds_until_it_is_lifted() {
+    let script = [On(60, 1.0), Sustain(true), Off(60), On(62, 1.0), Sustain(false), Off(62)];
+    check(16, PlayMode::Poly, &script, &["start 60", "start 62", "release 60 at 0.5", "release 62 at 0.25"]);
+}
+
+#[test]
+fn sostenuto_holds_only_the_keys_that_were_down() {
+    let script = [On(60, 1.0), Sostenuto(true), On(62, 1.0), Off(60), Off(62), Sostenuto(false)];
+    check(16, PlayMode::Poly, &script, &["start 60", "start 62", "release 62 at 0.25", "release 60 at 0.5"]);
+    let both = [On(60, 1.0), Sostenuto(true), Sustain(true), Off(60), Sostenuto(false), Sustain(false)];
+    check(16, PlayMode::Poly, &both, &["start 60", "release 60 at 0.5"]);
+}
+
+#[test]
+fn note_ids_are_told_apart() {
+    check(16, PlayMode::Poly, &[On(60, 1.0), OffId(60, 7), OffId(60, 1060)], &["start 60", "release 60 at 0.25"]);
+}
+
+#[test]
+fn mono_strikes_each_key_and_returns_to_held_ones_without_striking() {
+    let script = [On(60, 1.0), On(64, 1.0), Off(64), Off(60)];
+    let expected = ["start 60", "restrike 60 as 64", "retune 64 to 60", "release 60 at 0.25"];
+    check(16, PlayMode::Mono, &script, &expected);
+    let inner = [On(60, 1.0), On(64, 1.0), Off(60), Off(64)];
+    check(16, PlayMode::Mono, &inner, &["start 60", "restrike 60 as 64", "release 64 at 0.25"]);
+}
+
+#[test]
+fn legato_strikes_only_after_a_rest() {
+    let script = [On(60, 1.0), On(64, 1.0), Off(60), Off(64), On(62, 1.0)];
+    let expected = ["start 60", "retune 60 to 64", "release 64 at 0.25", "restrike 64 as 62"];
+    check(16, PlayMode::Legato, &script, &expected);
+}
+
+#[test]
+fn a_held_note_that_died_away_is_started_anew() {
+    check(16, PlayMode::Mono, &[On(60, 1.0), Over(60), On(62, 1.0)], &["start 60", "start 62"]);
+}
+
+#[test]
+fn all_notes_off_respects_the_pedal_and_all_sound_off_does_not() {
+    let script = [On(60, 1.0), Sustain(true), NotesOff, Sustain(false)];
+    check(16, PlayMode::Poly, &script, &["start 60", "release 60 at 0.5"]);
+    let script = [On(60, 1.0), Sustain(true), Off(60), SoundOff, Sustain(false)];
+    check(16, PlayMode::Poly, &script, &["start 60", "fade 60"]);
+}

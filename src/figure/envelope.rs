@@ -1,0 +1,39 @@
+//! A signal as a line that shows its extremes, however many samples share a pixel.
+
+/// The samples as points, or the least and the greatest of each of `columns` stretches where there are many.
+pub fn envelope(samples: &[f32], sample_rate: f64, columns: usize) -> Vec<(f64, f64)> {
+    let seconds = |frame: usize| frame as f64 / sample_rate;
+    let value = |sample: f32| if sample.is_finite() { f64::from(sample) } else { 0.0 };
+    if samples.len() <= 3 * columns.max(1) {
+        return samples.iter().enumerate().map(|(frame, sample)| (seconds(frame), value(*sample))).collect();
+    }
+    // Two stretches a pixel: with one, rounding would leave a column empty here and there.
+    let stretches = 2 * columns.max(1);
+    let start = |index: usize| index * samples.len() / stretches;
+    let mut points = Vec::with_capacity(2 * stretches);
+    for index in 0..stretches {
+        let range = samples[start(index)..start(index + 1)].iter().map(|sample| value(*sample));
+        let (low, high) = range.fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(y), high.max(y)));
+        // Alternating the order keeps the line from crossing the stretch twice.
+        let pair = if index % 2 == 0 { [low, high] } else { [high, low] };
+        points.extend(pair.map(|y| (seconds(start(index)), y)));
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_envelope_keeps_the_extremes() {
+        let mut samples = vec![0.0_f32; 10_000];
+        samples[5003] = 0.9;
+        samples[7001] = -0.8;
+        let points = envelope(&samples, 10_000.0, 100);
+        assert_eq!(points.len(), 400);
+        assert_eq!(points.iter().map(|p| p.1 as f32).fold(0.0, f32::max), 0.9);
+        assert_eq!(points.iter().map(|p| p.1 as f32).fold(0.0, f32::min), -0.8);
+        assert_eq!(envelope(&[0.5, f32::NAN], 1.0, 100), [(0.0, 0.5), (1.0, 0.0)]);
+    }
+}

@@ -1,0 +1,101 @@
+//! Energy of a state, and the Lagrangian that the equation of motion follows from.
+//!
+//! With the generalised coordinate `q = x`, `L = T − V = ½ m q̇² − V(q)`, and Euler–Lagrange,
+//! `∂L/∂q = d/dt ∂L/∂q̇`, is `−V′(q) = m q̈`.
+
+use super::system::{Spring, State, System};
+use libm::{sin, sqrt};
+
+/// Kinetic and potential energy in J.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Energy {
+    /// `½ m v²`.
+    pub kinetic: f64,
+    /// Work stored in the spring: `½ k d²` of a linear one.
+    pub potential: f64,
+}
+
+impl Energy {
+    /// Energy of a state. The force `f(t)` is external: its work is not in it.
+    pub fn of(system: &System, state: State) -> Self {
+        let d = state.x - system.target;
+        let potential = match system.spring {
+            Spring::Linear => 0.5 * system.stiffness * d * d,
+            Spring::Duffing { cubic } => (0.5 * system.stiffness + 0.25 * cubic * d * d) * d * d,
+            // k (1 − cos d), which would cancel at small angles.
+            Spring::Pendulum => 2.0 * system.stiffness * sin(0.5 * d) * sin(0.5 * d),
+        };
+        Self { kinetic: 0.5 * system.mass * state.v * state.v, potential }
+    }
+
+    /// `T + V`: constant without damper and force.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.potential
+    }
+
+    /// `L = T − V`.
+    pub fn lagrangian(&self) -> f64 {
+        self.kinetic - self.potential
+    }
+}
+
+/// Generalised momentum `∂L/∂q̇ = m q̇` in kg m/s.
+pub fn momentum(system: &System, state: State) -> f64 {
+    system.mass * state.v
+}
+
+/// The greatest stiffness in N/m that a motion through `state` meets without a force: what sets its shortest period.
+pub fn greatest_stiffness(system: &System, state: State) -> f64 {
+    match system.spring {
+        Spring::Linear | Spring::Pendulum => system.stiffness,
+        Spring::Duffing { cubic } => {
+            // ¼ cubic d⁴ ≤ E bounds the stretch, whatever the linear part.
+            let total = Energy::of(system, state).total();
+            system.stiffness + 6.0 * sqrt(cubic * total)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::method::Method;
+
+    fn systems() -> impl Iterator<Item = System> {
+        [Spring::Linear, Spring::Duffing { cubic: 80.0 }, Spring::Pendulum].into_iter().map(|spring| System {
+            spring,
+            target: 0.1,
+            ..System::linear(1.5, 50.0, 0.0).unwrap()
+        })
+    }
+
+    /// `∂L/∂q` by a difference of `L`, `d/dt ∂L/∂q̇` by a difference of the momentum along the motion.
+    #[test]
+    fn the_motion_satisfies_euler_lagrange() {
+        for system in systems() {
+            let h = 1e-5;
+            let step = Method::RungeKutta4.integrator(&system, h).unwrap();
+            let back = State { x: 0.45, v: -0.7 };
+            let here = step.step(back, 0.0).unwrap();
+            let next = step.step(here, h).unwrap();
+            let lagrangian = |x: f64| Energy::of(&system, State { x, ..here }).lagrangian();
+            let slope = (lagrangian(here.x + h) - lagrangian(here.x - h)) / (2.0 * h);
+            let rate = (momentum(&system, next) - momentum(&system, back)) / (2.0 * h);
+            assert!((slope - rate).abs() < 1e-6 * slope.abs().max(1.0), "{:?}: {slope} {rate}", system.spring);
+        }
+    }
+
+    #[test]
+    fn total_energy_is_constant_along_the_motion() {
+        for system in systems() {
+            let step = Method::RungeKutta4.integrator(&system, 1e-4).unwrap();
+            let mut state = State { x: 0.6, v: 0.0 };
+            let start = Energy::of(&system, state);
+            assert_eq!(start.kinetic, 0.0);
+            for n in 0..10_000 {
+                state = step.step(state, f64::from(n) * 1e-4).unwrap();
+                assert!((Energy::of(&system, state).total() / start.total() - 1.0).abs() < 1e-11);
+            }
+        }
+    }
+}

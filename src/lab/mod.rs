@@ -1,0 +1,40 @@
+//! The spring lab: ways to integrate a mass on a spring, side by side, in figures, numbers and sound.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`system`], [`energy`] | the mass, spring, damper and force; energy and Lagrangian |
+//! | [`closed_form`], [`mod@reference`] | the exact motion, and the nearest to it where there is no closed form |
+//! | [`method`] | the methods, one file each |
+//! | [`trajectory`] | a method run over a stretch of time, and its error |
+//! | [`comparison`], [`convergence`], [`stability`], [`pitch`], [`sound`] | what follows: orders, limits, tuning, audio |
+//!
+//! All arithmetic is in `f64`; nothing here is real-time safe, and the instrument does not depend on it.
+//!
+//! ```
+//! use sprung::lab::{method::Method, system::{State, System}, trajectory};
+//!
+//! let spring = System::linear(1.0, 50.0, 0.0)?;
+//! let start = State { x: 0.5, v: 0.0 };
+//! let run = trajectory::run(Method::ExplicitEuler, &spring, start, 0.01, 5.0)?;
+//! assert!(run.worst_error > 1.0, "it explodes");
+//! # Ok::<(), sprung::Error>(())
+//! ```
+
+pub mod amplification;
+#[cfg(feature = "figures")]
+pub mod animation;
+pub mod closed_form;
+pub mod comparison;
+pub mod convergence;
+pub mod energy;
+#[cfg(feature = "figures")]
+pub mod figure;
+pub mod method;
+pub mod pitch;
+pub mod reference;
+#[cfg(feature = "figures")]
+pub mod report;
+pub mod sound;
+pub mod stability;
+pub mod system;
+pub mod trajectory;

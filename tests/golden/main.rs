@@ -1,0 +1,83 @@
+//! Golden audio: what the engine renders is, bit for bit, what it rendered when it was last accepted.
+//!
+//! A case is one score played by one patch. Its digest lies beside this file; a few cases also keep the beginning of
+//! their audio. `cargo xtask bless [CASE]` accepts what is rendered now.
+
+mod cases;
+mod check;
+mod perturbed;
+mod score;
+mod songs;
+
+use check::{Store, bless, check};
+use score::Score;
+use std::collections::BTreeSet;
+use std::sync::Mutex;
+
+/// Environment variable that accepts what is rendered now: a case's name, or `all`.
+const BLESS: &str = "SPRUNG_BLESS";
+
+/// Does `job` to every case on all cores and gives the results in the cases' order.
+fn for_all<T: Send>(cases: &[Score], job: impl Fn(&Score) -> T + Sync) -> Vec<T> {
+    let queue = Mutex::new(cases.iter().enumerate());
+    let results = Mutex::new(Vec::new());
+    let work = || {
+        loop {
+            let next = queue.lock().expect("no worker panics with the queue").next();
+            let Some((index, case)) = next else { break };
+            let result = job(case);
+            results.lock().expect("no worker panics with the results").push((index, result));
+        }
+    };
+    std::thread::scope(|scope| {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        (0..cores).for_each(|_| {
+            scope.spawn(work);
+        });
+    });
+    let mut results = results.into_inner().expect("the workers are done");
+    results.sort_by_key(|(index, _)| *index);
+    results.into_iter().map(|(_, result)| result).collect()
+}
+
+#[test]
+fn every_case_sounds_as_accepted_at_every_block_size() {
+    let store = Store::of_the_project();
+    let cases = cases::all();
+    if let Ok(wanted) = std::env::var(BLESS) {
+        panic!("{}", bless_cases(&store, &cases, &wanted));
+    }
+    let failures: Vec<String> =
+        for_all(&cases, |case| check(&store, case)).into_iter().filter_map(Result::err).collect();
+    let (failed, count) = (failures.len(), cases.len());
+    assert!(failures.is_empty(), "{failed} of {count} golden cases failed\n\n{}\n", failures.join("\n\n"));
+}
+
+/// Accepts what the wanted cases sound like now; says what it did.
+fn bless_cases(store: &Store, cases: &[Score], wanted: &str) -> String {
+    if !cfg!(debug_assertions) {
+        return "only the debug build, the reference, may bless: run without --release".to_owned();
+    }
+    let chosen: Vec<Score> = cases.iter().filter(|case| wanted == "all" || wanted == case.name).cloned().collect();
+    if chosen.is_empty() {
+        let names: Vec<_> = cases.iter().map(|case| case.name.as_str()).collect();
+        return format!("there is no golden case ‘{wanted}’; there are: {}", names.join(", "));
+    }
+    if wanted == "all" {
+        store.remove_stale(&names(cases));
+    }
+    for_all(&chosen, |case| bless(store, case));
+    format!("blessed {} cases; run again to verify", chosen.len())
+}
+
+fn names(cases: &[Score]) -> BTreeSet<String> {
+    cases.iter().map(|case| case.name.clone()).collect()
+}
+
+#[test]
+fn every_kept_file_belongs_to_a_case() {
+    let cases = cases::all();
+    assert_eq!(names(&cases).len(), cases.len(), "two cases have the same name");
+    let stale = Store::of_the_project().stale(&names(&cases));
+    assert!(stale.is_empty(), "no case has these files any more: {stale:?}; `cargo xtask bless` removes them");
+}

@@ -1,0 +1,113 @@
+//! A score: a patch, events at frames, and how long to listen; rendered in blocks of any size.
+
+use sprung::engine::{Ensemble, Event, EventKind};
+use sprung::patch::Patch;
+
+/// The block that is as long as the score.
+pub(crate) const WHOLE: usize = usize::MAX;
+
+/// What a golden case plays.
+#[derive(Clone)]
+pub(crate) struct Score {
+    /// Name of the case and of its files.
+    pub(crate) name: String,
+    pub(crate) sample_rate: f64,
+    pub(crate) seed: u64,
+    pub(crate) patch: Patch,
+    /// What program changes choose from.
+    pub(crate) programs: Vec<Patch>,
+    /// Events by frame, channel and kind, in order.
+    events: Vec<(u64, u8, EventKind)>,
+    pub(crate) frames: usize,
+    /// Whether the beginning of the audio is kept beside the digest.
+    pub(crate) keeps_audio: bool,
+}
+
+impl Score {
+    /// `seconds` of nothing, at 48 kHz.
+    pub(crate) fn new(name: impl Into<String>, patch: Patch, seconds: f64) -> Self {
+        let sample_rate = 48_000.0;
+        Self {
+            name: name.into(),
+            sample_rate,
+            seed: 1,
+            patch,
+            programs: Vec::new(),
+            events: Vec::new(),
+            frames: (seconds * sample_rate) as usize,
+            keeps_audio: false,
+        }
+    }
+
+    /// The same length in seconds at another rate; before any event is added.
+    pub(crate) fn at_rate(mut self, sample_rate: f64) -> Self {
+        assert!(self.events.is_empty(), "events are placed by frame");
+        self.frames = (self.frames as f64 * sample_rate / self.sample_rate) as usize;
+        self.sample_rate = sample_rate;
+        self
+    }
+
+    pub(crate) fn with_programs(mut self, programs: Vec<Patch>) -> Self {
+        self.programs = programs;
+        self
+    }
+
+    pub(crate) fn keeping_audio(mut self) -> Self {
+        self.keeps_audio = true;
+        self
+    }
+
+    /// Adds an event at `seconds`, which must not lie before the last.
+    pub(crate) fn then(mut self, seconds: f64, channel: u8, kind: EventKind) -> Self {
+        let frame = (seconds * self.sample_rate).round() as u64;
+        assert!(self.events.last().is_none_or(|last| last.0 <= frame), "{}: events in order", self.name);
+        self.events.push((frame, channel, kind));
+        self
+    }
+
+    /// Key down on channel 0, with a velocity as MIDI counts it.
+    pub(crate) fn on(self, seconds: f64, key: u8, velocity: u8) -> Self {
+        let velocity = f32::from(velocity) / 127.0;
+        self.then(seconds, 0, EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 })
+    }
+
+    /// Key up on channel 0.
+    pub(crate) fn off(self, seconds: f64, key: u8) -> Self {
+        self.then(seconds, 0, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+    }
+
+    /// A controller on channel 0, with a value as MIDI counts it.
+    pub(crate) fn control(self, seconds: f64, controller: u8, value: u8) -> Self {
+        self.then(seconds, 0, EventKind::Control { controller, value: f32::from(value) / 127.0 })
+    }
+
+    /// The score with every note's pitch multiplied by `ratio`.
+    pub(crate) fn out_of_tune(mut self, ratio: f64) -> Self {
+        let semitones = sprung::units::semitones_from_ratio(ratio) as f32;
+        for (_, _, kind) in &mut self.events {
+            if let EventKind::NoteOn { detune, .. } = kind {
+                *detune += semitones;
+            }
+        }
+        self
+    }
+
+    /// Renders left and right in blocks of at most `block` frames.
+    pub(crate) fn render(&self, block: usize) -> [Vec<f32>; 2] {
+        let mut ensemble = Ensemble::new(self.sample_rate, self.seed, &self.patch, &self.programs);
+        // Anything but zero: what a block leaves unwritten must show.
+        let [mut left, mut right] = [(); 2].map(|()| vec![f32::NAN; self.frames]);
+        let mut events = self.events.iter().peekable();
+        let mut in_block = Vec::new();
+        let mut start = 0;
+        for (left, right) in left.chunks_mut(block).zip(right.chunks_mut(block)) {
+            in_block.clear();
+            while let Some((frame, channel, kind)) = events.next_if(|event| event.0 < (start + left.len()) as u64) {
+                in_block.push(Event { frame: (*frame - start as u64) as u32, channel: *channel, kind: *kind });
+            }
+            ensemble.process(&in_block, left, right);
+            start += left.len();
+        }
+        [left, right]
+    }
+}

@@ -1,0 +1,30 @@
+//! Every song in `assets/midi`, played with the factory presets as its programs.
+
+use crate::score::Score;
+use sprung::io::Song;
+use sprung::patch::Patch;
+use sprung::preset::Preset;
+use std::path::Path;
+
+/// Seconds that are heard after a song's last event.
+const TAIL: f64 = 1.0;
+
+/// A case for each song.
+pub(crate) fn all() -> Vec<Score> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/midi");
+    let files = std::fs::read_dir(&folder).expect("assets/midi is a folder");
+    let mut paths: Vec<_> = files.map(|file| file.expect("assets/midi can be listed").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "mid"));
+    paths.sort();
+    assert!(!paths.is_empty(), "there are songs in {}", folder.display());
+    paths.iter().map(|path| song(path)).collect()
+}
+
+fn song(path: &Path) -> Score {
+    let stem = path.file_stem().and_then(|stem| stem.to_str()).expect("songs have plain names");
+    let bytes = std::fs::read(path).expect("a song can be read");
+    let song = Song::parse(&bytes, stem).unwrap_or_else(|error| panic!("{error}"));
+    let programs = Preset::factory().iter().map(|preset| preset.patch).collect();
+    let score = Score::new(format!("song-{stem}"), Patch::default(), song.seconds + TAIL).with_programs(programs);
+    song.events.iter().fold(score, |score, event| score.then(event.seconds, event.channel, event.kind))
+}

@@ -1,0 +1,160 @@
+//! The lab's pages in headless Chromium: toggles by mouse and keyboard, light and dark, offline, without an error.
+//!
+//! Where no Chromium is installed, the tests count as ignored.
+
+#[path = "lab/browser.rs"]
+mod browser;
+
+use browser::{Key, Page};
+use libtest_mimic::{Arguments, Failed, Trial};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+fn main() -> ExitCode {
+    let arguments = Arguments::from_args();
+    let program = browser::installed();
+    if program.is_none() {
+        println!("chromium is not installed (on Debian: apt install chromium): its tests are ignored");
+    }
+    let trial = |name: &str, test: fn(&Path)| {
+        let (missing, program) = (program.is_none(), program.clone());
+        let run = move || program.as_deref().map(test).ok_or_else(|| Failed::from("chromium is not installed"));
+        Trial::test(name, run).with_ignored_flag(missing)
+    };
+    let trials = vec![
+        trial("a_click_on_a_toggle_changes_the_charts", a_click_on_a_toggle_changes_the_charts),
+        trial("the_keyboard_reaches_every_control", the_keyboard_reaches_every_control),
+        trial("text_and_lines_are_legible_in_light_and_dark", text_and_lines_are_legible_in_light_and_dark),
+        trial("nothing_is_asked_for_from_elsewhere", nothing_is_asked_for_from_elsewhere),
+        trial("the_animation_runs_and_can_be_held", the_animation_runs_and_can_be_held),
+    ];
+    libtest_mimic::run(&arguments, trials).exit_code()
+}
+
+/// A page that `sprung lab` writes, in a directory that goes with it.
+fn written(command: &str, name: &str) -> (tempfile::TempDir, PathBuf) {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join(name);
+    let done = Command::new(env!("CARGO_BIN_EXE_sprung")).args(["lab", command, "-o"]).arg(&path).output().unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    (directory, path)
+}
+
+fn report(program: &Path) -> (tempfile::TempDir, Page) {
+    let (directory, path) = written("compare", "report.html");
+    let page = Page::open(program, &path);
+    (directory, page)
+}
+
+const LINES: &str = "document.querySelectorAll('#trajectory polyline').length";
+const PICTURE: &str = "document.querySelector('#trajectory svg').outerHTML.length";
+
+fn a_click_on_a_toggle_changes_the_charts(program: &Path) {
+    let (_directory, mut page) = report(program);
+    assert_eq!(page.value(LINES), 6, "the truth and five methods");
+    assert_eq!(page.value("document.querySelectorAll('#motion rect').length"), 6);
+    page.click("input[value=heun]");
+    assert_eq!(page.value(LINES), 7);
+    assert_eq!(page.value("document.querySelectorAll('#motion rect').length"), 7);
+    page.click("input[value=explicit-euler]");
+    assert_eq!(page.value(LINES), 6);
+    let before = page.value(PICTURE);
+    page.click("#steps input[value='0']");
+    assert_ne!(page.value(PICTURE), before, "another step, another picture");
+    page.click("#all");
+    assert_eq!(page.value(LINES), 13);
+    page.click("#none");
+    assert_eq!(page.value(LINES), 1);
+    assert_eq!(page.errors, Vec::<String>::new());
+}
+
+fn the_keyboard_reaches_every_control(program: &Path) {
+    let (_directory, mut page) = report(program);
+    let mut reached = Vec::new();
+    // Once round: the slider of the time is the last.
+    while reached.last().is_none_or(|name| name != "time") && reached.len() < 40 {
+        page.press(Key::Tab);
+        let focused = page.value("(e => e === document.body ? '' : e.id || e.value)(document.activeElement)");
+        reached.push(focused.as_str().unwrap_or("").to_owned());
+        if reached.last().is_some_and(|name| name == "heun") {
+            let outline = page.value("getComputedStyle(document.activeElement).outlineStyle");
+            assert_eq!(outline, "solid", "focus can be seen");
+            page.press(Key::Space);
+            assert_eq!(page.value(LINES), 7, "space toggles");
+        }
+        if reached.last().is_some_and(|name| name == "play") {
+            let pressed = page.value("document.activeElement.getAttribute('aria-pressed')");
+            page.press(Key::Enter);
+            assert_ne!(page.value("document.activeElement.getAttribute('aria-pressed')"), pressed);
+        }
+    }
+    for name in ["explicit-euler", "heun", "exponential", "all", "none", "1", "play", "time"] {
+        assert!(reached.iter().any(|reached| reached == name), "{name} among {reached:?}");
+    }
+    assert_eq!(page.errors, Vec::<String>::new());
+}
+
+/// Contrast ratios of WCAG 2.2 between each colour and the page's: at least 4.5 for text, 2.5 for lines, which differ
+/// in dashes and have labels as well.
+const CONTRASTS: &str = "(() => {
+  const rgb = (text) => text.match(/[\\d.]+/g).slice(0, 3).map(Number);
+  const light = (text) => rgb(text).map((c) => c / 255)
+    .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, c, n) => sum + c * [0.2126, 0.7152, 0.0722][n], 0);
+  const paper = light(getComputedStyle(document.body).backgroundColor);
+  const contrast = (text) => {
+    const [low, high] = [paper, light(text)].sort((a, b) => a - b);
+    return (high + 0.05) / (low + 0.05);
+  };
+  const all = (selector, property) => [...document.querySelectorAll(selector)].map((e) => contrast(getComputedStyle(e)[property]));
+  return {
+    dark: paper < 0.2,
+    text: Math.min(...all('h1, p, label, th, td, figcaption', 'color'), ...all('svg text', 'fill')),
+    lines: Math.min(...all('#trajectory polyline', 'stroke')),
+  };
+})()";
+
+fn text_and_lines_are_legible_in_light_and_dark(program: &Path) {
+    let (_directory, mut page) = report(program);
+    page.click("#all");
+    for scheme in ["light", "dark"] {
+        let features = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
+        page.call("Emulation.setEmulatedMedia", features);
+        let contrasts = page.value(CONTRASTS);
+        assert_eq!(contrasts["dark"], scheme == "dark", "{contrasts}");
+        assert!(contrasts["text"].as_f64().unwrap() >= 4.5, "{scheme}: {contrasts}");
+        assert!(contrasts["lines"].as_f64().unwrap() >= 2.5, "{scheme}: {contrasts}");
+    }
+    assert_eq!(page.errors, Vec::<String>::new());
+}
+
+fn nothing_is_asked_for_from_elsewhere(program: &Path) {
+    let (_directory, mut page) = report(program);
+    page.click("#all");
+    page.value("new Promise((done) => setTimeout(done, 200))");
+    assert!(
+        !page.requests.is_empty() && page.requests.iter().all(|url| url.contains("report.html")),
+        "{:?}",
+        page.requests
+    );
+    assert!(page.value("document.querySelectorAll('table caption').length") == 3);
+    assert_eq!(page.errors, Vec::<String>::new());
+}
+
+fn the_animation_runs_and_can_be_held(program: &Path) {
+    let (_directory, path) = written("animate", "masses.html");
+    let mut page = Page::open(program, &path);
+    let held = "document.querySelector('svg').animationsPaused()";
+    let place = "document.querySelector('rect.m').getBoundingClientRect().x";
+    let moved = format!(
+        "(async () => {{ const x = {place}; for (let n = 0; n < 300 && {place} === x; n++) await new Promise(requestAnimationFrame); return {place} !== x; }})()"
+    );
+    assert_eq!(page.value(held), false);
+    assert_eq!(page.value(&moved), true);
+    page.click("#hold");
+    assert_eq!(page.value(held), true);
+    page.press(Key::Enter);
+    assert_eq!(page.value(held), false, "the button keeps the focus, and Enter works it");
+    assert_eq!(page.errors, Vec::<String>::new());
+}

@@ -1,0 +1,34 @@
+//! `cargo xtask figures`: the picture of the demo song that the README shows.
+
+use crate::shell::root;
+use sprung::analysis::figure::{Render, waveform_and_spectrogram};
+use sprung::io::Song;
+use sprung::patch::Patch;
+use sprung::preset::Preset;
+use sprung::render::{Job, Options, Tail};
+use std::fs::File;
+
+/// Renders the suite and draws it to `assets/demo.png`.
+pub(crate) fn run() -> Result<(), String> {
+    draw().map_err(|error| error.to_string())
+}
+
+fn draw() -> sprung::Result<()> {
+    let origin = "assets/midi/suite.mid";
+    let file = File::open(root().join(origin)).map_err(|error| sprung::Error::io(origin, error))?;
+    let song = Song::read(file, origin)?;
+    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch).collect();
+    let options = Options { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::Auto };
+    let job = Job { song: &song, patch: &programs[0], programs: &programs, options };
+    let (mut left, mut right) = (Vec::new(), Vec::new());
+    job.render(|block_left, block_right| {
+        left.extend(block_left);
+        right.extend(block_right);
+        Ok(())
+    })?;
+    let path = root().join("assets/demo.png");
+    let render = Render { left: &left, right: &right, sample_rate: 48_000.0 };
+    waveform_and_spectrogram(render, "suite.mid", &path)?;
+    println!("{}", path.display());
+    Ok(())
+}

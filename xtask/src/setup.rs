@@ -1,0 +1,136 @@
+//! `cargo xtask setup`: what the test suite needs on the system.
+
+use crate::shell::succeeds;
+use std::process::Command;
+
+/// How something is recognised.
+enum Probe {
+    /// A program that answers to `--version`.
+    Program(&'static str),
+    /// A program that answers to `-V`.
+    ShortProgram(&'static str),
+    /// A library that pkg-config knows.
+    Library(&'static str),
+}
+
+/// Something that the suite needs beyond Rust and its crates.
+struct Requirement {
+    probe: Probe,
+    /// Debian package that has it.
+    package: &'static str,
+    why: &'static str,
+    /// Whether the suite fails without it. Otherwise the tests that need it are ignored, and say so.
+    essential: bool,
+}
+
+const REQUIREMENTS: &[Requirement] = &[
+    Requirement {
+        probe: Probe::Program("c++"),
+        package: "g++",
+        why: "compiles the original listing, which the classic coefficients are compared with",
+        essential: true,
+    },
+    Requirement {
+        probe: Probe::Program("chromium"),
+        package: "chromium",
+        why: "opens the lab's reports and clicks in them",
+        essential: false,
+    },
+    Requirement {
+        probe: Probe::Program("pkg-config"),
+        package: "pkg-config",
+        why: "finds the sound libraries that the feature realtime is built with",
+        essential: true,
+    },
+    Requirement {
+        probe: Probe::Library("alsa"),
+        package: "libasound2-dev",
+        why: "sound cards and MIDI ports, for the feature realtime",
+        essential: true,
+    },
+    Requirement {
+        probe: Probe::Library("jack"),
+        package: "libjack-jackd2-dev",
+        why: "JACK servers, for the feature realtime",
+        essential: true,
+    },
+    Requirement {
+        probe: Probe::Program("jackd"),
+        package: "jackd2",
+        why: "a sound server without a sound card, to play live notes on",
+        essential: false,
+    },
+    Requirement {
+        probe: Probe::ShortProgram("tmux"),
+        package: "tmux",
+        why: "a terminal to drive the view of sprung play in",
+        essential: false,
+    },
+];
+
+/// Components of the Rust toolchain, with the command that each brings.
+const COMPONENTS: [(&str, &str); 2] = [("rustfmt", "fmt"), ("clippy", "clippy")];
+
+impl Requirement {
+    fn is_met(&self) -> bool {
+        match self.probe {
+            Probe::Program(program) => succeeds(program, &["--version"]),
+            Probe::ShortProgram(program) => succeeds(program, &["-V"]),
+            Probe::Library(library) => succeeds("pkg-config", &["--exists", library]),
+        }
+    }
+}
+
+/// Installs what is missing, or says how to.
+pub(crate) fn run() -> Result<(), String> {
+    let mut problems = Vec::new();
+    for (component, command) in COMPONENTS {
+        if !succeeds("cargo", &[command, "--version"]) {
+            println!("missing: {component}, a component of the Rust toolchain");
+            if !succeeds("rustup", &["component", "add", component]) {
+                problems.push(format!("install it with: rustup component add {component}"));
+            }
+        }
+    }
+    let missing: Vec<&Requirement> = REQUIREMENTS.iter().filter(|requirement| !requirement.is_met()).collect();
+    for Requirement { package, why, .. } in &missing {
+        println!("missing: {package}: {why}");
+    }
+    if !missing.is_empty() {
+        let packages: Vec<&str> = missing.iter().map(|requirement| requirement.package).collect();
+        let installed = install(&packages);
+        for Requirement { package, essential, .. } in missing.iter().filter(|requirement| !requirement.is_met()) {
+            let problem = match &installed {
+                Ok(()) => format!("{package} is installed, but what it should bring is not there"),
+                Err(by_hand) => format!("{package} is missing; {by_hand}"),
+            };
+            if *essential {
+                problems.push(problem);
+            } else {
+                println!("{problem}; without it some tests are ignored");
+            }
+        }
+    }
+    if problems.is_empty() {
+        println!("all that the test suite cannot do without is there");
+        return Ok(());
+    }
+    Err(problems.join("\n"))
+}
+
+/// Installs Debian packages when that needs no password.
+fn install(packages: &[&str]) -> Result<(), String> {
+    let by_hand = format!("install with: sudo apt-get install {}", packages.join(" "));
+    let is_root = Command::new("id").arg("-u").output().is_ok_and(|output| output.stdout.trim_ascii() == b"0");
+    let prefix: &[&str] = match (is_root, succeeds("sudo", &["-n", "true"])) {
+        (true, _) => &[],
+        (false, true) => &["sudo", "-n"],
+        (false, false) => return Err(by_hand),
+    };
+    let apt = |arguments: &[&str]| {
+        let words = [prefix, &["env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "--yes"], arguments].concat();
+        Command::new(words[0]).args(&words[1..]).status().is_ok_and(|status| status.success())
+    };
+    let install = [&["install", "--no-install-recommends"], packages].concat();
+    if apt(&["update"]) && apt(&install) { Ok(()) } else { Err(by_hand) }
+}

@@ -1,0 +1,164 @@
+//! Parts written in beats, and the standard MIDI file that they make.
+
+use midly::num::{u4, u7, u15, u24, u28};
+use midly::{Format, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, Track, TrackEvent, TrackEventKind};
+use sprung::dsp::random::uniform;
+use sprung::preset::Preset;
+
+/// Ticks per beat: a quarter note.
+const TICKS: u16 = 480;
+
+/// MIDI controllers that the songs use.
+pub(super) mod controller {
+    pub(in super::super) const WHEEL: u8 = 1;
+    pub(super) const DATA: u8 = 6;
+    pub(in super::super) const VOLUME: u8 = 7;
+    pub(in super::super) const PAN: u8 = 10;
+    pub(in super::super) const EXPRESSION: u8 = 11;
+    pub(super) const DATA_FINE: u8 = 38;
+    pub(in super::super) const PEDAL: u8 = 64;
+    pub(super) const RPN_FINE: u8 = 100;
+    pub(super) const RPN: u8 = 101;
+}
+
+/// One player: a track of its own on a channel of its own.
+pub(super) struct Part {
+    name: &'static str,
+    channel: u8,
+    bend_range: f64,
+    /// How far notes stray from their beat, in beats, and from their velocity, in per cent.
+    looseness: (f64, f64),
+    /// Tick, rank among the events of a tick (note-offs first, note-ons last), event.
+    events: Vec<(u32, u8, MidiMessage)>,
+}
+
+impl Part {
+    /// A part that plays a factory preset at a volume (controller 7) and a position (controller 10, 64 in the middle).
+    pub(super) fn new(name: &'static str, channel: u8, preset: &str, volume: u8, pan: u8) -> Result<Self, String> {
+        let program = Preset::factory().iter().position(|factory| factory.name == preset);
+        let program = program.ok_or_else(|| format!("there is no factory preset ‘{preset}’"))?;
+        let mut part = Self { name, channel, bend_range: 2.0, looseness: (0.0, 0.0), events: Vec::new() };
+        part.add(0.0, 1, MidiMessage::ProgramChange { program: u7::new(program as u8) });
+        part.control(0.0, controller::VOLUME, volume);
+        part.control(0.0, controller::PAN, pan);
+        Ok(part)
+    }
+
+    /// Lets notes stray by up to `beats` and by up to `percent` of their velocity, the same way each time.
+    pub(super) fn loosen(mut self, beats: f64, percent: f64) -> Self {
+        self.looseness = (beats, percent);
+        self
+    }
+
+    fn add(&mut self, beat: f64, rank: u8, message: MidiMessage) {
+        self.events.push((ticks(beat), rank, message));
+    }
+
+    /// A note from `beat` for `length` beats.
+    pub(super) fn note(&mut self, beat: f64, length: f64, key: u8, velocity: u8) {
+        let (beats, percent) = self.looseness;
+        let serial = 2 * self.events.len() as u64;
+        let stray = |n: u64| f64::from(uniform(u64::from(self.channel), serial + n));
+        let beat = (beat + beats * stray(0)).max(0.0);
+        let velocity = (f64::from(velocity) * (1.0 + percent * 0.01 * stray(1))).clamp(1.0, 127.0);
+        let (key, vel) = (u7::new(key), u7::new(velocity as u8));
+        self.add(beat, 3, MidiMessage::NoteOn { key, vel });
+        self.add(beat + length, 0, MidiMessage::NoteOff { key, vel: u7::new(64) });
+    }
+
+    /// Notes struck together.
+    pub(super) fn chord(&mut self, beat: f64, length: f64, keys: &[u8], velocity: u8) {
+        keys.iter().for_each(|key| self.note(beat, length, *key, velocity));
+    }
+
+    /// A controller takes a value.
+    pub(super) fn control(&mut self, beat: f64, controller: u8, value: u8) {
+        self.add(beat, 2, MidiMessage::Controller { controller: u7::new(controller), value: u7::new(value) });
+    }
+
+    /// A controller moves evenly between two values, in steps of a sixteenth of a beat.
+    pub(super) fn ramp(&mut self, controller: u8, from: (f64, u8), to: (f64, u8)) {
+        sixteenths(from.0, to.0, |beat, progress| {
+            let value = f64::from(from.1) + (f64::from(to.1) - f64::from(from.1)) * progress;
+            self.control(beat, controller, (value + 0.5) as u8);
+        });
+    }
+
+    /// The sustain pedal goes down at `beat` and up at the end of `length`.
+    pub(super) fn pedal(&mut self, beat: f64, length: f64) {
+        self.control(beat, controller::PEDAL, 127);
+        self.control(beat + length, controller::PEDAL, 0);
+    }
+
+    /// Sets the range of the pitch wheel in semitones, by registered parameter 0.
+    pub(super) fn bend_range(&mut self, semitones: u8) {
+        self.bend_range = f64::from(semitones);
+        for (controller, value) in [
+            (controller::RPN, 0),
+            (controller::RPN_FINE, 0),
+            (controller::DATA, semitones),
+            (controller::DATA_FINE, 0),
+            (controller::RPN, 127),
+            (controller::RPN_FINE, 127),
+        ] {
+            self.control(0.0, controller, value);
+        }
+    }
+
+    /// The pitch wheel moves evenly between two pitches in semitones.
+    pub(super) fn bend(&mut self, from: (f64, f64), to: (f64, f64)) {
+        let range = self.bend_range;
+        sixteenths(from.0, to.0, |beat, progress| {
+            let bend = PitchBend::from_f64((from.1 + (to.1 - from.1) * progress) / range);
+            self.add(beat, 2, MidiMessage::PitchBend { bend });
+        });
+    }
+
+    fn track(mut self) -> Track<'static> {
+        self.events.sort_by_key(|(tick, rank, _)| (*tick, *rank));
+        let channel = u4::new(self.channel);
+        let messages = self.events.into_iter();
+        timed(self.name, messages.map(|(tick, _, message)| (tick, TrackEventKind::Midi { channel, message })))
+    }
+}
+
+/// Calls `at` with a beat and the share of the way gone, on every sixteenth of a beat and at the end.
+fn sixteenths(from: f64, to: f64, mut at: impl FnMut(f64, f64)) {
+    let steps = ((to - from) * 16.0 + 0.5).max(1.0) as u32;
+    for step in 0..=steps {
+        let progress = f64::from(step) / f64::from(steps);
+        at(from + (to - from) * progress, progress);
+    }
+}
+
+fn ticks(beat: f64) -> u32 {
+    (beat * f64::from(TICKS) + 0.5) as u32
+}
+
+/// A named track of events at their ticks.
+fn timed(name: &'static str, events: impl Iterator<Item = (u32, TrackEventKind<'static>)>) -> Track<'static> {
+    let event = |delta, kind| TrackEvent { delta: u28::new(delta), kind };
+    let mut track = vec![event(0, TrackEventKind::Meta(MetaMessage::TrackName(name.as_bytes())))];
+    let mut now = 0;
+    for (tick, kind) in events {
+        track.push(event(tick - now, kind));
+        now = tick;
+    }
+    track.push(event(0, TrackEventKind::Meta(MetaMessage::EndOfTrack)));
+    track
+}
+
+/// The file: a first track with the title and the tempo (beat, beats per minute), then a track per part.
+pub(super) fn file(title: &'static str, tempo: &[(f64, f64)], parts: Vec<Part>) -> Result<Vec<u8>, String> {
+    let tempo = tempo.iter().map(|(beat, bpm)| {
+        let microseconds = u24::new((60e6 / bpm + 0.5) as u32);
+        (ticks(*beat), TrackEventKind::Meta(MetaMessage::Tempo(microseconds)))
+    });
+    let four_four = (0, TrackEventKind::Meta(MetaMessage::TimeSignature(4, 2, 24, 8)));
+    let mut smf = Smf::new(Header::new(Format::Parallel, Timing::Metrical(u15::new(TICKS))));
+    smf.tracks.push(timed(title, std::iter::once(four_four).chain(tempo)));
+    smf.tracks.extend(parts.into_iter().map(Part::track));
+    let mut bytes = Vec::new();
+    smf.write_std(&mut bytes).map_err(|error| error.to_string())?;
+    Ok(bytes)
+}

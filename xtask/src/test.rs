@@ -1,0 +1,230 @@
+//! `cargo xtask test`: the whole suite, step by step, with a count of what really ran.
+
+use crate::setup;
+use crate::shell::{cargo, run_and_read};
+use std::fmt;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// What a step's output says of how much it did.
+#[derive(Clone, Copy, PartialEq)]
+enum Shows {
+    /// Nothing but success or failure: it counts as one check.
+    OneCheck,
+    /// The test harness's `test result:` lines.
+    Tests,
+    /// Criterion's `Success` lines.
+    Benches,
+}
+
+struct Step {
+    name: &'static str,
+    arguments: &'static str,
+    environment: &'static [(&'static str, &'static str)],
+    shows: Shows,
+}
+
+const DENY: (&str, &str) = ("RUSTDOCFLAGS", "-D warnings");
+
+const STEPS: &[Step] = &[
+    Step { name: "format", arguments: "fmt --all --check", environment: &[], shows: Shows::OneCheck },
+    Step {
+        name: "lint, all features",
+        arguments: "clippy --workspace --all-targets --all-features -- -D warnings",
+        environment: &[],
+        shows: Shows::OneCheck,
+    },
+    Step {
+        name: "lint, default features",
+        arguments: "clippy --package sprung --all-targets -- -D warnings",
+        environment: &[],
+        shows: Shows::OneCheck,
+    },
+    Step {
+        name: "lint, no features",
+        arguments: "clippy --package sprung --all-targets --no-default-features -- -D warnings",
+        environment: &[],
+        shows: Shows::OneCheck,
+    },
+    Step {
+        name: "tests",
+        arguments: "test --workspace --all-features --no-fail-fast",
+        environment: &[],
+        shows: Shows::Tests,
+    },
+    Step {
+        name: "golden, release",
+        arguments: "test --release --package sprung --no-default-features --features analysis --test golden",
+        environment: &[],
+        shows: Shows::Tests,
+    },
+    Step {
+        name: "golden, this CPU",
+        arguments: "test --release --package sprung --no-default-features --features analysis --test golden \
+            --target-dir target/native",
+        environment: &[("RUSTFLAGS", "-C target-cpu=native")],
+        shows: Shows::Tests,
+    },
+    Step {
+        name: "documentation",
+        arguments: "doc --workspace --no-deps --all-features",
+        environment: &[DENY],
+        shows: Shows::OneCheck,
+    },
+    Step {
+        name: "benches run",
+        arguments: "bench --package sprung --all-features --benches -- --test",
+        environment: &[],
+        shows: Shows::Benches,
+    },
+];
+
+/// How much ran, and how it went.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Count {
+    passed: usize,
+    failed: usize,
+    skipped: usize,
+}
+
+impl fmt::Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} passed, {} failed, {} skipped", self.passed, self.failed, self.skipped)
+    }
+}
+
+/// A line of the summary.
+struct Outcome {
+    name: &'static str,
+    count: Count,
+    remark: &'static str,
+    time: Duration,
+}
+
+/// Runs all steps, whatever fails, and sums up.
+pub(crate) fn run() -> Result<(), String> {
+    let mut outcomes = vec![timed("setup", || match setup::run() {
+        Ok(()) => (Count { passed: 1, ..Count::default() }, ""),
+        Err(message) => {
+            eprintln!("{message}");
+            (Count { failed: 1, ..Count::default() }, "")
+        }
+    })];
+    outcomes.extend(STEPS.iter().map(|step| timed(step.name, || step.run())));
+
+    println!("\n{:<24} {:<8} {:>9}  ran", "step", "result", "time");
+    let mut total = Count::default();
+    for Outcome { name, count, remark, time } in &outcomes {
+        let result = if count.failed == 0 { "ok" } else { "FAILED" };
+        println!("{name:<24} {result:<8} {:>7.1} s  {count}{remark}", time.as_secs_f64());
+        total.passed += count.passed;
+        total.failed += count.failed;
+        total.skipped += count.skipped;
+    }
+    println!("\n{total}");
+    if total.failed == 0 { Ok(()) } else { Err("the suite failed".to_owned()) }
+}
+
+fn timed(name: &'static str, work: impl FnOnce() -> (Count, &'static str)) -> Outcome {
+    println!("\n── {name}");
+    let start = Instant::now();
+    let (count, remark) = work();
+    Outcome { name, count, remark, time: start.elapsed() }
+}
+
+impl Step {
+    fn command(&self) -> Command {
+        let mut command = cargo(self.arguments);
+        command.envs(self.environment.iter().copied());
+        command
+    }
+
+    fn run(&self) -> (Count, &'static str) {
+        match run_and_read(self.command()) {
+            Ok((succeeded, lines)) => self.shows.judge(succeeded, &lines),
+            Err(message) => {
+                eprintln!("{message}");
+                (Count { failed: 1, ..Count::default() }, " (did not start)")
+            }
+        }
+    }
+}
+
+impl Shows {
+    /// What ran, from the output of a step; a step whose filter met nothing, or that broke before it could count,
+    /// has failed once.
+    fn judge(self, succeeded: bool, lines: &[String]) -> (Count, &'static str) {
+        let mut count = match self {
+            Shows::OneCheck => Count { passed: usize::from(succeeded), ..Count::default() },
+            Shows::Benches => {
+                Count { passed: lines.iter().filter(|line| line.trim() == "Success").count(), ..Count::default() }
+            }
+            Shows::Tests => count_tests(lines),
+        };
+        let mut remark = "";
+        if count.passed + count.failed == 0 && succeeded {
+            remark = " (nothing ran)";
+            count.failed = 1;
+        } else if !succeeded && count.failed == 0 {
+            if self != Shows::OneCheck {
+                remark = " (broke off)";
+            }
+            count.failed = 1;
+        }
+        (count, remark)
+    }
+}
+
+/// The sum of the harness's `test result: ok. 3 passed; 0 failed; 1 ignored; …` lines.
+fn count_tests(lines: &[String]) -> Count {
+    let mut count = Count::default();
+    for result in lines.iter().filter_map(|line| line.strip_prefix("test result: ")) {
+        let numbers = result.split(['.', ';']).filter_map(|part| part.trim().split_once(' '));
+        for (number, what) in numbers {
+            let Ok(number) = number.parse::<usize>() else { continue };
+            match what {
+                "passed" => count.passed += number,
+                "failed" => count.failed += number,
+                "ignored" => count.skipped += number,
+                _ => {}
+            }
+        }
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(text: &str) -> Vec<String> {
+        text.lines().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn results_are_summed() {
+        let output = lines(
+            "running 4 tests\ntest a ... ok\n\
+            test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; 9 filtered out; finished in 0.00s\n\
+            test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; finished in 1.50s",
+        );
+        assert_eq!(Shows::Tests.judge(false, &output), (Count { passed: 5, failed: 1, skipped: 1 }, ""));
+    }
+
+    #[test]
+    fn a_step_that_ran_nothing_has_failed() {
+        let nothing = lines("test result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; 5 filtered out");
+        let failed_once = Count { failed: 1, ..Count::default() };
+        assert_eq!(Shows::Tests.judge(true, &nothing), (failed_once, " (nothing ran)"));
+        assert_eq!(Shows::Benches.judge(true, &[]), (failed_once, " (nothing ran)"));
+        assert_eq!(Shows::Tests.judge(false, &[]), (failed_once, " (broke off)"));
+        assert_eq!(Shows::OneCheck.judge(false, &[]), (failed_once, ""));
+        assert_eq!(Shows::OneCheck.judge(true, &[]).0.passed, 1);
+    }
+
+    #[test]
+    fn benches_are_counted() {
+        let output = lines("Testing oscillator\nSuccess\n\nTesting bank\nSuccess");
+        assert_eq!(Shows::Benches.judge(true, &output).0.passed, 2);
+    }
+}
