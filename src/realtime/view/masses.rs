@@ -15,11 +15,10 @@ pub(super) fn draw(snapshot: &Snapshot, modes: usize, frame: &mut Frame, area: R
         return;
     }
     let shown = modes.min(usize::from(area.width));
-    let step = (usize::from(area.width) / shown).clamp(1, 6);
     let rest = f32::from(area.height - 1) / 2.0;
     let buffer = frame.buffer_mut();
     for (m, mass) in snapshot.masses.iter().enumerate().take(shown) {
-        let x = area.x + (m * step + step / 2) as u16;
+        let x = area.x + ((2 * m + 1) * usize::from(area.width) / (2 * shown)) as u16;
         let level = (db_from_gain(f64::from(mass.energy).sqrt()) / -DARKEST + 1.0).clamp(0.0, 1.0);
         // The cube root leaves small movements to be seen.
         let height = libm::cbrtf(mass.displacement.clamp(-1.0, 1.0));
