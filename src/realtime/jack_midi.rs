@@ -40,7 +40,7 @@ struct Process {
 
 impl jack::ProcessHandler for Process {
     fn process(&mut self, client: &Client, scope: &ProcessScope) -> Control {
-        let (now, micros) = (Instant::now(), client.time());
+        let (now, micros) = both_clocks(client);
         let cycle = scope.last_frame_time();
         if let Some(sender) = &mut self.sender {
             for message in self.port.iter(scope) {
@@ -56,6 +56,22 @@ impl jack::ProcessHandler for Process {
         }
         Control::Continue
     }
+}
+
+/// The system's time and the server's at one moment: of a few pairs, the one read with the least between.
+fn both_clocks(client: &Client) -> (Instant, u64) {
+    let read = || {
+        let now = Instant::now();
+        let micros = client.time();
+        (now.elapsed(), now, micros)
+    };
+    let (mut least, mut now, mut micros) = read();
+    for (between, again, at) in [read(), read()] {
+        if between < least {
+            (least, now, micros) = (between, again, at);
+        }
+    }
+    (now, micros)
 }
 
 impl Drop for Process {

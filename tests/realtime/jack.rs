@@ -16,7 +16,7 @@ struct Server(Child);
 impl Server {
     fn start(name: &str) -> Self {
         let period = PERIOD.to_string();
-        let arguments = ["-n", name, "--no-realtime", "-d", "dummy", "-r", "48000", "-p", &period];
+        let arguments = ["-n", name, "--no-realtime", "-S", "-t", "5000", "-d", "dummy", "-r", "48000", "-p", &period];
         let mut command = Command::new("jackd");
         command.args(arguments).env("JACK_NO_AUDIO_RESERVATION", "1").stdout(Stdio::null()).stderr(Stdio::null());
         let server = Self(command.spawn().unwrap());
