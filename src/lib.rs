@@ -10,6 +10,7 @@
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
 //! | [`io`], [`render`](mod@render) | MIDI files in, WAV files out, and the offline renderer between them |
 //! | [`lab`] | ways to integrate a mass on a spring, side by side: what the oscillator is measured against |
+//! | `realtime` | sound devices, MIDI ports and a terminal to play from (feature `realtime`) |
 //!
 //! A note, rendered:
 //!
@@ -45,6 +46,8 @@ pub mod lab;
 pub mod params;
 pub mod patch;
 pub mod preset;
+#[cfg(feature = "realtime")]
+pub mod realtime;
 pub mod render;
 pub mod units;
 

@@ -14,6 +14,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("engine", &["engine", "dsp", "params", "patch", "units"]),
     ("io", &["io", "dsp", "engine", "error", "units", "Error", "Result"]),
     ("render", &["render", "dsp", "engine", "error", "io", "params", "patch", "preset", "units", "Error", "Result"]),
+    (
+        "realtime",
+        &["realtime", "engine", "error", "io", "params", "patch", "preset", "render", "units", "Error", "Result"],
+    ),
     ("figure", &["figure", "error", "Error", "Result"]),
     ("analysis", &["analysis", "error", "figure", "units", "Error", "Result"]),
     ("lab", &["lab", "dsp", "error", "figure", "Error", "Result"]),
@@ -28,7 +32,13 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("plotters", &["figure", "analysis", "lab"]),
     ("ebur128", &["render"]),
     ("std::fs", &["io", "preset", "analysis", "cli"]),
-    ("std::thread", &[]),
+    ("alsa", &["realtime"]),
+    ("cpal", &["realtime"]),
+    ("jack", &["realtime"]),
+    ("midir", &["realtime"]),
+    ("rtrb", &["realtime"]),
+    ("ratatui", &["realtime"]),
+    ("std::thread", &["realtime", "cli"]),
 ];
 
 fn sources(folder: &Path, into: &mut Vec<(String, String)>) {

@@ -4,6 +4,8 @@ mod interrupt;
 mod lab;
 mod manual;
 mod parameters;
+#[cfg(feature = "realtime")]
+mod play;
 mod presets;
 mod progress;
 mod quantity;
@@ -46,6 +48,10 @@ enum Command {
     /// Render a MIDI file or some notes to a WAV file
     #[command(after_help = render::EXAMPLES)]
     Render(Box<render::Args>),
+    /// Play live: a MIDI file, a keyboard, or the terminal
+    #[cfg(feature = "realtime")]
+    #[command(after_help = play::EXAMPLES)]
+    Play(Box<play::Args>),
     /// List, show or check presets
     #[command(after_help = presets::EXAMPLES)]
     Presets(presets::Args),
@@ -66,6 +72,8 @@ enum Command {
 pub(crate) fn run() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
+        #[cfg(feature = "realtime")]
+        Command::Play(args) => play::run(&args),
         Command::Presets(args) => presets::run(&args),
         Command::Params(args) => parameters::run(&args),
         Command::Lab(args) => lab::run(&args),
@@ -124,6 +132,8 @@ mod tests {
             render::EXAMPLES,
             presets::EXAMPLES,
             parameters::EXAMPLES,
+            #[cfg(feature = "realtime")]
+            play::EXAMPLES,
             lab::EXAMPLES,
             manual::EXAMPLES,
             manual::COMPLETION_EXAMPLES,

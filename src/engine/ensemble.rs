@@ -1,6 +1,6 @@
 //! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
 
-use super::{Event, EventKind, Synth};
+use super::{Event, EventKind, Snapshot, Synth};
 use crate::params::Param;
 use crate::patch::Patch;
 
@@ -98,6 +98,18 @@ impl Ensemble {
                 add(right, scratch_right);
             }
         }
+    }
+
+    /// Plays another patch on a channel from its next note on. Real-time safe.
+    pub fn set_patch(&mut self, channel: u8, patch: &Patch) {
+        self.synths[usize::from(channel & 15)].set_patch(patch);
+    }
+
+    /// What sounds now, on all channels together. Real-time safe.
+    pub fn snapshot(&self) -> Snapshot {
+        let mut snapshot = Snapshot::default();
+        self.synths.iter().for_each(|synth| synth.show(&mut snapshot));
+        snapshot
     }
 
     /// Whether nothing sounds any more. Real-time safe.

@@ -8,10 +8,12 @@ mod damping;
 pub mod ensemble;
 pub mod event;
 mod fader;
+pub mod snapshot;
 pub mod synth;
 mod voice;
 pub mod voice_manager;
 
 pub use ensemble::Ensemble;
 pub use event::{Event, EventKind};
+pub use snapshot::Snapshot;
 pub use synth::Synth;

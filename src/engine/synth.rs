@@ -4,7 +4,7 @@ use super::channel::Channel;
 use super::controls::Smoother;
 use super::voice::{Instrument, SynthVoice};
 use super::voice_manager::{Note, PlayMode, VoiceManager};
-use super::{Event, EventKind};
+use super::{Event, EventKind, Snapshot};
 use crate::dsp::CONTROL_FRAMES;
 use crate::params::Param;
 use crate::patch::Patch;
@@ -89,6 +89,11 @@ impl Synth {
     /// Whether nothing sounds. An event may change that.
     pub fn is_silent(&self) -> bool {
         self.manager.is_silent()
+    }
+
+    /// Adds what sounds now to a snapshot. Real-time safe.
+    pub fn show(&self, snapshot: &mut Snapshot) {
+        self.manager.sounding_voices().for_each(|voice| snapshot.add(voice));
     }
 
     /// Most notes that have sounded at once.

@@ -63,7 +63,7 @@ pub(crate) struct SynthVoice {
     sample_rate: f64,
     /// Seconds a frame.
     period: f64,
-    bank: ModeBank,
+    pub(super) bank: ModeBank,
     exciter: Exciter,
     drive: Drive,
     /// T60 of each mode as a multiple of the decay.

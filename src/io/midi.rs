@@ -4,6 +4,7 @@ use super::song::{Song, SongEvent};
 use super::tempo::TempoMap;
 use crate::engine::EventKind;
 use crate::error::Error;
+use midly::live::LiveEvent;
 use midly::{Format, Header, MetaMessage, MidiMessage, PitchBend, TrackEventKind};
 use std::io::Read;
 
@@ -106,6 +107,15 @@ impl TrackReader {
             }
         }
         Ok(())
+    }
+}
+
+/// The channel and event of one complete MIDI message, as a port delivers them; none for what is not a channel
+/// message. Real-time safe.
+pub fn parse_message(bytes: &[u8]) -> Option<(u8, EventKind)> {
+    match LiveEvent::parse(bytes) {
+        Ok(LiveEvent::Midi { channel, message }) => Some((channel.as_int(), translate(message))),
+        _ => None,
     }
 }
 

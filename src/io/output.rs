@@ -1,5 +1,7 @@
 //! Where output goes: a file that appears whole or not at all, a device, a named pipe, or standard output.
 
+use super::riff;
+use super::wav::WavFormat;
 use crate::error::{Error, Result};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Seek, SeekFrom, Stdout, Write};
@@ -104,6 +106,18 @@ impl Output {
     /// The stream to write to.
     pub fn stream(&mut self) -> &mut OutputStream {
         &mut self.stream
+    }
+
+    /// Completes a WAV whose writing failed, so that what got as far as the disk can be played: cuts it after its last
+    /// whole frame and tells the header its length, which takes no further room. Gives the number of frames.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be changed, has no whole header, or is not a file.
+    pub fn salvage_wav(&mut self, format: WavFormat) -> Result<u64> {
+        let OutputStream::File(file) = &mut self.stream else {
+            return Err(Error::io(&self.name, ErrorKind::NotSeekable.into()));
+        };
+        riff::salvage(file, format.frame_len()).map_err(|source| Error::io(&self.name, source))
     }
 
     /// Gives the file its name. All must have been written and flushed.

@@ -1,6 +1,7 @@
 //! Between hound and the output: completes the header of a WAV that cannot be gone back to, and pads odd chunks.
 
-use std::io::{Error, ErrorKind, Result, Seek, SeekFrom, Write};
+use std::fs::File;
+use std::io::{Error, ErrorKind, Read, Result, Seek, SeekFrom, Write};
 
 /// Bytes of `RIFF` and its size, which the size itself does not count.
 const RIFF_PREAMBLE: u64 = 8;
@@ -88,5 +89,60 @@ impl<W: Write + Seek> Seek for RiffSink<W> {
         }
         self.patching = Some(offset);
         Ok(offset)
+    }
+}
+
+/// Makes the file that a broken-off writer left a whole one: ends it after its last whole frame and sets the sizes of
+/// the RIFF and data chunks. Gives the number of frames. `frame_len` is even, so that no padding is needed.
+pub(super) fn salvage(file: &mut File, frame_len: u64) -> Result<u64> {
+    let len = file.metadata()?.len().min(u64::from(u32::MAX));
+    let mut header = [0; 256];
+    file.seek(SeekFrom::Start(0))?;
+    let header_len = file.read(&mut header)?;
+    let data = header[..header_len].windows(4).position(|id| id == b"data").map(|id| id as u64 + 8);
+    let Some(data) = data.filter(|data| *data <= len) else {
+        return Err(Error::new(ErrorKind::UnexpectedEof, "nothing was recorded"));
+    };
+    let frames = (len - data) / frame_len;
+    let data_len = frames * frame_len;
+    file.set_len(data + data_len)?;
+    for (position, size) in [(4, data + data_len - RIFF_PREAMBLE), (data - 4, data_len)] {
+        file.seek(SeekFrom::Start(position))?;
+        file.write_all(&(size as u32).to_le_bytes())?;
+    }
+    Ok(frames)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{SampleFormat, WavFormat, WavWriter};
+
+    #[test]
+    fn a_file_that_broke_off_is_whole_up_to_there() {
+        let format = WavFormat { sample_rate: 8000, channels: 2, samples: SampleFormat::Float32 };
+        let mut whole = std::io::Cursor::new(Vec::new());
+        let mut writer = WavWriter::new(&mut whole, "x", format, None, None).unwrap();
+        writer.write(&[1.0, 2.0, 3.0], &[-1.0, -2.0, -3.0]).unwrap();
+        writer.finish().unwrap();
+        let mut whole = whole.into_inner();
+        let data = whole.len() - 24;
+        // As it is before the sizes are written.
+        whole[4..8].fill(0);
+        whole[data - 4..data].fill(0);
+        for (len, expected) in
+            [(whole.len(), Some(3)), (data + 15, Some(1)), (data, Some(0)), (data - 1, None), (0, None)]
+        {
+            let mut file = tempfile::tempfile().unwrap();
+            file.write_all(&whole[..len]).unwrap();
+            let frames = salvage(&mut file, 8).ok();
+            assert_eq!(frames, expected, "{len} bytes");
+            file.seek(SeekFrom::Start(0)).unwrap();
+            if let Some(frames) = frames {
+                let samples: Vec<f32> =
+                    hound::WavReader::new(file).unwrap().into_samples().map(|sample| sample.unwrap()).collect();
+                assert_eq!(samples, [1.0, -1.0, 2.0, -2.0, 3.0, -3.0][..2 * frames as usize]);
+            }
+        }
     }
 }

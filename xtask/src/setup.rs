@@ -7,6 +7,10 @@ use std::process::Command;
 enum Probe {
     /// A program that answers to `--version`.
     Program(&'static str),
+    /// A program that answers to `-V`.
+    ShortProgram(&'static str),
+    /// A library that pkg-config knows.
+    Library(&'static str),
 }
 
 /// Something that the suite needs beyond Rust and its crates.
@@ -32,6 +36,36 @@ const REQUIREMENTS: &[Requirement] = &[
         why: "opens the lab's reports and clicks in them",
         essential: false,
     },
+    Requirement {
+        probe: Probe::Program("pkg-config"),
+        package: "pkg-config",
+        why: "finds the sound libraries that the feature realtime is built with",
+        essential: true,
+    },
+    Requirement {
+        probe: Probe::Library("alsa"),
+        package: "libasound2-dev",
+        why: "sound cards and MIDI ports, for the feature realtime",
+        essential: true,
+    },
+    Requirement {
+        probe: Probe::Library("jack"),
+        package: "libjack-jackd2-dev",
+        why: "JACK servers, for the feature realtime",
+        essential: true,
+    },
+    Requirement {
+        probe: Probe::Program("jackd"),
+        package: "jackd2",
+        why: "a sound server without a sound card, to play live notes on",
+        essential: false,
+    },
+    Requirement {
+        probe: Probe::ShortProgram("tmux"),
+        package: "tmux",
+        why: "a terminal to drive the view of sprung play in",
+        essential: false,
+    },
 ];
 
 /// Components of the Rust toolchain, with the command that each brings.
@@ -41,6 +75,8 @@ impl Requirement {
     fn is_met(&self) -> bool {
         match self.probe {
             Probe::Program(program) => succeeds(program, &["--version"]),
+            Probe::ShortProgram(program) => succeeds(program, &["-V"]),
+            Probe::Library(library) => succeeds("pkg-config", &["--exists", library]),
         }
     }
 }

@@ -124,14 +124,14 @@ pub(super) fn run(args: &Args) -> Result<()> {
     report::tell(&report, &target, args.json)
 }
 
-fn with_settings(mut patch: Patch, settings: &[(Param, f32)]) -> Patch {
+pub(in crate::cli) fn with_settings(mut patch: Patch, settings: &[(Param, f32)]) -> Patch {
     for (param, value) in settings {
         patch.set(*param, *value);
     }
     patch
 }
 
-fn read_song(path: &Path) -> Result<Song> {
+pub(in crate::cli) fn read_song(path: &Path) -> Result<Song> {
     if path == Path::new("-") {
         return Song::read(std::io::stdin().lock(), "stdin");
     }
@@ -147,7 +147,7 @@ fn chord(args: &Args, patch: &Patch) -> Result<Song> {
     Ok(Song::chord(&keys, f32::from(args.velocity) / 127.0, args.length))
 }
 
-fn warn_of_missing_programs(song: &Song, programs: usize) {
+pub(in crate::cli) fn warn_of_missing_programs(song: &Song, programs: usize) {
     let missing: BTreeSet<(u8, u8)> = song
         .events
         .iter()

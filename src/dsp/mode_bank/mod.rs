@@ -21,9 +21,9 @@ mod vector;
 #[allow(unsafe_code)]
 mod x86;
 
-use super::CONTROL_FRAMES;
 use super::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
 use super::exciter::Drive;
+use super::{CONTROL_FRAMES, Coefficients};
 use control::{Pitch, UNIT, Wide};
 use kernel::{Form, Modes, Output, Row, State};
 use levels::Kernels;
@@ -394,6 +394,25 @@ impl ModeBank {
         }
         let [left, right] = &self.output;
         [&left[start..end], &(if self.stereo { right } else { left })[start..end]]
+    }
+
+    /// Where mode `m` is, as heard at full gain, and its squared amplitude: to look at. Within a tick that is rendered
+    /// by tables, as of its start.
+    pub fn motion(&self, m: usize) -> (f32, f32) {
+        let State { x, v } = &self.states[self.current];
+        let (x, v, level, sweep) = (x.0[m], v.0[m], self.modes.level.0[m], self.modes.sweep.0[m]);
+        let energy = if self.ahead {
+            x * x + v * v
+        } else {
+            let c = Coefficients {
+                zeta: self.modes.zeta.0[m].into(),
+                omega2: f64::from(self.modes.omega2.0[m] * sweep * sweep),
+                x0: 0.0,
+                v0: 0.0,
+            };
+            (c.energy(x.into(), f64::from(v * sweep)) as f32).max(0.0)
+        };
+        (x * level, energy * level * level)
     }
 
     /// The sum of the squared amplitudes at which the modes ring, as heard; modes that have all but stopped are set

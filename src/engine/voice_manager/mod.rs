@@ -144,6 +144,11 @@ impl<V: Voice> VoiceManager<V> {
         self.slots.iter_mut().filter(|slot| slot.state != State::Free).map(|slot| (&slot.note, &mut slot.voice))
     }
 
+    /// The voices that are not free, to look at.
+    pub fn sounding_voices(&self) -> impl Iterator<Item = &V> {
+        self.slots.iter().filter(|slot| slot.state != State::Free).map(|slot| &slot.voice)
+    }
+
     /// Whether every voice is free.
     pub fn is_silent(&self) -> bool {
         self.slots.iter().all(|slot| slot.state == State::Free)

@@ -1,0 +1,258 @@
+//! `sprung play`: the instrument live, on a sound device.
+
+use super::render::{read_song, warn_of_missing_programs, with_settings};
+use super::{complain, interrupt, presets, quantity};
+use sprung::io::{Output, Target};
+use sprung::params::Param;
+use sprung::patch::Patch;
+use sprung::preset::Preset;
+use sprung::realtime::{
+    Choice, Found, JackMidi, LiveInputs, LiveSender, Load, MidiPorts, PatchSender, Player, Recording, Session, Setup,
+    Status, Wanted, device, midi_ports, view,
+};
+use sprung::render::{BLOCKS, SAMPLE_RATES};
+use sprung::{Error, Result};
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  sprung play
+  sprung play song.mid --preset Kick --record take.wav
+  sprung play --midi-in none --buffer 64 --set decay=\"3 s\"
+  sprung play --host jack --midi-in Keystation --headless
+  sprung play --list";
+
+/// How often devices, ports and the recording are looked after.
+const POLL: Duration = Duration::from_millis(20);
+
+#[derive(clap::Args)]
+pub(super) struct Args {
+    /// Standard MIDI file of type 0 or 1 to play; - is stdin
+    song: Option<PathBuf>,
+    /// Factory preset or preset file (.toml) that plays what no program change says otherwise
+    #[arg(long, default_value = "init", value_name = "NAME|FILE.toml")]
+    preset: String,
+    /// Set a parameter of every preset used; may be repeated. See `sprung params`
+    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting)]
+    set: Vec<(Param, f32)>,
+    /// MIDI ports to listen to: all, none, or those with this in their name
+    #[arg(long, default_value = "all", value_name = "NAME|all|none")]
+    midi_in: String,
+    /// Sound device, by its name or a part of it. See --list
+    #[arg(long, value_name = "NAME")]
+    device: Option<String>,
+    /// Sound system: alsa, jack or another that --list shows
+    #[arg(long, value_name = "NAME")]
+    host: Option<String>,
+    /// Sample rate, 8000-768000 Hz [default: 48000 if the device has it]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
+        .range(i64::from(*SAMPLE_RATES.start())..=i64::from(*SAMPLE_RATES.end())))]
+    rate: Option<u32>,
+    /// Frames per block, 1-65536: fewer make keys answer sooner, more are safer [default: 256 or the nearest there is]
+    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
+        .range(*BLOCKS.start() as i64..=*BLOCKS.end() as i64))]
+    buffer: Option<u32>,
+    /// Seed of all randomness, 0-18446744073709551615
+    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
+    seed: u64,
+    /// List sound systems, their devices, and MIDI ports
+    #[arg(long)]
+    list: bool,
+    /// Record what is played to a WAV file of 32-bit floats
+    #[arg(long, value_name = "OUT.wav")]
+    record: Option<PathBuf>,
+    /// Overwrite an existing file
+    #[arg(long, requires = "record")]
+    force: bool,
+    /// No terminal view: plain lines on stderr; ends with the song
+    #[arg(long)]
+    headless: bool,
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
+    device::silence_library();
+    if args.list {
+        return list();
+    }
+    let headless = args.headless || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal();
+    let preset = presets::load(&args.preset)?;
+    let patch = with_settings(preset.patch, &args.set);
+    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
+    let song = args.song.as_deref().map(read_song).transpose()?;
+    if let Some(song) = &song {
+        warn_of_missing_programs(song, programs.len());
+    }
+    let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
+    let found = Found::find(&choice)?;
+    let (tap, recording) = match &args.record {
+        Some(path) => {
+            let (tap, recording) =
+                Recording::start(Output::create(&Target::new(path), args.force)?, found.sample_rate())?;
+            (Some(tap), Some(recording))
+        }
+        None => (None, None),
+    };
+    interrupt::catch(true)?;
+
+    let status = Arc::new(Status::default());
+    let ([keys, midi, closing], inputs) = LiveInputs::new();
+    let has_song = song.is_some();
+    let setup = Setup { sample_rate: found.sample_rate(), seed: args.seed, patch: &patch, programs: &programs, song };
+    let (player, patches) = Player::new(setup, inputs, tap, status.clone());
+    let session = match Session::start(&found, choice, player, status.clone()) {
+        Ok(session) => session,
+        Err(error) => {
+            if let Some(recording) = recording {
+                recording.abandon();
+            }
+            return Err(error);
+        }
+    };
+    let stage = Stage {
+        session,
+        midi: MidiIn::new(&args.midi_in, found.is_jack(), midi),
+        recording: recording.map(|recording| Take { recording, told: false }),
+        status,
+        has_song,
+    };
+    let name = preset.name.clone();
+    if headless { stage.headless(closing) } else { stage.on_terminal(keys, patches, closing, name, patch, programs) }
+}
+
+fn list() -> Result<()> {
+    let ports = midi_ports::list();
+    let ports: String = match ports.is_empty() {
+        true => "  no ports\n".to_owned(),
+        false => ports.iter().map(|name| format!("  --midi-in {name:?}\n")).collect(),
+    };
+    super::print(&format!("{}MIDI\n{ports}", device::list()))
+}
+
+/// Says something on stderr.
+fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "sprung: {line}");
+}
+
+/// Live input from outside.
+enum MidiIn {
+    None,
+    Ports(MidiPorts),
+    Jack(Box<JackMidi>),
+}
+
+impl MidiIn {
+    fn new(wanted: &str, jack: bool, sender: LiveSender) -> Self {
+        let wanted = match wanted {
+            "none" => None,
+            "all" => Some(Wanted::All),
+            name => Some(Wanted::Named(name.to_owned())),
+        };
+        match wanted {
+            wanted if jack => Self::Jack(Box::new(JackMidi::new(wanted, sender))),
+            Some(wanted) => Self::Ports(MidiPorts::new(wanted, sender)),
+            None => Self::None,
+        }
+    }
+
+    fn poll(&mut self) -> Vec<String> {
+        match self {
+            Self::None => vec![],
+            Self::Ports(ports) => ports.poll(),
+            Self::Jack(port) => port.poll(),
+        }
+    }
+}
+
+/// A recording and whether its early end has been told.
+struct Take {
+    recording: Recording,
+    told: bool,
+}
+
+/// Everything that plays.
+struct Stage {
+    session: Session,
+    midi: MidiIn,
+    recording: Option<Take>,
+    status: Arc<Status>,
+    has_song: bool,
+}
+
+impl Stage {
+    /// Looks after everything; gives what there is to tell.
+    fn poll(&mut self) -> Vec<String> {
+        let mut news: Vec<String> = self.session.poll().into_iter().collect();
+        news.extend(self.midi.poll());
+        if let Some(take) = &mut self.recording
+            && take.recording.has_ended()
+            && !std::mem::replace(&mut take.told, true)
+        {
+            news.push("recording has stopped: the file cannot be written any further; playing goes on".to_owned());
+        }
+        news
+    }
+
+    fn headless(mut self, closing: LiveSender) -> Result<()> {
+        say(&format!("playing on {}; Ctrl-C ends", self.session.description()));
+        while interrupt::check().is_ok() && !(self.has_song && self.status.is_song_over()) {
+            self.poll().iter().for_each(|line| say(line));
+            std::thread::sleep(POLL);
+        }
+        self.finish(closing)
+    }
+
+    fn on_terminal(
+        mut self,
+        keys: LiveSender,
+        patches: PatchSender,
+        closing: LiveSender,
+        name: String,
+        patch: Patch,
+        programs: Vec<Patch>,
+    ) -> Result<()> {
+        let (device, status) = (self.session.description().to_owned(), self.status.clone());
+        let desk = view::Desk { device, status, keys, patches, name, patch, programs };
+        let news = view::run(desk, || interrupt::check().is_err(), || self.poll());
+        let ended = self.finish(closing);
+        news.and(ended)
+    }
+
+    /// Lets the notes go, ends the stream and completes the recording.
+    fn finish(self, mut closing: LiveSender) -> Result<()> {
+        let Self { session, recording, status, midi, .. } = self;
+        let sample_rate = session.sample_rate();
+        drop(midi);
+        if !session.finish(&mut closing) {
+            complain("warning", "the sound device does not answer; left it behind");
+        }
+        say(&summary(&status.load(), sample_rate));
+        let Some(Take { recording, .. }) = recording else { return Ok(()) };
+        let recorded = recording.finish()?;
+        let seconds = recorded.frames as f64 / f64::from(sample_rate);
+        say(&format!("recorded {} frames ({seconds:.3} s)", recorded.frames));
+        if recorded.lost > 0 {
+            complain(
+                "warning",
+                format_args!("the disk was too slow: {} frames are missing in the recording", recorded.lost),
+            );
+        }
+        recorded.problem.map_or(Ok(()), Err::<(), Error>)
+    }
+}
+
+fn summary(load: &Load, sample_rate: u32) -> String {
+    format!(
+        "played {:.3} s in blocks of {:.0} frames: {} xruns; a block took {:.1} % of its time on average, {:.1} % at most, \
+         {} of {} more than all of it",
+        load.frames as f64 / f64::from(sample_rate),
+        load.frames as f64 / load.callbacks.max(1) as f64,
+        load.xruns,
+        100.0 * load.mean_share,
+        100.0 * load.worst_share,
+        load.late_callbacks,
+        load.callbacks,
+    )
+}

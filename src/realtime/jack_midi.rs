@@ -1,0 +1,157 @@
+//! A JACK port as live input: its events have exact frames.
+
+use super::live::{LiveEvent, LiveSender};
+use super::midi_ports::Wanted;
+use crate::io::midi::parse_message;
+use jack::{AsyncClient, Client, ClientOptions, ClientStatus, Control, MidiIn, Port, PortFlags, ProcessScope};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+/// How often ports, and a lost server, are looked for.
+const SCAN: Duration = Duration::from_secs(1);
+
+/// A MIDI input port in the JACK graph. To be polled now and then.
+pub struct JackMidi {
+    wanted: Option<Wanted>,
+    client: Option<AsyncClient<Notifications, Process>>,
+    /// Here while there is no client.
+    sender: Option<LiveSender>,
+    home: (Sender<LiveSender>, Receiver<LiveSender>),
+    gone: Arc<AtomicBool>,
+    scan_at: Instant,
+}
+
+struct Notifications(Arc<AtomicBool>);
+
+impl jack::NotificationHandler for Notifications {
+    #[expect(unsafe_code, reason = "the trait asks for what a signal handler may do; this sets a flag")]
+    unsafe fn shutdown(&mut self, _: ClientStatus, _: &str) {
+        self.0.store(true, Ordering::Release);
+    }
+}
+
+struct Process {
+    port: Port<MidiIn>,
+    sender: Option<LiveSender>,
+    home: Sender<LiveSender>,
+}
+
+impl jack::ProcessHandler for Process {
+    fn process(&mut self, client: &Client, scope: &ProcessScope) -> Control {
+        let (now, micros) = both_clocks(client);
+        let cycle = scope.last_frame_time();
+        if let Some(sender) = &mut self.sender {
+            for message in self.port.iter(scope) {
+                if let Some((channel, kind)) = parse_message(message.bytes) {
+                    let at = client.frames_to_time(cycle.wrapping_add(message.time));
+                    let stamp = match micros.checked_sub(at) {
+                        Some(ago) => now.checked_sub(Duration::from_micros(ago)).unwrap_or(now),
+                        None => now + Duration::from_micros(at - micros),
+                    };
+                    sender.send(LiveEvent { stamp, channel, kind });
+                }
+            }
+        }
+        Control::Continue
+    }
+}
+
+/// The system's time and the server's at one moment: of a few pairs, the one read with the least between.
+fn both_clocks(client: &Client) -> (Instant, u64) {
+    let read = || {
+        let now = Instant::now();
+        let micros = client.time();
+        (now.elapsed(), now, micros)
+    };
+    let (mut least, mut now, mut micros) = read();
+    for (between, again, at) in [read(), read()] {
+        if between < least {
+            (least, now, micros) = (between, again, at);
+        }
+    }
+    (now, micros)
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        if let Some(sender) = self.sender.take() {
+            // Nobody waits for it any more if this fails.
+            let _ = self.home.send(sender);
+        }
+    }
+}
+
+impl JackMidi {
+    /// Opens nothing yet. What is not `wanted` can still be connected by hand.
+    pub fn new(wanted: Option<Wanted>, sender: LiveSender) -> Self {
+        Self {
+            wanted,
+            client: None,
+            sender: Some(sender),
+            home: channel(),
+            gone: Arc::new(AtomicBool::new(false)),
+            scan_at: Instant::now(),
+        }
+    }
+
+    /// Opens the port if there is a server, connects what is wanted, and gives what there is to tell.
+    pub fn poll(&mut self) -> Vec<String> {
+        if self.gone.swap(false, Ordering::AcqRel)
+            && let Some(client) = self.client.take()
+        {
+            // The client of a dead server can take its time.
+            std::thread::spawn(move || drop(client));
+        }
+        if Instant::now() < self.scan_at {
+            return vec![];
+        }
+        self.scan_at = Instant::now() + SCAN;
+        let mut news = vec![];
+        if self.client.is_none() {
+            if self.sender.is_none() {
+                self.sender = self.home.1.try_recv().ok();
+            }
+            let Some(mut sender) = self.sender.take() else { return news };
+            sender.release_held();
+            self.client = open(sender, self.home.0.clone(), self.gone.clone());
+            if self.client.is_none() {
+                self.sender = self.home.1.try_recv().ok();
+                return news;
+            }
+            news.push("MIDI port ‘sprung:midi_in’ is open".to_owned());
+        }
+        if let (Some(client), Some(wanted)) = (&self.client, &self.wanted) {
+            let client = client.as_client();
+            let flags = match wanted {
+                Wanted::All => PortFlags::IS_OUTPUT | PortFlags::IS_PHYSICAL,
+                Wanted::Named(_) => PortFlags::IS_OUTPUT,
+            };
+            let own = format!("{}:midi_in", client.name());
+            for port in client.ports(None, Some("midi"), flags).into_iter().filter(|port| wanted.wants(port)) {
+                // Fails if they are connected already.
+                if client.connect_ports_by_name(&port, &own).is_ok() {
+                    news.push(format!("MIDI port ‘{port}’ is connected"));
+                }
+            }
+        }
+        news
+    }
+}
+
+fn open(
+    sender: LiveSender,
+    home: Sender<LiveSender>,
+    gone: Arc<AtomicBool>,
+) -> Option<AsyncClient<Notifications, Process>> {
+    let opened = Client::new("sprung", ClientOptions::NO_START_SERVER).ok().and_then(|(client, _)| {
+        let port = client.register_port("midi_in", MidiIn::default()).ok()?;
+        Some((client, port))
+    });
+    let Some((client, port)) = opened else {
+        let _ = home.send(sender);
+        return None;
+    };
+    client.activate_async(Notifications(gone), Process { port, sender: Some(sender), home }).ok()
+}

@@ -1,0 +1,173 @@
+//! Live events on their way to the audio thread: bounded queues without locks, merged in the order of time.
+
+use super::BlockClock;
+use crate::engine::{Event, EventKind};
+use rtrb::{Consumer, Producer, RingBuffer};
+use std::time::Instant;
+
+/// Events that a queue holds until the audio thread takes them.
+const CAPACITY: usize = 1024;
+
+/// A live event.
+#[derive(Clone, Copy, Debug)]
+pub struct LiveEvent {
+    /// When it came.
+    pub stamp: Instant,
+    /// MIDI channel, 0–15.
+    pub channel: u8,
+    /// What happens.
+    pub kind: EventKind,
+}
+
+/// The sending end of a queue. Sending is real-time safe.
+pub struct LiveSender {
+    queue: Producer<LiveEvent>,
+    /// Keys that this sender has put down, a bit each, and channels whose pedals it has.
+    keys: [u128; 16],
+    pedals: u16,
+}
+
+impl LiveSender {
+    /// Hands an event over; false if the queue is full and the event is lost.
+    pub fn send(&mut self, event: LiveEvent) -> bool {
+        let (channel, bit) = (usize::from(event.channel & 15), 1 << (event.channel & 15));
+        match event.kind {
+            EventKind::NoteOn { key, .. } => self.keys[channel] |= 1 << (key & 127),
+            EventKind::NoteOff { key, .. } => self.keys[channel] &= !(1 << (key & 127)),
+            EventKind::Control { controller: SUSTAIN, value } if value >= 0.5 => self.pedals |= bit,
+            EventKind::Control { controller: SUSTAIN, .. } => self.pedals &= !bit,
+            _ => {}
+        }
+        self.queue.push(event).is_ok()
+    }
+
+    /// Hands over an event that comes now.
+    pub fn send_now(&mut self, channel: u8, kind: EventKind) -> bool {
+        self.send(LiveEvent { stamp: Instant::now(), channel, kind })
+    }
+
+    /// Lets go of the keys and sustain pedals that this sender has put down.
+    pub fn release_held(&mut self) {
+        for channel in 0..16 {
+            while self.keys[usize::from(channel)] != 0 {
+                let key = self.keys[usize::from(channel)].trailing_zeros() as u8;
+                self.send_now(channel, EventKind::NoteOff { key, velocity: 0.5, id: -1 });
+            }
+            if self.pedals & (1 << channel) != 0 {
+                self.send_now(channel, EventKind::Control { controller: SUSTAIN, value: 0.0 });
+            }
+        }
+    }
+
+    /// Lets go of every note and pedal on every channel.
+    pub fn release_all(&mut self) {
+        for channel in 0..16 {
+            for controller in [SUSTAIN, SOSTENUTO, ALL_NOTES_OFF] {
+                self.send_now(channel, EventKind::Control { controller, value: 0.0 });
+            }
+        }
+    }
+
+    /// Silences everything within milliseconds.
+    pub fn silence_all(&mut self) {
+        for channel in 0..16 {
+            self.send_now(channel, EventKind::Control { controller: ALL_SOUND_OFF, value: 0.0 });
+        }
+    }
+}
+
+const SUSTAIN: u8 = 64;
+const SOSTENUTO: u8 = 66;
+const ALL_SOUND_OFF: u8 = 120;
+const ALL_NOTES_OFF: u8 = 123;
+
+/// The receiving ends of all queues.
+pub struct LiveInputs(Vec<Consumer<LiveEvent>>);
+
+impl LiveInputs {
+    /// `N` queues.
+    pub fn new<const N: usize>() -> ([LiveSender; N], Self) {
+        let mut inputs = Vec::with_capacity(N);
+        let senders = std::array::from_fn(|_| {
+            let (producer, consumer) = RingBuffer::new(CAPACITY);
+            inputs.push(consumer);
+            LiveSender { queue: producer, keys: [0; 16], pedals: 0 }
+        });
+        (senders, Self(inputs))
+    }
+
+    /// Most events that [`LiveInputs::merge`] can add.
+    pub fn capacity(&self) -> usize {
+        self.0.len() * CAPACITY
+    }
+
+    /// Puts the events that are due before frame `end` of the clock's block into `events`, which are in order and stay
+    /// so; `start` is where their frames count from. At one frame, those that are there already come first.
+    /// Real-time safe if `events` has room.
+    pub fn merge(&mut self, clock: &BlockClock, start: u32, end: u32, events: &mut Vec<Event>) {
+        for input in &mut self.0 {
+            let mut earliest = 0;
+            while let Ok(&LiveEvent { stamp, channel, kind }) = input.peek() {
+                let Some(frame) = clock.frame_of(stamp).filter(|frame| *frame < end) else { break };
+                let frame = frame.saturating_sub(start).max(earliest);
+                earliest = frame;
+                let place = events.partition_point(|event| event.frame <= frame);
+                events.insert(place, Event { frame, channel, kind });
+                let _ = input.pop();
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::realtime::Moment;
+    use std::time::Duration;
+
+    #[test]
+    fn events_of_all_queues_come_in_the_order_of_their_frames() {
+        let ([mut first, mut second], mut inputs) = LiveInputs::new();
+        let mut clock = BlockClock::new(48_000.0);
+        let now = Instant::now() + Duration::from_secs(1);
+        clock.begin(Moment { now, called: Duration::ZERO, heard: Duration::ZERO }, 480);
+        let at = |ms: u64| now - Duration::from_millis(10) + Duration::from_millis(ms);
+        let program = EventKind::Program;
+        for (ms, number) in [(1, 1), (5, 5), (20, 99)] {
+            assert!(first.send(LiveEvent { stamp: at(ms), channel: 0, kind: program(number) }));
+        }
+        for (ms, number) in [(3, 3), (5, 6), (2, 7)] {
+            assert!(second.send(LiveEvent { stamp: at(ms), channel: 0, kind: program(number) }));
+        }
+        let mut events = vec![Event { frame: 48, channel: 0, kind: program(0) }];
+        inputs.merge(&clock, 0, 192, &mut events);
+        inputs.merge(&clock, 0, 480, &mut events);
+        let order: Vec<_> = events.iter().map(|event| (event.frame, event.kind)).collect();
+        // Within a queue the order stays, even where the stamps say otherwise.
+        let expected = [(48, 0), (48, 1), (144, 3), (240, 5), (240, 6), (240, 7)];
+        assert_eq!(order, expected.map(|(frame, number)| (frame, program(number))));
+    }
+
+    #[test]
+    fn a_sender_lets_go_of_what_it_holds_and_of_nothing_else() {
+        let ([mut sender], mut inputs) = LiveInputs::new();
+        let on = |key| EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 };
+        let off = |key| EventKind::NoteOff { key, velocity: 0.5, id: -1 };
+        let pedal = |value| EventKind::Control { controller: SUSTAIN, value };
+        for (channel, kind) in [(0, on(60)), (3, on(61)), (3, on(127)), (0, off(60)), (15, pedal(1.0))] {
+            sender.send_now(channel, kind);
+        }
+        let mut next = move || inputs.0[0].pop().ok().map(|event| (event.channel, event.kind));
+        while next().is_some() {}
+        sender.release_held();
+        let released: Vec<_> = std::iter::from_fn(next).collect();
+        assert_eq!(released, [(3, off(61)), (3, off(127)), (15, pedal(0.0))]);
+    }
+
+    #[test]
+    fn a_full_queue_refuses() {
+        let ([mut sender], inputs) = LiveInputs::new();
+        assert!((0..inputs.capacity()).all(|_| sender.send_now(0, EventKind::PitchBend(0.0))));
+        assert!(!sender.send_now(0, EventKind::PitchBend(0.0)));
+    }
+}

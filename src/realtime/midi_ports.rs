@@ -1,0 +1,140 @@
+//! The system's MIDI ports as live input: those that are wanted, as they come and go.
+
+use super::live::{LiveEvent, LiveSender};
+use crate::io::midi::parse_message;
+use midir::{Ignore, MidiInput, MidiInputConnection, MidiInputPort};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// How often ports are looked for.
+const SCAN: Duration = Duration::from_secs(1);
+
+const CLIENT: &str = "sprung";
+
+/// Which MIDI ports to listen to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// All that there are.
+    All,
+    /// Those that have this in their name.
+    Named(String),
+}
+
+impl Wanted {
+    pub(super) fn wants(&self, name: &str) -> bool {
+        match self {
+            Self::All => true,
+            Self::Named(part) => name.to_lowercase().contains(&part.to_lowercase()),
+        }
+    }
+}
+
+struct Connected {
+    id: String,
+    name: String,
+    _connection: MidiInputConnection<()>,
+}
+
+/// Connections to MIDI ports. To be polled now and then.
+pub struct MidiPorts {
+    wanted: Wanted,
+    /// Shared by the threads of the ports, none of which is the audio thread.
+    sender: Arc<Mutex<LiveSender>>,
+    connected: Vec<Connected>,
+    scan_at: Instant,
+    /// Something is amiss and has been told.
+    told: bool,
+}
+
+impl MidiPorts {
+    /// Connects nothing yet.
+    pub fn new(wanted: Wanted, sender: LiveSender) -> Self {
+        Self { wanted, sender: Arc::new(Mutex::new(sender)), connected: vec![], scan_at: Instant::now(), told: false }
+    }
+
+    /// Names of the ports that are listened to.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.connected.iter().map(|connected| connected.name.as_str())
+    }
+
+    /// Connects ports that have come, forgets those that have gone, and gives what there is to tell.
+    pub fn poll(&mut self) -> Vec<String> {
+        if Instant::now() < self.scan_at {
+            return vec![];
+        }
+        self.scan_at = Instant::now() + SCAN;
+        let mut news = vec![];
+        let input = match MidiInput::new(CLIENT) {
+            Ok(input) => input,
+            Err(error) => {
+                if !std::mem::replace(&mut self.told, true) {
+                    news.push(format!("no MIDI: the system has no sequencer ({error})"));
+                }
+                return news;
+            }
+        };
+        let ports: Vec<(MidiInputPort, String)> =
+            input.ports().into_iter().filter_map(|port| input.port_name(&port).ok().map(|name| (port, name))).collect();
+        let released = self.connected.len();
+        self.connected.retain(|connected| {
+            let stays = ports.iter().any(|(port, _)| port.id() == connected.id);
+            if !stays {
+                news.push(format!("MIDI port ‘{}’ is gone; waiting for it to come back", connected.name));
+            }
+            stays
+        });
+        if self.connected.len() < released
+            && let Ok(mut sender) = self.sender.lock()
+        {
+            // The keys that were down will not come up any more.
+            sender.release_held();
+        }
+        for (port, name) in &ports {
+            let id = port.id();
+            let new = self.connected.iter().all(|connected| connected.id != id);
+            if new && self.wanted.wants(name) && !name.starts_with(CLIENT) {
+                match connect(port, name, self.sender.clone()) {
+                    Some(connection) => {
+                        news.push(format!("MIDI port ‘{name}’ is connected"));
+                        self.connected.push(Connected { id, name: name.clone(), _connection: connection });
+                    }
+                    None if !self.told => {
+                        self.told = true;
+                        news.push(format!("MIDI port ‘{name}’ cannot be connected"));
+                    }
+                    None => {}
+                }
+            }
+        }
+        if let Wanted::Named(part) = &self.wanted
+            && self.connected.is_empty()
+            && !std::mem::replace(&mut self.told, true)
+        {
+            let names: Vec<_> = ports.iter().map(|(_, name)| format!("‘{name}’")).collect();
+            let there =
+                if names.is_empty() { "there is none".to_owned() } else { format!("there are {}", names.join(", ")) };
+            news.push(format!("no MIDI port has ‘{part}’ in its name ({there}); waiting for one"));
+        }
+        news
+    }
+}
+
+/// Names of the MIDI ports that there are.
+pub fn list() -> Vec<String> {
+    let Ok(input) = MidiInput::new(CLIENT) else { return vec![] };
+    input.ports().iter().filter_map(|port| input.port_name(port).ok()).collect()
+}
+
+fn connect(port: &MidiInputPort, name: &str, sender: Arc<Mutex<LiveSender>>) -> Option<MidiInputConnection<()>> {
+    let mut input = MidiInput::new(CLIENT).ok()?;
+    input.ignore(Ignore::All);
+    let receive = move |_: u64, bytes: &[u8], (): &mut ()| {
+        let stamp = Instant::now();
+        if let Some((channel, kind)) = parse_message(bytes)
+            && let Ok(mut sender) = sender.lock()
+        {
+            sender.send(LiveEvent { stamp, channel, kind });
+        }
+    };
+    input.connect(port, name, receive, ()).ok()
+}

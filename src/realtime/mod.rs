@@ -1,0 +1,28 @@
+//! Playing live: sound devices, MIDI ports, a recorder, and a terminal to play from.
+//!
+//! The audio thread owns the [`Player`]. What reaches it (live events, patches) and what leaves it (recording, status)
+//! goes through bounded queues and atomics, so that it never allocates, locks or waits.
+
+pub mod block_clock;
+pub mod convert;
+pub mod device;
+mod jack_midi;
+pub mod live;
+pub mod midi_ports;
+pub mod player;
+pub mod recorder;
+pub mod session;
+mod song_cursor;
+pub mod status;
+mod stream;
+pub mod view;
+
+pub use block_clock::{BlockClock, Moment};
+pub use device::{Choice, Found};
+pub use jack_midi::JackMidi;
+pub use live::{LiveEvent, LiveInputs, LiveSender};
+pub use midi_ports::{MidiPorts, Wanted};
+pub use player::{PatchSender, Player, Setup};
+pub use recorder::{Recorded, Recording, Tap};
+pub use session::Session;
+pub use status::{Load, Status};

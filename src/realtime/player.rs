@@ -1,0 +1,246 @@
+//! The audio thread: song, live events and patches in, blocks for the device and the recorder out.
+
+use super::block_clock::{BlockClock, Moment};
+use super::convert::{DeviceSample, interleave};
+use super::live::LiveInputs;
+use super::recorder::Tap;
+use super::song_cursor::SongCursor;
+use super::status::Status;
+use crate::engine::{Ensemble, Event, EventKind};
+use crate::io::Song;
+use crate::patch::Patch;
+use rtrb::{Consumer, Producer, RingBuffer};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Frames that are rendered at a time; a longer block of the device is rendered in pieces.
+pub const MAX_BLOCK: usize = 4096;
+
+/// Patches that wait for the audio thread to take them.
+const PATCH_CAPACITY: usize = 32;
+
+/// How often the masses are shown, in Hz.
+const SNAPSHOT_RATE: f64 = 40.0;
+
+/// As in the offline renderer, the song is over when nothing sounds at a multiple of this many frames after its end.
+const SILENCE_INTERVAL: u64 = 64;
+
+/// What a player plays, and how.
+pub struct Setup<'a> {
+    /// Frames per second.
+    pub sample_rate: u32,
+    /// Seed of all randomness.
+    pub seed: u64,
+    /// The sound that every channel starts with.
+    pub patch: &'a Patch,
+    /// The sounds that program changes choose from.
+    pub programs: &'a [Patch],
+    /// Played from the first frame on.
+    pub song: Option<Song>,
+}
+
+/// Sends patches to a player.
+pub struct PatchSender(Producer<(u8, Patch)>);
+
+impl PatchSender {
+    /// Plays `patch` on a channel from its next note on; false if too many patches wait already.
+    pub fn send(&mut self, channel: u8, patch: &Patch) -> bool {
+        self.0.push((channel, *patch)).is_ok()
+    }
+}
+
+/// Plays on the audio thread. [`Player::fill`] is real-time safe: it allocates nothing, locks nothing, cannot fail.
+pub struct Player {
+    ensemble: Ensemble,
+    sample_rate: f64,
+    programs: usize,
+    song: Option<SongCursor>,
+    inputs: LiveInputs,
+    patches: Consumer<(u8, Patch)>,
+    clock: BlockClock,
+    events: Vec<Event>,
+    left: Vec<f32>,
+    right: Vec<f32>,
+    tap: Option<Tap>,
+    status: Arc<Status>,
+    /// Frames since the song was over.
+    tail: u64,
+    ended: bool,
+    to_snapshot: f64,
+}
+
+impl Player {
+    /// A player and what sends it patches. Allocates.
+    pub fn new(setup: Setup, inputs: LiveInputs, tap: Option<Tap>, status: Arc<Status>) -> (Self, PatchSender) {
+        let sample_rate = f64::from(setup.sample_rate);
+        let song = setup.song.map(|song| SongCursor::new(song, sample_rate));
+        let densest = song.as_ref().map_or(0, SongCursor::densest_block);
+        let (sender, patches) = RingBuffer::new(PATCH_CAPACITY);
+        let player = Self {
+            ensemble: Ensemble::new(sample_rate, setup.seed, setup.patch, setup.programs),
+            sample_rate,
+            programs: setup.programs.len(),
+            song,
+            events: Vec::with_capacity(densest + inputs.capacity()),
+            inputs,
+            patches,
+            clock: BlockClock::new(sample_rate),
+            left: vec![0.0; MAX_BLOCK],
+            right: vec![0.0; MAX_BLOCK],
+            tap,
+            status,
+            tail: 0,
+            ended: false,
+            to_snapshot: 0.0,
+        };
+        (player, PatchSender(sender))
+    }
+
+    /// Frames per second.
+    pub fn sample_rate(&self) -> u32 {
+        self.sample_rate as u32
+    }
+
+    /// Renders the next block into the interleaved samples of a device with this many channels.
+    pub fn fill<T: DeviceSample>(&mut self, out: &mut [T], channels: usize, moment: Moment) {
+        let channels = channels.max(1);
+        let frames = out.len() / channels;
+        self.clock.begin(moment, frames as u32);
+        while let Ok((channel, patch)) = self.patches.pop() {
+            self.ensemble.set_patch(channel, &patch);
+        }
+        if self.status.is_song_halted()
+            && let Some(song) = &mut self.song
+        {
+            song.halt();
+        }
+        for (piece, out) in out.chunks_mut(MAX_BLOCK * channels).enumerate() {
+            let start = piece * MAX_BLOCK;
+            let len = out.len() / channels;
+            self.render(start as u32, len);
+            interleave(&self.left[..len], &self.right[..len], channels, out);
+        }
+        let period = Duration::from_secs_f64(frames as f64 / self.sample_rate);
+        self.status.note_callback(frames as u64, moment.now.elapsed(), period, self.clock.delay());
+    }
+
+    /// Renders a piece of a block that starts `start` frames after the block's own start.
+    fn render(&mut self, start: u32, len: usize) {
+        self.events.clear();
+        let was_over = self.song.as_ref().is_none_or(SongCursor::is_over);
+        if let Some(song) = &mut self.song {
+            song.advance(len, &mut self.events);
+        }
+        self.inputs.merge(&self.clock, start, start + len as u32, &mut self.events);
+        for event in &self.events {
+            let known = !matches!(event.kind, EventKind::Program(number) if usize::from(number) >= self.programs);
+            if known {
+                self.status.note_event(event.channel, event.kind);
+            }
+        }
+        let (left, right) = (&mut self.left[..len], &mut self.right[..len]);
+        self.ensemble.process(&self.events, left, right);
+        if let Some(tap) = &mut self.tap {
+            tap.record(left, right);
+        }
+        let silent = self.ensemble.is_silent();
+        self.tail = if was_over { self.tail + len as u64 } else { 0 };
+        self.ended = silent && was_over && (self.ended || self.tail >= SILENCE_INTERVAL);
+        let peak = |samples: &[f32]| samples.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+        self.status.note_sound([peak(left), peak(right)], self.ended, silent);
+        self.to_snapshot -= len as f64;
+        if self.to_snapshot <= 0.0 && self.status.is_watched() {
+            self.to_snapshot = self.sample_rate / SNAPSHOT_RATE;
+            self.status.note_snapshot(&self.ensemble.snapshot());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::EventKind;
+    use crate::params::Param;
+    use crate::realtime::live::LiveSender;
+    use crate::render::{Job, Options, Tail};
+    use std::time::Instant;
+
+    const SETTINGS: (u32, u64) = (44_100, 7);
+
+    fn player(song: Option<Song>, patch: &Patch) -> (Player, [LiveSender; 1], PatchSender, Arc<Status>) {
+        let (senders, inputs) = LiveInputs::new();
+        let status = Arc::new(Status::default());
+        let setup = Setup { sample_rate: SETTINGS.0, seed: SETTINGS.1, patch, programs: &[], song };
+        let (player, patches) = Player::new(setup, inputs, None, status.clone());
+        (player, senders, patches, status)
+    }
+
+    fn now() -> Moment {
+        Moment { now: Instant::now(), called: Duration::ZERO, heard: Duration::ZERO }
+    }
+
+    fn short() -> Patch {
+        Patch::default().with(Param::Decay, 0.1).with(Param::Release, 0.05)
+    }
+
+    #[test]
+    fn a_song_has_the_bits_of_the_renderer_in_any_block() {
+        let song = Song::chord(&[60.0, 64.25, 67.0], 0.8, 0.3);
+        let options = Options { sample_rate: SETTINGS.0, seed: SETTINGS.1, block: 512, tail: Tail::Auto };
+        let mut expected = Vec::new();
+        Job { song: &song, patch: &short(), programs: &[], options }
+            .render(|left, right| {
+                expected.extend(left.iter().zip(right).flat_map(|(left, right)| [*left, *right]));
+                Ok(())
+            })
+            .unwrap();
+        for block in [1, 64, 480, 10_000] {
+            let (mut player, _, _, status) = player(Some(song.clone()), &short());
+            let mut played = Vec::new();
+            while !status.is_song_over() {
+                let mut out = vec![9.0_f32; 2 * block];
+                player.fill(&mut out, 2, now());
+                played.extend(out);
+            }
+            assert!(played.len() >= expected.len(), "{block}: the end is not cut off");
+            let equal = played.iter().zip(&expected).all(|(a, b)| a.to_bits() == b.to_bits());
+            assert!(equal, "{block}");
+            assert!(played[expected.len()..].iter().all(|sample| *sample == 0.0), "{block}: silence after the end");
+            assert!(played.len() < expected.len() + 2 * (2 * block + 128), "{block}: the end is noticed");
+        }
+    }
+
+    #[test]
+    fn a_live_note_sounds_at_the_frame_of_its_stamp() {
+        let (mut player, [mut sender], _, _) = player(None, &Patch::default());
+        let start = Instant::now();
+        let at = |ms| {
+            let since = Duration::from_millis(ms);
+            Moment { now: start + since, called: since, heard: since }
+        };
+        let mut out = vec![0.0_f32; 2 * 4410];
+        player.fill(&mut out, 2, at(0));
+        let stamp = start + Duration::from_millis(40);
+        let kind = EventKind::NoteOn { key: 69, detune: 0.0, velocity: 1.0, id: -1 };
+        sender.send(super::super::LiveEvent { stamp, channel: 0, kind });
+        player.fill(&mut out, 2, at(100));
+        let first = out.iter().position(|sample| *sample != 0.0).unwrap() / 2;
+        assert_eq!(first, 1764, "40 ms into the block after the one in which it came");
+    }
+
+    #[test]
+    fn patches_are_taken_at_the_next_block_and_a_halted_song_ends() {
+        let (mut player, _, mut patches, status) = player(Some(Song::chord(&[60.0], 1.0, 100.0)), &short());
+        assert!(patches.send(0, &Patch::default().with(Param::Gain, -60.0)));
+        let mut out = vec![0_i16; 512];
+        player.fill(&mut out, 2, now());
+        assert!(out.iter().all(|sample| sample.abs() < 40), "the patch is a quiet one");
+        assert!(!status.is_song_over());
+        status.halt_song();
+        // The key of the halted song is still down; its decay ends it.
+        for _ in 0..10_000 {
+            player.fill(&mut out, 2, now());
+        }
+        assert!(status.is_song_over() && status.is_silent());
+    }
+}

@@ -1,0 +1,211 @@
+//! Records what is played to a file, from a thread of its own that the audio thread never waits for.
+
+use crate::error::{Error, Result};
+use crate::io::{Output, SampleFormat, WavFormat, WavWriter};
+use rtrb::{Consumer, Producer, RingBuffer};
+use std::sync::Arc;
+use std::sync::atomic::Ordering::{Acquire, Relaxed, Release};
+use std::sync::atomic::{AtomicU8, AtomicU64};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// Seconds of sound that wait for a slow disk before any is lost.
+const QUEUE_SECONDS: usize = 20;
+
+/// Frames that are handed on at a time.
+const CHUNK: usize = 1024;
+
+/// How long the writer sleeps when nothing waits.
+const NAP: Duration = Duration::from_millis(20);
+
+/// What the recorder is to do.
+const RECORD: u8 = 0;
+const FINISH: u8 = 1;
+const ABANDON: u8 = 2;
+
+/// The end of the queue that the audio thread has.
+pub struct Tap {
+    queue: Producer<f32>,
+    scratch: Vec<f32>,
+    lost: Arc<AtomicU64>,
+}
+
+impl Tap {
+    /// Hands frames to the recorder, or counts them as lost where the queue is full. Real-time safe.
+    pub(super) fn record(&mut self, left: &[f32], right: &[f32]) {
+        for (left, right) in left.chunks(CHUNK).zip(right.chunks(CHUNK)) {
+            let samples = &mut self.scratch[..2 * left.len()];
+            for (frame, (left, right)) in samples.chunks_exact_mut(2).zip(left.iter().zip(right)) {
+                (frame[0], frame[1]) = (*left, *right);
+            }
+            if self.queue.push_entire_slice(samples).is_err() {
+                self.lost.fetch_add(left.len() as u64, Relaxed);
+            }
+        }
+    }
+}
+
+/// What became of a recording.
+#[derive(Debug)]
+pub struct Recorded {
+    /// Frames in the file.
+    pub frames: u64,
+    /// Frames that the disk was too slow for.
+    pub lost: u64,
+    /// Why the recording ended early, if it did. The file is whole up to there.
+    pub problem: Option<Error>,
+}
+
+/// A recording under way.
+pub struct Recording {
+    thread: JoinHandle<Result<Recorded>>,
+    order: Arc<AtomicU8>,
+}
+
+impl Recording {
+    /// Starts to record stereo floats into `output`, which has to be a file.
+    ///
+    /// # Errors
+    /// [`Error::Value`] for an output that cannot be gone back to, [`Error::Io`] if no thread can be started.
+    pub fn start(mut output: Output, sample_rate: u32) -> Result<(Tap, Self)> {
+        if !output.is_seekable() {
+            return Err(Error::value("--record", format!("{} is a pipe or device: expected a file", output.name())));
+        }
+        let (queue, waiting) = RingBuffer::new(2 * QUEUE_SECONDS * sample_rate as usize);
+        let (order, lost) = (Arc::new(AtomicU8::new(RECORD)), Arc::new(AtomicU64::new(0)));
+        let format = WavFormat { sample_rate, channels: 2, samples: SampleFormat::Float32 };
+        let name = output.name().to_owned();
+        let (ordered, losing) = (order.clone(), lost.clone());
+        let thread = std::thread::Builder::new()
+            .name("recorder".to_owned())
+            .spawn(move || {
+                let written = write(waiting, &mut output, format, &ordered);
+                if ordered.load(Acquire) == ABANDON {
+                    return Ok(Recorded { frames: 0, lost: 0, problem: None });
+                }
+                let (frames, problem) = match written {
+                    Ok(frames) => (frames, None),
+                    // What is on the disk becomes a whole file.
+                    Err(error) => (output.salvage_wav(format)?, Some(error)),
+                };
+                output.commit()?;
+                Ok(Recorded { frames, lost: losing.load(Relaxed), problem })
+            })
+            .map_err(|source| Error::io(name, source))?;
+        Ok((Tap { queue, scratch: vec![0.0; 2 * CHUNK], lost }, Self { thread, order }))
+    }
+
+    /// Ends it and leaves no file.
+    pub fn abandon(self) {
+        self.order.store(ABANDON, Release);
+        let _ = self.thread.join();
+    }
+
+    /// Whether it has ended by itself, which only a problem makes it do.
+    pub fn has_ended(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    /// Writes what still waits, and completes the file. The [`Tap`] should not be in use any more.
+    ///
+    /// # Errors
+    /// [`Error::Io`] and [`Error::Exists`] if no file could be kept at all.
+    pub fn finish(self) -> Result<Recorded> {
+        self.order.store(FINISH, Release);
+        self.thread.join().unwrap_or_else(|_| Err(Error::value("--record", "the recorder broke down")))
+    }
+}
+
+/// Writes until it is told to stop and nothing waits any more; gives the number of frames.
+fn write(mut queue: Consumer<f32>, output: &mut Output, format: WavFormat, order: &AtomicU8) -> Result<u64> {
+    let name = output.name().to_owned();
+    let mut writer = WavWriter::new(output.stream(), &name, format, None, None)?;
+    let mut samples = vec![0.0; 2 * CHUNK];
+    let (mut left, mut right) = (Vec::with_capacity(CHUNK), Vec::with_capacity(CHUNK));
+    let mut frames = 0;
+    loop {
+        // Asked before the queue is: what was played before the stop is in it by then.
+        let stopping = order.load(Acquire) != RECORD;
+        let waiting = (queue.slots() / 2).min(CHUNK);
+        if waiting == 0 {
+            if stopping {
+                writer.finish()?;
+                return Ok(frames);
+            }
+            std::thread::sleep(NAP);
+            continue;
+        }
+        let samples = &mut samples[..2 * waiting];
+        if queue.pop_entire_slice(samples).is_err() {
+            continue;
+        }
+        left.clear();
+        right.clear();
+        for frame in samples.chunks_exact(2) {
+            left.push(frame[0]);
+            right.push(frame[1]);
+        }
+        writer.write(&left, &right)?;
+        frames += waiting as u64;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::Target;
+
+    fn start(directory: &tempfile::TempDir, rate: u32) -> (Tap, Recording, std::path::PathBuf) {
+        let path = directory.path().join("take.wav");
+        let output = Output::create(&Target::new(&path), false).unwrap();
+        let (tap, recording) = Recording::start(output, rate).unwrap();
+        (tap, recording, path)
+    }
+
+    #[test]
+    fn a_recording_holds_exactly_what_was_played() {
+        let directory = tempfile::tempdir().unwrap();
+        let (mut tap, recording, path) = start(&directory, 48_000);
+        let left: Vec<f32> = (0..10_001).map(|n| n as f32 * 0.001 - 3.0).collect();
+        let right: Vec<f32> = left.iter().map(|sample| -sample).collect();
+        for (left, right) in left.chunks(64).zip(right.chunks(64)) {
+            tap.record(left, right);
+        }
+        assert!(!path.exists(), "a file that is not whole yet has another name");
+        let recorded = recording.finish().unwrap();
+        assert_eq!((recorded.frames, recorded.lost), (10_001, 0));
+        let samples: Vec<f32> = hound::WavReader::open(&path).unwrap().into_samples().map(|s| s.unwrap()).collect();
+        let expected: Vec<f32> = left.iter().zip(&right).flat_map(|(left, right)| [*left, *right]).collect();
+        assert_eq!(samples, expected);
+    }
+
+    #[test]
+    fn what_the_disk_is_too_slow_for_is_counted_and_the_rest_kept() {
+        let directory = tempfile::tempdir().unwrap();
+        let (mut tap, recording, path) = start(&directory, 8_000);
+        let block = vec![0.5; 65_536];
+        for _ in 0..20 {
+            tap.record(&block, &block);
+        }
+        let recorded = recording.finish().unwrap();
+        assert!(recorded.lost > 0, "{recorded:?}");
+        assert_eq!(recorded.frames + recorded.lost, 20 * 65_536);
+        assert_eq!(u64::from(hound::WavReader::open(&path).unwrap().duration()), recorded.frames);
+    }
+
+    #[test]
+    fn an_abandoned_recording_leaves_no_file() {
+        let directory = tempfile::tempdir().unwrap();
+        let (mut tap, recording, _) = start(&directory, 48_000);
+        tap.record(&[0.5], &[0.5]);
+        recording.abandon();
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn pipes_and_devices_are_refused() {
+        let output = Output::create(&Target::new("/dev/null"), false).unwrap();
+        let error = Recording::start(output, 48_000).err().unwrap().to_string();
+        assert_eq!(error, "--record: /dev/null is a pipe or device: expected a file");
+    }
+}

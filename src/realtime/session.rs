@@ -1,0 +1,155 @@
+//! Playing on a device that may go away and come back.
+
+use super::device::{Choice, Found};
+use super::live::LiveSender;
+use super::player::Player;
+use super::status::Status;
+use super::stream;
+use crate::error::{Error, Result};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+/// How often a lost device is looked for.
+const RETRY: Duration = Duration::from_secs(1);
+
+/// A device that asks for nothing for so long is lost.
+const PATIENCE: Duration = Duration::from_secs(4);
+
+/// How long released notes may ring on at the end.
+const RELEASE: Duration = Duration::from_millis(700);
+
+/// How long a stream may take to end.
+const END: Duration = Duration::from_secs(2);
+
+/// Plays on a device, from [`Session::start`] until it is dropped or finished. To be polled now and then.
+pub struct Session {
+    choice: Choice,
+    description: String,
+    sample_rate: u32,
+    status: Arc<Status>,
+    stream: Option<cpal::Stream>,
+    /// Here while there is no stream.
+    player: Option<Box<Player>>,
+    home: (Sender<Box<Player>>, Receiver<Box<Player>>),
+    trouble: (Sender<String>, Receiver<String>),
+    retry_at: Instant,
+    last_frames: (u64, Instant),
+}
+
+impl Session {
+    /// Starts to play on a device. `choice` is what it was found by, and will be found by again.
+    ///
+    /// # Errors
+    /// [`Error::Value`] if the device refuses.
+    pub fn start(found: &Found, choice: Choice, player: Player, status: Arc<Status>) -> Result<Self> {
+        let mut session = Self {
+            choice: Choice { rate: Some(found.sample_rate()), ..choice },
+            description: found.to_string(),
+            sample_rate: found.sample_rate(),
+            status,
+            stream: None,
+            player: Some(Box::new(player)),
+            home: channel(),
+            trouble: channel(),
+            retry_at: Instant::now(),
+            last_frames: (0, Instant::now()),
+        };
+        session.open(found)?;
+        Ok(session)
+    }
+
+    /// The device and its settings, as text.
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    /// Frames per second.
+    pub fn sample_rate(&self) -> u32 {
+        self.sample_rate
+    }
+
+    /// Whether the device is there.
+    pub fn is_playing(&self) -> bool {
+        self.stream.is_some()
+    }
+
+    /// Looks after the device; gives what there is to tell when it has gone away or come back.
+    pub fn poll(&mut self) -> Option<String> {
+        if self.stream.is_some() {
+            let reason = self.trouble.1.try_iter().next().or_else(|| self.stalled())?;
+            self.close();
+            self.retry_at = Instant::now() + RETRY;
+            return Some(format!("the sound device is gone: {reason}; waiting for it to come back"));
+        }
+        if self.player.is_none() {
+            self.player = self.home.1.try_recv().ok();
+        }
+        if self.player.is_none() || Instant::now() < self.retry_at {
+            return None;
+        }
+        self.retry_at = Instant::now() + RETRY;
+        let found = Found::find(&self.choice).ok()?;
+        self.open(&found).ok()?;
+        Some(format!("the sound device is back: {found}"))
+    }
+
+    /// Halts the song, lets go of all notes, waits a moment for them to die away, and ends the stream. False if the
+    /// device is stuck and holds on to the player.
+    pub fn finish(mut self, live: &mut LiveSender) -> bool {
+        self.status.halt_song();
+        live.release_all();
+        if !self.wait_for_silence(RELEASE) {
+            live.silence_all();
+            self.wait_for_silence(RELEASE);
+        }
+        self.close();
+        self.player.is_some()
+    }
+
+    /// Waits until nothing sounds and all that was sent has been heard.
+    fn wait_for_silence(&self, limit: Duration) -> bool {
+        let start = Instant::now();
+        let sent = self.status.load().delay.min(limit.as_secs_f64());
+        let heard = start + Duration::from_secs_f64(sent);
+        while self.is_playing() && start.elapsed() < limit {
+            if self.status.is_silent() && Instant::now() > heard {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        !self.is_playing()
+    }
+
+    fn open(&mut self, found: &Found) -> Result<()> {
+        let Some(player) = self.player.take() else { return Ok(()) };
+        self.trouble.1.try_iter().for_each(drop);
+        self.last_frames = (self.status.frames(), Instant::now());
+        match stream::open(found, player, self.home.0.clone(), self.trouble.0.clone(), self.status.clone()) {
+            Ok(stream) => {
+                self.stream = Some(stream);
+                Ok(())
+            }
+            Err(error) => {
+                self.player = self.home.1.recv_timeout(END).ok();
+                Err(Error::value("--device", format!("{found} cannot be played on: {error}")))
+            }
+        }
+    }
+
+    /// Ends the stream on a thread of its own: a device that hangs must not hang the program.
+    fn close(&mut self) {
+        if let Some(stream) = self.stream.take() {
+            std::thread::spawn(move || drop(stream));
+            self.player = self.home.1.recv_timeout(END).ok();
+        }
+    }
+
+    fn stalled(&mut self) -> Option<String> {
+        let frames = self.status.frames();
+        if frames != self.last_frames.0 {
+            self.last_frames = (frames, Instant::now());
+        }
+        (self.last_frames.1.elapsed() > PATIENCE).then(|| "it takes no more sound".to_owned())
+    }
+}

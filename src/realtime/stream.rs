@@ -1,0 +1,75 @@
+//! The stream of a device: calls the player for every block, and gives it back when it ends.
+
+use super::block_clock::Moment;
+use super::convert::DeviceSample;
+use super::device::Found;
+use super::player::Player;
+use super::status::Status;
+use cpal::traits::{DeviceTrait, StreamTrait};
+use cpal::{ErrorKind, OutputCallbackInfo, SampleFormat, SizedSample};
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+
+/// How long a device may take to answer.
+const TIMEOUT: Duration = Duration::from_secs(2);
+
+/// A player on loan to a stream; comes home when the stream is dropped.
+struct Loan {
+    player: Option<Box<Player>>,
+    home: Sender<Box<Player>>,
+}
+
+impl Drop for Loan {
+    fn drop(&mut self) {
+        if let Some(player) = self.player.take() {
+            // Nobody waits for it any more if this fails.
+            let _ = self.home.send(player);
+        }
+    }
+}
+
+/// Starts to play. What ends the stream is sent to `trouble`; the player comes to `home` when the stream is dropped,
+/// or at once if it cannot be started.
+pub(super) fn open(
+    found: &Found,
+    player: Box<Player>,
+    home: Sender<Box<Player>>,
+    trouble: Sender<String>,
+    status: Arc<Status>,
+) -> Result<cpal::Stream, cpal::Error> {
+    let loan = Loan { player: Some(player), home };
+    let stream = match found.format {
+        SampleFormat::F32 => build::<f32>(found, loan, trouble, status),
+        SampleFormat::I32 => build::<i32>(found, loan, trouble, status),
+        SampleFormat::I16 => build::<i16>(found, loan, trouble, status),
+        _ => build::<u8>(found, loan, trouble, status),
+    }?;
+    stream.play()?;
+    Ok(stream)
+}
+
+fn build<T: DeviceSample + SizedSample>(
+    found: &Found,
+    mut loan: Loan,
+    trouble: Sender<String>,
+    status: Arc<Status>,
+) -> Result<cpal::Stream, cpal::Error> {
+    let channels = usize::from(found.config.channels);
+    let callback = move |out: &mut [T], info: &OutputCallbackInfo| {
+        let now = Instant::now();
+        let times = info.timestamp();
+        let since_zero = |instant: cpal::StreamInstant| instant.duration_since(cpal::StreamInstant::ZERO);
+        let moment = Moment { now, called: since_zero(times.callback), heard: since_zero(times.playback) };
+        if let Some(player) = &mut loan.player {
+            player.fill(out, channels, moment);
+        }
+    };
+    let failed = move |error: cpal::Error| match error.kind() {
+        ErrorKind::Xrun => status.count_xrun(),
+        ErrorKind::RealtimeDenied | ErrorKind::DeviceChanged => {}
+        // The stream is over, so that this may allocate.
+        _ => drop(trouble.send(error.to_string())),
+    };
+    found.device.build_output_stream(found.config, callback, failed, Some(TIMEOUT))
+}

@@ -1,0 +1,289 @@
+//! What the view shows, and what keys do to it.
+
+use super::Desk;
+use super::keyboard::Keyboard;
+use crate::engine::{EventKind, Snapshot};
+use crate::params::{PARAMS, ParamInfo, Unit};
+use crate::patch::Patch;
+use crate::preset::Preset;
+use crate::realtime::{Load, PatchSender, Status};
+use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long a message stays.
+const MESSAGE: Duration = Duration::from_secs(8);
+
+/// What is left of a meter after a tenth of a second.
+const FALL: f32 = 0.7;
+
+/// Which list is to be seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum List {
+    Presets,
+    Parameters,
+}
+
+/// What is being typed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Typing {
+    Nothing,
+    /// The filter of the list.
+    Search,
+    /// A value for the chosen parameter.
+    Value(String),
+}
+
+/// The sound of a channel.
+pub(super) struct Sound {
+    pub(super) name: String,
+    pub(super) patch: Patch,
+    program: Option<u8>,
+}
+
+pub(super) struct App {
+    pub(super) device: String,
+    pub(super) status: Arc<Status>,
+    pub(super) keyboard: Keyboard,
+    patches: PatchSender,
+    /// Those of the factory, as they were set on the command line.
+    programs: Vec<Patch>,
+    pub(super) sounds: Vec<Sound>,
+    pub(super) channel: u8,
+    pub(super) list: List,
+    pub(super) typing: Typing,
+    search: [String; 2],
+    selected: [usize; 2],
+    pub(super) help: bool,
+    pub(super) quit: bool,
+    pub(super) load: Load,
+    pub(super) snapshot: Snapshot,
+    pub(super) peaks: [f32; 2],
+    message: Option<(String, Instant)>,
+    ticked: Instant,
+}
+
+impl App {
+    pub(super) fn new(desk: Desk) -> Self {
+        let Desk { device, status, keys, patches, name, patch, programs } = desk;
+        let sound = |_| Sound { name: name.clone(), patch, program: None };
+        Self {
+            device,
+            status,
+            keyboard: Keyboard::new(keys),
+            patches,
+            programs,
+            sounds: (0..16).map(sound).collect(),
+            channel: 0,
+            list: List::Presets,
+            typing: Typing::Nothing,
+            search: Default::default(),
+            selected: [0; 2],
+            help: false,
+            quit: false,
+            load: Load::default(),
+            snapshot: Snapshot::default(),
+            peaks: [0.0; 2],
+            message: None,
+            ticked: Instant::now(),
+        }
+    }
+
+    /// Tells something for a while.
+    pub(super) fn tell(&mut self, message: String) {
+        self.message = Some((message, Instant::now()));
+    }
+
+    pub(super) fn message(&self) -> Option<&str> {
+        self.message.as_ref().map(|(message, _)| message.as_str())
+    }
+
+    pub(super) fn sound(&self) -> &Sound {
+        &self.sounds[usize::from(self.channel)]
+    }
+
+    pub(super) fn search(&self) -> &str {
+        &self.search[self.list as usize]
+    }
+
+    /// Presets that match the search, with their program numbers.
+    pub(super) fn presets(&self) -> Vec<(usize, &'static Preset)> {
+        let search = self.search[List::Presets as usize].to_lowercase();
+        let matches = |preset: &Preset| {
+            let words = [&preset.name].into_iter().chain(&preset.tags);
+            words.map(|word| word.to_lowercase()).any(|word| word.contains(&search))
+        };
+        Preset::factory().iter().enumerate().filter(|(_, preset)| matches(preset)).collect()
+    }
+
+    /// Parameters that match the search.
+    pub(super) fn parameters(&self) -> Vec<&'static ParamInfo> {
+        let search = self.search[List::Parameters as usize].to_lowercase();
+        let matches = |info: &&ParamInfo| info.id.contains(&search) || info.name.to_lowercase().contains(&search);
+        PARAMS.iter().filter(matches).collect()
+    }
+
+    /// The chosen row of the list, if it has any.
+    pub(super) fn selected(&self) -> Option<usize> {
+        let rows = self.rows();
+        (rows > 0).then(|| self.selected[self.list as usize].min(rows - 1))
+    }
+
+    fn rows(&self) -> usize {
+        match self.list {
+            List::Presets => self.presets().len(),
+            List::Parameters => self.parameters().len(),
+        }
+    }
+
+    /// Lets time pass: meters fall, notes end, programs of the song are noticed.
+    pub(super) fn tick(&mut self, now: Instant) {
+        self.keyboard.tick(now);
+        self.message.take_if(|(_, since)| since.elapsed() > MESSAGE);
+        self.load = self.status.load();
+        self.snapshot = self.status.snapshot();
+        let fall = libm::powf(FALL, 10.0 * now.saturating_duration_since(self.ticked).as_secs_f32());
+        self.ticked = now;
+        for (shown, peak) in self.peaks.iter_mut().zip(self.status.take_peaks()) {
+            *shown = peak.max(*shown * fall);
+        }
+        for (channel, sound) in (0..).zip(&mut self.sounds) {
+            let program = self.status.program(channel);
+            if let Some(number) = program.filter(|_| program != sound.program)
+                && let (Some(preset), Some(patch)) =
+                    (Preset::factory().get(usize::from(number)), self.programs.get(usize::from(number)))
+            {
+                *sound = Sound { name: preset.name.clone(), patch: *patch, program };
+            }
+        }
+    }
+
+    /// A key of the computer.
+    pub(super) fn key(&mut self, event: KeyEvent, now: Instant) {
+        if event.kind == KeyEventKind::Release {
+            if let KeyCode::Char(character) = event.code {
+                self.keyboard.release(character);
+            }
+            return;
+        }
+        if event.modifiers.contains(KeyModifiers::CONTROL) {
+            self.quit |= matches!(event.code, KeyCode::Char('c' | 'q'));
+            return;
+        }
+        if self.help {
+            self.help = false;
+        } else if self.typing == Typing::Nothing {
+            self.command(event, now);
+        } else {
+            self.type_key(event.code);
+        }
+    }
+
+    fn command(&mut self, event: KeyEvent, now: Instant) {
+        let fine = event.modifiers.contains(KeyModifiers::SHIFT);
+        match event.code {
+            KeyCode::Char(character) if self.keyboard.press(character, self.channel, now) => {}
+            KeyCode::Char('?') => self.help = true,
+            KeyCode::Char('/') => {
+                self.search[self.list as usize].clear();
+                self.typing = Typing::Search;
+            }
+            KeyCode::Char('[') => self.keyboard.octave = (self.keyboard.octave - 1).max(0),
+            KeyCode::Char(']') => self.keyboard.octave = (self.keyboard.octave + 1).min(8),
+            KeyCode::Char('-') => self.keyboard.velocity = (self.keyboard.velocity - 8).max(1),
+            KeyCode::Char('=' | '+') => self.keyboard.velocity = (self.keyboard.velocity + 8).min(127),
+            KeyCode::Char('<' | ',') => self.channel = (self.channel + 15) % 16,
+            KeyCode::Char('>' | '.') => self.channel = (self.channel + 1) % 16,
+            KeyCode::Char(' ') => self.keyboard.panic(),
+            KeyCode::Tab | KeyCode::BackTab => {
+                self.list = if self.list == List::Presets { List::Parameters } else { List::Presets };
+            }
+            KeyCode::Up => self.select(-1),
+            KeyCode::Down => self.select(1),
+            KeyCode::PageUp => self.select(-10),
+            KeyCode::PageDown => self.select(10),
+            KeyCode::Left => self.nudge(-1.0, fine),
+            KeyCode::Right => self.nudge(1.0, fine),
+            KeyCode::Enter if self.list == List::Presets => self.load_preset(),
+            KeyCode::Enter => self.typing = Typing::Value(String::new()),
+            KeyCode::Backspace => self.reset(),
+            KeyCode::Esc => self.search[self.list as usize].clear(),
+            _ => {}
+        }
+    }
+
+    fn type_key(&mut self, code: KeyCode) {
+        let text = match &mut self.typing {
+            Typing::Value(text) => text,
+            _ => &mut self.search[self.list as usize],
+        };
+        match code {
+            KeyCode::Char(character) => text.push(character),
+            KeyCode::Backspace => drop(text.pop()),
+            KeyCode::Up => self.select(-1),
+            KeyCode::Down => self.select(1),
+            KeyCode::Esc => {
+                text.clear();
+                self.typing = Typing::Nothing;
+            }
+            KeyCode::Enter => {
+                if let Typing::Value(text) = std::mem::replace(&mut self.typing, Typing::Nothing) {
+                    self.enter_value(&text);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn select(&mut self, rows: isize) {
+        let last = self.rows().saturating_sub(1);
+        let selected = self.selected().unwrap_or(0);
+        self.selected[self.list as usize] = selected.saturating_add_signed(rows).min(last);
+    }
+
+    fn load_preset(&mut self) {
+        let Some((number, preset)) = self.selected().and_then(|row| self.presets().get(row).copied()) else { return };
+        let patch = self.programs.get(number).copied().unwrap_or(preset.patch);
+        if self.patches.send(self.channel, &patch) {
+            let sound = &mut self.sounds[usize::from(self.channel)];
+            (sound.name, sound.patch) = (preset.name.clone(), patch);
+            self.tell(format!("channel {} plays ‘{}’", self.channel + 1, preset.name));
+        }
+    }
+
+    fn parameter(&self) -> Option<&'static ParamInfo> {
+        let row = self.selected().filter(|_| self.list == List::Parameters)?;
+        self.parameters().get(row).copied()
+    }
+
+    /// Turns the knob of the chosen parameter: by a step, or a fiftieth or five-hundredth of its way.
+    fn nudge(&mut self, direction: f64, fine: bool) {
+        let Some(info) = self.parameter() else { return };
+        let value = self.sound().patch.get(info.param);
+        let turned = match info.unit {
+            Unit::Choice | Unit::Count => value + direction as f32,
+            _ => info.denormalise(info.normalise(value) + direction * if fine { 0.002 } else { 0.02 }),
+        };
+        self.set(info, turned);
+    }
+
+    fn reset(&mut self) {
+        if let Some(info) = self.parameter() {
+            self.set(info, info.default);
+        }
+    }
+
+    fn enter_value(&mut self, text: &str) {
+        let Some(info) = self.parameter() else { return };
+        match info.parse(text) {
+            Ok(value) => self.set(info, value),
+            Err(message) => self.tell(format!("{}: {message}", info.id)),
+        }
+    }
+
+    fn set(&mut self, info: &ParamInfo, value: f32) {
+        let value = info.clamp(value);
+        self.sounds[usize::from(self.channel)].patch.set(info.param, value);
+        self.keyboard.send(self.channel, EventKind::Param { param: info.param, value });
+    }
+}

@@ -1,0 +1,122 @@
+//! The computer's keyboard as a piano.
+
+use crate::engine::EventKind;
+use crate::realtime::LiveSender;
+use std::time::{Duration, Instant};
+
+/// Keys of the lower row with the upper row's octave above, in semitones from the lower C.
+const PIANO: [(&str, u8); 2] = [("zsxdcvgbhnjm", 0), ("q2w3er5t6y7ui9o0p", 12)];
+
+/// How long a note is held where the terminal does not tell when a key comes up: until this long after its last
+/// repetition.
+const HOLD: Duration = Duration::from_millis(600);
+
+/// MIDI key of the lower C in octave 0.
+const LOWEST_C: i32 = 12;
+
+/// Semitones above the lower C of a key of the computer, if it is one of the piano.
+fn semitone(character: char) -> Option<u8> {
+    PIANO.iter().find_map(|(row, offset)| {
+        let place = row.chars().position(|key| key == character)?;
+        Some(place as u8 + offset)
+    })
+}
+
+/// The key of the computer that plays a semitone above the lower C.
+pub(super) fn character(semitone: u8) -> Option<char> {
+    let [(lower, _), (upper, _)] = PIANO;
+    let place = usize::from(semitone);
+    lower.chars().nth(place).or_else(|| upper.chars().nth(place.checked_sub(12)?))
+}
+
+struct Down {
+    character: char,
+    channel: u8,
+    key: u8,
+    until: Option<Instant>,
+}
+
+/// What is held down, and where on the piano the computer's keys are.
+pub(super) struct Keyboard {
+    sender: LiveSender,
+    /// The terminal tells when keys come up.
+    pub(super) releases: bool,
+    /// 0–8: the lower C is that of this octave.
+    pub(super) octave: i32,
+    /// 1–127.
+    pub(super) velocity: i32,
+    down: Vec<Down>,
+}
+
+impl Keyboard {
+    pub(super) fn new(sender: LiveSender) -> Self {
+        Self { sender, releases: false, octave: 4, velocity: 96, down: vec![] }
+    }
+
+    /// MIDI key of the lower C.
+    pub(super) fn lowest(&self) -> u8 {
+        (LOWEST_C + 12 * self.octave) as u8
+    }
+
+    /// Plays the note of a character; false if it has none.
+    pub(super) fn press(&mut self, character: char, channel: u8, now: Instant) -> bool {
+        let Some(semitone) = semitone(character) else { return false };
+        let until = (!self.releases).then_some(now + HOLD);
+        if let Some(down) = self.down.iter_mut().find(|down| down.character == character) {
+            // A key that repeats is held.
+            down.until = until;
+            return true;
+        }
+        let key = self.lowest() + semitone;
+        if key < 128 {
+            let velocity = self.velocity as f32 / 127.0;
+            self.sender.send_now(channel, EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 });
+            self.down.push(Down { character, channel, key, until });
+        }
+        true
+    }
+
+    /// A key of the computer comes up.
+    pub(super) fn release(&mut self, character: char) {
+        self.let_go(|down| down.character == character);
+    }
+
+    /// Lets go of the notes whose time is over.
+    pub(super) fn tick(&mut self, now: Instant) {
+        self.let_go(|down| down.until.is_some_and(|until| until <= now));
+    }
+
+    /// Sends something else than a note.
+    pub(super) fn send(&mut self, channel: u8, kind: EventKind) {
+        self.sender.send_now(channel, kind);
+    }
+
+    /// Lets go of everything, on all channels.
+    pub(super) fn panic(&mut self) {
+        self.down.clear();
+        self.sender.release_all();
+        self.sender.silence_all();
+    }
+
+    fn let_go(&mut self, over: impl Fn(&Down) -> bool) {
+        for down in self.down.extract_if(.., |down| over(down)) {
+            self.sender.send_now(down.channel, EventKind::NoteOff { key: down.key, velocity: 0.5, id: -1 });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_rows_make_two_and_a_half_octaves() {
+        for (typed, expected) in [('z', Some(0)), ('m', Some(11)), ('q', Some(12)), ('p', Some(28)), ('a', None)] {
+            assert_eq!(semitone(typed), expected, "{typed}");
+        }
+        for semitone_up in 0..=28 {
+            assert_eq!(semitone(character(semitone_up).unwrap()), Some(semitone_up));
+        }
+        assert_eq!(character(29), None);
+    }
+}

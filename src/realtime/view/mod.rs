@@ -1,0 +1,86 @@
+//! A terminal to play from: what sounds, what can be chosen, and the computer's keyboard as a piano.
+
+mod app;
+mod draw;
+mod keyboard;
+mod lists;
+mod masses;
+#[cfg(test)]
+mod tests;
+
+use super::{LiveSender, PatchSender, Status};
+use crate::error::{Error, Result};
+use crate::patch::Patch;
+use app::App;
+use ratatui::crossterm::event::{self, Event, KeyboardEnhancementFlags, PopKeyboardEnhancementFlags};
+use ratatui::crossterm::{event::PushKeyboardEnhancementFlags, execute, terminal};
+use std::io::stdout;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Time between two pictures, and the longest that a key waits to be looked at by anything but its note.
+const FRAME: Duration = Duration::from_millis(33);
+
+/// What the view shows and what it plays on.
+pub struct Desk {
+    /// The device, as text.
+    pub device: String,
+    /// What the audio thread tells.
+    pub status: Arc<Status>,
+    /// Takes notes and parameters.
+    pub keys: LiveSender,
+    /// Takes presets.
+    pub patches: PatchSender,
+    /// Name of the sound that every channel starts with.
+    pub name: String,
+    /// That sound.
+    pub patch: Patch,
+    /// The sounds that program changes choose from, in the order of the factory presets.
+    pub programs: Vec<Patch>,
+}
+
+/// Shows the view until the user leaves it or `stop` says so. `poll` is called all the while and gives what there is
+/// to tell.
+///
+/// # Errors
+/// [`Error::Io`] if the terminal cannot be used.
+pub fn run(desk: Desk, mut stop: impl FnMut() -> bool, mut poll: impl FnMut() -> Vec<String>) -> Result<()> {
+    let failed = |source| Error::io("terminal", source);
+    let mut app = App::new(desk);
+    let mut screen = ratatui::try_init().map_err(failed)?;
+    let releases = terminal::supports_keyboard_enhancement().unwrap_or(false);
+    if releases {
+        let flags = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES | KeyboardEnhancementFlags::REPORT_EVENT_TYPES;
+        app.keyboard.releases = execute!(stdout(), PushKeyboardEnhancementFlags(flags)).is_ok();
+    }
+    let result = show(&mut app, &mut screen, &mut stop, &mut poll).map_err(failed);
+    if releases {
+        let _ = execute!(stdout(), PopKeyboardEnhancementFlags);
+    }
+    ratatui::restore();
+    result
+}
+
+fn show(
+    app: &mut App,
+    screen: &mut ratatui::DefaultTerminal,
+    stop: &mut impl FnMut() -> bool,
+    poll: &mut impl FnMut() -> Vec<String>,
+) -> std::io::Result<()> {
+    let mut draw_at = Instant::now();
+    while !app.quit && !stop() {
+        let now = Instant::now();
+        if now >= draw_at {
+            draw_at = now + FRAME;
+            poll().into_iter().for_each(|line| app.tell(line));
+            app.tick(now);
+            screen.draw(|frame| draw::draw(app, frame))?;
+        }
+        if event::poll(draw_at.saturating_duration_since(Instant::now()))?
+            && let Event::Key(key) = event::read()?
+        {
+            app.key(key, Instant::now());
+        }
+    }
+    Ok(())
+}
