@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 /// A difference beyond this many seconds is another clock (the stream is a new one), not jitter.
 const ANOTHER_CLOCK: f64 = 0.05;
 
-/// Time in which the delay shrinks towards what is needed, and in which a drift of the device's clock against the
+/// Time in which the longest time to the sound is forgotten, and in which a drift of the device's clock against the
 /// system's is followed, in seconds.
 const SHRINK_SECONDS: f64 = 30.0;
 
@@ -20,11 +20,21 @@ pub struct Moment {
     pub heard: Duration,
 }
 
+/// When an event came.
+#[derive(Clone, Copy, Debug)]
+pub enum Stamp {
+    /// On the system's clock.
+    System(Instant),
+    /// On the device's clock.
+    Device(Duration),
+}
+
 /// Places events inside blocks by their time stamps.
 ///
-/// An event sounds a constant delay after its time stamp: the shortest with which an event that comes just after a
-/// block was asked for still finds its frame in the next. What counts is when blocks are heard, which the device
-/// knows, not when they are asked for; so jitter of the callback does not become jitter of the notes. Real-time safe.
+/// An event that came a third of the way from one block's time to the next one's sounds a third of the way into the
+/// latter: one block late, to the frame. A block's time is when it is heard, which the device knows, less a constant; not
+/// when it is asked for. So neither jitter of the callback nor a device's clock that runs unevenly becomes jitter of the
+/// notes. Real-time safe.
 #[derive(Clone, Debug)]
 pub struct BlockClock {
     sample_rate: f64,
@@ -32,48 +42,55 @@ pub struct BlockClock {
     /// Seconds since the epoch at which the device's clock read 0. A callback can look at the system's clock late, but
     /// never early: the least difference counts.
     offset: Option<f64>,
-    /// When the first frame of this block is heard, in seconds on the device's clock.
-    start: f64,
-    /// Seconds from the time stamp of an event to the frame in which it is heard.
-    delay: f64,
+    /// Longest time from the call to the sound, in seconds: that of a callback that is called without delay.
+    ahead: f64,
+    /// Times of the block before this one and of this one, in seconds on the device's clock.
+    times: [f64; 2],
     frames: u32,
 }
 
 impl BlockClock {
     /// A clock that has seen no block yet.
     pub fn new(sample_rate: f64) -> Self {
-        Self { sample_rate, epoch: Instant::now(), offset: None, start: 0.0, delay: 0.0, frames: 0 }
+        Self { sample_rate, epoch: Instant::now(), offset: None, ahead: 0.0, times: [0.0; 2], frames: 0 }
     }
 
     /// A block of `frames` is asked for.
     pub fn begin(&mut self, moment: Moment, frames: u32) {
         let length = f64::from(frames) / self.sample_rate;
         let follow = (length / SHRINK_SECONDS).min(1.0);
-        let called = moment.called.as_secs_f64();
+        let (called, heard) = (moment.called.as_secs_f64(), moment.heard.as_secs_f64());
         let offset = self.seconds(moment.now) - called;
-        self.offset = match self.offset {
-            Some(known) if (offset - known).abs() < ANOTHER_CLOCK => {
-                Some(known + (offset - known).min((offset - known) * follow))
-            }
-            _ => Some(offset),
+        let known = self.offset.filter(|known| (offset - known).abs() < ANOTHER_CLOCK);
+        self.offset = Some(known.map_or(offset, |known| known + (offset - known).min((offset - known) * follow)));
+        let ahead = heard - called;
+        self.ahead = match known {
+            Some(_) => self.ahead + (ahead - self.ahead).max((ahead - self.ahead) * follow),
+            None => ahead,
         };
-        self.start = moment.heard.as_secs_f64();
+        let time = heard - self.ahead;
+        self.times = [if known.is_some() { self.times[1] } else { time - length }, time];
         self.frames = frames;
-        let needed = self.start + length - called;
-        self.delay += (needed - self.delay).max((needed - self.delay) * follow);
     }
 
     /// The frame of this block at which an event with this time stamp sounds: the first if it should have sounded
     /// earlier, none if it belongs to a later block.
-    pub fn frame_of(&self, stamp: Instant) -> Option<u32> {
-        let due = self.seconds(stamp) - self.offset.unwrap_or(0.0) + self.delay - self.start;
-        let frame = (due * self.sample_rate).round().max(0.0);
-        (frame < f64::from(self.frames)).then_some(frame as u32)
+    pub fn frame_of(&self, stamp: Stamp) -> Option<u32> {
+        let [before, time] = self.times;
+        let at = match stamp {
+            Stamp::System(instant) => self.seconds(instant) - self.offset.unwrap_or(0.0),
+            Stamp::Device(time) => time.as_secs_f64(),
+        };
+        if at >= time {
+            return None;
+        }
+        let frame = ((at - before) / (time - before) * f64::from(self.frames)).round().max(0.0);
+        Some((frame as u32).min(self.frames.saturating_sub(1)))
     }
 
     /// Seconds from the time stamp of an event to the frame in which it is heard.
     pub fn delay(&self) -> f64 {
-        self.delay
+        self.ahead + f64::from(self.frames) / self.sample_rate
     }
 
     fn seconds(&self, at: Instant) -> f64 {
@@ -114,7 +131,7 @@ mod tests {
             }
             clock.begin(moment(epoch, due + late, due + length), BLOCK);
             while let Some(&stamp) = waiting.front() {
-                let Some(frame) = clock.frame_of(epoch + Duration::from_secs_f64(stamp)) else { break };
+                let Some(frame) = clock.frame_of(Stamp::System(epoch + Duration::from_secs_f64(stamp))) else { break };
                 waiting.pop_front();
                 if block > 100 {
                     delays.push(f64::from(block * BLOCK + frame) - stamp * RATE);
@@ -146,11 +163,12 @@ mod tests {
             }
         };
         clock.begin(moment(epoch, 0.0, 0.0), BLOCK);
-        assert_eq!(clock.frame_of(at(-500.0)), Some(0));
-        assert_eq!(clock.frame_of(at(-5.0)), Some(240));
-        assert_eq!(clock.frame_of(at(0.0)), None, "an event of now belongs to the next block");
+        assert_eq!(clock.frame_of(Stamp::System(at(-500.0))), Some(0));
+        assert_eq!(clock.frame_of(Stamp::System(at(-5.0))), Some(240));
+        assert_eq!(clock.frame_of(Stamp::System(at(0.0))), None, "an event of now belongs to the next block");
+        assert_eq!(clock.frame_of(Stamp::Device(Duration::from_millis(6_995))), Some(240));
         clock.begin(moment(epoch, 0.01, 0.01), BLOCK);
-        assert_eq!(clock.frame_of(at(0.0)), Some(0));
+        assert_eq!(clock.frame_of(Stamp::System(at(0.0))), Some(0));
     }
 
     #[test]
@@ -160,6 +178,6 @@ mod tests {
         clock.begin(moment(epoch, 0.0, 0.0), BLOCK);
         let later = epoch + Duration::from_secs(60);
         clock.begin(Moment { now: later, called: Duration::ZERO, heard: Duration::ZERO }, BLOCK);
-        assert_eq!(clock.frame_of(later - Duration::from_millis(5)), Some(240));
+        assert_eq!(clock.frame_of(Stamp::System(later - Duration::from_millis(5))), Some(240));
     }
 }

@@ -1,5 +1,6 @@
 //! A JACK port as live input: its events have exact frames.
 
+use super::block_clock::Stamp;
 use super::live::{LiveEvent, LiveSender};
 use super::midi_ports::Wanted;
 use crate::io::midi::parse_message;
@@ -40,38 +41,18 @@ struct Process {
 
 impl jack::ProcessHandler for Process {
     fn process(&mut self, client: &Client, scope: &ProcessScope) -> Control {
-        let (now, micros) = both_clocks(client);
         let cycle = scope.last_frame_time();
         if let Some(sender) = &mut self.sender {
             for message in self.port.iter(scope) {
                 if let Some((channel, kind)) = parse_message(message.bytes) {
                     let at = client.frames_to_time(cycle.wrapping_add(message.time));
-                    let stamp = match micros.checked_sub(at) {
-                        Some(ago) => now.checked_sub(Duration::from_micros(ago)).unwrap_or(now),
-                        None => now + Duration::from_micros(at - micros),
-                    };
+                    let stamp = Stamp::Device(Duration::from_micros(at));
                     sender.send(LiveEvent { stamp, channel, kind });
                 }
             }
         }
         Control::Continue
     }
-}
-
-/// The system's time and the server's at one moment: of a few pairs, the one read with the least between.
-fn both_clocks(client: &Client) -> (Instant, u64) {
-    let read = || {
-        let now = Instant::now();
-        let micros = client.time();
-        (now.elapsed(), now, micros)
-    };
-    let (mut least, mut now, mut micros) = read();
-    for (between, again, at) in [read(), read()] {
-        if between < least {
-            (least, now, micros) = (between, again, at);
-        }
-    }
-    (now, micros)
 }
 
 impl Drop for Process {

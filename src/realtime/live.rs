@@ -1,6 +1,6 @@
 //! Live events on their way to the audio thread: bounded queues without locks, merged in the order of time.
 
-use super::BlockClock;
+use super::{BlockClock, Stamp};
 use crate::engine::{Event, EventKind};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::time::Instant;
@@ -12,7 +12,7 @@ const CAPACITY: usize = 1024;
 #[derive(Clone, Copy, Debug)]
 pub struct LiveEvent {
     /// When it came.
-    pub stamp: Instant,
+    pub stamp: Stamp,
     /// MIDI channel, 0–15.
     pub channel: u8,
     /// What happens.
@@ -43,7 +43,7 @@ impl LiveSender {
 
     /// Hands over an event that comes now.
     pub fn send_now(&mut self, channel: u8, kind: EventKind) -> bool {
-        self.send(LiveEvent { stamp: Instant::now(), channel, kind })
+        self.send(LiveEvent { stamp: Stamp::System(Instant::now()), channel, kind })
     }
 
     /// Lets go of the keys and sustain pedals that this sender has put down.
@@ -134,10 +134,10 @@ mod tests {
         let at = |ms: u64| now - Duration::from_millis(10) + Duration::from_millis(ms);
         let program = EventKind::Program;
         for (ms, number) in [(1, 1), (5, 5), (20, 99)] {
-            assert!(first.send(LiveEvent { stamp: at(ms), channel: 0, kind: program(number) }));
+            assert!(first.send(LiveEvent { stamp: Stamp::System(at(ms)), channel: 0, kind: program(number) }));
         }
         for (ms, number) in [(3, 3), (5, 6), (2, 7)] {
-            assert!(second.send(LiveEvent { stamp: at(ms), channel: 0, kind: program(number) }));
+            assert!(second.send(LiveEvent { stamp: Stamp::System(at(ms)), channel: 0, kind: program(number) }));
         }
         let mut events = vec![Event { frame: 48, channel: 0, kind: program(0) }];
         inputs.merge(&clock, 0, 192, &mut events);

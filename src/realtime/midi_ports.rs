@@ -1,5 +1,6 @@
 //! The system's MIDI ports as live input: those that are wanted, as they come and go.
 
+use super::block_clock::Stamp;
 use super::live::{LiveEvent, LiveSender};
 use crate::io::midi::parse_message;
 use midir::{Ignore, MidiInput, MidiInputConnection, MidiInputPort};
@@ -129,7 +130,7 @@ fn connect(port: &MidiInputPort, name: &str, sender: Arc<Mutex<LiveSender>>) -> 
     let mut input = MidiInput::new(CLIENT).ok()?;
     input.ignore(Ignore::All);
     let receive = move |_: u64, bytes: &[u8], (): &mut ()| {
-        let stamp = Instant::now();
+        let stamp = Stamp::System(Instant::now());
         if let Some((channel, kind)) = parse_message(bytes)
             && let Ok(mut sender) = sender.lock()
         {

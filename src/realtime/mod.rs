@@ -17,7 +17,7 @@ pub mod status;
 mod stream;
 pub mod view;
 
-pub use block_clock::{BlockClock, Moment};
+pub use block_clock::{BlockClock, Moment, Stamp};
 pub use device::{Choice, Found};
 pub use jack_midi::JackMidi;
 pub use live::{LiveEvent, LiveInputs, LiveSender};
