@@ -1,6 +1,7 @@
 //! `cargo xtask …`: the project's chores.
 
 mod bless;
+mod callgrind;
 mod figures;
 mod setup;
 mod shell;
@@ -31,6 +32,15 @@ enum Chore {
     },
     /// Draw the README's picture of the demo song to assets/demo.png.
     Figures,
+    /// Count the kernels' instructions per mode and frame; fail if they have grown by 5 %.
+    Callgrind {
+        /// Keep what is counted.
+        #[arg(long)]
+        accept: bool,
+    },
+    /// What `callgrind` counts.
+    #[command(hide = true)]
+    CallgrindWork { level: String, work: String, ticks: usize },
     /// Write the demo songs to assets/midi.
     Songs {
         /// Write nothing; fail if the files are not what would be written.
@@ -45,6 +55,8 @@ fn main() -> ExitCode {
         Chore::Test => test::run(),
         Chore::Bless { case } => bless::run(case.as_deref()),
         Chore::Figures => figures::run(),
+        Chore::Callgrind { accept } => callgrind::run(accept),
+        Chore::CallgrindWork { level, work, ticks } => callgrind::work(&level, &work, ticks),
         Chore::Songs { check } => songs::run(check),
     };
     match result {
