@@ -4,7 +4,7 @@
 //! A damped sinusoid of radius `r` and angle `θ` per sample has determinant `r²` and trace `2 r cos θ`;
 //! equating the two gives [`Coefficients::exact`].
 
-use libm::{asin, cos, cosh, exp, expm1, log, sin, sqrt};
+use libm::{asin, cos, exp, expm1, log, sin, sqrt};
 use std::f64::consts::{PI, TAU};
 
 /// Natural logarithm of −60 dB, as an amplitude ratio of 0.001.
@@ -80,6 +80,9 @@ impl Coefficients {
     /// and velocity `velocity0` (per second): the step follows the continuous motion exactly, in every regime:
     /// under-, critically and over-damped, undamped (`c = 0`), unsprung (`k = 0`) and unimpeded (both).
     ///
+    /// Where the damper leaves nothing of a velocity within one sample (`ζ` rounds to 1), no `v0` can move the mass, and
+    /// it is 0: the displacement is then out by at most `(|velocity0| + |x0| k/c)·m/c`, which shrinks as the mass returns.
+    ///
     /// `m > 0`, `c ≥ 0`, `k ≥ 0`, `dt > 0`, in consistent units. Source: the closed form of "Damped Harmonic
     /// Oscillator" (`τ₀`, `τ₁`). Real-time safe.
     pub fn mass_spring(m: f64, c: f64, k: f64, x0: f64, velocity0: f64, dt: f64) -> Self {
@@ -88,18 +91,22 @@ impl Coefficients {
         let sigma_squared = lambda * lambda - omega0_squared;
         let scale = sqrt(sigma_squared.abs());
         let decay = exp(-lambda);
-        // τ₀ and τ₁ over one sample, and ω² = 1 + g² − 2 g τ₀ written so that nothing cancels.
+        // τ₀ and τ₁ over one sample, both times e^(−λ̄) so that neither cosh nor sinh can overflow where their sum decays,
+        // and ω² = 1 + g² − 2 g τ₀ written so that nothing cancels.
         let (tau0, tau1, omega2) = if sigma_squared < 0.0 {
-            (cos(scale), sin(scale) / scale, omega2_from_angle(decay, scale))
+            (decay * cos(scale), decay * sin(scale) / scale, omega2_from_angle(decay, scale))
         } else if sigma_squared > 0.0 {
             let slow = omega0_squared / (lambda + scale);
-            (cosh(scale), libm::sinh(scale) / scale, expm1(-slow) * expm1(-lambda - scale))
+            let (slowly, shrink) = (exp(-slow), expm1(-2.0 * scale));
+            let (tau0, tau1) = (slowly * (1.0 + 0.5 * shrink), -slowly * shrink / (2.0 * scale));
+            (tau0, tau1, expm1(-slow) * expm1(-lambda - scale))
         } else {
-            (1.0, 1.0, (1.0 - decay) * (1.0 - decay))
+            (decay, decay, (1.0 - decay) * (1.0 - decay))
         };
-        let x1 = decay * (x0 * (tau0 + lambda * tau1) + velocity0 * dt * tau1);
-        let keep = decay * decay;
-        Self { zeta: -expm1(-2.0 * lambda), omega2, x0, v0: (x1 - x0 * (1.0 - omega2)) / keep }
+        let x1 = x0 * (tau0 + lambda * tau1) + velocity0 * dt * tau1;
+        let zeta = -expm1(-2.0 * lambda);
+        let v0 = if zeta == 1.0 { 0.0 } else { (x1 - x0 * (1.0 - omega2)) / (decay * decay) };
+        Self { zeta, omega2, x0, v0 }
     }
 
     /// Amplitude ratio per sample, `r = √(1−ζ)`.
@@ -161,7 +168,7 @@ mod tests {
         let (t1, t0) = if resid < 0.0 {
             (sin(scale * t) / scale, cos(scale * t))
         } else if resid > 0.0 {
-            (libm::sinh(scale * t) / scale, cosh(scale * t))
+            (libm::sinh(scale * t) / scale, libm::cosh(scale * t))
         } else {
             (t, 1.0)
         };
@@ -192,6 +199,30 @@ mod tests {
                     worst.max((mass.step() - expected).abs())
                 });
                 assert!(worst < 1e-12, "{regime} from ({x0}, {v0}): {worst:e}");
+            }
+        }
+    }
+
+    /// Against `(s₂ e^(s₁t) − s₁ e^(s₂t)) / (s₂ − s₁)` and `(e^(s₁t) − e^(s₂t)) / (s₁ − s₂)`, where the fast `e^(s₂t)` is 0.
+    #[test]
+    fn heavy_damping_creeps_and_does_not_overflow() {
+        for (m, c, k, x0, velocity0) in [
+            (1.0, 2000.0, 1.0, 0.5, 0.0),
+            (1.0, 2000.0, 1.0, 0.5, -3.0),
+            (1.0, 40.0, 1.0, 0.5, 1.0),
+            (1.0, 1e6, 0.0, 0.0, 1.0),
+            (2.0, 1e9, 1e9, -0.3, 0.7),
+        ] {
+            let coefficients = Coefficients::mass_spring(m, c, k, x0, velocity0, 1.0);
+            assert_eq!(coefficients.v0, 0.0);
+            let spread = sqrt(c * c - 4.0 * k * m) / m;
+            let slow = -2.0 * k / (c + m * spread);
+            let tolerance = (f64::abs(velocity0) + f64::abs(x0) * k / c) * m / c * 1.01 + 1e-12;
+            let mut mass = HarmonicOscillator::<f64>::new(&coefficients);
+            for n in 1..=100 {
+                let expected = ((spread - slow) * x0 + velocity0) / spread * exp(slow * f64::from(n));
+                let (x, most) = (mass.step(), tolerance * exp(slow * f64::from(n)) + 1e-12);
+                assert!((x - expected).abs() <= most, "c {c} from ({x0}, {velocity0}): {x} {expected}");
             }
         }
     }

@@ -103,6 +103,11 @@ impl Output {
         self.pending.is_some()
     }
 
+    /// The file that the output is in until [`Output::commit`]; none where it is written straight.
+    pub fn temporary(&self) -> Option<&Path> {
+        self.pending.as_ref().map(|pending| &*pending.temporary)
+    }
+
     /// The stream to write to.
     pub fn stream(&mut self) -> &mut OutputStream {
         &mut self.stream
@@ -200,6 +205,7 @@ mod tests {
         let mut output = Output::create(&Target::new(&path), false).unwrap();
         output.stream().write_all(b"half").unwrap();
         assert!(!path.exists());
+        assert_eq!(fs::read(output.temporary().unwrap()).unwrap(), b"half");
         drop(output);
         assert!(names(directory.path()).is_empty(), "an abandoned output leaves nothing");
 

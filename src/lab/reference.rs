@@ -23,6 +23,14 @@ pub fn states(system: &System, start: State, h: f64, count: usize) -> Result<Vec
     // 1/200 rad of the fastest oscillation per step: an error of some 1e−12 per radian, before any refinement.
     let angle = sqrt(greatest_stiffness(system, start) / system.mass) * h;
     let mut substeps = (200.0 * angle).ceil().max(4.0);
+    let steps = count as f64 * substeps;
+    if steps.is_nan() || steps > MOST_STEPS {
+        let message = format!(
+            "is {steps:.1e} steps away for a reference of this nonlinear motion, and at most {MOST_STEPS:.0e} are tried: \
+             choose an earlier one, a softer spring or a greater mass"
+        );
+        return Err(Error::value("end", message));
+    }
     let mut coarse = integrated(system, start, h, count, substeps as usize)?;
     while count as f64 * substeps <= MOST_STEPS {
         substeps *= 2.0;
@@ -67,6 +75,15 @@ mod tests {
         let nearly = System { spring: Spring::Duffing { cubic: 0.0 }, ..linear };
         for (a, b) in exact.iter().zip(states(&nearly, start, 0.05, 100).unwrap()) {
             assert!((a.x - b.x).abs() < 1e-11 && (a.v - b.v).abs() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn a_reference_that_would_take_for_ever_is_refused_before_it_begins() {
+        for stiffness in [1e20, f64::MAX] {
+            let stiff = System { spring: Spring::Pendulum, ..System::linear(1.0, stiffness, 0.5).unwrap() };
+            let message = states(&stiff, State { x: 0.5, v: 0.0 }, 0.01, 500).unwrap_err().to_string();
+            assert!(message.contains("steps away"), "{message}");
         }
     }
 

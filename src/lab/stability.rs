@@ -19,7 +19,7 @@ pub struct Cell {
     pub omega_h: f64,
     /// Damping ratio `c / 2√(km)`.
     pub zeta: f64,
-    /// Growth in nepers per step.
+    /// Growth in nepers per step; NaN where the method refuses the step.
     pub growth: f64,
     /// Whether every state stays bounded.
     pub bounded: bool,
@@ -30,18 +30,32 @@ fn amplification(method: Method, omega_h: f64, zeta: f64) -> Result<Amplificatio
     Amplification::of(method, &System::linear(1.0, 1.0, 2.0 * zeta)?, omega_h)
 }
 
-/// Runs a method at one point of the plane.
+/// Runs a method at one point of the plane. A step that the method refuses (the synth's, at whole half turns and where
+/// rounding leaves none of the velocity) is not an explosion: it counts as bounded.
+///
+/// # Errors
+/// [`Error::Value`] for a step that is not positive, and for a damping ratio that is negative.
 pub fn cell(method: Method, omega_h: f64, zeta: f64) -> Result<Cell> {
-    let step = amplification(method, omega_h, zeta)?;
-    Ok(Cell { omega_h, zeta, growth: step.growth(), bounded: step.is_bounded() })
+    if !(omega_h > 0.0 && omega_h.is_finite()) {
+        return Err(Error::value("omega_h", format!("must be greater than 0 rad, got {omega_h}")));
+    }
+    check(zeta)?;
+    Ok(amplification(method, omega_h, zeta).map_or(Cell { omega_h, zeta, growth: f64::NAN, bounded: true }, |step| {
+        Cell { omega_h, zeta, growth: step.growth(), bounded: step.is_bounded() }
+    }))
+}
+
+fn check(zeta: f64) -> Result<()> {
+    if zeta >= 0.0 && zeta.is_finite() {
+        return Ok(());
+    }
+    Err(Error::value("zeta", format!("a damping ratio must be 0 or more, got {zeta}")))
 }
 
 /// The `ω·h` up to which a method stays bounded, found numerically: 0 if it never does, infinite if it always does.
 pub fn limit(method: Method, zeta: f64) -> Result<f64> {
-    if !(zeta >= 0.0 && zeta.is_finite()) {
-        return Err(Error::value("zeta", format!("a damping ratio must be 0 or more, got {zeta}")));
-    }
-    // A step that the method refuses (the synth's, where rounding leaves none of the velocity) is not an explosion.
+    check(zeta)?;
+    // As in [`cell`], a step that the method refuses is not an explosion.
     let explodes = |omega_h: f64| amplification(method, omega_h, zeta).is_ok_and(|step| !step.is_bounded());
     Ok(first(explodes, 1.02))
 }
@@ -173,7 +187,17 @@ mod tests {
     }
 
     #[test]
+    fn a_step_that_is_refused_is_no_explosion() {
+        for (omega_h, zeta) in [(std::f64::consts::PI, 0.0), (20.0, 1.0), (100.0, 2.0)] {
+            let cell = cell(Method::SynthExact, omega_h, zeta).unwrap();
+            assert!(cell.bounded && cell.growth.is_nan(), "{cell:?}");
+        }
+        assert!(cell(Method::SynthExact, 0.0, 0.5).unwrap_err().to_string().starts_with("omega_h:"));
+    }
+
+    #[test]
     fn a_negative_damping_ratio_is_an_error() {
+        assert!(cell(Method::Heun, 0.5, -0.1).unwrap_err().to_string().contains("must be 0 or more"));
         assert!(limit(Method::Heun, -0.1).unwrap_err().to_string().contains("must be 0 or more"));
     }
 }

@@ -1,6 +1,9 @@
 //! `sprung lab` from outside: tables, figures, numbers, sounds, and bad input.
 
 use crate::Sandbox;
+use std::io::Read;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
 fn text(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes).unwrap()
@@ -117,6 +120,64 @@ fn numbers_go_to_stdout_and_the_table_out_of_their_way() {
     assert!(text(output.stderr).contains("close"));
 }
 
+/// Starts `sprung`; what it says is for the caller to read.
+fn start(sandbox: &Sandbox, args: &str) -> Child {
+    Command::new(assert_cmd::cargo::cargo_bin!("sprung"))
+        .args(args.split_whitespace())
+        .current_dir(sandbox.path("."))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_error() {
+    // Far more than a pipe holds.
+    let mut child = start(&Sandbox::new(), "lab compare --csv -");
+    child.stdout.take().unwrap().read_exact(&mut [0; 100]).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let stderr = text(output.stderr);
+    assert!(output.status.success() && stderr.contains("explodes") && !stderr.contains("error:"), "{stderr}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_long_work_at_once_and_leaves_nothing_behind() {
+    let sandbox = Sandbox::new();
+    let mut child = start(&sandbox, "lab stability --grid 400 -o figure.png --csv numbers.csv");
+    let limit = Instant::now() + Duration::from_secs(60);
+    // Both are open: the handler has been in place for longer, and seconds of work lie ahead.
+    while sandbox.files().len() < 2 {
+        assert!(Instant::now() < limit && child.try_wait().unwrap().is_none(), "it never got going");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(50));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), text(output.stderr).as_str()), (Some(130), "sprung: error: interrupted\n"));
+    assert!(sandbox.files().is_empty(), "{:?}", sandbox.files());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn listen_leaves_no_sound_where_its_numbers_cannot_be_written() {
+    let sandbox = Sandbox::new();
+    sandbox.fails("lab listen . --methods rk4,verlet --seconds 0.1 --csv /dev/full", 1, "/dev/full: ");
+    sandbox.succeeds("lab listen . --methods rk4,verlet --seconds 0.1 --csv numbers.csv");
+    assert_eq!(sandbox.files(), ["numbers.csv", "rk4.wav", "verlet.wav"]);
+}
+
+#[test]
+fn stability_goes_on_where_a_method_refuses_a_step() {
+    let sandbox = Sandbox::new();
+    for args in ["--longest 20", "--longest 3.141592653589793", "--longest 100 --zeta 2"] {
+        sandbox.succeeds(&format!("lab stability --grid 5 --methods synth-exact {args} -o a.svg --csv a.csv --force"));
+        let csv = text(sandbox.read("a.csv"));
+        assert!(csv.lines().any(|row| row.ends_with(",,1,inf")) && !csv.contains("NaN"), "{args}: {csv}");
+    }
+}
+
 #[test]
 fn systems_of_every_kind_can_be_integrated() {
     let sandbox = Sandbox::new();
@@ -156,6 +217,7 @@ fn bad_input_is_told_clearly() {
         ("compare --stiffness 0 --methods chou-implicit", "stiffness: must be greater than 0"),
         ("compare --spring pendulum --methods exponential", "spring: must be linear for exponential"),
         ("compare --spring pendulum --methods implicit-euler --x0 2 --v0 9 --steps 1 --end 20", "did not converge"),
+        ("compare --spring pendulum --stiffness 1e20", "steps away for a reference of this nonlinear motion"),
         ("compare --methods rk5", "did you mean rk4?"),
         ("compare -o figure.gif", "figure.gif: expected a name that ends in .html or .svg or .png"),
         ("compare -o none/figure.svg", "none/figure.svg: "),

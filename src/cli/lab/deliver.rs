@@ -4,7 +4,7 @@ use super::super::{interrupt, print};
 use sprung::figure::{self, Picture};
 use sprung::io::{Output, Target};
 use sprung::{Error, Result};
-use std::io::{self, BufWriter, IsTerminal, Write};
+use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// The options of every command's output.
@@ -25,8 +25,10 @@ pub(super) struct Files {
 pub(super) struct Deliveries {
     csv: Option<Output>,
     figure: Option<(Output, String)>,
+    /// Outputs that are written, and get their names when all are.
+    written: Vec<Output>,
     to_stdout: bool,
-    pub(super) force: bool,
+    force: bool,
 }
 
 impl Files {
@@ -41,13 +43,18 @@ impl Files {
             return Err(Error::value("--csv", "stdout is a terminal: expected a file, or stdout sent to one"));
         }
         let format = self.output.as_deref().map(|path| format_of(path, formats)).transpose()?;
-        let open = |path: &PathBuf| Output::create(&Target::new(path), self.force);
+        interrupt::end_at_once()?;
+        let open = |path: &PathBuf| create(&Target::new(path), self.force);
         let csv = self.csv.as_ref().map(open).transpose()?;
         let figure = self.output.as_ref().map(open).transpose()?.zip(format);
-        let removable = csv.iter().chain(figure.iter().map(|(output, _)| output)).all(Output::is_seekable);
-        interrupt::catch(removable)?;
-        Ok(Deliveries { csv, figure, to_stdout, force: self.force })
+        Ok(Deliveries { csv, figure, written: Vec::new(), to_stdout, force: self.force })
     }
+}
+
+fn create(target: &Target, force: bool) -> Result<Output> {
+    let output = Output::create(target, force)?;
+    interrupt::remove(&output);
+    Ok(output)
 }
 
 /// What a file's name ends in.
@@ -71,6 +78,14 @@ impl Deliveries {
         self.csv.is_some()
     }
 
+    /// Opens and writes one more file. It gets its name with the others, in [`Deliveries::finish`].
+    pub(super) fn add(&mut self, path: PathBuf, write: impl FnOnce(&mut Output) -> Result<()>) -> Result<()> {
+        let mut output = create(&Target::Path(path), self.force)?;
+        write(&mut output)?;
+        self.written.push(output);
+        Ok(())
+    }
+
     /// Writes figure and CSV, each only if wanted, and says `text`: on stdout, or on stderr if the CSV goes there.
     pub(super) fn finish(
         self,
@@ -78,17 +93,20 @@ impl Deliveries {
         csv: impl FnOnce(&mut dyn Write) -> io::Result<()>,
         text: &str,
     ) -> Result<()> {
-        let mut whole = Vec::new();
+        let mut whole = self.written;
         if let Some((mut output, format)) = self.figure {
             let bytes = figure(&format)?;
             write(&mut output, |out| out.write_all(&bytes))?;
             whole.push(output);
         }
         if let Some(mut output) = self.csv {
-            write(&mut output, csv)?;
+            match write(&mut output, csv) {
+                // A reader that has gone away, as `head` does, has what it wanted.
+                Err(Error::Io { source, .. }) if self.to_stdout && source.kind() == ErrorKind::BrokenPipe => (),
+                written => written?,
+            }
             whole.push(output);
         }
-        interrupt::check()?;
         for output in whole {
             output.commit()?;
         }

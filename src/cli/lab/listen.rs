@@ -1,11 +1,10 @@
 //! `sprung lab listen`.
 
-use super::super::interrupt;
 use super::deliver::{Files, drawn};
 use super::system::MethodArgs;
 use super::table::{aligned, row};
 use sprung::figure::number::short;
-use sprung::io::{Output, SampleFormat, Target, WavFormat, WavWriter};
+use sprung::io::{SampleFormat, WavFormat, WavWriter};
 use sprung::lab::figure::sound::SoundFigure;
 use sprung::lab::sound::{Sound, listen};
 use sprung::render::SAMPLE_RATES;
@@ -39,30 +38,25 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<()> {
     let methods = args.methods.named()?;
-    let deliveries = args.files.open(&["svg", "png"])?;
+    let mut deliveries = args.files.open(&["svg", "png"])?;
     let rate = f64::from(args.rate);
     // All that can fail for the values given fails before a directory is made.
     let mut sounds = Vec::new();
     for method in &methods {
         sounds.push(listen(*method, args.frequency, args.t60, args.seconds, rate)?);
-        interrupt::check()?;
     }
     let failed = |error| Error::io(args.directory.display().to_string(), error);
     std::fs::create_dir_all(&args.directory).map_err(failed)?;
     let path = |sound: &Sound| args.directory.join(format!("{}.wav", sound.method.key()));
-    let mut outputs = Vec::new();
     for sound in &sounds {
-        let mut output = Output::create(&Target::Path(path(sound)), deliveries.force)?;
-        let name = output.name().to_owned();
-        let format = WavFormat { sample_rate: args.rate, channels: 1, samples: SampleFormat::Int24 };
-        let mut writer = WavWriter::new(output.stream(), &name, format, None, Some(sound.samples.len() as u64))?;
-        writer.write(&sound.samples, &sound.samples)?;
-        writer.finish()?;
-        outputs.push(output);
-    }
-    interrupt::check()?;
-    for output in outputs {
-        output.commit()?;
+        deliveries.add(path(sound), |output| {
+            let name = output.name().to_owned();
+            let format = WavFormat { sample_rate: args.rate, channels: 1, samples: SampleFormat::Int24 };
+            let mut writer = WavWriter::new(output.stream(), &name, format, None, Some(sound.samples.len() as u64))?;
+            writer.write(&sound.samples, &sound.samples)?;
+            writer.finish()?;
+            Ok(())
+        })?;
     }
     let title = format!("{} Hz, decay by 60 dB in {} s, at {rate} Hz", short(args.frequency), args.t60);
     let figure = SoundFigure { sounds: &sounds, sample_rate: rate, title: &title };

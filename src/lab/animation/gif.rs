@@ -86,11 +86,11 @@ pub fn gif(animation: &Animation) -> Result<Vec<u8>> {
     let mut encoder = Encoder::new(&mut bytes, width as u16, height as u16, &palette.bytes()).map_err(failed)?;
     encoder.set_repeat(Repeat::Infinite).map_err(failed)?;
     let mut previous: Vec<u8> = Vec::new();
-    let mut shown = 0;
+    let mut shown = 0_u64;
     for frame in 0..animation.len() {
         let pixels = palette.indexed(&crate::figure::rgb(&Scene { animation, frame })?);
         // Delays are whole hundredths of a second: what one frame is short of, the next makes up for.
-        let until = ((frame + 1) as f64 * 100.0 / animation.rate).round() as u16;
+        let until = ((frame + 1) as f64 * 100.0 / animation.rate).round() as u64;
         let (left, top, w, h) = changed(&previous, &pixels, width as usize);
         let mut part = Vec::with_capacity(w * h);
         for y in top..top + h {
@@ -98,7 +98,8 @@ pub fn gif(animation: &Animation) -> Result<Vec<u8>> {
         }
         encoder
             .write_frame(&Frame {
-                delay: until - shown,
+                // No frame of the format lasts longer than 655.35 s.
+                delay: u16::try_from(until - shown).unwrap_or(u16::MAX),
                 left: left as u16,
                 top: top as u16,
                 width: w as u16,
@@ -169,20 +170,27 @@ mod tests {
     use super::super::tests::comparison;
     use super::*;
 
-    #[test]
-    fn frames_can_be_read_back_and_last_as_long_as_the_motion() {
-        let animation = Animation::new(&comparison(), 12.0).unwrap();
-        let bytes = gif(&animation).unwrap();
+    /// Number of frames, their delays added up, and how many of them are narrower than the picture.
+    fn read(animation: &Animation) -> (usize, u64, usize) {
+        let bytes = gif(animation).unwrap();
         let mut options = ::gif::DecodeOptions::new();
         options.set_color_output(::gif::ColorOutput::Indexed);
         let mut reader = options.read_info(&bytes[..]).unwrap();
         let (mut frames, mut delay, mut partial) = (0, 0, 0);
         while let Some(frame) = reader.read_next_frame().unwrap() {
             frames += 1;
-            delay += frame.delay;
+            delay += u64::from(frame.delay);
             partial += usize::from(u32::from(frame.width) < WIDTH);
         }
-        assert_eq!((frames, delay, partial), (12, 100, 11));
+        (frames, delay, partial)
+    }
+
+    #[test]
+    fn frames_can_be_read_back_and_last_as_long_as_the_motion() {
+        let mut animation = Animation::new(&comparison(), 12.0).unwrap();
+        assert_eq!(read(&animation), (12, 100, 11));
+        animation.rate = 0.01;
+        assert_eq!(read(&animation).1, 120_000, "twenty minutes");
     }
 
     #[test]

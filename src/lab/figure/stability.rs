@@ -70,12 +70,13 @@ fn panel<B: DrawingBackend>(area: &Area<B>, region: &Region) -> Drawn<B> {
     line(&mut chart, &limits, THEORY)
 }
 
-/// One row per method, damping ratio and step.
+/// One row per method, damping ratio and step; the growth is empty where the method refuses the step.
 pub fn csv(regions: &[Region]) -> String {
     let mut csv = String::from("method,zeta,omega_h,growth_neper_per_step,bounded,theory_limit\n");
     for region in regions {
         for cell in region.rows.iter().flatten() {
             let Cell { omega_h, zeta, growth, bounded } = cell;
+            let growth = if growth.is_nan() { String::new() } else { growth.to_string() };
             let (key, limit) = (region.method.key(), theory(region.method, *zeta));
             csv += &format!("{key},{zeta},{omega_h},{growth},{},{limit}\n", u8::from(*bounded));
         }
