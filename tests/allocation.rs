@@ -1,9 +1,10 @@
-//! The audio thread never allocates: playing everything at once under an allocator that forbids it.
+//! The audio thread never allocates, and neither does measuring: both under an allocator that forbids it.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::params::PARAMS;
 use sprung::patch::{Mode, ModeTable, Patch};
+use sprung::render::Meter;
 
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
@@ -51,6 +52,18 @@ fn processing_does_not_allocate() {
     assert!(loudest > 0.1, "something sounded");
     assert_no_alloc(|| std::hint::black_box((ensemble.is_silent(), ensemble.voices_used())));
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
+}
+
+/// Ten minutes: a list of gating blocks would outgrow what it sets out with.
+#[test]
+fn measuring_keeps_nothing_that_grows() {
+    let mut meter = Meter::new(8000, 1).unwrap();
+    let second: Vec<f32> = (0..8000).map(|n| if n % 8 < 4 { 0.5 } else { -0.5 }).collect();
+    for _ in 0..600 {
+        assert_no_alloc(|| meter.add(&second, &[]).unwrap());
+    }
+    assert!(meter.levels().lufs.is_some());
+    assert_eq!(violation_count(), 0, "allocations while measuring");
 }
 
 #[test]

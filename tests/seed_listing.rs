@@ -1,5 +1,8 @@
 //! The `classic` sound against the original listing, compiled as it was written: the same bits.
+//!
+//! Where there is no C++ compiler, the tests count as ignored.
 
+use libtest_mimic::{Arguments, Trial};
 use sprung::dsp::{Coefficients, HarmonicOscillator};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::Param;
@@ -7,30 +10,51 @@ use sprung::patch::Patch;
 use sprung::units::key_from_frequency;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitCode, Stdio};
 use std::sync::OnceLock;
 
 /// Sample rate, frequency, decay in frames, amplitude, frames, sweep.
 type Case = (f32, f32, f32, f32, usize, f32);
 
-/// The listing as a program, or `None` on a machine without a C++ compiler. Compiled once: the tests run side by side,
-/// and a program that is being written cannot be run.
-fn program() -> Option<&'static Path> {
-    static PROGRAM: OnceLock<Option<PathBuf>> = OnceLock::new();
-    let compile = || {
+fn main() -> ExitCode {
+    let arguments = Arguments::from_args();
+    let missing = Command::new("c++").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_err();
+    if missing {
+        println!("there is no C++ compiler (c++; on Debian: apt install g++): the tests are ignored");
+    }
+    let trial = |name: &str, test: fn()| {
+        let run = move || {
+            test();
+            Ok(())
+        };
+        Trial::test(name, run).with_ignored_flag(missing)
+    };
+    let trials = vec![
+        trial("the_classic_oscillator_is_the_listing_to_the_bit", the_classic_oscillator_is_the_listing_to_the_bit),
+        trial(
+            "the_classic_sound_of_the_synth_is_the_listing_to_the_bit",
+            the_classic_sound_of_the_synth_is_the_listing_to_the_bit,
+        ),
+    ];
+    libtest_mimic::run(&arguments, trials).exit_code()
+}
+
+/// The listing as a program. Compiled once: the tests run side by side, and a program that is being written cannot be run.
+fn program() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
         let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("harmonic_oscillator");
         let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/seed/harmonic_oscillator.cpp");
         // No fusing: the listing's operations one by one, as on the machines of its time.
         let compiler = Command::new("c++").args(["-O2", "-ffp-contract=off", source, "-o"]).arg(&program).status();
-        assert!(compiler.as_ref().is_err() || compiler.as_ref().unwrap().success(), "the listing does not compile");
-        compiler.ok().map(|_| program)
-    };
-    PROGRAM.get_or_init(compile).as_deref()
+        assert!(compiler.unwrap().success(), "the listing does not compile");
+        program
+    })
 }
 
-/// What the listing gives for the cases, or `None` on a machine without a C++ compiler.
-fn listing(cases: &[Case]) -> Option<Vec<f32>> {
-    let mut child = Command::new(program()?).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+/// What the listing gives for the cases.
+fn listing(cases: &[Case]) -> Vec<f32> {
+    let mut child = Command::new(program()).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut input = child.stdin.take().unwrap();
     let lines: String = cases
         .iter()
@@ -42,7 +66,7 @@ fn listing(cases: &[Case]) -> Option<Vec<f32>> {
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
-    Some(text.lines().map(|bits| f32::from_bits(bits.parse().unwrap())).collect())
+    text.lines().map(|bits| f32::from_bits(bits.parse().unwrap())).collect()
 }
 
 /// Two hundred settings all over the range in which the listing is stable.
@@ -60,14 +84,9 @@ fn cases() -> Vec<Case> {
         .collect()
 }
 
-#[test]
 fn the_classic_oscillator_is_the_listing_to_the_bit() {
     let cases = cases();
-    let Some(expected) = listing(&cases) else {
-        println!("ignored: no C++ compiler (c++) here");
-        return;
-    };
-    let mut expected = expected.into_iter();
+    let mut expected = listing(&cases).into_iter();
     for (rate, frequency, decay, amplitude, frames, sweep) in cases {
         let mut mass = HarmonicOscillator::<f32>::new(&Coefficients::seed(frequency, decay, amplitude, rate));
         for n in 0..frames {
@@ -83,14 +102,10 @@ fn the_classic_oscillator_is_the_listing_to_the_bit() {
     assert_eq!(expected.next(), None);
 }
 
-#[test]
 fn the_classic_sound_of_the_synth_is_the_listing_to_the_bit() {
     let settings = [(440.0, 1.0), (55.0, 0.25), (4000.0, 3.0)];
     let cases = settings.map(|(frequency, t60)| (48_000.0, frequency, t60 * 48_000.0, 1.0, 9600, 1.0));
-    let Some(expected) = listing(&cases) else {
-        println!("ignored: no C++ compiler (c++) here");
-        return;
-    };
+    let expected = listing(&cases);
     for ((frequency, t60), expected) in settings.into_iter().zip(expected.chunks(9600)) {
         let mut synth = Synth::new(48_000.0, 0);
         let patch = Patch::default().with(Param::Coefficients, 1.0).with(Param::Decay, t60).with(Param::Gain, 0.0);

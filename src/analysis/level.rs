@@ -1,4 +1,4 @@
-//! Levels of a signal: peak, RMS, DC, and the largest jump between neighbours.
+//! Levels of a signal: peak, RMS and DC.
 
 use crate::units::db_from_gain;
 use libm::sqrt;
@@ -22,11 +22,6 @@ pub fn dc(samples: &[f32]) -> f64 {
     samples.iter().map(|sample| f64::from(*sample)).sum::<f64>() / samples.len().max(1) as f64
 }
 
-/// Largest difference between two neighbouring samples; NaN if a sample is NaN.
-pub fn largest_jump(samples: &[f32]) -> f64 {
-    samples.windows(2).fold(0.0, |most, pair| maximum(most, (f64::from(pair[1]) - f64::from(pair[0])).abs()))
-}
-
 /// An amplitude in dB relative to full scale (1.0), never below [`SILENCE_DB`].
 pub fn dbfs(amplitude: f64) -> f64 {
     if amplitude.is_nan() { f64::NAN } else { db_from_gain(amplitude).max(SILENCE_DB) }
@@ -44,17 +39,17 @@ mod tests {
     #[test]
     fn levels_of_known_signals() {
         let square = [0.5, -0.5, 0.5, -0.5];
-        assert_eq!((peak(&square), rms(&square), dc(&square), largest_jump(&square)), (0.5, 0.5, 0.0, 1.0));
+        assert_eq!((peak(&square), rms(&square), dc(&square)), (0.5, 0.5, 0.0));
         let step = [0.0, 0.25, 0.25, 0.25];
-        assert_eq!((peak(&step), dc(&step), largest_jump(&step)), (0.25, 0.1875, 0.25));
-        assert_eq!((peak(&[]), rms(&[]), dc(&[]), largest_jump(&[])), (0.0, 0.0, 0.0, 0.0));
+        assert_eq!((peak(&step), dc(&step)), (0.25, 0.1875));
+        assert_eq!((peak(&[]), rms(&[]), dc(&[])), (0.0, 0.0, 0.0));
         assert_eq!((dbfs(1.0), dbfs(0.1), dbfs(0.0)), (0.0, -20.0, SILENCE_DB));
     }
 
     #[test]
     fn nan_is_not_hidden() {
         for samples in [[f32::NAN, 1.0, 0.0], [1.0, f32::NAN, 0.0], [0.0, 1.0, f32::NAN]] {
-            assert!(peak(&samples).is_nan() && largest_jump(&samples).is_nan() && dbfs(rms(&samples)).is_nan());
+            assert!(peak(&samples).is_nan() && dbfs(rms(&samples)).is_nan());
         }
     }
 }

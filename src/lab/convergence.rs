@@ -1,6 +1,6 @@
 //! Error against step size, and the order of accuracy fitted to it.
 
-use super::method::{Method, Order};
+use super::method::Method;
 use super::system::{State, System};
 use super::trajectory::{run_against, truth};
 use crate::error::{Error, Result};
@@ -77,20 +77,10 @@ fn slope(points: &[(f64, f64)]) -> f64 {
     covariance / points.iter().map(|(x, _)| (x - mean_x) * (x - mean_x)).sum::<f64>()
 }
 
-impl Convergence {
-    /// Whether what was measured is what the method promises: the order within 0.1, or rounding.
-    pub fn is_as_expected(&self) -> bool {
-        match (self.method.order(), self.order) {
-            (Order::Power(power), Some(order)) => (order - f64::from(power)).abs() <= 0.1,
-            (Order::Exact, None) => true,
-            _ => false,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::method::Order;
     use crate::lab::system::{Force, Spring};
 
     fn orders(system: &System, end: f64) -> Vec<(Method, Option<f64>, f64)> {

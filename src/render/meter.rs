@@ -3,7 +3,8 @@
 use crate::error::{Error, Result};
 use ebur128::{EbuR128, Mode};
 
-/// Measures a signal block by block. Keeps one number for each 100 ms (the gating blocks of loudness), nothing else.
+/// Measures a signal block by block. Memory does not grow with the length: of the gating blocks of loudness, a histogram
+/// in steps of 0.1 LU is kept.
 pub struct Meter {
     channels: usize,
     peak: f32,
@@ -19,7 +20,7 @@ pub struct Levels {
     pub peak: f64,
     /// Root of the mean square over all samples of all channels.
     pub rms: f64,
-    /// Integrated loudness in LUFS (ITU-R BS.1770, EBU R 128); none for silence and for less than 400 ms.
+    /// Integrated loudness in LUFS (ITU-R BS.1770, EBU R 128), to about 0.1 LU; none for silence and for less than 400 ms.
     pub lufs: Option<f64>,
 }
 
@@ -29,7 +30,7 @@ impl Meter {
     /// # Errors
     /// [`Error::Value`] for a sample rate that loudness is not defined at.
     pub fn new(sample_rate: u32, channels: u16) -> Result<Self> {
-        let loudness = EbuR128::new(channels.into(), sample_rate, Mode::I)
+        let loudness = EbuR128::new(channels.into(), sample_rate, Mode::I | Mode::HISTOGRAM)
             .map_err(|error| Error::value("loudness", error.to_string()))?;
         Ok(Self { channels: channels.into(), peak: 0.0, sum_of_squares: 0.0, samples: 0, loudness })
     }

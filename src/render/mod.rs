@@ -67,7 +67,8 @@ pub struct Rendered {
     pub frames: u64,
     /// How much of it is tail, in frames.
     pub tail_frames: u64,
-    /// Most voices that sounded at once.
+    /// Most voices that sounded at once on each channel, added up over channels: at least as many as ever sounded at
+    /// once on all of them together.
     pub voices_used: usize,
 }
 

@@ -60,7 +60,8 @@ pub struct Report {
     pub gain_db: f64,
     /// Samples beyond full scale that an integer format could not hold.
     pub clipped: u64,
-    /// Most voices that sounded at once.
+    /// Most voices that sounded at once on each channel, added up over channels: at least as many as ever sounded at
+    /// once on all of them together.
     pub voices_used: usize,
     /// Seconds of sound per second of work.
     pub realtime_factor: f64,

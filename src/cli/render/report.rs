@@ -33,7 +33,7 @@ pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()
 fn summary(report: &Report, target: &Target) -> String {
     let level = |value: Option<f64>, unit: &str| value.map_or(String::new(), |value| format!(", {value:.1} {unit}"));
     format!(
-        "{}: {:.3} s (tail {:.3} s) at {} Hz{}{}, {} voices, {:.0}x real time",
+        "{}: {:.3} s (tail {:.3} s) at {} Hz{}{}, at most {} voices, {:.0}x real time",
         target.name(),
         report.seconds,
         report.tail_seconds,
@@ -45,6 +45,7 @@ fn summary(report: &Report, target: &Target) -> String {
     )
 }
 
+/// The report under the names of [`Report`]'s fields: `voices_used`, too, is added up over channels.
 fn to_json(report: &Report, target: &Target) -> serde_json::Value {
     json!({
         "output": target.name(),
