@@ -37,15 +37,15 @@ impl Ensemble {
     /// `events` are in order of their frames.
     pub fn process(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
         let (mut events, frames, mut start) = (events, left.len(), 0);
-        // A block of no frames still brings its events.
-        if frames == 0 {
-            self.process_chunk(events, 0, left, right);
-        }
-        while start < frames {
+        // At least once: a block of no frames still brings its events.
+        loop {
             let end = frames.min(start + CHUNK);
             let now =
                 if end == frames { events.len() } else { events.partition_point(|event| (event.frame as usize) < end) };
             self.process_chunk(&events[..now], start, &mut left[start..end], &mut right[start..end]);
+            if end == frames {
+                break;
+            }
             (events, start) = (&events[now..], end);
         }
     }

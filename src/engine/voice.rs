@@ -68,8 +68,6 @@ pub(crate) struct SynthVoice {
     drive: Drive,
     /// T60 of each mode as a multiple of the decay.
     t60_scale: [f64; MAX_MODES],
-    /// Sum of the squared levels: the energy that a strike of force 1 brings.
-    full_energy: f64,
     /// Energy that the exciter has still to bring, and that of the bank at the last tick.
     pending_energy: f64,
     energy: f64,
@@ -117,7 +115,6 @@ impl SynthVoice {
             exciter: Exciter::REST,
             drive: Drive::NONE,
             t60_scale: [1.0; MAX_MODES],
-            full_energy: 0.0,
             pending_energy: 0.0,
             energy: 0.0,
             until_stock: 0,
@@ -268,6 +265,7 @@ impl SynthVoice {
 
         let exciter = instrument.patch.get(Param::Exciter) as u32;
         let noise_gain = gain_from_db(value(Param::NoiseLevel));
+        // Energy is what a strike of force 1 brings: the sum of the squared levels.
         let (mut noisy, mut energy) = (false, 0.0);
         for (m, mode) in modes.iter().enumerate() {
             let level = tilted(mode) * balance;
@@ -279,7 +277,6 @@ impl SynthVoice {
             noisy |= noise != 0.0;
             energy += push * push + pull * pull + noise * noise;
         }
-        self.full_energy = energy;
 
         let force = pow(velocity, 2.0 * percent(Param::Velocity)) * soft;
         let hardness = percent(Param::Hardness) * (1.0 - percent(Param::HardnessVelocity) * (1.0 - velocity));
@@ -291,7 +288,7 @@ impl SynthVoice {
         let noise_frames = frames(value(Param::NoiseTime));
         let key = random::key(instrument.seed, note.serial);
         self.exciter.strike(force as f32, pulse_frames, noise_force, noise_frames, key);
-        self.pending_energy += force * force * self.full_energy;
+        self.pending_energy += force * force * energy;
 
         let depth = value(Param::Sweep) * (1.0 - percent(Param::SweepVelocity) * (1.0 - velocity));
         self.sweep = SweepEnvelope::new(depth, value(Param::SweepTime), percent(Param::SweepCurve));
