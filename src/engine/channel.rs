@@ -59,20 +59,24 @@ impl Registered {
     }
 }
 
-/// Controllers that a channel itself acts on.
-mod controller {
-    pub(super) const WHEEL: u8 = 1;
-    pub(super) const DATA: u8 = 6;
-    pub(super) const VOLUME: u8 = 7;
-    pub(super) const PAN: u8 = 10;
-    pub(super) const EXPRESSION: u8 = 11;
-    pub(super) const DATA_FINE: u8 = 38;
-    pub(super) const SOFT: u8 = 67;
-    pub(super) const NRPN_FINE: u8 = 98;
-    pub(super) const NRPN: u8 = 99;
-    pub(super) const RPN_FINE: u8 = 100;
-    pub(super) const RPN: u8 = 101;
-    pub(super) const RESET: u8 = 121;
+/// MIDI's numbers of the controllers that are acted on, here or by the voice manager.
+pub(super) mod controller {
+    pub(in crate::engine) const WHEEL: u8 = 1;
+    pub(in crate::engine) const DATA: u8 = 6;
+    pub(in crate::engine) const VOLUME: u8 = 7;
+    pub(in crate::engine) const PAN: u8 = 10;
+    pub(in crate::engine) const EXPRESSION: u8 = 11;
+    pub(in crate::engine) const DATA_FINE: u8 = 38;
+    pub(in crate::engine) const SUSTAIN: u8 = 64;
+    pub(in crate::engine) const SOSTENUTO: u8 = 66;
+    pub(in crate::engine) const SOFT: u8 = 67;
+    pub(in crate::engine) const NRPN_FINE: u8 = 98;
+    pub(in crate::engine) const NRPN: u8 = 99;
+    pub(in crate::engine) const RPN_FINE: u8 = 100;
+    pub(in crate::engine) const RPN: u8 = 101;
+    pub(in crate::engine) const ALL_SOUND_OFF: u8 = 120;
+    pub(in crate::engine) const RESET: u8 = 121;
+    pub(in crate::engine) const ALL_NOTES_OFF: u8 = 123;
 }
 
 impl Channel {

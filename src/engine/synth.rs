@@ -1,6 +1,6 @@
 //! The instrument: one patch, its voices, and a stream of events in; stereo samples out.
 
-use super::channel::Channel;
+use super::channel::{Channel, controller};
 use super::controls::Smoother;
 use super::voice::{Instrument, SynthVoice};
 use super::voice_manager::{Note, PlayMode, VoiceManager};
@@ -10,7 +10,7 @@ use crate::params::Param;
 use crate::patch::Patch;
 
 /// Sample rates that the engine runs at, in Hz.
-pub const SAMPLE_RATES: std::ops::RangeInclusive<f64> = 8_000.0..=768_000.0;
+pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 8_000..=768_000;
 
 /// A synthesizer that plays one patch on sixteen channels (as MPE uses them).
 ///
@@ -166,23 +166,23 @@ impl Synth {
         }
     }
 
-    fn control(&mut self, index: u8, controller: u8, value: f32) {
+    fn control(&mut self, index: u8, number: u8, value: f32) {
         let down = value >= 0.5;
-        match controller {
-            64 => self.manager.sustain(index, down),
-            66 => self.manager.sostenuto(index, down),
-            120 => self.manager.all_sound_off(index),
+        match number {
+            controller::SUSTAIN => self.manager.sustain(index, down),
+            controller::SOSTENUTO => self.manager.sostenuto(index, down),
+            controller::ALL_SOUND_OFF => self.manager.all_sound_off(index),
             // The mode messages 124–127 imply all notes off.
-            123..=127 => self.manager.all_notes_off(index),
+            controller::ALL_NOTES_OFF..=127 => self.manager.all_notes_off(index),
             _ => {}
         }
-        if controller == 121 {
+        if number == controller::RESET {
             self.manager.sustain(index, false);
             self.manager.sostenuto(index, false);
             let on_channel = self.manager.active().filter(|(note, _)| note.channel == index);
             on_channel.for_each(|(_, voice)| voice.pressure = 0.0);
         }
-        self.channels[usize::from(index)].control(controller, value);
+        self.channels[usize::from(index)].control(number, value);
     }
 
     /// Renders frames in which nothing happens, adding to both slices.
@@ -235,7 +235,8 @@ impl Synth {
 }
 
 fn allowed(sample_rate: f64) -> f64 {
-    if sample_rate.is_nan() { 48_000.0 } else { sample_rate.clamp(*SAMPLE_RATES.start(), *SAMPLE_RATES.end()) }
+    let (lowest, highest) = SAMPLE_RATES.into_inner();
+    if sample_rate.is_nan() { 48_000.0 } else { sample_rate.clamp(lowest.into(), highest.into()) }
 }
 
 fn finite(value: f32) -> f32 {

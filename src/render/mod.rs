@@ -3,6 +3,7 @@
 pub mod meter;
 mod wav;
 
+pub use crate::engine::synth::SAMPLE_RATES;
 pub use meter::{Levels, Meter};
 pub use wav::{Delivery, Level, Progress, Report, to_wav};
 
@@ -12,9 +13,6 @@ use crate::io::Song;
 use crate::io::song;
 use crate::patch::Patch;
 use std::ops::RangeInclusive;
-
-/// Sample rates that the engine can run at, in Hz.
-pub const SAMPLE_RATES: RangeInclusive<u32> = 8_000..=768_000;
 
 /// Lengths that a block can have, in frames.
 pub const BLOCKS: RangeInclusive<usize> = 1..=65_536;
