@@ -80,7 +80,12 @@ impl Ensemble {
                 } else if let EventKind::Param { param: Param::Choke, value } = kind {
                     groups[sender] = Param::Choke.info().clamp(value);
                 }
-                if sender != channel && !matches!(kind, EventKind::Choke { group } if group != 0) {
+                let is_for_all = match kind {
+                    EventKind::Choke { group } => group != 0,
+                    EventKind::Tempo(_) => true,
+                    _ => false,
+                };
+                if sender != channel && !is_for_all {
                     continue;
                 }
                 let at = (event.frame as usize).saturating_sub(start).min(frames.saturating_sub(1)).max(frame);

@@ -1,4 +1,6 @@
-//! Who plays what: polyphony, stealing, re-striking, pedals, choke groups. Knows no DSP.
+//! Who plays what: polyphony, stealing, re-striking, pedals, choke groups, and which notes have ended. Knows no DSP.
+
+use super::event::Notes;
 
 /// A note as the manager hands it to a voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +15,8 @@ pub struct Note {
     pub velocity: f32,
     /// Whether the soft pedal was down.
     pub soft: bool,
+    /// Brightness of the channel, −0.5 to 0.5.
+    pub brightness: f32,
     /// The host's identifier, or −1.
     pub id: i32,
     /// Counts the notes of a synth.
@@ -63,6 +67,9 @@ const FADING_VOICES: usize = MAX_VOICES;
 /// Held keys that a monophonic voice can return to.
 const MAX_HELD_KEYS: usize = 32;
 
+/// Ended notes that are kept until somebody asks.
+pub const MAX_ENDED: usize = 1024;
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Free,
@@ -86,7 +93,11 @@ impl<V> Slot<V> {
     }
 
     fn is_on(&self, channel: u8, key: u8) -> bool {
-        self.is_sounding() && self.note.channel == channel && self.note.key == key
+        self.is_one_of(&Notes::on(channel, key))
+    }
+
+    fn is_one_of(&self, notes: &Notes) -> bool {
+        self.is_sounding() && notes.include(&self.note)
     }
 }
 
@@ -100,14 +111,26 @@ pub struct VoiceManager<V> {
     /// Keys down in a monophonic mode, oldest first.
     held: [Note; MAX_HELD_KEYS],
     held_len: usize,
+    /// Notes that have ended: their voices are silent or another's, and no key of theirs is waited for.
+    ended: Vec<Note>,
     peak: usize,
 }
 
 impl<V: Voice> VoiceManager<V> {
     /// A manager of voices made by `voice`. Allocates.
     pub fn new(mut voice: impl FnMut() -> V) -> Self {
-        let note =
-            Note { channel: 0, key: 0, detune: 0.0, velocity: 0.0, soft: false, id: -1, serial: 0, patch: 0, choke: 0 };
+        let note = Note {
+            channel: 0,
+            key: 0,
+            detune: 0.0,
+            velocity: 0.0,
+            soft: false,
+            brightness: 0.0,
+            id: -1,
+            serial: 0,
+            patch: 0,
+            choke: 0,
+        };
         let slot = || Slot { voice: voice(), note, state: State::Free, key_down: false, sostenuto: false };
         Self {
             slots: std::iter::repeat_with(slot).take(MAX_VOICES + FADING_VOICES).collect(),
@@ -117,6 +140,7 @@ impl<V: Voice> VoiceManager<V> {
             mode: PlayMode::Poly,
             held: [note; MAX_HELD_KEYS],
             held_len: 0,
+            ended: Vec::with_capacity(MAX_ENDED),
             peak: 0,
         }
     }
@@ -127,6 +151,7 @@ impl<V: Voice> VoiceManager<V> {
         self.sustain = [false; 16];
         self.sostenuto = [false; 16];
         self.held_len = 0;
+        self.ended.clear();
         self.peak = 0;
     }
 
@@ -134,9 +159,29 @@ impl<V: Voice> VoiceManager<V> {
     pub fn configure(&mut self, polyphony: usize, mode: PlayMode) {
         self.polyphony = polyphony.clamp(1, MAX_VOICES);
         if mode != self.mode {
-            self.held_len = 0;
+            self.forget(|_| true);
         }
         self.mode = mode;
+    }
+
+    /// The notes that have ended since [`VoiceManager::clear_ended`], in that order: each note once, the first
+    /// [`MAX_ENDED`] of them.
+    pub fn ended(&self) -> &[Note] {
+        &self.ended
+    }
+
+    /// Forgets the notes that have ended.
+    pub fn clear_ended(&mut self) {
+        self.ended.clear();
+    }
+
+    /// A voice or a held key has let go of a note: it has ended, unless another has it still.
+    fn retire(&mut self, note: Note) {
+        let sounds = |slot: &Slot<V>| slot.state != State::Free && slot.note.serial == note.serial;
+        let is_held = self.held[..self.held_len].iter().any(|held| held.serial == note.serial);
+        if !is_held && !self.slots.iter().any(sounds) && self.ended.len() < MAX_ENDED {
+            self.ended.push(note);
+        }
     }
 
     /// The voices that are not free, in their fixed order.
@@ -161,9 +206,12 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Frees the voices that are over.
     pub fn free_finished(&mut self) {
-        for slot in &mut self.slots {
+        for index in 0..self.slots.len() {
+            let slot = &mut self.slots[index];
             if slot.state != State::Free && slot.voice.is_over() {
                 slot.state = State::Free;
+                let note = slot.note;
+                self.retire(note);
             }
         }
     }
@@ -189,7 +237,8 @@ impl<V: Voice> VoiceManager<V> {
         let same = |slot: &&mut Slot<V>| slot.is_on(note.channel, note.key) && slot.note.patch == note.patch;
         if let Some(slot) = self.slots.iter_mut().find(same) {
             slot.voice.restrike(context, &note);
-            hold(slot, note);
+            let before = hold(slot, note);
+            self.retire(before);
         } else {
             while self.sounding() >= self.polyphony {
                 self.steal(&note);
@@ -199,10 +248,10 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     fn note_on_mono(&mut self, context: &V::Context, note: Note) {
-        self.forget_key(note.channel, note.key);
+        self.forget(|held| (held.channel, held.key) == (note.channel, note.key));
         if self.held_len == MAX_HELD_KEYS {
-            self.held.rotate_left(1);
-            self.held_len -= 1;
+            let oldest = self.held[0].serial;
+            self.forget(|held| held.serial == oldest);
         }
         self.held[self.held_len] = note;
         self.held_len += 1;
@@ -223,29 +272,35 @@ impl<V: Voice> VoiceManager<V> {
         } else {
             slot.voice.restrike(context, &note);
         }
-        hold(slot, note);
+        let before = hold(slot, note);
+        self.retire(before);
     }
 
-    /// A key comes up; `id` −1 stands for any note on it.
-    pub fn note_off(&mut self, context: &V::Context, channel: u8, key: u8, id: i32, velocity: f32) {
+    /// The keys of these notes come up.
+    pub fn note_off(&mut self, context: &V::Context, notes: Notes, velocity: f32) {
         if self.mode != PlayMode::Poly {
-            self.forget_key(channel, key);
+            self.forget(|held| notes.include(held));
             // The key before is still down: a release never strikes, it returns.
             if let Some(note) = self.held[..self.held_len].last().copied()
-                && let Some(slot) = self.slots.iter_mut().find(|slot| slot.key_down && slot.is_on(channel, key))
+                && let Some(slot) = self.slots.iter_mut().find(|slot| slot.key_down && slot.is_one_of(&notes))
             {
                 slot.voice.retune(context, &note);
                 // The voice keeps the sound that it has.
-                slot.note = Note { patch: slot.note.patch, choke: slot.note.choke, ..note };
-                return;
+                let note = Note { patch: slot.note.patch, choke: slot.note.choke, ..note };
+                let before = std::mem::replace(&mut slot.note, note);
+                return self.retire(before);
             }
         }
-        for slot in self.slots.iter_mut().filter(|slot| slot.is_on(channel, key)) {
-            if id == -1 || slot.note.id == -1 || slot.note.id == id {
-                slot.key_down = false;
-                release_unless_held(slot, &self.sustain, velocity);
-            }
+        for slot in self.slots.iter_mut().filter(|slot| slot.is_one_of(&notes)) {
+            slot.key_down = false;
+            release_unless_held(slot, &self.sustain, velocity);
         }
+    }
+
+    /// Silences these notes.
+    pub fn silence(&mut self, notes: Notes) {
+        self.forget(|held| notes.include(held));
+        self.slots.iter_mut().filter(|slot| slot.is_one_of(&notes)).for_each(fade);
     }
 
     /// The sustain pedal (controller 64).
@@ -268,14 +323,14 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Controller 123: every key of the channel comes up.
     pub fn all_notes_off(&mut self, channel: u8) {
-        self.forget_keys(channel);
+        self.forget(|held| held.channel == channel);
         self.slots.iter_mut().filter(|slot| slot.note.channel == channel).for_each(|slot| slot.key_down = false);
         self.release_let_go(channel);
     }
 
     /// Controller 120: the channel is silenced.
     pub fn all_sound_off(&mut self, channel: u8) {
-        self.forget_keys(channel);
+        self.forget(|held| held.channel == channel);
         self.slots.iter_mut().filter(|slot| slot.is_sounding() && slot.note.channel == channel).for_each(fade);
     }
 
@@ -323,24 +378,19 @@ impl<V: Voice> VoiceManager<V> {
         if let Some(slot) = slot {
             slot.voice.start(context, &note);
             slot.sostenuto = false;
+            let before = (slot.state != State::Free).then_some(slot.note);
             hold(slot, note);
+            before.into_iter().for_each(|before| self.retire(before));
         }
     }
 
-    fn forget_keys(&mut self, channel: u8) {
-        while let Some(key) =
-            self.held[..self.held_len].iter().find(|held| held.channel == channel).map(|held| held.key)
-        {
-            self.forget_key(channel, key);
-        }
-    }
-
-    fn forget_key(&mut self, channel: u8, key: u8) {
-        if let Some(index) =
-            self.held[..self.held_len].iter().position(|held| held.channel == channel && held.key == key)
-        {
+    /// Stops waiting for keys.
+    fn forget(&mut self, which: impl Fn(&Note) -> bool) {
+        while let Some(index) = self.held[..self.held_len].iter().position(&which) {
+            let note = self.held[index];
             self.held[index..self.held_len].rotate_left(1);
             self.held_len -= 1;
+            self.retire(note);
         }
     }
 }
@@ -348,10 +398,11 @@ impl<V: Voice> VoiceManager<V> {
 /// Release velocity where nobody gave one.
 const MIDDLE_VELOCITY: f32 = 0.5;
 
-fn hold<V>(slot: &mut Slot<V>, note: Note) {
-    slot.note = note;
+/// Gives the slot a note whose key is down; returns the one that it had.
+fn hold<V>(slot: &mut Slot<V>, note: Note) -> Note {
     slot.state = State::Held;
     slot.key_down = true;
+    std::mem::replace(&mut slot.note, note)
 }
 
 fn fade<V: Voice>(slot: &mut Slot<V>) {
