@@ -21,6 +21,8 @@ pub struct Synth {
     instrument: Instrument,
     smoother: Smoother,
     channels: [Channel; 16],
+    /// Frames until the gains of all channels have arrived.
+    gains_moving: u32,
     /// Counts the patches loaded.
     patch_serial: u32,
     /// Counts the notes started.
@@ -43,6 +45,7 @@ impl Synth {
             instrument: Instrument { patch, sample_rate, seed, controls, last_pitch: None },
             smoother,
             channels: [Channel::new(sample_rate); 16],
+            gains_moving: 0,
             patch_serial: 0,
             note_serial: 0,
             clock: 0,
@@ -68,6 +71,7 @@ impl Synth {
         self.instrument.controls = self.smoother.after(0);
         self.instrument.last_pitch = None;
         self.channels = [Channel::new(sample_rate); 16];
+        self.gains_moving = 0;
         (self.patch_serial, self.note_serial, self.clock, self.news) = (0, 0, 0, false);
         self.configure();
     }
@@ -182,7 +186,9 @@ impl Synth {
             let on_channel = self.manager.active().filter(|(note, _)| note.channel == index);
             on_channel.for_each(|(_, voice)| voice.pressure = 0.0);
         }
-        self.channels[usize::from(index)].control(number, value);
+        let channel = &mut self.channels[usize::from(index)];
+        channel.control(number, value);
+        self.gains_moving = channel.ramp_frames();
     }
 
     /// Renders frames in which nothing happens, adding to both slices.
@@ -215,11 +221,14 @@ impl Synth {
         }
     }
 
-    /// Lets time pass for everything but the voices.
-    fn pass(&mut self, frames: usize) {
+    /// Lets time pass for everything but the voices: all there is to do while none sounds.
+    pub(super) fn pass(&mut self, frames: usize) {
         self.clock += frames as u64;
         self.smoother.advance(frames as u32);
-        self.channels.iter_mut().for_each(|channel| channel.advance(frames as u32));
+        if self.gains_moving > 0 {
+            self.channels.iter_mut().for_each(|channel| channel.advance(frames as u32));
+            self.gains_moving = self.gains_moving.saturating_sub(frames as u32);
+        }
     }
 
     /// Hands the manager the parameters that are its own.
