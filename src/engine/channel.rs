@@ -169,6 +169,11 @@ impl Channel {
         (self.gains[0].after(frames), self.gains[1].after(frames))
     }
 
+    /// Frames that gains take to arrive after a controller has moved.
+    pub(crate) fn ramp_frames(&self) -> u32 {
+        self.ramp_frames
+    }
+
     /// Lets `frames` frames pass.
     pub(crate) fn advance(&mut self, frames: u32) {
         self.gains.iter_mut().for_each(|gain| gain.advance(frames));

@@ -97,8 +97,10 @@ impl Ensemble {
                 }
                 heard |= !synth.is_silent();
             }
-            synth.process(&[], &mut scratch_left[frame..], &mut scratch_right[frame..]);
-            if heard {
+            if !heard {
+                synth.pass(frames - frame);
+            } else {
+                synth.process(&[], &mut scratch_left[frame..], &mut scratch_right[frame..]);
                 add(left, scratch_left);
                 add(right, scratch_right);
             }

@@ -79,8 +79,9 @@ impl Fader {
             } else if step == 0.0 {
                 pairs.for_each(|(into, voice)| *into += voice * from);
             } else {
-                for (i, (into, voice)) in (1..).zip(pairs) {
-                    *into += voice * (from + step * (elapsed + i) as f32);
+                // Signed: there is a vector instruction for it on every CPU.
+                for (i, (into, voice)) in (elapsed as i32 + 1..).zip(pairs) {
+                    *into += voice * (from + step * i as f32);
                 }
             }
         }

@@ -27,6 +27,8 @@ pub struct Synth {
     zones: Zones,
     /// How far each parameter is moved away from its value, in knob travel.
     offsets: [f32; PARAM_COUNT],
+    /// Frames until the gains of all channels have arrived.
+    gains_moving: u32,
     /// Counts the notes started.
     note_serial: u64,
     /// Frames since the start: control ticks fall on its multiples of [`CONTROL_FRAMES`].
@@ -51,6 +53,7 @@ impl Synth {
             channels: [Channel::new(sample_rate); 16],
             zones: Zones::default(),
             offsets: [0.0; PARAM_COUNT],
+            gains_moving: 0,
             note_serial: 0,
             clock: 0,
             news: false,
@@ -79,7 +82,7 @@ impl Synth {
         self.channels = [Channel::new(sample_rate); 16];
         self.zones = Zones::default();
         self.offsets = [0.0; PARAM_COUNT];
-        (self.note_serial, self.clock, self.news) = (0, 0, false);
+        (self.gains_moving, self.note_serial, self.clock, self.news) = (0, 0, 0, false);
         self.configure();
     }
 
@@ -256,7 +259,9 @@ impl Synth {
                 _ => {}
             }
         }
-        self.channels[usize::from(index)].control(number, value);
+        let channel = &mut self.channels[usize::from(index)];
+        channel.control(number, value);
+        self.gains_moving = channel.ramp_frames();
         match number {
             controller::DATA | controller::DATA_FINE => self.enter(index, number, value),
             controller::BRIGHTNESS => {
@@ -319,11 +324,14 @@ impl Synth {
         }
     }
 
-    /// Lets time pass for everything but the voices.
-    fn pass(&mut self, frames: usize) {
+    /// Lets time pass for everything but the voices: all there is to do while none sounds.
+    pub(super) fn pass(&mut self, frames: usize) {
         self.clock += frames as u64;
         self.smoother.advance(frames as u32);
-        self.channels.iter_mut().for_each(|channel| channel.advance(frames as u32));
+        if self.gains_moving > 0 {
+            self.channels.iter_mut().for_each(|channel| channel.advance(frames as u32));
+            self.gains_moving = self.gains_moving.saturating_sub(frames as u32);
+        }
     }
 
     /// Hands the manager the parameters that are its own.

@@ -104,6 +104,8 @@ impl<V> Slot<V> {
 /// Deals notes to a fixed set of voices. Real-time safe after [`VoiceManager::new`].
 pub struct VoiceManager<V> {
     slots: Vec<Slot<V>>,
+    /// Slots from here on are free. Voices are large: looking at all of them costs more than a short one sounds.
+    used: usize,
     sustain: [bool; 16],
     sostenuto: [bool; 16],
     polyphony: usize,
@@ -134,6 +136,7 @@ impl<V: Voice> VoiceManager<V> {
         let slot = || Slot { voice: voice(), note, state: State::Free, key_down: false, sostenuto: false };
         Self {
             slots: std::iter::repeat_with(slot).take(MAX_VOICES + FADING_VOICES).collect(),
+            used: 0,
             sustain: [false; 16],
             sostenuto: [false; 16],
             polyphony: MAX_VOICES,
@@ -148,6 +151,7 @@ impl<V: Voice> VoiceManager<V> {
     /// Stops everything at once, pedals included.
     pub fn reset(&mut self) {
         self.slots.iter_mut().for_each(|slot| slot.state = State::Free);
+        self.used = 0;
         self.sustain = [false; 16];
         self.sostenuto = [false; 16];
         self.held_len = 0;
@@ -179,24 +183,25 @@ impl<V: Voice> VoiceManager<V> {
     fn retire(&mut self, note: Note) {
         let sounds = |slot: &Slot<V>| slot.state != State::Free && slot.note.serial == note.serial;
         let is_held = self.held[..self.held_len].iter().any(|held| held.serial == note.serial);
-        if !is_held && !self.slots.iter().any(sounds) && self.ended.len() < MAX_ENDED {
+        if !is_held && !self.slots[..self.used].iter().any(sounds) && self.ended.len() < MAX_ENDED {
             self.ended.push(note);
         }
     }
 
     /// The voices that are not free, in their fixed order.
     pub fn active(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
-        self.slots.iter_mut().filter(|slot| slot.state != State::Free).map(|slot| (&slot.note, &mut slot.voice))
+        let used = self.slots[..self.used].iter_mut();
+        used.filter(|slot| slot.state != State::Free).map(|slot| (&slot.note, &mut slot.voice))
     }
 
     /// The voices that are not free, to look at.
     pub fn sounding_voices(&self) -> impl Iterator<Item = &V> {
-        self.slots.iter().filter(|slot| slot.state != State::Free).map(|slot| &slot.voice)
+        self.slots[..self.used].iter().filter(|slot| slot.state != State::Free).map(|slot| &slot.voice)
     }
 
     /// Whether every voice is free.
     pub fn is_silent(&self) -> bool {
-        self.slots.iter().all(|slot| slot.state == State::Free)
+        self.used == 0
     }
 
     /// Most notes that have sounded at once, fading ones not counted.
@@ -206,7 +211,7 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Frees the voices that are over.
     pub fn free_finished(&mut self) {
-        for index in 0..self.slots.len() {
+        for index in 0..self.used {
             let slot = &mut self.slots[index];
             if slot.state != State::Free && slot.voice.is_over() {
                 slot.state = State::Free;
@@ -214,11 +219,14 @@ impl<V: Voice> VoiceManager<V> {
                 self.retire(note);
             }
         }
+        while self.used > 0 && self.slots[self.used - 1].state == State::Free {
+            self.used -= 1;
+        }
     }
 
     /// A key goes down.
     pub fn note_on(&mut self, context: &V::Context, note: Note) {
-        for slot in self.slots.iter_mut().filter(|slot| slot.is_sounding()) {
+        for slot in self.slots[..self.used].iter_mut().filter(|slot| slot.is_sounding()) {
             // What the note is about to strike again or to retune is not choked.
             let reused =
                 slot.note.patch == note.patch && (self.mode != PlayMode::Poly || slot.is_on(note.channel, note.key));
@@ -235,7 +243,7 @@ impl<V: Voice> VoiceManager<V> {
 
     fn note_on_poly(&mut self, context: &V::Context, note: Note) {
         let same = |slot: &&mut Slot<V>| slot.is_on(note.channel, note.key) && slot.note.patch == note.patch;
-        if let Some(slot) = self.slots.iter_mut().find(same) {
+        if let Some(slot) = self.slots[..self.used].iter_mut().find(same) {
             slot.voice.restrike(context, &note);
             let before = hold(slot, note);
             self.retire(before);
@@ -350,13 +358,13 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     fn sounding(&self) -> usize {
-        self.slots.iter().filter(|slot| slot.is_sounding()).count()
+        self.slots[..self.used].iter().filter(|slot| slot.is_sounding()).count()
     }
 
     /// Fades the note that will be missed least: one on the same key, else the quietest, of equals the oldest.
     fn steal(&mut self, note: &Note) {
         let rank = |slot: &Slot<V>| (!slot.is_on(note.channel, note.key), slot.voice.energy(), slot.note.serial);
-        let victim = self.slots.iter_mut().filter(|slot| slot.is_sounding()).min_by(|a, b| {
+        let victim = self.slots[..self.used].iter_mut().filter(|slot| slot.is_sounding()).min_by(|a, b| {
             let (a, b) = (rank(a), rank(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))
         });
@@ -369,7 +377,10 @@ impl<V: Voice> VoiceManager<V> {
     /// still fade, the one that is nearly silent is cut off.
     fn start(&mut self, context: &V::Context, note: Note) {
         let slot = match self.slots.iter().position(|slot| slot.state == State::Free) {
-            Some(free) => Some(&mut self.slots[free]),
+            Some(free) => {
+                self.used = self.used.max(free + 1);
+                Some(&mut self.slots[free])
+            }
             None => {
                 let fading = self.slots.iter_mut().filter(|slot| slot.state == State::Fading);
                 fading.min_by(|a, b| a.voice.energy().total_cmp(&b.voice.energy()))
