@@ -98,3 +98,54 @@ impl<'a> Stream<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::engine::EventKind;
+    use crate::io::Song;
+    use crate::io::song::SongEvent;
+    use crate::params::Param;
+    use crate::patch::{Mode, ModeTable, Patch};
+    use crate::render::{Job, Options, Rendered, Tail, on_threads};
+
+    /// Notes on all channels, which change their sounds and choke each other now and then.
+    fn song() -> Song {
+        let event = |n: u32| {
+            let kind = match n % 8 {
+                0 => EventKind::Program((n / 8 % 3) as u8),
+                3 => EventKind::PitchBend((n % 5) as f32 / 5.0),
+                5 => EventKind::NoteOff { key: (40 + n * 5 % 50) as u8, velocity: 0.5, id: -1 },
+                _ => EventKind::NoteOn { key: (40 + n * 7 % 50) as u8, detune: 0.0, velocity: 0.8, id: -1 },
+            };
+            SongEvent { seconds: 0.003 * f64::from(n), channel: (n * 11 % 16) as u8, kind }
+        };
+        Song { events: (0..240).map(event).collect(), seconds: 0.75 }
+    }
+
+    fn render(threads: u16, block: usize, tail: Tail) -> (Rendered, Vec<u32>) {
+        let short = Patch::default().with(Param::Decay, 0.3).with(Param::Release, 0.1);
+        let mut rich = short.with(Param::Choke, 1.0);
+        rich.modes = ModeTable::new(&[Mode { strike: 0.5, ..Mode::UNIT }; 5]);
+        let programs = [short.with(Param::Choke, 2.0), rich, short.with(Param::Vibrato, 1.0)];
+        let (song, mut bits) = (song(), Vec::new());
+        let options = Options { sample_rate: 48_000, seed: 3, block, tail };
+        let job = Job { song: &song, patch: &short, programs: &programs, options };
+        let sink = |left: &[f32], right: &[f32]| {
+            bits.extend(left.iter().zip(right).flat_map(|(left, right)| [left.to_bits(), right.to_bits()]));
+            Ok(())
+        };
+        let rendered = on_threads(Some(threads), || job.render(sink)).unwrap().unwrap();
+        (rendered, bits)
+    }
+
+    #[test]
+    fn the_samples_do_not_depend_on_the_threads() {
+        for tail in [Tail::Auto, Tail::None, Tail::Seconds(0.3)] {
+            let alone = render(1, 64, tail);
+            assert!(alone.1.iter().any(|bits| f32::from_bits(*bits).abs() > 0.1), "it sounds");
+            for (threads, block) in [(1, 4096), (2, 4096), (3, 4096), (2, 600), (3, 65_536)] {
+                assert!(render(threads, block, tail) == alone, "{threads} threads, blocks of {block}, {tail:?}");
+            }
+        }
+    }
+}
