@@ -77,7 +77,7 @@ fn control(criterion: &mut Criterion) {
 /// Many short samples: what other work on the machine spoils is told from the fastest.
 fn quick() -> Criterion {
     let short = Duration::from_millis(150);
-    Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(1000)
+    Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(2000)
 }
 
 criterion_group! { name = benches; config = quick(); targets = plain_loop, banks, control }

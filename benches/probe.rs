@@ -68,7 +68,7 @@ fn fused(_: &mut Criterion) {}
 
 fn quick() -> Criterion {
     let short = Duration::from_millis(150);
-    Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(1000)
+    Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(2000)
 }
 
 criterion_group! { name = benches; config = quick(); targets = clock, fused }

@@ -98,7 +98,7 @@ fn bench(criterion: &mut Criterion, name: &str, mut work: impl FnMut() -> f32) {
 
 fn quick() -> Criterion {
     let short = Duration::from_millis(300);
-    Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(1000)
+    Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(2000)
 }
 
 criterion_group! { name = benches; config = quick(); targets = biquad_banks, resonators, sprung }
