@@ -49,6 +49,7 @@ pub(crate) fn a_parameter_changes_at_its_frame() {
     for info in PARAMS {
         let id = instance.id(info.param);
         let mut song = vec![on(0, 0, 60, 1, 0.9), on(7, 0, 67, 2, 0.5)];
+        let mut now = patch().get(info.param);
         for (frame, position) in [(1_001, 0.3), (2_777, 0.8), (2_778, 0.55)] {
             let value = info.denormalise(f64::from(position as f32));
             // Between two values of the table, a position says which is meant.

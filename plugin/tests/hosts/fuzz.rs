@@ -150,5 +150,6 @@ pub(crate) fn wild_values_sound_clean() {
             song.push(Sent::Modulate(parameter.id, Address::id(n as i32), value).at(n * 500 + 11));
         }
     }
+    song.sort_by_key(|timed| timed.frame);
     assert_clean("wild values", &play(&song, 48_000.0, 24_000, || 64).channels);
 }
