@@ -8,10 +8,12 @@
 //! | `live` | the audio thread: follows parameters, hands over events, renders |
 //! | `events` | the wrapper's note events as the engine's |
 //! | `state` | what a host's project keeps |
+//! | `editor` | the window |
 //! | `export` | the entry points of the library |
 //!
 //! The wrapper is nice-plug; what it calls a normalised value is called a position here: how far a knob is turned.
 
+mod editor;
 mod events;
 mod export;
 mod live;

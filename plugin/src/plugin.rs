@@ -1,5 +1,6 @@
 //! What hosts are told of the instrument, and their calls.
 
+use crate::editor::SprungEditor;
 use crate::live::Live;
 use crate::params::{Knob, SprungParams};
 use crate::state;
@@ -46,12 +47,16 @@ impl Plugin for Sprung {
     // A host may send all of VST3's 2,080 controllers at once.
     const INPUT_EVENT_CAPACITY: usize = 8192;
 
-    type Editor = ();
+    type Editor = SprungEditor;
     type SysExMessage = ();
     type BackgroundTask = ();
 
     fn params(&self) -> Arc<dyn Params> {
         self.params.clone()
+    }
+
+    fn editor(&mut self, _: AsyncExecutor<Self>) -> Option<SprungEditor> {
+        Some(SprungEditor::new(self.params.clone()))
     }
 
     fn filter_state(state: &mut PluginState) {
