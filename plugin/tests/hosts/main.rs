@@ -15,6 +15,7 @@ mod phrase;
 mod process;
 mod realtime;
 mod scan;
+mod screen;
 mod song;
 mod state;
 mod vst3;
@@ -31,7 +32,7 @@ enum Needs {
     Screen,
     /// The Python hosts.
     Python,
-    /// Both, and a window manager.
+    /// Both.
     PythonAndScreen,
 }
 
@@ -39,13 +40,12 @@ impl Needs {
     /// What of it is not there.
     fn missing(self) -> Option<&'static str> {
         let screen = || (!is_installed("Xvfb")).then_some("Xvfb");
-        let manager = || (!is_installed("openbox")).then_some("openbox");
         let python = || (!vst3::python().is_file()).then_some("pedalboard and dawdreamer in target/python");
         match self {
             Needs::Nothing => None,
             Needs::Screen => screen(),
             Needs::Python => python(),
-            Needs::PythonAndScreen => python().or_else(screen).or_else(manager),
+            Needs::PythonAndScreen => python().or_else(screen),
         }
     }
 }
@@ -158,6 +158,15 @@ fn main() -> ExitCode {
             Screen: window {
                 opens_and_closes_fifty_times
                 opens_and_closes_while_audio_runs
+            }
+            Python: vst3 {
+                every_parameter_can_be_set_and_read
+                one_channel_has_the_bits_of_the_command
+                what_is_saved_comes_back
+                automation_has_the_bits_of_the_engine
+            }
+            PythonAndScreen: vst3 {
+                the_window_opens_and_closes_fifty_times
             }
         };
     let trial = |(name, needs, test): (&str, Needs, fn())| {

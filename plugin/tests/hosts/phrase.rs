@@ -5,7 +5,7 @@ use midly::num::{u4, u7, u15, u24, u28};
 use midly::{Format, Header, MetaMessage, MidiMessage, Smf, Timing, TrackEvent, TrackEventKind};
 use sprung::io::Song;
 
-/// Frames per second at which a tick of the MIDI file is a frame.
+/// Frames per second of the frames below.
 pub(crate) const SAMPLE_RATE: u32 = 48_000;
 
 /// Length of the phrase in frames.
@@ -18,7 +18,8 @@ pub(crate) enum Dialect {
     Midi,
 }
 
-/// Messages of one channel, by frame.
+/// Messages of one channel, by frame. Those that set the bend range lie well apart, since VST3 hands controllers
+/// over as parameters, and parameters that change in one block of some hosts have no order.
 pub(crate) fn messages() -> Vec<(u64, [u8; 3])> {
     vec![
         (0, [0xB0, 7, 110]),
@@ -41,8 +42,8 @@ pub(crate) fn messages() -> Vec<(u64, [u8; 3])> {
         (20_000, [0xD0, 90, 0]),
         (21_111, [0xD0, 0, 0]),
         (22_000, [0xB0, 101, 0]),
-        (22_000, [0xB0, 100, 0]),
-        (22_000, [0xB0, 6, 12]),
+        (22_600, [0xB0, 100, 0]),
+        (23_200, [0xB0, 6, 12]),
         (24_000, [0x90, 72, 99]),
         (24_000, [0x90, 76, 98]),
         (24_000, [0x90, 79, 97]),
@@ -63,19 +64,35 @@ pub(crate) fn messages() -> Vec<(u64, [u8; 3])> {
     ]
 }
 
-/// The phrase as the bytes of a MIDI file, in which a tick is a frame.
+/// The phrase with each controller, bend and pressure of the channel at the start of its block.
+pub(crate) fn with_controllers_by_block(block: u64) -> Vec<(u64, [u8; 3])> {
+    let is_controller = |data: [u8; 3]| matches!(data[0] & 0xF0, 0xB0 | 0xD0 | 0xE0);
+    let mut moved = messages();
+    moved.iter_mut().filter(|(_, data)| is_controller(*data)).for_each(|(frame, _)| *frame -= *frame % block);
+    // On one frame, controllers come first.
+    moved.sort_by_key(|&(frame, data)| (frame, !is_controller(data)));
+    moved
+}
+
+/// The phrase as the bytes of a MIDI file.
 pub(crate) fn midi_file() -> Vec<u8> {
-    let tempo = TrackEventKind::Meta(MetaMessage::Tempo(u24::new(500_000)));
+    file(&messages())
+}
+
+/// Messages as the bytes of a MIDI file with four ticks a frame. Each message lies a quarter of a frame late: hosts
+/// that cut times down to whole frames put it where those do that round them, and where `sprung render` puts it.
+pub(crate) fn file(messages: &[(u64, [u8; 3])]) -> Vec<u8> {
+    let tempo = TrackEventKind::Meta(MetaMessage::Tempo(u24::new(125_000)));
     let mut track = vec![TrackEvent { delta: u28::new(0), kind: tempo }];
     let mut now = 0;
-    let mut add = |frame: u64, kind| {
-        track.push(TrackEvent { delta: u28::new((frame - now) as u32), kind });
-        now = frame;
+    let mut add = |tick: u64, kind| {
+        track.push(TrackEvent { delta: u28::new((tick - now) as u32), kind });
+        now = tick;
     };
-    for (frame, data) in messages() {
-        add(frame, TrackEventKind::Midi { channel: u4::new(data[0] & 15), message: message(data) });
+    for &(frame, data) in messages {
+        add(4 * frame + 1, TrackEventKind::Midi { channel: u4::new(data[0] & 15), message: message(data) });
     }
-    add(FRAMES as u64, TrackEventKind::Meta(MetaMessage::EndOfTrack));
+    add(4 * FRAMES as u64, TrackEventKind::Meta(MetaMessage::EndOfTrack));
     let header = Header::new(Format::SingleTrack, Timing::Metrical(u15::new((SAMPLE_RATE / 2) as u16)));
     let mut bytes = Vec::new();
     Smf { header, tracks: vec![track] }.write(&mut bytes).unwrap();

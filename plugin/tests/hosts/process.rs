@@ -2,7 +2,7 @@
 
 use crate::host::bundle;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Environment variable: the piece of work that a process is started for.
@@ -28,46 +28,6 @@ pub(crate) fn succeeds(mut command: Command) -> String {
     let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     assert!(output.status.success(), "{}\n{stdout}\n{stderr}", output.status);
     stdout
-}
-
-/// A screen that nobody looks at, as long as it lives.
-pub(crate) struct Screen {
-    server: Child,
-    manager: Option<Child>,
-    /// What `DISPLAY` has to say.
-    pub(crate) display: String,
-}
-
-impl Screen {
-    /// Starts Xvfb on a free display, with a window manager if wanted.
-    pub(crate) fn new(managed: bool) -> Self {
-        let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1280x800x24", "+extension", "GLX", "-nolisten", "tcp"])
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("Xvfb starts");
-        let mut number = String::new();
-        let stdout = server.stdout.take().expect("stdout is piped");
-        std::io::BufRead::read_line(&mut std::io::BufReader::new(stdout), &mut number).unwrap();
-        let display = format!(":{}", number.trim());
-        let manager = managed.then(|| {
-            let mut openbox = Command::new("openbox");
-            openbox.env("DISPLAY", &display).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-            openbox.spawn().expect("openbox starts")
-        });
-        Self { server, manager, display }
-    }
-}
-
-impl Drop for Screen {
-    fn drop(&mut self) {
-        for child in self.manager.iter_mut().chain([&mut self.server]) {
-            let _ = child.kill();
-            let _ = child.wait();
-        }
-    }
 }
 
 /// A folder for what the tests make, under the target directory.

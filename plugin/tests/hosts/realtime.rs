@@ -5,7 +5,8 @@
 
 use crate::host::{Address, Instance, Player, Sent};
 use crate::patches::{patches, state};
-use crate::process::{Screen, command, scratch, succeeds, wait_until};
+use crate::process::{command, scratch, succeeds, wait_until};
+use crate::screen::Screen;
 use crate::window::{Editor, Parent};
 use clack_host::events::event_types::NoteExpressionType as Kind;
 use clack_host::prelude::*;
@@ -24,7 +25,7 @@ pub(crate) fn process_neither_allocates_nor_locks_nor_calls_the_system() {
 }
 
 pub(crate) fn nor_does_it_with_the_window_open() {
-    let screen = Screen::new(false);
+    let screen = Screen::new();
     let mut command = watched("watch-window");
     command.env("DISPLAY", &screen.display);
     succeeds(command);

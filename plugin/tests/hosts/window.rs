@@ -1,17 +1,13 @@
 //! The window in a host's own: opened and closed again and again, resized, drawn, touched, while audio runs or not.
 
 use crate::host::{Address, Instance, Player, Sent};
-use crate::process::{Screen, command, scratch, succeeds, wait_until};
+use crate::process::{command, scratch, succeeds, wait_until};
+use crate::screen::{Onlooker, Screen};
 use clack_extensions::gui::{GuiApiType, GuiConfiguration, GuiSize, PluginGui, Window};
 use clack_host::prelude::*;
-use std::collections::BTreeSet;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-use x11rb::connection::Connection as _;
-use x11rb::protocol::xproto::{ConnectionExt as _, CreateWindowAux, ImageFormat, WindowClass};
-use x11rb::protocol::xtest::ConnectionExt as _;
-use x11rb::rust_connection::RustConnection;
 
 /// How often the window is opened and closed.
 const TIMES: usize = 50;
@@ -26,7 +22,7 @@ pub(crate) fn opens_and_closes_while_audio_runs() {
 
 #[track_caller]
 fn on_a_screen(work: &str) {
-    let screen = Screen::new(false);
+    let screen = Screen::new();
     let mut command = command(work);
     command.env("DISPLAY", &screen.display);
     succeeds(command);
@@ -67,6 +63,7 @@ pub(crate) fn work(name: &str) -> ExitCode {
 /// Opens, waits for a picture, touches, resizes and closes; every other time at once.
 fn open_and_close(instance: &mut Instance, parent: &Parent) {
     let parameters = instance.parameters();
+    let before = instance.save();
     for time in 0..TIMES {
         let editor = Editor::open(instance, parent);
         if time % 2 == 0 {
@@ -78,11 +75,15 @@ fn open_and_close(instance: &mut Instance, parent: &Parent) {
         let state = instance.save();
         assert!(instance.load(&state));
         if !instance.clack.is_active() {
-            instance.flush(&[Sent::Value(parameters[time % parameters.len()].id, 0.0).at(0)]);
+            let parameter = &parameters[time % parameters.len()];
+            let value = instance.value(parameter.id).unwrap();
+            instance.flush(&[Sent::Value(parameter.id, parameter.max - value).at(0)]);
+            instance.flush(&[Sent::Value(parameter.id, value).at(0)]);
         }
         instance.run_callbacks();
         editor.close(instance);
     }
+    assert_ne!(instance.save(), before, "a hand that drags across the window turns knobs");
 }
 
 /// Draws once, and leaves a picture under the target directory.
@@ -91,7 +92,7 @@ fn look(instance: &mut Instance, parent: &Parent) {
     editor.wait_until_drawn(instance);
     std::thread::sleep(Duration::from_millis(500));
     let [width, height] = editor.size(instance);
-    let pixels = parent.pixels(width, height);
+    let pixels = parent.onlooker.pixels(width, height);
     let mut picture = format!("P6 {width} {height} 255\n").into_bytes();
     picture.extend(pixels.iter().flat_map(|[blue, green, red]| [*red, *green, *blue]));
     std::fs::write(scratch("window.ppm"), picture).unwrap();
@@ -100,44 +101,16 @@ fn look(instance: &mut Instance, parent: &Parent) {
 
 /// A window of the host's that the plugin's lies in.
 pub(crate) struct Parent {
-    connection: RustConnection,
-    root: u32,
+    onlooker: Onlooker,
     window: u32,
 }
 
 impl Parent {
     /// A window on the screen that `DISPLAY` says.
     pub(crate) fn new() -> Self {
-        let (connection, screen) = x11rb::connect(None).expect("there is an X server");
-        let (root, depth, visual) = {
-            let screen = &connection.setup().roots[screen];
-            (screen.root, screen.root_depth, screen.root_visual)
-        };
-        let window = connection.generate_id().unwrap();
-        let aux = CreateWindowAux::new().background_pixel(0x00FF_00FF);
-        connection
-            .create_window(depth, window, root, 0, 0, 1_200, 760, 0, WindowClass::INPUT_OUTPUT, visual, &aux)
-            .unwrap();
-        connection.map_window(window).unwrap();
-        connection.flush().unwrap();
-        Self { connection, root, window }
-    }
-
-    /// Blue, green and red of the upper left corner.
-    fn pixels(&self, width: u32, height: u32) -> Vec<[u8; 3]> {
-        let image = self
-            .connection
-            .get_image(ImageFormat::Z_PIXMAP, self.root, 0, 0, width as u16, height as u16, !0)
-            .unwrap()
-            .reply()
-            .expect("the screen can be read");
-        image.data.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
-    }
-
-    /// Sends what a mouse would: 4 and 5 press and release a button, 6 moves to a place.
-    fn mouse(&self, kind: u8, detail: u8, [x, y]: [i16; 2]) {
-        self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).unwrap();
-        self.connection.flush().unwrap();
+        let onlooker = Onlooker::new(None);
+        let window = onlooker.make_window();
+        Self { onlooker, window }
     }
 }
 
@@ -182,8 +155,7 @@ impl<'a> Editor<'a> {
         let [width, height] = self.size(instance);
         wait_until("a picture", || {
             instance.run_callbacks();
-            let colours: BTreeSet<[u8; 3]> = self.parent.pixels(width, height).into_iter().collect();
-            colours.len() > 16
+            self.parent.onlooker.sees_a_picture(width, height)
         });
     }
 
@@ -200,9 +172,6 @@ impl<'a> Editor<'a> {
     /// Drags the mouse across the window, in another line each time.
     pub(crate) fn touch(&self, round: usize) {
         let y = 60 + (round * 37 % 400) as i16;
-        self.parent.mouse(6, 0, [200, y]);
-        self.parent.mouse(4, 1, [0, 0]);
-        self.parent.mouse(6, 0, [200 + (round * 53 % 300) as i16, y]);
-        self.parent.mouse(5, 1, [0, 0]);
+        self.parent.onlooker.drag([200, y], [200 + (round * 53 % 300) as i16, y]);
     }
 }
