@@ -7,6 +7,7 @@
 //! | `slate` | the exact patch, shared between threads without locks |
 //! | `live` | the audio thread: follows parameters, hands over events, renders |
 //! | `events` | the wrapper's note events as the engine's |
+//! | `tail` | how long the sound goes on |
 //! | `state` | what a host's project keeps |
 //! | `editor` | the window |
 //! | `export` | the entry points of the library |
@@ -21,5 +22,6 @@ mod params;
 mod plugin;
 mod slate;
 mod state;
+mod tail;
 
 pub use plugin::Sprung;

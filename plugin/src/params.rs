@@ -53,7 +53,7 @@ impl Knob {
     }
 
     /// Turns the knob without telling the host.
-    fn turn(&self, position: f32) {
+    pub(crate) fn turn(&self, position: f32) {
         // SAFETY: the methods write atomics of a parameter that is borrowed here; that they are meant for wrappers
         // only is because the host hears nothing of it, which callers see to.
         unsafe {
@@ -152,5 +152,57 @@ unsafe impl Params for SprungParams {
         if let Some(Ok(state)) = fields.get(state::FIELD).map(|json| State::parse(json)) {
             self.load(state);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::params::Param as Row;
+
+    #[test]
+    fn the_host_sees_the_table() {
+        let params = SprungParams::default();
+        for ((info, knob), (id, _, section)) in PARAMS.iter().zip(params.knobs()).zip(params.param_map()) {
+            assert_eq!((id.as_str(), section.as_str()), (info.id, info.section));
+            let (name, steps, modulated) = match knob {
+                Knob::Continuous(knob) => (knob.name(), knob.step_count(), knob.poly_modulation_id()),
+                Knob::Stepped(knob) => (knob.name(), knob.step_count(), knob.poly_modulation_id()),
+            };
+            assert_eq!(name, info.name);
+            let stepped = matches!(info.unit, Unit::Count | Unit::Choice);
+            assert_eq!(steps, stepped.then_some((info.max - info.min) as usize), "{id}");
+            let smoothed = matches!(info.change, Change::Smoothed(_));
+            assert_eq!(modulated, smoothed.then_some(info.param as u32), "{id}");
+            assert_eq!(knob.position(), info.normalise(info.default) as f32, "{id}");
+        }
+    }
+
+    #[test]
+    fn text_is_read_and_written_as_everywhere() {
+        let params = SprungParams::default();
+        for (row, text, shown) in [
+            (Row::Decay, "250 ms", "250 ms"),
+            (Row::Decay, "1.5", "1.5 s"),
+            (Row::Tuning, "A4", "440 Hz"),
+            (Row::Gain, "-12 dB", "-12 dB"),
+            (Row::Exciter, "Pluck", "pluck"),
+            (Row::Voices, "8", "8"),
+        ] {
+            let position = match &params.knobs()[row as usize] {
+                Knob::Continuous(knob) => knob.string_to_normalized_value(text).unwrap(),
+                Knob::Stepped(knob) => knob.string_to_normalized_value(text).unwrap(),
+            };
+            let written = match &params.knobs()[row as usize] {
+                Knob::Continuous(knob) => knob.normalized_value_to_string(position, true),
+                Knob::Stepped(knob) => knob.normalized_value_to_string(position, true),
+            };
+            assert_eq!(written, shown, "{text}");
+            params.knobs()[row as usize].turn(position);
+            assert_eq!(params.state().loaded.patch.get(row), row.info().parse(text).unwrap(), "{text}");
+        }
+        let Knob::Continuous(gain) = &params.knobs()[Row::Gain as usize] else { panic!("gain is continuous") };
+        assert_eq!(gain.string_to_normalized_value("loud"), None);
+        assert_eq!(gain.string_to_normalized_value("99 dB"), None);
     }
 }

@@ -1,7 +1,7 @@
 //! What hosts are told of the instrument, and their calls.
 
 use crate::editor::SprungEditor;
-use crate::live::Live;
+use crate::live::{Live, MAX_VOICES};
 use crate::params::{Knob, SprungParams};
 use crate::state;
 use nice_plug::prelude::*;
@@ -69,7 +69,8 @@ impl Plugin for Sprung {
         config: &BufferConfig,
         _context: &mut impl ActivateContext<Self>,
     ) -> bool {
-        self.live = Some(Live::new(f64::from(config.sample_rate), &self.params));
+        let offline = config.process_mode == ProcessMode::Offline;
+        self.live = Some(Live::new(f64::from(config.sample_rate), offline, &self.params));
         true
     }
 
@@ -104,7 +105,7 @@ impl ClapPlugin for Sprung {
     const CLAP_FEATURES: &'static [ClapFeature] =
         &[ClapFeature::Instrument, ClapFeature::Synthesizer, ClapFeature::Drum, ClapFeature::Stereo, ClapFeature::Mono];
     const CLAP_POLY_MODULATION_CONFIG: Option<PolyModulationConfig> =
-        Some(PolyModulationConfig { max_voice_capacity: 64, supports_overlapping_voices: true });
+        Some(PolyModulationConfig { max_voice_capacity: MAX_VOICES, supports_overlapping_voices: true });
 
     fn remote_controls(&self, context: &mut impl RemoteControlsContext) {
         for rows in PARAMS.chunk_by(|a, b| a.section == b.section) {
@@ -123,7 +124,47 @@ impl ClapPlugin for Sprung {
 }
 
 impl Vst3Plugin for Sprung {
+    // In every project that uses the plugin: never to be changed, and CLAP_ID no more.
     const VST3_CLASS_ID: [u8; 16] = *b"SprungMassSpring";
     const VST3_SUBCATEGORIES: &'static [Vst3SubCategory] =
         &[Vst3SubCategory::Instrument, Vst3SubCategory::Synth, Vst3SubCategory::Drum];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    /// VST3 hosts may read the file in place of loading the library.
+    #[test]
+    fn moduleinfo_says_what_the_library_says() {
+        let info: Value = serde_json::from_str(include_str!("../moduleinfo.json")).unwrap();
+        let factory = json!({
+            "Vendor": Sprung::VENDOR,
+            "URL": Sprung::URL,
+            "E-Mail": Sprung::EMAIL,
+            "Flags": { "Unicode": true, "Classes Discardable": false, "Component Non Discardable": false },
+        });
+        let categories: Vec<&str> = Sprung::VST3_SUBCATEGORIES.iter().map(|category| category.as_str()).collect();
+        let class = json!({
+            "CID": Sprung::VST3_CLASS_ID.map(|byte| format!("{byte:02X}")).concat(),
+            "Category": "Audio Module Class",
+            "Name": Sprung::NAME,
+            "Vendor": Sprung::VENDOR,
+            "Version": Sprung::VERSION,
+            "SDKVersion": "VST 3.6.14",
+            "Sub Categories": categories,
+            "Class Flags": 2,
+            "Cardinality": i32::MAX,
+            "Snapshots": [],
+        });
+        let expected = json!({
+            "Name": Sprung::NAME,
+            "Version": Sprung::VERSION,
+            "Factory Info": factory,
+            "Compatibility": [],
+            "Classes": [class],
+        });
+        assert_eq!(info, expected);
+    }
 }

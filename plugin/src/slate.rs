@@ -114,3 +114,61 @@ impl Slate {
         Loaded { patch, positions, seed }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::params::Param;
+    use sprung::preset::Preset;
+    use std::sync::atomic::AtomicBool;
+
+    fn loaded(name: &str, seed: u64) -> Loaded {
+        Loaded::new(Preset::find(name).unwrap().patch, seed)
+    }
+
+    #[test]
+    fn what_is_put_is_what_is_got() {
+        let slate = Slate::new(&loaded("Init", 0));
+        for (seed, preset) in (u64::MAX - 3..).zip(Preset::factory().iter().take(3)) {
+            let mut loaded = Loaded::new(preset.patch, seed);
+            loaded.positions[3] = 0.123;
+            slate.write(&loaded, || assert_eq!(slate.read(|_| ()), None, "nothing is read while it is written"));
+            assert_eq!(slate.read(|_| slate.get()), Some(loaded));
+        }
+    }
+
+    #[test]
+    fn readers_get_one_whole_patch_or_none() {
+        let both = [loaded("Church Bell", 1), loaded("Kick", 2)];
+        let slate = Slate::new(&both[0]);
+        let done = AtomicBool::new(false);
+        let mut seen = [0, 0];
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                for turn in 0..20_000 {
+                    slate.write(&both[turn % 2], || {});
+                }
+                done.store(true, Ordering::Relaxed);
+            });
+            while !done.load(Ordering::Relaxed) {
+                let Some(got) = slate.read(|_| slate.get()) else { continue };
+                let which = both.iter().position(|loaded| *loaded == got);
+                seen[which.expect("neither patch, but a mixture")] += 1;
+            }
+        });
+        assert_eq!(slate.read(|_| slate.get()), Some(both[1]), "{seen:?}");
+    }
+
+    #[test]
+    fn a_knob_that_comes_back_has_the_exact_value_again() {
+        // A value of its own on a knob whose position as f32 would not give it back.
+        let mut loaded = Loaded::new(Patch::default().with(Param::Decay, 0.123_456_79), 0);
+        let index = Param::Decay as usize;
+        let position = loaded.positions[index];
+        assert_eq!(loaded.value(index, position), 0.123_456_79);
+        let moved = loaded.value(index, position + 0.1);
+        assert_eq!(moved, Param::Decay.info().denormalise(f64::from(position + 0.1)));
+        loaded.positions[index] = 0.75;
+        assert_eq!(loaded.value(index, 0.75), 0.123_456_79, "the position that came with it counts");
+    }
+}

@@ -80,7 +80,12 @@ impl Ensemble {
                 } else if let EventKind::Param { param: Param::Choke, value } = kind {
                     groups[sender] = Param::Choke.info().clamp(value);
                 }
-                if sender != channel && !matches!(kind, EventKind::Choke { group } if group != 0) {
+                let is_for_all = match kind {
+                    EventKind::Choke { group } => group != 0,
+                    EventKind::Tempo(_) => true,
+                    _ => false,
+                };
+                if sender != channel && !is_for_all {
                     continue;
                 }
                 let at = (event.frame as usize).saturating_sub(start).min(frames.saturating_sub(1)).max(frame);
@@ -92,8 +97,10 @@ impl Ensemble {
                 }
                 heard |= !synth.is_silent();
             }
-            synth.process(&[], &mut scratch_left[frame..], &mut scratch_right[frame..]);
-            if heard {
+            if !heard {
+                synth.pass(frames - frame);
+            } else {
+                synth.process(&[], &mut scratch_left[frame..], &mut scratch_right[frame..]);
                 add(left, scratch_left);
                 add(right, scratch_right);
             }

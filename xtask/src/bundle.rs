@@ -38,8 +38,11 @@ impl Format {
 
 /// Builds the plugin and puts the bundles into `target/bundled`, which it gives.
 pub(crate) fn run(release: bool) -> Result<PathBuf, String> {
-    let profile = if release { " --release" } else { "" };
-    let mut build = cargo(&format!("build --package sprung-plugin --lib --target-dir target{profile}"));
+    // What a debugger would want is most of the library's size.
+    let (profile, linking) = if release { ("--release", "-- -C strip=symbols") } else { ("", "") };
+    let mut build = cargo(&format!(
+        "rustc --package sprung-plugin --lib --crate-type cdylib --target-dir target {profile} {linking}"
+    ));
     if !build.status().map_err(|error| format!("cargo: {error}"))?.success() {
         return Err("the plugin does not build".to_owned());
     }

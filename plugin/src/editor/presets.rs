@@ -56,8 +56,11 @@ impl Presets {
 
     fn save(&mut self, params: &SprungParams) {
         let replace = self.confirm.take().is_some_and(|path| path == self.path);
-        self.message = match write(&params.state().preset(), &self.path, replace) {
-            Ok(()) => format!("saved {}", self.path),
+        self.message = match write(params.state().preset(), &self.path, replace) {
+            Ok(name) => {
+                params.about().name = name;
+                format!("saved {}", self.path)
+            }
             Err(sprung::Error::Exists { path }) => {
                 self.confirm = Some(self.path.clone());
                 format!("{path}: the file exists; press Save again to replace it")
@@ -78,13 +81,18 @@ fn read(path: &str) -> Result<Preset, String> {
     check(path).and_then(|path| Preset::load(path)).map_err(|error| error.to_string())
 }
 
-/// Writes a preset file, whole or not at all.
-fn write(preset: &Preset, path: &str, replace: bool) -> sprung::Result<()> {
+/// Writes a preset file, whole or not at all. The preset is then called as the file is; gives that name.
+fn write(mut preset: Preset, path: &str, replace: bool) -> sprung::Result<String> {
     let path = check(path)?;
+    preset.name = path.file_stem().unwrap_or_default().to_string_lossy().trim().to_owned();
+    let text = preset.to_toml();
+    // A name may be no name for a preset, and what is saved must load.
+    Preset::parse(&text, &path.display().to_string())?;
     let mut output = Output::create(&Target::new(path), replace)?;
-    let written = output.stream().write_all(preset.to_toml().as_bytes());
+    let written = output.stream().write_all(text.as_bytes());
     written.map_err(|source| sprung::Error::io(path.display().to_string(), source))?;
-    output.commit()
+    output.commit()?;
+    Ok(preset.name)
 }
 
 /// A host's working folder is nothing that a person knows: paths say all.
@@ -104,14 +112,24 @@ mod tests {
     #[test]
     fn presets_are_saved_whole_and_replaced_only_when_told() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("bell.toml").display().to_string();
-        let (bell, kick) = (Preset::find("Church Bell").unwrap(), Preset::find("Kick").unwrap());
-        write(bell, &path, false).unwrap();
-        assert_eq!(read(&path).as_ref(), Ok(bell));
-        assert!(matches!(write(kick, &path, false), Err(sprung::Error::Exists { .. })));
-        assert_eq!(read(&path).as_ref(), Ok(bell));
-        write(kick, &path, true).unwrap();
-        assert_eq!(read(&path).as_ref(), Ok(kick));
+        let path = folder.path().join("my sound.toml").display().to_string();
+        let [bell, kick] = ["Church Bell", "Kick"].map(|name| Preset::find(name).unwrap());
+        assert_eq!(write(bell.clone(), &path, false).unwrap(), "my sound");
+        let saved = read(&path).unwrap();
+        assert_eq!((saved.name.as_str(), saved.patch, &saved.comment), ("my sound", bell.patch, &bell.comment));
+        assert!(matches!(write(kick.clone(), &path, false), Err(sprung::Error::Exists { .. })));
+        assert_eq!(read(&path).unwrap(), saved);
+        write(kick.clone(), &path, true).unwrap();
+        assert_eq!(read(&path).unwrap().patch, kick.patch);
+    }
+
+    #[test]
+    fn a_preset_that_would_not_load_is_not_saved() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(format!("{}.toml", "n".repeat(101))).display().to_string();
+        let error = write(Preset::find("Kick").unwrap().clone(), &path, false).unwrap_err().to_string();
+        assert!(error.contains("name: expected one line of at most 100 characters"), "{error}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[test]
