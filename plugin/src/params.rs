@@ -27,7 +27,7 @@ impl Knob {
             let knob = IntParam::new(info.name, info.default as i32, range)
                 .with_value_to_string(Arc::new(|value| info.format(value as f32)))
                 .with_string_to_value(Arc::new(|text| Some(info.parse(text).ok()? as i32)));
-            return Self::Stepped(knob);
+            return Self::Stepped(if smoothed { knob.with_poly_modulation_id(info.param as u32) } else { knob });
         }
         let knob =
             FloatParam::new(info.name, info.normalise(info.default) as f32, FloatRange::Linear { min: 0.0, max: 1.0 })
