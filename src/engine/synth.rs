@@ -156,7 +156,8 @@ impl Synth {
     /// Takes in one event, at the frame that is rendered next.
     pub fn handle(&mut self, event: &Event) {
         let index = event.channel & 15;
-        self.news = true;
+        // A tempo can wait for the next control tick.
+        self.news |= !matches!(event.kind, EventKind::Tempo(_));
         match event.kind {
             EventKind::NoteOn { key, detune, velocity, id } => {
                 self.instrument.controls = self.smoother.after(0);
