@@ -210,6 +210,7 @@ impl Synth {
                 for (note, voice) in self.manager.active() {
                     voice.control(&controls, self.patch_serial, &self.channels[usize::from(note.channel)], to_tick);
                 }
+                self.manager.active().for_each(|(_, voice)| voice.sweep(to_tick));
                 self.news = false;
             }
             let end = frames.min(frame + to_tick);

@@ -196,8 +196,7 @@ impl SynthVoice {
             let ratio = self.ratio(self.offset(channel, 0));
             self.bank.jump_to(ratio);
         }
-        let ratio = self.ratio(self.offset(channel, frames));
-        self.bank.sweep_to(ratio, frames);
+        self.ratio(self.offset(channel, frames));
 
         let (left, right) = channel.gains_after(frames as u32);
         let target = [self.controls.gain_left * left, self.controls.gain_right * right];
@@ -207,6 +206,12 @@ impl SynthVoice {
             self.fader.aim(target, frames);
         }
         self.fresh = false;
+    }
+
+    /// Sends the modes to the pitch that [`SynthVoice::control`] has found. Apart from it, so that what one voice waits
+    /// for is done while others are: it gains a tenth.
+    pub(crate) fn sweep(&mut self, frames: usize) {
+        self.bank.sweep_to(self.ratio, frames);
     }
 
     /// Takes stock at a control tick: what energy is left, and which modes have come to rest. Every few ticks are
