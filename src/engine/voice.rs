@@ -208,8 +208,8 @@ impl SynthVoice {
         self.fresh = false;
     }
 
-    /// Sends the modes to the pitch that [`SynthVoice::control`] has found. Apart from it, so that what one voice waits
-    /// for is done while others are: it gains a tenth.
+    /// Sends the modes to the pitch that [`SynthVoice::control`] has found. Apart from it, so that what one voice
+    /// waits for is done while others wait: that gains a tenth.
     pub(crate) fn sweep(&mut self, frames: usize) {
         self.bank.sweep_to(self.ratio, frames);
     }
