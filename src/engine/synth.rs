@@ -314,6 +314,7 @@ impl Synth {
                     let controls = (note.patch == self.instrument.patch_serial).then_some(&controls);
                     voice.control(controls, &self.smoother, wheels, to_tick);
                 }
+                self.manager.active().for_each(|(_, voice)| voice.sweep(to_tick));
                 self.news = false;
             }
             let end = frames.min(frame + to_tick);
