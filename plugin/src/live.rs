@@ -74,6 +74,7 @@ impl Live {
         let whole = news.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
         if let Some((generation, loaded)) = news {
             (self.generation, self.loaded) = (Some(generation), loaded);
+            self.synth.set_seed(loaded.seed);
         }
         if whole {
             let mut patch = self.loaded.patch;

@@ -86,6 +86,11 @@ impl Synth {
         self.configure();
     }
 
+    /// What is random starts from another seed with the next note. Real-time safe.
+    pub fn set_seed(&mut self, seed: u64) {
+        self.instrument.seed = seed;
+    }
+
     /// Plays another patch from the next note on. Notes that sound go on with the sound that they have.
     pub fn set_patch(&mut self, patch: &Patch) {
         self.instrument.patch = *patch;
