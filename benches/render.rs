@@ -1,22 +1,33 @@
-//! The demo song, from MIDI file to samples.
+//! The demo song, from MIDI file to samples, on one thread and on two.
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use sprung::io::Song;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
-use sprung::render::{Job, Options, Tail};
+use sprung::render::{Job, Options, Tail, on_threads};
+use std::time::Duration;
 
 fn render(criterion: &mut Criterion) {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/midi/suite.mid");
     let song = Song::read(std::fs::File::open(file).unwrap(), file).unwrap();
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch).collect();
-    let options = Options { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::None };
+    let options = Options { sample_rate: 48_000, seed: 0, block: 4096, tail: Tail::None };
     let job = Job { song: &song, patch: &programs[0], programs: &programs, options };
-    let mut group = criterion.benchmark_group("render");
-    group.sample_size(10).throughput(Throughput::Elements(job.song_frames()));
-    group.bench_function("suite.mid", |bencher| bencher.iter(|| job.render(|_, _| Ok(())).unwrap()));
+    let mut group = criterion.benchmark_group("suite.mid");
+    group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(job.song_frames()));
+    for threads in [1, 2] {
+        let render = || on_threads(Some(threads), || job.render(|_, _| Ok(())));
+        group.bench_function(format!("{threads} threads"), |bencher| bencher.iter(render));
+    }
     group.finish();
 }
 
-criterion_group!(benches, render);
+fn quick() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(100))
+        .measurement_time(Duration::from_secs(5))
+        .sample_size(10)
+}
+
+criterion_group! { name = benches; config = quick(); targets = render }
 criterion_main!(benches);

@@ -1,50 +1,75 @@
-//! A synth with 16 voices of 64 masses each, in blocks of 480 frames (10 ms at 48 kHz).
+//! Whole instruments at 48 kHz, in blocks of 64 frames, on every level of vector instructions. Elements are frames.
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use sprung::engine::{Event, EventKind, Synth};
-use sprung::params::Param;
-use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
+mod chord;
 
-const VOICES: u8 = 16;
-const FRAMES: usize = 480;
+use chord::{Chord, FRAMES, moving, patch};
+use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+use sprung::dsp::mode_bank::Level;
+use sprung::engine::{Ensemble, Synth};
+use sprung::patch::Patch;
+use std::time::{Duration, Instant};
 
-/// A synth on which all voices ring, for longer than any measurement.
-fn ringing_synth(patch: &Patch) -> Synth {
-    let mut synth = Synth::new(48_000.0, 1);
-    synth.set_patch(patch);
-    let strike = |voice: u8| {
-        let kind = EventKind::NoteOn { key: 36 + 2 * voice, detune: 0.0, velocity: 1.0, id: -1 };
-        Event { frame: 0, channel: 0, kind }
-    };
-    let [mut left, mut right] = [[0.0; FRAMES]; 2];
-    synth.process(&(0..VOICES).map(strike).collect::<Vec<_>>(), &mut left, &mut right);
-    assert_eq!(synth.voices_used(), usize::from(VOICES));
-    synth
+const VOICES: usize = 16;
+
+fn levels() -> impl Iterator<Item = Level> {
+    Level::ALL.into_iter().filter(|level| level.force())
 }
 
-fn synth(criterion: &mut Criterion) {
-    let mut patch = Patch::default().with(Param::Decay, 60.0).with(Param::Voices, f32::from(VOICES));
-    // Ten times the decay of the patch, so that no mode dies away and is spared while it is measured.
-    let mode = |m: usize| Mode { ratio: 1.0 + 0.3 * m as f32, level: 0.1, decay: 10.0, ..Mode::UNIT };
-    patch.modes = ModeTable::new(&(0..MAX_MODES).map(mode).collect::<Vec<_>>());
-    let [mut left, mut right] = [[0.0; FRAMES]; 2];
-    let mut group = criterion.benchmark_group("synth 16 × 64");
-    group.throughput(Throughput::Elements(FRAMES as u64));
-    for (name, patch) in [("ringing", patch), ("vibrato", patch.with(Param::Vibrato, 30.0))] {
-        group.bench_function(name, |bencher| {
-            let (mut synth, mut frames) = (ringing_synth(&patch), 0);
-            bencher.iter(|| {
-                // Struck anew after three minutes of sound, long before the notes have died.
-                frames += FRAMES;
-                if frames > 180 * 48_000 {
-                    (synth, frames) = (ringing_synth(&patch), 0);
-                }
-                synth.process(&[], &mut left, &mut right);
+/// Sixteen notes of 64 modes: struck in one block, ringing, and with bend, vibrato and sweep moving.
+fn chords(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("synth");
+    group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(FRAMES as u64));
+    for level in levels() {
+        group.bench_function(BenchmarkId::new(level.name(), "note-on"), |bencher| {
+            let mut chord = Chord::new(&patch(VOICES), VOICES);
+            bencher.iter_custom(|iterations| {
+                let struck = |_| {
+                    chord.reset();
+                    let start = Instant::now();
+                    chord.strike();
+                    start.elapsed()
+                };
+                (0..iterations).map(struck).sum()
             });
         });
+        for (name, patch, bent) in [("ringing", patch(VOICES), false), ("moving", moving(patch(VOICES)), true)] {
+            let mut chord = Chord::new(&patch, VOICES);
+            group.bench_function(BenchmarkId::new(level.name(), name), |bencher| {
+                bencher.iter(|| chord.process(bent));
+            });
+        }
     }
     group.finish();
 }
 
-criterion_group!(benches, synth);
+/// From one note to all that there can be.
+fn voices(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("voices");
+    group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(FRAMES as u64));
+    Level::ALL.into_iter().rev().any(Level::force);
+    for voices in [1, 2, 4, 8, 16, 32, 64] {
+        let mut chord = Chord::new(&patch(voices), voices);
+        group.bench_function(voices.to_string(), |bencher| bencher.iter(|| chord.process(false)));
+    }
+    group.finish();
+}
+
+/// Nothing to do.
+fn idle(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("idle");
+    group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(FRAMES as u64));
+    let [mut left, mut right] = [[0.0; FRAMES]; 2];
+    let mut synth = Synth::new(48_000.0, 1);
+    group.bench_function("synth", |bencher| bencher.iter(|| synth.process(&[], &mut left, &mut right)));
+    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[]);
+    group.bench_function("ensemble", |bencher| bencher.iter(|| ensemble.process(&[], &mut left, &mut right)));
+    group.finish();
+}
+
+fn quick() -> Criterion {
+    let short = Duration::from_millis(300);
+    Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(2000)
+}
+
+criterion_group! { name = benches; config = quick(); targets = chords, voices, idle }
 criterion_main!(benches);

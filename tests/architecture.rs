@@ -31,6 +31,7 @@ const OUTSIDE: &[(&str, &[&str])] = &[
     ("toml", &["preset", "analysis"]),
     ("plotters", &["figure", "analysis", "lab"]),
     ("ebur128", &["render"]),
+    ("rayon", &["render"]),
     ("std::fs", &["io", "preset", "analysis", "cli"]),
     ("alsa", &["realtime"]),
     ("cpal", &["realtime"]),

@@ -1,25 +1,24 @@
 //! The offline renderer: songs to samples, block by block, as fast as the machine can.
 
 pub mod meter;
+mod stream;
+mod threads;
 mod wav;
 
 pub use crate::engine::synth::SAMPLE_RATES;
 pub use meter::{Levels, Meter};
+pub use threads::{THREADS, on_threads};
 pub use wav::{Delivery, Level, Progress, Report, to_wav};
 
-use crate::engine::{Ensemble, Event};
 use crate::error::{Error, Result};
 use crate::io::Song;
 use crate::io::song;
 use crate::patch::Patch;
 use std::ops::RangeInclusive;
+use stream::{SHARED_FRAMES, Stream};
 
 /// Lengths that a block can have, in frames.
 pub const BLOCKS: RangeInclusive<usize> = 1..=65_536;
-
-/// In a tail, silence is looked for each time that this many frames have passed since the end of the song: often
-/// enough for a tight end, and at frames that do not depend on the block.
-const SILENCE_INTERVAL: u64 = 64;
 
 /// How long rendering goes on after the end of the song.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,45 +89,30 @@ impl Job<'_> {
     /// Renders from the start and hands each block, left and right, to `sink`, whose first error ends it.
     /// Memory does not grow with the length. The same job gives the same samples each time.
     ///
+    /// Blocks of 512 frames and more are shared between the threads of the Rayon pool that this is called in (see
+    /// [`on_threads`]): channels are played side by side, and the next block while `sink` has one. The samples do not
+    /// depend on it, and `sink` gets the blocks in their order.
+    ///
     /// # Errors
     /// [`Error::Value`] if an option is out of range; those of `sink`.
-    pub fn render(&self, mut sink: impl FnMut(&[f32], &[f32]) -> Result<()>) -> Result<Rendered> {
+    pub fn render(&self, mut sink: impl FnMut(&[f32], &[f32]) -> Result<()> + Send) -> Result<Rendered> {
         self.options.check()?;
-        let sample_rate = f64::from(self.options.sample_rate);
-        let mut ensemble = Ensemble::new(sample_rate, self.options.seed, self.patch, self.programs);
-        let mut left = vec![0.0; self.options.block];
-        let mut right = left.clone();
-        let mut events: Vec<Event> = Vec::new();
-        let mut pending = self.song.events.iter().peekable();
-        let (song_frames, known_frames) = (self.song_frames(), self.known_frames());
-        let mut frame = 0;
-        loop {
-            let end = match known_frames {
-                Some(end) => end,
-                None if frame < song_frames => song_frames,
-                None => {
-                    let into_tail = frame - song_frames;
-                    let may_end = into_tail.is_multiple_of(SILENCE_INTERVAL) && pending.peek().is_none();
-                    if may_end && ensemble.is_silent() {
-                        break;
-                    }
-                    song_frames + (into_tail / SILENCE_INTERVAL + 1) * SILENCE_INTERVAL
-                }
-            };
-            if frame == end {
-                break;
-            }
-            let len = (end - frame).min(self.options.block as u64) as usize;
-            events.clear();
-            while let Some(event) = pending.next_if(|event| event.frame(sample_rate) < frame + len as u64) {
-                events.push(event.at(event.frame(sample_rate).saturating_sub(frame) as u32));
-            }
-            ensemble.process(&events, &mut left[..len], &mut right[..len]);
-            sink(&left[..len], &right[..len])?;
-            frame += len as u64;
+        let mut stream = Stream::new(self);
+        let block = || [vec![0.0; self.options.block], vec![0.0; self.options.block]];
+        let [mut now, mut next] = [block(), block()];
+        let fill = |stream: &mut Stream, [left, right]: &mut [Vec<f32>; 2]| stream.fill(left, right);
+        let mut frames = fill(&mut stream, &mut now);
+        while frames > 0 {
+            let [left, right] = &now;
+            let mut deliver = || sink(&left[..frames], &right[..frames]);
+            let mut render = || fill(&mut stream, &mut next);
+            let (delivered, rendered) =
+                if self.options.block < SHARED_FRAMES { (deliver(), render()) } else { rayon::join(deliver, render) };
+            delivered?;
+            frames = rendered;
+            std::mem::swap(&mut now, &mut next);
         }
-        let tail_frames = frame - song_frames;
-        Ok(Rendered { frames: frame, tail_frames, voices_used: ensemble.voices_used() })
+        Ok(stream.rendered())
     }
 }
 

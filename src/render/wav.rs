@@ -78,7 +78,7 @@ pub fn to_wav(
     job: &Job,
     delivery: &Delivery,
     output: &mut Output,
-    mut progress: impl FnMut(Progress) -> Result<()>,
+    mut progress: impl FnMut(Progress) -> Result<()> + Send,
 ) -> Result<Report> {
     let started = Instant::now();
     let channels = if delivery.mono { 1 } else { 2 };

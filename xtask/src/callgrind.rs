@@ -1,61 +1,126 @@
-//! `cargo xtask callgrind`: instructions per mode and frame of the kernels, counted by valgrind, against those kept.
+//! `cargo xtask callgrind`: instructions of the kernels and of silence, counted by valgrind, against those kept.
 //!
 //! Counts do not depend on how busy the machine is. Valgrind has no AVX-512.
 
-use crate::shell::{cargo, root};
+#[path = "../../benches/struck/mod.rs"]
+mod struck;
+
+use crate::shell::{cargo, root, succeeds};
 use sprung::dsp::CONTROL_FRAMES;
-use sprung::dsp::exciter::Drive;
-use sprung::dsp::mode_bank::{Coupling, Law, Level, MAX_MODES, ModeBank, ModeSetup};
+use sprung::dsp::mode_bank::{Level, MAX_MODES};
+use sprung::engine::{Ensemble, Synth};
+use sprung::patch::Patch;
 use std::fmt::Write as _;
 use std::process::Command;
+use struck::{StruckBank, Work};
 
-/// The counts as last accepted: level, work, instructions per mode and frame.
+/// The counts as last accepted: instructions per mode and frame by level and work, and per silent block.
 const KEPT: &str = "benches/instructions.txt";
 
 /// A count may grow by this share.
 const ALLOWANCE: f64 = 0.05;
 
 const LEVELS: [Level; 3] = [Level::Scalar, Level::Sse2, Level::Avx2];
-const WORKS: [&str; 3] = ["ringing", "modulated", "driven"];
 
-/// Counts, and compares with what is kept; or keeps what is counted.
-pub(crate) fn run(accept: bool) -> Result<(), String> {
+/// Frames of a silent block.
+const FRAMES: usize = 64;
+
+/// Rounds that are counted, beyond as many again or so that are not: whole turns of what modulates.
+const ROUNDS: usize = 210;
+
+/// Something to count.
+#[derive(Clone, Copy)]
+enum Subject {
+    Bank(Level, Work),
+    IdleSynth,
+    IdleEnsemble,
+}
+
+impl Subject {
+    /// All that this CPU has.
+    fn all() -> impl Iterator<Item = Subject> {
+        let levels = LEVELS.into_iter().filter(|level| level.is_available());
+        let banks = levels.flat_map(|level| Work::ALL.map(|work| Subject::Bank(level, work)));
+        banks.chain([Subject::IdleSynth, Subject::IdleEnsemble])
+    }
+
+    /// The name that it has in [`KEPT`].
+    fn name(self) -> String {
+        match self {
+            Subject::Bank(level, work) => format!("{} {}", level.name(), work.name()),
+            Subject::IdleSynth => "silent synth".to_owned(),
+            Subject::IdleEnsemble => "silent ensemble".to_owned(),
+        }
+    }
+
+    /// What a round is divided by: a bank's modes and frames; a silent block counts as a whole.
+    fn unit(self) -> usize {
+        if matches!(self, Subject::Bank(..)) { MAX_MODES * CONTROL_FRAMES } else { 1 }
+    }
+
+    /// Some rounds of work: a control tick each, or a block.
+    fn work(self, rounds: usize) {
+        let [mut left, mut right] = [[0.0; FRAMES]; 2];
+        match self {
+            Subject::Bank(level, work) => {
+                level.force();
+                let mut banks = StruckBank::many(MAX_MODES, work);
+                (0..rounds).for_each(|_| banks.iter_mut().for_each(|bank| _ = std::hint::black_box(bank.tick())));
+            }
+            Subject::IdleSynth => {
+                let mut synth = Synth::new(48_000.0, 1);
+                (0..rounds).for_each(|_| synth.process(&[], &mut left, &mut right));
+            }
+            Subject::IdleEnsemble => {
+                let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[]);
+                (0..rounds).for_each(|_| ensemble.process(&[], &mut left, &mut right));
+            }
+        }
+    }
+}
+
+/// Whether there is something to count with.
+pub(crate) fn can_count() -> bool {
+    succeeds("valgrind", &["--version"])
+}
+
+/// Counts, and compares with what is kept; or keeps what is counted. Gives the number of counts.
+pub(crate) fn run(accept: bool) -> Result<usize, String> {
     let built = cargo("build --release --quiet --package xtask").status().map_err(|error| error.to_string())?;
     if !built.success() {
         return Err("the release build of xtask fails".to_owned());
     }
     let mut counts = String::new();
-    for level in LEVELS.into_iter().filter(|level| level.is_available()) {
-        for work in WORKS {
-            // The difference of two runs is free of starting up.
-            let (few, many) = (count(level, work, 100)?, count(level, work, 1100)?);
-            let each = (many - few) / (1000 * MAX_MODES * CONTROL_FRAMES) as f64;
-            let _ = writeln!(counts, "{} {work} {each:.3}", level.name());
-        }
+    for subject in Subject::all() {
+        let name = subject.name();
+        // The difference of two runs is free of starting up.
+        let (few, many) = (count(&name, ROUNDS / 10)?, count(&name, ROUNDS / 10 + ROUNDS)?);
+        let _ = writeln!(counts, "{name} {:.3}", (many - few) / (ROUNDS * subject.unit()) as f64);
     }
     print!("{counts}");
+    let found = parse(&counts);
     let path = root().join(KEPT);
+    let at = |error| format!("{}: {error}", path.display());
     if accept {
-        return std::fs::write(&path, counts).map_err(|error| format!("{}: {error}", path.display()));
+        std::fs::write(&path, counts).map_err(at)?;
+        return Ok(found.len());
     }
-    let kept = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let (kept, found) = (parse(&kept), parse(&counts));
-    if found.is_empty() {
-        return Err("nothing was counted".to_owned());
-    }
-    let grown: Vec<String> = found
-        .iter()
-        .filter_map(|(name, now)| {
-            let before = kept.iter().find(|(kept, _)| kept == name).map(|(_, count)| *count);
-            let fine = before.is_some_and(|before| *now <= before * (1.0 + ALLOWANCE));
-            let before = before.map_or("none".to_owned(), |before| before.to_string());
-            (!fine).then(|| format!("{name}: {now} instructions, {before} kept"))
-        })
-        .collect();
+    let grown = grown(&parse(&std::fs::read_to_string(&path).map_err(at)?), &found);
     if grown.is_empty() {
-        return Ok(());
+        return Ok(found.len());
     }
     Err(format!("{}\naccept with: cargo xtask callgrind --accept", grown.join("\n")))
+}
+
+/// A line for each count that has grown by more than is allowed, or is not kept.
+fn grown(kept: &[(String, f64)], found: &[(String, f64)]) -> Vec<String> {
+    let line = |(name, now): &(String, f64)| {
+        let before = kept.iter().find(|(kept, _)| kept == name).map(|(_, count)| *count);
+        let fine = before.is_some_and(|before| *now <= before * (1.0 + ALLOWANCE));
+        let before = before.map_or("none".to_owned(), |before| before.to_string());
+        (!fine).then(|| format!("{name}: {now} instructions, {before} kept"))
+    };
+    found.iter().filter_map(line).collect()
 }
 
 fn parse(counts: &str) -> Vec<(String, f64)> {
@@ -67,33 +132,37 @@ fn parse(counts: &str) -> Vec<(String, f64)> {
 }
 
 /// Instructions of a whole run of [`work`].
-fn count(level: Level, work: &str, ticks: usize) -> Result<f64, String> {
+fn count(name: &str, rounds: usize) -> Result<f64, String> {
     let mut command = Command::new("valgrind");
     command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(root().join("target/release/xtask"));
-    command.args(["callgrind-work", level.name(), work, &ticks.to_string()]);
+    command.args(["callgrind-work", name, &rounds.to_string()]);
     let output = command.output().map_err(|error| format!("valgrind: {error}; is it installed?"))?;
     let text = String::from_utf8_lossy(&output.stderr);
     let collected = text.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok());
     collected.filter(|_| output.status.success()).ok_or_else(|| format!("valgrind counted nothing:\n{text}"))
 }
 
-/// What is counted: a bank of 64 modes for some control ticks.
-pub(crate) fn work(level: &str, work: &str, ticks: usize) -> Result<(), String> {
-    let named = LEVELS.into_iter().find(|named| named.name() == level);
-    if !named.is_some_and(Level::force) {
-        return Err(format!("this CPU has no level {level}"));
-    }
-    let mut bank = ModeBank::new(48_000.0);
-    let mode = |m: usize| ModeSetup { frequency: 100.0 + 310.0 * m as f64, t60: 10_000.0, left: 1.0, right: 1.0 };
-    bank.load(Law::Exact, (0..MAX_MODES).map(mode));
-    (0..MAX_MODES).for_each(|m| bank.set_coupling(m, Coupling { push: 1.0, pull: 0.0, noise: 0.0 }));
-    let mut drive = Drive::NONE;
-    drive.pulse[0] = 1.0;
-    for tick in 0..ticks {
-        let ratio = if work == "modulated" { 1.0 + 0.01 * (tick % 7) as f64 } else { 1.0 };
-        bank.sweep_to(ratio, CONTROL_FRAMES);
-        let driven = tick == 0 || work == "driven";
-        std::hint::black_box(bank.render(driven.then_some(&drive), CONTROL_FRAMES));
-    }
+/// What is counted.
+pub(crate) fn work(name: &str, rounds: usize) -> Result<(), String> {
+    let subject = Subject::all().find(|subject| subject.name() == name);
+    subject.ok_or_else(|| format!("there is no ‘{name}’ to count on this CPU"))?.work(rounds);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_growth_beyond_the_allowance_is_told() {
+        let kept = parse("avx2 ringing 1.0\nsilent synth 1000");
+        assert_eq!(kept[1], ("silent synth".to_owned(), 1000.0));
+        for (found, lines) in [
+            ("avx2 ringing 1.04\nsilent synth 400", 0),
+            ("avx2 ringing 1.06\nsilent synth 1051", 2),
+            ("avx2 driven 0.1", 1),
+        ] {
+            assert_eq!(grown(&kept, &parse(found)).len(), lines, "{found}");
+        }
+    }
 }

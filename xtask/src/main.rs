@@ -1,5 +1,6 @@
 //! `cargo xtask …`: the project's chores.
 
+mod bench_table;
 mod bless;
 mod bundle;
 mod callgrind;
@@ -45,7 +46,13 @@ enum Chore {
     },
     /// Draw the README's picture of the demo song to assets/demo.png.
     Figures,
-    /// Count the kernels' instructions per mode and frame; fail if they have grown by 5 %.
+    /// Run the benches and the peers, and write their tables into benches/README.md.
+    BenchTable {
+        /// Run nothing: write what was measured the last time.
+        #[arg(long)]
+        again: bool,
+    },
+    /// Count the instructions of the kernels and of silence; fail if they have grown by 5 %.
     Callgrind {
         /// Keep what is counted.
         #[arg(long)]
@@ -53,7 +60,7 @@ enum Chore {
     },
     /// What `callgrind` counts.
     #[command(hide = true)]
-    CallgrindWork { level: String, work: String, ticks: usize },
+    CallgrindWork { name: String, rounds: usize },
     /// Write the demo songs to assets/midi.
     Songs {
         /// Write nothing; fail if the files are not what would be written.
@@ -87,8 +94,9 @@ fn main() -> ExitCode {
         Chore::Uninstall(place) => install::uninstall(place.scope()),
         Chore::Bless { case } => bless::run(case.as_deref()),
         Chore::Figures => figures::run(),
-        Chore::Callgrind { accept } => callgrind::run(accept),
-        Chore::CallgrindWork { level, work, ticks } => callgrind::work(&level, &work, ticks),
+        Chore::BenchTable { again } => bench_table::run(again),
+        Chore::Callgrind { accept } => callgrind::run(accept).map(|_| ()),
+        Chore::CallgrindWork { name, rounds } => callgrind::work(&name, rounds),
         Chore::Songs { check } => songs::run(check),
     };
     match result {

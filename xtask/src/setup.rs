@@ -66,6 +66,12 @@ const REQUIREMENTS: &[Requirement] = &[
         why: "a terminal to drive the view of sprung play in",
         essential: false,
     },
+    Requirement {
+        probe: Probe::Program("valgrind"),
+        package: "valgrind",
+        why: "counts instructions, so that speed is watched on busy machines",
+        essential: false,
+    },
 ];
 
 /// Components of the Rust toolchain, with the command that each brings.

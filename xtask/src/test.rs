@@ -1,7 +1,7 @@
 //! `cargo xtask test`: the whole suite, step by step, with a count of what really ran.
 
-use crate::setup;
 use crate::shell::{cargo, run_and_read};
+use crate::{callgrind, setup};
 use std::fmt;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -111,6 +111,7 @@ pub(crate) fn run() -> Result<(), String> {
         }
     })];
     outcomes.extend(STEPS.iter().map(|step| timed(step.name, || step.run())));
+    outcomes.push(timed("instructions", instructions));
 
     println!("\n{:<24} {:<8} {:>9}  ran", "step", "result", "time");
     let mut total = Count::default();
@@ -123,6 +124,20 @@ pub(crate) fn run() -> Result<(), String> {
     }
     println!("\n{total}");
     if total.failed == 0 { Ok(()) } else { Err("the suite failed".to_owned()) }
+}
+
+/// The counts of the kernels' instructions, against those kept.
+fn instructions() -> (Count, &'static str) {
+    if !callgrind::can_count() {
+        return (Count { skipped: 1, ..Count::default() }, " (no valgrind)");
+    }
+    match callgrind::run(false) {
+        Ok(counted) => (Count { passed: counted, ..Count::default() }, ""),
+        Err(message) => {
+            eprintln!("{message}");
+            (Count { failed: 1, ..Count::default() }, "")
+        }
+    }
 }
 
 fn timed(name: &'static str, work: impl FnOnce() -> (Count, &'static str)) -> Outcome {

@@ -10,7 +10,7 @@ use sprung::io::{Output, SampleFormat, Song, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
-use sprung::render::{BLOCKS, Delivery, Job, Level, Options, SAMPLE_RATES, Tail, to_wav};
+use sprung::render::{BLOCKS, Delivery, Job, Level, Options, SAMPLE_RATES, THREADS, Tail, on_threads, to_wav};
 use sprung::units::parse_key;
 use sprung::{Error, Result};
 use std::collections::BTreeSet;
@@ -74,9 +74,13 @@ pub(super) struct Args {
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
     seed: u64,
     /// Frames processed at once, 1-65536; the samples do not depend on it
-    #[arg(long, default_value_t = 1024, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
+    #[arg(long, default_value_t = 4096, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
         .range(*BLOCKS.start() as i64..=*BLOCKS.end() as i64))]
     block: u32,
+    /// Threads to work on, 1-256; the samples do not depend on it [default: one a core]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16)
+        .range(i64::from(*THREADS.start())..=i64::from(*THREADS.end())))]
+    threads: Option<u16>,
     /// Overwrite an existing file
     #[arg(long)]
     force: bool,
@@ -115,10 +119,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let mut output = Output::create(&target, args.force)?;
     interrupt::catch(output.is_seekable())?;
     let mut bar = Bar::new();
-    let report = to_wav(&job, &delivery, &mut output, |progress| {
+    let progress = |progress| {
         bar.show(progress);
         interrupt::check()
-    })?;
+    };
+    let report = on_threads(args.threads, || to_wav(&job, &delivery, &mut output, progress))??;
     drop(bar);
     output.commit()?;
     report::tell(&report, &target, args.json)

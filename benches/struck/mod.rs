@@ -1,0 +1,75 @@
+//! Struck banks at work: what the benches time and `cargo xtask callgrind` counts.
+
+use sprung::dsp::CONTROL_FRAMES;
+use sprung::dsp::exciter::{Drive, Exciter};
+use sprung::dsp::mode_bank::{Coupling, Law, MAX_MODES, ModeBank, ModeSetup};
+
+/// What a bank can be busy with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Work {
+    /// Rings freely, by tables.
+    Ringing,
+    /// Swept to another pitch at every control tick.
+    Modulated,
+    /// Under a burst of noise.
+    Driven,
+}
+
+impl Work {
+    pub(crate) const ALL: [Work; 3] = [Work::Ringing, Work::Modulated, Work::Driven];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Work::Ringing => "ringing",
+            Work::Modulated => "modulated",
+            Work::Driven => "driven",
+        }
+    }
+}
+
+/// A bank that has been struck and rings for longer than any measurement.
+pub(crate) struct StruckBank {
+    pub(crate) bank: ModeBank,
+    work: Work,
+    noise: Drive,
+    ticks: usize,
+}
+
+impl StruckBank {
+    /// A bank of at most [`MAX_MODES`] modes that has got used to its work.
+    pub(crate) fn new(modes: usize, work: Work) -> Self {
+        let mut bank = ModeBank::new(48_000.0);
+        let mode = |m: usize| ModeSetup { frequency: 100.0 + 310.0 * m as f64, t60: 10_000.0, left: 1.0, right: 1.0 };
+        bank.load(Law::Exact, (0..modes).map(mode));
+        (0..modes).for_each(|m| bank.set_coupling(m, Coupling { push: 1.0, pull: 0.0, noise: 1.0 }));
+        let mut strike = Drive::NONE;
+        strike.pulse[0] = 1.0;
+        bank.sweep_to(1.0, CONTROL_FRAMES);
+        bank.render(Some(&strike), CONTROL_FRAMES);
+
+        let (mut burst, mut noise) = (Exciter::REST, Drive::NONE);
+        // So faint that the masses do not run away, however long it lasts.
+        burst.strike(0.0, 1, 1e-6, u32::MAX, 7);
+        burst.fill(CONTROL_FRAMES, &mut noise);
+        let mut struck = Self { bank, work, noise, ticks: 0 };
+        // Tables are made once a bank has rung freely for a while.
+        (0..20).for_each(|_| _ = struck.tick());
+        struck
+    }
+
+    /// As many modes as that, in banks of at most [`MAX_MODES`].
+    pub(crate) fn many(modes: usize, work: Work) -> Vec<Self> {
+        let whole = (0..modes / MAX_MODES).map(|_| Self::new(MAX_MODES, work));
+        let rest = modes % MAX_MODES;
+        whole.chain((rest > 0).then(|| Self::new(rest, work))).collect()
+    }
+
+    /// A control tick of work.
+    pub(crate) fn tick(&mut self) -> f32 {
+        self.ticks += 1;
+        let ratio = if self.work == Work::Modulated { 1.0 + 0.001 * (self.ticks % 7) as f64 } else { 1.0 };
+        self.bank.sweep_to(ratio, CONTROL_FRAMES);
+        let drive = (self.work == Work::Driven).then_some(&self.noise);
+        self.bank.render(drive, CONTROL_FRAMES)[0][0]
+    }
+}

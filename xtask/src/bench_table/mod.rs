@@ -1,0 +1,91 @@
+//! `cargo xtask bench-table`: runs the benches and the peers, and writes what they come to into `benches/README.md`.
+
+mod measured;
+mod peers;
+mod tables;
+
+use crate::shell::{cargo, root};
+use measured::Measured;
+use peers::Peer;
+use std::fs;
+use std::process::Command;
+
+const DOCUMENT: &str = "benches/README.md";
+const BEGIN: &str = "<!-- measured: begin -->";
+const END: &str = "<!-- measured: end -->";
+
+/// What the peers that are compiled here are compiled for: the level AVX2.
+const FLAGS: &str = "-C target-cpu=x86-64-v3";
+
+/// Runs everything and writes the tables; with `again`, of what was measured the last time.
+pub(crate) fn run(again: bool) -> Result<(), String> {
+    let criterion = root().join("target/criterion-table");
+    let peers_table = root().join("target/peers/peers.tsv");
+    if !again {
+        // What is there may be of benches that are no more.
+        let _ = fs::remove_dir_all(&criterion);
+        let folder = peers_table.parent().expect("the path has a folder");
+        fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let bench = |arguments: &str| {
+            let mut command = cargo(arguments);
+            command.env("CRITERION_HOME", &criterion);
+            command
+        };
+        succeed(bench("bench --package sprung --bench probe --bench mode_bank --bench synth --bench render"))?;
+        let mut beside = bench("bench --package sprung --bench peers --target-dir target/x86-64-v3");
+        if cfg!(target_arch = "x86_64") {
+            beside.env("RUSTFLAGS", FLAGS);
+        }
+        succeed(beside)?;
+        let script = root().join("benches/peers/run.sh");
+        let output = Command::new(&script).stderr(std::process::Stdio::inherit()).output();
+        let output = output.map_err(|error| format!("{}: {error}", script.display()))?;
+        fs::write(&peers_table, output.stdout).map_err(|error| format!("{}: {error}", peers_table.display()))?;
+    }
+    let measured = Measured::read(&criterion)?;
+    let peers = fs::read_to_string(&peers_table).map_err(|error| format!("{}: {error}", peers_table.display()))?;
+    let tables = tables::all(&measured, &Peer::parse(&peers)?, &cpu());
+
+    let path = root().join(DOCUMENT);
+    let document = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let document = replace(&document, &tables).ok_or_else(|| format!("{DOCUMENT} has no {BEGIN} before {END}"))?;
+    fs::write(&path, document).map_err(|error| format!("{}: {error}", path.display()))?;
+    println!("{tables}\nwritten to {DOCUMENT}");
+    Ok(())
+}
+
+fn succeed(mut command: Command) -> Result<(), String> {
+    let status = command.status().map_err(|error| format!("cargo: {error}"))?;
+    if status.success() { Ok(()) } else { Err("the benches failed".to_owned()) }
+}
+
+/// The document with something else between the marks.
+fn replace(document: &str, tables: &str) -> Option<String> {
+    let (before, rest) = document.split_once(BEGIN)?;
+    let (_, after) = rest.split_once(END)?;
+    Some(format!("{before}{BEGIN}\n{tables}{END}{after}"))
+}
+
+/// The CPU's name, where the system tells it.
+fn cpu() -> String {
+    let told = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = told.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    name.map_or_else(|| format!("a CPU of kind {}", std::env::consts::ARCH), |(_, name)| name.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_between_the_marks_is_replaced() {
+        let document = format!("before\n{BEGIN}\nold\n{END}\nafter");
+        assert_eq!(replace(&document, "new\n").unwrap(), format!("before\n{BEGIN}\nnew\n{END}\nafter"));
+        assert_eq!(replace("no marks", "new"), None);
+    }
+
+    #[test]
+    fn the_document_has_the_marks() {
+        assert!(replace(&fs::read_to_string(root().join(DOCUMENT)).unwrap(), "").is_some());
+    }
+}
