@@ -18,9 +18,19 @@ use std::process::{Command, Stdio};
 /// The plugin's class, as preset files name it. Pinned: hosts find a song's plugin by it.
 const CLASS: &[u8; 32] = b"537072756E674D617373537072696E67";
 
-/// The Python that `cargo xtask setup` has put the hosts into.
-pub(crate) fn python() -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("python").join("bin/python")
+/// The virtual environment that `cargo xtask setup` puts the hosts into.
+fn environment() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("python")
+}
+
+/// Whether it has the versions of the hosts that are wanted.
+pub(crate) fn is_installed() -> bool {
+    let installed = std::fs::read_to_string(environment().join("requirements.txt"));
+    installed.is_ok_and(|installed| installed == include_str!("requirements.txt"))
+}
+
+fn python() -> PathBuf {
+    environment().join("bin/python")
 }
 
 fn script(name: &str) -> PathBuf {
