@@ -1,7 +1,7 @@
 //! The audio thread: follows the parameters, hands over events at their frames, renders.
 
 use crate::events::translate;
-use crate::params::SprungParams;
+use crate::params::{Look, SprungParams};
 use crate::plugin::Sprung;
 use crate::slate::Loaded;
 use crate::tail::Tail;
@@ -33,6 +33,8 @@ pub(crate) struct Live {
     tail: Tail,
     /// How many of the notes that the synth says have ended the host has been told of.
     told: usize,
+    /// Events that the wrapper has handed over with the part of a block before theirs.
+    early: Vec<NoteEvent<()>>,
     /// What the instrument is rendered into when the host has one channel for it.
     stereo: [[f32; MONO_FRAMES]; 2],
 }
@@ -51,6 +53,7 @@ impl Live {
             voices: MAX_VOICES,
             tail: Tail::new(offline),
             told: 0,
+            early: Vec::with_capacity(Sprung::INPUT_EVENT_CAPACITY),
             stereo: [[0.0; MONO_FRAMES]; 2],
         };
         live.reset(params);
@@ -63,17 +66,19 @@ impl Live {
         self.follow(params);
         self.synth.reset();
         (self.offsets, self.tempo, self.told) = ([0.0; PARAM_COUNT], None, 0);
+        self.early.clear();
     }
 
     /// Takes over what has changed of the patch and its knobs. While another thread writes, all stays as it was until
     /// the next block.
     fn follow(&mut self, params: &SprungParams) {
-        let Some((positions, news)) = params.look(self.generation) else { return };
+        let Some(Look { positions, news }) = params.look(self.generation) else { return };
         let moved = |index: usize| positions[index].to_bits() != self.positions[index].to_bits();
         // While nothing sounds, values need no slope: what a host sets before it plays holds from the first note on.
         let whole = news.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
         if let Some((generation, loaded)) = news {
             (self.generation, self.loaded) = (Some(generation), loaded);
+            self.synth.set_seed(loaded.seed);
         }
         if whole {
             let mut patch = self.loaded.patch;
@@ -131,19 +136,34 @@ impl Live {
         let api = context.plugin_api();
         let frames = outputs.first().map_or(0, |channel| channel.len());
         let mut frame = 0;
+        for index in 0..self.early.len() {
+            let event = self.early[index];
+            self.take(&event, frame, api, context);
+        }
+        self.early.clear();
         while let Some(event) = context.next_event() {
-            // The wrapper divides blocks at parameter changes; an event just before such a change comes with a time
-            // at the end of the part before it, and is handed over after that part's last frame.
-            let at = (event.timing() as usize).clamp(frame, frames);
+            let at = (event.timing() as usize).max(frame);
+            // The wrapper divides blocks at parameter changes, and hands events of the change's own frame over with
+            // the part before. At one frame, parameters always come first, wherever the host's blocks end.
+            if at >= frames && self.early.len() < self.early.capacity() {
+                self.early.push(event);
+                continue;
+            }
+            let at = at.min(frames);
             self.render(outputs, frame..at, context);
             frame = at;
-            if let Some((channel, kind)) = translate(&event, api) {
-                self.handle(channel, kind);
-                self.tell(frame, context);
-            }
+            self.take(&event, frame, api, context);
         }
         self.render(outputs, frame..frames, context);
         self.tail.status(&mut self.synth, frames)
+    }
+
+    /// Takes in one event at a frame of the block.
+    fn take(&mut self, event: &NoteEvent<()>, frame: usize, api: PluginApi, context: &mut impl ProcessContext<Sprung>) {
+        if let Some((channel, kind)) = translate(event, api) {
+            self.handle(channel, kind);
+            self.tell(frame, context);
+        }
     }
 
     /// Renders the frames at a range of the outputs, and tells the host which notes have ended.

@@ -6,6 +6,7 @@ mod bundle;
 mod callgrind;
 mod figures;
 mod install;
+mod python;
 mod setup;
 mod shell;
 mod songs;

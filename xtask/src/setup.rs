@@ -1,6 +1,8 @@
 //! `cargo xtask setup`: what the test suite needs on the system.
 
+use crate::python;
 use crate::shell::succeeds;
+use std::path::Path;
 use std::process::Command;
 
 /// How something is recognised.
@@ -9,8 +11,16 @@ enum Probe {
     Program(&'static str),
     /// A program that answers to `-V`.
     ShortProgram(&'static str),
+    /// A program that is on the path.
+    OnPath(&'static str),
     /// A library that pkg-config knows.
     Library(&'static str),
+    /// A library that the system's loader finds.
+    Shared(&'static str),
+    /// A driver of the graphics library.
+    Driver(&'static str),
+    /// Modules of Python, as one imports them.
+    Modules(&'static str),
 }
 
 /// Something that the suite needs beyond Rust and its crates.
@@ -22,6 +32,9 @@ struct Requirement {
     /// Whether the suite fails without it. Otherwise the tests that need it are ignored, and say so.
     essential: bool,
 }
+
+const WINDOW: &str = "the plugin's window loads it";
+const DAWDREAMER: &str = "dawdreamer loads it";
 
 const REQUIREMENTS: &[Requirement] = &[
     Requirement {
@@ -67,6 +80,51 @@ const REQUIREMENTS: &[Requirement] = &[
         essential: false,
     },
     Requirement {
+        probe: Probe::Program("cc"),
+        package: "gcc",
+        why: "compiles the probe that watches the plugin's audio thread",
+        essential: true,
+    },
+    Requirement {
+        probe: Probe::OnPath("Xvfb"),
+        package: "xvfb",
+        why: "a screen that nobody looks at, for the plugin's window",
+        essential: false,
+    },
+    Requirement { probe: Probe::Shared("libEGL.so.1"), package: "libegl1", why: WINDOW, essential: false },
+    Requirement { probe: Probe::Shared("libX11-xcb.so.1"), package: "libx11-xcb1", why: WINDOW, essential: false },
+    Requirement {
+        probe: Probe::Shared("libxkbcommon-x11.so.0"),
+        package: "libxkbcommon-x11-0",
+        why: WINDOW,
+        essential: false,
+    },
+    Requirement {
+        probe: Probe::Driver("swrast_dri.so"),
+        package: "libgl1-mesa-dri",
+        why: "draws the plugin's window without a graphics card",
+        essential: false,
+    },
+    Requirement {
+        probe: Probe::Modules("ensurepip, venv"),
+        package: "python3-venv",
+        why: "pedalboard and dawdreamer, VST3 hosts that Python drives",
+        essential: false,
+    },
+    Requirement { probe: Probe::Shared("libGL.so.1"), package: "libgl1", why: DAWDREAMER, essential: false },
+    Requirement {
+        probe: Probe::Shared("libglib-2.0.so.0"),
+        package: "libglib2.0-0",
+        why: DAWDREAMER,
+        essential: false,
+    },
+    Requirement {
+        probe: Probe::Shared("libatomic.so.1"),
+        package: "libatomic1",
+        why: "pedalboard loads it",
+        essential: false,
+    },
+    Requirement {
         probe: Probe::Program("valgrind"),
         package: "valgrind",
         why: "counts instructions, so that speed is watched on busy machines",
@@ -82,7 +140,18 @@ impl Requirement {
         match self.probe {
             Probe::Program(program) => succeeds(program, &["--version"]),
             Probe::ShortProgram(program) => succeeds(program, &["-V"]),
+            Probe::OnPath(program) => std::env::var_os("PATH")
+                .is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(program).is_file())),
             Probe::Library(library) => succeeds("pkg-config", &["--exists", library]),
+            Probe::Shared(library) => Command::new("/sbin/ldconfig")
+                .arg("-p")
+                .output()
+                .is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains(&format!("{library} "))),
+            Probe::Driver(driver) => {
+                let has_it = |folder: std::fs::DirEntry| folder.path().join("dri").join(driver).is_file();
+                Path::new("/usr/lib").read_dir().is_ok_and(|mut folders| folders.any(|folder| folder.is_ok_and(has_it)))
+            }
+            Probe::Modules(modules) => succeeds("python3", &["-c", &format!("import {modules}")]),
         }
     }
 }
@@ -116,6 +185,9 @@ pub(crate) fn run() -> Result<(), String> {
                 println!("{problem}; without it some tests are ignored");
             }
         }
+    }
+    if let Err(message) = python::install() {
+        println!("{message}; without it some tests are ignored");
     }
     if problems.is_empty() {
         println!("all that the test suite cannot do without is there");

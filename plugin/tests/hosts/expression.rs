@@ -3,6 +3,7 @@
 use crate::automation::{compare, on, patch};
 use crate::host::reference::At;
 use crate::host::{Address, Instance, Sent};
+use crate::parameters::is_stepped;
 use clack_host::events::event_types::NoteExpressionType as Kind;
 use sprung::engine::{EventKind, Expression, Notes};
 use sprung::params::{Change, PARAMS, Param};
@@ -11,9 +12,11 @@ pub(crate) fn modulation_moves_one_voice_or_all() {
     let mut instance = Instance::new();
     for info in PARAMS.iter().filter(|info| matches!(info.change, Change::Smoothed(_))) {
         let id = instance.id(info.param);
+        // Hosts count amounts as they count values: in steps, where there are steps.
+        let travel = if is_stepped(info) { f64::from(info.max - info.min) } else { 1.0 };
         let amount = |note: i32, frame: u64, offset: f32| {
             let kind = EventKind::Modulate { id: Some(note), param: info.param, offset };
-            (Sent::Modulate(id, Address::id(note), offset.into()).at(frame), At(frame, 0, kind))
+            (Sent::Modulate(id, Address::id(note), f64::from(offset) * travel).at(frame), At(frame, 0, kind))
         };
         let song = [
             on(0, 0, 60, 1, 0.9),
@@ -31,7 +34,7 @@ pub(crate) fn modulation_moves_one_voice_or_all() {
         let everyone = |frame: u64, offset: f32| {
             let offset_there = (position + offset).clamp(0.0, 1.0) - position;
             let kind = EventKind::Modulate { id: None, param: info.param, offset: offset_there };
-            (Sent::Modulate(id, Address::id(-1), offset.into()).at(frame), At(frame, 0, kind))
+            (Sent::Modulate(id, Address::id(-1), f64::from(offset) * travel).at(frame), At(frame, 0, kind))
         };
         let all = [on(0, 0, 60, 1, 0.9), everyone(700, 0.125), on(900, 0, 64, 2, 0.8), everyone(3_000, 0.0)];
         compare(&format!("everyone's {}", info.id), &patch(), &all);

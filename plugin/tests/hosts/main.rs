@@ -40,7 +40,7 @@ impl Needs {
     /// What of it is not there.
     fn missing(self) -> Option<&'static str> {
         let screen = || (!is_installed("Xvfb")).then_some("Xvfb");
-        let python = || (!vst3::python().is_file()).then_some("pedalboard and dawdreamer in target/python");
+        let python = || (!vst3::is_installed()).then_some("pedalboard and dawdreamer in target/python");
         match self {
             Needs::Nothing => None,
             Needs::Screen => screen(),

@@ -21,7 +21,8 @@ fn rows(instance: &mut Instance) -> Vec<(&'static ParamInfo, Parameter)> {
     PARAMS.iter().map(find).collect()
 }
 
-fn is_stepped(info: &ParamInfo) -> bool {
+/// Whether hosts count the parameter in steps.
+pub(crate) fn is_stepped(info: &ParamInfo) -> bool {
     matches!(info.unit, Unit::Count | Unit::Choice)
 }
 

@@ -14,7 +14,11 @@ def load(plugin, preset=None):
     pedalboard._pedalboard.PARAMETER_NAME_REGEXES_TO_IGNORE.add(re.compile(r"^MIDI Ch\. "))
     synth = VST3Plugin(plugin)
     if preset:
-        synth.load_preset(preset)
+        # After a preset, the host goes on with the values that it knew before, and sets them when it resets the
+        # plugin. A state makes it ask for the values.
+        other = VST3Plugin(plugin)
+        other.load_preset(preset)
+        synth.raw_state = other.raw_state
     return synth
 
 
@@ -42,12 +46,11 @@ def parameters(plugin, positions):
 
 
 def state(plugin, preset):
-    """Loads a preset, moves the state into another instance; values and states of both."""
+    """Loads a preset, moves the state into another instance: its values, and whether its state is the same."""
     first = load(plugin, preset)
     second = load(plugin)
     second.raw_state = first.raw_state
-    values = [[parameter.raw_value for parameter in synth.parameters.values()] for synth in (first, second)]
-    return [values, first.raw_state == second.raw_state]
+    return [[parameter.raw_value for parameter in second.parameters.values()], first.raw_state == second.raw_state]
 
 
 def main():

@@ -121,7 +121,7 @@ impl Audio {
             inputs,
             outputs,
             in_place: false,
-            sent_back: Ends { notes: Vec::with_capacity(4096) },
+            sent_back: Ends { notes: Vec::with_capacity(16_384) },
             clock: 0,
         }
     }
