@@ -1,7 +1,7 @@
 //! The audio thread never allocates, and neither does measuring: both under an allocator that forbids it.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
-use sprung::engine::{Ensemble, Event, EventKind};
+use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
 use sprung::params::PARAMS;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::render::Meter;
@@ -24,11 +24,15 @@ fn storm(block: u32) -> Vec<Event> {
             EventKind::ChannelPressure(value),
             EventKind::PolyPressure { key, pressure: value },
             EventKind::Control {
-                controller: [1, 6, 7, 10, 11, 64, 66, 67, 100, 101, 120, 121, 123][n as usize % 13],
+                controller: [1, 6, 7, 10, 11, 64, 66, 67, 74, 100, 101, 120, 121, 123][n as usize % 14],
                 value,
             },
             EventKind::Param { param: param.param, value: param.denormalise(value.into()) },
             EventKind::Choke { group: (n % 3) as u8 },
+            EventKind::Express { notes: Notes::on(channel, key), expression: Expression::Brightness, value },
+            EventKind::Modulate { id: (n % 2 == 0).then_some(n as i32), param: param.param, offset: value - 0.5 },
+            EventKind::Tempo(60.0 + value),
+            EventKind::Release { notes: Notes { id: Some(n as i32 - 5), ..Notes::default() }, velocity: value },
             EventKind::Program((n % 4) as u8),
         ] {
             events.push(Event { frame, channel, kind });
@@ -51,6 +55,13 @@ fn processing_does_not_allocate() {
     }
     assert!(loudest > 0.1, "something sounded");
     assert_no_alloc(|| std::hint::black_box((ensemble.is_silent(), ensemble.voices_used())));
+    let mut synth = Synth::new(48_000.0, 1);
+    for events in &blocks {
+        assert_no_alloc(|| {
+            synth.process(events, &mut left, &mut right);
+            std::hint::black_box((synth.tail_frames(), synth.ended()));
+        });
+    }
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
 }
 

@@ -88,3 +88,23 @@ fn outside_crates_stay_where_they_belong() {
         }
     }
 }
+
+#[test]
+fn the_plugin_has_no_dsp() {
+    let plugin = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/plugin/src"));
+    let (mut folders, mut files) = (vec![plugin.to_owned()], 0);
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            files += 1;
+            let text = fs::read_to_string(&path).unwrap();
+            let used = ["sprung::dsp", "libm::"].into_iter().find(|name| text.contains(name));
+            assert_eq!(used, None, "{}", path.display());
+        }
+    }
+    assert!(files > 10);
+}

@@ -1,7 +1,7 @@
 //! The engine as its users see it: any division into blocks, any event, any time.
 
 use proptest::prelude::*;
-use sprung::engine::{Ensemble, Event, EventKind, Synth};
+use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{Mode, ModeTable, Patch};
 
@@ -37,17 +37,37 @@ fn render(patch: &Patch, events: &[Event], frames: usize, mut block: impl FnMut(
     (left, right)
 }
 
+const EXPRESSIONS: [Expression; 7] = [
+    Expression::Tuning,
+    Expression::Volume,
+    Expression::Pan,
+    Expression::Pressure,
+    Expression::Brightness,
+    Expression::Vibrato,
+    Expression::Swell,
+];
+
 fn any_event(frames: u32) -> impl Strategy<Value = Event> {
     let key = 36..84u8;
     let kind = prop_oneof![
         8 => (key.clone(), -0.5..0.5f32, 0.0..1.0f32)
-            .prop_map(|(key, detune, velocity)| EventKind::NoteOn { key, detune, velocity, id: -1 }),
+            .prop_map(|(key, detune, velocity)| EventKind::NoteOn { key, detune, velocity, id: i32::from(key % 3) }),
         4 => key.clone().prop_map(|key| EventKind::NoteOff { key, velocity: 0.3, id: -1 }),
-        1 => (key, 0.0..1.0f32).prop_map(|(key, pressure)| EventKind::PolyPressure { key, pressure }),
+        1 => (key.clone(), 0.0..1.0f32).prop_map(|(key, pressure)| EventKind::PolyPressure { key, pressure }),
         1 => (0.0..1.0f32).prop_map(EventKind::ChannelPressure),
         2 => (-1.0..1.0f32).prop_map(EventKind::PitchBend),
-        3 => (prop::sample::select(vec![1, 6, 7, 10, 11, 38, 64, 66, 67, 100, 101, 120, 121, 123]), 0.0..1.0f32)
+        3 => (prop::sample::select(vec![1, 6, 7, 10, 11, 38, 64, 66, 67, 74, 100, 101, 120, 121, 123]), 0.0..1.0f32)
             .prop_map(|(controller, value)| EventKind::Control { controller, value }),
+        3 => (key.clone(), prop::sample::select(EXPRESSIONS.to_vec()), -1.0..4.0f32).prop_map(
+            |(key, expression, value)| EventKind::Express { notes: Notes::on(0, key), expression, value }
+        ),
+        2 => (0..PARAMS.len(), -1..3i32, -1.0..1.0f32).prop_map(|(index, id, offset)| EventKind::Modulate {
+            id: (id >= 0).then_some(id),
+            param: PARAMS[index].param,
+            offset,
+        }),
+        1 => key.prop_map(|key| EventKind::Silence { notes: Notes::on(0, key) }),
+        1 => (20.0..300.0f32).prop_map(EventKind::Tempo),
         3 => (0..PARAMS.len(), 0.0..1.0f64).prop_map(|(index, position)| EventKind::Param {
             param: PARAMS[index].param,
             value: PARAMS[index].denormalise(position),
@@ -104,10 +124,17 @@ fn garbage_in_events_never_comes_out() {
             EventKind::Control { controller: 7, value },
             EventKind::Control { controller: 1, value },
             EventKind::Choke { group: 255 },
+            EventKind::Tempo(value),
+            EventKind::Modulate { id: None, param: Param::Gain, offset: value },
+            EventKind::Modulate { id: Some(-1), param: Param::Tune, offset: value },
         ] {
             events.push(Event { frame, channel: 255, kind });
             events.push(event(frame, kind));
         }
+        events.extend(EXPRESSIONS.map(|expression| {
+            let notes = Notes::default();
+            event(frame, EventKind::Express { notes, expression, value })
+        }));
         events.extend(PARAMS.iter().map(|info| event(frame, EventKind::Param { param: info.param, value })));
     }
     let (left, right) = render(&Patch::default(), &events, 9600, || 480);

@@ -47,7 +47,7 @@ pub(super) struct Args {
     /// Sound system: alsa, jack or another that --list shows
     #[arg(long, value_name = "NAME")]
     host: Option<String>,
-    /// Sample rate, 8000-768000 Hz [default: 48000 if the device has it]
+    /// Sample rate, 1000-768000 Hz [default: 48000 if the device has it]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
         .range(i64::from(*SAMPLE_RATES.start())..=i64::from(*SAMPLE_RATES.end())))]
     rate: Option<u32>,

@@ -47,6 +47,11 @@ impl Exciter {
         self.blows.iter().any(Blow::is_active)
     }
 
+    /// Frames until it is not.
+    pub fn frames_left(&self) -> u32 {
+        self.blows.iter().map(Blow::frames_left).max().unwrap_or(0)
+    }
+
     /// Writes the force of the next `frames` frames, at most [`CONTROL_FRAMES`], and moves on.
     pub fn fill(&mut self, frames: usize, drive: &mut Drive) {
         drive.pulse[..frames].fill(0.0);
@@ -89,7 +94,11 @@ impl Blow {
     }
 
     fn is_active(&self) -> bool {
-        self.frame < self.pulse_frames.max(self.noise_frames)
+        self.frames_left() > 0
+    }
+
+    fn frames_left(&self) -> u32 {
+        self.pulse_frames.max(self.noise_frames).saturating_sub(self.frame)
     }
 
     fn add_to(&mut self, frames: usize, drive: &mut Drive) {

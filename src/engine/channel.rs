@@ -14,6 +14,8 @@ pub(crate) struct Channel {
     pub(crate) wheel: f32,
     /// 0–1.
     pub(crate) pressure: f32,
+    /// −0.5 to 0.5, of controller 74.
+    pub(crate) brightness: f32,
     /// The soft pedal.
     pub(crate) soft: bool,
     volume: f32,
@@ -38,6 +40,7 @@ impl Registered {
     const BEND_RANGE: usize = 0;
     const FINE: usize = 1;
     const COARSE: usize = 2;
+    const MPE: (u8, u8) = (0, 6);
     /// Two semitones, and in tune.
     const INITIAL: Self = Self { number: Self::NONE, data: [(2, 0), (64, 0), (64, 0)] };
 
@@ -70,6 +73,7 @@ pub(super) mod controller {
     pub(in crate::engine) const SUSTAIN: u8 = 64;
     pub(in crate::engine) const SOSTENUTO: u8 = 66;
     pub(in crate::engine) const SOFT: u8 = 67;
+    pub(in crate::engine) const BRIGHTNESS: u8 = 74;
     pub(in crate::engine) const NRPN_FINE: u8 = 98;
     pub(in crate::engine) const NRPN: u8 = 99;
     pub(in crate::engine) const RPN_FINE: u8 = 100;
@@ -87,6 +91,7 @@ impl Channel {
             bend_range: None,
             wheel: 0.0,
             pressure: 0.0,
+            brightness: 0.0,
             soft: false,
             volume: 1.0,
             expression: 1.0,
@@ -104,10 +109,10 @@ impl Channel {
         match controller {
             controller::WHEEL => self.wheel = value,
             controller::SOFT => self.soft = value >= 0.5,
+            controller::BRIGHTNESS => self.brightness = centred(value) - 0.5,
             controller::VOLUME => self.volume = value,
             controller::EXPRESSION => self.expression = value,
-            // MIDI's centre is 64 of 127: 1–127 about 64, as RP-036 recommends.
-            controller::PAN => self.pan = ((value * 127.0 - 1.0) / 126.0).clamp(0.0, 1.0),
+            controller::PAN => self.pan = centred(value),
             controller::RPN => self.registered.number.0 = data,
             controller::RPN_FINE => self.registered.number.1 = data,
             controller::NRPN | controller::NRPN_FINE => self.registered.number = Registered::NONE,
@@ -134,6 +139,16 @@ impl Channel {
         }
     }
 
+    /// Whether data entry is an MPE configuration message.
+    pub(crate) fn awaits_zone(&self) -> bool {
+        self.registered.number == Registered::MPE
+    }
+
+    /// Whether data entry has just set the bend range.
+    pub(crate) fn awaits_bend_range(&self) -> bool {
+        self.registered.number == (0, Registered::BEND_RANGE as u8)
+    }
+
     /// Tuning in semitones set by RPN 1 and 2.
     pub(crate) fn tuning(&self) -> f32 {
         self.registered.tuning()
@@ -154,10 +169,50 @@ impl Channel {
         (self.gains[0].after(frames), self.gains[1].after(frames))
     }
 
+    /// Frames that gains take to arrive after a controller has moved.
+    pub(crate) fn ramp_frames(&self) -> u32 {
+        self.ramp_frames
+    }
+
     /// Lets `frames` frames pass.
     pub(crate) fn advance(&mut self, frames: u32) {
         self.gains.iter_mut().for_each(|gain| gain.advance(frames));
     }
+}
+
+/// What a voice follows of the channels that its note is on.
+#[derive(Clone, Copy)]
+pub(crate) struct Wheels<'a> {
+    /// The note's own channel.
+    pub(crate) channel: &'a Channel,
+    /// The master of its zone.
+    pub(crate) master: Option<&'a Channel>,
+}
+
+impl Wheels<'_> {
+    /// The greater of a controller's positions on the channel and on its master.
+    pub(super) fn most(&self, position: impl Fn(&Channel) -> f32) -> f64 {
+        self.master.map_or(0.0, &position).max(position(self.channel)).into()
+    }
+
+    /// Bend and tuning in semitones.
+    pub(super) fn semitones(&self, bend_range: f32) -> (f64, f64) {
+        let bend = |channel: &Channel| f64::from(channel.bend) * f64::from(channel.bend_range.unwrap_or(bend_range));
+        let tuning = |channel: &Channel| f64::from(channel.tuning());
+        let own = (bend(self.channel), tuning(self.channel));
+        self.master.map_or(own, |master| (own.0 + bend(master), own.1 + tuning(master)))
+    }
+
+    pub(super) fn gains_after(&self, frames: u32) -> (f32, f32) {
+        let (left, right) = self.channel.gains_after(frames);
+        let master = self.master.map_or((1.0, 1.0), |master| master.gains_after(frames));
+        (left * master.0, right * master.1)
+    }
+}
+
+/// A controller's value with MIDI's centre, 64 of 127, at 0.5: 1–127 about 64, as RP-036 recommends.
+fn centred(value: f32) -> f32 {
+    ((value * 127.0 - 1.0) / 126.0).clamp(0.0, 1.0)
 }
 
 /// Gains of a position from 0 (left) to 1 (right): of constant power, and exactly 1 and 1 in the centre.

@@ -156,7 +156,12 @@ impl Part {
             } else if let EventKind::Param { param: Param::Choke, value } = kind {
                 groups[sender] = Param::Choke.info().clamp(value);
             }
-            if sender != *channel && !matches!(kind, EventKind::Choke { group } if group != 0) {
+            let is_for_all = match kind {
+                EventKind::Choke { group } => group != 0,
+                EventKind::Tempo(_) => true,
+                _ => false,
+            };
+            if sender != *channel && !is_for_all {
                 continue;
             }
             let at = (event.frame as usize).saturating_sub(start).min(frames.saturating_sub(1)).max(frame);
@@ -168,7 +173,11 @@ impl Part {
             }
             *heard |= !synth.is_silent();
         }
-        synth.process(&[], &mut left[frame..], &mut right[frame..]);
+        if *heard {
+            synth.process(&[], &mut left[frame..], &mut right[frame..]);
+        } else {
+            synth.pass(frames - frame);
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What happens to the engine, and at which frame.
 
+use super::voice_manager::Note;
 use crate::params::Param;
 
 /// An event at a frame of the block that it is handed over with.
@@ -43,6 +44,27 @@ pub enum EventKind {
         /// 0–1.
         pressure: f32,
     },
+    /// Keys come up: a note-off as plugin hosts put it.
+    Release {
+        /// Whose.
+        notes: Notes,
+        /// 0–1; 0.5 where the host does not tell.
+        velocity: f32,
+    },
+    /// Notes are silenced within a few milliseconds.
+    Silence {
+        /// Which.
+        notes: Notes,
+    },
+    /// Notes are told how to sound. It lasts until their next word, and ends with the note.
+    Express {
+        /// Which.
+        notes: Notes,
+        /// What is told.
+        expression: Expression,
+        /// In the expression's unit.
+        value: f32,
+    },
     /// Pressure on the whole channel, 0–1.
     ChannelPressure(f32),
     /// Pitch wheel, −1 to 1.
@@ -61,6 +83,19 @@ pub enum EventKind {
         /// In the table's unit.
         value: f32,
     },
+    /// A parameter is moved away from its value, by an offset in knob travel (−1 to 1, see
+    /// [`crate::params::ParamInfo::normalise`]).
+    Modulate {
+        /// The sounding note that is meant, which then heeds its own offset only; none for the whole instrument. A
+        /// note can be modulated in the parameters that it follows while it sounds ([`crate::params::Change::Smoothed`]).
+        id: Option<i32>,
+        /// Which.
+        param: Param,
+        /// Knob travel.
+        offset: f32,
+    },
+    /// Beats per minute, on all channels.
+    Tempo(f32),
     /// All notes of a choke group are silenced (sent between the channels of an ensemble).
     Choke {
         /// 1–16; 0 silences nothing.
@@ -68,4 +103,48 @@ pub enum EventKind {
     },
     /// The channel changes to the program of this number (acted on by the ensemble; a single synth ignores it).
     Program(u8),
+}
+
+/// Which notes an event is for: those that agree in all that is given.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Notes {
+    /// The host's identifier; a note that was given none agrees with any.
+    pub id: Option<i32>,
+    /// MIDI channel, 0–15.
+    pub channel: Option<u8>,
+    /// MIDI key, 0–127.
+    pub key: Option<u8>,
+}
+
+impl Notes {
+    /// All notes of a key on a channel.
+    pub fn on(channel: u8, key: u8) -> Self {
+        Self { id: None, channel: Some(channel), key: Some(key) }
+    }
+
+    pub(crate) fn include(&self, note: &Note) -> bool {
+        self.id.is_none_or(|id| note.id == id || note.id == -1)
+            && self.channel.is_none_or(|channel| note.channel == channel)
+            && self.key.is_none_or(|key| note.key == key)
+    }
+}
+
+/// What a note can be told while it sounds: the expressions of CLAP and VST3, and MIDI's polyphonic pressure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expression {
+    /// Offset in semitones, −128 to 128.
+    Tuning,
+    /// Amplitude ratio, 0–4.
+    Volume,
+    /// −1 (left) to 1 (right).
+    Pan,
+    /// 0–1; acts as the channel's pressure does, where it is the greater.
+    Pressure,
+    /// 0–1, neutral at 0.5: tilts the strike by up to 12 dB per octave either way; below, it also damps the higher
+    /// modes of what sounds.
+    Brightness,
+    /// 0–1; acts as the modulation wheel does, where it is the greater.
+    Vibrato,
+    /// 0–1: swells as controller 11 does.
+    Swell,
 }

@@ -7,13 +7,16 @@ mod controls;
 mod damping;
 pub mod ensemble;
 pub mod event;
+mod expression;
 mod fader;
+mod modulation;
 pub mod snapshot;
 pub mod synth;
 mod voice;
 pub mod voice_manager;
+mod zones;
 
 pub use ensemble::Ensemble;
-pub use event::{Event, EventKind};
+pub use event::{Event, EventKind, Expression, Notes};
 pub use snapshot::Snapshot;
 pub use synth::Synth;

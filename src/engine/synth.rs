@@ -1,16 +1,19 @@
 //! The instrument: one patch, its voices, and a stream of events in; stereo samples out.
 
-use super::channel::{Channel, controller};
+use super::channel::{Channel, Wheels, controller};
 use super::controls::Smoother;
+use super::event::{Expression, Notes};
+use super::modulation::modulated;
 use super::voice::{Instrument, SynthVoice};
 use super::voice_manager::{Note, PlayMode, VoiceManager};
+use super::zones::{MEMBER_BEND_RANGE, Zones};
 use super::{Event, EventKind, Snapshot};
 use crate::dsp::CONTROL_FRAMES;
-use crate::params::Param;
+use crate::params::{Change, PARAM_COUNT, PARAMS, Param};
 use crate::patch::Patch;
 
 /// Sample rates that the engine runs at, in Hz.
-pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 8_000..=768_000;
+pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
 
 /// A synthesizer that plays one patch on sixteen channels (as MPE uses them).
 ///
@@ -21,8 +24,11 @@ pub struct Synth {
     instrument: Instrument,
     smoother: Smoother,
     channels: [Channel; 16],
-    /// Counts the patches loaded.
-    patch_serial: u32,
+    zones: Zones,
+    /// How far each parameter is moved away from its value, in knob travel.
+    offsets: [f32; PARAM_COUNT],
+    /// Frames until the gains of all channels have arrived.
+    gains_moving: u32,
     /// Counts the notes started.
     note_serial: u64,
     /// Frames since the start: control ticks fall on its multiples of [`CONTROL_FRAMES`].
@@ -36,14 +42,18 @@ impl Synth {
     pub fn new(sample_rate: f64, seed: u64) -> Self {
         let sample_rate = allowed(sample_rate);
         let patch = Patch::default();
-        let smoother = Smoother::new(sample_rate, &patch);
+        let smoother = Smoother::new(sample_rate, &patch, DEFAULT_BEAT_RATE);
         let controls = smoother.after(0);
+        let instrument =
+            Instrument { patch, modulated: patch, patch_serial: 0, sample_rate, seed, controls, last_pitch: None };
         let mut synth = Self {
             manager: VoiceManager::new(|| SynthVoice::new(sample_rate, controls)),
-            instrument: Instrument { patch, sample_rate, seed, controls, last_pitch: None },
+            instrument,
             smoother,
             channels: [Channel::new(sample_rate); 16],
-            patch_serial: 0,
+            zones: Zones::default(),
+            offsets: [0.0; PARAM_COUNT],
+            gains_moving: 0,
             note_serial: 0,
             clock: 0,
             news: false,
@@ -60,30 +70,56 @@ impl Synth {
         self.reset();
     }
 
-    /// Silences everything and forgets all controllers; the patch stays. What follows is what a new synth would play.
+    /// Silences everything and forgets all controllers, modulation and tempo; the patch stays. What follows is what a
+    /// new synth would play.
     pub fn reset(&mut self) {
         let sample_rate = self.instrument.sample_rate;
         self.manager.reset();
-        self.smoother = Smoother::new(sample_rate, &self.instrument.patch);
+        self.instrument.modulated = self.instrument.patch;
+        self.smoother = Smoother::new(sample_rate, &self.instrument.modulated, DEFAULT_BEAT_RATE);
         self.instrument.controls = self.smoother.after(0);
-        self.instrument.last_pitch = None;
+        (self.instrument.last_pitch, self.instrument.patch_serial) = (None, 0);
         self.channels = [Channel::new(sample_rate); 16];
-        (self.patch_serial, self.note_serial, self.clock, self.news) = (0, 0, 0, false);
+        self.zones = Zones::default();
+        self.offsets = [0.0; PARAM_COUNT];
+        (self.gains_moving, self.note_serial, self.clock, self.news) = (0, 0, 0, false);
         self.configure();
     }
 
     /// Plays another patch from the next note on. Notes that sound go on with the sound that they have.
     pub fn set_patch(&mut self, patch: &Patch) {
         self.instrument.patch = *patch;
-        self.patch_serial += 1;
+        self.instrument.modulated = *patch;
+        for info in PARAMS {
+            let offset = self.offsets[info.param as usize];
+            self.instrument.modulated.set(info.param, modulated(patch, info.param, offset));
+        }
+        self.instrument.patch_serial += 1;
         // Voices of the old patch keep its controls, so the new ones need no slope.
-        self.smoother = Smoother::new(self.instrument.sample_rate, patch);
+        let beat_rate = self.smoother.beat_rate();
+        self.smoother = Smoother::new(self.instrument.sample_rate, &self.instrument.modulated, beat_rate);
         self.configure();
     }
 
-    /// The patch in use, with the parameters as last set.
+    /// The patch in use, with the parameters as last set, modulation left out.
     pub fn patch(&self) -> &Patch {
         &self.instrument.patch
+    }
+
+    /// Notes that have ended in the last [`Synth::process`] or since: each note once, when its voice is silent or has
+    /// gone to another note and its key is not waited for. After more than [`MAX_ENDED`] in one call the rest are not
+    /// told.
+    ///
+    /// [`MAX_ENDED`]: super::voice_manager::MAX_ENDED
+    pub fn ended(&self) -> &[Note] {
+        self.manager.ended()
+    }
+
+    /// Frames until silence if nothing more happens: exact to a control tick ([`CONTROL_FRAMES`]) once strikes have
+    /// ended, and no less than that before; 0 if nothing sounds. Real-time safe.
+    pub fn tail_frames(&mut self) -> u64 {
+        let to_tick = (CONTROL_FRAMES as u64 - self.clock % CONTROL_FRAMES as u64) % CONTROL_FRAMES as u64;
+        self.manager.active().map(|(_, voice)| voice.tail_frames(to_tick)).max().unwrap_or(0)
     }
 
     /// Whether nothing sounds. An event may change that.
@@ -106,6 +142,7 @@ impl Synth {
     pub fn process(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
         left.fill(0.0);
         right.fill(0.0);
+        self.manager.clear_ended();
         let mut frame = 0;
         for event in events {
             let at = (event.frame as usize).min(left.len().saturating_sub(1)).max(frame);
@@ -119,70 +156,139 @@ impl Synth {
     /// Takes in one event, at the frame that is rendered next.
     pub fn handle(&mut self, event: &Event) {
         let index = event.channel & 15;
-        let channel = &mut self.channels[usize::from(index)];
-        self.news = true;
+        // A tempo can wait for the next control tick.
+        self.news |= !matches!(event.kind, EventKind::Tempo(_));
         match event.kind {
             EventKind::NoteOn { key, detune, velocity, id } => {
                 self.instrument.controls = self.smoother.after(0);
+                let soft = |channel: u8| self.channels[usize::from(channel)].soft;
                 let note = Note {
                     channel: index,
                     key: key & 127,
                     detune: finite(detune).clamp(-128.0, 128.0),
                     velocity: unit(velocity),
-                    soft: channel.soft,
+                    soft: soft(index) || self.zones.master_of(index).is_some_and(soft),
+                    brightness: self.brightness(index),
                     id,
                     serial: self.note_serial,
-                    patch: self.patch_serial,
-                    choke: self.instrument.patch.get(Param::Choke) as u8,
+                    patch: self.instrument.patch_serial,
+                    choke: self.instrument.modulated.get(Param::Choke) as u8,
                 };
                 self.note_serial += 1;
                 self.manager.note_on(&self.instrument, note);
                 self.instrument.last_pitch = Some(self.instrument.pitch(&note));
             }
             EventKind::NoteOff { key, velocity, id } => {
-                self.manager.note_off(&self.instrument, index, key & 127, id, unit(velocity));
+                let notes = Notes { id: (id != -1).then_some(id), ..Notes::on(index, key & 127) };
+                self.manager.note_off(&self.instrument, notes, unit(velocity));
             }
+            EventKind::Release { notes, velocity } => {
+                self.manager.note_off(&self.instrument, notes, unit(velocity));
+            }
+            EventKind::Silence { notes } => self.manager.silence(notes),
             EventKind::PolyPressure { key, pressure } => {
-                for (note, voice) in self.manager.active() {
-                    if (note.channel, note.key) == (index, key & 127) {
-                        voice.pressure = unit(pressure);
-                    }
-                }
+                self.express(Notes::on(index, key & 127), Expression::Pressure, pressure);
             }
-            EventKind::ChannelPressure(pressure) => channel.pressure = unit(pressure),
-            EventKind::PitchBend(bend) => channel.bend = finite(bend).clamp(-1.0, 1.0),
+            EventKind::Express { notes, expression, value } => self.express(notes, expression, value),
+            EventKind::ChannelPressure(pressure) => self.channels[usize::from(index)].pressure = unit(pressure),
+            EventKind::PitchBend(bend) => self.channels[usize::from(index)].bend = finite(bend).clamp(-1.0, 1.0),
             EventKind::Control { controller, value } => self.control(index, controller, unit(value)),
             EventKind::Param { param, value } => {
                 self.instrument.patch.set(param, value);
-                // Sounding voices cannot take these over without a click: notes from now on have their own.
-                if matches!(param, Param::Coefficients | Param::Width) {
-                    self.patch_serial += 1;
+                self.take_over(param);
+            }
+            EventKind::Modulate { id: None, param, offset } => {
+                self.offsets[param as usize] = finite(offset).clamp(-1.0, 1.0);
+                self.take_over(param);
+            }
+            EventKind::Modulate { id: Some(id), param, offset } => {
+                if param.info().change != Change::NextNote {
+                    let (now, offset) = (self.smoother.now(param), finite(offset).clamp(-1.0, 1.0));
+                    let meant = self.manager.active().filter(|(note, _)| note.id == id);
+                    meant.for_each(|(_, voice)| voice.modulate(&self.instrument, param, offset, now));
                 }
-                self.smoother.set(param, self.instrument.patch.get(param));
-                self.configure();
+            }
+            EventKind::Tempo(beats_per_minute) => {
+                self.smoother.set_tempo(f64::from(finite(beats_per_minute).clamp(1.0, 10_000.0)) / 60.0);
             }
             EventKind::Choke { group } => self.manager.choke(group),
             EventKind::Program(_) => {}
         }
     }
 
+    /// A parameter has a new value or offset.
+    fn take_over(&mut self, param: Param) {
+        let value = modulated(&self.instrument.patch, param, self.offsets[param as usize]);
+        self.instrument.modulated.set(param, value);
+        // Sounding voices cannot take these over without a click: notes from now on have their own.
+        if matches!(param, Param::Coefficients | Param::Width) {
+            self.instrument.patch_serial += 1;
+        }
+        self.smoother.set(param, value);
+        self.manager.active().for_each(|(_, voice)| voice.follow(&self.instrument));
+        self.configure();
+    }
+
+    fn express(&mut self, notes: Notes, expression: Expression, value: f32) {
+        let brightness: [f32; 16] = std::array::from_fn(|channel| self.brightness(channel as u8));
+        for (note, voice) in self.manager.active().filter(|(note, _)| notes.include(note)) {
+            voice.express(&self.instrument, expression, value, brightness[usize::from(note.channel)]);
+        }
+    }
+
+    /// Brightness of a channel and the master of its zone, −0.5 to 0.5.
+    fn brightness(&self, channel: u8) -> f32 {
+        let of = |channel: u8| self.channels[usize::from(channel)].brightness;
+        (of(channel) + self.zones.master_of(channel).map_or(0.0, of)).clamp(-0.5, 0.5)
+    }
+
     fn control(&mut self, index: u8, number: u8, value: f32) {
         let down = value >= 0.5;
+        for channel in self.zones.reach(index) {
+            match number {
+                controller::SUSTAIN => self.manager.sustain(channel, down),
+                controller::SOSTENUTO => self.manager.sostenuto(channel, down),
+                controller::ALL_SOUND_OFF => self.manager.all_sound_off(channel),
+                // The mode messages 124–127 imply all notes off.
+                controller::ALL_NOTES_OFF..=127 => self.manager.all_notes_off(channel),
+                controller::RESET => {
+                    self.manager.sustain(channel, false);
+                    self.manager.sostenuto(channel, false);
+                    let on_channel = self.manager.active().filter(|(note, _)| note.channel == channel);
+                    on_channel.for_each(|(_, voice)| voice.relax());
+                }
+                _ => {}
+            }
+        }
+        let channel = &mut self.channels[usize::from(index)];
+        channel.control(number, value);
+        self.gains_moving = channel.ramp_frames();
         match number {
-            controller::SUSTAIN => self.manager.sustain(index, down),
-            controller::SOSTENUTO => self.manager.sostenuto(index, down),
-            controller::ALL_SOUND_OFF => self.manager.all_sound_off(index),
-            // The mode messages 124–127 imply all notes off.
-            controller::ALL_NOTES_OFF..=127 => self.manager.all_notes_off(index),
+            controller::DATA | controller::DATA_FINE => self.enter(index, number, value),
+            controller::BRIGHTNESS => {
+                for channel in self.zones.reach(index) {
+                    let brightness = self.brightness(channel);
+                    let on_channel = self.manager.active().filter(|(note, _)| note.channel == channel);
+                    on_channel.for_each(|(_, voice)| voice.shade(&self.instrument, brightness));
+                }
+            }
             _ => {}
         }
-        if number == controller::RESET {
-            self.manager.sustain(index, false);
-            self.manager.sostenuto(index, false);
-            let on_channel = self.manager.active().filter(|(note, _)| note.channel == index);
-            on_channel.for_each(|(_, voice)| voice.pressure = 0.0);
+    }
+
+    /// Data entry of what concerns several channels: the members of a zone, and their bend range.
+    fn enter(&mut self, index: u8, number: u8, value: f32) {
+        let channel = self.channels[usize::from(index)];
+        if channel.awaits_bend_range() {
+            let siblings = self.zones.siblings(index);
+            siblings.for_each(|sibling| self.channels[usize::from(sibling)].bend_range = channel.bend_range);
+        } else if channel.awaits_zone() && number == controller::DATA {
+            let members = (value * 127.0 + 0.5) as u8;
+            if self.zones.configure(index, members) {
+                let members = self.zones.reach(index).filter(|member| *member != index);
+                members.for_each(|member| self.channels[usize::from(member)].bend_range = Some(MEMBER_BEND_RANGE));
+            }
         }
-        self.channels[usize::from(index)].control(number, value);
     }
 
     /// Renders frames in which nothing happens, adding to both slices.
@@ -202,7 +308,11 @@ impl Synth {
             if into_tick == 0 || self.news {
                 let controls = self.smoother.after(to_tick as u32);
                 for (note, voice) in self.manager.active() {
-                    voice.control(&controls, self.patch_serial, &self.channels[usize::from(note.channel)], to_tick);
+                    let channel = |number: u8| &self.channels[usize::from(number)];
+                    let master = self.zones.master_of(note.channel).map(channel);
+                    let wheels = Wheels { channel: channel(note.channel), master };
+                    let controls = (note.patch == self.instrument.patch_serial).then_some(&controls);
+                    voice.control(controls, &self.smoother, wheels, to_tick);
                 }
                 self.news = false;
             }
@@ -215,16 +325,19 @@ impl Synth {
         }
     }
 
-    /// Lets time pass for everything but the voices.
-    fn pass(&mut self, frames: usize) {
+    /// Lets time pass for everything but the voices: all there is to do while none sounds.
+    pub(super) fn pass(&mut self, frames: usize) {
         self.clock += frames as u64;
         self.smoother.advance(frames as u32);
-        self.channels.iter_mut().for_each(|channel| channel.advance(frames as u32));
+        if self.gains_moving > 0 {
+            self.channels.iter_mut().for_each(|channel| channel.advance(frames as u32));
+            self.gains_moving = self.gains_moving.saturating_sub(frames as u32);
+        }
     }
 
     /// Hands the manager the parameters that are its own.
     fn configure(&mut self) {
-        let patch = &self.instrument.patch;
+        let patch = &self.instrument.modulated;
         let mode = match patch.get(Param::Mode) as u32 {
             0 => PlayMode::Poly,
             1 => PlayMode::Mono,
@@ -233,6 +346,9 @@ impl Synth {
         self.manager.configure(patch.get(Param::Voices) as usize, mode);
     }
 }
+
+/// MIDI's tempo before it has been set: 120 beats a minute.
+const DEFAULT_BEAT_RATE: f64 = 2.0;
 
 fn allowed(sample_rate: f64) -> f64 {
     let (lowest, highest) = SAMPLE_RATES.into_inner();

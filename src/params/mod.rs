@@ -5,7 +5,7 @@
 
 mod text;
 
-use libm::{log, pow};
+use libm::{exp10, floor, log, log10, pow, round};
 
 /// What a parameter's number counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,6 +166,9 @@ params! {
             "Vibrato frequency.";
         VibratoDelay "vibrato_delay" "Vibrato delay", Seconds 0.0..5.0 = 0.0, Linear, NextNote, [],
             "Time over which the patch's own vibrato fades in; wheel and pressure act at once.";
+        VibratoSync "vibrato_sync" "Vibrato sync", Choice 0.0..9.0 = 0.0, Linear, Smoothed(0),
+            ["off", "1/1", "1/2", "1/4.", "1/4", "1/4T", "1/8.", "1/8", "1/8T", "1/16"],
+            "Note value that one vibrato lasts at the song's tempo, in place of the vibrato rate.";
         Glide "glide" "Glide", Seconds 0.0..10.0 = 0.0, Linear, NextNote, [],
             "Time to slide from the note before; 0 is off.";
     }
@@ -233,6 +236,14 @@ impl ParamInfo {
         ))
     }
 
+    /// Frames that a sounding note takes to follow a change; none if it does not follow at all.
+    pub(crate) fn smoothing_frames(&self, sample_rate: f64) -> Option<u32> {
+        match self.change {
+            Change::NextNote => None,
+            Change::Smoothed(milliseconds) => Some((f64::from(milliseconds) * 1e-3 * sample_rate) as u32),
+        }
+    }
+
     /// Knob position 0–1 of a value.
     pub fn normalise(&self, value: f32) -> f64 {
         let (value, min, max) = (f64::from(self.clamp(value)), f64::from(self.min), f64::from(self.max));
@@ -242,15 +253,22 @@ impl ParamInfo {
         }
     }
 
-    /// Value of a knob position 0–1.
+    /// Value of a knob position 0–1, out of a grid of short decimal numbers: five significant digits of the value where
+    /// steps are of equal ratio, of the range where they are equal. So a number that a person has set comes back as
+    /// that very number from a position in single precision, which is what plugin hosts keep.
     pub fn denormalise(&self, position: f64) -> f32 {
         let (min, max) = (f64::from(self.min), f64::from(self.max));
         let position = position.clamp(0.0, 1.0);
-        let value = match self.curve {
-            Curve::Linear => min + position * (max - min),
-            Curve::Logarithmic => min * pow(max / min, position),
+        let (value, size) = match self.curve {
+            Curve::Linear => (min + position * (max - min), max - min),
+            Curve::Logarithmic => {
+                let value = min * pow(max / min, position);
+                (value, value)
+            }
         };
-        self.clamp(value as f32)
+        // 10^(4 − ⌊log₁₀ size⌋): steps of 1/10,000 to 1/100,000.
+        let steps_per_unit = exp10(4.0 - floor(log10(size)));
+        self.clamp((round(value * steps_per_unit) / steps_per_unit) as f32)
     }
 }
 
@@ -266,7 +284,7 @@ mod tests {
         let pinned = "exciter hardness hardness_velocity position noise_level noise_time velocity \
             decay release note_off decay_key decay_tilt tilt stretch width coefficients \
             tune fine tuning key_track sweep sweep_time sweep_curve sweep_velocity \
-            vibrato vibrato_rate vibrato_delay glide \
+            vibrato vibrato_rate vibrato_delay vibrato_sync glide \
             bend_range wheel_vibrato pressure_vibrato pressure_damping release_velocity \
             voices mode choke gain pan";
         assert_eq!(ids, pinned.split_whitespace().collect::<Vec<_>>());
@@ -296,8 +314,8 @@ mod tests {
             let text = info.format(value);
             let read = info.parse(&text).map_err(TestCaseError::fail)?;
             prop_assert_eq!(info.format(read), text);
-            let back = info.denormalise(info.normalise(value));
-            prop_assert!((back - value).abs() <= 1e-5 * value.abs().max(1e-3), "{back} {value}");
+            let single = info.normalise(value) as f32;
+            prop_assert_eq!(info.denormalise(single.into()), value, "{} through {}", info.id, single);
         }
     }
 }

@@ -2,14 +2,17 @@
 
 mod bench_table;
 mod bless;
+mod bundle;
 mod callgrind;
 mod figures;
+mod install;
 mod setup;
 mod shell;
 mod songs;
 mod test;
 
 use clap::{Parser, Subcommand};
+use install::Scope;
 use std::process::ExitCode;
 
 /// The project's chores.
@@ -26,6 +29,16 @@ enum Chore {
     Setup,
     /// Run the whole test suite, setup included.
     Test,
+    /// Build the plugin and put Sprung.clap and Sprung.vst3 into target/bundled.
+    Bundle {
+        /// Optimised, as it is to be played.
+        #[arg(long)]
+        release: bool,
+    },
+    /// Build the plugin for release and copy it to where DAWs look.
+    Install(Place),
+    /// Remove what `install` has copied.
+    Uninstall(Place),
     /// Accept what the golden cases sound like now, and verify.
     Bless {
         /// Only this case.
@@ -56,10 +69,29 @@ enum Chore {
     },
 }
 
+#[derive(clap::Args)]
+struct Place {
+    /// For this user alone (the default).
+    #[arg(long)]
+    user: bool,
+    /// For all users; needs an administrator's rights.
+    #[arg(long, conflicts_with = "user")]
+    system: bool,
+}
+
+impl Place {
+    fn scope(&self) -> Scope {
+        if self.system { Scope::System } else { Scope::User }
+    }
+}
+
 fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
         Chore::Setup => setup::run(),
         Chore::Test => test::run(),
+        Chore::Bundle { release } => bundle::run(release).map(drop),
+        Chore::Install(place) => install::install(place.scope()),
+        Chore::Uninstall(place) => install::uninstall(place.scope()),
         Chore::Bless { case } => bless::run(case.as_deref()),
         Chore::Figures => figures::run(),
         Chore::BenchTable { again } => bench_table::run(again),

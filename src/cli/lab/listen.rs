@@ -28,7 +28,7 @@ pub(super) struct Args {
     /// Length of the files in s
     #[arg(long, default_value_t = 2.0, value_name = "S")]
     seconds: f64,
-    /// Sample rate in Hz, 8000-768000
+    /// Sample rate in Hz, 1000-768000
     #[arg(long, default_value_t = 48_000, value_name = "HZ", value_parser = clap::value_parser!(u32)
         .range(i64::from(*SAMPLE_RATES.start())..=i64::from(*SAMPLE_RATES.end())))]
     rate: u32,

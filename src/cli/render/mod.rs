@@ -47,7 +47,7 @@ pub(super) struct Args {
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
     #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting)]
     set: Vec<(Param, f32)>,
-    /// Sample rate, 8000-768000 Hz
+    /// Sample rate, 1000-768000 Hz
     #[arg(long, default_value_t = 48_000, value_name = "HZ", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
         .range(i64::from(*SAMPLE_RATES.start())..=i64::from(*SAMPLE_RATES.end())))]
     rate: u32,

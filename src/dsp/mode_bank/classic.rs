@@ -25,24 +25,30 @@ impl ModeBank {
 
     /// The squared amplitude of mode `m`, which is set to rest if it has all but stopped.
     pub(super) fn settle_classic(&mut self, m: usize) -> f64 {
+        let energy = self.energy_classic(m);
+        if energy < REST_ENERGY {
+            let state = &mut self.states[self.current];
+            (state.x.0[m], state.v.0[m]) = (0.0, 0.0);
+        }
+        energy
+    }
+
+    /// The squared amplitude of mode `m`.
+    pub(super) fn energy_classic(&self, m: usize) -> f64 {
         let sweep = f64::from(self.modes.sweep.0[m]);
-        let state = &mut self.states[self.current];
+        let state = &self.states[self.current];
         let (x, v) = (f64::from(state.x.0[m]), f64::from(state.v.0[m]) * sweep);
         let (zeta, omega2) = (f64::from(self.modes.zeta.0[m]), f64::from(self.modes.omega2.0[m]) * sweep * sweep);
         let keep = 1.0 - zeta;
         let half_trace = 0.5 * (1.0 + keep - omega2);
         let discriminant = keep - half_trace * half_trace;
         let form = omega2 * x * x + (zeta - omega2) * x * v + keep * v * v;
-        let energy = if discriminant > 1e-12 && keep > 0.0 {
+        if discriminant > 1e-12 && keep > 0.0 {
             form * keep / discriminant
         } else {
             // Over-damped: no ringing, but still something that moves.
             x * x + v * v / omega2.max(1e-12)
-        };
-        if energy < REST_ENERGY {
-            (state.x.0[m], state.v.0[m]) = (0.0, 0.0);
         }
-        energy
     }
 }
 

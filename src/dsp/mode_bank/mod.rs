@@ -15,6 +15,7 @@ mod levels;
 #[allow(unsafe_code)]
 mod neon;
 mod table;
+mod tail;
 #[allow(clippy::needless_range_loop, reason = "as in `kernel`")]
 mod vector;
 #[cfg(target_arch = "x86_64")]
@@ -29,6 +30,7 @@ use kernel::{Form, Modes, Output, Row, State};
 use levels::Kernels;
 use std::f64::consts::PI;
 use table::Table;
+use vector::LANES;
 
 pub use levels::Level;
 
@@ -96,15 +98,16 @@ pub struct ModeBank {
     sample_rate: f64,
     law: Law,
     len: usize,
-    /// Modes from here on are at rest.
+    /// Modes from here on are at rest: a multiple of [`LANES`] or all, so that every CPU moves the same modes.
     live: usize,
     /// Gains are not all 1.
     stereo: bool,
     ratio: f64,
     /// Frames until the next control tick.
     until_tick: usize,
-    /// Frames until sweeps and levels arrive at those of `ratio`.
+    /// Frames until sweeps and levels arrive at those of `ratio`, and how many of the line modes at rest have missed.
     line_frames: usize,
+    missed_frames: usize,
     /// Sweeps and levels are those of `ratio` and stay there.
     settled: bool,
     /// And they are all exactly 1, so that the plain step gives the same bits.
@@ -145,6 +148,7 @@ impl ModeBank {
             ratio: 1.0,
             until_tick: 0,
             line_frames: 0,
+            missed_frames: 0,
             settled: true,
             unswept: true,
             untuned: false,
@@ -183,7 +187,7 @@ impl ModeBank {
 
     /// Fills the bank with modes at rest, at a pitch ratio of 1. Modes beyond [`MAX_MODES`] are left out.
     pub fn load(&mut self, law: Law, modes: impl Iterator<Item = ModeSetup>) {
-        (self.law, self.len, self.live, self.stereo) = (law, 0, 0, false);
+        (self.law, self.len, self.stereo) = (law, 0, false);
         (self.states[self.current], self.ahead, self.handed_out) = (State::REST, false, None);
         for (m, mode) in modes.take(MAX_MODES).enumerate() {
             self.len = m + 1;
@@ -198,6 +202,7 @@ impl ModeBank {
                 row.0[m] = 0.0;
             }
         }
+        self.live = self.len;
         self.jump_to(1.0);
     }
 
@@ -245,6 +250,7 @@ impl ModeBank {
     /// continuous: the pitch stays where it is until [`ModeBank::sweep_to`], which must follow, moves it.
     pub fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
         self.leave_tables();
+        self.catch_up();
         let (omega2, inverse_bow) = (self.modes.omega2, self.pitch.inverse_bow);
         for (m, (frequency, t60)) in modes.take(self.len).enumerate() {
             self.half_angle[m] = 0.5 * angle_from_frequency(frequency, self.sample_rate);
@@ -274,6 +280,7 @@ impl ModeBank {
             return self.make_tables();
         }
         self.leave_tables();
+        self.catch_up();
         self.tune();
         (self.tabled, self.steady_ticks) = (false, 0);
         let arrived = ratio == self.ratio && self.line_frames == 0;
@@ -293,7 +300,7 @@ impl ModeBank {
         self.tune();
         (self.tabled, self.steady_ticks) = (false, 0);
         self.ratio = ratio;
-        (self.until_tick, self.line_frames) = (0, 0);
+        (self.until_tick, self.line_frames, self.missed_frames) = (0, 0, 0);
         self.aim(0.0, true);
         self.rest_sweep();
     }
@@ -326,6 +333,18 @@ impl ModeBank {
         let all_one = |row: &Row| row.0[..self.len].iter().all(|value| *value == 1.0);
         self.unswept = all_one(&self.modes.sweep) && all_one(&self.modes.level);
         self.settled = true;
+    }
+
+    /// Moves the modes at rest, which the kernels leave out, along the line that the others have gone.
+    fn catch_up(&mut self) {
+        let frames = std::mem::take(&mut self.missed_frames) as f32;
+        if frames > 0.0 {
+            let modes = &mut self.modes;
+            for m in self.live..self.len {
+                modes.sweep.0[m] += modes.sweep_step.0[m] * frames;
+                modes.level.0[m] += modes.level_step.0[m] * frames;
+            }
+        }
     }
 
     /// At a control tick of a settled bank: makes the tables, once that is worth while.
@@ -367,6 +386,7 @@ impl ModeBank {
         let frames = frames.min(CONTROL_FRAMES);
         if let Some(drive) = drive {
             self.leave_tables();
+            self.catch_up();
             (self.live, self.steady_ticks) = (self.len, 0);
             self.step(drive, true, frames);
         } else if self.handed_out.is_none() {
@@ -379,13 +399,18 @@ impl ModeBank {
                 let [first, second] = &mut self.states;
                 let (start, end) = if self.current == 0 { (first, second) } else { (second, first) };
                 self.kernels.ring(form, &mut self.table, &self.modes, start, end, &mut self.output);
+                // What modes that have come to rest left here two ticks ago must not be struck to life.
+                end.x.0[self.live..self.len].fill(0.0);
+                end.v.0[self.live..self.len].fill(0.0);
             } else {
                 self.leave_tables();
                 self.step(&Drive::NONE, false, frames);
             }
         }
         self.until_tick = self.until_tick.saturating_sub(frames);
-        self.line_frames = self.line_frames.saturating_sub(frames);
+        let moved = self.line_frames.min(frames);
+        self.line_frames -= moved;
+        self.missed_frames += moved;
         let start = self.handed_out.unwrap_or(0);
         let end = CONTROL_FRAMES.min(start + frames);
         if self.handed_out.is_some() {
@@ -427,10 +452,12 @@ impl ModeBank {
             }
             Law::Classic => (0..self.live).map(|m| self.settle_classic(m)).sum(),
         };
+        self.catch_up();
         let State { x, v } = &self.states[self.current];
         while self.live > 0 && x.0[self.live - 1] == 0.0 && v.0[self.live - 1] == 0.0 {
             self.live -= 1;
         }
+        self.live = self.live.next_multiple_of(LANES).min(self.len);
         total
     }
 }

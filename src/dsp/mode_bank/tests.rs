@@ -63,6 +63,48 @@ fn one_mode_is_the_oscillator() {
     }
 }
 
+/// The state changes places every tick that is rendered by tables: neither place may keep what has come to rest.
+#[test]
+fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
+    for ticks in 0..4 {
+        // More of them than a vector has lanes.
+        let modes: Vec<_> = (0..64).map(|m| (200.0, if m == 0 { 10.0 } else { 0.02 })).collect();
+        let mut bank = bank(Law::Exact, &modes);
+        let mut drive = Some(strike());
+        let mut tick = |bank: &mut ModeBank| {
+            bank.settle();
+            run(bank, CONTROL_FRAMES, drive.take().as_ref());
+        };
+        while bank.live != LANES {
+            tick(&mut bank);
+        }
+        (0..ticks).for_each(|_| tick(&mut bank));
+        assert!(bank.tabled && bank.live == LANES);
+        (1..64).for_each(|m| bank.set_coupling(m, Coupling::default()));
+        run(&mut bank, 1, Some(&strike()));
+        assert!((1..64).all(|m| bank.motion(m).1 == 0.0), "{ticks} ticks: {:?}", bank.motion(40));
+    }
+}
+
+/// Modes at rest are left out of a sweep: struck in the midst of one, they must not sound where they fell asleep.
+#[test]
+fn a_mode_that_wakes_is_where_the_sweep_is() {
+    let modes: Vec<_> = (0..64).map(|m| (200.0, if m == 0 { 10.0 } else { 0.02 })).collect();
+    let mut bank = bank(Law::Exact, &modes);
+    run(&mut bank, CONTROL_FRAMES, Some(&strike()));
+    for tick in 1..2000 {
+        bank.settle();
+        glide(&mut bank, 1.0 + 0.001 * f64::from(tick));
+    }
+    assert_eq!(bank.live, LANES);
+    bank.sweep_to(3.0, CONTROL_FRAMES);
+    bank.render(None, 16);
+    bank.render(Some(&strike()), 16);
+    // Those of the first group have been awake all the time.
+    let sweep = &bank.modes.sweep.0[1..];
+    assert!(sweep.iter().all(|mode| (mode / sweep[0] - 1.0).abs() < 1e-6), "{sweep:?}");
+}
+
 #[test]
 fn the_energy_is_that_of_the_amplitudes() {
     let mut bank = bank(Law::Exact, &[(100.0, 1.0), (3000.0, 1.0), (19_000.0, 1.0)]);

@@ -1,4 +1,6 @@
-//! Who plays what: polyphony, stealing, re-striking, pedals, choke groups. Knows no DSP.
+//! Who plays what: polyphony, stealing, re-striking, pedals, choke groups, and which notes have ended. Knows no DSP.
+
+use super::event::Notes;
 
 /// A note as the manager hands it to a voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +15,8 @@ pub struct Note {
     pub velocity: f32,
     /// Whether the soft pedal was down.
     pub soft: bool,
+    /// Brightness of the channel, −0.5 to 0.5.
+    pub brightness: f32,
     /// The host's identifier, or −1.
     pub id: i32,
     /// Counts the notes of a synth.
@@ -63,6 +67,9 @@ const FADING_VOICES: usize = MAX_VOICES;
 /// Held keys that a monophonic voice can return to.
 const MAX_HELD_KEYS: usize = 32;
 
+/// Ended notes that are kept until somebody asks.
+pub const MAX_ENDED: usize = 1024;
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Free,
@@ -86,13 +93,19 @@ impl<V> Slot<V> {
     }
 
     fn is_on(&self, channel: u8, key: u8) -> bool {
-        self.is_sounding() && self.note.channel == channel && self.note.key == key
+        self.is_one_of(&Notes::on(channel, key))
+    }
+
+    fn is_one_of(&self, notes: &Notes) -> bool {
+        self.is_sounding() && notes.include(&self.note)
     }
 }
 
 /// Deals notes to a fixed set of voices. Real-time safe after [`VoiceManager::new`].
 pub struct VoiceManager<V> {
     slots: Vec<Slot<V>>,
+    /// Slots from here on are free. Voices are large: looking at all of them costs more than a short one sounds.
+    used: usize,
     sustain: [bool; 16],
     sostenuto: [bool; 16],
     polyphony: usize,
@@ -100,23 +113,37 @@ pub struct VoiceManager<V> {
     /// Keys down in a monophonic mode, oldest first.
     held: [Note; MAX_HELD_KEYS],
     held_len: usize,
+    /// Notes that have ended: their voices are silent or another's, and no key of theirs is waited for.
+    ended: Vec<Note>,
     peak: usize,
 }
 
 impl<V: Voice> VoiceManager<V> {
     /// A manager of voices made by `voice`. Allocates.
     pub fn new(mut voice: impl FnMut() -> V) -> Self {
-        let note =
-            Note { channel: 0, key: 0, detune: 0.0, velocity: 0.0, soft: false, id: -1, serial: 0, patch: 0, choke: 0 };
+        let note = Note {
+            channel: 0,
+            key: 0,
+            detune: 0.0,
+            velocity: 0.0,
+            soft: false,
+            brightness: 0.0,
+            id: -1,
+            serial: 0,
+            patch: 0,
+            choke: 0,
+        };
         let slot = || Slot { voice: voice(), note, state: State::Free, key_down: false, sostenuto: false };
         Self {
             slots: std::iter::repeat_with(slot).take(MAX_VOICES + FADING_VOICES).collect(),
+            used: 0,
             sustain: [false; 16],
             sostenuto: [false; 16],
             polyphony: MAX_VOICES,
             mode: PlayMode::Poly,
             held: [note; MAX_HELD_KEYS],
             held_len: 0,
+            ended: Vec::with_capacity(MAX_ENDED),
             peak: 0,
         }
     }
@@ -124,9 +151,11 @@ impl<V: Voice> VoiceManager<V> {
     /// Stops everything at once, pedals included.
     pub fn reset(&mut self) {
         self.slots.iter_mut().for_each(|slot| slot.state = State::Free);
+        self.used = 0;
         self.sustain = [false; 16];
         self.sostenuto = [false; 16];
         self.held_len = 0;
+        self.ended.clear();
         self.peak = 0;
     }
 
@@ -134,24 +163,45 @@ impl<V: Voice> VoiceManager<V> {
     pub fn configure(&mut self, polyphony: usize, mode: PlayMode) {
         self.polyphony = polyphony.clamp(1, MAX_VOICES);
         if mode != self.mode {
-            self.held_len = 0;
+            self.forget(|_| true);
         }
         self.mode = mode;
     }
 
+    /// The notes that have ended since [`VoiceManager::clear_ended`], in that order: each note once, the first
+    /// [`MAX_ENDED`] of them.
+    pub fn ended(&self) -> &[Note] {
+        &self.ended
+    }
+
+    /// Forgets the notes that have ended.
+    pub fn clear_ended(&mut self) {
+        self.ended.clear();
+    }
+
+    /// A voice or a held key has let go of a note: it has ended, unless another has it still.
+    fn retire(&mut self, note: Note) {
+        let sounds = |slot: &Slot<V>| slot.state != State::Free && slot.note.serial == note.serial;
+        let is_held = self.held[..self.held_len].iter().any(|held| held.serial == note.serial);
+        if !is_held && !self.slots[..self.used].iter().any(sounds) && self.ended.len() < MAX_ENDED {
+            self.ended.push(note);
+        }
+    }
+
     /// The voices that are not free, in their fixed order.
     pub fn active(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
-        self.slots.iter_mut().filter(|slot| slot.state != State::Free).map(|slot| (&slot.note, &mut slot.voice))
+        let used = self.slots[..self.used].iter_mut();
+        used.filter(|slot| slot.state != State::Free).map(|slot| (&slot.note, &mut slot.voice))
     }
 
     /// The voices that are not free, to look at.
     pub fn sounding_voices(&self) -> impl Iterator<Item = &V> {
-        self.slots.iter().filter(|slot| slot.state != State::Free).map(|slot| &slot.voice)
+        self.slots[..self.used].iter().filter(|slot| slot.state != State::Free).map(|slot| &slot.voice)
     }
 
     /// Whether every voice is free.
     pub fn is_silent(&self) -> bool {
-        self.slots.iter().all(|slot| slot.state == State::Free)
+        self.used == 0
     }
 
     /// Most notes that have sounded at once, fading ones not counted.
@@ -161,16 +211,22 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Frees the voices that are over.
     pub fn free_finished(&mut self) {
-        for slot in &mut self.slots {
+        for index in 0..self.used {
+            let slot = &mut self.slots[index];
             if slot.state != State::Free && slot.voice.is_over() {
                 slot.state = State::Free;
+                let note = slot.note;
+                self.retire(note);
             }
+        }
+        while self.used > 0 && self.slots[self.used - 1].state == State::Free {
+            self.used -= 1;
         }
     }
 
     /// A key goes down.
     pub fn note_on(&mut self, context: &V::Context, note: Note) {
-        for slot in self.slots.iter_mut().filter(|slot| slot.is_sounding()) {
+        for slot in self.slots[..self.used].iter_mut().filter(|slot| slot.is_sounding()) {
             // What the note is about to strike again or to retune is not choked.
             let reused =
                 slot.note.patch == note.patch && (self.mode != PlayMode::Poly || slot.is_on(note.channel, note.key));
@@ -187,9 +243,10 @@ impl<V: Voice> VoiceManager<V> {
 
     fn note_on_poly(&mut self, context: &V::Context, note: Note) {
         let same = |slot: &&mut Slot<V>| slot.is_on(note.channel, note.key) && slot.note.patch == note.patch;
-        if let Some(slot) = self.slots.iter_mut().find(same) {
+        if let Some(slot) = self.slots[..self.used].iter_mut().find(same) {
             slot.voice.restrike(context, &note);
-            hold(slot, note);
+            let before = hold(slot, note);
+            self.retire(before);
         } else {
             while self.sounding() >= self.polyphony {
                 self.steal(&note);
@@ -199,10 +256,10 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     fn note_on_mono(&mut self, context: &V::Context, note: Note) {
-        self.forget_key(note.channel, note.key);
+        self.forget(|held| (held.channel, held.key) == (note.channel, note.key));
         if self.held_len == MAX_HELD_KEYS {
-            self.held.rotate_left(1);
-            self.held_len -= 1;
+            let oldest = self.held[0].serial;
+            self.forget(|held| held.serial == oldest);
         }
         self.held[self.held_len] = note;
         self.held_len += 1;
@@ -223,29 +280,35 @@ impl<V: Voice> VoiceManager<V> {
         } else {
             slot.voice.restrike(context, &note);
         }
-        hold(slot, note);
+        let before = hold(slot, note);
+        self.retire(before);
     }
 
-    /// A key comes up; `id` −1 stands for any note on it.
-    pub fn note_off(&mut self, context: &V::Context, channel: u8, key: u8, id: i32, velocity: f32) {
+    /// The keys of these notes come up.
+    pub fn note_off(&mut self, context: &V::Context, notes: Notes, velocity: f32) {
         if self.mode != PlayMode::Poly {
-            self.forget_key(channel, key);
+            self.forget(|held| notes.include(held));
             // The key before is still down: a release never strikes, it returns.
             if let Some(note) = self.held[..self.held_len].last().copied()
-                && let Some(slot) = self.slots.iter_mut().find(|slot| slot.key_down && slot.is_on(channel, key))
+                && let Some(slot) = self.slots.iter_mut().find(|slot| slot.key_down && slot.is_one_of(&notes))
             {
                 slot.voice.retune(context, &note);
                 // The voice keeps the sound that it has.
-                slot.note = Note { patch: slot.note.patch, choke: slot.note.choke, ..note };
-                return;
+                let note = Note { patch: slot.note.patch, choke: slot.note.choke, ..note };
+                let before = std::mem::replace(&mut slot.note, note);
+                return self.retire(before);
             }
         }
-        for slot in self.slots.iter_mut().filter(|slot| slot.is_on(channel, key)) {
-            if id == -1 || slot.note.id == -1 || slot.note.id == id {
-                slot.key_down = false;
-                release_unless_held(slot, &self.sustain, velocity);
-            }
+        for slot in self.slots.iter_mut().filter(|slot| slot.is_one_of(&notes)) {
+            slot.key_down = false;
+            release_unless_held(slot, &self.sustain, velocity);
         }
+    }
+
+    /// Silences these notes.
+    pub fn silence(&mut self, notes: Notes) {
+        self.forget(|held| notes.include(held));
+        self.slots.iter_mut().filter(|slot| slot.is_one_of(&notes)).for_each(fade);
     }
 
     /// The sustain pedal (controller 64).
@@ -268,14 +331,14 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Controller 123: every key of the channel comes up.
     pub fn all_notes_off(&mut self, channel: u8) {
-        self.forget_keys(channel);
+        self.forget(|held| held.channel == channel);
         self.slots.iter_mut().filter(|slot| slot.note.channel == channel).for_each(|slot| slot.key_down = false);
         self.release_let_go(channel);
     }
 
     /// Controller 120: the channel is silenced.
     pub fn all_sound_off(&mut self, channel: u8) {
-        self.forget_keys(channel);
+        self.forget(|held| held.channel == channel);
         self.slots.iter_mut().filter(|slot| slot.is_sounding() && slot.note.channel == channel).for_each(fade);
     }
 
@@ -295,13 +358,13 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     fn sounding(&self) -> usize {
-        self.slots.iter().filter(|slot| slot.is_sounding()).count()
+        self.slots[..self.used].iter().filter(|slot| slot.is_sounding()).count()
     }
 
     /// Fades the note that will be missed least: one on the same key, else the quietest, of equals the oldest.
     fn steal(&mut self, note: &Note) {
         let rank = |slot: &Slot<V>| (!slot.is_on(note.channel, note.key), slot.voice.energy(), slot.note.serial);
-        let victim = self.slots.iter_mut().filter(|slot| slot.is_sounding()).min_by(|a, b| {
+        let victim = self.slots[..self.used].iter_mut().filter(|slot| slot.is_sounding()).min_by(|a, b| {
             let (a, b) = (rank(a), rank(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))
         });
@@ -314,7 +377,10 @@ impl<V: Voice> VoiceManager<V> {
     /// still fade, the one that is nearly silent is cut off.
     fn start(&mut self, context: &V::Context, note: Note) {
         let slot = match self.slots.iter().position(|slot| slot.state == State::Free) {
-            Some(free) => Some(&mut self.slots[free]),
+            Some(free) => {
+                self.used = self.used.max(free + 1);
+                Some(&mut self.slots[free])
+            }
             None => {
                 let fading = self.slots.iter_mut().filter(|slot| slot.state == State::Fading);
                 fading.min_by(|a, b| a.voice.energy().total_cmp(&b.voice.energy()))
@@ -323,24 +389,19 @@ impl<V: Voice> VoiceManager<V> {
         if let Some(slot) = slot {
             slot.voice.start(context, &note);
             slot.sostenuto = false;
+            let before = (slot.state != State::Free).then_some(slot.note);
             hold(slot, note);
+            before.into_iter().for_each(|before| self.retire(before));
         }
     }
 
-    fn forget_keys(&mut self, channel: u8) {
-        while let Some(key) =
-            self.held[..self.held_len].iter().find(|held| held.channel == channel).map(|held| held.key)
-        {
-            self.forget_key(channel, key);
-        }
-    }
-
-    fn forget_key(&mut self, channel: u8, key: u8) {
-        if let Some(index) =
-            self.held[..self.held_len].iter().position(|held| held.channel == channel && held.key == key)
-        {
+    /// Stops waiting for keys.
+    fn forget(&mut self, which: impl Fn(&Note) -> bool) {
+        while let Some(index) = self.held[..self.held_len].iter().position(&which) {
+            let note = self.held[index];
             self.held[index..self.held_len].rotate_left(1);
             self.held_len -= 1;
+            self.retire(note);
         }
     }
 }
@@ -348,10 +409,11 @@ impl<V: Voice> VoiceManager<V> {
 /// Release velocity where nobody gave one.
 const MIDDLE_VELOCITY: f32 = 0.5;
 
-fn hold<V>(slot: &mut Slot<V>, note: Note) {
-    slot.note = note;
+/// Gives the slot a note whose key is down; returns the one that it had.
+fn hold<V>(slot: &mut Slot<V>, note: Note) -> Note {
     slot.state = State::Held;
     slot.key_down = true;
+    std::mem::replace(&mut slot.note, note)
 }
 
 fn fade<V: Voice>(slot: &mut Slot<V>) {

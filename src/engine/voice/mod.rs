@@ -1,23 +1,33 @@
 //! One note: an exciter, a bank of modes, and what moves their pitch, decay and gain.
 
-use super::channel::Channel;
-use super::controls::Controls;
+mod strike;
+mod tail;
+
+use super::channel::Wheels;
+use super::controls::{Controls, Smoother};
 use super::damping::Damping;
+use super::event::Expression;
+use super::expression::Expressions;
 use super::fader::Fader;
+use super::modulation::NoteModulation;
 use super::voice_manager::{Note, Voice};
 use crate::dsp::exciter::{Drive, Exciter};
-use crate::dsp::mode_bank::{Coupling, Law, MAX_MODES, ModeBank, ModeSetup};
+use crate::dsp::mode_bank::{Law, MAX_MODES, ModeBank, ModeSetup};
 use crate::dsp::pitch::{Glide, SweepEnvelope};
-use crate::dsp::random;
 use crate::params::Param;
 use crate::patch::Patch;
-use crate::units::{frequency_from_key, gain_from_db, ratio_from_semitones};
-use libm::{fabs, pow, sin};
-use std::f64::consts::{LOG2_10, PI, TAU};
+use crate::units::ratio_from_semitones;
+use libm::{pow, sin};
+use std::f64::consts::TAU;
 
 /// What a voice reads of the instrument when a note starts.
 pub(crate) struct Instrument {
+    /// The patch as it was set.
     pub(crate) patch: Patch,
+    /// With its parameters where modulation has moved them: what is played.
+    pub(crate) modulated: Patch,
+    /// Counts the patches: a voice that was started by another cannot read this one.
+    pub(crate) patch_serial: u32,
     pub(crate) sample_rate: f64,
     pub(crate) seed: u64,
     /// Live parameters at this frame.
@@ -28,7 +38,7 @@ pub(crate) struct Instrument {
 
 impl Instrument {
     fn value(&self, param: Param) -> f64 {
-        self.patch.get(param).into()
+        self.modulated.get(param).into()
     }
 
     /// The pitch of a note in semitones on the MIDI scale, tracking included.
@@ -49,15 +59,6 @@ const NEARLY_SILENT: f64 = 3.2e-6;
 /// The time in which a stolen or choked voice is faded out.
 const FADE_SECONDS: f64 = 0.012;
 
-/// The soft pedal takes this share of the force …
-const SOFT_FORCE: f64 = 0.6;
-/// … and this much of the hardness.
-const SOFT_HARDNESS: f64 = 0.3;
-
-/// Contact times of the softest and the hardest mallet, in seconds.
-const SOFTEST_CONTACT: f64 = 0.01;
-const HARDEST_CONTACT: f64 = 0.000_05;
-
 /// A sounding note.
 pub(crate) struct SynthVoice {
     sample_rate: f64,
@@ -73,6 +74,13 @@ pub(crate) struct SynthVoice {
     energy: f64,
     /// Control ticks until stock is taken of the energy.
     until_stock: u32,
+    /// Squared force of the last strike, and the energy that one of force 1 would bring.
+    squared_force: f64,
+    unit_energy: f64,
+    /// The frame, counted as `total_age`, at which the voice will be over, if it is known.
+    end: Option<u64>,
+    /// Frames since the start.
+    total_age: u64,
 
     /// Frames since the (last) strike, at the last control and now.
     controlled_age: u64,
@@ -96,8 +104,12 @@ pub(crate) struct SynthVoice {
     released: bool,
     release_scale: f64,
     release_velocity: f64,
-    /// Pressure on this key, 0–1.
-    pub(crate) pressure: f32,
+    /// What the note has been told.
+    expressions: Expressions,
+    /// What moves the instrument's parameters for this note.
+    modulation: NoteModulation,
+    /// −0.5 to 0.5.
+    brightness: f64,
     damping: Damping,
 
     fader: Fader,
@@ -118,6 +130,10 @@ impl SynthVoice {
             pending_energy: 0.0,
             energy: 0.0,
             until_stock: 0,
+            squared_force: 0.0,
+            unit_energy: 0.0,
+            end: None,
+            total_age: 0,
             controlled_age: 0,
             age: 0,
             pitch: 0.0,
@@ -137,7 +153,9 @@ impl SynthVoice {
             released: false,
             release_scale: 1.0,
             release_velocity: 0.0,
-            pressure: 0.0,
+            expressions: Expressions::new(sample_rate),
+            modulation: NoteModulation::NONE,
+            brightness: 0.0,
             damping: Damping { decay: 1.0, release: 1.0, amount: 0.0 },
             fader: Fader::CLOSED,
             fresh: true,
@@ -150,37 +168,44 @@ impl SynthVoice {
     }
 
     /// Offset from the pitch that the bank was loaded at, `ahead` frames from now, in semitones.
-    fn offset(&self, channel: &Channel, ahead: usize) -> f64 {
+    fn offset(&self, wheels: Wheels, ahead: usize) -> f64 {
         let c = &self.controls;
         let age = self.age + ahead as u64;
-        let bend_range = channel.bend_range.unwrap_or(c.bend_range);
         let own =
             c.vibrato * if self.vibrato_delay > 0.0 { (self.seconds(age) / self.vibrato_delay).min(1.0) } else { 1.0 };
-        let pressure = f64::from(self.pressure.max(channel.pressure));
-        let depth = own + c.wheel_vibrato * f64::from(channel.wheel) + c.pressure_vibrato * pressure;
+        let wheel = wheels.most(|channel| channel.wheel).max(self.expressions.vibrato.into());
+        let depth = own + c.wheel_vibrato * wheel + c.pressure_vibrato * self.pressure(wheels);
         let phase = self.vibrato_phase + c.vibrato_rate * self.seconds(ahead as u64);
         let vibrato = if depth > 0.0 { depth * sin(TAU * phase) } else { 0.0 };
+        let (bend, tuning) = wheels.semitones(c.bend_range);
         self.glide.at(self.seconds(age - self.glide_start))
             + self.sweep.at(self.seconds(age))
             + (c.tune - self.tune)
-            + f64::from(channel.bend) * f64::from(bend_range)
-            + f64::from(channel.tuning())
+            + bend
+            + tuning
+            + f64::from(self.expressions.tuning)
             + vibrato
     }
 
+    /// Pressure on the note, 0–1: its own or its channel's.
+    fn pressure(&self, wheels: Wheels) -> f64 {
+        wheels.most(|channel| channel.pressure).max(self.expressions.pressure.into())
+    }
+
     /// Sets out for where pitch, decay and gain are to be in `frames` frames: at the next control tick.
-    /// `controls` are the instrument's at that time; a voice of an earlier patch keeps the last it had.
-    pub(crate) fn control(&mut self, controls: &Controls, patch: u32, channel: &Channel, frames: usize) {
+    /// `controls` are what `smoother` has for the instrument at that time, or none for a voice of an earlier patch,
+    /// which keeps the last it had.
+    pub(crate) fn control(&mut self, controls: Option<&Controls>, smoother: &Smoother, wheels: Wheels, frames: usize) {
         let passed = self.seconds(self.age - self.controlled_age);
         self.vibrato_phase += self.controls.vibrato_rate * passed;
         self.vibrato_phase -= libm::floor(self.vibrato_phase);
         self.controlled_age = self.age;
-        if patch == self.patch {
-            self.controls = *controls;
+        if let Some(controls) = controls {
+            let own = !self.modulation.is_none();
+            self.controls = if own { smoother.modulated(&self.modulation, frames as u32) } else { *controls };
         }
 
-        let pressure = f64::from(self.pressure.max(channel.pressure));
-        let amount = if self.released { 1.0 } else { self.controls.pressure_damping * pressure };
+        let amount = if self.released { 1.0 } else { self.controls.pressure_damping * self.pressure(wheels) };
         let damping = Damping {
             decay: self.controls.decay * self.key_scale,
             release: if amount == 0.0 { 0.0 } else { self.controls.release * self.release_scale },
@@ -188,23 +213,28 @@ impl SynthVoice {
         };
         if damping != self.damping {
             self.damping = damping;
+            self.end = None;
             for m in 0..self.bank.len() {
                 self.bank.set_t60(m, damping.t60(self.t60_scale[m]));
             }
         }
         if self.fresh {
-            let ratio = self.ratio(self.offset(channel, 0));
+            let ratio = self.ratio(self.offset(wheels, 0));
             self.bank.jump_to(ratio);
         }
-        let ratio = self.ratio(self.offset(channel, frames));
+        let ratio = self.ratio(self.offset(wheels, frames));
         self.bank.sweep_to(ratio, frames);
 
-        let (left, right) = channel.gains_after(frames as u32);
-        let target = [self.controls.gain_left * left, self.controls.gain_right * right];
+        if self.fresh {
+            self.expressions.land();
+        }
+        let (left, right) = wheels.gains_after(frames as u32);
+        let [own_left, own_right] = self.expressions.gains_after(frames as u32);
+        let target = [self.controls.gain_left * left * own_left, self.controls.gain_right * right * own_right];
         if self.fresh {
             self.fader.jump(target);
-        } else {
-            self.fader.aim(target, frames);
+        } else if self.fader.aim(target, frames) {
+            self.end = None;
         }
         self.fresh = false;
     }
@@ -247,112 +277,68 @@ impl SynthVoice {
         });
         self.fader.mix(self.bank.render(drive, frames), [left, right]);
         self.age += frames as u64;
+        self.total_age += frames as u64;
+        self.expressions.advance(frames as u32);
+        self.modulation.advance(frames as u32);
     }
 
-    /// Reads what the patch says of a strike, and strikes.
-    fn excite(&mut self, instrument: &Instrument, note: &Note) {
-        let value = |param| instrument.value(param);
-        let velocity = f64::from(note.velocity);
-        let percent = |param| value(param) * 0.01;
-        let soft = if note.soft { SOFT_FORCE } else { 1.0 };
-
-        let modes = instrument.patch.modes.as_slice();
-        let tilt = value(Param::Tilt) / (20.0 / LOG2_10);
-        let tilted = |mode: &crate::patch::Mode| f64::from(mode.level) * pow(f64::from(mode.ratio), tilt);
-        let plain: f64 = modes.iter().map(|mode| fabs(mode.level.into())).sum();
-        let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
-        let balance = if tilt != 0.0 && total > 0.0 { plain / total } else { 1.0 };
-
-        let exciter = instrument.patch.get(Param::Exciter) as u32;
-        let noise_gain = gain_from_db(value(Param::NoiseLevel));
-        // Energy is what a strike of force 1 brings: the sum of the squared levels.
-        let (mut noisy, mut energy) = (false, 0.0);
-        for (m, mode) in modes.iter().enumerate() {
-            let level = tilted(mode) * balance;
-            let struck = if exciter == NOISE { 0.0 } else { level * f64::from(mode.strike) };
-            let noise = if exciter == NOISE { level } else { level * (1.0 - f64::from(mode.strike)) } * noise_gain;
-            let plucked = struck * sin(PI * percent(Param::Position) * f64::from(mode.ratio));
-            let (push, pull) = if exciter == PLUCK { (0.0, plucked) } else { (struck, 0.0) };
-            self.bank.set_coupling(m, Coupling { push: push as f32, pull: pull as f32, noise: noise as f32 });
-            noisy |= noise != 0.0;
-            energy += push * push + pull * pull + noise * noise;
+    /// Takes in what the note is told; `brightness` is the channel's.
+    pub(crate) fn express(&mut self, instrument: &Instrument, expression: Expression, value: f32, brightness: f32) {
+        self.expressions.set(expression, value);
+        if expression == Expression::Brightness {
+            self.shade(instrument, brightness);
         }
-
-        let force = pow(velocity, 2.0 * percent(Param::Velocity)) * soft;
-        let hardness = percent(Param::Hardness) * (1.0 - percent(Param::HardnessVelocity) * (1.0 - velocity));
-        let hardness = if note.soft { hardness * (1.0 - SOFT_HARDNESS) } else { hardness };
-        let contact = SOFTEST_CONTACT * pow(HARDEST_CONTACT / SOFTEST_CONTACT, hardness);
-        let frames = |seconds: f64| (seconds * self.sample_rate + 0.5) as u32;
-        let pulse_frames = if exciter == IMPULSE { 1 } else { frames(contact) };
-        let noise_force = if noisy { force as f32 } else { 0.0 };
-        let noise_frames = frames(value(Param::NoiseTime));
-        let key = random::key(instrument.seed, note.serial);
-        self.exciter.strike(force as f32, pulse_frames, noise_force, noise_frames, key);
-        self.pending_energy += force * force * energy;
-
-        let depth = value(Param::Sweep) * (1.0 - percent(Param::SweepVelocity) * (1.0 - velocity));
-        self.sweep = SweepEnvelope::new(depth, value(Param::SweepTime), percent(Param::SweepCurve));
-        self.vibrato_delay = value(Param::VibratoDelay);
-        self.rings_on = instrument.patch.get(Param::NoteOff) != 0.0;
-        self.release_velocity = percent(Param::ReleaseVelocity);
     }
 
-    /// Takes the pitch and decay of `note`; returns the frequency of a mode of ratio 1.
-    fn place(&mut self, instrument: &Instrument, note: &Note) -> f64 {
-        let value = |param| instrument.value(param);
-        (self.pitch, self.tune) = (instrument.pitch(note), instrument.controls.tune);
-        self.key_scale = ratio_from_semitones(value(Param::DecayKey) * 0.01 * (MIDDLE_C - self.pitch));
-        self.damping = Damping { decay: instrument.controls.decay * self.key_scale, release: 0.0, amount: 0.0 };
-        for (scale, mode) in self.t60_scale.iter_mut().zip(instrument.patch.modes.as_slice()) {
-            *scale = f64::from(mode.decay) * pow(mode.ratio.into(), -value(Param::DecayTilt));
+    /// Lets go of the key's pressure.
+    pub(crate) fn relax(&mut self) {
+        self.expressions.set(Expression::Pressure, 0.0);
+    }
+
+    /// Modulates a parameter of this note by an offset in knob travel. `now` is the instrument's value.
+    pub(crate) fn modulate(&mut self, instrument: &Instrument, param: Param, offset: f32, now: f32) {
+        self.modulation.set(param, offset, now);
+        self.follow(instrument);
+    }
+
+    /// Takes the note's own offsets from the instrument's present values.
+    pub(crate) fn follow(&mut self, instrument: &Instrument) {
+        self.modulation.aim(&instrument.patch, &instrument.modulated, self.sample_rate, self.fresh);
+    }
+
+    /// Takes over the brightness of the note and of its channel: into a strike that has yet to begin, and into the
+    /// decay of the modes.
+    pub(crate) fn shade(&mut self, instrument: &Instrument, channel: f32) {
+        if self.patch != instrument.patch_serial {
+            return;
         }
-        self.released = false;
-        frequency_from_key(self.pitch + self.tune, value(Param::Tuning))
-    }
-
-    /// Frequency and T60 of each mode, after [`SynthVoice::place`].
-    fn tuning(&self, instrument: &Instrument, frequency: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
-        let (damping, scales, table) = (self.damping, self.t60_scale, instrument.patch.modes);
-        let stretch = instrument.value(Param::Stretch);
-        scales.into_iter().enumerate().map_while(move |(m, scale)| {
-            let ratio = f64::from(table.as_slice().get(m)?.ratio);
-            let ratio = if stretch == 1.0 { ratio } else { pow(ratio, stretch) };
-            Some((frequency * ratio, damping.t60(scale)))
-        })
-    }
-
-    /// Makes the sounding voice that of `note`, sliding from where its pitch is.
-    fn aim(&mut self, instrument: &Instrument, note: &Note) {
-        let from = self.pitch + self.glide.at(self.seconds(self.age - self.glide_start));
-        if note.key != self.key {
-            self.pressure = 0.0;
+        self.brightness = f64::from((self.expressions.brightness + channel).clamp(-0.5, 0.5));
+        if self.age == 0 {
+            self.couple(instrument);
         }
-        self.key = note.key;
-        let frequency = self.place(instrument, note);
-        self.glide = Glide::new(from - self.pitch, 0.0, instrument.value(Param::Glide));
-        self.glide_start = self.age;
-        let tuning = self.tuning(instrument, frequency);
-        self.bank.retune(tuning);
+        self.scale_decay(instrument);
+        // Have the next control tick set the decay of every mode.
+        self.damping.amount = f64::NAN;
     }
 }
-
-/// Values of [`Param::Exciter`].
-const IMPULSE: u32 = 0;
-const PLUCK: u32 = 2;
-const NOISE: u32 = 3;
 
 impl Voice for SynthVoice {
     type Context = Instrument;
 
     fn start(&mut self, instrument: &Instrument, note: &Note) {
-        *self = Self { patch: note.patch, key: note.key, ..Self::new(instrument.sample_rate, instrument.controls) };
+        *self = Self {
+            patch: note.patch,
+            key: note.key,
+            brightness: note.brightness.into(),
+            ..Self::new(instrument.sample_rate, instrument.controls)
+        };
         let frequency = self.place(instrument, note);
         let from = instrument.last_pitch.unwrap_or(self.pitch) - self.pitch;
         self.glide = Glide::new(from, 0.0, instrument.value(Param::Glide));
-        let law = if instrument.patch.get(Param::Coefficients) == 0.0 { Law::Exact } else { Law::Classic };
+        let law = if instrument.modulated.get(Param::Coefficients) == 0.0 { Law::Exact } else { Law::Classic };
         let width = instrument.value(Param::Width) * 0.01;
         let tuning = self.tuning(instrument, frequency);
-        let setup = tuning.zip(instrument.patch.modes.as_slice()).map(|((frequency, t60), mode)| {
+        let setup = tuning.zip(instrument.modulated.modes.as_slice()).map(|((frequency, t60), mode)| {
             let (left, right) = super::channel::pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
             ModeSetup { frequency, t60, left, right }
         });

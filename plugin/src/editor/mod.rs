@@ -1,0 +1,69 @@
+//! The plugin's window: parameters by section, a chooser of presets, and preset files.
+
+mod presets;
+mod rows;
+mod window;
+
+use crate::params::SprungParams;
+use nice_plug_core::context::gui::GuiContext;
+use nice_plug_core::editor::dpi::{LogicalSize, NativeSize};
+use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
+use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, RepaintNotifier, create_egui_editor};
+use std::error::Error;
+use std::sync::{Arc, Mutex, PoisonError};
+use window::Window;
+
+/// Smallest width and height that the window still works in.
+pub(crate) const LEAST_SIZE: [u32; 2] = [480, 320];
+
+/// Opens windows, each in the size that the last one had.
+pub struct SprungEditor {
+    params: Arc<SprungParams>,
+    /// What the wrapper's editor knows of the window that was opened last.
+    last: Mutex<Arc<EguiEditorState>>,
+}
+
+impl SprungEditor {
+    pub(crate) fn new(params: Arc<SprungParams>) -> Self {
+        let last = Mutex::new(state(&params));
+        Self { params, last }
+    }
+}
+
+/// A window's state of its own, in the size that is kept.
+fn state(params: &SprungParams) -> Arc<EguiEditorState> {
+    let [width, height] = params.about().window.map(|side| side as f32);
+    EguiEditorState::from_size(LogicalSize { width, height }, 1.0)
+}
+
+impl Editor for SprungEditor {
+    type Handle = EguiEditorHandle;
+
+    fn spawn(
+        &self,
+        parent: Option<ParentWindowHandle>,
+        wait_for_parent: bool,
+        fallback_scale_factor: Option<f64>,
+        gui_context: GuiContext,
+        host: Option<HostMethods>,
+    ) -> Result<SpawnedEditor<Self::Handle>, Box<dyn Error>> {
+        let state = state(&self.params);
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = state.clone();
+        let settings = EguiNiceSettings::new().with_tile("Sprung").with_resize_hint(self.resize_hint());
+        create_egui_editor(state, RepaintNotifier::new(), settings, Window::new(self.params.clone()))
+            .ok_or("the window cannot be made")?
+            .spawn(parent, wait_for_parent, fallback_scale_factor, gui_context, host)
+    }
+
+    fn size(&self) -> NativeSize<u32> {
+        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let state = if last.is_open() { last } else { state(&self.params) };
+        let LogicalSize { width, height } = state.logical_size();
+        NativeSize::from_logical_or_physical(LogicalSize::new(width.into(), height.into()), state.physical_size())
+    }
+
+    fn resize_hint(&self) -> ResizeHint {
+        let [width, height] = LEAST_SIZE.map(|side| side as f32);
+        ResizeHint::resizable().with_min_logical_size(LogicalSize { width, height })
+    }
+}

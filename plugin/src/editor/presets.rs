@@ -1,0 +1,142 @@
+//! The window's head: factory presets, preset files, and what came of the last of it.
+
+use super::rows::announce;
+use crate::params::SprungParams;
+use crate::state::State;
+use egui::{ComboBox, TextEdit, Ui};
+use nice_plug_core::context::gui::GuiContext;
+use sprung::io::output::{Output, Target};
+use sprung::preset::Preset;
+use std::io::Write as _;
+use std::path::Path;
+
+/// What is being typed, and the last message.
+#[derive(Default)]
+pub(super) struct Presets {
+    path: String,
+    message: String,
+    /// The path that is to be replaced if it is saved to once more.
+    confirm: Option<String>,
+}
+
+impl Presets {
+    pub(super) fn show(&mut self, ui: &mut Ui, params: &SprungParams, host: &GuiContext) {
+        ui.horizontal(|ui| {
+            let name = params.about().name.clone();
+            ComboBox::from_id_salt("presets").selected_text(name.as_str()).width(220.0).height(400.0).show_ui(
+                ui,
+                |ui| {
+                    for preset in Preset::factory() {
+                        if ui.selectable_label(preset.name == name, &preset.name).clicked() {
+                            self.message.clear();
+                            load(preset.clone(), params, host);
+                        }
+                    }
+                },
+            );
+            let path = TextEdit::singleline(&mut self.path).hint_text("path of a preset file, …/name.toml");
+            ui.add(path.desired_width(ui.available_width() - 110.0));
+            if ui.button("Load").clicked() {
+                self.message = match read(&self.path) {
+                    Ok(preset) => {
+                        load(preset, params, host);
+                        format!("loaded {}", self.path)
+                    }
+                    Err(message) => message,
+                };
+            }
+            if ui.button("Save").clicked() {
+                self.save(params);
+            }
+        });
+        if !self.message.is_empty() {
+            ui.label(&self.message);
+        }
+    }
+
+    fn save(&mut self, params: &SprungParams) {
+        let replace = self.confirm.take().is_some_and(|path| path == self.path);
+        self.message = match write(params.state().preset(), &self.path, replace) {
+            Ok(name) => {
+                params.about().name = name;
+                format!("saved {}", self.path)
+            }
+            Err(sprung::Error::Exists { path }) => {
+                self.confirm = Some(self.path.clone());
+                format!("{path}: the file exists; press Save again to replace it")
+            }
+            Err(error) => error.to_string(),
+        };
+    }
+}
+
+/// Takes over a preset, with its name for the window and its knobs for the host.
+fn load(preset: Preset, params: &SprungParams, host: &GuiContext) {
+    let State { loaded, about } = params.state();
+    params.load(State::from_preset(preset, loaded.seed, about.window));
+    announce(params, host);
+}
+
+fn read(path: &str) -> Result<Preset, String> {
+    check(path).and_then(|path| Preset::load(path)).map_err(|error| error.to_string())
+}
+
+/// Writes a preset file, whole or not at all. The preset is then called as the file is; gives that name.
+fn write(mut preset: Preset, path: &str, replace: bool) -> sprung::Result<String> {
+    let path = check(path)?;
+    preset.name = path.file_stem().unwrap_or_default().to_string_lossy().trim().to_owned();
+    let text = preset.to_toml();
+    // A name may be no name for a preset, and what is saved must load.
+    Preset::parse(&text, &path.display().to_string())?;
+    let mut output = Output::create(&Target::new(path), replace)?;
+    let written = output.stream().write_all(text.as_bytes());
+    written.map_err(|source| sprung::Error::io(path.display().to_string(), source))?;
+    output.commit()?;
+    Ok(preset.name)
+}
+
+/// A host's working folder is nothing that a person knows: paths say all.
+fn check(path: &str) -> sprung::Result<&Path> {
+    let path = Path::new(path);
+    if path.is_absolute() && path.extension().is_some_and(|extension| extension == "toml") {
+        return Ok(path);
+    }
+    let example = if cfg!(windows) { "C:\\Sounds\\bell.toml" } else { "/home/me/bell.toml" };
+    Err(sprung::Error::value(path.display().to_string(), format!("expected a whole path, such as {example}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_are_saved_whole_and_replaced_only_when_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("my sound.toml").display().to_string();
+        let [bell, kick] = ["Church Bell", "Kick"].map(|name| Preset::find(name).unwrap());
+        assert_eq!(write(bell.clone(), &path, false).unwrap(), "my sound");
+        let saved = read(&path).unwrap();
+        assert_eq!((saved.name.as_str(), saved.patch, &saved.comment), ("my sound", bell.patch, &bell.comment));
+        assert!(matches!(write(kick.clone(), &path, false), Err(sprung::Error::Exists { .. })));
+        assert_eq!(read(&path).unwrap(), saved);
+        write(kick.clone(), &path, true).unwrap();
+        assert_eq!(read(&path).unwrap().patch, kick.patch);
+    }
+
+    #[test]
+    fn a_preset_that_would_not_load_is_not_saved() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(format!("{}.toml", "n".repeat(101))).display().to_string();
+        let error = write(Preset::find("Kick").unwrap().clone(), &path, false).unwrap_err().to_string();
+        assert!(error.contains("name: expected one line of at most 100 characters"), "{error}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn paths_are_whole() {
+        for path in ["", "bell.toml", "/tmp/bell", "-"] {
+            let error = read(path).unwrap_err();
+            assert!(error.contains("expected a whole path, such as "), "{error}");
+        }
+    }
+}

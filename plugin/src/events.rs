@@ -1,0 +1,187 @@
+//! The wrapper's note events as the engine's.
+
+use nice_plug::prelude::{NoteEvent, PluginApi};
+use nice_plug_core::midi::{Channel, Key, VoiceID};
+use sprung::engine::{EventKind, Expression, Notes};
+use sprung::io::midi::parse_message;
+use sprung::params::PARAMS;
+
+/// The engine's event, and its channel. `None` for what an instrument has no use for, and for a note without a key.
+/// Real-time safe.
+pub(crate) fn translate(event: &NoteEvent<()>, api: PluginApi) -> Option<(u8, EventKind)> {
+    // The wrapper mixes these two up where they come in through VST3.
+    let (swell, brightness) = match api {
+        PluginApi::Vst3 => (Expression::Brightness, Expression::Swell),
+        PluginApi::Clap | PluginApi::Standalone => (Expression::Swell, Expression::Brightness),
+    };
+    Some(match *event {
+        NoteEvent::NoteOn { voice_id, channel, key, velocity, .. } => {
+            let id = voice_id.id().unwrap_or(-1);
+            let kind = EventKind::NoteOn { key: key.number()?, detune: 0.0, velocity, id };
+            (channel.number().unwrap_or(0), kind)
+        }
+        NoteEvent::NoteOff { voice_id, channel, key, velocity, .. } => {
+            (0, EventKind::Release { notes: notes(voice_id, channel, key), velocity })
+        }
+        NoteEvent::Choke { voice_id, channel, key, .. } => {
+            (0, EventKind::Silence { notes: notes(voice_id, channel, key) })
+        }
+        NoteEvent::PolyPressure { voice_id, channel, key, pressure, .. } => {
+            express(notes(voice_id, channel, key), Expression::Pressure, pressure)
+        }
+        NoteEvent::PolyVolume { voice_id, channel, key, gain, .. } => {
+            express(notes(voice_id, channel, key), Expression::Volume, gain)
+        }
+        NoteEvent::PolyPan { voice_id, channel, key, pan, .. } => {
+            express(notes(voice_id, channel, key), Expression::Pan, pan)
+        }
+        NoteEvent::PolyTuning { voice_id, channel, key, tuning, .. } => {
+            express(notes(voice_id, channel, key), Expression::Tuning, tuning)
+        }
+        NoteEvent::PolyVibrato { voice_id, channel, key, vibrato, .. } => {
+            express(notes(voice_id, channel, key), Expression::Vibrato, vibrato)
+        }
+        NoteEvent::PolyExpression { voice_id, channel, key, expression, .. } => {
+            express(notes(voice_id, channel, key), swell, expression)
+        }
+        NoteEvent::PolyBrightness { voice_id, channel, key, brightness: value, .. } => {
+            express(notes(voice_id, channel, key), brightness, value)
+        }
+        NoteEvent::PolyModulation { voice_id, poly_modulation_id, normalized_offset, .. } => {
+            let param = PARAMS.get(poly_modulation_id as usize)?.param;
+            (0, EventKind::Modulate { id: Some(voice_id), param, offset: normalized_offset })
+        }
+        NoteEvent::MidiChannelPressure { channel, pressure, .. } => (channel, EventKind::ChannelPressure(pressure)),
+        NoteEvent::MidiPitchBend { channel, value, .. } => (channel, bend(value)),
+        NoteEvent::MidiCC { channel, cc, value, .. } => (channel, EventKind::Control { controller: cc, value }),
+        _ => return None,
+    })
+}
+
+/// The notes that are meant: what is not given is any. The wrapper's own fallback for a missing id is never used: it
+/// ignores ids that are there.
+fn notes(id: VoiceID, channel: Channel, key: Key) -> Notes {
+    Notes { id: id.id().filter(|id| *id >= 0), channel: channel.number(), key: key.number() }
+}
+
+fn express(notes: Notes, expression: Expression, value: f32) -> (u8, EventKind) {
+    (0, EventKind::Express { notes, expression, value })
+}
+
+/// A wheel's position 0–1 as an event: that of the 14 bits it was made from, if it was made from 14 bits, so that it
+/// is what a MIDI file gives.
+fn bend(value: f32) -> EventKind {
+    let steps = value * 16_383.0;
+    let whole = steps.round();
+    if (steps - whole).abs() < 0.01 && (0.0..=16_383.0).contains(&whole) {
+        let whole = whole as u16;
+        if let Some((_, kind)) = parse_message(&[0xE0, (whole & 127) as u8, (whole >> 7) as u8]) {
+            return kind;
+        }
+    }
+    EventKind::PitchBend(value * 2.0 - 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::params::Param;
+
+    const ID: VoiceID = VoiceID::ID(7);
+    const CHANNEL: Channel = Channel::Number(3);
+    const KEY: Key = Key::Number(60);
+    const ONE: Notes = Notes { id: Some(7), channel: Some(3), key: Some(60) };
+
+    #[test]
+    fn notes_are_translated() {
+        let off = |voice_id, channel, key| NoteEvent::NoteOff { timing: 0, voice_id, channel, key, velocity: 0.5 };
+        let release = |notes| Some((0, EventKind::Release { notes, velocity: 0.5 }));
+        let on = |voice_id, channel, key| NoteEvent::NoteOn { timing: 0, voice_id, channel, key, velocity: 0.5 };
+        let strike = |channel, id| Some((channel, EventKind::NoteOn { key: 60, detune: 0.0, velocity: 0.5, id }));
+        let choke = NoteEvent::Choke { timing: 0, voice_id: ID, channel: CHANNEL, key: KEY };
+        for (event, expected) in [
+            (on(ID, CHANNEL, KEY), strike(3, 7)),
+            (on(VoiceID::Wildcard, Channel::Wildcard, KEY), strike(0, -1)),
+            (on(ID, CHANNEL, Key::Wildcard), None),
+            (off(ID, CHANNEL, KEY), release(ONE)),
+            (off(VoiceID::Wildcard, CHANNEL, KEY), release(Notes { id: None, ..ONE })),
+            // VST3 hosts without note ids.
+            (off(VoiceID::ID(-1), CHANNEL, KEY), release(Notes { id: None, ..ONE })),
+            (off(VoiceID::Wildcard, Channel::Wildcard, Key::Wildcard), release(Notes::default())),
+            (choke, Some((0, EventKind::Silence { notes: ONE }))),
+        ] {
+            assert_eq!(translate(&event, PluginApi::Clap), expected, "{event:?}");
+        }
+    }
+
+    #[test]
+    fn expressions_are_translated() {
+        let (timing, voice_id, channel, key) = (0, ID, CHANNEL, KEY);
+        let says = |expression| Some((0, EventKind::Express { notes: ONE, expression, value: 0.25 }));
+        for (event, in_clap, in_vst3) in [
+            (
+                NoteEvent::PolyPressure { timing, voice_id, channel, key, pressure: 0.25 },
+                Expression::Pressure,
+                Expression::Pressure,
+            ),
+            (
+                NoteEvent::PolyVolume { timing, voice_id, channel, key, gain: 0.25 },
+                Expression::Volume,
+                Expression::Volume,
+            ),
+            (NoteEvent::PolyPan { timing, voice_id, channel, key, pan: 0.25 }, Expression::Pan, Expression::Pan),
+            (
+                NoteEvent::PolyTuning { timing, voice_id, channel, key, tuning: 0.25 },
+                Expression::Tuning,
+                Expression::Tuning,
+            ),
+            (
+                NoteEvent::PolyVibrato { timing, voice_id, channel, key, vibrato: 0.25 },
+                Expression::Vibrato,
+                Expression::Vibrato,
+            ),
+            (
+                NoteEvent::PolyExpression { timing, voice_id, channel, key, expression: 0.25 },
+                Expression::Swell,
+                Expression::Brightness,
+            ),
+            (
+                NoteEvent::PolyBrightness { timing, voice_id, channel, key, brightness: 0.25 },
+                Expression::Brightness,
+                Expression::Swell,
+            ),
+        ] {
+            assert_eq!(translate(&event, PluginApi::Clap), says(in_clap));
+            assert_eq!(translate(&event, PluginApi::Vst3), says(in_vst3));
+        }
+        let modulation = |poly_modulation_id| NoteEvent::PolyModulation {
+            timing,
+            voice_id: 7,
+            poly_modulation_id,
+            normalized_offset: 0.25,
+        };
+        let kind = EventKind::Modulate { id: Some(7), param: Param::Decay, offset: 0.25 };
+        assert_eq!(translate(&modulation(Param::Decay as u32), PluginApi::Clap), Some((0, kind)));
+        assert_eq!(translate(&modulation(9999), PluginApi::Clap), None);
+    }
+
+    #[test]
+    fn channels_are_translated_as_midi_files_are() {
+        for (event, bytes) in [
+            (NoteEvent::MidiCC { timing: 0, channel: 3, cc: 64, value: 100.0 / 127.0 }, &[0xB3, 64, 100][..]),
+            (NoteEvent::MidiChannelPressure { timing: 0, channel: 3, pressure: 9.0 / 127.0 }, &[0xD3, 9]),
+        ] {
+            assert_eq!(translate(&event, PluginApi::Clap), parse_message(bytes));
+        }
+        for steps in 0..16_384u16 {
+            let file = parse_message(&[0xE3, (steps & 127) as u8, (steps >> 7) as u8]);
+            let event = NoteEvent::MidiPitchBend { timing: 0, channel: 3, value: f32::from(steps) / 16_383.0 };
+            assert_eq!(translate(&event, PluginApi::Clap), file, "{steps}");
+        }
+        // A host whose wheel has no steps.
+        for (value, expected) in [(0.5, 0.0), (0.250_01, -0.499_98), (f32::NAN, f32::NAN)] {
+            let EventKind::PitchBend(bend) = bend(value) else { panic!("a bend is a bend") };
+            assert!((bend - expected).abs() < 1e-6 || (bend.is_nan() && expected.is_nan()), "{bend}");
+        }
+    }
+}

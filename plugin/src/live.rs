@@ -1,0 +1,195 @@
+//! The audio thread: follows the parameters, hands over events at their frames, renders.
+
+use crate::events::translate;
+use crate::params::SprungParams;
+use crate::plugin::Sprung;
+use crate::slate::Loaded;
+use crate::tail::Tail;
+use nice_plug::prelude::*;
+use nice_plug_core::midi::{Channel, Key, VoiceID};
+use sprung::engine::{Event, EventKind, Synth};
+use sprung::params::{PARAM_COUNT, PARAMS, Param};
+use std::ops::Range;
+
+/// Frames that are rendered at a time where the output is mono.
+const MONO_FRAMES: usize = 256;
+
+/// Most voices that there ever are.
+pub(crate) const MAX_VOICES: u32 = sprung::engine::voice_manager::MAX_VOICES as u32;
+
+/// A synth that plays what the host says. Real-time safe once built.
+pub(crate) struct Live {
+    synth: Synth,
+    /// The loaded patch that positions are compared with, and its generation.
+    loaded: Loaded,
+    generation: Option<u32>,
+    /// Where the knobs stood last.
+    positions: [f32; PARAM_COUNT],
+    /// How far modulation of the whole instrument turned them last.
+    offsets: [f32; PARAM_COUNT],
+    tempo: Option<f64>,
+    /// How many voices the host believes there are.
+    voices: u32,
+    tail: Tail,
+    /// How many of the notes that the synth says have ended the host has been told of.
+    told: usize,
+    /// What the instrument is rendered into when the host has one channel for it.
+    stereo: [[f32; MONO_FRAMES]; 2],
+}
+
+impl Live {
+    /// For a sample rate, and a host that plays in real time or renders to a file. Allocates.
+    pub(crate) fn new(sample_rate: f64, offline: bool, params: &SprungParams) -> Self {
+        let loaded = params.state().loaded;
+        let mut live = Self {
+            synth: Synth::new(sample_rate, loaded.seed),
+            loaded,
+            generation: None,
+            positions: loaded.positions,
+            offsets: [0.0; PARAM_COUNT],
+            tempo: None,
+            voices: MAX_VOICES,
+            tail: Tail::new(offline),
+            told: 0,
+            stereo: [[0.0; MONO_FRAMES]; 2],
+        };
+        live.reset(params);
+        live
+    }
+
+    /// Silences everything, and starts anew with the patch as it is now.
+    pub(crate) fn reset(&mut self, params: &SprungParams) {
+        self.generation = None;
+        self.follow(params);
+        self.synth.reset();
+        (self.offsets, self.tempo, self.told) = ([0.0; PARAM_COUNT], None, 0);
+    }
+
+    /// Takes over what has changed of the patch and its knobs. While another thread writes, all stays as it was until
+    /// the next block.
+    fn follow(&mut self, params: &SprungParams) {
+        let Some((positions, news)) = params.look(self.generation) else { return };
+        let moved = |index: usize| positions[index].to_bits() != self.positions[index].to_bits();
+        // While nothing sounds, values need no slope: what a host sets before it plays holds from the first note on.
+        let whole = news.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
+        if let Some((generation, loaded)) = news {
+            (self.generation, self.loaded) = (Some(generation), loaded);
+        }
+        if whole {
+            let mut patch = self.loaded.patch;
+            for (index, info) in PARAMS.iter().enumerate() {
+                patch.set(info.param, self.loaded.value(index, positions[index]));
+            }
+            self.synth.set_patch(&patch);
+        } else {
+            for (index, info) in PARAMS.iter().enumerate() {
+                if positions[index].to_bits() != self.positions[index].to_bits() {
+                    let value = self.loaded.value(index, positions[index]);
+                    self.handle(0, EventKind::Param { param: info.param, value });
+                }
+            }
+        }
+        self.positions = positions;
+    }
+
+    /// Takes over how far the whole instrument is modulated, and the tempo.
+    fn follow_host(&mut self, params: &SprungParams, tempo: Option<f64>) {
+        for (index, info) in PARAMS.iter().enumerate() {
+            let offset = params.knobs()[index].offset();
+            if offset != self.offsets[index] {
+                self.offsets[index] = offset;
+                self.handle(0, EventKind::Modulate { id: None, param: info.param, offset });
+            }
+        }
+        if let Some(tempo) = tempo
+            && self.tempo != Some(tempo)
+        {
+            self.tempo = Some(tempo);
+            self.handle(0, EventKind::Tempo(tempo as f32));
+        }
+    }
+
+    fn handle(&mut self, channel: u8, kind: EventKind) {
+        self.tail.forget();
+        self.synth.handle(&Event { frame: 0, channel, kind });
+    }
+
+    /// Renders a block over `outputs`, one channel or two.
+    pub(crate) fn process(
+        &mut self,
+        params: &SprungParams,
+        outputs: &mut [&mut [f32]],
+        context: &mut impl ProcessContext<Sprung>,
+    ) -> ProcessStatus {
+        self.follow(params);
+        self.follow_host(params, context.transport().tempo);
+        let voices = self.synth.patch().get(Param::Voices) as u32;
+        if voices != self.voices {
+            self.voices = voices;
+            context.set_current_voice_capacity(voices);
+        }
+        let api = context.plugin_api();
+        let frames = outputs.first().map_or(0, |channel| channel.len());
+        let mut frame = 0;
+        while let Some(event) = context.next_event() {
+            // The wrapper divides blocks at parameter changes; an event just before such a change comes with a time
+            // at the end of the part before it, and is handed over after that part's last frame.
+            let at = (event.timing() as usize).clamp(frame, frames);
+            self.render(outputs, frame..at, context);
+            frame = at;
+            if let Some((channel, kind)) = translate(&event, api) {
+                self.handle(channel, kind);
+                self.tell(frame, context);
+            }
+        }
+        self.render(outputs, frame..frames, context);
+        self.tail.status(&mut self.synth, frames)
+    }
+
+    /// Renders the frames at a range of the outputs, and tells the host which notes have ended.
+    fn render(&mut self, outputs: &mut [&mut [f32]], frames: Range<usize>, context: &mut impl ProcessContext<Sprung>) {
+        if frames.is_empty() {
+            return;
+        }
+        let end = frames.end;
+        match outputs {
+            [left, right, ..] => {
+                self.synth.process(&[], &mut left[frames.clone()], &mut right[frames]);
+                self.told = 0;
+                self.tell(end, context);
+            }
+            [mono] => {
+                for part in mono[frames].chunks_mut(MONO_FRAMES) {
+                    let [left, right] = &mut self.stereo;
+                    let (left, right) = (&mut left[..part.len()], &mut right[..part.len()]);
+                    self.synth.process(&[], left, right);
+                    for ((mono, left), right) in part.iter_mut().zip(left).zip(right) {
+                        *mono = 0.5 * (*left + *right);
+                    }
+                    self.told = 0;
+                    self.tell(end, context);
+                }
+            }
+            [] => {}
+        }
+    }
+
+    /// Tells the host at a frame of the block which notes have ended since it was last told.
+    fn tell(&mut self, frame: usize, context: &mut impl ProcessContext<Sprung>) {
+        let ended = self.synth.ended();
+        for note in ended.get(self.told..).unwrap_or_default() {
+            let voice_id = if note.id >= 0 { VoiceID::ID(note.id) } else { VoiceID::Wildcard };
+            // A host that takes no events, or no more of them, does without.
+            let _ = context.try_send_event(NoteEvent::VoiceTerminated {
+                timing: frame.saturating_sub(1) as u32,
+                voice_id,
+                channel: Channel::Number(note.channel),
+                key: Key::Number(note.key),
+            });
+        }
+        self.told = ended.len();
+    }
+}
+
+#[cfg(test)]
+mod tests;

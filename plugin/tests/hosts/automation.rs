@@ -1,0 +1,83 @@
+//! Parameter changes at their frames, with the engine's own bits.
+
+use crate::host::reference::{At, assert_same_bits, render};
+use crate::host::{Address, Instance, Rendered, Sent, Timed};
+use crate::parameters::host_value;
+use crate::patches::load;
+use sprung::engine::EventKind;
+use sprung::params::{PARAMS, Param};
+use sprung::patch::Patch;
+
+const RATE: f64 = 48_000.0;
+const FRAMES: usize = 9_600;
+
+/// Sizes of blocks that put events at starts, ends and in between.
+const BLOCKS: [usize; 4] = [1, 64, 480, 4_801];
+
+/// A sound in which most parameters are heard.
+pub(crate) fn patch() -> Patch {
+    Patch::default().with(Param::Exciter, 1.0).with(Param::Vibrato, 20.0).with(Param::Decay, 0.8)
+}
+
+/// A note, for the host and for the engine.
+pub(crate) fn on(frame: u64, channel: u8, key: u8, id: i32, velocity: f32) -> (Timed, At) {
+    let note = Address::note(channel.into(), key.into(), id);
+    let sent = Sent::On(note, velocity.into()).at(frame);
+    (sent, At(frame, channel, EventKind::NoteOn { key, detune: 0.0, velocity, id }))
+}
+
+/// Plays a song in a host and on the engine, and compares.
+#[track_caller]
+pub(crate) fn compare(what: &str, patch: &Patch, song: &[(Timed, At)]) {
+    let (sent, events): (Vec<Timed>, Vec<At>) = song.iter().copied().unzip();
+    let expected = render(patch, RATE, &events, FRAMES);
+    for block in BLOCKS {
+        let found = play(patch, &sent, block);
+        assert_same_bits(&format!("{what}, blocks of {block}"), &found.channels, &expected);
+    }
+}
+
+fn play(patch: &Patch, song: &[Timed], block: usize) -> Rendered {
+    let mut instance = Instance::new();
+    load(&mut instance, patch);
+    instance.play(RATE, 8_192).render(song, FRAMES, || block)
+}
+
+/// Each parameter moves to three places while notes sound, and before a note that hears what only new notes hear.
+pub(crate) fn a_parameter_changes_at_its_frame() {
+    let mut instance = Instance::new();
+    for info in PARAMS {
+        let id = instance.id(info.param);
+        let mut song = vec![on(0, 0, 60, 1, 0.9), on(7, 0, 67, 2, 0.5)];
+        let mut now = patch().get(info.param);
+        for (frame, position) in [(1_001, 0.3), (2_777, 0.8), (2_778, 0.55)] {
+            let value = info.denormalise(f64::from(position as f32));
+            // Between two values of the table, a position says which is meant.
+            let host = host_value(info, value);
+            let value = if host.fract() == 0.0 { value } else { info.denormalise(f64::from(host as f32)) };
+            // What changes nothing is not handed on: the engine would set out anew from its frame.
+            if std::mem::replace(&mut now, value) != value {
+                let event = EventKind::Param { param: info.param, value };
+                song.push((Sent::Value(id, host).at(frame), At(frame, 0, event)));
+            }
+            song.push(on(frame + 300, 0, 55 + frame as u8 % 7, frame as i32, 0.7));
+        }
+        song.sort_by_key(|(sent, _)| sent.frame);
+        compare(info.id, &patch(), &song);
+    }
+}
+
+/// Many changes at one frame, and one at each of many neighbouring frames.
+pub(crate) fn changes_may_be_as_dense_as_frames() {
+    let mut instance = Instance::new();
+    let [gain, tune] = [Param::Gain, Param::Tune].map(|param| (param, instance.id(param)));
+    let mut song = vec![on(0, 0, 60, 1, 0.9)];
+    for frame in 100..400 {
+        for (param, id) in [gain, tune] {
+            let position = (frame % 97) as f32 / 97.0;
+            let value = param.info().denormalise(position.into());
+            song.push((Sent::Value(id, position.into()).at(frame), At(frame, 0, EventKind::Param { param, value })));
+        }
+    }
+    compare("dense", &patch(), &song);
+}

@@ -1,0 +1,109 @@
+//! What a host changes of single notes: modulation by voice, expressions, MPE by channel; and the tempo.
+
+use crate::automation::{compare, on, patch};
+use crate::host::reference::At;
+use crate::host::{Address, Instance, Sent};
+use clack_host::events::event_types::NoteExpressionType as Kind;
+use sprung::engine::{EventKind, Expression, Notes};
+use sprung::params::{Change, PARAMS, Param};
+
+pub(crate) fn modulation_moves_one_voice_or_all() {
+    let mut instance = Instance::new();
+    for info in PARAMS.iter().filter(|info| matches!(info.change, Change::Smoothed(_))) {
+        let id = instance.id(info.param);
+        let amount = |note: i32, frame: u64, offset: f32| {
+            let kind = EventKind::Modulate { id: Some(note), param: info.param, offset };
+            (Sent::Modulate(id, Address::id(note), offset.into()).at(frame), At(frame, 0, kind))
+        };
+        let song = [
+            on(0, 0, 60, 1, 0.9),
+            on(1, 0, 64, 2, 0.8),
+            amount(1, 500, 0.125),
+            amount(2, 801, -0.25),
+            amount(1, 2_001, -0.0625),
+            amount(99, 2_500, 0.5),
+            on(5_000, 0, 67, 3, 0.6),
+            amount(3, 5_001, 0.125),
+        ];
+        compare(&format!("voices' {}", info.id), &patch(), &song);
+        // The whole instrument's reaches the shell added to the knob's position, in single precision.
+        let position = info.normalise(patch().get(info.param)) as f32;
+        let everyone = |frame: u64, offset: f32| {
+            let offset_there = (position + offset).clamp(0.0, 1.0) - position;
+            let kind = EventKind::Modulate { id: None, param: info.param, offset: offset_there };
+            (Sent::Modulate(id, Address::id(-1), offset.into()).at(frame), At(frame, 0, kind))
+        };
+        let all = [on(0, 0, 60, 1, 0.9), everyone(700, 0.125), on(900, 0, 64, 2, 0.8), everyone(3_000, 0.0)];
+        compare(&format!("everyone's {}", info.id), &patch(), &all);
+    }
+}
+
+pub(crate) fn expressions_reach_their_notes() {
+    let note = |channel: u8, key: u8, id: i32| {
+        (Address::note(channel.into(), key.into(), id), Notes { id: Some(id), channel: Some(channel), key: Some(key) })
+    };
+    let whole = (Address::id(-1), Notes::default());
+    let by_key = (Address::key(-1, 64), Notes { key: Some(64), ..Notes::default() });
+    for (kind, expression, values) in [
+        (Kind::Tuning, Expression::Tuning, [7.0, -0.5, 12.25]),
+        (Kind::Volume, Expression::Volume, [0.5, 2.0, 0.0]),
+        (Kind::Pan, Expression::Pan, [0.25, 1.0, 0.5]),
+        (Kind::Pressure, Expression::Pressure, [0.5, 1.0, 0.0]),
+        (Kind::Brightness, Expression::Brightness, [0.75, 0.0, 0.5]),
+        (Kind::Vibrato, Expression::Vibrato, [0.5, 1.0, 0.0]),
+        (Kind::Expression, Expression::Swell, [0.5, 0.25, 1.0]),
+    ] {
+        let express = |(address, notes): (Address, Notes), frame: u64, value: f64| {
+            // CLAP's pan goes from 0 to 1.
+            let given = if kind == Kind::Pan { value as f32 * 2.0 - 1.0 } else { value as f32 };
+            let event = EventKind::Express { notes, expression, value: given };
+            (Sent::Express(address, kind, value).at(frame), At(frame, 0, event))
+        };
+        let song = [
+            on(0, 0, 60, 1, 0.9),
+            on(0, 1, 64, 2, 0.8),
+            express(note(0, 60, 1), 0, values[0]),
+            express(note(1, 64, 2), 1_003, values[1]),
+            express(by_key, 2_001, values[2]),
+            express(note(5, 60, 1), 2_500, values[1]),
+            on(3_000, 0, 67, 3, 0.6),
+            express(whole, 4_001, values[0]),
+        ];
+        let patch = patch().with(Param::PressureVibrato, 80.0).with(Param::PressureDamping, 30.0);
+        compare(&format!("{kind:?}"), &patch, &song);
+    }
+}
+
+/// MPE as MIDI: a channel a note, each with its own bend, pressure and timbre; the main channel moves all.
+pub(crate) fn mpe_is_heard_by_channel() {
+    let midi = |frame: u64, data: [u8; 3]| {
+        let (channel, kind) = sprung::io::midi::parse_message(&data).unwrap();
+        (Sent::Midi(data).at(frame), At(frame, channel, kind))
+    };
+    let mut song = Vec::new();
+    for (channel, key) in [(1_u8, 60_u8), (2, 64), (3, 67)] {
+        let at = u64::from(channel) * 100;
+        song.extend([
+            midi(at, [0xB0 | channel, 101, 0]),
+            midi(at, [0xB0 | channel, 100, 0]),
+            midi(at, [0xB0 | channel, 6, 48]),
+            midi(at, [0xE0 | channel, 0, 64]),
+            midi(at, [0x90 | channel, key, 100]),
+            midi(at + 1_000, [0xE0 | channel, 7 * channel, 64 + channel]),
+            midi(at + 1_001, [0xD0 | channel, 30 * channel, 0]),
+            midi(at + 2_000, [0xB0 | channel, 74, 20 * channel]),
+            midi(at + 5_000, [0x80 | channel, key, 70]),
+        ]);
+    }
+    song.extend([midi(3_333, [0xE0, 0, 70]), midi(4_444, [0xB0, 64, 127])]);
+    song.sort_by_key(|(sent, _)| sent.frame);
+    compare("MPE", &patch().with(Param::PressureVibrato, 90.0), &song);
+}
+
+/// The tempo reaches the engine when it changes.
+pub(crate) fn the_tempo_is_handed_on() {
+    let tempo = |frame: u64, tempo: f64| (Sent::Tempo(tempo).at(frame), At(frame, 0, EventKind::Tempo(tempo as f32)));
+    let song =
+        [tempo(0, 120.0), on(3, 0, 60, 1, 0.9), tempo(1_000, 140.5), on(2_000, 0, 64, 2, 0.9), tempo(2_001, 30.25)];
+    compare("tempo", &patch(), &song);
+}

@@ -1,0 +1,74 @@
+//! A thousand instances come and go, and nothing is left of them.
+
+use crate::host::{Address, Instance, Sent, open};
+use crate::patches::{patches, state};
+use crate::process::{command, succeeds};
+use std::process::ExitCode;
+
+pub(crate) fn a_thousand_instances_leave_nothing_behind() {
+    succeeds(command("growth"));
+}
+
+pub(crate) fn the_library_can_be_opened_and_closed_again() {
+    succeeds(command("reopen"));
+}
+
+/// What this process holds, in bytes and numbers.
+#[derive(Debug)]
+struct Held {
+    allocated: usize,
+    resident: usize,
+    files: usize,
+    threads: usize,
+}
+
+impl Held {
+    #[allow(unsafe_code)]
+    fn now() -> Self {
+        let statm = std::fs::read_to_string("/proc/self/statm").unwrap();
+        let pages: usize = statm.split(' ').nth(1).unwrap().parse().unwrap();
+        let count = |folder: &str| std::fs::read_dir(folder).unwrap().count();
+        // SAFETY: the function has no conditions.
+        let heap = unsafe { libc::mallinfo2() };
+        Self {
+            allocated: heap.uordblks + heap.hblkhd,
+            resident: pages * 4096,
+            files: count("/proc/self/fd"),
+            threads: count("/proc/self/task"),
+        }
+    }
+}
+
+/// A whole life, with a patch loaded, saved, and a note played.
+fn live(instance: Instance, state: &[u8]) {
+    let mut instance = instance;
+    assert!(instance.load(state));
+    let mut player = instance.play(48_000.0, 64);
+    player.render(&[Sent::On(Address::note(0, 60, 1), 0.5).at(0)], 128, || 64);
+    let mut instance = player.stop();
+    assert!(!instance.save().is_empty());
+}
+
+/// What the processes that these tests start do.
+pub(crate) fn work(name: &str) -> ExitCode {
+    let state = state(&patches()[2].1);
+    if name == "reopen" {
+        for _ in 0..50 {
+            live(Instance::new(), &state);
+        }
+        return ExitCode::SUCCESS;
+    }
+    let entry = open();
+    let cycles = |count: usize| (0..count).for_each(|_| live(Instance::of(&entry, true), &state));
+    cycles(200);
+    let before = Held::now();
+    cycles(1_000);
+    let after = Held::now();
+    println!("before: {before:?}, after: {after:?}");
+    // What is allocated is exact, a kilobyte per instance would be a million; pages come and go in larger steps.
+    let kept = after.allocated > before.allocated + 100_000
+        || after.resident > before.resident + 8_000_000
+        || after.files > before.files
+        || after.threads > before.threads;
+    ExitCode::from(u8::from(kept))
+}

@@ -1,0 +1,64 @@
+//! The plugin as hosts find it: the library that cargo built beside this test, in the folders that each format wants.
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// Environment variable: a folder with `Sprung.clap` and `Sprung.vst3` to test in place of the library beside this test.
+const BUNDLES: &str = "SPRUNG_BUNDLES";
+
+/// `Sprung.clap`.
+pub(crate) fn clap() -> &'static Path {
+    static PATH: OnceLock<PathBuf> = OnceLock::new();
+    PATH.get_or_init(|| folder().join("Sprung.clap"))
+}
+
+/// `Sprung.vst3`, a folder.
+pub(crate) fn vst3() -> &'static Path {
+    static PATH: OnceLock<PathBuf> = OnceLock::new();
+    PATH.get_or_init(|| folder().join("Sprung.vst3"))
+}
+
+/// Where the bundles are: a folder of this process's own under the target directory, made on first use.
+fn folder() -> &'static Path {
+    static PATH: OnceLock<PathBuf> = OnceLock::new();
+    PATH.get_or_init(|| match std::env::var_os(BUNDLES) {
+        Some(folder) => folder.into(),
+        None => assemble(),
+    })
+}
+
+/// Lays the library out as bundles, once for all processes that this test starts.
+fn assemble() -> PathBuf {
+    let library = library();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("bundles-{}", std::process::id()));
+    let binary = folder.join("Sprung.vst3/Contents").join(architecture());
+    std::fs::create_dir_all(&binary).unwrap();
+    for to in [folder.join("Sprung.clap"), binary.join("Sprung.so")] {
+        std::fs::copy(&library, &to).unwrap_or_else(|error| panic!("{}: {error}", library.display()));
+    }
+    folder
+}
+
+/// Takes the bundles away again.
+pub(crate) fn remove() {
+    if std::env::var_os(BUNDLES).is_none() {
+        let _ = std::fs::remove_dir_all(folder());
+    }
+}
+
+/// A command's environment, so that a process which it starts tests the same bundles.
+pub(crate) fn environment() -> (&'static str, &'static Path) {
+    (BUNDLES, folder())
+}
+
+/// The dynamic library that cargo built with this test.
+fn library() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    let library = test.with_file_name("libsprung_plugin.so");
+    assert!(library.is_file(), "{}: cargo has not built the plugin's library", library.display());
+    library
+}
+
+fn architecture() -> &'static str {
+    if cfg!(target_arch = "x86_64") { "x86_64-linux" } else { "aarch64-linux" }
+}

@@ -1,0 +1,12 @@
+//! A CLAP host made with clack, in which every test plays.
+
+pub(crate) mod bundle;
+mod calls;
+mod event;
+mod instance;
+mod player;
+pub(crate) mod reference;
+
+pub(crate) use event::{Address, Sent, Timed};
+pub(crate) use instance::{Instance, Parameter, open};
+pub(crate) use player::{Ended, Player, Rendered};

@@ -1,0 +1,203 @@
+//! An instance that is processing: events in, audio and ended notes out, in blocks of any size.
+
+use super::calls::Host;
+use super::event::Address;
+use super::{Instance, Timed};
+use clack_extensions::audio_ports::{AudioPortInfoBuffer, PluginAudioPorts};
+use clack_extensions::tail::{PluginTail, TailLength};
+use clack_host::events::event_types::NoteEndEvent;
+use clack_host::events::io::{OutputEventBuffer, TryPushError};
+use clack_host::prelude::*;
+
+/// A note that the plugin says has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Ended {
+    /// From the start of the song.
+    pub(crate) frame: u64,
+    pub(crate) note: Address,
+}
+
+/// What came of a song.
+#[derive(Debug, Default)]
+pub(crate) struct Rendered {
+    /// The channels of the output.
+    pub(crate) channels: Vec<Vec<f32>>,
+    pub(crate) ended: Vec<Ended>,
+}
+
+/// The audio side of an instance: it may move to a thread of its own.
+pub(crate) struct Audio {
+    processor: StartedPluginAudioProcessor<Host>,
+    inputs: Vec<Vec<f32>>,
+    outputs: Vec<Vec<f32>>,
+    input_ports: AudioPorts,
+    output_ports: AudioPorts,
+    /// Whether the input is handed over in the memory of the output.
+    in_place: bool,
+    sent_back: Ends,
+    /// Frames since processing started.
+    clock: u64,
+}
+
+/// An instance and its audio, on one thread.
+pub(crate) struct Player {
+    pub(crate) instance: Instance,
+    pub(crate) audio: Audio,
+}
+
+/// Keeps the plugin's NOTE_END events, as many as it has room for, without allocating.
+struct Ends {
+    notes: Vec<(u32, Address)>,
+}
+
+impl OutputEventBuffer for Ends {
+    fn try_push(&mut self, event: &UnknownEvent) -> Result<(), TryPushError> {
+        let Some(end) = event.as_event::<NoteEndEvent>() else { return Ok(()) };
+        if self.notes.len() == self.notes.capacity() {
+            return Err(TryPushError::new());
+        }
+        self.notes.push((event.header().time(), end.pckn().into()));
+        Ok(())
+    }
+}
+
+impl Player {
+    /// Activates an instance for blocks of up to `max_block` frames and starts it.
+    pub(crate) fn new(mut instance: Instance, sample_rate: f64, max_block: u32) -> Self {
+        let audio = Audio::new(&mut instance, sample_rate, max_block);
+        Self { instance, audio }
+    }
+
+    /// Stops and deactivates, and gives the instance back.
+    pub(crate) fn stop(mut self) -> Instance {
+        self.instance.clack.deactivate(self.audio.processor.stop_processing());
+        self.instance
+    }
+
+    /// Plays a song of `frames` frames in blocks of the lengths that `block` gives.
+    pub(crate) fn render(&mut self, song: &[Timed], frames: usize, mut block: impl FnMut() -> usize) -> Rendered {
+        let mut rendered = Rendered { channels: vec![Vec::new(); self.audio.outputs.len()], ended: Vec::new() };
+        let mut events = EventBuffer::new();
+        let (mut start, mut next) = (0, 0);
+        while start < frames {
+            let len = block().min(frames - start).min(self.audio.max_block());
+            events.clear();
+            while let Some(timed) = song.get(next).filter(|timed| timed.frame < (start + len) as u64) {
+                timed.sent.push((timed.frame - start as u64) as u32, &mut events);
+                next += 1;
+            }
+            self.audio.process(&events, len);
+            for (channel, output) in rendered.channels.iter_mut().zip(&self.audio.outputs) {
+                channel.extend(&output[..len]);
+            }
+            let ended = self.audio.sent_back.notes.iter();
+            rendered.ended.extend(ended.map(|&(time, note)| Ended { frame: start as u64 + u64::from(time), note }));
+            start += len;
+            self.instance.run_callbacks();
+        }
+        rendered
+    }
+}
+
+impl Audio {
+    fn new(instance: &mut Instance, sample_rate: f64, max_block: u32) -> Self {
+        let channels = |instance: &mut Instance, is_input: bool| -> u32 {
+            let handle = instance.clack.plugin_handle();
+            let ports: PluginAudioPorts = handle.get_extension().expect("there are audio ports");
+            let mut buffer = AudioPortInfoBuffer::new();
+            assert!(ports.count(&handle, is_input) <= 1, "one port a direction");
+            (0..ports.count(&handle, is_input))
+                .map(|index| ports.get(&handle, index, is_input, &mut buffer).expect("a known port").channel_count)
+                .sum()
+        };
+        let [inputs, outputs] =
+            [true, false].map(|is_input| vec![vec![0.0; max_block as usize]; channels(instance, is_input) as usize]);
+        let configuration = PluginAudioConfiguration { sample_rate, min_frames_count: 1, max_frames_count: max_block };
+        let stopped = instance.clack.activate(|_, _| (), configuration).expect("the plugin can be activated");
+        Self {
+            processor: stopped.start_processing().expect("processing can start"),
+            input_ports: AudioPorts::with_capacity(inputs.len(), 1),
+            output_ports: AudioPorts::with_capacity(outputs.len(), 1),
+            inputs,
+            outputs,
+            in_place: false,
+            sent_back: Ends { notes: Vec::with_capacity(4096) },
+            clock: 0,
+        }
+    }
+
+    /// From now on the input lies in the memory of the output, and is noise.
+    pub(crate) fn work_in_place(&mut self) {
+        assert_eq!(self.inputs.len(), self.outputs.len(), "in place, there are as many inputs as outputs");
+        self.in_place = true;
+    }
+
+    /// Fills the input bus with something loud.
+    pub(crate) fn feed_noise(&mut self) {
+        for (channel, seed) in self.inputs.iter_mut().zip(1_u64..) {
+            for (sample, n) in channel.iter_mut().zip(0..) {
+                *sample = sprung::dsp::random::uniform(seed, n);
+            }
+        }
+    }
+
+    pub(crate) fn outputs(&self) -> &[Vec<f32>] {
+        &self.outputs
+    }
+
+    fn max_block(&self) -> usize {
+        self.outputs[0].len()
+    }
+
+    /// Processes the next `frames` frames. Does not allocate by itself.
+    #[allow(unsafe_code)]
+    pub(crate) fn process(&mut self, events: &EventBuffer, frames: usize) -> ProcessStatus {
+        self.sent_back.notes.clear();
+        // What the plugin leaves unwritten must show.
+        let unwritten = if self.in_place { 0.9 } else { f32::NAN };
+        self.outputs.iter_mut().for_each(|channel| channel[..frames].fill(unwritten));
+        let mut outputs = self.output_ports.with_output_buffers([AudioPortBuffer {
+            latency: 0,
+            channels: AudioPortBufferType::f32_output_only(
+                self.outputs.iter_mut().map(|channel| &mut channel[..frames]),
+            ),
+        }]);
+        let same_memory = [outputs.as_raw_buffers()[0]];
+        let inputs = if self.inputs.is_empty() {
+            InputAudioBuffers::empty()
+        } else if self.in_place {
+            // SAFETY: the buffers are those of the output, which outlive this call and have `frames` frames.
+            unsafe { InputAudioBuffers::from_raw_buffers(&same_memory, frames as u32) }
+        } else {
+            self.input_ports.with_input_buffers([AudioPortBuffer {
+                latency: 0,
+                channels: AudioPortBufferType::f32_input_only(
+                    self.inputs.iter_mut().map(|channel| InputChannel::variable(&mut channel[..frames])),
+                ),
+            }])
+        };
+        let status = self.processor.process(
+            &inputs,
+            &mut outputs,
+            &InputEvents::from_buffer(events),
+            &mut OutputEvents::from_buffer(&mut self.sent_back),
+            Some(self.clock),
+            None,
+        );
+        self.clock += frames as u64;
+        status.expect("processing succeeds")
+    }
+
+    /// The tail that the plugin tells.
+    pub(crate) fn tail(&mut self) -> TailLength {
+        let handle = self.processor.plugin_handle();
+        let tail: PluginTail = handle.get_extension().expect("there is a tail");
+        tail.get(&handle)
+    }
+
+    /// Silences the plugin as hosts do between songs.
+    pub(crate) fn reset(&mut self) {
+        self.processor.reset();
+        self.clock = 0;
+    }
+}

@@ -1,0 +1,60 @@
+//! What the engine itself plays: the reference for every comparison of bits.
+
+use sprung::engine::{Event, EventKind, Synth};
+use sprung::patch::Patch;
+
+/// An event of the engine at a frame of the song.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct At(pub(crate) u64, pub(crate) u8, pub(crate) EventKind);
+
+/// Renders left and right of `frames` frames in one go.
+pub(crate) fn render(patch: &Patch, sample_rate: f64, song: &[At], frames: usize) -> [Vec<f32>; 2] {
+    let mut synth = Synth::new(sample_rate, 0);
+    synth.set_patch(patch);
+    synth.reset();
+    let events: Vec<Event> =
+        song.iter().map(|&At(frame, channel, kind)| Event { frame: frame as u32, channel, kind }).collect();
+    let [mut left, mut right] = [(); 2].map(|()| vec![0.0; frames]);
+    synth.process(&events, &mut left, &mut right);
+    [left, right]
+}
+
+/// Fails unless both have the same bits: says where they part, and by how much at worst.
+#[track_caller]
+pub(crate) fn assert_same_bits(what: &str, found: &[Vec<f32>], expected: &[Vec<f32>]) {
+    assert_eq!(found.len(), expected.len(), "{what}: channels");
+    for (channel, (found, expected)) in found.iter().zip(expected).enumerate() {
+        assert_eq!(found.len(), expected.len(), "{what}: frames");
+        let pairs = || found.iter().zip(expected);
+        if let Some(frame) = pairs().position(|(a, b)| a.to_bits() != b.to_bits()) {
+            let differing = pairs().filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+            let worst = pairs().map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            panic!(
+                "{what}: channel {channel} differs from frame {frame} on ({} instead of {}), in {differing} of {} \
+                 frames, by up to {worst:e}",
+                found[frame],
+                expected[frame],
+                found.len(),
+            );
+        }
+    }
+}
+
+/// Fails if something is not a number, infinite or subnormal, or if all is silent.
+#[track_caller]
+pub(crate) fn assert_sound(what: &str, channels: &[Vec<f32>]) {
+    assert_clean(what, channels);
+    let peak = channels.iter().flatten().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+    assert!(peak > 1e-3, "{what}: silent, the peak is {peak}");
+}
+
+/// Fails if something is not a number, infinite or subnormal.
+#[track_caller]
+pub(crate) fn assert_clean(what: &str, channels: &[Vec<f32>]) {
+    for (channel, samples) in channels.iter().enumerate() {
+        let bad = samples.iter().position(|sample| !sample.is_finite() || sample.is_subnormal());
+        if let Some(frame) = bad {
+            panic!("{what}: {:e} at frame {frame} of channel {channel}", samples[frame]);
+        }
+    }
+}

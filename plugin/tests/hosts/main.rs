@@ -1,0 +1,186 @@
+//! The plugin in real hosts: CLAP in clack, VST3 in pedalboard and dawdreamer, the window under Xvfb.
+//!
+//! `plugin/tests/README.md` lists what is covered and where.
+
+mod automation;
+mod expression;
+mod fuzz;
+mod growth;
+mod host;
+mod lifecycle;
+mod notes;
+mod parameters;
+mod patches;
+mod phrase;
+mod process;
+mod realtime;
+mod scan;
+mod screen;
+mod song;
+mod state;
+mod vst3;
+mod window;
+
+use libtest_mimic::{Arguments, Trial};
+use std::process::ExitCode;
+
+/// What a test needs beyond Rust.
+#[derive(Clone, Copy)]
+enum Needs {
+    Nothing,
+    /// A screen that nobody looks at.
+    Screen,
+    /// The Python hosts.
+    Python,
+    /// Both.
+    PythonAndScreen,
+}
+
+impl Needs {
+    /// What of it is not there.
+    fn missing(self) -> Option<&'static str> {
+        let screen = || (!is_installed("Xvfb")).then_some("Xvfb");
+        let python = || (!vst3::python().is_file()).then_some("pedalboard and dawdreamer in target/python");
+        match self {
+            Needs::Nothing => None,
+            Needs::Screen => screen(),
+            Needs::Python => python(),
+            Needs::PythonAndScreen => python().or_else(screen),
+        }
+    }
+}
+
+/// Whether a program can be run.
+fn is_installed(program: &str) -> bool {
+    std::env::var_os("PATH")
+        .is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(program).is_file()))
+}
+
+/// Tests by their modules and names, and what those of a module need.
+macro_rules! trials {
+    ($($needs:ident: $module:ident { $($test:ident)* })*) => {
+        vec![$($((concat!(stringify!($module), "::", stringify!($test)), Needs::$needs, $module::$test as fn()),)*)*]
+    };
+}
+
+fn main() -> ExitCode {
+    if let Some(work) = process::work() {
+        return match work.as_str() {
+            "growth" | "reopen" => growth::work(&work),
+            "window" | "window-playing" => window::work(&work),
+            _ => realtime::work(&work),
+        };
+    }
+    let trials = trials! {
+        Nothing: scan {
+            the_descriptor_is_complete
+            no_other_plugin_is_made
+            all_symbols_are_found_at_once
+            one_stereo_output_comes_first_and_every_layout_is_valid
+            notes_come_in_by_clap_and_midi
+            latency_voices_and_rendering_are_told
+        }
+        Nothing: parameters {
+            ids_are_those_of_the_table_for_ever
+            all_of_the_table_is_told
+            a_new_instance_has_the_defaults
+            texts_and_values_go_both_ways
+            what_people_type_is_understood_or_refused
+            a_flush_sets_values
+            senseless_values_and_unknown_ids_change_nothing_else
+            remote_control_pages_have_every_parameter_once
+        }
+        Nothing: lifecycle {
+            every_rate_and_block_size_plays
+            reset_and_reactivation_start_anew
+            instances_do_not_hear_each_other
+            instances_on_several_threads_play_at_once
+            every_layout_plays_and_ignores_its_input
+            the_tail_is_exact_and_then_the_plugin_may_sleep
+            blocks_without_frames_and_short_blocks_do_no_harm
+            starts_and_stops_need_no_block_in_between
+            a_host_without_thread_checks_gets_the_same
+            audio_may_run_on_any_thread
+        }
+        Nothing: notes {
+            a_note_ends_when_its_sound_does
+            every_note_ends_once_also_when_stolen_or_struck_again
+            a_stolen_note_ends_when_it_is_stolen
+            notes_are_found_by_id_key_channel_or_not_at_all
+            a_choke_silences_within_a_fade
+            stray_events_do_no_harm
+            a_flood_of_events_loses_none
+        }
+        Nothing: automation {
+            a_parameter_changes_at_its_frame
+            changes_may_be_as_dense_as_frames
+        }
+        Nothing: expression {
+            modulation_moves_one_voice_or_all
+            expressions_reach_their_notes
+            mpe_is_heard_by_channel
+            the_tempo_is_handed_on
+        }
+        Nothing: state {
+            what_is_saved_comes_back_to_the_byte
+            every_way_to_set_values_leaves_the_same_state
+            modulation_is_not_saved
+            a_state_loaded_while_processing_is_heard_exactly
+            touching_a_knob_keeps_the_exact_value
+            streams_may_deliver_a_byte_at_a_time
+            what_cannot_be_read_changes_nothing
+            damaged_states_never_leave_half_a_patch
+            states_of_all_versions_load
+            parameters_that_a_state_lacks_have_their_defaults
+            two_states_in_turn_while_audio_runs_are_never_mixed
+        }
+        Nothing: fuzz {
+            random_events_give_clean_sound_at_every_rate
+            random_events_sound_the_same_in_all_blocks
+            random_settings_sound_clean
+            wild_values_sound_clean
+        }
+        Nothing: song {
+            one_channel_has_the_bits_of_the_command
+            sixteen_channels_have_the_bits_of_one_synth
+        }
+        Nothing: growth {
+            a_thousand_instances_leave_nothing_behind
+            the_library_can_be_opened_and_closed_again
+        }
+        Nothing: realtime {
+            the_watch_bites
+            process_neither_allocates_nor_locks_nor_calls_the_system
+        }
+        Screen: realtime {
+            nor_does_it_with_the_window_open
+        }
+        Screen: window {
+            opens_and_closes_fifty_times
+            opens_and_closes_while_audio_runs
+        }
+        Python: vst3 {
+            every_parameter_can_be_set_and_read
+            one_channel_has_the_bits_of_the_command
+            what_is_saved_comes_back
+            automation_has_the_bits_of_the_engine
+        }
+        PythonAndScreen: vst3 {
+            the_window_opens_and_closes_fifty_times
+        }
+    };
+    let trial = |(name, needs, test): (&str, Needs, fn())| {
+        let missing = needs.missing();
+        if let Some(missing) = missing {
+            println!("{name} is ignored: it needs {missing}, which ‘cargo xtask setup’ installs");
+        }
+        let run = move || {
+            test();
+            Ok(())
+        };
+        Trial::test(name, run).with_ignored_flag(missing.is_some())
+    };
+    let conclusion = libtest_mimic::run(&Arguments::from_args(), trials.into_iter().map(trial).collect());
+    host::bundle::remove();
+    conclusion.exit_code()
+}

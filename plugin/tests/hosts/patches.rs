@@ -1,0 +1,79 @@
+//! Sounds to play, and how they get into the plugin: as the state that a host's project would keep.
+
+use crate::host::Instance;
+use sprung::params::Param;
+use sprung::patch::{Mode, ModeTable, Patch};
+use sprung::preset::Preset;
+
+/// Sounds that between them use every exciter, few and many modes, both laws, and values that no knob's position gives.
+pub(crate) fn patches() -> Vec<(&'static str, Patch)> {
+    let factory = |name: &'static str| (name, Preset::find(name).unwrap().patch);
+    let mut odd = Patch::default()
+        .with(Param::Exciter, 2.0)
+        .with(Param::Decay, 0.731_234_5)
+        .with(Param::Mode, 2.0)
+        .with(Param::Glide, 0.0503)
+        .with(Param::Vibrato, 13.7)
+        .with(Param::VibratoRate, 5.321)
+        .with(Param::PressureDamping, 33.3)
+        .with(Param::PressureVibrato, 71.0)
+        .with(Param::Gain, -7.77);
+    odd.modes = ModeTable::new(&[
+        Mode::UNIT,
+        Mode { ratio: 2.756_1, level: 0.5, decay: 0.6, strike: 0.8, pan: -0.7 },
+        Mode { ratio: 5.404, level: -0.25, decay: 0.3, strike: 0.0, pan: 0.7 },
+    ]);
+    vec![
+        ("defaults", Patch::default()),
+        factory("Marimba"),
+        factory("Church Bell"),
+        factory("Snare"),
+        ("odd legato", odd),
+        ("classic", odd.with(Param::Coefficients, 1.0).with(Param::Mode, 0.0)),
+    ]
+}
+
+/// A patch as the state that holds it.
+pub(crate) fn state(patch: &Patch) -> Vec<u8> {
+    let preset = Preset {
+        name: "Of a test".to_owned(),
+        author: String::new(),
+        tags: Vec::new(),
+        comment: String::new(),
+        patch: *patch,
+    };
+    state_of_text(&preset.to_toml())
+}
+
+/// A preset file's text as the state that holds it.
+pub(crate) fn state_of_text(preset: &str) -> Vec<u8> {
+    let own = serde_json::json!({ "format": 1, "preset": preset, "seed": 0, "window": [880, 640] });
+    enclosed(&own.to_string())
+}
+
+/// The plugin's own part of a state, with what the wrapper puts around it.
+pub(crate) fn enclosed(own: &str) -> Vec<u8> {
+    let whole = serde_json::json!({ "version": "0.1.0", "params": {}, "fields": { "sprung": own } }).to_string();
+    let mut bytes = (whole.len() as u64).to_le_bytes().to_vec();
+    bytes.extend(whole.as_bytes());
+    bytes
+}
+
+/// The plugin's own part of a saved state.
+pub(crate) fn own_part(state: &[u8]) -> serde_json::Value {
+    let whole: serde_json::Value = serde_json::from_slice(&state[8..]).unwrap();
+    serde_json::from_str(whole["fields"]["sprung"].as_str().expect("the plugin keeps its own field")).unwrap()
+}
+
+/// The patch in a saved state.
+pub(crate) fn patch_in(state: &[u8]) -> Patch {
+    let own = own_part(state);
+    Preset::parse(own["preset"].as_str().unwrap(), "the saved state").unwrap().patch
+}
+
+/// Puts a patch into an instance.
+#[track_caller]
+pub(crate) fn load(instance: &mut Instance, patch: &Patch) {
+    assert!(instance.load(&state(patch)), "the plugin takes a state");
+    assert_eq!(patch_in(&instance.save()), *patch, "it has the patch that was loaded, to the bit");
+}

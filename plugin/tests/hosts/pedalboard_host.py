@@ -1,0 +1,58 @@
+"""Does in pedalboard what a line of standard input says, a JSON list: a command and its arguments. Writes JSON."""
+
+import json
+import re
+import sys
+
+import numpy
+import pedalboard._pedalboard
+from pedalboard import VST3Plugin
+
+
+def load(plugin, preset=None):
+    # It would try out thousands of values of each of the 2,080 parameters that stand for MIDI controllers.
+    pedalboard._pedalboard.PARAMETER_NAME_REGEXES_TO_IGNORE.add(re.compile(r"^MIDI Ch\. "))
+    synth = VST3Plugin(plugin)
+    if preset:
+        synth.load_preset(preset)
+    return synth
+
+
+def render(plugin, preset, messages, sample_rate, block, frames, audio):
+    """Plays MIDI messages, each a frame and bytes; the samples go to a file, channel by channel."""
+    synth = load(plugin, preset)
+    timed = [(bytes(data), frame / sample_rate) for frame, data in messages]
+    samples = synth(timed, (frames + 0.25) / sample_rate, sample_rate, num_channels=2, buffer_size=block)
+    samples = numpy.ascontiguousarray(samples[:, :frames], dtype="float32")
+    samples.tofile(audio)
+    return list(samples.shape)
+
+
+def parameters(plugin, positions):
+    """Sets each parameter to each position: name, and (position, value, text) of each."""
+    synth = load(plugin)
+    rows = []
+    for parameter in synth.parameters.values():
+        tried = []
+        for position in positions:
+            parameter.raw_value = position
+            tried.append([position, parameter.raw_value, parameter.string_value])
+        rows.append([parameter.name, tried])
+    return [rows, synth.name, synth.manufacturer_name, synth.version, synth.is_instrument, synth.category]
+
+
+def state(plugin, preset):
+    """Loads a preset, moves the state into another instance; values and states of both."""
+    first = load(plugin, preset)
+    second = load(plugin)
+    second.raw_state = first.raw_state
+    values = [[parameter.raw_value for parameter in synth.parameters.values()] for synth in (first, second)]
+    return [values, first.raw_state == second.raw_state]
+
+
+def main():
+    arguments = json.loads(sys.stdin.read())
+    print(json.dumps({"render": render, "parameters": parameters, "state": state}[arguments[0]](*arguments[1:])))
+
+
+main()

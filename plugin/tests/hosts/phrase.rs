@@ -1,0 +1,162 @@
+//! A phrase that uses all that MIDI has for musicians, as a MIDI file, as what hosts send, and as the engine's events.
+
+use crate::host::{Address, Sent, Timed};
+use midly::num::{u4, u7, u15, u24, u28};
+use midly::{Format, Header, MetaMessage, MidiMessage, Smf, Timing, TrackEvent, TrackEventKind};
+use sprung::io::Song;
+
+/// Frames per second of the frames below.
+pub(crate) const SAMPLE_RATE: u32 = 48_000;
+
+/// Length of the phrase in frames.
+pub(crate) const FRAMES: usize = 72_000;
+
+/// How a host hands notes over; everything else comes as MIDI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Dialect {
+    Clap,
+    Midi,
+}
+
+/// Messages of one channel, by frame. Those that set the bend range lie well apart, since VST3 hands controllers
+/// over as parameters, and parameters that change in one block of some hosts have no order.
+pub(crate) fn messages() -> Vec<(u64, [u8; 3])> {
+    vec![
+        (0, [0xB0, 7, 110]),
+        (0, [0x90, 48, 100]),
+        (1, [0x90, 55, 1]),
+        (4_801, [0x90, 60, 127]),
+        (5_000, [0xE0, 0x7F, 0x7F]),
+        (5_777, [0xE0, 0x00, 0x00]),
+        (6_301, [0xE0, 0x01, 0x40]),
+        (7_200, [0xB0, 1, 64]),
+        (9_599, [0x80, 48, 64]),
+        (9_600, [0xE0, 0x00, 0x40]),
+        (12_007, [0xB0, 64, 127]),
+        (12_013, [0x90, 64, 80]),
+        (13_000, [0x90, 64, 0]),
+        (14_000, [0x90, 64, 90]),
+        (15_000, [0xA0, 64, 100]),
+        (16_000, [0x80, 64, 0]),
+        (18_003, [0xB0, 64, 0]),
+        (20_000, [0xD0, 90, 0]),
+        (21_111, [0xD0, 0, 0]),
+        (22_000, [0xB0, 101, 0]),
+        (22_600, [0xB0, 100, 0]),
+        (23_200, [0xB0, 6, 12]),
+        (24_000, [0x90, 72, 99]),
+        (24_000, [0x90, 76, 98]),
+        (24_000, [0x90, 79, 97]),
+        (25_013, [0xE0, 0x55, 0x61]),
+        (27_000, [0xB0, 66, 127]),
+        (28_000, [0x80, 72, 30]),
+        (28_001, [0x80, 76, 127]),
+        (30_000, [0xB0, 66, 0]),
+        (31_000, [0xB0, 10, 20]),
+        (31_500, [0xB0, 11, 70]),
+        (32_000, [0xB0, 67, 127]),
+        (33_000, [0x90, 50, 101]),
+        (40_000, [0xB0, 121, 0]),
+        (45_000, [0x90, 62, 60]),
+        (52_000, [0xB0, 123, 0]),
+        (56_000, [0x90, 43, 120]),
+        (60_001, [0xB0, 120, 0]),
+    ]
+}
+
+/// The phrase with each controller, bend and pressure of the channel at the start of its block.
+pub(crate) fn with_controllers_by_block(block: u64) -> Vec<(u64, [u8; 3])> {
+    let is_controller = |data: [u8; 3]| matches!(data[0] & 0xF0, 0xB0 | 0xD0 | 0xE0);
+    let mut moved = messages();
+    moved.iter_mut().filter(|(_, data)| is_controller(*data)).for_each(|(frame, _)| *frame -= *frame % block);
+    // On one frame, controllers come first.
+    moved.sort_by_key(|&(frame, data)| (frame, !is_controller(data)));
+    moved
+}
+
+/// The phrase as the bytes of a MIDI file.
+pub(crate) fn midi_file() -> Vec<u8> {
+    file(&messages())
+}
+
+/// Messages as the bytes of a MIDI file with four ticks a frame. Each message lies a quarter of a frame late: hosts
+/// that cut times down to whole frames put it where those do that round them, and where `sprung render` puts it.
+pub(crate) fn file(messages: &[(u64, [u8; 3])]) -> Vec<u8> {
+    let tempo = TrackEventKind::Meta(MetaMessage::Tempo(u24::new(125_000)));
+    let mut track = vec![TrackEvent { delta: u28::new(0), kind: tempo }];
+    let mut now = 0;
+    let mut add = |tick: u64, kind| {
+        track.push(TrackEvent { delta: u28::new((tick - now) as u32), kind });
+        now = tick;
+    };
+    for &(frame, data) in messages {
+        add(4 * frame + 1, TrackEventKind::Midi { channel: u4::new(data[0] & 15), message: message(data) });
+    }
+    add(4 * FRAMES as u64, TrackEventKind::Meta(MetaMessage::EndOfTrack));
+    let header = Header::new(Format::SingleTrack, Timing::Metrical(u15::new((SAMPLE_RATE / 2) as u16)));
+    let mut bytes = Vec::new();
+    Smf { header, tracks: vec![track] }.write(&mut bytes).unwrap();
+    bytes
+}
+
+fn message([status, first, second]: [u8; 3]) -> MidiMessage {
+    let (key, vel, value) = (u7::new(first), u7::new(second), u7::new(second));
+    match status & 0xF0 {
+        0x80 => MidiMessage::NoteOff { key, vel },
+        0x90 => MidiMessage::NoteOn { key, vel },
+        0xA0 => MidiMessage::Aftertouch { key, vel },
+        0xB0 => MidiMessage::Controller { controller: key, value },
+        0xD0 => MidiMessage::ChannelAftertouch { vel: key },
+        0xE0 => {
+            let bend = i16::from(first) + (i16::from(second) << 7) - 8192;
+            MidiMessage::PitchBend { bend: midly::PitchBend::from_int(bend) }
+        }
+        _ => panic!("no message of the phrase: {status:#x}"),
+    }
+}
+
+/// A song as `sprung render` reads it.
+pub(crate) fn song(bytes: &[u8]) -> Song {
+    Song::parse(bytes, "the phrase").unwrap()
+}
+
+/// MIDI messages as a host sends them.
+pub(crate) fn sent(messages: &[(u64, [u8; 3])], dialect: Dialect) -> Vec<Timed> {
+    let translate = |&(frame, data): &(u64, [u8; 3])| {
+        let note = Address::key(i16::from(data[0] & 15), data[1].into());
+        let velocity = f64::from(data[2]) / 127.0;
+        let sent = match (dialect, data[0] & 0xF0) {
+            // MIDI does not tell how fast these keys were let go: hosts make it half way.
+            (Dialect::Clap, 0x90) if data[2] == 0 => Sent::Off(note, 0.5),
+            (Dialect::Clap, 0x90) => Sent::On(note, velocity),
+            (Dialect::Clap, 0x80) => Sent::Off(note, velocity),
+            _ => Sent::Midi(data),
+        };
+        sent.at(frame)
+    };
+    messages.iter().map(translate).collect()
+}
+
+/// The messages of a MIDI file, by frame, program changes left out, since a plugin plays one patch.
+pub(crate) fn messages_of(bytes: &[u8], sample_rate: f64) -> Vec<(u64, [u8; 3])> {
+    // The times come from the library's own reader, the bytes from the file: both have the same events in one order.
+    let song = song(bytes);
+    let smf = Smf::parse(bytes).unwrap();
+    let mut raw = Vec::new();
+    for track in &smf.tracks {
+        let mut tick = 0_u64;
+        for event in track {
+            tick += u64::from(event.delta.as_int());
+            if let TrackEventKind::Midi { channel, message } = event.kind {
+                let mut data = Vec::new();
+                midly::live::LiveEvent::Midi { channel, message }.write(&mut data).unwrap();
+                data.resize(3, 0);
+                raw.push((tick, [data[0], data[1], data[2]]));
+            }
+        }
+    }
+    raw.sort_by_key(|(tick, _)| *tick);
+    assert_eq!(raw.len(), song.events.len());
+    let timed = song.events.iter().zip(raw).map(|(event, (_, data))| (event.frame(sample_rate), data));
+    timed.filter(|(_, data)| data[0] & 0xF0 != 0xC0).collect()
+}

@@ -1,0 +1,201 @@
+//! The audio thread under watch: no allocation, no lock, no system call in `process`, whatever the other threads do.
+//!
+//! `probe.c` is preloaded into a process of its own. On the watched thread it counts allocations and the locks of the
+//! system's library, and the kernel refuses every system call: a lock made of atomic operations that waits is one.
+
+use crate::host::{Address, Instance, Player, Sent};
+use crate::patches::{patches, state};
+use crate::process::{command, scratch, succeeds, wait_until};
+use crate::screen::Screen;
+use crate::window::{Editor, Parent};
+use clack_host::events::event_types::NoteExpressionType as Kind;
+use clack_host::prelude::*;
+use sprung::dsp::random::{key, uniform};
+use std::ffi::CStr;
+use std::process::{Command, ExitCode};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+
+/// Blocks that are played while the other threads are at work, at least.
+const BLOCKS: u32 = 4_000;
+
+pub(crate) fn process_neither_allocates_nor_locks_nor_calls_the_system() {
+    succeeds(watched("watch"));
+}
+
+pub(crate) fn nor_does_it_with_the_window_open() {
+    let screen = Screen::new();
+    let mut command = watched("watch-window");
+    command.env("DISPLAY", &screen.display);
+    succeeds(command);
+}
+
+/// The watch sees what it is for.
+pub(crate) fn the_watch_bites() {
+    for (sin, seen) in [("sin-malloc", "malloc"), ("sin-lock", "pthread_mutex_lock"), ("sin-call", "a system call")] {
+        let output = watched(sin).output().unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success() && stderr.contains(&format!("the first is {seen}")), "{sin}: {stderr}");
+    }
+}
+
+/// This program, to do work with the probe preloaded.
+fn watched(work: &str) -> Command {
+    static BUILD: Mutex<bool> = Mutex::new(false);
+    let probe = scratch("probe.so");
+    let mut built = BUILD.lock().unwrap();
+    if !*built {
+        let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/probe.c");
+        let mut cc = Command::new("cc");
+        cc.args(["-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-O1", "-o"]).arg(&probe).arg(source);
+        succeeds(cc);
+        *built = true;
+    }
+    let mut command = command(work);
+    command.env("LD_PRELOAD", probe);
+    command
+}
+
+/// A function of the probe.
+#[allow(unsafe_code)]
+fn probe(name: &CStr) -> extern "C" fn() -> i32 {
+    // SAFETY: the probe is preloaded; its functions have this signature.
+    unsafe {
+        let function = libc::dlsym(libc::RTLD_DEFAULT, name.as_ptr());
+        assert!(!function.is_null(), "{name:?}: the probe is not preloaded");
+        std::mem::transmute(function)
+    }
+}
+
+/// What a process that was started under the probe does.
+pub(crate) fn work(name: &str) -> ExitCode {
+    match name {
+        "watch" => play_under_watch(None),
+        "watch-window" => play_under_watch(Some(Parent::new())),
+        sin => commit(sin),
+    }
+}
+
+/// Plays on a watched thread while this one does what main threads do.
+fn play_under_watch(parent: Option<Parent>) -> ExitCode {
+    let mut instance = Instance::new();
+    let blocks = storm(&mut instance);
+    let states: Vec<Vec<u8>> = patches().iter().map(|(_, patch)| state(patch)).collect();
+    let Player { mut instance, mut audio } = instance.play(48_000.0, 64);
+    let editor = parent.as_ref().map(|parent| Editor::open(&mut instance, parent));
+    let (stop, played, loudest) = (AtomicBool::new(false), AtomicU32::new(0), AtomicU32::new(0));
+    let watch = probe(c"sprung_watch");
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            // One unwatched block: what a thread needs when it runs for the first time is not `process`'s doing.
+            audio.process(&EventBuffer::new(), 64);
+            assert_eq!(watch(), 0, "the kernel cannot refuse system calls");
+            while !stop.load(Ordering::Relaxed) {
+                let n = played.load(Ordering::Relaxed);
+                audio.process(&blocks[n as usize % blocks.len()], 64);
+                let peak = audio.outputs()[0].iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+                loudest.fetch_max(peak.to_bits(), Ordering::Relaxed);
+                played.store(n + 1, Ordering::Relaxed);
+            }
+            loop {
+                std::hint::spin_loop();
+            }
+        });
+        let start = Instant::now();
+        let mut round = 0;
+        while played.load(Ordering::Relaxed) < BLOCKS || start.elapsed() < Duration::from_secs(3) {
+            if seen() || start.elapsed() > Duration::from_secs(60) {
+                break;
+            }
+            instance.run_callbacks();
+            if round % 10 == 0 {
+                instance.load(&states[round / 10 % states.len()]);
+                instance.save();
+            }
+            if let Some(editor) = &editor {
+                editor.touch(round);
+            }
+            round += 1;
+            std::thread::sleep(Duration::from_millis(3));
+        }
+        let played = played.load(Ordering::Relaxed);
+        let peak = f32::from_bits(loudest.load(Ordering::Relaxed));
+        eprintln!("{played} blocks, {round} rounds of the main thread, a peak of {peak}");
+        // The watched thread cannot even end: the process ends around it.
+        std::process::exit(i32::from(seen() || played < BLOCKS || peak < 1e-3));
+    })
+}
+
+fn seen() -> bool {
+    static TOLD: AtomicBool = AtomicBool::new(false);
+    let seen = !TOLD.load(Ordering::Relaxed) && probe(c"sprung_watch_offences")() > 0;
+    TOLD.fetch_or(seen, Ordering::Relaxed);
+    TOLD.load(Ordering::Relaxed)
+}
+
+/// Blocks of every kind of event: notes stolen and struck again, expressions, automation, modulation, MIDI, tempo.
+fn storm(instance: &mut Instance) -> Vec<EventBuffer> {
+    let parameters = instance.parameters();
+    let stream = key(1, 1);
+    let mut n = 0;
+    let mut unit = || {
+        n += 1;
+        f64::from(uniform(stream, n) + 1.0) / 2.0
+    };
+    (0..97_i32)
+        .map(|block| {
+            let mut buffer = EventBuffer::new();
+            for time in 0..16 {
+                let id = block * 16 + time;
+                let note = Address::note((id % 16) as i16, 30 + (id % 60) as i16, id);
+                let parameter = &parameters[id as usize % parameters.len()];
+                let value = (unit() * parameter.max).round().max(unit().min(parameter.max));
+                let sent = [
+                    Sent::On(note, unit()),
+                    Sent::Value(parameter.id, value.min(parameter.max)),
+                    Sent::Off(Address::note(note.channel, note.key, id - 3), 0.5),
+                    Sent::Modulate(parameter.id, Address::id(id - 2), unit() - 0.5),
+                    Sent::Express(note, [Kind::Tuning, Kind::Pan, Kind::Pressure, Kind::Volume][id as usize % 4], 0.3),
+                    Sent::Modulate(parameter.id, Address::id(-1), (unit() - 0.5) * 0.2),
+                    Sent::Midi([0xE0 | (id % 16) as u8, 0, (unit() * 127.0) as u8]),
+                    Sent::Midi([0xB0 | (id % 16) as u8, [1, 7, 64, 66, 74, 121, 123][id as usize % 7], 100]),
+                    Sent::Choke(Address::id(id - 5)),
+                    Sent::Tempo(60.0 + 100.0 * unit()),
+                ];
+                for kind in sent.iter().skip((id % 2) as usize).step_by(1 + (id % 3) as usize) {
+                    kind.push(time as u32 * 4, &mut buffer);
+                }
+            }
+            buffer
+        })
+        .collect()
+}
+
+/// Does on a watched thread what the audio thread must not do.
+fn commit(sin: &str) -> ExitCode {
+    let lock = std::sync::atomic::AtomicPtr::new(std::ptr::null_mut::<libc::pthread_mutex_t>());
+    lock.store(Box::into_raw(Box::new(libc::PTHREAD_MUTEX_INITIALIZER)), Ordering::Relaxed);
+    let watch = probe(c"sprung_watch");
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            assert_eq!(watch(), 0, "the kernel cannot refuse system calls");
+            match sin {
+                "sin-malloc" => drop(std::hint::black_box(Vec::<u8>::with_capacity(100))),
+                "sin-lock" => lock_and_keep(lock.load(Ordering::Relaxed)),
+                _ => std::thread::yield_now(),
+            }
+            loop {
+                std::hint::spin_loop();
+            }
+        });
+        wait_until("an offence", seen);
+        std::process::exit(1)
+    })
+}
+
+#[allow(unsafe_code)]
+fn lock_and_keep(lock: *mut libc::pthread_mutex_t) {
+    // SAFETY: the lock was made for this, and lives as long as the process.
+    unsafe { libc::pthread_mutex_lock(lock) };
+}

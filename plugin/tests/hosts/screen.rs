@@ -1,0 +1,143 @@
+//! A screen that nobody looks at: windows on it, what they show, and a hand that moves the mouse and closes them.
+
+use std::collections::BTreeSet;
+use std::io::BufRead as _;
+use std::process::{Child, Command, Stdio};
+use x11rb::connection::Connection as _;
+use x11rb::protocol::xproto::{
+    AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, MapState, WindowClass,
+};
+use x11rb::protocol::xtest::ConnectionExt as _;
+use x11rb::rust_connection::RustConnection;
+
+/// A server of a screen's own, as long as it lives.
+pub(crate) struct Screen {
+    server: Child,
+    /// What `DISPLAY` has to say.
+    pub(crate) display: String,
+}
+
+impl Screen {
+    /// Starts Xvfb on a free display.
+    pub(crate) fn new() -> Self {
+        let mut server = Command::new("Xvfb")
+            .args([
+                "-displayfd",
+                "1",
+                "-screen",
+                "0",
+                "1280x800x24",
+                "+extension",
+                "GLX",
+                "-nolisten",
+                "tcp",
+                "-noreset",
+            ])
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("Xvfb starts");
+        let mut number = String::new();
+        let stdout = server.stdout.take().expect("stdout is piped");
+        std::io::BufReader::new(stdout).read_line(&mut number).unwrap();
+        Self { server, display: format!(":{}", number.trim()) }
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+/// What a window manager names.
+const NAMES: &str = "WM_CHANGE_STATE WM_DELETE_WINDOW WM_PROTOCOLS WM_TAKE_FOCUS UTF8_STRING XdndAware \
+    _KDE_NET_WM_WINDOW_TYPE_OVERRIDE _MOTIF_WM_HINTS _NET_ACTIVE_WINDOW _NET_FRAME_EXTENTS \
+    _NET_SUPPORTED _NET_WM_ACTION_CLOSE _NET_WM_ACTION_FULLSCREEN _NET_WM_ACTION_MINIMIZE \
+    _NET_WM_ACTION_RESIZE _NET_WM_ALLOWED_ACTIONS _NET_WM_ICON _NET_WM_MOVERESIZE _NET_WM_NAME \
+    _NET_WM_PID _NET_WM_PING _NET_WM_STATE _NET_WM_STATE_ABOVE _NET_WM_STATE_FULLSCREEN \
+    _NET_WM_STATE_HIDDEN _NET_WM_STATE_MAXIMIZED_HORZ _NET_WM_STATE_MAXIMIZED_VERT \
+    _NET_WM_STATE_SKIP_TASKBAR _NET_WM_USER_TIME _NET_WM_WINDOW_TYPE _NET_WM_WINDOW_TYPE_COMBO \
+    _NET_WM_WINDOW_TYPE_NORMAL _NET_WORKAREA _XEMBED _XEMBED_INFO";
+
+/// Somebody at the screen.
+pub(crate) struct Onlooker {
+    connection: RustConnection,
+    root: u32,
+}
+
+impl Onlooker {
+    /// At the screen of this name, or the one that `DISPLAY` says.
+    pub(crate) fn new(display: Option<&str>) -> Self {
+        let (connection, screen) = x11rb::connect(display).expect("there is an X server");
+        let root = connection.setup().roots[screen].root;
+        Self { connection, root }
+    }
+
+    /// Names what a window manager would name: some toolkits expect that one is there, and end if it is not.
+    pub(crate) fn stand_in_for_a_window_manager(&self) {
+        for name in NAMES.split_whitespace() {
+            self.connection.intern_atom(false, name.as_bytes()).unwrap().reply().unwrap();
+        }
+    }
+
+    /// Makes a window for the plugin's to lie in, in the upper left corner.
+    pub(crate) fn make_window(&self) -> u32 {
+        let window = self.connection.generate_id().unwrap();
+        let visual = self.connection.setup().roots[0].root_visual;
+        let aux = CreateWindowAux::new().background_pixel(0x00FF_00FF);
+        self.connection
+            .create_window(24, window, self.root, 0, 0, 1_200, 760, 0, WindowClass::INPUT_OUTPUT, visual, &aux)
+            .unwrap();
+        self.connection.map_window(window).unwrap();
+        self.connection.flush().unwrap();
+        window
+    }
+
+    /// Blue, green and red of the upper left corner of the screen.
+    pub(crate) fn pixels(&self, width: u32, height: u32) -> Vec<[u8; 3]> {
+        let (width, height) = (width as u16, height as u16);
+        let request = self.connection.get_image(ImageFormat::Z_PIXMAP, self.root, 0, 0, width, height, !0);
+        let image = request.unwrap().reply().expect("the screen can be read");
+        image.data.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
+    }
+
+    /// Whether there is more to see in the upper left corner than a few colours.
+    pub(crate) fn sees_a_picture(&self, width: u32, height: u32) -> bool {
+        self.pixels(width, height).into_iter().collect::<BTreeSet<_>>().len() > 16
+    }
+
+    /// Drags the mouse from one place to another.
+    pub(crate) fn drag(&self, from: [i16; 2], to: [i16; 2]) {
+        const PRESS: u8 = 4;
+        const RELEASE: u8 = 5;
+        const MOVE: u8 = 6;
+        for (kind, detail, [x, y]) in [(MOVE, 0, from), (PRESS, 1, from), (MOVE, 0, to), (RELEASE, 1, to)] {
+            self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).unwrap();
+        }
+        self.connection.flush().unwrap();
+    }
+
+    /// The window with this title, if it is to be seen.
+    pub(crate) fn find(&self, title: &str) -> Option<u32> {
+        let tree = self.connection.query_tree(self.root).unwrap().reply().unwrap();
+        tree.children.into_iter().find(|window| {
+            // Windows may go while they are looked at.
+            let name = self.connection.get_property(false, *window, AtomEnum::WM_NAME, AtomEnum::ANY, 0, 64);
+            let attributes = self.connection.get_window_attributes(*window);
+            let is_seen = attributes.unwrap().reply().is_ok_and(|found| found.map_state == MapState::VIEWABLE);
+            is_seen && name.unwrap().reply().is_ok_and(|found| found.value == title.as_bytes())
+        })
+    }
+
+    /// Asks a window to close, as its button does.
+    pub(crate) fn close(&self, window: u32) {
+        let atom = |name: &[u8]| self.connection.intern_atom(false, name).unwrap().reply().unwrap().atom;
+        let data = [atom(b"WM_DELETE_WINDOW"), 0, 0, 0, 0];
+        let message = ClientMessageEvent::new(32, window, atom(b"WM_PROTOCOLS"), data);
+        self.connection.send_event(false, window, EventMask::NO_EVENT, message).unwrap();
+        self.connection.flush().unwrap();
+    }
+}

@@ -1,0 +1,99 @@
+//! The same song, patch, seed and rate: the same bits from the command's renderer and from the plugin in a host.
+
+use crate::host::reference::{assert_same_bits, assert_sound};
+use crate::host::{Instance, Player, Timed};
+use crate::patches::{load, patches};
+use crate::phrase::{self, Dialect, FRAMES, SAMPLE_RATE};
+use sprung::dsp::random::{key, uniform};
+use sprung::engine::{Event, EventKind, Synth};
+use sprung::patch::Patch;
+use sprung::render::{Job, Options, Tail};
+use std::path::Path;
+
+/// Ways to divide a song into blocks.
+fn divisions() -> Vec<(&'static str, Box<dyn FnMut() -> usize>)> {
+    let mut n = 0;
+    let random = move || {
+        n += 1;
+        1 + ((uniform(key(7, 0), n) + 1.0) * 450.0) as usize
+    };
+    vec![
+        ("blocks of 1", Box::new(|| 1)),
+        ("blocks of 64", Box::new(|| 64)),
+        ("blocks of 480", Box::new(|| 480)),
+        ("blocks of 8192", Box::new(|| 8192)),
+        ("random blocks", Box::new(random)),
+    ]
+}
+
+/// What `sprung render` makes of a MIDI file, as samples.
+pub(crate) fn rendered_by_the_command(midi: &[u8], patch: &Patch) -> Vec<Vec<f32>> {
+    let song = phrase::song(midi);
+    let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 1024, tail: Tail::None };
+    let job = Job { song: &song, patch, programs: &[], options };
+    let mut channels = vec![Vec::new(), Vec::new()];
+    job.render(|left, right| {
+        channels[0].extend(left);
+        channels[1].extend(right);
+        Ok(())
+    })
+    .unwrap();
+    channels
+}
+
+fn player(patch: &Patch) -> Player {
+    let mut instance = Instance::new();
+    load(&mut instance, patch);
+    instance.play(f64::from(SAMPLE_RATE), 8192)
+}
+
+pub(crate) fn one_channel_has_the_bits_of_the_command() {
+    let midi = phrase::midi_file();
+    for (name, patch) in patches() {
+        let expected = rendered_by_the_command(&midi, &patch);
+        assert_sound(name, &expected);
+        for dialect in [Dialect::Clap, Dialect::Midi] {
+            let sent = phrase::sent(&phrase::messages(), dialect);
+            for (division, block) in divisions() {
+                let found = player(&patch).render(&sent, FRAMES, block).channels;
+                assert_same_bits(&format!("{name}, {dialect:?}, {division}"), &found, &expected);
+            }
+        }
+    }
+}
+
+/// The demo songs' sixteen channels on one instance: the bits of the engine's one synth.
+pub(crate) fn sixteen_channels_have_the_bits_of_one_synth() {
+    for song in ["groove", "suite"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../assets/midi/{song}.mid"));
+        let midi = std::fs::read(path).unwrap();
+        let frames = 20 * SAMPLE_RATE as usize;
+        let mut messages = phrase::messages_of(&midi, SAMPLE_RATE.into());
+        messages.retain(|(frame, _)| *frame < frames as u64);
+        let (name, patch) = patches().swap_remove(1);
+        let expected = played_by_one_synth(&messages, &patch, frames);
+        for (division, block) in divisions().into_iter().skip(1) {
+            let sent: Vec<Timed> = phrase::sent(&messages, Dialect::Midi);
+            let found = player(&patch).render(&sent, frames, block).channels;
+            assert_same_bits(&format!("{song}, {name}, {division}"), &found, &expected);
+        }
+    }
+}
+
+/// Messages on the engine's synth, in one block a second.
+fn played_by_one_synth(messages: &[(u64, [u8; 3])], patch: &Patch, frames: usize) -> Vec<Vec<f32>> {
+    let mut synth = Synth::new(SAMPLE_RATE.into(), 0);
+    synth.set_patch(patch);
+    synth.reset();
+    let mut channels = vec![vec![0.0; frames]; 2];
+    let [left, right] = channels.as_mut_slice() else { unreachable!("there are two") };
+    let events: Vec<Event> = messages
+        .iter()
+        .map(|(frame, data)| {
+            let (channel, kind): (u8, EventKind) = sprung::io::midi::parse_message(data).expect("a channel message");
+            Event { frame: *frame as u32, channel, kind }
+        })
+        .collect();
+    synth.process(&events, left, right);
+    channels
+}

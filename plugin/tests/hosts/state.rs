@@ -1,0 +1,262 @@
+//! State: all of it comes back, the same bytes when nothing has changed, nothing when it cannot be read.
+
+use crate::host::reference::{At, assert_same_bits, render};
+use crate::host::{Address, Instance, Sent, Timed};
+use crate::patches::{enclosed, load, own_part, patch_in, patches, state, state_of_text};
+use sprung::dsp::random::{key, uniform};
+use sprung::engine::EventKind;
+use sprung::params::PARAMS;
+use sprung::patch::Patch;
+use sprung::preset::Preset;
+
+const RATE: f64 = 48_000.0;
+const FRAMES: usize = 9_600;
+
+fn strike() -> (Vec<Timed>, Vec<At>) {
+    let (note, velocity) = (Address::note(0, 57, 1), 0.8_f32);
+    (
+        vec![Sent::On(note, velocity.into()).at(3)],
+        vec![At(3, 0, EventKind::NoteOn { key: 57, detune: 0.0, velocity, id: 1 })],
+    )
+}
+
+/// Every knob somewhere, as a host's automation or a person would leave it.
+fn scramble(instance: &mut Instance, seed: u64) {
+    let stream = key(seed, 0);
+    let changes: Vec<Timed> = instance
+        .parameters()
+        .iter()
+        .zip(0..)
+        .map(|(parameter, n)| {
+            let position = f64::from(uniform(stream, n) + 1.0) / 2.0;
+            let value = if parameter.max > 1.0 { (position * parameter.max).round() } else { position };
+            Sent::Value(parameter.id, value).at(0)
+        })
+        .collect();
+    instance.flush(&changes);
+}
+
+fn values(instance: &mut Instance) -> Vec<f64> {
+    let parameters = instance.parameters();
+    parameters.iter().map(|parameter| instance.value(parameter.id).unwrap()).collect()
+}
+
+pub(crate) fn what_is_saved_comes_back_to_the_byte() {
+    for seed in 0..20 {
+        let mut first = Instance::new();
+        scramble(&mut first, seed);
+        let (saved, set) = (first.save(), values(&mut first));
+        assert_eq!(first.save(), saved, "saved twice");
+        let mut second = Instance::new();
+        assert!(second.load(&saved));
+        assert_eq!(values(&mut second), set, "values in scramble {seed}");
+        assert_eq!(second.save(), saved, "scramble {seed}");
+        assert!(second.load(&saved), "loaded again");
+        assert_eq!(second.save(), saved, "scramble {seed}, loaded twice");
+    }
+}
+
+/// Through a flush without processing, through processing, in blocks that load before and after activation.
+pub(crate) fn every_way_to_set_values_leaves_the_same_state() {
+    for seed in 0..4 {
+        let mut flushed = Instance::new();
+        scramble(&mut flushed, seed);
+        let expected = flushed.save();
+        let parameters = flushed.parameters();
+        let song: Vec<Timed> = parameters
+            .iter()
+            .map(|parameter| Sent::Value(parameter.id, flushed.value(parameter.id).unwrap()).at(31))
+            .collect();
+        let mut player = Instance::new().play(RATE, 64);
+        player.render(&song, 64, || 64);
+        assert_eq!(player.instance.save(), expected, "set while processing");
+        let mut player = Instance::new().play(RATE, 64);
+        player.render(&[], 64, || 64);
+        assert!(player.instance.load(&expected));
+        assert_eq!(player.instance.save(), expected, "loaded while active, before the next block");
+        player.render(&[], 64, || 64);
+        assert_eq!(player.stop().save(), expected, "loaded while active");
+    }
+}
+
+pub(crate) fn modulation_is_not_saved() {
+    let mut instance = Instance::new();
+    let before = instance.save();
+    let parameters = instance.parameters();
+    let song: Vec<Timed> = parameters
+        .iter()
+        .map(|parameter| Sent::Modulate(parameter.id, Address::id(-1), 0.25 * parameter.max).at(0))
+        .collect();
+    let mut player = instance.play(RATE, 64);
+    player.render(&song, 64, || 64);
+    assert_eq!(player.instance.save(), before);
+}
+
+/// A state that is loaded while audio runs is heard by the next note, exactly.
+pub(crate) fn a_state_loaded_while_processing_is_heard_exactly() {
+    for (name, patch) in patches() {
+        let mut player = Instance::new().play(RATE, 480);
+        player.render(&[Sent::On(Address::note(0, 60, 1), 0.5).at(0)], 960, || 480);
+        load(&mut player.instance, &patch);
+        player.render(&[], 480, || 480);
+        assert_eq!(patch_in(&player.instance.save()), patch, "{name}");
+        player.audio.reset();
+        let (sent, events) = strike();
+        let found = player.render(&sent, FRAMES, || 480).channels;
+        assert_same_bits(name, &found, &render(&patch, RATE, &events, FRAMES));
+    }
+}
+
+/// A value that is set where it already was stays exact; the neighbouring one is what its position means.
+pub(crate) fn touching_a_knob_keeps_the_exact_value() {
+    for (name, patch) in patches() {
+        let mut instance = Instance::new();
+        load(&mut instance, &patch);
+        let parameters = instance.parameters();
+        let same: Vec<Timed> =
+            parameters.iter().map(|p| Sent::Value(p.id, instance.value(p.id).unwrap()).at(0)).collect();
+        instance.flush(&same);
+        assert_eq!(patch_in(&instance.save()), patch, "{name}");
+    }
+}
+
+pub(crate) fn streams_may_deliver_a_byte_at_a_time() {
+    let mut source = Instance::new();
+    scramble(&mut source, 3);
+    let saved = source.save();
+    for piece in [1, 2, 7, 8, 9, 17, 4096] {
+        let mut instance = Instance::new();
+        assert!(instance.load_in_pieces(&saved, piece), "{piece} bytes at a time");
+        assert_eq!(instance.save(), saved, "{piece} bytes at a time");
+    }
+}
+
+fn broken_states(saved: &[u8]) -> Vec<(&'static str, Vec<u8>)> {
+    let own = own_part(saved);
+    let changed = |change: fn(&mut serde_json::Value)| {
+        let mut own = own.clone();
+        change(&mut own);
+        enclosed(&own.to_string())
+    };
+    let preset = |modes: &str, params: &str| {
+        state_of_text(&format!("format = 1\nname = \"Broken\"\nmodes = [{modes}]\n\n[params]\n{params}\n"))
+    };
+    let stream = key(5, 5);
+    vec![
+        ("nothing", Vec::new()),
+        ("three bytes", saved[..3].to_vec()),
+        ("a length alone", saved[..8].to_vec()),
+        ("cut off", saved[..saved.len() / 2].to_vec()),
+        ("zeros", vec![0; 4096]),
+        ("a length beyond all memory", [&u64::MAX.to_le_bytes()[..], &saved[8..]].concat()),
+        ("noise", (0..4096).map(|n| (uniform(stream, n) * 128.0) as i8 as u8).collect()),
+        ("another program's JSON", [&7_u64.to_le_bytes()[..], b"{\"a\":1}"].concat()),
+        ("its own part is no JSON", enclosed("sprung")),
+        ("its own part is a list", enclosed("[]")),
+        ("a format of the future", changed(|own| own["format"] = 99.into())),
+        ("no format", changed(|own| drop(own.as_object_mut().unwrap().remove("format")))),
+        ("no preset", changed(|own| drop(own.as_object_mut().unwrap().remove("preset")))),
+        ("a seed that is a text", changed(|own| own["seed"] = "zero".into())),
+        ("a window without a width", changed(|own| own["window"] = serde_json::json!([0, 640]))),
+        ("a preset that is no TOML", state_of_text("= = =")),
+        ("a value out of range", preset("", "gain = 999.0")),
+        ("a value that is no number", preset("", "gain = nan")),
+        ("an unknown parameter", preset("", "gian = 1.0")),
+        ("a mode out of range", preset("{ ratio = -1.0 }", "")),
+        ("a mode that is no number", preset("{ ratio = 1.0, level = nan }", "")),
+        ("too many modes", preset(&"{ ratio = 1.0 }, ".repeat(65), "")),
+    ]
+}
+
+pub(crate) fn what_cannot_be_read_changes_nothing() {
+    let mut source = Instance::new();
+    let patch = patches()[4].1;
+    load(&mut source, &patch);
+    let saved = source.save();
+    let set = values(&mut source);
+    for (what, bytes) in broken_states(&saved) {
+        source.load(&bytes);
+        assert_eq!(source.save(), saved, "{what}, while inactive");
+        assert_eq!(values(&mut source), set, "{what}: values");
+    }
+    let mut player = source.play(RATE, 480);
+    for (what, bytes) in broken_states(&saved) {
+        player.instance.load(&bytes);
+        player.render(&[], 480, || 480);
+        assert_eq!(player.instance.save(), saved, "{what}, while active");
+    }
+    let (sent, events) = strike();
+    player.audio.reset();
+    let found = player.render(&sent, FRAMES, || 480).channels;
+    assert_same_bits("after them all", &found, &render(&patch, RATE, &events, FRAMES));
+}
+
+/// Bytes that went over in the wrong order, one at a time: whatever is made of them, all is well afterwards.
+pub(crate) fn damaged_states_never_leave_half_a_patch() {
+    let mut source = Instance::new();
+    load(&mut source, &patches()[1].1);
+    let saved = source.save();
+    let stream = key(9, 9);
+    for n in 0..300 {
+        let mut bytes = saved.clone();
+        for hit in 0..1 + n % 3 {
+            let place = 8 + ((uniform(stream, 4 * n + hit) + 1.0) / 2.0 * (saved.len() - 8) as f32) as usize;
+            bytes[place] = bytes[place].wrapping_add(1 + (n as u8 % 200));
+        }
+        let mut instance = Instance::new();
+        let before = instance.save();
+        instance.load(&bytes);
+        let after = instance.save();
+        // Either it was refused, or what is there now is whole and comes back.
+        if after != before {
+            let mut again = Instance::new();
+            assert!(again.load(&after), "damage {n}");
+            assert_eq!(again.save(), after, "damage {n}");
+        }
+    }
+}
+
+/// The state of every released version still gives the patch that it gave then.
+pub(crate) fn states_of_all_versions_load() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/states");
+    let mut versions = 0;
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "json") {
+            continue;
+        }
+        versions += 1;
+        let json = std::fs::read(&path).unwrap();
+        let bytes = [&(json.len() as u64).to_le_bytes()[..], &json].concat();
+        let expected = Preset::parse(own_part(&bytes)["preset"].as_str().unwrap(), "the file").unwrap().patch;
+        let mut instance = Instance::new();
+        assert!(instance.load(&bytes), "{}", path.display());
+        assert_eq!(patch_in(&instance.save()), expected, "{}", path.display());
+        assert_ne!(expected, Patch::default(), "{}: it would not show if nothing was loaded", path.display());
+    }
+    assert!(versions > 0, "{}: no states", folder.display());
+}
+
+/// A parameter that an older version did not know has its default, whatever it was before.
+pub(crate) fn parameters_that_a_state_lacks_have_their_defaults() {
+    let mut instance = Instance::new();
+    scramble(&mut instance, 1);
+    assert!(instance.load(&state_of_text("format = 1\nname = \"Old\"\n\n[params]\ndecay = 2.5\n")));
+    let patch = patch_in(&instance.save());
+    for info in PARAMS {
+        let expected = if info.id == "decay" { 2.5 } else { info.default };
+        assert_eq!(patch.get(info.param), expected, "{}", info.id);
+    }
+}
+
+/// Saving and loading from another thread than the one that plays, all the while.
+pub(crate) fn two_states_in_turn_while_audio_runs_are_never_mixed() {
+    let patches = patches();
+    let states = [state(&patches[0].1), state(&patches[1].1)];
+    let mut player = Instance::new().play(RATE, 64);
+    for round in 0..200 {
+        assert!(player.instance.load(&states[round % 2]));
+        player.render(&[Sent::On(Address::note(0, 60, round as i32), 0.5).at(0)], 64, || 64);
+        assert_eq!(patch_in(&player.instance.save()), patches[round % 2].1, "round {round}");
+    }
+}

@@ -1,0 +1,216 @@
+//! The VST3 bundle in two hosts that Python drives: dawdreamer and pedalboard, which are both made with JUCE.
+
+use crate::host::bundle;
+use crate::host::reference::{At, assert_same_bits, render};
+use crate::patches::{patches, state};
+use crate::phrase::{self, FRAMES, SAMPLE_RATE};
+use crate::process::{scratch, wait_until};
+use crate::screen::{Onlooker, Screen};
+use crate::song::rendered_by_the_command;
+use serde_json::{Value, json};
+use sprung::engine::EventKind;
+use sprung::params::{PARAMS, Param, ParamInfo, Unit};
+use sprung::patch::Patch;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// The plugin's class, as preset files name it. Pinned: hosts find a song's plugin by it.
+const CLASS: &[u8; 32] = b"537072756E674D617373537072696E67";
+
+/// The Python that `cargo xtask setup` has put the hosts into.
+pub(crate) fn python() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("python").join("bin/python")
+}
+
+fn script(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hosts").join(name)
+}
+
+/// Has a host do something, and gives what it answers.
+#[track_caller]
+fn ask(host: &str, question: &Value) -> Value {
+    let mut child = Command::new(python())
+        .arg(script(&format!("{host}_host.py")))
+        // Without a display they would use the first one, which may be another test's.
+        .env("DISPLAY", ":none")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("Python starts");
+    child.stdin.take().expect("stdin is piped").write_all(question.to_string().as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    assert!(output.status.success(), "{host}: {}\n{stdout}\n{stderr}", output.status);
+    // Hosts may say other things before.
+    serde_json::from_str(stdout.lines().last().unwrap_or_default()).unwrap_or_else(|_| panic!("{host}: {stdout}"))
+}
+
+/// A preset file as VST3 hosts keep them, with the state that holds a patch.
+fn preset_file(name: &str, patch: &Patch) -> PathBuf {
+    let state = &state(patch)[8..];
+    let header = 48_u64;
+    let mut bytes = b"VST3".to_vec();
+    bytes.extend(1_u32.to_le_bytes());
+    bytes.extend(CLASS);
+    bytes.extend((header + state.len() as u64).to_le_bytes());
+    bytes.extend(state);
+    bytes.extend(b"List");
+    bytes.extend(1_u32.to_le_bytes());
+    bytes.extend(b"Comp");
+    bytes.extend(header.to_le_bytes());
+    bytes.extend((state.len() as u64).to_le_bytes());
+    let path = scratch(&format!("{}.vstpreset", name.replace(' ', "-")));
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+/// The samples in a file that a host has written, channel by channel.
+fn samples(path: &Path) -> Vec<Vec<f32>> {
+    let bytes = std::fs::read(path).unwrap();
+    let samples: Vec<f32> =
+        bytes.chunks_exact(4).map(|sample| f32::from_le_bytes([sample[0], sample[1], sample[2], sample[3]])).collect();
+    samples.chunks(samples.len() / 2).map(<[f32]>::to_vec).collect()
+}
+
+/// The value that a position in VST3's range 0–1 means.
+fn value_at(info: &ParamInfo, position: f64) -> f32 {
+    match info.unit {
+        Unit::Count | Unit::Choice => info.clamp(info.min + (info.max - info.min) * position as f32),
+        _ => info.denormalise(f64::from(position as f32)),
+    }
+}
+
+pub(crate) fn every_parameter_can_be_set_and_read() {
+    let positions = [0.0, 1.0, 0.5, 0.25, 0.1, 0.333_333, 0.9, 0.01, 0.618];
+    for host in ["dawdreamer", "pedalboard"] {
+        let answer = ask(host, &json!(["parameters", bundle::vst3(), positions]));
+        let rows = answer[0].as_array().unwrap();
+        for info in PARAMS {
+            let row: Vec<&Value> = rows.iter().filter(|row| row[0] == info.name).collect();
+            assert_eq!(row.len(), 1, "{host}: parameters called ‘{}’", info.name);
+            let tried = row[0].as_array().unwrap().last().unwrap().as_array().unwrap();
+            assert_eq!(tried.len(), positions.len());
+            for one in tried {
+                let (position, found) = (one[0].as_f64().unwrap(), one[1].as_f64().unwrap());
+                let value = value_at(info, position);
+                // Hosts give back what was set, before or after it went to the nearest step.
+                let step = f64::from((value - info.min) / (info.max - info.min));
+                let is_step = matches!(info.unit, Unit::Count | Unit::Choice) && (found - step).abs() < 1e-6;
+                assert!((found - position).abs() < 1e-6 || is_step, "{host}: {} at {position} is {found}", info.id);
+                assert_eq!(one[2], info.format(value), "{host}: {} at {position}", info.id);
+            }
+        }
+        if host == "dawdreamer" {
+            // The wrapper adds 130 parameters a MIDI channel, without which bend, wheel and pedals would not arrive.
+            assert_eq!(answer[1], PARAMS.len() + 16 * 130);
+            assert_eq!(answer[2], 0, "latency");
+            assert!(rows.iter().all(|row| row[2] == true), "all can be automated");
+        } else {
+            let about: Vec<&str> = [1, 2, 3].map(|field| answer[field].as_str().unwrap()).to_vec();
+            assert_eq!(about, ["Sprung", "The Sprung authors", env!("CARGO_PKG_VERSION")]);
+            assert_eq!(answer[4], true, "an instrument");
+        }
+    }
+}
+
+/// A MIDI file in a VST3 host, with a preset that holds the patch: the bits of `sprung render`, if controllers come
+/// where the host lets them come. VST3 hands controllers over as parameters, and JUCE, which both hosts are made with,
+/// gives each parameter one value a block, at its first frame; notes and their pressure lie at their own frames.
+pub(crate) fn one_channel_has_the_bits_of_the_command() {
+    let midi = phrase::midi_file();
+    let path = scratch("phrase.mid");
+    std::fs::write(&path, &midi).unwrap();
+    for (name, patch) in patches() {
+        let preset = preset_file(name, &patch);
+        for block in [1, 64, 480] {
+            let expected = rendered_by_the_command(&phrase::file(&phrase::with_controllers_by_block(block)), &patch);
+            let audio = scratch("dawdreamer.f32");
+            let plugin = bundle::vst3();
+            ask("dawdreamer", &json!(["render", plugin, preset, path, SAMPLE_RATE, block, FRAMES, audio]));
+            assert_same_bits(&format!("dawdreamer, {name}, blocks of {block}"), &samples(&audio), &expected);
+        }
+        let block = 480;
+        let expected = rendered_by_the_command(&phrase::file(&phrase::with_controllers_by_block(block)), &patch);
+        let audio = scratch("pedalboard.f32");
+        let messages = phrase::messages();
+        ask("pedalboard", &json!(["render", bundle::vst3(), preset, messages, SAMPLE_RATE, block, FRAMES, audio]));
+        assert_same_bits(&format!("pedalboard, {name}"), &samples(&audio), &expected);
+    }
+}
+
+pub(crate) fn what_is_saved_comes_back() {
+    for (name, patch) in patches() {
+        let preset = preset_file(name, &patch);
+        let [first, second] = ["first", "second"].map(|name| scratch(&format!("{name}.state")));
+        let values = ask("dawdreamer", &json!(["state", bundle::vst3(), preset, first, second]));
+        for info in PARAMS {
+            let position = values[info.param as usize].as_f64().unwrap();
+            let expected = info.normalise(patch.get(info.param));
+            assert!((position - expected).abs() < 1e-6, "{name}: {} is at {position}", info.id);
+        }
+        let same = std::fs::read(&first).unwrap() == std::fs::read(&second).unwrap();
+        assert!(same, "{name}: the state is not the same again");
+        let answer = ask("pedalboard", &json!(["state", bundle::vst3(), preset]));
+        assert_eq!((&answer[0][0], &answer[1]), (&answer[0][1], &json!(true)), "{name}, in pedalboard");
+    }
+}
+
+/// A parameter moved by the host's automation: as the engine's own events at the frames at which the host sends them.
+pub(crate) fn automation_has_the_bits_of_the_engine() {
+    let block = 512;
+    let path = scratch("strike.mid");
+    std::fs::write(&path, phrase::file(&[(3, [0x90, 57, 100])])).unwrap();
+    for param in [Param::Gain, Param::Tune, Param::Decay] {
+        let info = param.info();
+        let positions: Vec<f32> = (0..FRAMES).map(|frame| 0.2 + 0.6 * (frame / 5_120) as f32 / 15.0).collect();
+        let values = scratch("automation.f32");
+        std::fs::write(&values, positions.iter().flat_map(|position| position.to_le_bytes()).collect::<Vec<u8>>())
+            .unwrap();
+        let audio = scratch("automated.f32");
+        let question =
+            json!(["automate", bundle::vst3(), "", param as usize, values, path, SAMPLE_RATE, FRAMES, audio]);
+        ask("dawdreamer", &question);
+        let mut song = vec![At(3, 0, EventKind::NoteOn { key: 57, detune: 0.0, velocity: 100.0 / 127.0, id: -1 })];
+        let mut last = None;
+        for frame in (0..FRAMES).step_by(block) {
+            let value = info.denormalise(positions[frame].into());
+            if last.replace(value) != Some(value) {
+                song.push(At(frame as u64, 0, EventKind::Param { param, value }));
+            }
+        }
+        song.sort_by_key(|At(frame, ..)| *frame);
+        let expected = render(&Patch::default(), SAMPLE_RATE.into(), &song, FRAMES);
+        assert_same_bits(&format!("automated {}", info.id), &samples(&audio), &expected);
+    }
+}
+
+pub(crate) fn the_window_opens_and_closes_fifty_times() {
+    const TITLE: &str = "DawDreamer: Sprung";
+    let screen = Screen::new();
+    let onlooker = Onlooker::new(Some(&screen.display));
+    onlooker.stand_in_for_a_window_manager();
+    let mut host = Command::new(python())
+        .arg(script("dawdreamer_window.py"))
+        .arg(bundle::vst3())
+        .arg("50")
+        .env("DISPLAY", &screen.display)
+        .stdin(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("Python starts");
+    for time in 0..50 {
+        let mut window = None;
+        wait_until(&format!("window {time}"), || {
+            window = onlooker.find(TITLE);
+            window.is_some() && onlooker.sees_a_picture(1_280, 800)
+        });
+        let window = window.expect("it was found");
+        onlooker.drag([400, 300 + 5 * time], [500, 300]);
+        onlooker.close(window);
+        wait_until("the window to go", || onlooker.find(TITLE) != Some(window));
+    }
+    let status = host.wait().unwrap();
+    assert!(status.success(), "{status}");
+}

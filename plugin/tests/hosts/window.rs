@@ -1,0 +1,177 @@
+//! The window in a host's own: opened and closed again and again, resized, drawn, touched, while audio runs or not.
+
+use crate::host::{Address, Instance, Player, Sent};
+use crate::process::{command, scratch, succeeds, wait_until};
+use crate::screen::{Onlooker, Screen};
+use clack_extensions::gui::{GuiApiType, GuiConfiguration, GuiSize, PluginGui, Window};
+use clack_host::prelude::*;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// How often the window is opened and closed.
+const TIMES: usize = 50;
+
+pub(crate) fn opens_and_closes_fifty_times() {
+    on_a_screen("window");
+}
+
+pub(crate) fn opens_and_closes_while_audio_runs() {
+    on_a_screen("window-playing");
+}
+
+#[track_caller]
+fn on_a_screen(work: &str) {
+    let screen = Screen::new();
+    let mut command = command(work);
+    command.env("DISPLAY", &screen.display);
+    succeeds(command);
+}
+
+/// What the processes that these tests start do.
+pub(crate) fn work(name: &str) -> ExitCode {
+    let parent = Parent::new();
+    let mut instance = Instance::new();
+    if name == "window" {
+        look(&mut instance, &parent);
+        open_and_close(&mut instance, &parent);
+        return ExitCode::SUCCESS;
+    }
+    let Player { mut instance, mut audio } = instance.play(48_000.0, 256);
+    let stop = AtomicBool::new(false);
+    let audio = std::thread::scope(|scope| {
+        let playing = scope.spawn(|| {
+            let mut events = EventBuffer::new();
+            let mut note = 0;
+            while !stop.load(Ordering::Relaxed) {
+                events.clear();
+                Sent::On(Address::note(0, 40 + note % 40, note.into()), 0.5).push(0, &mut events);
+                note = (note + 1) % 1_000;
+                audio.process(&events, 256);
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            audio
+        });
+        open_and_close(&mut instance, &parent);
+        stop.store(true, Ordering::Relaxed);
+        playing.join().unwrap()
+    });
+    Player { instance, audio }.stop();
+    ExitCode::SUCCESS
+}
+
+/// Opens, waits for a picture, touches, resizes and closes; every other time at once.
+fn open_and_close(instance: &mut Instance, parent: &Parent) {
+    let parameters = instance.parameters();
+    let before = instance.save();
+    for time in 0..TIMES {
+        let editor = Editor::open(instance, parent);
+        if time % 2 == 0 {
+            editor.wait_until_drawn(instance);
+            editor.resize(instance, if time % 4 == 0 { [700, 500] } else { [1_000, 720] });
+            (0..20).for_each(|round| editor.touch(round));
+        }
+        // What another thread or the host changes is shown, too: state, values, modulation.
+        let state = instance.save();
+        assert!(instance.load(&state));
+        if !instance.clack.is_active() {
+            let parameter = &parameters[time % parameters.len()];
+            let value = instance.value(parameter.id).unwrap();
+            instance.flush(&[Sent::Value(parameter.id, parameter.max - value).at(0)]);
+            instance.flush(&[Sent::Value(parameter.id, value).at(0)]);
+        }
+        instance.run_callbacks();
+        editor.close(instance);
+    }
+    assert_ne!(instance.save(), before, "a hand that drags across the window turns knobs");
+}
+
+/// Draws once, and leaves a picture under the target directory.
+fn look(instance: &mut Instance, parent: &Parent) {
+    let editor = Editor::open(instance, parent);
+    editor.wait_until_drawn(instance);
+    std::thread::sleep(Duration::from_millis(500));
+    let [width, height] = editor.size(instance);
+    let pixels = parent.onlooker.pixels(width, height);
+    let mut picture = format!("P6 {width} {height} 255\n").into_bytes();
+    picture.extend(pixels.iter().flat_map(|[blue, green, red]| [*red, *green, *blue]));
+    std::fs::write(scratch("window.ppm"), picture).unwrap();
+    editor.close(instance);
+}
+
+/// A window of the host's that the plugin's lies in.
+pub(crate) struct Parent {
+    onlooker: Onlooker,
+    window: u32,
+}
+
+impl Parent {
+    /// A window on the screen that `DISPLAY` says.
+    pub(crate) fn new() -> Self {
+        let onlooker = Onlooker::new(None);
+        let window = onlooker.make_window();
+        Self { onlooker, window }
+    }
+}
+
+/// The plugin's window while it is open.
+pub(crate) struct Editor<'a> {
+    parent: &'a Parent,
+    gui: PluginGui,
+}
+
+impl<'a> Editor<'a> {
+    /// Opens the window as a host does.
+    #[allow(unsafe_code)]
+    pub(crate) fn open(instance: &mut Instance, parent: &'a Parent) -> Self {
+        let handle = instance.clack.plugin_handle();
+        let gui: PluginGui = handle.get_extension().expect("there is a window");
+        let configuration = GuiConfiguration { api_type: GuiApiType::X11, is_floating: false };
+        assert!(gui.is_api_supported(&handle, configuration));
+        gui.create(&handle, configuration).expect("the window can be made");
+        let size = gui.get_size(&handle).expect("it has a size");
+        assert!((100..4_000).contains(&size.width) && (100..4_000).contains(&size.height), "{size:?}");
+        // SAFETY: the parent outlives the editor, which borrows it.
+        unsafe { gui.set_parent(&handle, Window::from_x11_handle(parent.window.into())) }.expect("it takes a parent");
+        // Not every plugin needs to be told; none may fail.
+        let _ = gui.show(&handle);
+        Self { parent, gui }
+    }
+
+    /// Closes the window.
+    pub(crate) fn close(self, instance: &mut Instance) {
+        let handle = instance.clack.plugin_handle();
+        let _ = self.gui.hide(&handle);
+        self.gui.destroy(&handle);
+    }
+
+    fn size(&self, instance: &mut Instance) -> [u32; 2] {
+        let size = self.gui.get_size(&instance.clack.plugin_handle()).expect("it has a size");
+        [size.width, size.height]
+    }
+
+    /// Waits for a picture with more to it than one colour.
+    fn wait_until_drawn(&self, instance: &mut Instance) {
+        let [width, height] = self.size(instance);
+        wait_until("a picture", || {
+            instance.run_callbacks();
+            self.parent.onlooker.sees_a_picture(width, height)
+        });
+    }
+
+    fn resize(&self, instance: &mut Instance, [width, height]: [u32; 2]) {
+        let handle = instance.clack.plugin_handle();
+        assert!(self.gui.can_resize(&handle));
+        let wanted = GuiSize { width, height };
+        let size = self.gui.adjust_size(&handle, wanted).unwrap_or(wanted);
+        self.gui.set_size(&handle, size).expect("it can be resized");
+        let found = self.gui.get_size(&handle).unwrap();
+        assert_eq!((found.width, found.height), (size.width, size.height));
+    }
+
+    /// Drags the mouse across the window, in another line each time.
+    pub(crate) fn touch(&self, round: usize) {
+        let y = 60 + (round * 37 % 400) as i16;
+        self.parent.onlooker.drag([200, y], [200 + (round * 53 % 300) as i16, y]);
+    }
+}

@@ -1,0 +1,137 @@
+//! Parameters that a host moves away from their values: for the whole instrument, and for single notes.
+
+use crate::dsp::ramp::Ramp;
+use crate::params::{Change, PARAM_COUNT, PARAMS, Param};
+use crate::patch::Patch;
+
+/// The value of a parameter, moved by an offset in knob travel.
+pub(crate) fn modulated(patch: &Patch, param: Param, offset: f32) -> f32 {
+    let value = patch.get(param);
+    if offset == 0.0 {
+        return value;
+    }
+    let info = param.info();
+    info.denormalise(info.normalise(value) + f64::from(offset))
+}
+
+/// How many parameters sounding notes follow.
+const FOLLOWED: usize = {
+    let (mut index, mut count) = (0, 0);
+    while index < PARAM_COUNT {
+        count += matches!(PARAMS[index].change, Change::Smoothed(_)) as usize;
+        index += 1;
+    }
+    count
+};
+
+/// The offsets of one note, and the values that they lead to. Real-time safe.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NoteModulation {
+    moved: [Option<Moved>; FOLLOWED],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Moved {
+    param: Param,
+    /// None once the note follows the instrument again.
+    offset: Option<f32>,
+    value: Ramp,
+}
+
+impl NoteModulation {
+    /// No offset.
+    pub(crate) const NONE: Self = Self { moved: [None; FOLLOWED] };
+
+    /// Whether there is none.
+    pub(crate) fn is_none(&self) -> bool {
+        self.moved[0].is_none()
+    }
+
+    /// Sets the offset of a parameter that sounding notes follow. `from` is its value now.
+    pub(crate) fn set(&mut self, param: Param, offset: f32, from: f32) {
+        let is_free = |moved: &Option<Moved>| moved.is_none_or(|moved| moved.param == param);
+        if let Some(slot) = self.moved.iter_mut().find(|moved| is_free(moved)) {
+            let value = slot.map_or(Ramp::at_rest(from), |moved| moved.value);
+            *slot = Some(Moved { param, offset: Some(offset), value });
+        }
+    }
+
+    /// Forgets all offsets: the note follows the instrument from the next [`NoteModulation::aim`].
+    pub(crate) fn let_go(&mut self) {
+        self.moved.iter_mut().flatten().for_each(|moved| moved.offset = None);
+    }
+
+    /// Heads for what the offsets make of the values of `base`, or for those of `patch`, the instrument as it is
+    /// modulated; at once if the note has not sounded yet.
+    pub(crate) fn aim(&mut self, base: &Patch, patch: &Patch, sample_rate: f64, at_once: bool) {
+        for moved in self.moved.iter_mut().flatten() {
+            let target = match moved.offset {
+                Some(offset) => modulated(base, moved.param, offset),
+                None => patch.get(moved.param),
+            };
+            if at_once {
+                moved.value = Ramp::at_rest(target);
+            } else if moved.value.after(u32::MAX) != target {
+                moved.value.set(target, moved.param.info().smoothing_frames(sample_rate).unwrap_or(0));
+            }
+        }
+    }
+
+    /// The value of a parameter `frames` frames from now, if the note has an offset for it.
+    pub(crate) fn after(&self, param: Param, frames: u32) -> Option<f32> {
+        self.moved.iter().flatten().find(|moved| moved.param == param).map(|moved| moved.value.after(frames))
+    }
+
+    /// Lets `frames` frames pass.
+    pub(crate) fn advance(&mut self, frames: u32) {
+        self.moved.iter_mut().map_while(Option::as_mut).for_each(|moved| moved.value.advance(frames));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_offset_is_knob_travel_from_the_value_and_ends_at_the_range() {
+        let patch = Patch::default().with(Param::Gain, -24.0).with(Param::Decay, 0.6);
+        for (param, offset, expected) in [
+            (Param::Gain, 0.25, -6.0),
+            (Param::Gain, 1.0, 12.0),
+            (Param::Gain, 0.0, -24.0),
+            (Param::Decay, -1.0, 0.005),
+            (Param::Mode, 0.5, 1.0),
+        ] {
+            assert_eq!(modulated(&patch, param, offset), expected, "{param:?} {offset}");
+        }
+    }
+
+    #[test]
+    fn a_note_slides_to_its_own_value_and_follows_the_patch_from_there() {
+        let mut patch = Patch::default().with(Param::Gain, -24.0);
+        let mut note = NoteModulation::NONE;
+        assert!(note.is_none());
+        note.set(Param::Gain, 0.25, -24.0);
+        note.aim(&patch, &patch, 48_000.0, false);
+        assert_eq!((note.after(Param::Gain, 480), note.after(Param::Pan, 480)), (Some(-15.0), None));
+        note.advance(960);
+        assert_eq!(note.after(Param::Gain, 0), Some(-6.0));
+        patch.set(Param::Gain, -42.0);
+        note.aim(&patch, &patch, 48_000.0, true);
+        assert_eq!(note.after(Param::Gain, 0), Some(-24.0));
+        note.let_go();
+        note.aim(&patch, &Patch::default(), 48_000.0, true);
+        assert_eq!(note.after(Param::Gain, 0), Some(Param::Gain.info().default));
+    }
+
+    #[test]
+    fn there_is_room_for_every_parameter_that_notes_follow() {
+        let mut note = NoteModulation::NONE;
+        let followed = PARAMS.iter().filter(|info| info.change != Change::NextNote);
+        for info in followed.clone() {
+            note.set(info.param, 0.1, 0.0);
+            note.set(info.param, 0.2, 0.0);
+        }
+        assert!(followed.clone().all(|info| note.after(info.param, 0) == Some(0.0)));
+    }
+}

@@ -1,0 +1,150 @@
+//! What a note makes of its patch: how its modes are tuned, damped and moved.
+
+use super::{Instrument, MIDDLE_C, SynthVoice};
+use crate::dsp::mode_bank::Coupling;
+use crate::dsp::pitch::{Glide, SweepEnvelope};
+use crate::dsp::random;
+use crate::engine::damping::Damping;
+use crate::engine::voice_manager::Note;
+use crate::params::Param;
+use crate::units::{frequency_from_key, gain_from_db, ratio_from_semitones};
+use libm::{fabs, pow, sin};
+use std::f64::consts::{LOG2_10, PI};
+
+/// The soft pedal takes this share of the force …
+const SOFT_FORCE: f64 = 0.6;
+/// … and this much of the hardness.
+const SOFT_HARDNESS: f64 = 0.3;
+
+/// Contact times of the softest and the hardest mallet, in seconds.
+const SOFTEST_CONTACT: f64 = 0.01;
+const HARDEST_CONTACT: f64 = 0.000_05;
+
+/// The brightest notes are tilted by this much more than the patch says, in decibels per octave; the dullest by as
+/// much less, and their higher modes ring shorter by their ratio.
+const BRIGHTNESS_TILT: f64 = 12.0;
+
+/// Values of [`Param::Exciter`].
+const IMPULSE: u32 = 0;
+const PLUCK: u32 = 2;
+const NOISE: u32 = 3;
+
+impl SynthVoice {
+    /// Reads what the patch says of how the modes are moved. Returns whether noise is among it.
+    pub(super) fn couple(&mut self, instrument: &Instrument) -> bool {
+        let value = |param| instrument.value(param);
+        let modes = instrument.modulated.modes.as_slice();
+        let tilt = (value(Param::Tilt) + self.brightness * (2.0 * BRIGHTNESS_TILT)) / (20.0 / LOG2_10);
+        let tilted = |mode: &crate::patch::Mode| f64::from(mode.level) * pow(f64::from(mode.ratio), tilt);
+        let plain: f64 = modes.iter().map(|mode| fabs(mode.level.into())).sum();
+        let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
+        let balance = if tilt != 0.0 && total > 0.0 { plain / total } else { 1.0 };
+
+        let exciter = instrument.modulated.get(Param::Exciter) as u32;
+        let noise_gain = gain_from_db(value(Param::NoiseLevel));
+        // Energy is what a strike of force 1 brings: the sum of the squared levels.
+        let (mut noisy, mut energy) = (false, 0.0);
+        for (m, mode) in modes.iter().enumerate() {
+            let level = tilted(mode) * balance;
+            let struck = if exciter == NOISE { 0.0 } else { level * f64::from(mode.strike) };
+            let noise = if exciter == NOISE { level } else { level * (1.0 - f64::from(mode.strike)) } * noise_gain;
+            let plucked = struck * sin(PI * value(Param::Position) * 0.01 * f64::from(mode.ratio));
+            let (push, pull) = if exciter == PLUCK { (0.0, plucked) } else { (struck, 0.0) };
+            self.bank.set_coupling(m, Coupling { push: push as f32, pull: pull as f32, noise: noise as f32 });
+            noisy |= noise != 0.0;
+            energy += push * push + pull * pull + noise * noise;
+        }
+        self.pending_energy += self.squared_force * (energy - self.unit_energy);
+        self.unit_energy = energy;
+        noisy
+    }
+
+    /// Reads what the patch says of a strike, and strikes.
+    pub(super) fn excite(&mut self, instrument: &Instrument, note: &Note) {
+        let value = |param| instrument.value(param);
+        let velocity = f64::from(note.velocity);
+        let percent = |param| value(param) * 0.01;
+        let soft = if note.soft { SOFT_FORCE } else { 1.0 };
+        // The strike before has brought its energy: this one's is counted below.
+        self.squared_force = 0.0;
+        let noisy = self.couple(instrument);
+        let exciter = instrument.modulated.get(Param::Exciter) as u32;
+
+        let force = pow(velocity, 2.0 * percent(Param::Velocity)) * soft;
+        let hardness = percent(Param::Hardness) * (1.0 - percent(Param::HardnessVelocity) * (1.0 - velocity));
+        let hardness = if note.soft { hardness * (1.0 - SOFT_HARDNESS) } else { hardness };
+        let contact = SOFTEST_CONTACT * pow(HARDEST_CONTACT / SOFTEST_CONTACT, hardness);
+        let frames = |seconds: f64| (seconds * self.sample_rate + 0.5) as u32;
+        let pulse_frames = if exciter == IMPULSE { 1 } else { frames(contact) };
+        let noise_force = if noisy { force as f32 } else { 0.0 };
+        let noise_frames = frames(value(Param::NoiseTime));
+        let key = random::key(instrument.seed, note.serial);
+        self.exciter.strike(force as f32, pulse_frames, noise_force, noise_frames, key);
+        self.squared_force = force * force;
+        self.pending_energy += self.squared_force * self.unit_energy;
+        self.end = None;
+
+        let depth = value(Param::Sweep) * (1.0 - percent(Param::SweepVelocity) * (1.0 - velocity));
+        self.sweep = SweepEnvelope::new(depth, value(Param::SweepTime), percent(Param::SweepCurve));
+        self.vibrato_delay = value(Param::VibratoDelay);
+        self.rings_on = instrument.modulated.get(Param::NoteOff) != 0.0;
+        self.release_velocity = percent(Param::ReleaseVelocity);
+    }
+
+    /// Takes the pitch and decay of `note`; returns the frequency of a mode of ratio 1.
+    pub(super) fn place(&mut self, instrument: &Instrument, note: &Note) -> f64 {
+        let value = |param| instrument.value(param);
+        (self.pitch, self.tune) = (instrument.pitch(note), instrument.controls.tune);
+        self.key_scale = ratio_from_semitones(value(Param::DecayKey) * 0.01 * (MIDDLE_C - self.pitch));
+        self.damping = Damping { decay: instrument.controls.decay * self.key_scale, release: 0.0, amount: 0.0 };
+        self.scale_decay(instrument);
+        self.released = false;
+        frequency_from_key(self.pitch + self.tune, value(Param::Tuning))
+    }
+
+    /// Each mode's T60 as a multiple of the decay: the higher, the shorter; dull notes lose their high modes sooner.
+    pub(super) fn scale_decay(&mut self, instrument: &Instrument) {
+        let tilt = -instrument.value(Param::DecayTilt);
+        let dullness = 2.0 * self.brightness.min(0.0);
+        for (scale, mode) in self.t60_scale.iter_mut().zip(instrument.modulated.modes.as_slice()) {
+            *scale = f64::from(mode.decay) * pow(mode.ratio.into(), tilt);
+            if dullness < 0.0 && mode.ratio > 1.0 {
+                *scale *= pow(mode.ratio.into(), dullness);
+            }
+        }
+    }
+
+    /// Frequency and T60 of each mode, after [`SynthVoice::place`].
+    pub(super) fn tuning(&self, instrument: &Instrument, frequency: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
+        let (damping, scales, table) = (self.damping, self.t60_scale, instrument.modulated.modes);
+        let stretch = instrument.value(Param::Stretch);
+        scales.into_iter().enumerate().map_while(move |(m, scale)| {
+            let ratio = f64::from(table.as_slice().get(m)?.ratio);
+            let ratio = if stretch == 1.0 { ratio } else { pow(ratio, stretch) };
+            Some((frequency * ratio, damping.t60(scale)))
+        })
+    }
+
+    /// The note that the voice had hands over to `note`, which is told what it is told anew. A gain that the last one
+    /// was told fades to this one's.
+    fn take_over(&mut self, instrument: &Instrument, note: &Note) {
+        let pressure = if note.key == self.key { self.expressions.pressure } else { 0.0 };
+        self.expressions.clear();
+        self.expressions.pressure = pressure;
+        self.modulation.let_go();
+        self.follow(instrument);
+        self.key = note.key;
+        self.brightness = note.brightness.into();
+    }
+
+    /// Makes the sounding voice that of `note`, sliding from where its pitch is.
+    pub(super) fn aim(&mut self, instrument: &Instrument, note: &Note) {
+        let from = self.pitch + self.glide.at(self.seconds(self.age - self.glide_start));
+        self.take_over(instrument, note);
+        let frequency = self.place(instrument, note);
+        self.glide = Glide::new(from - self.pitch, 0.0, instrument.value(Param::Glide));
+        self.glide_start = self.age;
+        let tuning = self.tuning(instrument, frequency);
+        self.bank.retune(tuning);
+    }
+}

@@ -1,0 +1,84 @@
+//! MPE zones: which channels carry one note each, and the channel that speaks for them all.
+//!
+//! Source: MIDI Polyphonic Expression 1.0 (M1-100-UM): a configuration message is registered parameter 6 on channel
+//! 1 (the lower zone) or 16 (the upper zone), whose value is the number of member channels.
+
+/// Bend range of member channels, in semitones.
+pub(crate) const MEMBER_BEND_RANGE: f32 = 48.0;
+
+const LOWER_MASTER: u8 = 0;
+const UPPER_MASTER: u8 = 15;
+
+/// The zones in use: none until a configuration message comes. Real-time safe.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Zones {
+    lower: u8,
+    upper: u8,
+}
+
+impl Zones {
+    /// Takes in a configuration message; false if `channel` is none that it can come on. The later of two zones that
+    /// overlap takes the channels.
+    pub(crate) fn configure(&mut self, channel: u8, members: u8) -> bool {
+        let members = members.min(15);
+        let (zone, other) = match channel {
+            LOWER_MASTER => (&mut self.lower, &mut self.upper),
+            UPPER_MASTER => (&mut self.upper, &mut self.lower),
+            _ => return false,
+        };
+        *zone = members;
+        // Sixteen channels, less two masters.
+        *other = (*other).min(14_u8.saturating_sub(members));
+        true
+    }
+
+    /// The channel that speaks for `channel` as well.
+    pub(crate) fn master_of(&self, channel: u8) -> Option<u8> {
+        if (1..=self.lower).contains(&channel) {
+            Some(LOWER_MASTER)
+        } else if channel < UPPER_MASTER && channel >= UPPER_MASTER - self.upper {
+            Some(UPPER_MASTER)
+        } else {
+            None
+        }
+    }
+
+    /// The channels that a message on `channel` is for: itself, and its members if it is a master.
+    pub(crate) fn reach(&self, channel: u8) -> impl Iterator<Item = u8> + use<> {
+        let zones = *self;
+        (0..16).filter(move |other| *other == channel || zones.master_of(*other) == Some(channel))
+    }
+
+    /// The channels that share their bend range with `channel`: the members of its zone, or itself.
+    pub(crate) fn siblings(&self, channel: u8) -> impl Iterator<Item = u8> + use<> {
+        let (zones, master) = (*self, self.master_of(channel));
+        (0..16).filter(move |other| *other == channel || (master.is_some() && zones.master_of(*other) == master))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn members(zones: &Zones, master: u8) -> Vec<u8> {
+        zones.reach(master).filter(|channel| *channel != master).collect()
+    }
+
+    #[test]
+    fn zones_grow_from_both_ends_and_the_later_one_wins() {
+        let mut zones = Zones::default();
+        assert!(members(&zones, 0).is_empty());
+        assert!(zones.configure(0, 3) && zones.configure(15, 2));
+        assert_eq!((members(&zones, 0), members(&zones, 15)), (vec![1, 2, 3], vec![13, 14]));
+        assert_eq!((zones.master_of(2), zones.master_of(14), zones.master_of(7)), (Some(0), Some(15), None));
+        assert_eq!(zones.siblings(2).collect::<Vec<_>>(), [1, 2, 3]);
+        assert_eq!(zones.siblings(7).collect::<Vec<_>>(), [7]);
+        zones.configure(15, 12);
+        assert_eq!((members(&zones, 0), members(&zones, 15).len()), (vec![1, 2], 12));
+        zones.configure(0, 15);
+        assert_eq!((members(&zones, 0).len(), members(&zones, 15)), (15, vec![]));
+        zones.configure(0, 0);
+        assert_eq!(zones.master_of(1), None);
+        assert!(!zones.configure(5, 3));
+    }
+}
