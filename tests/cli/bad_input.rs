@@ -79,6 +79,7 @@ fn options() {
         ("--note 60 --tail -1", "expected 0 to 86400 s, auto or none"),
         ("--note 60 --block 0", "0 is not in 1..=65536"),
         ("--note 60 --block 65537", "65537 is not in 1..=65536"),
+        ("--note 60 --threads 0", "0 is not in 1..=256"),
         ("--note 60 --bits 8", "expected 16, 24 or 32f"),
         ("--note 60 --gain-db nan", "expected -120 to 120 dB"),
         ("--note 60 --normalize rms=1", "expected peak=DBFS or lufs=LUFS"),

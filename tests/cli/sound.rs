@@ -67,17 +67,21 @@ fn mono_is_the_mean_of_both_channels() {
 }
 
 #[test]
-fn the_samples_do_not_depend_on_the_block() {
+fn the_samples_do_not_depend_on_blocks_and_threads() {
     let sandbox = Sandbox::new();
     let notes: Vec<_> = (0..20).map(|n| note_on(37, n % 3, 40 + n)).chain([end(100)]).collect();
     sandbox.write("song.mid", song(&notes));
     let base = "render song.mid --preset Kick --bits 32f --force -o out.wav";
-    sandbox.succeeds(&format!("{base} --block 1024"));
+    sandbox.succeeds(&format!("{base} --block 1024 --threads 1"));
     let expected = sandbox.read("out.wav");
     assert!(sandbox.wav("out.wav").peak() > 0.01);
     for block in [1, 7, 64, 480, 65_536] {
         sandbox.succeeds(&format!("{base} --block {block}"));
         assert!(sandbox.read("out.wav") == expected, "{block}");
+    }
+    for threads in [2, 3] {
+        sandbox.succeeds(&format!("{base} --threads {threads}"));
+        assert!(sandbox.read("out.wav") == expected, "{threads} threads");
     }
 }
 
