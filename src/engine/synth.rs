@@ -162,7 +162,8 @@ impl Synth {
     /// Takes in one event, at the frame that is rendered next.
     pub fn handle(&mut self, event: &Event) {
         let index = event.channel & 15;
-        self.news = true;
+        // A tempo can wait for the next control tick.
+        self.news |= !matches!(event.kind, EventKind::Tempo(_));
         match event.kind {
             EventKind::NoteOn { key, detune, velocity, id } => {
                 self.instrument.controls = self.smoother.after(0);
@@ -319,6 +320,7 @@ impl Synth {
                     let controls = (note.patch == self.instrument.patch_serial).then_some(&controls);
                     voice.control(controls, &self.smoother, wheels, to_tick);
                 }
+                self.manager.active().for_each(|(_, voice)| voice.sweep(to_tick));
                 self.news = false;
             }
             let end = frames.min(frame + to_tick);
