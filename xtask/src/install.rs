@@ -18,9 +18,7 @@ fn folder(format: Format, scope: Scope) -> Result<PathBuf, String> {
     };
     let from = |variable: &str| {
         let value = std::env::var_os(variable).filter(|value| !value.is_empty());
-        value
-            .map(PathBuf::from)
-            .ok_or_else(|| format!("{variable} is not set, so there is no telling where to install"))
+        value.map(PathBuf::from).ok_or_else(|| format!("{variable} is not set, so there is no telling where DAWs look"))
     };
     Ok(match (std::env::consts::OS, scope) {
         ("windows", Scope::User) => from("LOCALAPPDATA")?.join("Programs/Common").join(name),
