@@ -10,6 +10,7 @@ use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_
 use fundsp::audionode::AudioNode;
 use fundsp::biquad::{BiquadCoefs, Resonator};
 use fundsp::biquad_bank::BiquadBank;
+use fundsp::buffer::BufferArray;
 use fundsp::numeric_array::typenum::{U1, U8};
 use fundsp::{F32x, Float, Frame};
 use sprung::dsp::mode_bank::Level;
@@ -33,8 +34,8 @@ fn noise() -> [f32; FRAMES] {
     }))
 }
 
-/// Eight biquads in a vector, bank after bank over the block, their outputs added up.
-fn biquad_banks(criterion: &mut Criterion) {
+/// Eight biquads in a vector; all of them.
+fn biquad_banks() -> Vec<BiquadBank<F32x>> {
     let resonator = |m| BiquadCoefs::resonator(48_000.0, frequency(m), 1000.0);
     let bank = |n: usize| {
         let c: [BiquadCoefs<f32>; 8] = std::array::from_fn(|lane| resonator(8 * n + lane));
@@ -48,9 +49,14 @@ fn biquad_banks(criterion: &mut Criterion) {
         };
         BiquadBank::<F32x>::with_coefs(coefs)
     };
-    let mut banks: Vec<_> = (0..MODES / 8).map(bank).collect();
+    (0..MODES / 8).map(bank).collect()
+}
+
+/// Bank after bank over the block, by a loop around `tick` that the compiler sees through: the best that it can do.
+fn biquad_ticks(criterion: &mut Criterion) {
+    let mut banks = biquad_banks();
     let input = noise();
-    bench(criterion, "fundsp BiquadBank", || {
+    bench(criterion, "fundsp BiquadBank tick", || {
         let mut sums = [F32x::ZERO; FRAMES];
         for bank in &mut banks {
             for (sum, input) in sums.iter_mut().zip(input) {
@@ -59,6 +65,25 @@ fn biquad_banks(criterion: &mut Criterion) {
             }
         }
         sums[0].reduce_add() + sums[FRAMES - 1].reduce_add()
+    });
+}
+
+/// Bank after bank, by `process`, as fundsp's graphs do it.
+fn biquad_blocks(criterion: &mut Criterion) {
+    let mut banks = biquad_banks();
+    let (mut input, mut output) = (BufferArray::<U8>::new(), BufferArray::<U8>::new());
+    for channel in 0..8 {
+        input.channel_f32_mut(channel).copy_from_slice(&noise());
+    }
+    bench(criterion, "fundsp BiquadBank process", || {
+        let mut sums = [F32x::ZERO; FRAMES / 8];
+        for bank in &mut banks {
+            bank.process(FRAMES, &input.buffer_ref(), &mut output.buffer_mut());
+            for channel in 0..8 {
+                sums.iter_mut().zip(output.channel(channel)).for_each(|(sum, eight)| *sum += *eight);
+            }
+        }
+        sums[0].reduce_add() + sums[FRAMES / 8 - 1].reduce_add()
     });
 }
 
@@ -101,5 +126,5 @@ fn quick() -> Criterion {
     Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(2000)
 }
 
-criterion_group! { name = benches; config = quick(); targets = biquad_banks, resonators, sprung }
+criterion_group! { name = benches; config = quick(); targets = biquad_ticks, biquad_blocks, resonators, sprung }
 criterion_main!(benches);

@@ -73,27 +73,29 @@ csound_score() { # OPCODES-OF-ONE-VOICE SECONDS
 csound_mode() {
     local lines="asum = 0"
     for m in {0..63}; do lines+=$'\n'"a$m mode ain, $((100 + 310 * m)), 1000"$'\n'"asum = asum + a$m"; done
-    csound_score "$lines" "$1" >mode.csd && csound mode.csd
+    csound_score "$lines" "$1" >mode.csd && timeout 100 csound mode.csd
 }
 
 csound_resony() {
-    csound_score 'asum resony ain, 100, 10, 64, 20000, 0' "$1" >resony.csd && csound resony.csd
+    csound_score 'asum resony ain, 100, 10, 64, 20000, 0' "$1" >resony.csd && timeout 100 csound resony.csd
 }
 
-klank() { scsynth -N "klank-$1.osc" _ klank.wav 48000 WAV int16 -o 1 -i 0; }
+klank() { timeout 100 scsynth -N "klank-$1.osc" _ klank.wav 48000 WAV int16 -o 1 -i 0; }
 
 fluid() {
     # Sixteen notes of the synthesized strings, held: a format 0 file with 480 ticks a quarter note of half a second,
-    # and a track of 3 + 16 x 4 + 6 bytes.
+    # and a track of 3 + 16 x 4 + 6 + 15 x 4 + 4 bytes. It plays on as long as a note is held, so all are let go.
     local events='\x00\xc0\x30' ticks=$((960 * $1)) length note
     for note in {40..55}; do events+="\\x00\\x90\\x$(printf %x "$note")\\x64"; done
     length="\\x$(printf %x $((128 | ticks >> 14 & 127)))\\x$(printf %x $((128 | ticks >> 7 & 127)))\\x$(printf %x $((ticks & 127)))"
-    events+="$length\\xff\\x2f\\x00"
-    printf 'MThd\x00\x00\x00\x06\x00\x00\x00\x01\x01\xe0MTrk\x00\x00\x00\x49'"$events" >fluid.mid
-    fluidsynth -q -F fluid.wav -T wav -O s16 -r 48000 -R 0 -C 0 "$soundfont" fluid.mid
+    events+="$length\\x80\\x28\\x00"
+    for note in {41..55}; do events+="\\x00\\x80\\x$(printf %x "$note")\\x00"; done
+    events+="\\x00\\xff\\x2f\\x00"
+    printf 'MThd\x00\x00\x00\x06\x00\x00\x00\x01\x01\xe0MTrk\x00\x00\x00\x89'"$events" >fluid.mid
+    timeout 100 fluidsynth -q -F fluid.wav -T wav -O s16 -r 48000 -R 0 -C 0 "$soundfont" fluid.mid
 }
 
-compiled() { "./$program" "$1"; }
+compiled() { timeout 100 "./$program" "$1"; }
 
 install
 echo "timing; this takes some minutes" >&2

@@ -1,7 +1,7 @@
 //! The audio thread: follows the parameters, hands over events at their frames, renders.
 
 use crate::events::translate;
-use crate::params::SprungParams;
+use crate::params::{Look, SprungParams};
 use crate::plugin::Sprung;
 use crate::slate::Loaded;
 use crate::tail::Tail;
@@ -72,12 +72,13 @@ impl Live {
     /// Takes over what has changed of the patch and its knobs. While another thread writes, all stays as it was until
     /// the next block.
     fn follow(&mut self, params: &SprungParams) {
-        let Some((positions, news)) = params.look(self.generation) else { return };
+        let Some(Look { positions, news }) = params.look(self.generation) else { return };
         let moved = |index: usize| positions[index].to_bits() != self.positions[index].to_bits();
         // While nothing sounds, values need no slope: what a host sets before it plays holds from the first note on.
         let whole = news.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
         if let Some((generation, loaded)) = news {
             (self.generation, self.loaded) = (Some(generation), loaded);
+            self.synth.set_seed(loaded.seed);
         }
         if whole {
             let mut patch = self.loaded.patch;

@@ -65,6 +65,13 @@ impl Knob {
     }
 }
 
+/// What the audio thread sees at one look.
+pub(crate) struct Look {
+    pub(crate) positions: [f32; PARAM_COUNT],
+    /// A patch that has been loaded since, with its generation.
+    pub(crate) news: Option<(u32, Loaded)>,
+}
+
 /// All that the threads of one instance share: parameters, the exact patch, and what is written beside it.
 pub(crate) struct SprungParams {
     knobs: Vec<Knob>,
@@ -124,10 +131,10 @@ impl SprungParams {
 
     /// Where the knobs stand and, unless `known` is still the generation of the loaded patch, that patch with its new
     /// generation. `None` while another thread writes. Real-time safe.
-    pub(crate) fn look(&self, known: Option<u32>) -> Option<([f32; PARAM_COUNT], Option<(u32, Loaded)>)> {
-        self.slate.read(|generation| {
-            let positions = from_fn(|index| self.knobs[index].position());
-            (positions, (known != Some(generation)).then(|| (generation, self.slate.get())))
+    pub(crate) fn look(&self, known: Option<u32>) -> Option<Look> {
+        self.slate.read(|generation| Look {
+            positions: from_fn(|index| self.knobs[index].position()),
+            news: (known != Some(generation)).then(|| (generation, self.slate.get())),
         })
     }
 }

@@ -68,7 +68,7 @@ impl Slate {
     /// `read` is.
     pub(crate) fn read<T>(&self, read: impl FnOnce(u32) -> T) -> Option<T> {
         let generation = self.generation.load(Ordering::Acquire);
-        if generation % 2 != 0 {
+        if !generation.is_multiple_of(2) {
             return None;
         }
         let result = read(generation);

@@ -75,7 +75,7 @@ def vst3(path):
     # Real time, 32 bits, blocks of 512 frames at 48 kHz.
     setup = (c.c_int32 * 6)(0, 0, 512)
     c.c_double.from_address(c.addressof(setup) + 16).value = 48000
-    assert method(processor, 8, c.c_void_p(c.addressof(setup))) == 0, "setupProcessing"
+    assert method(processor, 7, c.c_void_p(c.addressof(setup))) == 0, "setupProcessing"
     assert method(instance, 11, c.c_uint8(1)) == 0, "setActive"
 
 def run(kind):

@@ -86,6 +86,11 @@ impl Synth {
         self.configure();
     }
 
+    /// What is random starts from another seed with the next note. Real-time safe.
+    pub fn set_seed(&mut self, seed: u64) {
+        self.instrument.seed = seed;
+    }
+
     /// Plays another patch from the next note on. Notes that sound go on with the sound that they have.
     pub fn set_patch(&mut self, patch: &Patch) {
         self.instrument.patch = *patch;
@@ -157,7 +162,8 @@ impl Synth {
     /// Takes in one event, at the frame that is rendered next.
     pub fn handle(&mut self, event: &Event) {
         let index = event.channel & 15;
-        self.news = true;
+        // A tempo can wait for the next control tick.
+        self.news |= !matches!(event.kind, EventKind::Tempo(_));
         match event.kind {
             EventKind::NoteOn { key, detune, velocity, id } => {
                 self.instrument.controls = self.smoother.after(0);
@@ -314,6 +320,7 @@ impl Synth {
                     let controls = (note.patch == self.instrument.patch_serial).then_some(&controls);
                     voice.control(controls, &self.smoother, wheels, to_tick);
                 }
+                self.manager.active().for_each(|(_, voice)| voice.sweep(to_tick));
                 self.news = false;
             }
             let end = frames.min(frame + to_tick);

@@ -69,8 +69,11 @@ fn parse(bytes: &[u8]) -> Result<Song, String> {
         return Err(format!("not a whole MIDI file: it declares {declared} tracks and has {found}"));
     }
     let TrackReader { mut events, mut tempos, last_tick } = reader;
-    // Stable sorts: at one tick, the order of tracks and of events in them stays.
+    // Stable sorts: at one tick, the order of tracks and of events in them stays, after the tempo.
     tempos.sort_by_key(|(tick, _)| *tick);
+    let beats_per_minute = |tempo: u32| (6e7 / f64::from(tempo)) as f32;
+    let told = tempos.iter().map(|(tick, tempo)| (*tick, 0, EventKind::Tempo(beats_per_minute(*tempo))));
+    events.splice(..0, told);
     events.sort_by_key(|(tick, ..)| *tick);
     let map = TempoMap::new(timing, &tempos)?;
     let timed = |(tick, channel, kind)| SongEvent { seconds: map.seconds(tick), channel, kind };

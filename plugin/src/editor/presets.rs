@@ -78,7 +78,7 @@ fn load(preset: Preset, params: &SprungParams, host: &GuiContext) {
 }
 
 fn read(path: &str) -> Result<Preset, String> {
-    check(path).and_then(|path| Preset::load(path)).map_err(|error| error.to_string())
+    check(path).and_then(Preset::load).map_err(|error| error.to_string())
 }
 
 /// Writes a preset file, whole or not at all. The preset is then called as the file is; gives that name.

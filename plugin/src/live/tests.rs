@@ -148,14 +148,24 @@ fn knobs_are_followed_at_once_in_silence_and_smoothly_in_sound() {
 }
 
 #[test]
-fn a_loaded_patch_plays_from_the_next_note_on() {
+fn a_loaded_patch_and_seed_play_from_the_next_note_on() {
     let params = params(Patch::default());
     let mut live = Live::new(RATE, false, &params);
-    stereo(&mut live, &params, &mut Host::new(&[on(0, 1, 60)]), 64);
-    let bell = Preset::find("Church Bell").unwrap();
-    params.load(State::from_preset(bell.clone(), 3, [800, 600]));
     stereo(&mut live, &params, &mut Host::new(&[]), 64);
-    assert_eq!(live.synth.patch(), &bell.patch);
+    let snare = Preset::find("Snare").unwrap();
+    params.load(State::from_preset(snare.clone(), 4, [800, 600]));
+    let (out, _) = stereo(&mut live, &params, &mut Host::new(&[on(0, 1, 60)]), FRAMES);
+    assert_eq!(live.synth.patch(), &snare.patch);
+    let with_seed = |seed| {
+        let mut synth = Synth::new(RATE, seed);
+        synth.set_patch(&snare.patch);
+        let mut out = [vec![0.0; 64 + FRAMES], vec![0.0; 64 + FRAMES]];
+        let [left, right] = &mut out;
+        synth.process(&[Event { frame: 64, channel: 0, kind: strike(60, 1) }], left, right);
+        out.map(|channel| channel[64..].to_vec())
+    };
+    assert_eq!(out, with_seed(4));
+    assert_ne!(out, with_seed(3), "a snare is random");
 }
 
 #[test]

@@ -1,14 +1,15 @@
-//! What a bank does every sample, in two forms on one state: the step in registers, and sixteen frames at a time.
+//! What a bank does every sample, in two forms on one state: the step in registers (`step`), and sixteen frames at a
+//! time by tables, which is here with the data of both.
 //!
 //! Both are written once, over [`Vector`], and give the same bits on every level, because the order of every sum is
 //! frozen: the register form adds modes by lane (`m mod 16`) and then the lanes by halves; the table form adds even
-//! and odd modes apart, the shares of both coordinates apart, then modes and then shares. Modes at rest add `+0` and can be left out without changing a bit.
+//! and odd modes apart, the shares of both coordinates apart, then modes and then shares. Modes at rest add `+0` and
+//! can be left out without changing a bit.
 
 use super::MAX_MODES;
 use super::table::{Pairs, Table, Taps, Turn, WINDOW};
-use super::vector::{LANES, Partial, Vector};
+use super::vector::Vector;
 use crate::dsp::CONTROL_FRAMES;
-use crate::dsp::exciter::Drive;
 
 /// A number for each mode.
 #[derive(Clone, Copy, Debug)]
@@ -24,16 +25,6 @@ impl Row {
     #[inline(always)]
     pub(super) fn at<V: Vector>(&self, at: usize) -> V {
         V::load(&self.0[at..])
-    }
-
-    /// `N` vectors, [`LANES`] modes apart.
-    #[inline(always)]
-    fn every<V: Vector, const N: usize>(&self, at: usize) -> [V; N] {
-        let mut vectors = [V::splat(0.0); N];
-        for n in 0..N {
-            vectors[n] = self.at(at + n * LANES);
-        }
-        vectors
     }
 }
 
@@ -86,161 +77,6 @@ pub(super) struct Form {
 
 /// Output of up to a control tick, left and right; the right side is written only in stereo.
 pub(super) type Output = [[f32; CONTROL_FRAMES]; 2];
-
-/// Steps all modes through all frames.
-#[inline(always)]
-pub(super) fn step<V: Vector>(form: Form, modes: &mut Modes, state: &mut State, drive: &Drive, out: &mut Output) {
-    macro_rules! run {
-        ($swept:literal, $driven:literal, $stereo:literal, $fused:literal) => {
-            step_all::<V, $swept, $driven, $stereo, $fused>(form, modes, state, drive, out)
-        };
-    }
-    match (form.fused, form.swept, form.driven, form.stereo) {
-        (true, false, false, false) => run!(false, false, false, true),
-        (true, false, false, true) => run!(false, false, true, true),
-        (true, false, true, false) => run!(false, true, false, true),
-        (true, false, true, true) => run!(false, true, true, true),
-        (true, true, false, false) => run!(true, false, false, true),
-        (true, true, false, true) => run!(true, false, true, true),
-        (true, true, true, false) => run!(true, true, false, true),
-        (true, true, true, true) => run!(true, true, true, true),
-        (false, ..) => run!(true, true, true, false),
-    }
-}
-
-#[inline(always)]
-fn step_all<V: Vector, const SWEPT: bool, const DRIVEN: bool, const STEREO: bool, const FUSED: bool>(
-    form: Form,
-    modes: &mut Modes,
-    state: &mut State,
-    drive: &Drive,
-    out: &mut Output,
-) {
-    let (live, frames) = (form.live.min(MAX_MODES), form.frames.min(CONTROL_FRAMES));
-    let (mut left, mut right) = ([Partial([0.0; LANES]); CONTROL_FRAMES], [Partial([0.0; LANES]); CONTROL_FRAMES]);
-    let groups = live.div_ceil(LANES);
-    let mut group = 0;
-    while group < groups {
-        let remaining = groups - group;
-        let interleave = if V::INTERLEAVE >= 4 && remaining >= 4 {
-            4
-        } else if V::INTERLEAVE >= 2 && remaining >= 2 {
-            2
-        } else {
-            1
-        };
-        let mut lane = 0;
-        while lane < LANES && group * LANES + lane < live {
-            let at = group * LANES + lane;
-            match interleave {
-                4 => step_some::<V, 4, SWEPT, DRIVEN, STEREO, FUSED>(
-                    modes, state, at, drive, frames, &mut left, &mut right,
-                ),
-                2 => step_some::<V, 2, SWEPT, DRIVEN, STEREO, FUSED>(
-                    modes, state, at, drive, frames, &mut left, &mut right,
-                ),
-                _ => step_some::<V, 1, SWEPT, DRIVEN, STEREO, FUSED>(
-                    modes, state, at, drive, frames, &mut left, &mut right,
-                ),
-            }
-            lane += V::WIDTH;
-        }
-        group += interleave;
-    }
-    V::sum_lanes(&left[..frames], &mut out[0]);
-    if STEREO {
-        V::sum_lanes(&right[..frames], &mut out[1]);
-    }
-}
-
-/// Steps `N` vectors of modes, sixteen modes apart, from mode `at`: enough of them to fill the time that one step
-/// has to wait for the one before, few enough that their state stays in registers.
-#[inline(always)]
-fn step_some<
-    V: Vector,
-    const N: usize,
-    const SWEPT: bool,
-    const DRIVEN: bool,
-    const STEREO: bool,
-    const FUSED: bool,
->(
-    modes: &mut Modes,
-    state: &mut State,
-    at: usize,
-    drive: &Drive,
-    frames: usize,
-    partial_left: &mut [Partial; CONTROL_FRAMES],
-    partial_right: &mut [Partial; CONTROL_FRAMES],
-) {
-    let lane = at % LANES;
-    let (mut x, mut v): ([V; N], [V; N]) = (state.x.every(at), state.v.every(at));
-    let (zeta, omega2): ([V; N], [V; N]) = (modes.zeta.every(at), modes.omega2.every(at));
-    let (mut sweep, sweep_step): ([V; N], [V; N]) = (modes.sweep.every(at), modes.sweep_step.every(at));
-    let (mut level, level_step): ([V; N], [V; N]) = (modes.level.every(at), modes.level_step.every(at));
-    let (left, right): ([V; N], [V; N]) = (modes.left.every(at), modes.right.every(at));
-    let (push, pull): ([V; N], [V; N]) = (modes.push.every(at), modes.pull.every(at));
-    let (noise, least): ([V; N], [V; N]) = (modes.noise.every(at), modes.least.every(at));
-    for i in 0..frames {
-        let mut sum_left = V::load(&partial_left[i].0[lane..]);
-        let mut sum_right = if STEREO { V::load(&partial_right[i].0[lane..]) } else { sum_left };
-        for n in 0..N {
-            if SWEPT {
-                sweep[n] = sweep[n].add(sweep_step[n]);
-                level[n] = level[n].add(level_step[n]);
-            }
-            if DRIVEN {
-                let (pulse, burst) = (V::splat(drive.pulse[i]), V::splat(drive.noise[i]));
-                if FUSED {
-                    if SWEPT {
-                        let struck = level[n].max(least[n]);
-                        v[n] = burst.mul_add(noise[n], pulse.mul(push[n])).mul_add(struck, v[n]);
-                        x[n] = pulse.mul(pull[n]).mul_add(struck, x[n]);
-                    } else {
-                        v[n] = burst.mul_add(noise[n], pulse.mul_add(push[n], v[n]));
-                        x[n] = pulse.mul_add(pull[n], x[n]);
-                    }
-                } else {
-                    v[n] = v[n].add(pulse.mul(push[n]).add(burst.mul(noise[n])).mul(level[n]));
-                    x[n] = x[n].add(pulse.mul(pull[n]).mul(level[n]));
-                }
-            }
-            if FUSED {
-                let stiffness = if SWEPT { omega2[n].mul(sweep[n]) } else { omega2[n] };
-                v[n] = x[n].neg_mul_add(stiffness, v[n].neg_mul_add(zeta[n], v[n]));
-                x[n] = if SWEPT { v[n].mul_add(sweep[n], x[n]) } else { x[n].add(v[n]) };
-                match (SWEPT, STEREO) {
-                    (false, false) => sum_left = sum_left.add(x[n]),
-                    (true, false) => sum_left = x[n].mul_add(level[n], sum_left),
-                    (_, true) => {
-                        let heard = if SWEPT { x[n].mul(level[n]) } else { x[n] };
-                        sum_left = heard.mul_add(left[n], sum_left);
-                        sum_right = heard.mul_add(right[n], sum_right);
-                    }
-                }
-            } else {
-                // The original listing, operation for operation.
-                v[n] = v[n].sub(v[n].mul(zeta[n]).add(x[n].mul(omega2[n]).mul(sweep[n])));
-                x[n] = x[n].add(v[n].mul(sweep[n]));
-                let heard = x[n].mul(level[n]);
-                sum_left = sum_left.add(heard.mul(left[n]));
-                sum_right = sum_right.add(heard.mul(right[n]));
-            }
-        }
-        sum_left.store(&mut partial_left[i].0[lane..]);
-        if STEREO {
-            sum_right.store(&mut partial_right[i].0[lane..]);
-        }
-    }
-    for n in 0..N {
-        let at = at + n * LANES;
-        x[n].store(&mut state.x.0[at..]);
-        v[n].store(&mut state.v.0[at..]);
-        if SWEPT {
-            sweep[n].store(&mut modes.sweep.0[at..]);
-            level[n].store(&mut modes.level.0[at..]);
-        }
-    }
-}
 
 /// The output of the live modes over one control tick, by their tables; `end` becomes the state after it.
 ///

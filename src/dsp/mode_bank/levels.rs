@@ -1,7 +1,8 @@
 //! The kernels compiled for each level of instructions, and the choice of one when the first bank is made.
 
 use super::control::{Pitch, Wide};
-use super::kernel::{Form, Modes, Output, State, ring, step};
+use super::kernel::{Form, Modes, Output, State, ring};
+use super::step::step;
 use super::table::{Table, Turn};
 use super::vector::Scalar;
 use crate::dsp::exciter::Drive;

@@ -1,9 +1,9 @@
 //! Up to 64 masses side by side, their ringing summed in one fixed order.
 //!
-//! State, law and tuning are here; `kernel` has what happens every sample, once for all vector instructions
-//! (`vector`, `x86`, `neon`), `levels` compiles it for each and chooses, `control` what happens at control ticks,
-//! `table` the tables of freely ringing modes, `classic` the original formulas. The vectors of an instruction set, and calling what is compiled for
-//! one, are the only unsafe code of the crate.
+//! State, law and tuning are here; `kernel` and `step` have what happens every sample, once for all vector
+//! instructions (`vector`, `x86`, `neon`), `levels` compiles it for each and chooses, `control` what happens at control
+//! ticks, `table` the tables of freely ringing modes, `classic` the original formulas. The vectors of an instruction
+//! set, and calling what is compiled for one, are the only unsafe code of the crate.
 
 mod classic;
 mod control;
@@ -14,6 +14,8 @@ mod levels;
 #[cfg(target_arch = "aarch64")]
 #[allow(unsafe_code)]
 mod neon;
+#[allow(clippy::needless_range_loop, reason = "as in `kernel`")]
+mod step;
 mod table;
 mod tail;
 #[allow(clippy::needless_range_loop, reason = "as in `kernel`")]

@@ -15,7 +15,7 @@ pub(super) struct Partial(pub(super) [f32; LANES]);
 pub(super) trait Vector: Copy {
     /// How many numbers.
     const WIDTH: usize;
-    /// How many vectors of modes the registers hold at once.
+    /// How many vectors of modes are stepped at once, where sweep and level stand still.
     const INTERLEAVE: usize;
 
     /// `value` in every lane.

@@ -157,7 +157,7 @@ fn fused(a: __m128d, b: __m128d, c: __m128d) -> __m128d {
 pub(super) struct Avx2(__m256);
 
 impl Vector for Avx2 {
-    const INTERLEAVE: usize = 4;
+    const INTERLEAVE: usize = 8;
     common!(
         8,
         _mm256_loadu_ps,

@@ -222,8 +222,7 @@ impl SynthVoice {
             let ratio = self.ratio(self.offset(wheels, 0));
             self.bank.jump_to(ratio);
         }
-        let ratio = self.ratio(self.offset(wheels, frames));
-        self.bank.sweep_to(ratio, frames);
+        self.ratio(self.offset(wheels, frames));
 
         if self.fresh {
             self.expressions.land();
@@ -237,6 +236,12 @@ impl SynthVoice {
             self.end = None;
         }
         self.fresh = false;
+    }
+
+    /// Sends the modes to the pitch that [`SynthVoice::control`] has found. Apart from it, so that what one voice
+    /// waits for is done while others wait: that gains a tenth.
+    pub(crate) fn sweep(&mut self, frames: usize) {
+        self.bank.sweep_to(self.ratio, frames);
     }
 
     /// Takes stock at a control tick: what energy is left, and which modes have come to rest. Every few ticks are

@@ -58,8 +58,16 @@ fn tempo_changes_hold_across_tracks() {
     let notes = vec![midi(0, 0, on(60, 1)), midi(480, 0, on(61, 1)), midi(480, 0, on(62, 1))];
     // The tempo track comes last: what counts is when, not where.
     let song = song(BEATS, &[notes, tempo]);
-    assert_eq!(song.events.iter().map(|event| event.seconds).collect::<Vec<_>>(), [0.0, 1.0, 1.25]);
-    assert_eq!(song.events.iter().map(|event| event.frame(44_100.0)).collect::<Vec<_>>(), [0, 44_100, 55_125]);
+    let (tempos, notes): (Vec<SongEvent>, Vec<_>) =
+        song.events.iter().partition(|event| matches!(event.kind, EventKind::Tempo(_)));
+    assert_eq!(notes.iter().map(|event| event.seconds).collect::<Vec<_>>(), [0.0, 1.0, 1.25]);
+    assert_eq!(notes.iter().map(|event| event.frame(44_100.0)).collect::<Vec<_>>(), [0, 44_100, 55_125]);
+    // The engine hears of each tempo, before the notes of its time.
+    assert_eq!(
+        tempos.iter().map(|event| (event.seconds, event.kind)).collect::<Vec<_>>(),
+        [(0.0, EventKind::Tempo(60.0)), (1.0, EventKind::Tempo(240.0))]
+    );
+    assert_eq!([song.events[0], song.events[2]], tempos[..]);
 }
 
 #[test]

@@ -137,7 +137,7 @@ fn beside(measured: &Measured, peers: &[Peer], best: Level) -> String {
             figure(giga)
         );
     };
-    for name in ["BiquadBank", "resonator"] {
+    for name in ["BiquadBank tick", "BiquadBank process", "resonator"] {
         let giga = measured.rate(&format!("peers/fundsp {name}")).map(|rate| rate / 1e9);
         let times = figure(giga.map(|giga| giga * 1e9 / 1024.0 / RATE));
         row(&format!("fundsp {name}"), "0.23", "avx2", giga, &times);
