@@ -3,6 +3,7 @@
 use crate::host::{Address, Sent, Timed};
 use midly::num::{u4, u7, u15, u24, u28};
 use midly::{Format, Header, MetaMessage, MidiMessage, Smf, Timing, TrackEvent, TrackEventKind};
+use sprung::engine::EventKind;
 use sprung::io::Song;
 
 /// Frames per second of the frames below.
@@ -156,7 +157,8 @@ pub(crate) fn messages_of(bytes: &[u8], sample_rate: f64) -> Vec<(u64, [u8; 3])>
         }
     }
     raw.sort_by_key(|(tick, _)| *tick);
-    assert_eq!(raw.len(), song.events.len());
-    let timed = song.events.iter().zip(raw).map(|(event, (_, data))| (event.frame(sample_rate), data));
+    let events: Vec<_> = song.events.iter().filter(|event| !matches!(event.kind, EventKind::Tempo(_))).collect();
+    assert_eq!(raw.len(), events.len());
+    let timed = events.into_iter().zip(raw).map(|(event, (_, data))| (event.frame(sample_rate), data));
     timed.filter(|(_, data)| data[0] & 0xF0 != 0xC0).collect()
 }

@@ -10,8 +10,11 @@ use sprung::patch::Patch;
 use sprung::render::{Job, Options, Tail};
 use std::path::Path;
 
+/// A name, and the lengths of blocks one after the other.
+type Division = (&'static str, Box<dyn FnMut() -> usize>);
+
 /// Ways to divide a song into blocks.
-fn divisions() -> Vec<(&'static str, Box<dyn FnMut() -> usize>)> {
+fn divisions() -> Vec<Division> {
     let mut n = 0;
     let random = move || {
         n += 1;

@@ -1,0 +1,28 @@
+#!/bin/sh
+# Drives DAWs of Debian's without hands: Ardour with the VST3 bundle, Qtractor's scan of the CLAP.
+# On demand, not part of the suite: apt-get install ardour qtractor; cargo xtask bundle; plugin/tests/daws.sh
+set -eu
+bundled=$(cd "$(dirname "$0")/../../target/bundled" && pwd)
+scripts=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export HOME="$work" LC_ALL=C.UTF-8
+mkdir -p "$HOME/.vst3" "$HOME/.clap"
+cp -r "$bundled/Sprung.vst3" "$HOME/.vst3/"
+cp "$bundled/Sprung.clap" "$HOME/.clap/"
+# Ardour takes a scan only if it is newer than the bundle.
+find "$HOME/.vst3" -exec touch -d '1 hour ago' {} +
+
+echo "── Qtractor's scan"
+scan=$(find /usr/lib -name qtractor_plugin_scan | head -n 1)
+echo "CLAP:$HOME/.clap/Sprung.clap" | QT_QPA_PLATFORM=offscreen timeout 60 "$scan" | tee "$work/qtractor"
+grep -q '^CLAP|Sprung|0:2|1:0|' "$work/qtractor"
+
+echo "── Ardour's scan"
+ardour=$(ls -d /usr/lib/ardour[0-9]* | head -n 1)
+LD_LIBRARY_PATH="$ardour" timeout 60 "$ardour/ardour-vst3-scanner" -f "$HOME/.vst3/Sprung.vst3"
+for step in make load; do
+    echo "── a session in Ardour: $step"
+    timeout 120 "$(command -v ardour7-lua)" "$scripts/daws.lua" "$step" "$work/session" Sprung 2>&1 | tee "$work/ardour"
+    grep -q '^passed' "$work/ardour"
+done
