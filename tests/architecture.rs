@@ -102,7 +102,7 @@ fn the_plugin_has_no_dsp() {
             }
             files += 1;
             let text = fs::read_to_string(&path).unwrap();
-            let used = ["sprung::dsp", "libm::"].into_iter().find(|name| text.contains(name));
+            let used = ["dsp::", "libm::"].into_iter().find(|name| text.contains(name));
             assert_eq!(used, None, "{}", path.display());
         }
     }

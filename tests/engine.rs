@@ -56,7 +56,7 @@ fn any_event(frames: u32) -> impl Strategy<Value = Event> {
         1 => (key.clone(), 0.0..1.0f32).prop_map(|(key, pressure)| EventKind::PolyPressure { key, pressure }),
         1 => (0.0..1.0f32).prop_map(EventKind::ChannelPressure),
         2 => (-1.0..1.0f32).prop_map(EventKind::PitchBend),
-        3 => (prop::sample::select(vec![1, 6, 7, 10, 11, 38, 64, 66, 67, 74, 100, 101, 120, 121, 123]), 0.0..1.0f32)
+        3 => (prop::sample::select(vec![1, 6, 7, 10, 11, 38, 64, 66, 67, 74, 100, 100, 101, 120, 121, 123]), 0.0..1.0f32)
             .prop_map(|(controller, value)| EventKind::Control { controller, value }),
         3 => (key.clone(), prop::sample::select(EXPRESSIONS.to_vec()), -1.0..4.0f32).prop_map(
             |(key, expression, value)| EventKind::Express { notes: Notes::on(0, key), expression, value }
@@ -66,7 +66,8 @@ fn any_event(frames: u32) -> impl Strategy<Value = Event> {
             param: PARAMS[index].param,
             offset,
         }),
-        1 => key.prop_map(|key| EventKind::Silence { notes: Notes::on(0, key) }),
+        1 => key.clone().prop_map(|key| EventKind::Silence { notes: Notes::on(0, key) }),
+        1 => key.prop_map(|key| EventKind::Release { notes: Notes::on(0, key), velocity: 0.9 }),
         1 => (20.0..300.0f32).prop_map(EventKind::Tempo),
         3 => (0..PARAMS.len(), 0.0..1.0f64).prop_map(|(index, position)| EventKind::Param {
             param: PARAMS[index].param,
@@ -125,6 +126,8 @@ fn garbage_in_events_never_comes_out() {
             EventKind::Control { controller: 1, value },
             EventKind::Choke { group: 255 },
             EventKind::Tempo(value),
+            EventKind::Release { notes: Notes::on(255, 255), velocity: value },
+            EventKind::Silence { notes: Notes::on(255, 255) },
             EventKind::Modulate { id: None, param: Param::Gain, offset: value },
             EventKind::Modulate { id: Some(-1), param: Param::Tune, offset: value },
         ] {

@@ -105,7 +105,7 @@ fn wildcards_choose_notes() {
     }
 }
 
-/// Spectral centroid over the harmonics of a note, in harmonics, of the second that follows `from`.
+/// Spectral centroid over the harmonics of a note, in harmonics.
 fn centroid(samples: &[f32], frequency: f64, harmonics: usize) -> f64 {
     let (mut sum, mut weighted) = (0.0, 0.0);
     for harmonic in 1..=harmonics {
@@ -174,6 +174,16 @@ fn a_note_with_an_offset_of_its_own_heeds_no_other() {
 }
 
 #[test]
+fn a_note_follows_its_patch_while_another_body_is_made_ready() {
+    let events = [
+        on(0, 0, 57, 1),
+        modulate(4800, None, Param::Width, -0.5),
+        event(9600, EventKind::Param { param: Param::Gain, value: -60.0 }),
+    ];
+    assert!(peak(&render(&sine(), &events, RATE)[0][24_000..]) < 2e-3);
+}
+
+#[test]
 fn mpe_members_bend_by_48_semitones_and_their_master_bends_all() {
     // Registered parameter 6 on channel 1: fifteen members.
     let zone = [control(0, 101, 0), control(0, 100, 6), control(0, 6, 15)];
@@ -189,14 +199,19 @@ fn mpe_members_bend_by_48_semitones_and_their_master_bends_all() {
         let [left, _] = render(&sine(), &all, 2 * RATE);
         assert!(periods(&left[RATE - 1..]).abs_diff(expected) <= 1, "{events:?}: {}", periods(&left[RATE - 1..]));
     }
-    // The master's pedal holds its members' notes.
+    // The master's pedal holds its members' notes, until the zone is dissolved.
+    let dissolve = control(0, 6, 0);
     let pedal = |events: &[Event]| {
         let off = EventKind::NoteOff { key: 57, velocity: 0.5, id: -1 };
         let off = Event { frame: 4800, channel: 1, kind: off };
         let all: Vec<_> = zone.iter().chain(events).chain(&[on(0, 1, 57, -1), off]).copied().collect();
         peak(&render(&sine().with(Param::Release, 0.01), &all, RATE)[0][24_000..])
     };
-    assert!(pedal(&[]) < 1e-3 && pedal(&[control(0, 64, 127)]) > 0.9);
+    let down = control(0, 64, 127);
+    assert!(pedal(&[]) < 1e-3 && pedal(&[down]) > 0.9 && pedal(&[down, dissolve]) < 1e-3);
+    let all = [&zone[..], &[dissolve, bend(1, 1.0), on(0, 1, 57, -1)]].concat();
+    let [left, _] = render(&sine(), &all, 2 * RATE);
+    assert!(periods(&left[RATE - 1..]).abs_diff(247) <= 1, "two semitones again: {}", periods(&left[RATE - 1..]));
 }
 
 #[test]
@@ -268,6 +283,7 @@ fn frames_to_silence(synth: &mut Synth) -> u64 {
 
 #[test]
 fn tails_are_told_exactly() {
+    let mut sounding = 0;
     for preset in Preset::factory() {
         let patch = preset.patch.with(Param::Decay, preset.patch.get(Param::Decay).min(1.0));
         for off in [false, true] {
@@ -279,9 +295,28 @@ fn tails_are_told_exactly() {
             synth.process(&events[..if off { 3 } else { 2 }], &mut left, &mut right);
             let told = synth.tail_frames();
             let found = if synth.is_silent() { 0 } else { frames_to_silence(&mut synth) };
+            sounding += u32::from(found > 0);
             assert!(told.abs_diff(found) <= CONTROL_FRAMES as u64, "{}: {told} told, {found} found", preset.name);
             assert_eq!(synth.tail_frames(), 0);
         }
+    }
+    assert!(sounding > 40, "only {sounding} sounded when they were asked");
+}
+
+#[test]
+fn a_tail_is_told_of_what_cannot_be_heard_yet_and_of_what_was_retuned() {
+    let above = Patch::default().with(Param::Sweep, 60.0).with(Param::SweepTime, 2.0).with(Param::Decay, 4.0);
+    let legato = Patch::default().with(Param::Mode, 2.0).with(Param::DecayKey, 100.0);
+    for (patch, key, next) in [(above, 84, None), (legato, 84, Some(36))] {
+        let mut synth = synth(&patch);
+        let (mut left, mut right) = (vec![0.0; 9600], vec![0.0; 9600]);
+        synth.process(&[on(0, 0, key, 1)], &mut left, &mut right);
+        let before = synth.tail_frames();
+        let retune: Vec<_> = next.map(|key| on(0, 0, key, 2)).into_iter().collect();
+        synth.process(&retune, &mut left[..4800], &mut right[..4800]);
+        let told = synth.tail_frames();
+        let found = frames_to_silence(&mut synth);
+        assert!(told.abs_diff(found) <= CONTROL_FRAMES as u64, "{key}: {told} told, {found} found, {before} before");
     }
 }
 

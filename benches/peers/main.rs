@@ -1,6 +1,6 @@
 //! Sixteen voices of 64 modes for 64 frames, by fundsp and by Sprung in one run. Elements are modes × frames.
 //!
-//! fundsp's vectors are those that the compiler is allowed: build with `RUSTFLAGS="-C target-cpu=native"`. Its filters
+//! fundsp's vectors are those that the compiler is allowed: build with `RUSTFLAGS="-C target-cpu=x86-64-v3"`. Its filters
 //! take a sample of input each frame, as Sprung's do when `driven`. Other peers: `run.sh`, beside this.
 
 #[path = "../struck/mod.rs"]

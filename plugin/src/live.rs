@@ -50,7 +50,7 @@ impl Live {
             positions: loaded.positions,
             offsets: [0.0; PARAM_COUNT],
             tempo: None,
-            voices: MAX_VOICES,
+            voices: 0,
             tail: Tail::new(offline),
             told: 0,
             early: Vec::with_capacity(Sprung::INPUT_EVENT_CAPACITY),
@@ -128,17 +128,18 @@ impl Live {
     ) -> ProcessStatus {
         self.follow(params);
         self.follow_host(params, context.transport().tempo);
+        // A mode that changes lets go of the keys that wait.
+        self.tell(0, context);
         let voices = self.synth.patch().get(Param::Voices) as u32;
         if voices != self.voices {
             self.voices = voices;
             context.set_current_voice_capacity(voices);
         }
-        let api = context.plugin_api();
         let frames = outputs.first().map_or(0, |channel| channel.len());
         let mut frame = 0;
         for index in 0..self.early.len() {
             let event = self.early[index];
-            self.take(&event, frame, api, context);
+            self.take(params, &event, frame, context);
         }
         self.early.clear();
         while let Some(event) = context.next_event() {
@@ -152,15 +153,27 @@ impl Live {
             let at = at.min(frames);
             self.render(outputs, frame..at, context);
             frame = at;
-            self.take(&event, frame, api, context);
+            self.take(params, &event, frame, context);
         }
         self.render(outputs, frame..frames, context);
         self.tail.status(&mut self.synth, frames)
     }
 
     /// Takes in one event at a frame of the block.
-    fn take(&mut self, event: &NoteEvent<()>, frame: usize, api: PluginApi, context: &mut impl ProcessContext<Sprung>) {
-        if let Some((channel, kind)) = translate(event, api) {
+    fn take(
+        &mut self,
+        params: &SprungParams,
+        event: &NoteEvent<()>,
+        frame: usize,
+        context: &mut impl ProcessContext<Sprung>,
+    ) {
+        // The wrapper keeps no value of a parameter that is modulated to the end of its travel.
+        if let NoteEvent::MonoAutomation { poly_modulation_id, normalized_value, .. } = *event
+            && let Some(knob) = params.knobs().get(poly_modulation_id as usize)
+        {
+            knob.turn(normalized_value);
+        }
+        if let Some((channel, kind)) = translate(event, context.plugin_api()) {
             self.handle(channel, kind);
             self.tell(frame, context);
         }
@@ -171,12 +184,12 @@ impl Live {
         if frames.is_empty() {
             return;
         }
-        let end = frames.end;
+        let last = frames.end - 1;
         match outputs {
             [left, right, ..] => {
                 self.synth.process(&[], &mut left[frames.clone()], &mut right[frames]);
                 self.told = 0;
-                self.tell(end, context);
+                self.tell(last, context);
             }
             [mono] => {
                 for part in mono[frames].chunks_mut(MONO_FRAMES) {
@@ -187,7 +200,7 @@ impl Live {
                         *mono = 0.5 * (*left + *right);
                     }
                     self.told = 0;
-                    self.tell(end, context);
+                    self.tell(last, context);
                 }
             }
             [] => {}
@@ -201,7 +214,7 @@ impl Live {
             let voice_id = if note.id >= 0 { VoiceID::ID(note.id) } else { VoiceID::Wildcard };
             // A host that takes no events, or no more of them, does without.
             let _ = context.try_send_event(NoteEvent::VoiceTerminated {
-                timing: frame.saturating_sub(1) as u32,
+                timing: frame as u32,
                 voice_id,
                 channel: Channel::Number(note.channel),
                 key: Key::Number(note.key),

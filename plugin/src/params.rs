@@ -52,14 +52,32 @@ impl Knob {
         }
     }
 
-    /// Turns the knob without telling the host.
+    /// Turns the knob without telling the host. Real-time safe.
     pub(crate) fn turn(&self, position: f32) {
+        // The wrapper keeps no value that modulation leaves where it was, at the end of the travel: then the knob is
+        // turned without modulation, which is put back as far as it was heard.
         // SAFETY: the methods write atomics of a parameter that is borrowed here; that they are meant for wrappers
         // only is because the host hears nothing of it, which callers see to.
         unsafe {
             match self {
-                Self::Continuous(knob) => knob._internal_set_normalized_value(position),
-                Self::Stepped(knob) => knob._internal_set_normalized_value(position),
+                Self::Continuous(knob) => {
+                    knob._internal_set_normalized_value(position);
+                    if knob.unmodulated_normalized_value() != position {
+                        let offset = self.offset();
+                        knob._internal_modulate_value(0.0);
+                        knob._internal_set_normalized_value(position);
+                        knob._internal_modulate_value(offset);
+                    }
+                }
+                Self::Stepped(knob) => {
+                    knob._internal_set_normalized_value(position);
+                    if knob.unmodulated_plain_value() != knob.preview_plain(position) {
+                        let offset = self.offset();
+                        knob._internal_modulate_value(0.0);
+                        knob._internal_set_normalized_value(position);
+                        knob._internal_modulate_value(offset);
+                    }
+                }
             }
         };
     }
@@ -182,6 +200,25 @@ mod tests {
             let smoothed = matches!(info.change, Change::Smoothed(_));
             assert_eq!(modulated, smoothed.then_some(info.param as u32), "{id}");
             assert_eq!(knob.position(), info.normalise(info.default) as f32, "{id}");
+        }
+    }
+
+    #[test]
+    fn a_knob_is_turned_whatever_modulates_it() {
+        let params = SprungParams::default();
+        for row in [Row::Gain, Row::VibratoSync] {
+            let knob = &params.knobs()[row as usize];
+            for (offset, position) in [(1.0, 1.0), (1.0, 0.0), (-1.0, 1.0), (0.5, 0.0), (0.0, 1.0)] {
+                // SAFETY: as the wrapper does while a host modulates.
+                unsafe {
+                    match knob {
+                        Knob::Continuous(knob) => knob._internal_modulate_value(offset),
+                        Knob::Stepped(knob) => knob._internal_modulate_value(offset),
+                    }
+                };
+                knob.turn(position);
+                assert_eq!(knob.position(), position, "{row:?} modulated by {offset}");
+            }
         }
     }
 

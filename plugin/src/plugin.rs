@@ -44,7 +44,7 @@ impl Plugin for Sprung {
     // Bend, pedals and the wheel come only with all controllers.
     const MIDI_INPUT: MidiConfig = MidiConfig::MidiCCs;
     const SAMPLE_ACCURATE_AUTOMATION: bool = true;
-    // A host may send all of VST3's 2,080 controllers at once.
+    // A host may send all of VST3's 2,080 controllers at once, several times a block; beyond this the wrapper allocates.
     const INPUT_EVENT_CAPACITY: usize = 8192;
 
     type Editor = SprungEditor;

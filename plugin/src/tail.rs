@@ -3,7 +3,8 @@
 use nice_plug::prelude::ProcessStatus;
 use sprung::engine::Synth;
 
-/// Frames between counts while the host plays in real time: counting takes as long as rendering many blocks.
+/// Frames between counts while the host plays in real time: counting takes some microseconds for each voice that
+/// something has happened to.
 const RECOUNT: usize = 4096;
 
 /// What the host is told of the tail. Between two counts it shrinks by what has been rendered. Real-time safe.

@@ -46,7 +46,7 @@ pub enum EventKind {
     },
     /// Keys come up: a note-off as plugin hosts put it.
     Release {
-        /// Whose.
+        /// The notes that the keys belong to.
         notes: Notes,
         /// 0–1; 0.5 where the host does not tell.
         velocity: f32,
@@ -56,7 +56,8 @@ pub enum EventKind {
         /// Which.
         notes: Notes,
     },
-    /// Notes are told how to sound. It lasts until their next word, and ends with the note.
+    /// Notes are told how to sound. It lasts until their next word, and ends when the note leaves its voice: a key that
+    /// a monophonic voice comes back to starts neutral.
     Express {
         /// Which.
         notes: Notes,
@@ -105,7 +106,8 @@ pub enum EventKind {
     Program(u8),
 }
 
-/// Which notes an event is for: those that agree in all that is given.
+/// Which notes of a synth an event is for: those that agree in all that is given. The event's own channel plays no
+/// part in a synth; in an ensemble it chooses the synth, as it does for every event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Notes {
     /// The host's identifier; a note that was given none agrees with any.

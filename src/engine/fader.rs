@@ -39,6 +39,11 @@ impl Fader {
         (self.fade_frames > 0).then(|| u64::from(self.fade_frames - self.faded))
     }
 
+    /// Whether the gain rests, but for a fade.
+    pub(crate) fn is_level(&self) -> bool {
+        self.step == [0.0; 2]
+    }
+
     /// Begins to fade out.
     pub(crate) fn fade(&mut self, frames: u32) {
         self.fade_frames = frames;

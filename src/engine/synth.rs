@@ -44,8 +44,7 @@ impl Synth {
         let patch = Patch::default();
         let smoother = Smoother::new(sample_rate, &patch, DEFAULT_BEAT_RATE);
         let controls = smoother.after(0);
-        let instrument =
-            Instrument { patch, modulated: patch, patch_serial: 0, sample_rate, seed, controls, last_pitch: None };
+        let instrument = Instrument::new(patch, sample_rate, seed, controls);
         let mut synth = Self {
             manager: VoiceManager::new(|| SynthVoice::new(sample_rate, controls)),
             instrument,
@@ -78,7 +77,8 @@ impl Synth {
         self.instrument.modulated = self.instrument.patch;
         self.smoother = Smoother::new(sample_rate, &self.instrument.modulated, DEFAULT_BEAT_RATE);
         self.instrument.controls = self.smoother.after(0);
-        (self.instrument.last_pitch, self.instrument.patch_serial) = (None, 0);
+        self.instrument.last_pitch = None;
+        (self.instrument.patch_serial, self.instrument.body_serial) = (0, 0);
         self.channels = [Channel::new(sample_rate); 16];
         self.zones = Zones::default();
         self.offsets = [0.0; PARAM_COUNT];
@@ -100,6 +100,7 @@ impl Synth {
             self.instrument.modulated.set(info.param, modulated(patch, info.param, offset));
         }
         self.instrument.patch_serial += 1;
+        self.instrument.body_serial += 1;
         // Voices of the old patch keep its controls, so the new ones need no slope.
         let beat_rate = self.smoother.beat_rate();
         self.smoother = Smoother::new(self.instrument.sample_rate, &self.instrument.modulated, beat_rate);
@@ -121,7 +122,8 @@ impl Synth {
     }
 
     /// Frames until silence if nothing more happens: exact to a control tick ([`CONTROL_FRAMES`]) once strikes have
-    /// ended, and no less than that before; 0 if nothing sounds. Real-time safe.
+    /// ended and parameters have arrived where they slide to, no less than that during a strike; 0 if nothing sounds.
+    /// Real-time safe: some microseconds a voice when something has happened to it, next to nothing otherwise.
     pub fn tail_frames(&mut self) -> u64 {
         let to_tick = (CONTROL_FRAMES as u64 - self.clock % CONTROL_FRAMES as u64) % CONTROL_FRAMES as u64;
         self.manager.active().map(|(_, voice)| voice.tail_frames(to_tick)).max().unwrap_or(0)
@@ -178,6 +180,7 @@ impl Synth {
                     id,
                     serial: self.note_serial,
                     patch: self.instrument.patch_serial,
+                    body: self.instrument.body_serial,
                     choke: self.instrument.modulated.get(Param::Choke) as u8,
                 };
                 self.note_serial += 1;
@@ -208,7 +211,8 @@ impl Synth {
                 self.take_over(param);
             }
             EventKind::Modulate { id: Some(id), param, offset } => {
-                if param.info().change != Change::NextNote {
+                // Notes that were given no identifier cannot be meant.
+                if id >= 0 && param.info().change != Change::NextNote {
                     let (now, offset) = (self.smoother.now(param), finite(offset).clamp(-1.0, 1.0));
                     let meant = self.manager.active().filter(|(note, _)| note.id == id);
                     meant.for_each(|(_, voice)| voice.modulate(&self.instrument, param, offset, now));
@@ -228,7 +232,7 @@ impl Synth {
         self.instrument.modulated.set(param, value);
         // Sounding voices cannot take these over without a click: notes from now on have their own.
         if matches!(param, Param::Coefficients | Param::Width) {
-            self.instrument.patch_serial += 1;
+            self.instrument.body_serial += 1;
         }
         self.smoother.set(param, value);
         self.manager.active().for_each(|(_, voice)| voice.follow(&self.instrument));
@@ -262,6 +266,7 @@ impl Synth {
                     self.manager.sostenuto(channel, false);
                     let on_channel = self.manager.active().filter(|(note, _)| note.channel == channel);
                     on_channel.for_each(|(_, voice)| voice.relax());
+                    self.channels[usize::from(channel)].control(number, value);
                 }
                 _ => {}
             }
@@ -274,6 +279,7 @@ impl Synth {
             controller::BRIGHTNESS => {
                 for channel in self.zones.reach(index) {
                     let brightness = self.brightness(channel);
+                    self.manager.brighten(channel, brightness);
                     let on_channel = self.manager.active().filter(|(note, _)| note.channel == channel);
                     on_channel.for_each(|(_, voice)| voice.shade(&self.instrument, brightness));
                 }
@@ -289,10 +295,14 @@ impl Synth {
             let siblings = self.zones.siblings(index);
             siblings.for_each(|sibling| self.channels[usize::from(sibling)].bend_range = channel.bend_range);
         } else if channel.awaits_zone() && number == controller::DATA {
-            let members = (value * 127.0 + 0.5) as u8;
-            if self.zones.configure(index, members) {
-                let members = self.zones.reach(index).filter(|member| *member != index);
-                members.for_each(|member| self.channels[usize::from(member)].bend_range = Some(MEMBER_BEND_RANGE));
+            let before = self.zones;
+            self.zones.configure(index, (value * 127.0 + 0.5) as u8);
+            // Who changes masters starts anew: what the last one held is let go.
+            for channel in (0..16).filter(|channel| before.master_of(*channel) != self.zones.master_of(*channel)) {
+                self.manager.sustain(channel, false);
+                self.manager.sostenuto(channel, false);
+                let member = self.zones.master_of(channel).is_some();
+                self.channels[usize::from(channel)].bend_range = member.then_some(MEMBER_BEND_RANGE);
             }
         }
     }

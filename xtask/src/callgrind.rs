@@ -25,7 +25,7 @@ const LEVELS: [Level; 3] = [Level::Scalar, Level::Sse2, Level::Avx2];
 /// Frames of a silent block.
 const FRAMES: usize = 64;
 
-/// Rounds that are counted, beyond as many again or so that are not: whole turns of what modulates.
+/// Rounds that are counted, after a tenth as many that are not: whole turns of what modulates.
 const ROUNDS: usize = 210;
 
 /// Something to count.

@@ -1,7 +1,7 @@
 //! `cargo xtask test`: the whole suite, step by step, with a count of what really ran.
 
 use crate::shell::{cargo, run_and_read};
-use crate::{callgrind, setup};
+use crate::{bundle, callgrind, setup};
 use std::fmt;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -48,7 +48,7 @@ const STEPS: &[Step] = &[
     },
     Step {
         name: "tests",
-        arguments: "test --workspace --all-features --no-fail-fast",
+        arguments: "test --workspace --exclude sprung-plugin --all-features --no-fail-fast",
         environment: &[],
         shows: Shows::Tests,
     },
@@ -105,12 +105,10 @@ struct Outcome {
 pub(crate) fn run() -> Result<(), String> {
     let mut outcomes = vec![timed("setup", || match setup::run() {
         Ok(()) => (Count { passed: 1, ..Count::default() }, ""),
-        Err(message) => {
-            eprintln!("{message}");
-            (Count { failed: 1, ..Count::default() }, "")
-        }
+        Err(message) => failed(&message),
     })];
     outcomes.extend(STEPS.iter().map(|step| timed(step.name, || step.run())));
+    outcomes.push(timed("plugin, as bundled", plugin));
     outcomes.push(timed("instructions", instructions));
 
     println!("\n{:<24} {:<8} {:>9}  ran", "step", "result", "time");
@@ -126,6 +124,18 @@ pub(crate) fn run() -> Result<(), String> {
     if total.failed == 0 { Ok(()) } else { Err("the suite failed".to_owned()) }
 }
 
+/// The plugin's own tests, and the bundles that musicians install in real hosts.
+fn plugin() -> (Count, &'static str) {
+    match bundle::run(false) {
+        Ok(folder) => {
+            let mut command = cargo("test --package sprung-plugin --no-fail-fast");
+            command.env("SPRUNG_BUNDLES", folder);
+            run_command(command, Shows::Tests)
+        }
+        Err(message) => failed(&message),
+    }
+}
+
 /// The counts of the kernels' instructions, against those kept.
 fn instructions() -> (Count, &'static str) {
     if !callgrind::can_count() {
@@ -133,9 +143,21 @@ fn instructions() -> (Count, &'static str) {
     }
     match callgrind::run(false) {
         Ok(counted) => (Count { passed: counted, ..Count::default() }, ""),
+        Err(message) => failed(&message),
+    }
+}
+
+fn failed(message: &str) -> (Count, &'static str) {
+    eprintln!("{message}");
+    (Count { failed: 1, ..Count::default() }, "")
+}
+
+fn run_command(command: Command, shows: Shows) -> (Count, &'static str) {
+    match run_and_read(command) {
+        Ok((succeeded, lines)) => shows.judge(succeeded, &lines),
         Err(message) => {
             eprintln!("{message}");
-            (Count { failed: 1, ..Count::default() }, "")
+            (Count { failed: 1, ..Count::default() }, " (did not start)")
         }
     }
 }
@@ -148,20 +170,10 @@ fn timed(name: &'static str, work: impl FnOnce() -> (Count, &'static str)) -> Ou
 }
 
 impl Step {
-    fn command(&self) -> Command {
+    fn run(&self) -> (Count, &'static str) {
         let mut command = cargo(self.arguments);
         command.envs(self.environment.iter().copied());
-        command
-    }
-
-    fn run(&self) -> (Count, &'static str) {
-        match run_and_read(self.command()) {
-            Ok((succeeded, lines)) => self.shows.judge(succeeded, &lines),
-            Err(message) => {
-                eprintln!("{message}");
-                (Count { failed: 1, ..Count::default() }, " (did not start)")
-            }
-        }
+        run_command(command, self.shows)
     }
 }
 

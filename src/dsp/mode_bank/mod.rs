@@ -45,7 +45,8 @@ const TOP_ANGLE: f64 = 0.98 * PI;
 /// A mode that comes down from just below π would need a boost without bound; 2 serves those from 20 kHz at 48 kHz.
 const HIGHEST_LEVEL: f32 = 2.0;
 
-/// The logarithm of the smallest radius: 0.5 ms at 8 kHz, less than any mode of a voice.
+/// The logarithm of the smallest radius that the series for it can take: a T60 of 0.5 ms at 8 kHz, the least of a voice;
+/// at 1 kHz modes ring for 3.8 ms at least.
 const LEAST_LN_RADIUS: f64 = -1.8;
 
 /// Control ticks for which a bank must have rung freely before it is worth making its tables: `WAIT + modes / 8`.
@@ -426,9 +427,15 @@ impl ModeBank {
     /// Where mode `m` is, as heard at full gain, and its squared amplitude: to look at. Within a tick that is rendered
     /// by tables, as of its start.
     pub fn motion(&self, m: usize) -> (f32, f32) {
+        let level = self.modes.level.0[m];
+        (self.states[self.current].x.0[m] * level, self.energy(m) * level * level)
+    }
+
+    /// The squared amplitude of mode `m`, but for its level.
+    fn energy(&self, m: usize) -> f32 {
         let State { x, v } = &self.states[self.current];
-        let (x, v, level, sweep) = (x.0[m], v.0[m], self.modes.level.0[m], self.modes.sweep.0[m]);
-        let energy = if self.ahead {
+        let (x, v, sweep) = (x.0[m], v.0[m], self.modes.sweep.0[m]);
+        if self.ahead {
             x * x + v * v
         } else {
             let c = Coefficients {
@@ -438,8 +445,7 @@ impl ModeBank {
                 v0: 0.0,
             };
             (c.energy(x.into(), f64::from(v * sweep)) as f32).max(0.0)
-        };
-        (x * level, energy * level * level)
+        }
     }
 
     /// The sum of the squared amplitudes at which the modes ring, as heard; modes that have all but stopped are set

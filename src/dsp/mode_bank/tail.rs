@@ -48,7 +48,11 @@ impl ModeBank {
 
     fn mode_energy(&self, m: usize) -> f64 {
         match self.law {
-            Law::Exact => self.motion(m).1.into(),
+            Law::Exact => {
+                // One that a sweep holds above the spectrum is silent but not at rest: it may come down.
+                let level = f64::from(self.modes.level.0[m].max(self.modes.least.0[m]));
+                f64::from(self.energy(m)) * level * level
+            }
             Law::Classic => self.energy_classic(m),
         }
     }

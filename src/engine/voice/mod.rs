@@ -28,6 +28,8 @@ pub(crate) struct Instrument {
     pub(crate) modulated: Patch,
     /// Counts the patches: a voice that was started by another cannot read this one.
     pub(crate) patch_serial: u32,
+    /// Counts the bodies: a voice keeps the one that it was started with.
+    pub(crate) body_serial: u32,
     pub(crate) sample_rate: f64,
     pub(crate) seed: u64,
     /// Live parameters at this frame.
@@ -37,6 +39,12 @@ pub(crate) struct Instrument {
 }
 
 impl Instrument {
+    /// An instrument with its first patch.
+    pub(crate) fn new(patch: Patch, sample_rate: f64, seed: u64, controls: Controls) -> Self {
+        let (patch_serial, body_serial) = (0, 0);
+        Self { patch, modulated: patch, patch_serial, body_serial, sample_rate, seed, controls, last_pitch: None }
+    }
+
     fn value(&self, param: Param) -> f64 {
         self.modulated.get(param).into()
     }

@@ -128,7 +128,8 @@ impl SynthVoice {
     /// The note that the voice had hands over to `note`, which is told what it is told anew. A gain that the last one
     /// was told fades to this one's.
     fn take_over(&mut self, instrument: &Instrument, note: &Note) {
-        let pressure = if note.key == self.key { self.expressions.pressure } else { 0.0 };
+        // A MIDI controller that has not let go of the key still presses it.
+        let pressure = if note.key == self.key && note.id == -1 { self.expressions.pressure } else { 0.0 };
         self.expressions.clear();
         self.expressions.pressure = pressure;
         self.modulation.let_go();
@@ -141,6 +142,7 @@ impl SynthVoice {
     pub(super) fn aim(&mut self, instrument: &Instrument, note: &Note) {
         let from = self.pitch + self.glide.at(self.seconds(self.age - self.glide_start));
         self.take_over(instrument, note);
+        self.end = None;
         let frequency = self.place(instrument, note);
         self.glide = Glide::new(from - self.pitch, 0.0, instrument.value(Param::Glide));
         self.glide_start = self.age;

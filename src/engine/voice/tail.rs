@@ -8,7 +8,8 @@ const TICK: u64 = CONTROL_FRAMES as u64;
 
 impl SynthVoice {
     /// Frames until the voice is over if it is left alone, `to_tick` frames before the next control tick: exact to a
-    /// tick once the strike has ended, and no less than that before.
+    /// tick once the strike has ended and neither decay nor gain slides to another value, no less than that during a
+    /// strike.
     ///
     /// Real-time safe. Some microseconds after a strike, release or change of gain or decay, next to nothing otherwise.
     pub(crate) fn tail_frames(&mut self, to_tick: u64) -> u64 {
@@ -19,8 +20,8 @@ impl SynthVoice {
             Some(end) => end,
             None => {
                 let end = self.total_age + self.find_end(to_tick);
-                // While energy comes in, the end is not known yet.
-                self.end = (self.pending_energy == 0.0).then_some(end);
+                // While energy comes in or the gain slides, the end is not known yet.
+                self.end = (self.pending_energy == 0.0 && self.fader.is_level()).then_some(end);
                 end
             }
         };

@@ -21,8 +21,10 @@ pub struct Note {
     pub id: i32,
     /// Counts the notes of a synth.
     pub serial: u64,
-    /// Counts the patches of a synth; notes of different patches never share a voice.
+    /// Counts the patches of a synth.
     pub patch: u32,
+    /// Counts the bodies of a synth; notes of different bodies never share a voice.
+    pub body: u32,
     /// Choke group, 0 for none.
     pub choke: u8,
 }
@@ -131,6 +133,7 @@ impl<V: Voice> VoiceManager<V> {
             id: -1,
             serial: 0,
             patch: 0,
+            body: 0,
             choke: 0,
         };
         let slot = || Slot { voice: voice(), note, state: State::Free, key_down: false, sostenuto: false };
@@ -229,7 +232,7 @@ impl<V: Voice> VoiceManager<V> {
         for slot in self.slots[..self.used].iter_mut().filter(|slot| slot.is_sounding()) {
             // What the note is about to strike again or to retune is not choked.
             let reused =
-                slot.note.patch == note.patch && (self.mode != PlayMode::Poly || slot.is_on(note.channel, note.key));
+                slot.note.body == note.body && (self.mode != PlayMode::Poly || slot.is_on(note.channel, note.key));
             if note.choke != 0 && slot.note.choke == note.choke && !reused {
                 fade(slot);
             }
@@ -242,7 +245,7 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     fn note_on_poly(&mut self, context: &V::Context, note: Note) {
-        let same = |slot: &&mut Slot<V>| slot.is_on(note.channel, note.key) && slot.note.patch == note.patch;
+        let same = |slot: &&mut Slot<V>| slot.is_on(note.channel, note.key) && slot.note.body == note.body;
         if let Some(slot) = self.slots[..self.used].iter_mut().find(same) {
             slot.voice.restrike(context, &note);
             let before = hold(slot, note);
@@ -267,7 +270,7 @@ impl<V: Voice> VoiceManager<V> {
         let mut playing = None;
         for (index, slot) in self.slots.iter_mut().enumerate().filter(|(_, slot)| slot.is_sounding()) {
             // Left over from another patch or from polyphony: make room.
-            if playing.is_some() || slot.note.patch != note.patch {
+            if playing.is_some() || slot.note.body != note.body {
                 fade(slot);
             } else {
                 playing = Some(index);
@@ -294,7 +297,8 @@ impl<V: Voice> VoiceManager<V> {
             {
                 slot.voice.retune(context, &note);
                 // The voice keeps the sound that it has.
-                let note = Note { patch: slot.note.patch, choke: slot.note.choke, ..note };
+                let Note { patch, body, choke, .. } = slot.note;
+                let note = Note { patch, body, choke, ..note };
                 let before = std::mem::replace(&mut slot.note, note);
                 return self.retire(before);
             }
@@ -303,6 +307,12 @@ impl<V: Voice> VoiceManager<V> {
             slot.key_down = false;
             release_unless_held(slot, &self.sustain, velocity);
         }
+    }
+
+    /// Tells keys that are waited for of their channel's brightness.
+    pub fn brighten(&mut self, channel: u8, brightness: f32) {
+        let held = self.held[..self.held_len].iter_mut().filter(|held| held.channel == channel);
+        held.for_each(|held| held.brightness = brightness);
     }
 
     /// Silences these notes.

@@ -75,6 +75,7 @@ fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
             id: i32::from(key) + 1000,
             serial: serial as u64,
             patch,
+            body: patch,
             choke,
         };
         match *action {
