@@ -26,15 +26,16 @@ pub(crate) fn on(frame: u64, channel: u8, key: u8, id: i32, velocity: f32) -> (T
     (sent, At(frame, channel, EventKind::NoteOn { key, detune: 0.0, velocity, id }))
 }
 
-/// Plays a song in a host and on the engine, and compares.
+/// Plays a song in a host and on the engine, and compares; the sound of both.
 #[track_caller]
-pub(crate) fn compare(what: &str, patch: &Patch, song: &[(Timed, At)]) {
+pub(crate) fn compare(what: &str, patch: &Patch, song: &[(Timed, At)]) -> [Vec<f32>; 2] {
     let (sent, events): (Vec<Timed>, Vec<At>) = song.iter().copied().unzip();
     let expected = render(patch, RATE, &events, FRAMES);
     for block in BLOCKS {
         let found = play(patch, &sent, block);
         assert_same_bits(&format!("{what}, blocks of {block}"), &found.channels, &expected);
     }
+    expected
 }
 
 fn play(patch: &Patch, song: &[Timed], block: usize) -> Rendered {

@@ -83,7 +83,8 @@ pub(crate) fn mpe_is_heard_by_channel() {
         let (channel, kind) = sprung::io::midi::parse_message(&data).unwrap();
         (Sent::Midi(data).at(frame), At(frame, channel, kind))
     };
-    let mut song = Vec::new();
+    // The configuration message: from now on, the first channel speaks for the other fifteen.
+    let mut song = vec![midi(0, [0xB0, 101, 0]), midi(0, [0xB0, 100, 6]), midi(0, [0xB0, 6, 15])];
     for (channel, key) in [(1_u8, 60_u8), (2, 64), (3, 67)] {
         let at = u64::from(channel) * 100;
         song.extend([
@@ -98,15 +99,30 @@ pub(crate) fn mpe_is_heard_by_channel() {
             midi(at + 5_000, [0x80 | channel, key, 70]),
         ]);
     }
-    song.extend([midi(3_333, [0xE0, 0, 70]), midi(4_444, [0xB0, 64, 127])]);
-    song.sort_by_key(|(sent, _)| sent.frame);
-    compare("MPE", &patch().with(Param::PressureVibrato, 90.0), &song);
+    let patch = patch().with(Param::PressureVibrato, 90.0);
+    let (bend, pedal) = (midi(3_333, [0xE0, 0, 70]), midi(4_444, [0xB0, 64, 127]));
+    let [members, bent, held, both] = [vec![], vec![bend], vec![pedal], vec![bend, pedal]].map(|main| {
+        let mut song = [&song[..], &main].concat();
+        song.sort_by_key(|(sent, _)| sent.frame);
+        compare("MPE", &patch, &song)
+    });
+    assert!(bent != members, "the main channel's bend moves all notes");
+    assert!(held != members, "the main channel's pedal holds all notes");
+    assert!(both != bent && both != held, "bend and pedal");
 }
 
-/// The tempo reaches the engine when it changes.
+/// A vibrato in time with the song: another tempo sounds different, from the frame at which it comes.
 pub(crate) fn the_tempo_is_handed_on() {
-    let tempo = |frame: u64, tempo: f64| (Sent::Tempo(tempo).at(frame), At(frame, 0, EventKind::Tempo(tempo as f32)));
-    let song =
-        [tempo(0, 120.0), on(3, 0, 60, 1, 0.9), tempo(1_000, 140.5), on(2_000, 0, 64, 2, 0.9), tempo(2_001, 30.25)];
-    compare("tempo", &patch(), &song);
+    let patch = patch().with(Param::Vibrato, 80.0).with(Param::VibratoSync, 4.0);
+    let sound = |first: f64, second: f64| {
+        let tempo =
+            |frame: u64, tempo: f64| (Sent::Tempo(tempo).at(frame), At(frame, 0, EventKind::Tempo(tempo as f32)));
+        let song = [tempo(0, first), on(3, 0, 60, 1, 0.9), tempo(3_001, second), on(4_000, 0, 64, 2, 0.9)];
+        compare(&format!("{first} and {second} beats a minute"), &patch, &song)
+    };
+    let steady = sound(140.5, 140.5);
+    assert!(sound(90.0, 140.5)[0][..3_000] != steady[0][..3_000], "the first tempo is heard");
+    let slower = sound(140.5, 30.25);
+    assert!(slower[0][..3_000] == steady[0][..3_000], "nothing changes before the second tempo");
+    assert!(slower[0][3_000..] != steady[0][3_000..], "the second tempo is heard");
 }
