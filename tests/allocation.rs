@@ -9,16 +9,6 @@ use sprung::render::Meter;
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
 
-const EXPRESSIONS: [Expression; 7] = [
-    Expression::Tuning,
-    Expression::Volume,
-    Expression::Pan,
-    Expression::Pressure,
-    Expression::Brightness,
-    Expression::Vibrato,
-    Expression::Swell,
-];
-
 /// Every kind of event, on every channel, stealing and choking all the while.
 fn storm(block: u32) -> Vec<Event> {
     let mut events = vec![];
@@ -39,7 +29,7 @@ fn storm(block: u32) -> Vec<Event> {
             },
             EventKind::Param { param: param.param, value: param.denormalise(value.into()) },
             EventKind::Choke { group: (n % 3) as u8 },
-            EventKind::Express { notes: Notes::on(channel, key), expression: EXPRESSIONS[n as usize % 7], value },
+            EventKind::Express { notes: Notes::on(channel, key), expression: Expression::ALL[n as usize % 7], value },
             EventKind::Silence { notes: Notes { id: Some(n as i32 - 9), ..Notes::default() } },
             EventKind::Modulate { id: (n % 2 == 0).then_some(n as i32), param: param.param, offset: value - 0.5 },
             EventKind::Tempo(60.0 + value),

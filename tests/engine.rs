@@ -37,16 +37,6 @@ fn render(patch: &Patch, events: &[Event], frames: usize, mut block: impl FnMut(
     (left, right)
 }
 
-const EXPRESSIONS: [Expression; 7] = [
-    Expression::Tuning,
-    Expression::Volume,
-    Expression::Pan,
-    Expression::Pressure,
-    Expression::Brightness,
-    Expression::Vibrato,
-    Expression::Swell,
-];
-
 fn any_event(frames: u32) -> impl Strategy<Value = Event> {
     let key = 36..84u8;
     let kind = prop_oneof![
@@ -58,7 +48,7 @@ fn any_event(frames: u32) -> impl Strategy<Value = Event> {
         2 => (-1.0..1.0f32).prop_map(EventKind::PitchBend),
         3 => (prop::sample::select(vec![1, 6, 7, 10, 11, 38, 64, 66, 67, 74, 100, 100, 101, 120, 121, 123]), 0.0..1.0f32)
             .prop_map(|(controller, value)| EventKind::Control { controller, value }),
-        3 => (key.clone(), prop::sample::select(EXPRESSIONS.to_vec()), -1.0..4.0f32).prop_map(
+        3 => (key.clone(), prop::sample::select(Expression::ALL.to_vec()), -1.0..4.0f32).prop_map(
             |(key, expression, value)| EventKind::Express { notes: Notes::on(0, key), expression, value }
         ),
         2 => (0..PARAMS.len(), -1..3i32, -1.0..1.0f32).prop_map(|(index, id, offset)| EventKind::Modulate {
@@ -134,7 +124,7 @@ fn garbage_in_events_never_comes_out() {
             events.push(Event { frame, channel: 255, kind });
             events.push(event(frame, kind));
         }
-        events.extend(EXPRESSIONS.map(|expression| {
+        events.extend(Expression::ALL.map(|expression| {
             let notes = Notes::default();
             event(frame, EventKind::Express { notes, expression, value })
         }));

@@ -150,3 +150,9 @@ pub enum Expression {
     /// 0–1: swells as controller 11 does.
     Swell,
 }
+
+impl Expression {
+    /// Every expression.
+    pub const ALL: [Expression; 7] =
+        [Self::Tuning, Self::Volume, Self::Pan, Self::Pressure, Self::Brightness, Self::Vibrato, Self::Swell];
+}
