@@ -105,6 +105,7 @@ fn main() -> ExitCode {
         Nothing: notes {
             a_note_ends_when_its_sound_does
             every_note_ends_once_also_when_stolen_or_struck_again
+            held_notes_end_once_when_mono_becomes_poly
             a_stolen_note_ends_when_it_is_stolen
             notes_are_found_by_id_key_channel_or_not_at_all
             a_choke_silences_within_a_fade
@@ -125,6 +126,7 @@ fn main() -> ExitCode {
             what_is_saved_comes_back_to_the_byte
             every_way_to_set_values_leaves_the_same_state
             modulation_is_not_saved
+            a_state_loaded_while_all_is_modulated_is_what_is_saved
             a_state_loaded_while_processing_is_heard_exactly
             touching_a_knob_keeps_the_exact_value
             streams_may_deliver_a_byte_at_a_time
