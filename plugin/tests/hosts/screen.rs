@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::io::BufRead as _;
 use std::process::{Child, Command, Stdio};
+use std::time::Duration;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
     AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, MapState, WindowClass,
@@ -109,15 +110,25 @@ impl Onlooker {
         self.pixels(width, height).into_iter().collect::<BTreeSet<_>>().len() > 16
     }
 
-    /// Drags the mouse from one place to another.
+    /// Drags the mouse from one place to another at once: a window may see all of it between two pictures.
     pub(crate) fn drag(&self, from: [i16; 2], to: [i16; 2]) {
+        self.drag_with_pauses(from, to, Duration::ZERO);
+    }
+
+    /// Drags the mouse as a hand does, so that a window sees each step by itself.
+    pub(crate) fn drag_slowly(&self, from: [i16; 2], to: [i16; 2]) {
+        self.drag_with_pauses(from, to, Duration::from_millis(30));
+    }
+
+    fn drag_with_pauses(&self, from: [i16; 2], to: [i16; 2], pause: Duration) {
         const PRESS: u8 = 4;
         const RELEASE: u8 = 5;
         const MOVE: u8 = 6;
         for (kind, detail, [x, y]) in [(MOVE, 0, from), (PRESS, 1, from), (MOVE, 0, to), (RELEASE, 1, to)] {
             self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).unwrap();
+            self.connection.flush().unwrap();
+            std::thread::sleep(pause);
         }
-        self.connection.flush().unwrap();
     }
 
     /// The window with this title, if it is to be seen.
