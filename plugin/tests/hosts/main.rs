@@ -23,6 +23,7 @@ mod window;
 
 use libtest_mimic::{Arguments, Trial};
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
 /// What a test needs beyond Rust.
 #[derive(Clone, Copy)]
@@ -38,22 +39,16 @@ enum Needs {
 
 impl Needs {
     /// What of it is not there.
-    fn missing(self) -> Option<&'static str> {
-        let screen = || (!is_installed("Xvfb")).then_some("Xvfb");
-        let python = || (!vst3::is_installed()).then_some("pedalboard and dawdreamer in target/python");
+    fn missing(self) -> Option<String> {
+        static SCREEN: LazyLock<Option<String>> = LazyLock::new(screen::missing);
+        static PYTHON: LazyLock<Option<String>> = LazyLock::new(vst3::missing);
         match self {
             Needs::Nothing => None,
-            Needs::Screen => screen(),
-            Needs::Python => python(),
-            Needs::PythonAndScreen => python().or_else(screen),
+            Needs::Screen => SCREEN.clone(),
+            Needs::Python => PYTHON.clone(),
+            Needs::PythonAndScreen => PYTHON.clone().or_else(|| SCREEN.clone()),
         }
     }
-}
-
-/// Whether a program can be run.
-fn is_installed(program: &str) -> bool {
-    std::env::var_os("PATH")
-        .is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(program).is_file()))
 }
 
 /// Tests by their modules and names, and what those of a module need.
@@ -173,7 +168,7 @@ fn main() -> ExitCode {
     };
     let trial = |(name, needs, test): (&str, Needs, fn())| {
         let missing = needs.missing();
-        if let Some(missing) = missing {
+        if let Some(missing) = &missing {
             println!("{name} is ignored: it needs {missing}, which ‘cargo xtask setup’ installs");
         }
         let run = move || {

@@ -23,10 +23,21 @@ fn environment() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("python")
 }
 
-/// Whether it has the versions of the hosts that are wanted.
-pub(crate) fn is_installed() -> bool {
+/// What is missing of the hosts in the versions that are wanted, if they cannot be loaded.
+pub(crate) fn missing() -> Option<String> {
     let installed = std::fs::read_to_string(environment().join("requirements.txt"));
-    installed.is_ok_and(|installed| installed == include_str!("requirements.txt"))
+    if !installed.is_ok_and(|installed| installed == include_str!("requirements.txt")) {
+        return Some("pedalboard and dawdreamer in target/python".to_owned());
+    }
+    let output = Command::new(python()).args(["-c", "import dawdreamer, pedalboard"]).env("DISPLAY", ":none").output();
+    match output {
+        Ok(output) if output.status.success() => None,
+        Ok(output) => {
+            let said = String::from_utf8_lossy(&output.stderr);
+            Some(format!("what pedalboard and dawdreamer load ({})", said.lines().last().unwrap_or("no reason given")))
+        }
+        Err(error) => Some(format!("a Python in target/python that starts ({error})")),
+    }
 }
 
 fn python() -> PathBuf {
