@@ -23,6 +23,7 @@ mod window;
 
 use libtest_mimic::{Arguments, Trial};
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
 /// What a test needs beyond Rust.
 #[derive(Clone, Copy)]
@@ -38,22 +39,16 @@ enum Needs {
 
 impl Needs {
     /// What of it is not there.
-    fn missing(self) -> Option<&'static str> {
-        let screen = || (!is_installed("Xvfb")).then_some("Xvfb");
-        let python = || (!vst3::is_installed()).then_some("pedalboard and dawdreamer in target/python");
+    fn missing(self) -> Option<String> {
+        static SCREEN: LazyLock<Option<String>> = LazyLock::new(screen::missing);
+        static PYTHON: LazyLock<Option<String>> = LazyLock::new(vst3::missing);
         match self {
             Needs::Nothing => None,
-            Needs::Screen => screen(),
-            Needs::Python => python(),
-            Needs::PythonAndScreen => python().or_else(screen),
+            Needs::Screen => SCREEN.clone(),
+            Needs::Python => PYTHON.clone(),
+            Needs::PythonAndScreen => PYTHON.clone().or_else(|| SCREEN.clone()),
         }
     }
-}
-
-/// Whether a program can be run.
-fn is_installed(program: &str) -> bool {
-    std::env::var_os("PATH")
-        .is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(program).is_file()))
 }
 
 /// Tests by their modules and names, and what those of a module need.
@@ -105,6 +100,7 @@ fn main() -> ExitCode {
         Nothing: notes {
             a_note_ends_when_its_sound_does
             every_note_ends_once_also_when_stolen_or_struck_again
+            held_notes_end_once_when_mono_becomes_poly
             a_stolen_note_ends_when_it_is_stolen
             notes_are_found_by_id_key_channel_or_not_at_all
             a_choke_silences_within_a_fade
@@ -125,6 +121,7 @@ fn main() -> ExitCode {
             what_is_saved_comes_back_to_the_byte
             every_way_to_set_values_leaves_the_same_state
             modulation_is_not_saved
+            a_state_loaded_while_all_is_modulated_is_what_is_saved
             a_state_loaded_while_processing_is_heard_exactly
             touching_a_knob_keeps_the_exact_value
             streams_may_deliver_a_byte_at_a_time
@@ -171,7 +168,7 @@ fn main() -> ExitCode {
     };
     let trial = |(name, needs, test): (&str, Needs, fn())| {
         let missing = needs.missing();
-        if let Some(missing) = missing {
+        if let Some(missing) = &missing {
             println!("{name} is ignored: it needs {missing}, which ‘cargo xtask setup’ installs");
         }
         let run = move || {

@@ -71,6 +71,26 @@ pub(crate) fn every_note_ends_once_also_when_stolen_or_struck_again() {
     }
 }
 
+/// Of keys held in mono, one sounds; in poly, the others are notes no more, and end once all the same.
+pub(crate) fn held_notes_end_once_when_mono_becomes_poly() {
+    let notes = [Address::note(0, 60, 1), Address::note(0, 64, 2), Address::note(0, 67, 3)];
+    let mode = Instance::new().id(Param::Mode);
+    for solo in [1.0, 2.0] {
+        let patch = patch().with(Param::Mode, solo);
+        for at in [4_800, 4_801, 5_000] {
+            for are_released in [true, false] {
+                let mut song: Vec<Timed> =
+                    notes.iter().zip((10..).step_by(1_000)).map(|(note, at)| Sent::On(*note, 0.8).at(at)).collect();
+                song.push(Sent::Value(mode, 0.0).at(at));
+                song.extend(notes.iter().filter(|_| are_released).map(|note| Sent::Off(*note, 0.5).at(9_000)));
+                let counts = counts(&ended(&patch, &song, 96_000));
+                let what = format!("from mode {solo} at {at}, released: {are_released}");
+                assert_eq!(counts, notes.map(|note| (note, 1)).into(), "{what}");
+            }
+        }
+    }
+}
+
 pub(crate) fn a_stolen_note_ends_when_it_is_stolen() {
     let patch = patch().with(Param::Voices, 1.0).with(Param::Decay, 20.0);
     let (first, second) = (Address::note(0, 60, 1), Address::note(0, 67, 2));

@@ -153,10 +153,15 @@ pub(crate) fn senseless_values_and_unknown_ids_change_nothing_else() {
     let mut events = vec![Sent::Value(unknown, 0.3), Sent::Modulate(unknown, Address::id(3), 0.3)];
     for (_, parameter) in rows(&mut instance) {
         events.extend([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(|value| Sent::Value(parameter.id, value)));
+        events.push(Sent::Foreign(parameter.id, parameter.max - parameter.default));
     }
     let events: Vec<_> = events.into_iter().map(|sent| sent.at(0)).collect();
     instance.flush(&events);
-    assert_eq!(instance.save(), before);
+    assert_eq!(instance.save(), before, "in a flush");
+    let mut player = instance.play(48_000.0, 64);
+    player.render(&events, 64, || 64);
+    let mut instance = player.stop();
+    assert_eq!(instance.save(), before, "in a block");
     for (info, parameter) in rows(&mut instance) {
         for (wild, expected) in [(1e9, parameter.max), (-1e9, 0.0)] {
             instance.flush(&[Sent::Value(parameter.id, wild).at(0)]);

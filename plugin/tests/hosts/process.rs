@@ -3,6 +3,7 @@
 use crate::host::bundle;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Environment variable: the piece of work that a process is started for.
@@ -35,6 +36,15 @@ pub(crate) fn scratch(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hosts");
     std::fs::create_dir_all(&path).unwrap();
     path.join(name)
+}
+
+/// Tells another thread to stop when it goes, so that nobody waits for that thread after a failure.
+pub(crate) struct Stops<'a>(pub(crate) &'a AtomicBool);
+
+impl Drop for Stops<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }
 
 /// Waits until something is so, and gives up after half a minute.

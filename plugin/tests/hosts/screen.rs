@@ -1,14 +1,39 @@
 //! A screen that nobody looks at: windows on it, what they show, and a hand that moves the mouse and closes them.
 
 use std::collections::BTreeSet;
+use std::ffi::CStr;
 use std::io::BufRead as _;
 use std::process::{Child, Command, Stdio};
+use std::time::Duration;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::xproto::{
     AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, MapState, WindowClass,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
+
+/// Libraries that the plugin's window loads when it opens.
+const LIBRARIES: [&CStr; 3] = [c"libEGL.so.1", c"libX11-xcb.so.1", c"libxkbcommon-x11.so.0"];
+
+/// What a window on a screen needs and is not there.
+pub(crate) fn missing() -> Option<String> {
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    if !std::env::split_paths(&paths).any(|folder| folder.join("Xvfb").is_file()) {
+        return Some("Xvfb".to_owned());
+    }
+    let missing = LIBRARIES.into_iter().find(|library| !loads(library))?;
+    Some(missing.to_string_lossy().into_owned())
+}
+
+/// Whether a library of the system's can be loaded.
+#[allow(unsafe_code)]
+fn loads(library: &CStr) -> bool {
+    // SAFETY: these libraries' constructors do nothing that matters here; the handle is closed once.
+    unsafe {
+        let handle = libc::dlopen(library.as_ptr(), libc::RTLD_LAZY | libc::RTLD_LOCAL);
+        !handle.is_null() && libc::dlclose(handle) == 0
+    }
+}
 
 /// A server of a screen's own, as long as it lives.
 pub(crate) struct Screen {
@@ -109,13 +134,26 @@ impl Onlooker {
         self.pixels(width, height).into_iter().collect::<BTreeSet<_>>().len() > 16
     }
 
-    /// Drags the mouse from one place to another.
+    /// Drags the mouse from one place to another at once: a window may see all of it between two pictures.
     pub(crate) fn drag(&self, from: [i16; 2], to: [i16; 2]) {
+        self.drag_with_pauses(from, to, Duration::ZERO);
+    }
+
+    /// Drags the mouse as a hand does, so that a window sees each step by itself.
+    pub(crate) fn drag_slowly(&self, from: [i16; 2], to: [i16; 2]) {
+        self.drag_with_pauses(from, to, Duration::from_millis(30));
+    }
+
+    fn drag_with_pauses(&self, from: [i16; 2], to: [i16; 2], pause: Duration) {
         const PRESS: u8 = 4;
         const RELEASE: u8 = 5;
         const MOVE: u8 = 6;
         for (kind, detail, [x, y]) in [(MOVE, 0, from), (PRESS, 1, from), (MOVE, 0, to), (RELEASE, 1, to)] {
             self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).unwrap();
+            if !pause.is_zero() {
+                self.connection.flush().unwrap();
+                std::thread::sleep(pause);
+            }
         }
         self.connection.flush().unwrap();
     }

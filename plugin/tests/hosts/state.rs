@@ -1,13 +1,16 @@
 //! State: all of it comes back, the same bytes when nothing has changed, nothing when it cannot be read.
 
 use crate::host::reference::{At, assert_same_bits, render};
-use crate::host::{Address, Instance, Sent, Timed};
+use crate::host::{Address, Instance, Player, Sent, Timed};
 use crate::patches::{enclosed, load, own_part, patch_in, patches, state, state_of_text};
+use crate::process::{Stops, wait_until};
+use clack_host::prelude::EventBuffer;
 use sprung::dsp::random::{key, uniform};
 use sprung::engine::EventKind;
 use sprung::params::PARAMS;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 const RATE: f64 = 48_000.0;
 const FRAMES: usize = 9_600;
@@ -48,7 +51,9 @@ pub(crate) fn what_is_saved_comes_back_to_the_byte() {
         let (saved, set) = (first.save(), values(&mut first));
         assert_eq!(first.save(), saved, "saved twice");
         let mut second = Instance::new();
+        second.rescans();
         assert!(second.load(&saved));
+        assert!(second.rescans() > 0, "the host is told to ask for the values");
         assert_eq!(values(&mut second), set, "values in scramble {seed}");
         assert_eq!(second.save(), saved, "scramble {seed}");
         assert!(second.load(&saved), "loaded again");
@@ -90,6 +95,24 @@ pub(crate) fn modulation_is_not_saved() {
     let mut player = instance.play(RATE, 64);
     player.render(&song, 64, || 64);
     assert_eq!(player.instance.save(), before);
+}
+
+/// Knobs that modulation holds at an end of their travel go where a state says.
+pub(crate) fn a_state_loaded_while_all_is_modulated_is_what_is_saved() {
+    let parameters = Instance::new().parameters();
+    for amount in [1.0, -1.0] {
+        let song: Vec<Timed> =
+            parameters.iter().map(|p| Sent::Modulate(p.id, Address::id(-1), amount * p.max).at(0)).collect();
+        let mut player = Instance::new().play(RATE, 64);
+        player.render(&song, 64, || 64);
+        for (name, patch) in patches() {
+            let what = format!("{name}, modulated by {amount}");
+            assert!(player.instance.load(&state(&patch)));
+            assert!(patch_in(&player.instance.save()) == patch, "{what}");
+            player.render(&[], 64, || 64);
+            assert!(patch_in(&player.instance.save()) == patch, "{what}, a block later");
+        }
+    }
 }
 
 /// A state that is loaded while audio runs is heard by the next note, exactly.
@@ -254,10 +277,37 @@ pub(crate) fn parameters_that_a_state_lacks_have_their_defaults() {
 pub(crate) fn two_states_in_turn_while_audio_runs_are_never_mixed() {
     let patches = patches();
     let states = [state(&patches[0].1), state(&patches[1].1)];
-    let mut player = Instance::new().play(RATE, 64);
-    for round in 0..200 {
-        assert!(player.instance.load(&states[round % 2]));
-        player.render(&[Sent::On(Address::note(0, 60, round as i32), 0.5).at(0)], 64, || 64);
-        assert_eq!(patch_in(&player.instance.save()), patches[round % 2].1, "round {round}");
-    }
+    let Player { mut instance, mut audio } = Instance::new().play(RATE, 64);
+    let (stop, played) = (AtomicBool::new(false), AtomicU32::new(0));
+    let audio = std::thread::scope(|scope| {
+        let stops = Stops(&stop);
+        let playing = scope.spawn(|| {
+            let mut events = EventBuffer::new();
+            while !stop.load(Ordering::Relaxed) {
+                let block = played.load(Ordering::Relaxed);
+                events.clear();
+                Sent::On(Address::note(0, 60, (block % 1_000) as i32), 0.5).push(0, &mut events);
+                audio.process(&events, 64);
+                played.store(block + 1, Ordering::Relaxed);
+            }
+            audio
+        });
+        // Loads fall before, into and behind blocks: several between two of them, and several blocks between two.
+        for round in 0..1_000 {
+            let until = played.load(Ordering::Relaxed) + round % 3;
+            wait_until("a block", || playing.is_finished() || played.load(Ordering::Relaxed) >= until);
+            let (name, expected) = &patches[round as usize % 2];
+            assert!(instance.load(&states[round as usize % 2]), "round {round}, {name}");
+            assert!(patch_in(&instance.save()) == *expected, "round {round}: not {name} alone");
+        }
+        drop(stops);
+        playing.join().unwrap()
+    });
+    // What is heard in the end is the last of them.
+    let mut player = Player { instance, audio };
+    player.render(&[], 64, || 64);
+    player.audio.reset();
+    let (sent, events) = strike();
+    let found = player.render(&sent, FRAMES, || 64).channels;
+    assert_same_bits("the last state", &found, &render(&patches[1].1, RATE, &events, FRAMES));
 }

@@ -4,7 +4,7 @@ use crate::host::bundle;
 use crate::host::reference::{At, assert_same_bits, render};
 use crate::patches::{patches, state};
 use crate::phrase::{self, FRAMES, SAMPLE_RATE};
-use crate::process::{scratch, wait_until};
+use crate::process::wait_until;
 use crate::screen::{Onlooker, Screen};
 use crate::song::rendered_by_the_command;
 use serde_json::{Value, json};
@@ -23,10 +23,21 @@ fn environment() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("python")
 }
 
-/// Whether it has the versions of the hosts that are wanted.
-pub(crate) fn is_installed() -> bool {
+/// What is missing of the hosts in the versions that are wanted, if they cannot be loaded.
+pub(crate) fn missing() -> Option<String> {
     let installed = std::fs::read_to_string(environment().join("requirements.txt"));
-    installed.is_ok_and(|installed| installed == include_str!("requirements.txt"))
+    if !installed.is_ok_and(|installed| installed == include_str!("requirements.txt")) {
+        return Some("pedalboard and dawdreamer in target/python".to_owned());
+    }
+    let output = Command::new(python()).args(["-c", "import dawdreamer, pedalboard"]).env("DISPLAY", ":none").output();
+    match output {
+        Ok(output) if output.status.success() => None,
+        Ok(output) => {
+            let said = String::from_utf8_lossy(&output.stderr);
+            Some(format!("what pedalboard and dawdreamer load ({})", said.lines().last().unwrap_or("no reason given")))
+        }
+        Err(error) => Some(format!("a Python in target/python that starts ({error})")),
+    }
 }
 
 fn python() -> PathBuf {
@@ -57,8 +68,8 @@ fn ask(host: &str, question: &Value) -> Value {
     serde_json::from_str(stdout.lines().last().unwrap_or_default()).unwrap_or_else(|_| panic!("{host}: {stdout}"))
 }
 
-/// A preset file as VST3 hosts keep them, with the state that holds a patch.
-fn preset_file(name: &str, patch: &Patch) -> PathBuf {
+/// A preset file as VST3 hosts keep them, with the state that holds a patch; in a folder.
+fn preset_file(folder: &Path, name: &str, patch: &Patch) -> PathBuf {
     let state = &state(patch)[8..];
     let header = 48_u64;
     let mut bytes = b"VST3".to_vec();
@@ -71,7 +82,7 @@ fn preset_file(name: &str, patch: &Patch) -> PathBuf {
     bytes.extend(b"Comp");
     bytes.extend(header.to_le_bytes());
     bytes.extend((state.len() as u64).to_le_bytes());
-    let path = scratch(&format!("{}.vstpreset", name.replace(' ', "-")));
+    let path = folder.join(format!("{}.vstpreset", name.replace(' ', "-")));
     std::fs::write(&path, bytes).unwrap();
     path
 }
@@ -130,20 +141,21 @@ pub(crate) fn every_parameter_can_be_set_and_read() {
 /// gives each parameter one value a block, at its first frame; notes and their pressure lie at their own frames.
 pub(crate) fn one_channel_has_the_bits_of_the_command() {
     let midi = phrase::midi_file();
-    let path = scratch("phrase.mid");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("phrase.mid");
     std::fs::write(&path, &midi).unwrap();
     for (name, patch) in patches() {
-        let preset = preset_file(name, &patch);
+        let preset = preset_file(folder.path(), name, &patch);
         for block in [1, 64, 480] {
             let expected = rendered_by_the_command(&phrase::file(&phrase::with_controllers_by_block(block)), &patch);
-            let audio = scratch("dawdreamer.f32");
+            let audio = folder.path().join("dawdreamer.f32");
             let plugin = bundle::vst3();
             ask("dawdreamer", &json!(["render", plugin, preset, path, SAMPLE_RATE, block, FRAMES, audio]));
             assert_same_bits(&format!("dawdreamer, {name}, blocks of {block}"), &samples(&audio), &expected);
         }
         let block = 480;
         let expected = rendered_by_the_command(&phrase::file(&phrase::with_controllers_by_block(block)), &patch);
-        let audio = scratch("pedalboard.f32");
+        let audio = folder.path().join("pedalboard.f32");
         let messages = phrase::messages();
         ask("pedalboard", &json!(["render", bundle::vst3(), preset, messages, SAMPLE_RATE, block, FRAMES, audio]));
         assert_same_bits(&format!("pedalboard, {name}"), &samples(&audio), &expected);
@@ -151,9 +163,10 @@ pub(crate) fn one_channel_has_the_bits_of_the_command() {
 }
 
 pub(crate) fn what_is_saved_comes_back() {
+    let folder = tempfile::tempdir().unwrap();
     for (name, patch) in patches() {
-        let preset = preset_file(name, &patch);
-        let [first, second] = ["first", "second"].map(|name| scratch(&format!("{name}.state")));
+        let preset = preset_file(folder.path(), name, &patch);
+        let [first, second] = ["first", "second"].map(|name| folder.path().join(format!("{name}.state")));
         let values = ask("dawdreamer", &json!(["state", bundle::vst3(), preset, first, second]));
         for info in PARAMS {
             let position = values[info.param as usize].as_f64().unwrap();
@@ -175,15 +188,16 @@ fn values_of_table(values: &Value) -> Value {
 /// A parameter moved by the host's automation: as the engine's own events at the frames at which the host sends them.
 pub(crate) fn automation_has_the_bits_of_the_engine() {
     let block = 512;
-    let path = scratch("strike.mid");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("strike.mid");
     std::fs::write(&path, phrase::file(&[(3, [0x90, 57, 100])])).unwrap();
     for param in [Param::Gain, Param::Tune, Param::Decay] {
         let info = param.info();
         let positions: Vec<f32> = (0..FRAMES).map(|frame| 0.2 + 0.6 * (frame / 5_120) as f32 / 15.0).collect();
-        let values = scratch("automation.f32");
+        let values = folder.path().join("automation.f32");
         std::fs::write(&values, positions.iter().flat_map(|position| position.to_le_bytes()).collect::<Vec<u8>>())
             .unwrap();
-        let audio = scratch("automated.f32");
+        let audio = folder.path().join("automated.f32");
         let question =
             json!(["automate", bundle::vst3(), "", param as usize, values, path, SAMPLE_RATE, FRAMES, audio]);
         ask("dawdreamer", &question);

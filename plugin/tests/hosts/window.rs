@@ -1,7 +1,8 @@
 //! The window in a host's own: opened and closed again and again, resized, drawn, touched, while audio runs or not.
 
 use crate::host::{Address, Instance, Player, Sent};
-use crate::process::{command, scratch, succeeds, wait_until};
+use crate::patches::patch_in;
+use crate::process::{Stops, command, succeeds, wait_until};
 use crate::screen::{Onlooker, Screen};
 use clack_extensions::gui::{GuiApiType, GuiConfiguration, GuiSize, PluginGui, Window};
 use clack_host::prelude::*;
@@ -33,13 +34,13 @@ pub(crate) fn work(name: &str) -> ExitCode {
     let parent = Parent::new();
     let mut instance = Instance::new();
     if name == "window" {
-        look(&mut instance, &parent);
         open_and_close(&mut instance, &parent);
         return ExitCode::SUCCESS;
     }
     let Player { mut instance, mut audio } = instance.play(48_000.0, 256);
     let stop = AtomicBool::new(false);
     let audio = std::thread::scope(|scope| {
+        let stops = Stops(&stop);
         let playing = scope.spawn(|| {
             let mut events = EventBuffer::new();
             let mut note = 0;
@@ -53,7 +54,7 @@ pub(crate) fn work(name: &str) -> ExitCode {
             audio
         });
         open_and_close(&mut instance, &parent);
-        stop.store(true, Ordering::Relaxed);
+        drop(stops);
         playing.join().unwrap()
     });
     Player { instance, audio }.stop();
@@ -63,7 +64,11 @@ pub(crate) fn work(name: &str) -> ExitCode {
 /// Opens, waits for a picture, touches, resizes and closes; every other time at once.
 fn open_and_close(instance: &mut Instance, parent: &Parent) {
     let parameters = instance.parameters();
-    let before = instance.save();
+    turn_something(instance, parent);
+    assert!(
+        instance.clack.is_active() || instance.flushes() > 0,
+        "while nothing processes, the plugin asks for a flush"
+    );
     for time in 0..TIMES {
         let editor = Editor::open(instance, parent);
         if time % 2 == 0 {
@@ -83,19 +88,23 @@ fn open_and_close(instance: &mut Instance, parent: &Parent) {
         instance.run_callbacks();
         editor.close(instance);
     }
-    assert_ne!(instance.save(), before, "a hand that drags across the window turns knobs");
 }
 
-/// Draws once, and leaves a picture under the target directory.
-fn look(instance: &mut Instance, parent: &Parent) {
+/// Drags across one line of the window after another until a value has changed.
+fn turn_something(instance: &mut Instance, parent: &Parent) {
+    let before = patch_in(&instance.save());
     let editor = Editor::open(instance, parent);
     editor.wait_until_drawn(instance);
-    std::thread::sleep(Duration::from_millis(500));
-    let [width, height] = editor.size(instance);
-    let pixels = parent.onlooker.pixels(width, height);
-    let mut picture = format!("P6 {width} {height} 255\n").into_bytes();
-    picture.extend(pixels.iter().flat_map(|[blue, green, red]| [*red, *green, *blue]));
-    std::fs::write(scratch("window.ppm"), picture).unwrap();
+    let mut y = 60;
+    wait_until("a drag that changes a value", || {
+        y = if y < 560 { y + 13 } else { 60 };
+        parent.onlooker.drag_slowly([300, y], [420, y]);
+        instance.run_callbacks();
+        if !instance.clack.is_active() {
+            instance.flush(&[]);
+        }
+        patch_in(&instance.save()) != before
+    });
     editor.close(instance);
 }
 

@@ -18,10 +18,12 @@ pub(crate) fn vst3() -> &'static Path {
     PATH.get_or_init(|| folder().join("Sprung.vst3"))
 }
 
+/// Where the bundles are, once something has asked for them.
+static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+
 /// Where the bundles are: a folder of this process's own under the target directory, made on first use.
 fn folder() -> &'static Path {
-    static PATH: OnceLock<PathBuf> = OnceLock::new();
-    PATH.get_or_init(|| match std::env::var_os(BUNDLES) {
+    FOLDER.get_or_init(|| match std::env::var_os(BUNDLES) {
         Some(folder) => folder.into(),
         None => assemble(),
     })
@@ -39,10 +41,10 @@ fn assemble() -> PathBuf {
     folder
 }
 
-/// Takes the bundles away again.
+/// Takes the bundles away again, if they were made.
 pub(crate) fn remove() {
-    if std::env::var_os(BUNDLES).is_none() {
-        let _ = std::fs::remove_dir_all(folder());
+    if let Some(folder) = FOLDER.get().filter(|_| std::env::var_os(BUNDLES).is_none()) {
+        let _ = std::fs::remove_dir_all(folder);
     }
 }
 

@@ -26,6 +26,8 @@ pub(crate) enum Sent {
     Express(Address, NoteExpressionType, f64),
     /// A parameter's value: its knob's position, or a step.
     Value(ClapId, f64),
+    /// The same bytes as [`Sent::Value`], but of a namespace that is not CLAP's.
+    Foreign(ClapId, f64),
     /// What to add to a parameter for the notes of an address.
     Modulate(ClapId, Address, f64),
     /// A MIDI message.
@@ -86,6 +88,7 @@ impl Sent {
                 buffer.push(&NoteExpressionEvent::new(time, address.pckn(), kind, value));
             }
             Sent::Value(id, value) => buffer.push(&ParamValueEvent::new(time, id, Pckn::match_all(), value)),
+            Sent::Foreign(id, value) => buffer.push(&foreign(ParamValueEvent::new(time, id, Pckn::match_all(), value))),
             Sent::Modulate(id, address, amount) => {
                 buffer.push(&ParamModEvent::new(time, id, address.pckn(), amount));
             }
@@ -94,6 +97,14 @@ impl Sent {
             Sent::Tempo(tempo) => buffer.push(&transport(time, tempo)),
         }
     }
+}
+
+/// An event moved out of CLAP's namespace.
+#[allow(unsafe_code)]
+fn foreign(mut event: ParamValueEvent) -> ParamValueEvent {
+    // SAFETY: nobody reads it here as what it no longer is; whoever gets it has to look at the namespace first.
+    unsafe { event.as_raw_mut() }.header.space_id = 0xB33F;
+    event
 }
 
 /// A transport that plays at a tempo and tells nothing else.

@@ -60,11 +60,25 @@ impl Instance {
         Player::new(self, sample_rate, max_block)
     }
 
-    /// Runs what the plugin has asked to be run on the main thread.
+    /// Runs what the plugin has asked to be run on the main thread; fails if it has asked for what it never needs.
+    #[track_caller]
     pub(crate) fn run_callbacks(&mut self) {
         if self.clack.access_shared_handler(|calls| calls.callback.swap(false, Ordering::Acquire)) {
             self.clack.call_on_main_thread_callback();
         }
+        let restarts = self.clack.access_shared_handler(|calls| calls.restarts.load(Ordering::Relaxed));
+        assert_eq!(restarts, 0, "nothing about the plugin needs a restart");
+        assert_eq!(self.clack.access_handler(|calls| calls.latencies.get()), 0, "the latency does not change");
+    }
+
+    /// Flushes that the plugin has asked for since this was asked last.
+    pub(crate) fn flushes(&self) -> u32 {
+        self.clack.access_shared_handler(|calls| calls.flushes.swap(0, Ordering::Relaxed))
+    }
+
+    /// Rescans of the parameters' values that the plugin has asked for since this was asked last.
+    pub(crate) fn rescans(&self) -> u32 {
+        self.clack.access_handler(|calls| calls.rescans.take())
     }
 
     /// All parameters, in the plugin's order.

@@ -184,6 +184,11 @@ impl Audio {
             Some(self.clock),
             None,
         );
+        let constant = outputs.as_raw_buffers()[0].constant_mask;
+        for (index, channel) in self.outputs.iter().enumerate() {
+            let is_constant = channel[..frames].iter().all(|sample| sample.to_bits() == channel[0].to_bits());
+            assert!(constant >> index & 1 == 0 || is_constant, "channel {index} is said to be constant, but is not");
+        }
         self.clock += frames as u64;
         status.expect("processing succeeds")
     }
