@@ -139,7 +139,7 @@ impl Live {
         let mut frame = 0;
         for index in 0..self.early.len() {
             let event = self.early[index];
-            self.take(params, &event, frame, context);
+            self.take(&event, frame, context);
         }
         self.early.clear();
         while let Some(event) = context.next_event() {
@@ -153,26 +153,14 @@ impl Live {
             let at = at.min(frames);
             self.render(outputs, frame..at, context);
             frame = at;
-            self.take(params, &event, frame, context);
+            self.take(&event, frame, context);
         }
         self.render(outputs, frame..frames, context);
         self.tail.status(&mut self.synth, frames)
     }
 
     /// Takes in one event at a frame of the block.
-    fn take(
-        &mut self,
-        params: &SprungParams,
-        event: &NoteEvent<()>,
-        frame: usize,
-        context: &mut impl ProcessContext<Sprung>,
-    ) {
-        // The wrapper keeps no value of a parameter that is modulated to the end of its travel.
-        if let NoteEvent::MonoAutomation { poly_modulation_id, normalized_value, .. } = *event
-            && let Some(knob) = params.knobs().get(poly_modulation_id as usize)
-        {
-            knob.turn(normalized_value);
-        }
+    fn take(&mut self, event: &NoteEvent<()>, frame: usize, context: &mut impl ProcessContext<Sprung>) {
         if let Some((channel, kind)) = translate(event, context.plugin_api()) {
             self.handle(channel, kind);
             self.tell(frame, context);

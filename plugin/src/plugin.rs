@@ -137,7 +137,7 @@ mod tests {
 
     /// VST3 hosts may read the file in place of loading the library.
     #[test]
-    fn moduleinfo_says_what_the_library_says() {
+    fn moduleinfo_says_what_the_shell_is_made_with() {
         let info: Value = serde_json::from_str(include_str!("../moduleinfo.json")).unwrap();
         let factory = json!({
             "Vendor": Sprung::VENDOR,
