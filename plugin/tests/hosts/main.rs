@@ -35,6 +35,10 @@ enum Needs {
     Python,
     /// Both.
     PythonAndScreen,
+    /// A library without the standalone's logger, which allocates. Bundles have none.
+    NoLogger,
+    /// That and a screen.
+    NoLoggerAndScreen,
 }
 
 impl Needs {
@@ -47,8 +51,16 @@ impl Needs {
             Needs::Screen => SCREEN.clone(),
             Needs::Python => PYTHON.clone(),
             Needs::PythonAndScreen => PYTHON.clone().or_else(|| SCREEN.clone()),
+            Needs::NoLogger => logger(),
+            Needs::NoLoggerAndScreen => logger().or_else(|| SCREEN.clone()),
         }
     }
+}
+
+/// Why the library beside this test logs, if it does.
+fn logger() -> Option<String> {
+    let logs = cfg!(feature = "standalone") && !host::bundle::are_given();
+    logs.then(|| "the feature `standalone` has the library log, which allocates: test without it".to_owned())
 }
 
 /// Tests by their modules and names, and what those of a module need.
@@ -147,9 +159,11 @@ fn main() -> ExitCode {
         }
         Nothing: realtime {
             the_watch_bites
+        }
+        NoLogger: realtime {
             process_neither_allocates_nor_locks_nor_calls_the_system
         }
-        Screen: realtime {
+        NoLoggerAndScreen: realtime {
             nor_does_it_with_the_window_open
         }
         Screen: window {

@@ -18,6 +18,11 @@ pub(crate) fn vst3() -> &'static Path {
     PATH.get_or_init(|| folder().join("Sprung.vst3"))
 }
 
+/// Whether the bundles to test were given.
+pub(crate) fn are_given() -> bool {
+    std::env::var_os(BUNDLES).is_some()
+}
+
 /// Where the bundles are, once something has asked for them.
 static FOLDER: OnceLock<PathBuf> = OnceLock::new();
 
@@ -43,7 +48,7 @@ fn assemble() -> PathBuf {
 
 /// Takes the bundles away again, if they were made.
 pub(crate) fn remove() {
-    if let Some(folder) = FOLDER.get().filter(|_| std::env::var_os(BUNDLES).is_none()) {
+    if let Some(folder) = FOLDER.get().filter(|_| !are_given()) {
         let _ = std::fs::remove_dir_all(folder);
     }
 }
