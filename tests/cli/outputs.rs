@@ -81,6 +81,17 @@ fn force_replaces_a_file() {
 }
 
 #[test]
+fn a_song_is_not_replaced_by_its_sound() {
+    let sandbox = Sandbox::new();
+    let song = song(&[note_on(0, 0, 60), end(240)]);
+    sandbox.write("song.mid", &song);
+    for output in ["song.mid", "./song.mid"] {
+        sandbox.fails(&format!("render song.mid --force -o {output}"), 1, "is the song: expected another file");
+    }
+    assert!(sandbox.read("song.mid") == song);
+}
+
+#[test]
 fn a_song_comes_through_stdin() {
     let sandbox = Sandbox::new();
     let song = song(&[note_on(0, 0, 60), end(240)]);

@@ -100,6 +100,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if target == Target::Stdout && std::io::stdout().is_terminal() {
         return Err(Error::value("--output", "stdout is a terminal: expected a file, or stdout sent to one"));
     }
+    if let (Some(song), Target::Path(output)) = (&args.song, &target)
+        && song.canonicalize().is_ok_and(|song| output.canonicalize().is_ok_and(|output| output == song))
+    {
+        return Err(Error::value("--output", format!("‘{}’ is the song: expected another file", output.display())));
+    }
     let patch = with_settings(presets::load(&args.preset)?.patch, &args.set);
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
     let song = match &args.song {
