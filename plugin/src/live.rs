@@ -73,7 +73,8 @@ impl Live {
     /// the next block.
     fn follow(&mut self, params: &SprungParams) {
         let Some(Look { positions, news }) = params.look(self.generation) else { return };
-        let moved = |index: usize| positions[index].to_bits() != self.positions[index].to_bits();
+        let before = std::mem::replace(&mut self.positions, positions);
+        let moved = |index: usize| positions[index].to_bits() != before[index].to_bits();
         // While nothing sounds, values need no slope: what a host sets before it plays holds from the first note on.
         let whole = news.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
         if let Some((generation, loaded)) = news {
@@ -88,13 +89,12 @@ impl Live {
             self.synth.set_patch(&patch);
         } else {
             for (index, info) in PARAMS.iter().enumerate() {
-                if positions[index].to_bits() != self.positions[index].to_bits() {
+                if moved(index) {
                     let value = self.loaded.value(index, positions[index]);
                     self.handle(0, EventKind::Param { param: info.param, value });
                 }
             }
         }
-        self.positions = positions;
     }
 
     /// Takes over how far the whole instrument is modulated, and the tempo.

@@ -54,32 +54,28 @@ impl Knob {
 
     /// Turns the knob without telling the host. Real-time safe.
     pub(crate) fn turn(&self, position: f32) {
-        // The wrapper keeps no value that modulation leaves where it was, at the end of the travel: then the knob is
-        // turned without modulation, which is put back as far as it was heard.
-        // SAFETY: the methods write atomics of a parameter that is borrowed here; that they are meant for wrappers
-        // only is because the host hears nothing of it, which callers see to.
-        unsafe {
-            match self {
-                Self::Continuous(knob) => {
-                    knob._internal_set_normalized_value(position);
-                    if knob.unmodulated_normalized_value() != position {
-                        let offset = self.offset();
-                        knob._internal_modulate_value(0.0);
-                        knob._internal_set_normalized_value(position);
-                        knob._internal_modulate_value(offset);
-                    }
-                }
-                Self::Stepped(knob) => {
-                    knob._internal_set_normalized_value(position);
-                    if knob.unmodulated_plain_value() != knob.preview_plain(position) {
-                        let offset = self.offset();
-                        knob._internal_modulate_value(0.0);
-                        knob._internal_set_normalized_value(position);
-                        knob._internal_modulate_value(offset);
-                    }
-                }
-            }
-        };
+        match self {
+            Self::Continuous(knob) => turn(knob, position, self.offset()),
+            Self::Stepped(knob) => turn(knob, position, self.offset()),
+        }
+    }
+}
+
+/// Turns a knob that modulation has moved by `offset`. The wrapper keeps no value that modulation leaves where it was,
+/// at the end of the travel: then the knob is turned without modulation, which is put back as far as it was heard.
+fn turn<P: Param + InternalParamMut>(knob: &P, position: f32, offset: f32)
+where
+    P::Plain: PartialEq,
+{
+    // SAFETY: the methods write atomics of a parameter that is borrowed here; that they are meant for wrappers only is
+    // because the host hears nothing of it, which callers see to.
+    unsafe {
+        knob._internal_set_normalized_value(position);
+        if knob.unmodulated_plain_value() != knob.preview_plain(position) {
+            knob._internal_modulate_value(0.0);
+            knob._internal_set_normalized_value(position);
+            knob._internal_modulate_value(offset);
+        }
     }
 }
 

@@ -1,7 +1,6 @@
 //! What a MIDI channel remembers: its wheel, pressure, controllers and registered parameters.
 
-use crate::dsp::ramp::Ramp;
-use libm::sqrtf;
+use super::gain::StereoGain;
 
 /// Channel controllers, in the units that voices use them in. Real-time safe.
 #[derive(Clone, Copy, Debug)]
@@ -21,8 +20,7 @@ pub(crate) struct Channel {
     volume: f32,
     expression: f32,
     pan: f32,
-    gains: [Ramp; 2],
-    ramp_frames: u32,
+    gain: StereoGain,
     registered: Registered,
 }
 
@@ -96,9 +94,7 @@ impl Channel {
             volume: 1.0,
             expression: 1.0,
             pan: 0.5,
-            gains: [Ramp::at_rest(1.0); 2],
-            // Controllers come in steps of 1/127; 10 ms make a slope of them.
-            ramp_frames: (0.01 * sample_rate) as u32,
+            gain: StereoGain::new(sample_rate),
             registered: Registered::INITIAL,
         }
     }
@@ -123,9 +119,7 @@ impl Channel {
         }
         if matches!(controller, controller::VOLUME | controller::EXPRESSION | controller::PAN | controller::RESET) {
             let gain = self.volume * self.volume * self.expression * self.expression;
-            let (left, right) = pan_gains(self.pan);
-            self.gains[0].set(gain * left, self.ramp_frames);
-            self.gains[1].set(gain * right, self.ramp_frames);
+            self.gain.aim(gain, self.pan);
         }
     }
 
@@ -166,17 +160,17 @@ impl Channel {
 
     /// Left and right gain `frames` frames from now.
     pub(crate) fn gains_after(&self, frames: u32) -> (f32, f32) {
-        (self.gains[0].after(frames), self.gains[1].after(frames))
+        self.gain.after(frames).into()
     }
 
     /// Frames that gains take to arrive after a controller has moved.
-    pub(crate) fn ramp_frames(&self) -> u32 {
-        self.ramp_frames
+    pub(crate) fn slope_frames(&self) -> u32 {
+        self.gain.slope_frames()
     }
 
     /// Lets `frames` frames pass.
     pub(crate) fn advance(&mut self, frames: u32) {
-        self.gains.iter_mut().for_each(|gain| gain.advance(frames));
+        self.gain.advance(frames);
     }
 }
 
@@ -213,11 +207,6 @@ impl Wheels<'_> {
 /// A controller's value with MIDI's centre, 64 of 127, at 0.5: 1–127 about 64, as RP-036 recommends.
 fn centred(value: f32) -> f32 {
     ((value * 127.0 - 1.0) / 126.0).clamp(0.0, 1.0)
-}
-
-/// Gains of a position from 0 (left) to 1 (right): of constant power, and exactly 1 and 1 in the centre.
-pub(crate) fn pan_gains(position: f32) -> (f32, f32) {
-    (sqrtf(2.0 * (1.0 - position)), sqrtf(2.0 * position))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The parameters that sounding voices follow, smoothed.
 
-use super::channel::pan_gains;
+use super::gain::pan_gains;
 use super::modulation::NoteModulation;
 use crate::dsp::ramp::Ramp;
 use crate::params::{PARAM_COUNT, PARAMS, Param};

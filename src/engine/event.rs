@@ -156,3 +156,13 @@ impl Expression {
     pub const ALL: [Expression; 7] =
         [Self::Tuning, Self::Volume, Self::Pan, Self::Pressure, Self::Brightness, Self::Vibrato, Self::Swell];
 }
+
+/// A number, 0 where there is none.
+pub(super) fn finite(value: f32) -> f32 {
+    if value.is_nan() { 0.0 } else { value }
+}
+
+/// A number from 0 to 1.
+pub(super) fn unit(value: f32) -> f32 {
+    finite(value).clamp(0.0, 1.0)
+}

@@ -1,8 +1,7 @@
 //! What one note has been told while it sounds.
 
-use super::channel::pan_gains;
-use super::event::Expression;
-use crate::dsp::ramp::Ramp;
+use super::event::{Expression, finite, unit};
+use super::gain::StereoGain;
 
 /// The expressions of a note, each neutral until it is told otherwise. Real-time safe.
 #[derive(Clone, Copy, Debug)]
@@ -18,68 +17,55 @@ pub(crate) struct Expressions {
     volume: f32,
     swell: f32,
     pan: f32,
-    gains: [Ramp; 2],
-    ramp_frames: u32,
+    gain: StereoGain,
 }
 
 impl Expressions {
     /// A note that has been told nothing.
     pub(crate) fn new(sample_rate: f64) -> Self {
-        Self {
-            tuning: 0.0,
-            pressure: 0.0,
-            vibrato: 0.0,
-            brightness: 0.0,
-            volume: 1.0,
-            swell: 1.0,
-            pan: 0.5,
-            gains: [Ramp::at_rest(1.0); 2],
-            // As long as channel volume takes.
-            ramp_frames: (0.01 * sample_rate) as u32,
-        }
+        Self::neutral(StereoGain::new(sample_rate))
+    }
+
+    fn neutral(gain: StereoGain) -> Self {
+        Self { tuning: 0.0, pressure: 0.0, vibrato: 0.0, brightness: 0.0, volume: 1.0, swell: 1.0, pan: 0.5, gain }
     }
 
     /// Takes in one expression; numbers out of range become the nearest within, NaN becomes zero.
     pub(crate) fn set(&mut self, expression: Expression, value: f32) {
-        let value = if value.is_nan() { 0.0 } else { value };
-        let unit = value.clamp(0.0, 1.0);
+        let value = finite(value);
         match expression {
             Expression::Tuning => self.tuning = value.clamp(-128.0, 128.0),
-            Expression::Pressure => self.pressure = unit,
-            Expression::Vibrato => self.vibrato = unit,
-            Expression::Brightness => self.brightness = unit - 0.5,
+            Expression::Pressure => self.pressure = unit(value),
+            Expression::Vibrato => self.vibrato = unit(value),
+            Expression::Brightness => self.brightness = unit(value) - 0.5,
             Expression::Volume => self.volume = value.clamp(0.0, 4.0),
-            Expression::Swell => self.swell = unit,
+            Expression::Swell => self.swell = unit(value),
             Expression::Pan => self.pan = value.clamp(-1.0, 1.0) * 0.5 + 0.5,
         }
         if matches!(expression, Expression::Volume | Expression::Swell | Expression::Pan) {
-            let gain = self.volume * self.swell * self.swell;
-            let (left, right) = pan_gains(self.pan);
-            self.gains[0].set(gain * left, self.ramp_frames);
-            self.gains[1].set(gain * right, self.ramp_frames);
+            self.gain.aim(self.volume * self.swell * self.swell, self.pan);
         }
     }
 
     /// Forgets everything; gains slide back.
     pub(crate) fn clear(&mut self) {
-        let gains = self.gains;
-        *self = Self { ramp_frames: self.ramp_frames, gains, ..Self::new(0.0) };
-        self.gains.iter_mut().for_each(|gain| gain.set(1.0, self.ramp_frames));
+        *self = Self::neutral(self.gain);
+        self.gain.aim(self.volume, self.pan);
     }
 
     /// Puts the gains where they are going: for a note that has not sounded yet.
     pub(crate) fn land(&mut self) {
-        self.gains = self.gains.map(|gain| Ramp::at_rest(gain.after(u32::MAX)));
+        self.gain.land();
     }
 
     /// Left and right gain `frames` frames from now.
     pub(crate) fn gains_after(&self, frames: u32) -> [f32; 2] {
-        self.gains.map(|gain| gain.after(frames))
+        self.gain.after(frames)
     }
 
     /// Lets `frames` frames pass.
     pub(crate) fn advance(&mut self, frames: u32) {
-        self.gains.iter_mut().for_each(|gain| gain.advance(frames));
+        self.gain.advance(frames);
     }
 }
 

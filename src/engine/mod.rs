@@ -9,6 +9,7 @@ pub mod ensemble;
 pub mod event;
 mod expression;
 mod fader;
+mod gain;
 mod modulation;
 pub mod snapshot;
 pub mod synth;

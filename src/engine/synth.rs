@@ -2,7 +2,7 @@
 
 use super::channel::{Channel, Wheels, controller};
 use super::controls::Smoother;
-use super::event::{Expression, Notes};
+use super::event::{Expression, Notes, finite, unit};
 use super::modulation::modulated;
 use super::voice::{Instrument, SynthVoice};
 use super::voice_manager::{Note, PlayMode, VoiceManager};
@@ -176,7 +176,7 @@ impl Synth {
                     detune: finite(detune).clamp(-128.0, 128.0),
                     velocity: unit(velocity),
                     soft: soft(index) || self.zones.master_of(index).is_some_and(soft),
-                    brightness: self.brightness(index),
+                    brightness: brightness(&self.channels, &self.zones, index),
                     id,
                     serial: self.note_serial,
                     patch: self.instrument.patch_serial,
@@ -240,16 +240,10 @@ impl Synth {
     }
 
     fn express(&mut self, notes: Notes, expression: Expression, value: f32) {
-        let brightness: [f32; 16] = std::array::from_fn(|channel| self.brightness(channel as u8));
         for (note, voice) in self.manager.active().filter(|(note, _)| notes.include(note)) {
-            voice.express(&self.instrument, expression, value, brightness[usize::from(note.channel)]);
+            let brightness = brightness(&self.channels, &self.zones, note.channel);
+            voice.express(&self.instrument, expression, value, brightness);
         }
-    }
-
-    /// Brightness of a channel and the master of its zone, −0.5 to 0.5.
-    fn brightness(&self, channel: u8) -> f32 {
-        let of = |channel: u8| self.channels[usize::from(channel)].brightness;
-        (of(channel) + self.zones.master_of(channel).map_or(0.0, of)).clamp(-0.5, 0.5)
     }
 
     fn control(&mut self, index: u8, number: u8, value: f32) {
@@ -266,19 +260,20 @@ impl Synth {
                     self.manager.sostenuto(channel, false);
                     let on_channel = self.manager.active().filter(|(note, _)| note.channel == channel);
                     on_channel.for_each(|(_, voice)| voice.relax());
-                    self.channels[usize::from(channel)].control(number, value);
                 }
                 _ => {}
             }
+            // A master's wheels and pressure act beside its members' own; its reset is theirs as well.
+            if channel == index || number == controller::RESET {
+                self.channels[usize::from(channel)].control(number, value);
+            }
         }
-        let channel = &mut self.channels[usize::from(index)];
-        channel.control(number, value);
-        self.gains_moving = channel.ramp_frames();
+        self.gains_moving = self.channels[usize::from(index)].slope_frames();
         match number {
             controller::DATA | controller::DATA_FINE => self.enter(index, number, value),
             controller::BRIGHTNESS => {
                 for channel in self.zones.reach(index) {
-                    let brightness = self.brightness(channel);
+                    let brightness = brightness(&self.channels, &self.zones, channel);
                     self.manager.brighten(channel, brightness);
                     let on_channel = self.manager.active().filter(|(note, _)| note.channel == channel);
                     on_channel.for_each(|(_, voice)| voice.shade(&self.instrument, brightness));
@@ -364,6 +359,12 @@ impl Synth {
     }
 }
 
+/// Brightness of a channel and the master of its zone, −0.5 to 0.5.
+fn brightness(channels: &[Channel; 16], zones: &Zones, channel: u8) -> f32 {
+    let of = |channel: u8| channels[usize::from(channel)].brightness;
+    (of(channel) + zones.master_of(channel).map_or(0.0, of)).clamp(-0.5, 0.5)
+}
+
 /// MIDI's tempo before it has been set: 120 beats a minute.
 const DEFAULT_BEAT_RATE: f64 = 2.0;
 
@@ -376,12 +377,4 @@ fn allowed(sample_rate: f64) -> f64 {
 /// far end of a pan law when the sound itself has all but died away.
 fn without_subnormals(sample: f32) -> f32 {
     if sample.abs() < f32::MIN_POSITIVE { 0.0 } else { sample }
-}
-
-fn finite(value: f32) -> f32 {
-    if value.is_nan() { 0.0 } else { value }
-}
-
-fn unit(value: f32) -> f32 {
-    finite(value).clamp(0.0, 1.0)
 }

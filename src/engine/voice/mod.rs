@@ -352,7 +352,7 @@ impl Voice for SynthVoice {
         let width = instrument.value(Param::Width) * 0.01;
         let tuning = self.tuning(instrument, frequency);
         let setup = tuning.zip(instrument.modulated.modes.as_slice()).map(|((frequency, t60), mode)| {
-            let (left, right) = super::channel::pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
+            let (left, right) = super::gain::pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
             ModeSetup { frequency, t60, left, right }
         });
         self.bank.load(law, setup);

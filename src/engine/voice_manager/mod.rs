@@ -1,6 +1,9 @@
 //! Who plays what: polyphony, stealing, re-striking, pedals, choke groups, and which notes have ended. Knows no DSP.
 
+mod held_keys;
+
 use super::event::Notes;
+use held_keys::HeldKeys;
 
 /// A note as the manager hands it to a voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +30,23 @@ pub struct Note {
     pub body: u32,
     /// Choke group, 0 for none.
     pub choke: u8,
+}
+
+impl Note {
+    /// None yet.
+    const NONE: Self = Self {
+        channel: 0,
+        key: 0,
+        detune: 0.0,
+        velocity: 0.0,
+        soft: false,
+        brightness: 0.0,
+        id: -1,
+        serial: 0,
+        patch: 0,
+        body: 0,
+        choke: 0,
+    };
 }
 
 /// Something that sounds one note at a time. All methods are called on the audio thread.
@@ -65,9 +85,6 @@ pub const MAX_VOICES: usize = 64;
 
 /// Voices beyond those, for stolen notes to fade out in: enough for all of them to be stolen at once.
 const FADING_VOICES: usize = MAX_VOICES;
-
-/// Held keys that a monophonic voice can return to.
-const MAX_HELD_KEYS: usize = 32;
 
 /// Ended notes that are kept until somebody asks.
 pub const MAX_ENDED: usize = 1024;
@@ -112,9 +129,7 @@ pub struct VoiceManager<V> {
     sostenuto: [bool; 16],
     polyphony: usize,
     mode: PlayMode,
-    /// Keys down in a monophonic mode, oldest first.
-    held: [Note; MAX_HELD_KEYS],
-    held_len: usize,
+    held: HeldKeys,
     /// Notes that have ended: their voices are silent or another's, and no key of theirs is waited for.
     ended: Vec<Note>,
     peak: usize,
@@ -123,20 +138,7 @@ pub struct VoiceManager<V> {
 impl<V: Voice> VoiceManager<V> {
     /// A manager of voices made by `voice`. Allocates.
     pub fn new(mut voice: impl FnMut() -> V) -> Self {
-        let note = Note {
-            channel: 0,
-            key: 0,
-            detune: 0.0,
-            velocity: 0.0,
-            soft: false,
-            brightness: 0.0,
-            id: -1,
-            serial: 0,
-            patch: 0,
-            body: 0,
-            choke: 0,
-        };
-        let slot = || Slot { voice: voice(), note, state: State::Free, key_down: false, sostenuto: false };
+        let slot = || Slot { voice: voice(), note: Note::NONE, state: State::Free, key_down: false, sostenuto: false };
         Self {
             slots: std::iter::repeat_with(slot).take(MAX_VOICES + FADING_VOICES).collect(),
             used: 0,
@@ -144,8 +146,7 @@ impl<V: Voice> VoiceManager<V> {
             sostenuto: [false; 16],
             polyphony: MAX_VOICES,
             mode: PlayMode::Poly,
-            held: [note; MAX_HELD_KEYS],
-            held_len: 0,
+            held: HeldKeys::NONE,
             ended: Vec::with_capacity(MAX_ENDED),
             peak: 0,
         }
@@ -157,7 +158,7 @@ impl<V: Voice> VoiceManager<V> {
         self.used = 0;
         self.sustain = [false; 16];
         self.sostenuto = [false; 16];
-        self.held_len = 0;
+        self.held = HeldKeys::NONE;
         self.ended.clear();
         self.peak = 0;
     }
@@ -185,7 +186,7 @@ impl<V: Voice> VoiceManager<V> {
     /// A voice or a held key has let go of a note: it has ended, unless another has it still.
     fn retire(&mut self, note: Note) {
         let sounds = |slot: &Slot<V>| slot.state != State::Free && slot.note.serial == note.serial;
-        let is_held = self.held[..self.held_len].iter().any(|held| held.serial == note.serial);
+        let is_held = self.held.as_slice().iter().any(|held| held.serial == note.serial);
         if !is_held && !self.slots[..self.used].iter().any(sounds) && self.ended.len() < MAX_ENDED {
             self.ended.push(note);
         }
@@ -260,15 +261,13 @@ impl<V: Voice> VoiceManager<V> {
 
     fn note_on_mono(&mut self, context: &V::Context, note: Note) {
         self.forget(|held| (held.channel, held.key) == (note.channel, note.key));
-        if self.held_len == MAX_HELD_KEYS {
-            let oldest = self.held[0].serial;
-            self.forget(|held| held.serial == oldest);
+        if let Some(surplus) = self.held.surplus() {
+            self.forget(|held| held.serial == surplus.serial);
         }
-        self.held[self.held_len] = note;
-        self.held_len += 1;
+        self.held.push(note);
 
         let mut playing = None;
-        for (index, slot) in self.slots.iter_mut().enumerate().filter(|(_, slot)| slot.is_sounding()) {
+        for (index, slot) in self.slots[..self.used].iter_mut().enumerate().filter(|(_, slot)| slot.is_sounding()) {
             // Left over from another patch or from polyphony: make room.
             if playing.is_some() || slot.note.body != note.body {
                 fade(slot);
@@ -292,8 +291,9 @@ impl<V: Voice> VoiceManager<V> {
         if self.mode != PlayMode::Poly {
             self.forget(|held| notes.include(held));
             // The key before is still down: a release never strikes, it returns.
-            if let Some(note) = self.held[..self.held_len].last().copied()
-                && let Some(slot) = self.slots.iter_mut().find(|slot| slot.key_down && slot.is_one_of(&notes))
+            if let Some(note) = self.held.as_slice().last().copied()
+                && let Some(slot) =
+                    self.slots[..self.used].iter_mut().find(|slot| slot.key_down && slot.is_one_of(&notes))
             {
                 slot.voice.retune(context, &note);
                 // The voice keeps the sound that it has.
@@ -303,7 +303,7 @@ impl<V: Voice> VoiceManager<V> {
                 return self.retire(before);
             }
         }
-        for slot in self.slots.iter_mut().filter(|slot| slot.is_one_of(&notes)) {
+        for slot in self.slots[..self.used].iter_mut().filter(|slot| slot.is_one_of(&notes)) {
             slot.key_down = false;
             release_unless_held(slot, &self.sustain, velocity);
         }
@@ -311,14 +311,14 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Tells keys that are waited for of their channel's brightness.
     pub fn brighten(&mut self, channel: u8, brightness: f32) {
-        let held = self.held[..self.held_len].iter_mut().filter(|held| held.channel == channel);
+        let held = self.held.as_mut_slice().iter_mut().filter(|held| held.channel == channel);
         held.for_each(|held| held.brightness = brightness);
     }
 
     /// Silences these notes.
     pub fn silence(&mut self, notes: Notes) {
         self.forget(|held| notes.include(held));
-        self.slots.iter_mut().filter(|slot| slot.is_one_of(&notes)).for_each(fade);
+        self.slots[..self.used].iter_mut().filter(|slot| slot.is_one_of(&notes)).for_each(fade);
     }
 
     /// The sustain pedal (controller 64).
@@ -333,7 +333,7 @@ impl<V: Voice> VoiceManager<V> {
         if std::mem::replace(&mut self.sostenuto[usize::from(channel)], down) == down {
             return;
         }
-        for slot in self.slots.iter_mut().filter(|slot| slot.note.channel == channel) {
+        for slot in self.slots[..self.used].iter_mut().filter(|slot| slot.note.channel == channel) {
             slot.sostenuto = down && slot.state == State::Held && slot.key_down;
         }
         self.release_let_go(channel);
@@ -342,19 +342,25 @@ impl<V: Voice> VoiceManager<V> {
     /// Controller 123: every key of the channel comes up.
     pub fn all_notes_off(&mut self, channel: u8) {
         self.forget(|held| held.channel == channel);
-        self.slots.iter_mut().filter(|slot| slot.note.channel == channel).for_each(|slot| slot.key_down = false);
+        self.slots[..self.used]
+            .iter_mut()
+            .filter(|slot| slot.note.channel == channel)
+            .for_each(|slot| slot.key_down = false);
         self.release_let_go(channel);
     }
 
     /// Controller 120: the channel is silenced.
     pub fn all_sound_off(&mut self, channel: u8) {
         self.forget(|held| held.channel == channel);
-        self.slots.iter_mut().filter(|slot| slot.is_sounding() && slot.note.channel == channel).for_each(fade);
+        self.slots[..self.used]
+            .iter_mut()
+            .filter(|slot| slot.is_sounding() && slot.note.channel == channel)
+            .for_each(fade);
     }
 
     /// Silences the notes of a choke group (0 is none).
     pub fn choke(&mut self, group: u8) {
-        self.slots
+        self.slots[..self.used]
             .iter_mut()
             .filter(|slot| group != 0 && slot.is_sounding() && slot.note.choke == group)
             .for_each(fade);
@@ -362,7 +368,7 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Notes whose keys are up and that no pedal holds any more are released.
     fn release_let_go(&mut self, channel: u8) {
-        for slot in self.slots.iter_mut().filter(|slot| slot.note.channel == channel && !slot.key_down) {
+        for slot in self.slots[..self.used].iter_mut().filter(|slot| slot.note.channel == channel && !slot.key_down) {
             release_unless_held(slot, &self.sustain, MIDDLE_VELOCITY);
         }
     }
@@ -407,10 +413,7 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Stops waiting for keys.
     fn forget(&mut self, which: impl Fn(&Note) -> bool) {
-        while let Some(index) = self.held[..self.held_len].iter().position(&which) {
-            let note = self.held[index];
-            self.held[index..self.held_len].rotate_left(1);
-            self.held_len -= 1;
+        while let Some(note) = self.held.take(&which) {
             self.retire(note);
         }
     }
