@@ -7,7 +7,7 @@
 mod struck;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use sprung::dsp::mode_bank::{Law, Level, MAX_MODES, ModeBank, ModeSetup};
+use sprung::dsp::mode_bank::{Level, MAX_MODES, ModeBank, ModeSetup};
 use sprung::dsp::{CONTROL_FRAMES, Coefficients, HarmonicOscillator};
 use std::time::Duration;
 use struck::{StruckBank, Work};
@@ -66,7 +66,7 @@ fn control(criterion: &mut Criterion) {
         let mut bank = ModeBank::new(48_000.0);
         let mode = ModeSetup { frequency: 1000.0, t60: 1.0, left: 1.0, right: 1.0 };
         group.bench_function(BenchmarkId::new(level.name(), "load"), |bencher| {
-            bencher.iter(|| bank.load(Law::Exact, [mode; MAX_MODES].into_iter()));
+            bencher.iter(|| bank.load([mode; MAX_MODES].into_iter()));
         });
         let StruckBank { mut bank, .. } = StruckBank::new(MAX_MODES, Work::Ringing);
         group.bench_function(BenchmarkId::new(level.name(), "settle"), |bencher| bencher.iter(|| bank.settle()));

@@ -2,7 +2,7 @@
 
 use sprung::dsp::CONTROL_FRAMES;
 use sprung::dsp::exciter::{Drive, Exciter};
-use sprung::dsp::mode_bank::{Coupling, Law, MAX_MODES, ModeBank, ModeSetup};
+use sprung::dsp::mode_bank::{ExcitationGains, MAX_MODES, ModeBank, ModeSetup};
 
 /// What a bank can be busy with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +40,8 @@ impl StruckBank {
     pub(crate) fn new(modes: usize, work: Work) -> Self {
         let mut bank = ModeBank::new(48_000.0);
         let mode = |m: usize| ModeSetup { frequency: 100.0 + 310.0 * m as f64, t60: 10_000.0, left: 1.0, right: 1.0 };
-        bank.load(Law::Exact, (0..modes).map(mode));
-        (0..modes).for_each(|m| bank.set_coupling(m, Coupling { push: 1.0, pull: 0.0, noise: 1.0 }));
+        bank.load((0..modes).map(mode));
+        (0..modes).for_each(|m| bank.set_excitation_gains(m, ExcitationGains { push: 1.0, pull: 0.0, noise: 1.0 }));
         let mut strike = Drive::NONE;
         strike.pulse[0] = 1.0;
         bank.sweep_to(1.0, CONTROL_FRAMES);

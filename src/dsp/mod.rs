@@ -1,5 +1,7 @@
 //! Pure numerics: no events, no files, no threads. Everything in it is real-time safe.
 
+pub mod bank;
+pub mod classic_bank;
 pub mod coefficients;
 pub mod exciter;
 pub mod mode_bank;
@@ -9,6 +11,8 @@ pub mod ramp;
 pub mod random;
 pub mod real;
 
+pub use bank::Bank;
+pub use classic_bank::ClassicBank;
 pub use coefficients::Coefficients;
 pub use mode_bank::ModeBank;
 pub use oscillator::HarmonicOscillator;

@@ -18,6 +18,11 @@ pub struct HarmonicOscillator<T> {
     omega2: T,
 }
 
+impl HarmonicOscillator<f32> {
+    /// At rest, without a spring.
+    pub const REST: Self = Self { x: 0.0, v: 0.0, zeta: 0.0, omega2: 0.0 };
+}
+
 impl<T: Real> HarmonicOscillator<T> {
     /// An oscillator in the starting state of `coefficients`, rounded to `T`.
     pub fn new(coefficients: &Coefficients) -> Self {

@@ -33,7 +33,7 @@ impl Snapshot {
     pub(super) fn add(&mut self, voice: &SynthVoice) {
         self.voices += 1;
         for (m, mass) in self.masses.iter_mut().enumerate().take(voice.bank.len()) {
-            let (displacement, energy) = voice.bank.motion(m);
+            let (displacement, energy) = voice.bank.mass(m);
             mass.displacement += displacement;
             mass.energy += energy;
         }

@@ -355,7 +355,7 @@ impl Synth {
             1 => PlayMode::Mono,
             _ => PlayMode::Legato,
         };
-        self.manager.configure(patch.get(Param::Voices) as usize, mode);
+        self.manager.configure(patch.get(Param::Voices) as usize, mode, self.instrument.patch_serial);
     }
 }
 

@@ -1,13 +1,13 @@
-//! The kernels compiled for each level of instructions, and the choice of one when the first bank is made.
+//! The levels of vector instructions: which of them the CPU has, and a kernel run with one.
 
-use super::control::{Pitch, Wide};
-use super::kernel::{Form, Modes, Output, State, ring};
-use super::step::step;
-use super::table::{Table, Turn};
-use super::vector::Scalar;
-use crate::dsp::exciter::Drive;
+use super::vector::{Scalar, Vector};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, Ordering};
+
+#[cfg(target_arch = "aarch64")]
+use super::neon::Neon;
+#[cfg(target_arch = "x86_64")]
+use super::x86::{Avx2, Avx512, HasAvx2, HasAvx512, Sse2};
 
 /// A level of vector instructions. All give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +41,7 @@ impl Level {
 
     /// Whether this CPU has the level.
     pub fn is_available(self) -> bool {
-        self.kernels().is_some()
+        Instructions::detect(self).is_some()
     }
 
     /// The level that banks made from now on use: the one last forced, else the one that `SPRUNG_SIMD` named when
@@ -68,181 +68,102 @@ impl Level {
         }
         available
     }
+}
 
-    /// The kernels of the level, only where the CPU can run them.
-    pub(super) fn kernels(self) -> Option<&'static Kernels> {
-        match self {
-            Level::Scalar => Some(&scalar::KERNELS),
+/// Index in [`Level::ALL`] of the level that [`Level::force`] set; beyond it if none was.
+static FORCED: AtomicU8 = AtomicU8::new(u8::MAX);
+
+/// Work that is written once for all vectors.
+pub(super) trait Kernel {
+    /// What it comes to.
+    type Output;
+
+    /// Does the work. Implementers are `#[inline(always)]`, as is all that they call: what is not inlined into a
+    /// function of [`Instructions::run`] is compiled without the level's instructions, and is several times as slow.
+    fn run<V: Vector>(self, proof: V::Proof) -> Self::Output;
+}
+
+/// A level that this CPU has, with the proof of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Instructions {
+    Scalar,
+    #[cfg(target_arch = "x86_64")]
+    Sse2,
+    #[cfg(target_arch = "x86_64")]
+    Avx2(HasAvx2),
+    #[cfg(target_arch = "x86_64")]
+    Avx512(HasAvx512),
+    #[cfg(target_arch = "aarch64")]
+    Neon,
+}
+
+impl Instructions {
+    /// Those of [`Level::current`].
+    pub(super) fn current() -> Self {
+        Self::detect(Level::current()).unwrap_or(Self::Scalar)
+    }
+
+    /// Those of a level, if the CPU has it.
+    fn detect(level: Level) -> Option<Self> {
+        match level {
+            Level::Scalar => Some(Self::Scalar),
             #[cfg(target_arch = "x86_64")]
-            Level::Sse2 => Some(&sse2::KERNELS),
+            Level::Sse2 => Some(Self::Sse2),
             #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => {
-                let has = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
-                has.then_some(&avx2::KERNELS)
-            }
+            Level::Avx2 => HasAvx2::detect().map(Self::Avx2),
             #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => {
-                let has = is_x86_feature_detected!("avx512f")
-                    && is_x86_feature_detected!("avx2")
-                    && is_x86_feature_detected!("fma");
-                has.then_some(&avx512::KERNELS)
-            }
+            Level::Avx512 => HasAvx512::detect().map(Self::Avx512),
             #[cfg(target_arch = "aarch64")]
-            Level::Neon => Some(&neon::KERNELS),
+            Level::Neon => Some(Self::Neon),
             #[cfg(target_arch = "x86_64")]
             Level::Neon => None,
             #[cfg(not(target_arch = "x86_64"))]
             _ => None,
         }
     }
-}
 
-/// Index in [`Level::ALL`] of the level that [`Level::force`] set; beyond it if none was.
-static FORCED: AtomicU8 = AtomicU8::new(u8::MAX);
-
-/// The entry points of one level. Only [`Level::kernels`] hands them out, where the CPU has the level: that is what
-/// makes calling them safe.
-#[derive(Debug)]
-pub(super) struct Kernels {
-    level: Level,
-    step: unsafe fn(Form, &mut Modes, &mut State, &Drive, &mut Output),
-    ring: unsafe fn(Form, &mut Table, &Modes, &State, &mut State, &mut Output),
-    build: unsafe fn(&mut Table, &Modes, usize),
-    tune: unsafe fn(&mut Pitch, &mut Modes, &Wide, &Wide, usize),
-    aim: unsafe fn(&Pitch, &mut Modes, f32, f32, bool, usize),
-    take_stock: unsafe fn(&Pitch, &Modes, &mut State, bool, usize) -> f32,
-    convert: unsafe fn(&Turn, &mut State, bool, usize),
-}
-
-impl Kernels {
-    /// Those of [`Level::current`].
-    pub(super) fn current() -> &'static Kernels {
-        Level::current().kernels().unwrap_or(&scalar::KERNELS)
-    }
-
-    pub(super) fn level(&self) -> Level {
-        self.level
-    }
-
-    /// See [`step`].
-    pub(super) fn step(&self, form: Form, modes: &mut Modes, state: &mut State, drive: &Drive, out: &mut Output) {
-        // SAFETY: see `Kernels`.
-        unsafe { (self.step)(form, modes, state, drive, out) }
-    }
-
-    /// See [`ring`].
-    pub(super) fn ring(
-        &self,
-        form: Form,
-        table: &mut Table,
-        modes: &Modes,
-        start: &State,
-        end: &mut State,
-        out: &mut Output,
-    ) {
-        // SAFETY: see `Kernels`.
-        unsafe { (self.ring)(form, table, modes, start, end, out) }
-    }
-
-    /// See [`Table::build`].
-    pub(super) fn build(&self, table: &mut Table, modes: &Modes, len: usize) {
-        // SAFETY: see `Kernels`.
-        unsafe { (self.build)(table, modes, len) }
-    }
-
-    /// See [`Pitch::tune`].
-    pub(super) fn tune(&self, pitch: &mut Pitch, modes: &mut Modes, ln_radius: &Wide, half_angle: &Wide, len: usize) {
-        // SAFETY: see `Kernels`.
-        unsafe { (self.tune)(pitch, modes, ln_radius, half_angle, len) }
-    }
-
-    /// See [`Pitch::aim`].
-    pub(super) fn aim(&self, pitch: &Pitch, modes: &mut Modes, ratio: f32, per_frame: f32, jump: bool, len: usize) {
-        // SAFETY: see `Kernels`.
-        unsafe { (self.aim)(pitch, modes, ratio, per_frame, jump, len) }
-    }
-
-    /// See [`Pitch::take_stock`].
-    pub(super) fn take_stock(&self, pitch: &Pitch, modes: &Modes, state: &mut State, ahead: bool, len: usize) -> f32 {
-        // SAFETY: see `Kernels`.
-        unsafe { (self.take_stock)(pitch, modes, state, ahead, len) }
-    }
-
-    /// See [`Turn::convert`].
-    pub(super) fn convert(&self, turn: &Turn, state: &mut State, ahead: bool, live: usize) {
-        // SAFETY: see `Kernels`.
-        unsafe { (self.convert)(turn, state, ahead, live) }
-    }
-}
-
-/// The generic kernels compiled with a level's instructions.
-macro_rules! level {
-    ($module:ident, $level:ident, $vector:ty $(, $features:literal)?) => {
-        mod $module {
-            use super::*;
-
-            $(#[target_feature(enable = $features)])?
-            fn step_here(form: Form, modes: &mut Modes, state: &mut State, drive: &Drive, out: &mut Output) {
-                step::<$vector>(form, modes, state, drive, out);
-            }
-
-            $(#[target_feature(enable = $features)])?
-            fn ring_here(
-                form: Form,
-                table: &mut Table,
-                modes: &Modes,
-                start: &State,
-                end: &mut State,
-                out: &mut Output,
-            ) {
-                ring::<$vector>(form, table, modes, start, end, out);
-            }
-
-            $(#[target_feature(enable = $features)])?
-            fn build_here(table: &mut Table, modes: &Modes, len: usize) {
-                table.build(modes, len);
-            }
-
-            $(#[target_feature(enable = $features)])?
-            fn tune_here(pitch: &mut Pitch, modes: &mut Modes, ln_radius: &Wide, half_angle: &Wide, len: usize) {
-                pitch.tune(modes, ln_radius, half_angle, len);
-            }
-
-            $(#[target_feature(enable = $features)])?
-            fn aim_here(pitch: &Pitch, modes: &mut Modes, ratio: f32, per_frame: f32, jump: bool, len: usize) {
-                pitch.aim::<$vector>(modes, ratio, per_frame, jump, len);
-            }
-
-            $(#[target_feature(enable = $features)])?
-            fn take_stock_here(pitch: &Pitch, modes: &Modes, state: &mut State, ahead: bool, len: usize) -> f32 {
-                pitch.take_stock::<$vector>(modes, state, ahead, len)
-            }
-
-            $(#[target_feature(enable = $features)])?
-            fn convert_here(turn: &Turn, state: &mut State, ahead: bool, live: usize) {
-                turn.convert::<$vector>(state, ahead, live);
-            }
-
-            pub(super) static KERNELS: Kernels = Kernels {
-                level: Level::$level,
-                step: step_here,
-                ring: ring_here,
-                build: build_here,
-                tune: tune_here,
-                aim: aim_here,
-                take_stock: take_stock_here,
-                convert: convert_here,
-            };
+    /// Their level.
+    pub(super) fn level(self) -> Level {
+        match self {
+            Self::Scalar => Level::Scalar,
+            #[cfg(target_arch = "x86_64")]
+            Self::Sse2 => Level::Sse2,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => Level::Avx2,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => Level::Avx512,
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => Level::Neon,
         }
-    };
+    }
+
+    /// Runs a kernel that is compiled for them.
+    #[inline]
+    pub(super) fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            Self::Scalar => kernel.run::<Scalar>(()),
+            #[cfg(target_arch = "x86_64")]
+            Self::Sse2 => kernel.run::<Sse2>(()),
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the proof exists only where the CPU has AVX2 and FMA.
+            Self::Avx2(proof) => unsafe { run_avx2(kernel, proof) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the proof exists only where the CPU has AVX-512F, AVX2 and FMA.
+            Self::Avx512(proof) => unsafe { run_avx512(kernel, proof) },
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => kernel.run::<Neon>(()),
+        }
+    }
 }
 
-level!(scalar, Scalar, Scalar);
 #[cfg(target_arch = "x86_64")]
-level!(sse2, Sse2, super::super::x86::Sse2, "sse2");
+#[target_feature(enable = "avx2,fma")]
+fn run_avx2<K: Kernel>(kernel: K, proof: HasAvx2) -> K::Output {
+    kernel.run::<Avx2>(proof)
+}
+
 #[cfg(target_arch = "x86_64")]
-level!(avx2, Avx2, super::super::x86::Avx2, "avx2,fma");
-#[cfg(target_arch = "x86_64")]
-level!(avx512, Avx512, super::super::x86::Avx512, "avx512f,avx2,fma");
-#[cfg(target_arch = "aarch64")]
-level!(neon, Neon, super::super::neon::Neon, "neon");
+#[target_feature(enable = "avx512f,avx2,fma")]
+fn run_avx512<K: Kernel>(kernel: K, proof: HasAvx512) -> K::Output {
+    kernel.run::<Avx512>(proof)
+}

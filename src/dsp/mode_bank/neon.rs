@@ -19,16 +19,18 @@ macro_rules! binary {
 }
 
 impl Vector for Neon {
+    // NEON belongs to AArch64.
+    type Proof = ();
     const WIDTH: usize = 4;
     const INTERLEAVE: usize = 4;
 
     #[inline(always)]
-    fn splat(value: f32) -> Self {
+    fn splat((): (), value: f32) -> Self {
         // SAFETY: NEON belongs to AArch64.
         Self(unsafe { vdupq_n_f32(value) })
     }
     #[inline(always)]
-    fn load(from: &[f32]) -> Self {
+    fn load((): (), from: &[f32]) -> Self {
         let from = &from[..4];
         // SAFETY: NEON belongs to AArch64; the slice has the four numbers that are read.
         Self(unsafe { vld1q_f32(from.as_ptr()) })
@@ -40,7 +42,7 @@ impl Vector for Neon {
         unsafe { vst1q_f32(to.as_mut_ptr(), self.0) }
     }
     #[inline(always)]
-    fn splat_pair(pair: &[f32; 2]) -> Self {
+    fn splat_pair((): (), pair: &[f32; 2]) -> Self {
         // SAFETY: NEON belongs to AArch64; the array has the two numbers that are read.
         unsafe {
             let pair = vld1_f32(pair.as_ptr());
@@ -56,12 +58,7 @@ impl Vector for Neon {
             vst1q_f32(to[4..].as_mut_ptr(), vzip2q_f32(self.0, other.0));
         }
     }
-    binary!(add_pairs: vpaddq_f32, add: vaddq_f32, sub: vsubq_f32, mul: vmulq_f32, div: vdivq_f32, min: vminq_f32, max: vmaxq_f32);
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: NEON belongs to AArch64.
-        Self(unsafe { vsqrtq_f32(self.0) })
-    }
+    binary!(add_pairs: vpaddq_f32, add: vaddq_f32, sub: vsubq_f32, mul: vmulq_f32, min: vminq_f32, max: vmaxq_f32);
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
         // SAFETY: NEON belongs to AArch64.

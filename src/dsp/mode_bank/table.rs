@@ -7,12 +7,15 @@
 //! rate, and with the diagonal kept apart from 1 still by 0.2 % at 22 kHz.
 
 use super::MAX_MODES;
-use super::kernel::{Modes, Row};
+use super::levels::Kernel;
+use super::rows::{Row, Wide};
+use super::tuning::{below_top, expm1_of_radius, sin_to_right_angle};
+use super::vector::Vector;
 
 /// Frames that a table covers. Frozen: bits depend on it. Two of them are a control tick.
 pub(super) const WINDOW: usize = 16;
 
-/// The displacement `j + 1` frames on, level included, is `taps[2j]·x + taps[2j+1]·y`.
+/// The displacement `j + 1` frames on is `taps[2j]·x + taps[2j+1]·y`.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Taps(pub(super) [f32; 2 * WINDOW]);
@@ -25,11 +28,6 @@ pub(super) struct Turn {
     pub(super) real_rest: Row,
     pub(super) imaginary: Row,
     pub(super) imaginary_rest: Row,
-    /// `y = from_v · v + from_x · x`, and back: `v = to_v · y + to_v_x · x`.
-    pub(super) from_v: Row,
-    pub(super) from_x: Row,
-    pub(super) to_v: Row,
-    pub(super) to_v_x: Row,
 }
 
 /// Both coordinates of each mode side by side, at the start of each window of a tick.
@@ -49,53 +47,44 @@ pub(super) struct Table {
 impl Table {
     pub(super) const EMPTY: Table = Table {
         taps: [Taps([0.0; 2 * WINDOW]); MAX_MODES],
-        turn: Turn {
-            real: Row::ZERO,
-            real_rest: Row::ZERO,
-            imaginary: Row::ZERO,
-            imaginary_rest: Row::ZERO,
-            from_v: Row::ZERO,
-            from_x: Row::ZERO,
-            to_v: Row::ZERO,
-            to_v_x: Row::ZERO,
-        },
+        turn: Turn { real: Row::ZERO, real_rest: Row::ZERO, imaginary: Row::ZERO, imaginary_rest: Row::ZERO },
         pairs: [const { Pairs([[[0.0; 2]; MAX_MODES]; 2]) }; 2],
     };
+}
 
-    /// Makes the tables of the first `len` modes from the coefficients of the step, sweep and level as they stand,
-    /// so that both forms are the same oscillator but for rounding. The modes have to ring. Those beyond are left
-    /// alone.
+/// Makes the tables of the first `len` modes at a pitch ratio. Those beyond are left alone.
+pub(super) struct Build<'a> {
+    pub(super) table: &'a mut Table,
+    pub(super) ln_radius: &'a Wide,
+    pub(super) half_angle: &'a Wide,
+    pub(super) ratio: f64,
+    pub(super) len: usize,
+}
+
+impl Kernel for Build<'_> {
+    type Output = ();
+
     #[inline(always)]
-    pub(super) fn build(&mut self, modes: &Modes, len: usize) {
-        let turn = &mut self.turn;
+    fn run<V: Vector>(self, _: V::Proof) {
+        let Self { table: Table { taps, turn, .. }, ln_radius, half_angle, ratio, len } = self;
         for m in 0..len.min(MAX_MODES) {
-            let (zeta, omega2) = (f64::from(modes.zeta.0[m]), f64::from(modes.omega2.0[m]));
-            let (sweep, level) = (f64::from(modes.sweep.0[m]), f64::from(modes.level.0[m]));
-            let keep = 1.0 - zeta;
-            let radius = keep.sqrt();
-            let loss = zeta / (1.0 + radius);
-            let stiffness = sweep * sweep * omega2;
-            // sin²(θ/2), from which nothing cancels.
-            let chord2 = ((stiffness - loss * loss) / (4.0 * radius)).clamp(1e-18, 1.0 - 1e-9);
-            let z = Complex(radius * (1.0 - 2.0 * chord2), 2.0 * radius * (chord2 * (1.0 - chord2)).sqrt());
-            // One frame on, x is (1 − s²ω²) x + s (1−ζ) v; and it is Re z · x + Im z · y.
-            let (from_v, from_x) = (sweep * keep / z.1, 0.5 * (zeta - stiffness) / z.1);
-            (turn.from_v.0[m], turn.from_x.0[m]) = (from_v as f32, from_x as f32);
-            (turn.to_v.0[m], turn.to_v_x.0[m]) = ((1.0 / from_v) as f32, (-from_x / from_v) as f32);
-
+            let radius = 1.0 + expm1_of_radius(ln_radius[m]);
+            let half_chord = sin_to_right_angle(below_top(half_angle[m] * ratio));
+            let chord2 = half_chord * half_chord;
+            let z = Complex(radius * (1.0 - 2.0 * chord2), 2.0 * radius * half_chord * (1.0 - chord2).sqrt());
             let z2 = z.times(z);
             let z4 = z2.times(z2);
             let z8 = z4.times(z4);
             let z16 = z8.times(z8);
             (turn.real.0[m], turn.real_rest.0[m]) = halves(z16.0);
             (turn.imaginary.0[m], turn.imaginary_rest.0[m]) = halves(z16.1);
-            let mut powers = [Complex(level * z.0, level * z.1); WINDOW];
+            let mut powers = [z; WINDOW];
             for (n, power) in [(1, z), (2, z2), (4, z4), (8, z8)] {
                 for j in 0..n {
                     powers[n + j] = powers[j].times(power);
                 }
             }
-            let (taps, _) = self.taps[m].0.as_chunks_mut::<2>();
+            let (taps, _) = taps[m].0.as_chunks_mut::<2>();
             for j in 0..WINDOW {
                 taps[j] = [powers[j].0 as f32, powers[j].1 as f32];
             }
@@ -124,29 +113,11 @@ impl Complex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dsp::Coefficients;
+    use crate::dsp::coefficients::LN_MINUS_60_DB;
+    use crate::dsp::mode_bank::vector::Scalar;
     use crate::dsp::random::{key, uniform};
     use libm::{atan2, log, pow};
     use std::f64::consts::PI;
-
-    fn modes(zeta: f64, omega2: f64, sweep: f64) -> Modes {
-        let all = |value: f64| Row([value as f32; MAX_MODES]);
-        let zero = Row::ZERO;
-        Modes {
-            zeta: all(zeta),
-            omega2: all(omega2),
-            sweep: all(sweep),
-            sweep_step: zero,
-            level: Row::ONE,
-            level_step: zero,
-            least: zero,
-            left: Row::ONE,
-            right: Row::ONE,
-            push: zero,
-            pull: zero,
-            noise: zero,
-        }
-    }
 
     /// Pitch and decay that follow from the rounded matrix, against those asked for, over everything that a voice can
     /// ask for: 8 Hz up, at 8 to 192 kHz, T60 up to 60 s.
@@ -161,8 +132,11 @@ mod tests {
             let frequency = 8.0 * pow(0.49 * rate / 8.0, unit(3 * case));
             // A mode that dies within a period has no pitch to speak of.
             let t60 = (0.01 * pow(6_000.0, unit(3 * case + 1))).max(1.0 / frequency);
-            let c = Coefficients::exact(frequency, t60, 1.0, rate);
-            table.build(&modes(c.zeta, c.omega2, 1.0), 1);
+            let ln_radius = [LN_MINUS_60_DB / (t60 * rate); MAX_MODES];
+            // Half of it by the ratio.
+            let half_angle = [0.5 * PI * frequency / rate; MAX_MODES];
+            let build = Build { table: &mut table, ln_radius: &ln_radius, half_angle: &half_angle, ratio: 2.0, len: 1 };
+            build.run::<Scalar>(());
             let turn = &table.turn;
             let real = f64::from(turn.real.0[0]) + f64::from(turn.real_rest.0[0]);
             let imaginary = f64::from(turn.imaginary.0[0]) + f64::from(turn.imaginary_rest.0[0]);

@@ -3,15 +3,21 @@
 use super::*;
 use crate::dsp::random::{key, uniform};
 use crate::dsp::{Coefficients, HarmonicOscillator};
+use std::f64::consts::PI;
 
 const RATE: f64 = 48_000.0;
 
-fn bank(law: Law, modes: &[(f64, f64)]) -> ModeBank {
-    let mut bank = ModeBank::new(RATE);
+fn bank_at(sample_rate: f64, modes: &[(f64, f64)]) -> ModeBank {
+    let mut bank = ModeBank::new(sample_rate);
     let setup = |(frequency, t60): &(f64, f64)| ModeSetup { frequency: *frequency, t60: *t60, left: 1.0, right: 1.0 };
-    bank.load(law, modes.iter().map(setup));
-    (0..bank.len()).for_each(|m| bank.set_coupling(m, Coupling { push: 1.0, ..Coupling::default() }));
+    bank.load(modes.iter().map(setup));
+    let gains = ExcitationGains { push: 1.0, ..ExcitationGains::default() };
+    (0..bank.len()).for_each(|m| bank.set_excitation_gains(m, gains));
     bank
+}
+
+fn bank(modes: &[(f64, f64)]) -> ModeBank {
+    bank_at(RATE, modes)
 }
 
 fn strike() -> Drive {
@@ -36,31 +42,49 @@ fn glide(bank: &mut ModeBank, ratio: f64) -> Vec<f32> {
     bank.render(None, CONTROL_FRAMES)[0].to_vec()
 }
 
-/// The classic law is the oscillator to the bit; the exact one rounds elsewhere, and stays within −110 dB.
+fn amplitude(bank: &mut ModeBank) -> f64 {
+    libm::sqrt(bank.settle())
+}
+
+/// The oscillator in double precision is what a mode is: pushed or displaced, at every pitch and decay. (RMS over a
+/// second. The bank's state is in single precision, whose rounding is that of the peaks, a few decibels above.)
 #[test]
 fn one_mode_is_the_oscillator() {
-    let laws = [Law::Exact, Law::Classic];
-    for (law, frequency) in laws.into_iter().flat_map(|law| [20.0, 440.0, 4000.0, 12_000.0].map(|f| (law, f))) {
-        let mut bank = bank(law, &[(frequency, 1.0)]);
-        let rendered = run(&mut bank, 48_000, Some(&strike()));
-        let error = match law {
-            Law::Exact => {
-                // The coefficients as the bank rounds them, so that phases do not drift apart.
-                let c = Coefficients::exact(frequency, 1.0, 1.0, RATE);
-                let rounded = [c.zeta, c.omega2, c.v0].map(|value| f64::from(value as f32));
-                let c = Coefficients { zeta: rounded[0], omega2: rounded[1], x0: 0.0, v0: rounded[2] };
-                let mut mass = HarmonicOscillator::<f64>::new(&c);
-                rendered.iter().fold(0.0_f64, |worst, sample| worst.max((f64::from(*sample) - mass.step()).abs()))
+    for frequency in [20.0, 100.0, 440.0, 4000.0, 12_345.6, 20_000.0, 23_000.0] {
+        for t60 in [0.02, 0.3, 1.0, 10.0] {
+            for pull in [false, true] {
+                let mut bank = bank(&[(frequency, t60)]);
+                let mut c = Coefficients::exact(frequency, t60, 1.0, RATE);
+                if pull {
+                    bank.set_excitation_gains(0, ExcitationGains { pull: 1.0, ..ExcitationGains::default() });
+                    c = Coefficients { x0: 1.0 / c.amplitude(1.0, 0.0), v0: 0.0, ..c };
+                }
+                let rendered = run(&mut bank, 48_000, Some(&strike()));
+                let db = error_db(&rendered, &mut [HarmonicOscillator::new(&c)]);
+                assert!(db < -120.0, "{frequency} Hz, {t60} s, pull {pull}: {db:.1} dB");
             }
-            Law::Classic => {
-                let c = Coefficients::seed(frequency as f32, 48_000.0, 1.0, 48_000.0);
-                let mut mass = HarmonicOscillator::<f32>::new(&c);
-                f64::from(u8::from(rendered.iter().any(|sample| *sample != mass.step())))
-            }
-        };
-        println!("{law:?} {frequency} Hz: {:.1} dB", 20.0 * libm::log10(error));
-        assert!(error < 3e-6, "{law:?} {frequency} Hz: {error:e}");
+        }
     }
+}
+
+/// Many modes are stepped for nine control ticks before they have tables. Meanwhile the rounding of their coefficients
+/// puts the phase of the highest out by some 1e−5.
+#[test]
+fn sixty_four_modes_are_as_many_oscillators() {
+    let modes: Vec<_> = (0..64).map(|m| (60.0 * libm::pow(1.1, m.into()), 2.0 / f64::from(m + 1))).collect();
+    let mut masses: Vec<_> =
+        modes.iter().map(|(f, t60)| HarmonicOscillator::new(&Coefficients::exact(*f, *t60, 1.0, RATE))).collect();
+    let rendered = run(&mut bank(&modes), 48_000, Some(&strike()));
+    let db = error_db(&rendered, &mut masses);
+    println!("{db:.1} dB");
+    assert!(db < -120.0, "{db:.1} dB");
+}
+
+/// RMS difference to the sum of masses, of full scale a mass.
+fn error_db(rendered: &[f32], masses: &mut [HarmonicOscillator<f64>]) -> f64 {
+    let difference = |sample: &f32| f64::from(*sample) - masses.iter_mut().map(HarmonicOscillator::step).sum::<f64>();
+    let squares: f64 = rendered.iter().map(difference).map(|difference| difference * difference).sum();
+    10.0 * libm::log10(squares / rendered.len() as f64) - 20.0 * libm::log10(masses.len() as f64)
 }
 
 /// The state changes places every tick that is rendered by tables: neither place may keep what has come to rest.
@@ -69,7 +93,7 @@ fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
     for ticks in 0..4 {
         // More of them than a vector has lanes.
         let modes: Vec<_> = (0..64).map(|m| (200.0, if m == 0 { 10.0 } else { 0.02 })).collect();
-        let mut bank = bank(Law::Exact, &modes);
+        let mut bank = bank(&modes);
         let mut drive = Some(strike());
         let mut tick = |bank: &mut ModeBank| {
             bank.settle();
@@ -79,10 +103,10 @@ fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
             tick(&mut bank);
         }
         (0..ticks).for_each(|_| tick(&mut bank));
-        assert!(bank.tabled && bank.live == LANES);
-        (1..64).for_each(|m| bank.set_coupling(m, Coupling::default()));
+        assert!(matches!(bank.motion, Motion::Tabled { .. }) && bank.live == LANES);
+        (1..64).for_each(|m| bank.set_excitation_gains(m, ExcitationGains::default()));
         run(&mut bank, 1, Some(&strike()));
-        assert!((1..64).all(|m| bank.motion(m).1 == 0.0), "{ticks} ticks: {:?}", bank.motion(40));
+        assert!((1..64).all(|m| bank.mass(m).1 == 0.0), "{ticks} ticks: {:?}", bank.mass(40));
     }
 }
 
@@ -90,7 +114,7 @@ fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
 #[test]
 fn a_mode_that_wakes_is_where_the_sweep_is() {
     let modes: Vec<_> = (0..64).map(|m| (200.0, if m == 0 { 10.0 } else { 0.02 })).collect();
-    let mut bank = bank(Law::Exact, &modes);
+    let mut bank = bank(&modes);
     run(&mut bank, CONTROL_FRAMES, Some(&strike()));
     for tick in 1..2000 {
         bank.settle();
@@ -99,34 +123,92 @@ fn a_mode_that_wakes_is_where_the_sweep_is() {
     assert_eq!(bank.live, LANES);
     bank.sweep_to(3.0, CONTROL_FRAMES);
     bank.render(None, 16);
+    // An event: every voice sets out anew from its frame.
+    bank.sweep_to(3.0, 16);
     bank.render(Some(&strike()), 16);
     // Those of the first group have been awake all the time.
-    let sweep = &bank.modes.sweep.0[1..];
-    assert!(sweep.iter().all(|mode| (mode / sweep[0] - 1.0).abs() < 1e-6), "{sweep:?}");
+    let Modes { beta, beta_step, .. } = &bank.modes;
+    let beta: Vec<_> = beta.0.iter().zip(&beta_step.0).map(|(start, step)| start + 16.0 * step).collect();
+    assert!(beta[1..].iter().all(|mode| (mode / beta[1] - 1.0).abs() < 1e-6), "{beta:?}");
 }
 
 #[test]
 fn the_energy_is_that_of_the_amplitudes() {
-    let mut bank = bank(Law::Exact, &[(100.0, 1.0), (3000.0, 1.0), (19_000.0, 1.0)]);
+    let mut bank = bank(&[(100.0, 1.0), (3000.0, 1.0), (19_000.0, 1.0)]);
     run(&mut bank, 48_000, Some(&strike()));
     assert!((bank.settle() / 3e-6 - 1.0).abs() < 1e-4, "{}", bank.settle());
-    glide(&mut bank, 1.1);
-    assert!((bank.settle() / 3e-6 - 1.0).abs() < 5e-3, "swept: {}", bank.settle());
 }
 
 #[test]
 fn a_pull_and_a_push_give_the_same_amplitude() {
     for frequency in [50.0, 5000.0, 20_000.0] {
-        let mut pulled = bank(Law::Exact, &[(frequency, 1.0)]);
-        pulled.set_coupling(0, Coupling { pull: 1.0, ..Coupling::default() });
+        let mut pulled = bank(&[(frequency, 1.0)]);
+        pulled.set_excitation_gains(0, ExcitationGains { pull: 1.0, ..ExcitationGains::default() });
         run(&mut pulled, 1, Some(&strike()));
         assert!((pulled.settle() - 1.0).abs() < 1e-3, "{frequency}: {}", pulled.settle());
     }
 }
 
+/// A pitch that moves takes and gives nothing: an octave up and down in 20 ms each, again and again, for as long as the
+/// mode takes to fall by 60 dB. T60 is kept to 0.1 %, which is 0.06 dB at the end.
+#[test]
+fn decay_does_not_depend_on_the_movement_of_the_pitch() {
+    for (sample_rate, frequency) in
+        [(44_100.0, 55.0), (48_000.0, 440.0), (48_000.0, 4000.0), (48_000.0, 10_000.0), (192_000.0, 10_000.0)]
+    {
+        for t60 in [0.3, 2.0, 5.0] {
+            let mut bank = bank_at(sample_rate, &[(frequency, t60)]);
+            run(&mut bank, CONTROL_FRAMES, Some(&strike()));
+            let start = amplitude(&mut bank);
+            let ticks = (t60 * sample_rate / CONTROL_FRAMES as f64) as usize;
+            for tick in 1..=ticks {
+                let octaves = (tick as f64 * CONTROL_FRAMES as f64 / (0.02 * sample_rate)) % 2.0;
+                glide(&mut bank, libm::exp2(1.0 - (1.0 - octaves).abs()));
+            }
+            let ratio = bank.ratio;
+            glide(&mut bank, ratio);
+            let seconds = (ticks + 1) as f64 * CONTROL_FRAMES as f64 / sample_rate;
+            let measured = -3.0 * seconds / libm::log10(amplitude(&mut bank) / start);
+            let percent = 100.0 * (measured / t60 - 1.0);
+            println!("{frequency} Hz at {sample_rate} Hz, {t60} s: {percent:+.4} %");
+            assert!(percent.abs() < 0.1, "{frequency} Hz at {sample_rate} Hz, {t60} s: {percent:+.4} %");
+        }
+    }
+}
+
+/// Jumps to anywhere at any time, with changes of damping: the amplitude only falls.
+#[test]
+fn nothing_but_a_strike_adds_energy() {
+    let stream = key(23, 0);
+    let unit = |n: u64| f64::from(uniform(stream, n)) * 0.5 + 0.5;
+    for case in 0..400_u64 {
+        let between = |n: u64, low: f64, high: f64| low * libm::pow(high / low, unit(10_000 * case + n));
+        let rate = between(0, 1_000.0, 768_000.0);
+        let mut bank = bank_at(rate, &[(between(1, 8.0, 0.7 * rate), between(2, 0.005, 60.0))]);
+        bank.jump_to(between(3, 0.01, 100.0));
+        run(&mut bank, CONTROL_FRAMES, Some(&strike()));
+        // What would be left, had the pitch stood still.
+        let mut due = 1.0;
+        for n in 0..100 {
+            if unit(10_000 * case + 10 * n + 9) < 0.2 {
+                bank.set_t60(0, between(10 * n + 8, 0.001, 60.0));
+            }
+            let frames = 1 + (unit(10_000 * case + 10 * n + 7) * 31.0) as usize;
+            bank.sweep_to(between(10 * n + 6, 0.01, 100.0), CONTROL_FRAMES);
+            let peak = bank.render(None, frames)[0].iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+            // By rounding, a mode that hardly decays can gain 1e−7 a frame.
+            let rounding = 1.0 + 4e-7 * (32 + 32 * n) as f64;
+            assert!(f64::from(peak * peak) <= due * rounding + 1e-30, "{case}, {n}: {peak}, {due}");
+            due *= libm::exp(2.0 * bank.ln_radius[0] * frames as f64);
+            let (_, energy) = bank.mass(0);
+            assert!(f64::from(energy) <= due * rounding + 1e-30, "{case}, {n}: {energy}, {due}");
+        }
+    }
+}
+
 #[test]
 fn a_sweep_reaches_its_pitch_exactly_and_keeps_the_amplitude() {
-    let mut bank = bank(Law::Exact, &[(1000.0, 60.0)]);
+    let mut bank = bank(&[(1000.0, 60.0)]);
     run(&mut bank, 320, Some(&strike()));
     for step in 1..=100 {
         glide(&mut bank, 1.0 + f64::from(step) * 0.05);
@@ -138,10 +220,10 @@ fn a_sweep_reaches_its_pitch_exactly_and_keeps_the_amplitude() {
 }
 
 #[test]
-fn a_strike_is_as_strong_at_a_swept_pitch() {
-    for ratio in [0.1, 1.0, 12.0, 20.0] {
-        let mut bank = bank(Law::Exact, &[(1000.0, 60.0)]);
-        glide(&mut bank, ratio);
+fn a_strike_is_as_strong_at_any_pitch() {
+    for ratio in [0.1, 1.0, 12.0, 20.0, 40.0] {
+        let mut bank = bank(&[(1000.0, 60.0)]);
+        bank.jump_to(ratio);
         run(&mut bank, 32, Some(&strike()));
         assert!((bank.settle() - 1.0).abs() < 0.01, "{ratio}: {}", bank.settle());
     }
@@ -149,70 +231,51 @@ fn a_strike_is_as_strong_at_a_swept_pitch() {
 
 #[test]
 fn modes_beyond_nyquist_are_silent() {
-    let mut bank = bank(Law::Exact, &[(24_000.0, 1.0), (30_000.0, 1.0)]);
+    let mut bank = bank(&[(24_000.0, 1.0), (30_000.0, 1.0)]);
     assert!(run(&mut bank, 4800, Some(&strike())).iter().all(|sample| *sample == 0.0));
 }
 
 #[test]
-fn classic_is_clamped_short_of_exploding() {
-    for frequency in [15_000.0, 15_500.0, 23_000.0] {
-        let mut bank = bank(Law::Classic, &[(frequency, 10.0)]);
-        run(&mut bank, 32, Some(&strike()));
-        glide(&mut bank, 8.0);
-        assert!(run(&mut bank, 480_000, None).iter().all(|sample| sample.abs() < 20.0), "{frequency}");
-    }
-}
-
-/// Ten million random coefficients of the exact law, as the bank rounds them: by Jury's criterion none grows.
-/// A thousand of them are then run, swept to the limits.
-#[test]
-fn random_parameter_sets_are_stable() {
-    let stream = key(5, 0);
-    let unit = |n: u64| f64::from(uniform(stream, n)) * 0.5 + 0.5;
-    let between = |n: u64, low: f64, high: f64| low * libm::pow(high / low, unit(n));
-    for case in 0..10_000_000_u64 {
-        let rate = between(4 * case, 8_000.0, 768_000.0);
-        let theta = angle_from_frequency(between(4 * case + 1, 8.0, 0.5 * rate), rate).min(TOP_ANGLE);
-        let t60 = between(4 * case + 2, 0.0005, 240.0);
-        let c = Coefficients::from_polar(LN_MINUS_60_DB / (t60 * rate), theta, 1.0);
-        let (zeta, omega2) = (f64::from(c.zeta as f32), f64::from(c.omega2 as f32));
-        assert!(zeta > 0.0 && zeta < 2.0 && omega2 > 0.0 && omega2 < 4.0 - 2.0 * zeta, "{case}: {c:?}");
-        if case % 10_000 == 0 {
-            let mut bank = ModeBank::new(rate);
-            let frequency = theta * rate / (2.0 * PI);
-            bank.load(Law::Exact, [ModeSetup { frequency, t60, left: 1.0, right: 1.0 }].into_iter());
-            bank.set_coupling(0, Coupling { push: 1.0, ..Coupling::default() });
-            let mut peak = run(&mut bank, 1024, Some(&strike())).iter().fold(0.0_f32, |a, b| a.max(b.abs()));
-            assert!(peak < 1.001, "{case}: {peak} from {frequency} Hz, {t60} s at {rate} Hz");
-            // Jumps of pitch within a tick are no slow sweep and can pump a mode, but not without bound.
-            for n in 0..8 {
-                let mut samples = glide(&mut bank, between(4 * case + 3 + n, 0.03, 32.0));
-                samples.extend(run(&mut bank, 256, None));
-                peak = samples.iter().fold(peak, |a, b| a.max(b.abs()));
-            }
-            assert!(peak < 100.0, "{case}: {peak} from {frequency} Hz, {t60} s at {rate} Hz, swept");
-        }
-    }
-}
-
-#[test]
 fn a_strike_above_the_spectrum_is_heard_when_the_sweep_comes_down() {
-    let mut bank = bank(Law::Exact, &[(2000.0, 60.0)]);
+    let mut bank = bank(&[(2000.0, 60.0)]);
     bank.jump_to(32.0);
     assert!(run(&mut bank, 64, Some(&strike())).iter().all(|sample| *sample == 0.0));
-    assert!(bank.settle() > 0.01, "silent, but not at rest");
+    assert!((bank.settle() - 1.0).abs() < 0.01, "silent, but not at rest");
     for step in (10..32 * 4).rev() {
         glide(&mut bank, f64::from(step) / 4.0);
     }
     glide(&mut bank, 1.0);
-    glide(&mut bank, 1.0);
-    assert!((bank.settle() - 1.0).abs() < 0.2, "{}", bank.settle());
+    let heard = run(&mut bank, 480, None).iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+    assert!((heard - 1.0).abs() < 0.02, "{heard}");
+}
+
+/// The fade at the top of the spectrum moves in straight lines and ends where it belongs, in mono and in stereo.
+#[test]
+fn modes_fade_at_the_top_of_the_spectrum() {
+    for right in [1.0, 0.5] {
+        let mut bank = ModeBank::new(RATE);
+        bank.load([ModeSetup { frequency: 12_000.0, t60: 60.0, left: 1.0, right }].into_iter());
+        bank.set_excitation_gains(0, ExcitationGains { push: 1.0, ..ExcitationGains::default() });
+        run(&mut bank, 320, Some(&strike()));
+        for (ratio, expected) in [(1.9, 1.0), (1.98, 0.5), (2.0, 0.0), (1.99, 0.25), (1.5, 1.0)] {
+            glide(&mut bank, ratio);
+            for _ in 0..8 {
+                bank.sweep_to(ratio, CONTROL_FRAMES);
+                bank.render(None, CONTROL_FRAMES);
+            }
+            let full = if ratio < 1.96 { 1.0 } else { (2.0 - ratio) / 0.04 };
+            let gain = f64::from(bank.modes.left.0[0]);
+            assert!((gain - full).abs() < 1e-4 && (full - expected).abs() < 0.3, "{ratio}: {gain}, not {full}");
+            assert!((bank.modes.right.0[0] / right - bank.modes.left.0[0]).abs() < 1e-6);
+        }
+        assert!(!bank.faded);
+    }
 }
 
 #[test]
 fn retuning_is_continuous_and_reaches_every_pitch() {
     for (from, to) in [(440.0, 110.0), (300.0, 4000.0), (9000.0, 50.0)] {
-        let mut bank = bank(Law::Exact, &[(from, 60.0), (from * 5.0, 60.0)]);
+        let mut bank = bank(&[(from, 60.0), (from * 5.0, 60.0)]);
         let before = run(&mut bank, 3217, Some(&strike()));
         let mut kept = bank.clone();
         bank.retune([(to, 60.0), (to * 5.0, 60.0)].into_iter());
@@ -225,4 +288,52 @@ fn retuning_is_continuous_and_reaches_every_pitch() {
         let samples = run(&mut bank, 48_000, None);
         assert!(samples.iter().any(|sample| sample.abs() > 0.1), "{from} to {to}");
     }
+}
+
+/// A damper changes the decay from its frame on and nothing else: neither pitch nor displacement.
+#[test]
+fn a_damper_acts_at_once() {
+    let (mut ringing, mut damped) = (bank(&[(1000.0, 10.0)]), bank(&[(1000.0, 10.0)]));
+    for bank in [&mut ringing, &mut damped] {
+        run(bank, 3200, Some(&strike()));
+    }
+    damped.set_t60(0, 0.05);
+    let [expected, found] = [&mut ringing, &mut damped].map(|bank| run(bank, 2400, None));
+    let radius = |t60: f64| libm::exp(LN_MINUS_60_DB / (t60 * RATE));
+    let per_frame = radius(0.05) / radius(10.0);
+    let mut factor = 1.0;
+    for (n, (expected, found)) in expected.iter().zip(&found).enumerate() {
+        factor *= per_frame;
+        assert!((f64::from(*expected) * factor - f64::from(*found)).abs() < 2e-6, "frame {n}");
+    }
+}
+
+/// Random coefficients as the bank rounds them, over everything that can be asked for: none grows by more than rounding.
+#[test]
+fn random_parameter_sets_are_stable() {
+    let stream = key(5, 0);
+    let unit = |n: u64| f64::from(uniform(stream, n)) * 0.5 + 0.5;
+    let between = |n: u64, low: f64, high: f64| low * libm::pow(high / low, unit(n));
+    let mut worst = 0.0_f64;
+    for case in 0..20_000_u64 {
+        let rate = between(3 * case, 1_000.0, 768_000.0);
+        let modes: Vec<_> = (0..MAX_MODES as u64)
+            .map(|m| {
+                let n = 3 * (20_000 + case * 64 + m);
+                (between(n + 1, 8.0, 0.5 * rate), between(n + 2, 0.0005, 240.0))
+            })
+            .collect();
+        let bank = bank_at(rate, &modes);
+        for (m, (frequency, _)) in modes.iter().enumerate() {
+            let (alpha, beta) = (f64::from(bank.modes.alpha.0[m]), f64::from(bank.modes.beta.0[m]));
+            let radius = libm::sqrt((1.0 - alpha) * (1.0 - alpha) + beta * beta);
+            let wanted = libm::exp(bank.ln_radius[m]);
+            worst = worst.max((radius - wanted).abs());
+            let theta = libm::atan2(beta, 1.0 - alpha);
+            let angle = (2.0 * PI * frequency / rate).min(TOP_ANGLE);
+            assert!(wanted < 0.5 || (theta / angle - 1.0).abs() < 1e-6, "{case}: {theta} for {angle}");
+        }
+    }
+    println!("radii within {worst:.1e}");
+    assert!(worst < 2.5e-7, "{worst:e}");
 }

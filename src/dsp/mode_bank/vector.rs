@@ -1,31 +1,35 @@
 //! What the kernels ask of a CPU: a few operations on a vector of single-precision numbers, each rounded exactly.
 
 /// Modes whose partial sums are kept side by side. Frozen, like everything that an order of summation depends on.
-pub(super) const LANES: usize = 16;
+pub(in crate::dsp) const LANES: usize = 16;
 
 /// The partial sums of one frame: lane `l` has those of the modes `m` with `m mod 16 = l`.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(super) struct Partial(pub(super) [f32; LANES]);
+pub(in crate::dsp) struct Partial(pub(in crate::dsp) [f32; LANES]);
 
 /// A vector of 1 to [`LANES`] single-precision numbers.
 ///
-/// Values of an implementer are made only inside the functions of `levels`, which run only on a CPU that has its
-/// instructions. Every operation is one that IEEE 754 defines to the bit, so all implementers give the same.
+/// Every operation is one that IEEE 754 defines to the bit, so all implementers give the same.
+///
+/// The functions that make a vector ask for a proof that this CPU has the instructions. Only detection hands out
+/// proofs, so whoever holds a vector or a proof may execute them, and the operations are safe.
 pub(super) trait Vector: Copy {
+    /// Exists only where the CPU has the instructions.
+    type Proof: Copy;
     /// How many numbers.
     const WIDTH: usize;
-    /// How many vectors of modes are stepped at once, where sweep and level stand still.
+    /// How many vectors of modes are stepped at once, where the coefficients stand still.
     const INTERLEAVE: usize;
 
     /// `value` in every lane.
-    fn splat(value: f32) -> Self;
+    fn splat(proof: Self::Proof, value: f32) -> Self;
     /// The first numbers of `from`.
-    fn load(from: &[f32]) -> Self;
+    fn load(proof: Self::Proof, from: &[f32]) -> Self;
+    /// `pair` over and over.
+    fn splat_pair(proof: Self::Proof, pair: &[f32; 2]) -> Self;
     /// Writes to the first numbers of `to`.
     fn store(self, to: &mut [f32]);
-    /// `pair` over and over.
-    fn splat_pair(pair: &[f32; 2]) -> Self;
     /// Writes the lanes of `self` and `other` in turn: twice as many numbers.
     fn store_pairs(self, other: Self, to: &mut [f32]);
     /// The sums of neighbouring lanes, of `self` and then of `other`.
@@ -36,10 +40,6 @@ pub(super) trait Vector: Copy {
     fn sub(self, other: Self) -> Self;
     /// `self · other`.
     fn mul(self, other: Self) -> Self;
-    /// `self / other`.
-    fn div(self, other: Self) -> Self;
-    /// `√self`.
-    fn sqrt(self) -> Self;
     /// The lesser; the arguments are numbers.
     fn min(self, other: Self) -> Self;
     /// The greater; the arguments are numbers.
@@ -51,14 +51,14 @@ pub(super) trait Vector: Copy {
 
     /// Adds up the partial sums of each frame, by halves: lane `l` and `l + 8`, then `l + 4`, `l + 2`, `l + 1`.
     #[inline(always)]
-    fn sum_lanes(frames: &[Partial], sums: &mut [f32]) {
+    fn sum_lanes(_: Self::Proof, frames: &[Partial], sums: &mut [f32]) {
         sum_frames(frames, sums);
     }
 }
 
 /// [`Vector::sum_lanes`] in any CPU's terms.
 #[inline(always)]
-pub(super) fn sum_frames(frames: &[Partial], sums: &mut [f32]) {
+pub(in crate::dsp) fn sum_frames(frames: &[Partial], sums: &mut [f32]) {
     for (Partial(p), sum) in frames.iter().zip(sums) {
         let (mut eight, mut four) = ([0.0; 8], [0.0; 4]);
         for l in 0..8 {
@@ -76,15 +76,16 @@ pub(super) fn sum_frames(frames: &[Partial], sums: &mut [f32]) {
 pub(super) struct Scalar([f32; 4]);
 
 impl Vector for Scalar {
+    type Proof = ();
     const WIDTH: usize = 4;
     const INTERLEAVE: usize = 1;
 
     #[inline(always)]
-    fn splat(value: f32) -> Self {
+    fn splat((): (), value: f32) -> Self {
         Self([value; 4])
     }
     #[inline(always)]
-    fn load(from: &[f32]) -> Self {
+    fn load((): (), from: &[f32]) -> Self {
         Self([from[0], from[1], from[2], from[3]])
     }
     #[inline(always)]
@@ -92,7 +93,7 @@ impl Vector for Scalar {
         to[..4].copy_from_slice(&self.0);
     }
     #[inline(always)]
-    fn splat_pair([a, b]: &[f32; 2]) -> Self {
+    fn splat_pair((): (), [a, b]: &[f32; 2]) -> Self {
         Self([*a, *b, *a, *b])
     }
     #[inline(always)]
@@ -127,22 +128,6 @@ impl Vector for Scalar {
         let mut result = self.0;
         for l in 0..4 {
             result[l] = self.0[l] * other.0[l];
-        }
-        Self(result)
-    }
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        let mut result = self.0;
-        for l in 0..4 {
-            result[l] = self.0[l] / other.0[l];
-        }
-        Self(result)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        let mut result = self.0;
-        for l in 0..4 {
-            result[l] = self.0[l].sqrt();
         }
         Self(result)
     }
@@ -233,7 +218,7 @@ mod tests {
     fn lanes_are_summed_by_halves() {
         let frame = Partial(std::array::from_fn(|l| (l * l) as f32));
         let mut sums = [0.0; 2];
-        Scalar::sum_lanes(&[frame; 2], &mut sums);
+        Scalar::sum_lanes((), &[frame; 2], &mut sums);
         assert_eq!(sums, [1240.0; 2]);
     }
 }

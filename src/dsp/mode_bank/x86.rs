@@ -1,64 +1,80 @@
 //! Vectors of x86-64: SSE2, AVX2 with FMA, AVX-512.
+//!
+//! SAFETY, throughout: SSE2 belongs to x86-64. A vector of another level is made only with a proof, and a proof only
+//! where the CPU was found to have the instructions; so an operation on a vector, or with a proof, may execute them.
 
 use super::vector::{LANES, Partial, Vector};
 use std::arch::x86_64::*;
 
+/// Proof that this CPU has AVX2 and FMA.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HasAvx2(());
+
+impl HasAvx2 {
+    /// The proof, if the CPU has them.
+    pub(super) fn detect() -> Option<Self> {
+        (is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")).then_some(Self(()))
+    }
+}
+
+/// Proof that this CPU has AVX-512F, and AVX2 and FMA as well.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HasAvx512(HasAvx2);
+
+impl HasAvx512 {
+    /// The proof, if the CPU has them.
+    pub(super) fn detect() -> Option<Self> {
+        HasAvx2::detect().filter(|_| is_x86_feature_detected!("avx512f")).map(Self)
+    }
+}
+
 /// The operations that are one instruction of the same form on every level.
 macro_rules! common {
-    ($width:literal, $load:ident, $store:ident, $splat:ident, $add:ident, $sub:ident, $mul:ident, $div:ident,
-     $sqrt:ident, $min:ident, $max:ident) => {
+    ($proof:ty, $width:literal, $load:ident, $store:ident, $splat:ident, $add:ident, $sub:ident, $mul:ident, $min:ident,
+     $max:ident) => {
+        type Proof = $proof;
         const WIDTH: usize = $width;
 
         #[inline(always)]
-        fn splat(value: f32) -> Self {
-            // SAFETY: only the functions of `levels` run this, on a CPU with these instructions.
+        fn splat(_: $proof, value: f32) -> Self {
+            // SAFETY: see the top of the file.
             Self(unsafe { $splat(value) })
         }
         #[inline(always)]
-        fn load(from: &[f32]) -> Self {
+        fn load(_: $proof, from: &[f32]) -> Self {
             let from = &from[..$width];
-            // SAFETY: as in `splat`; the slice has as many numbers as are read, and no alignment is asked for.
+            // SAFETY: see the top of the file; the slice has as many numbers as are read, and no alignment is asked for.
             Self(unsafe { $load(from.as_ptr()) })
         }
         #[inline(always)]
         fn store(self, to: &mut [f32]) {
             let to = &mut to[..$width];
-            // SAFETY: as in `splat`; the slice has as many numbers as are written, and no alignment is asked for.
+            // SAFETY: see the top of the file; the slice has as many numbers as are written, and no alignment is asked for.
             unsafe { $store(to.as_mut_ptr(), self.0) }
         }
         #[inline(always)]
         fn add(self, other: Self) -> Self {
-            // SAFETY: as in `splat`.
+            // SAFETY: see the top of the file.
             Self(unsafe { $add(self.0, other.0) })
         }
         #[inline(always)]
         fn sub(self, other: Self) -> Self {
-            // SAFETY: as in `splat`.
+            // SAFETY: see the top of the file.
             Self(unsafe { $sub(self.0, other.0) })
         }
         #[inline(always)]
         fn mul(self, other: Self) -> Self {
-            // SAFETY: as in `splat`.
+            // SAFETY: see the top of the file.
             Self(unsafe { $mul(self.0, other.0) })
         }
         #[inline(always)]
-        fn div(self, other: Self) -> Self {
-            // SAFETY: as in `splat`.
-            Self(unsafe { $div(self.0, other.0) })
-        }
-        #[inline(always)]
-        fn sqrt(self) -> Self {
-            // SAFETY: as in `splat`.
-            Self(unsafe { $sqrt(self.0) })
-        }
-        #[inline(always)]
         fn min(self, other: Self) -> Self {
-            // SAFETY: as in `splat`.
+            // SAFETY: see the top of the file.
             Self(unsafe { $min(self.0, other.0) })
         }
         #[inline(always)]
         fn max(self, other: Self) -> Self {
-            // SAFETY: as in `splat`.
+            // SAFETY: see the top of the file.
             Self(unsafe { $max(self.0, other.0) })
         }
     };
@@ -71,6 +87,7 @@ pub(super) struct Sse2(__m128);
 impl Vector for Sse2 {
     const INTERLEAVE: usize = 1;
     common!(
+        (),
         4,
         _mm_loadu_ps,
         _mm_storeu_ps,
@@ -78,15 +95,13 @@ impl Vector for Sse2 {
         _mm_add_ps,
         _mm_sub_ps,
         _mm_mul_ps,
-        _mm_div_ps,
-        _mm_sqrt_ps,
         _mm_min_ps,
         _mm_max_ps
     );
 
     #[inline(always)]
-    fn splat_pair(pair: &[f32; 2]) -> Self {
-        // SAFETY: as in `splat`.
+    fn splat_pair((): (), pair: &[f32; 2]) -> Self {
+        // SAFETY: see the top of the file.
         unsafe {
             let both = f64::from_bits(u64::from(pair[0].to_bits()) | u64::from(pair[1].to_bits()) << 32);
             Self(_mm_castpd_ps(_mm_set1_pd(both)))
@@ -95,7 +110,7 @@ impl Vector for Sse2 {
     #[inline(always)]
     fn store_pairs(self, other: Self, to: &mut [f32]) {
         let to = &mut to[..2 * Self::WIDTH];
-        // SAFETY: as in `splat`; the slice has as many numbers as are written.
+        // SAFETY: see the top of the file; the slice has as many numbers as are written.
         unsafe {
             _mm_storeu_ps(to.as_mut_ptr(), _mm_unpacklo_ps(self.0, other.0));
             _mm_storeu_ps(to[4..].as_mut_ptr(), _mm_unpackhi_ps(self.0, other.0));
@@ -103,7 +118,7 @@ impl Vector for Sse2 {
     }
     #[inline(always)]
     fn add_pairs(self, other: Self) -> Self {
-        // SAFETY: as in `splat`.
+        // SAFETY: see the top of the file.
         unsafe {
             Self(_mm_add_ps(
                 _mm_shuffle_ps::<0b10_00_10_00>(self.0, other.0),
@@ -114,7 +129,7 @@ impl Vector for Sse2 {
 
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
-        // SAFETY: SSE2 belongs to x86-64.
+        // SAFETY: see the top of the file.
         unsafe {
             let lower = _mm_cvtpd_ps(fused(_mm_cvtps_pd(self.0), _mm_cvtps_pd(factor.0), _mm_cvtps_pd(term.0)));
             let upper = _mm_cvtpd_ps(fused(upper(self.0), upper(factor.0), upper(term.0)));
@@ -123,21 +138,21 @@ impl Vector for Sse2 {
     }
     #[inline(always)]
     fn neg_mul_add(self, factor: Self, term: Self) -> Self {
-        // SAFETY: SSE2 belongs to x86-64.
+        // SAFETY: see the top of the file.
         Self(unsafe { _mm_xor_ps(self.0, _mm_set1_ps(-0.0)) }).mul_add(factor, term)
     }
 }
 
 #[inline(always)]
 fn upper(v: __m128) -> __m128d {
-    // SAFETY: SSE2 belongs to x86-64.
+    // SAFETY: see the top of the file.
     unsafe { _mm_cvtps_pd(_mm_movehl_ps(v, v)) }
 }
 
 /// `a · b + c` in double precision, rounded to odd: two lanes of [`super::vector::fused`].
 #[inline(always)]
 fn fused(a: __m128d, b: __m128d, c: __m128d) -> __m128d {
-    // SAFETY: SSE2 belongs to x86-64.
+    // SAFETY: see the top of the file.
     unsafe {
         let product = _mm_mul_pd(a, b);
         let sum = _mm_add_pd(product, c);
@@ -159,6 +174,7 @@ pub(super) struct Avx2(__m256);
 impl Vector for Avx2 {
     const INTERLEAVE: usize = 8;
     common!(
+        HasAvx2,
         8,
         _mm256_loadu_ps,
         _mm256_storeu_ps,
@@ -166,15 +182,13 @@ impl Vector for Avx2 {
         _mm256_add_ps,
         _mm256_sub_ps,
         _mm256_mul_ps,
-        _mm256_div_ps,
-        _mm256_sqrt_ps,
         _mm256_min_ps,
         _mm256_max_ps
     );
 
     #[inline(always)]
-    fn splat_pair(pair: &[f32; 2]) -> Self {
-        // SAFETY: as in `splat`.
+    fn splat_pair(_: HasAvx2, pair: &[f32; 2]) -> Self {
+        // SAFETY: see the top of the file.
         unsafe {
             let both = f64::from_bits(u64::from(pair[0].to_bits()) | u64::from(pair[1].to_bits()) << 32);
             Self(_mm256_castpd_ps(_mm256_set1_pd(both)))
@@ -183,7 +197,7 @@ impl Vector for Avx2 {
     #[inline(always)]
     fn store_pairs(self, other: Self, to: &mut [f32]) {
         let to = &mut to[..2 * Self::WIDTH];
-        // SAFETY: as in `splat`; the slice has as many numbers as are written.
+        // SAFETY: see the top of the file; the slice has as many numbers as are written.
         unsafe {
             let (low, high) = (_mm256_unpacklo_ps(self.0, other.0), _mm256_unpackhi_ps(self.0, other.0));
             _mm256_storeu_ps(to.as_mut_ptr(), _mm256_permute2f128_ps::<0x20>(low, high));
@@ -192,7 +206,7 @@ impl Vector for Avx2 {
     }
     #[inline(always)]
     fn add_pairs(self, other: Self) -> Self {
-        // SAFETY: as in `splat`.
+        // SAFETY: see the top of the file.
         unsafe {
             let (low, high) =
                 (_mm256_permute2f128_ps::<0x20>(self.0, other.0), _mm256_permute2f128_ps::<0x31>(self.0, other.0));
@@ -205,17 +219,17 @@ impl Vector for Avx2 {
 
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
-        // SAFETY: as in `splat`.
+        // SAFETY: see the top of the file.
         Self(unsafe { _mm256_fmadd_ps(self.0, factor.0, term.0) })
     }
     #[inline(always)]
     fn neg_mul_add(self, factor: Self, term: Self) -> Self {
-        // SAFETY: as in `splat`.
+        // SAFETY: see the top of the file.
         Self(unsafe { _mm256_fnmadd_ps(self.0, factor.0, term.0) })
     }
     #[inline(always)]
-    fn sum_lanes(frames: &[Partial], sums: &mut [f32]) {
-        sum_lanes_avx2(frames, sums);
+    fn sum_lanes(proof: HasAvx2, frames: &[Partial], sums: &mut [f32]) {
+        sum_lanes_avx2(proof, frames, sums);
     }
 }
 
@@ -226,6 +240,7 @@ pub(super) struct Avx512(__m512);
 impl Vector for Avx512 {
     const INTERLEAVE: usize = 4;
     common!(
+        HasAvx512,
         16,
         _mm512_loadu_ps,
         _mm512_storeu_ps,
@@ -233,15 +248,13 @@ impl Vector for Avx512 {
         _mm512_add_ps,
         _mm512_sub_ps,
         _mm512_mul_ps,
-        _mm512_div_ps,
-        _mm512_sqrt_ps,
         _mm512_min_ps,
         _mm512_max_ps
     );
 
     #[inline(always)]
-    fn splat_pair(pair: &[f32; 2]) -> Self {
-        // SAFETY: as in `splat`.
+    fn splat_pair(_: HasAvx512, pair: &[f32; 2]) -> Self {
+        // SAFETY: see the top of the file.
         unsafe {
             let both = f64::from_bits(u64::from(pair[0].to_bits()) | u64::from(pair[1].to_bits()) << 32);
             Self(_mm512_castpd_ps(_mm512_set1_pd(both)))
@@ -250,7 +263,7 @@ impl Vector for Avx512 {
     #[inline(always)]
     fn store_pairs(self, other: Self, to: &mut [f32]) {
         let to = &mut to[..2 * Self::WIDTH];
-        // SAFETY: as in `splat`; the slice has as many numbers as are written.
+        // SAFETY: see the top of the file; the slice has as many numbers as are written.
         unsafe {
             let low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
             let high = _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
@@ -260,7 +273,7 @@ impl Vector for Avx512 {
     }
     #[inline(always)]
     fn add_pairs(self, other: Self) -> Self {
-        // SAFETY: as in `splat`.
+        // SAFETY: see the top of the file.
         unsafe {
             let even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
             let odd = _mm512_setr_epi32(1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
@@ -273,52 +286,51 @@ impl Vector for Avx512 {
 
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
-        // SAFETY: as in `splat`.
+        // SAFETY: see the top of the file.
         Self(unsafe { _mm512_fmadd_ps(self.0, factor.0, term.0) })
     }
     #[inline(always)]
     fn neg_mul_add(self, factor: Self, term: Self) -> Self {
-        // SAFETY: as in `splat`.
+        // SAFETY: see the top of the file.
         Self(unsafe { _mm512_fnmadd_ps(self.0, factor.0, term.0) })
     }
     #[inline(always)]
-    fn sum_lanes(frames: &[Partial], sums: &mut [f32]) {
-        sum_lanes_avx2(frames, sums);
+    fn sum_lanes(HasAvx512(proof): HasAvx512, frames: &[Partial], sums: &mut [f32]) {
+        sum_lanes_avx2(proof, frames, sums);
     }
 }
 
 /// Lanes `l` and `l + 8`.
 #[inline(always)]
-fn halves(row: &Partial) -> __m256 {
-    // SAFETY: only called from `sum_lanes_avx2`; both halves of the row have eight numbers.
+fn halves(_: HasAvx2, row: &Partial) -> __m256 {
+    // SAFETY: see the top of the file; both halves of the row have eight numbers.
     unsafe { _mm256_add_ps(_mm256_loadu_ps(row.0.as_ptr()), _mm256_loadu_ps(row.0[LANES / 2..].as_ptr())) }
 }
 
 /// Lanes `l` and `l + 2` of each half of `a` and `b`.
 #[inline(always)]
-fn quarters(a: __m256, b: __m256) -> __m256 {
-    // SAFETY: only called from `sum_lanes_avx2`.
+fn quarters(_: HasAvx2, a: __m256, b: __m256) -> __m256 {
+    // SAFETY: see the top of the file.
     unsafe { _mm256_add_ps(_mm256_shuffle_ps::<0b01_00_01_00>(a, b), _mm256_shuffle_ps::<0b11_10_11_10>(a, b)) }
 }
 
 /// [`Vector::sum_lanes`] for eight frames at a time: 4.5 shuffles a frame less than one frame at a time.
 #[inline(always)]
-fn sum_lanes_avx2(frames: &[Partial], sums: &mut [f32]) {
+fn sum_lanes_avx2(proof: HasAvx2, frames: &[Partial], sums: &mut [f32]) {
     let (eights, rest) = frames.as_chunks::<8>();
     let (sums, rest_sums) = sums[..frames.len()].as_chunks_mut::<8>();
     for (rows, sums) in eights.iter().zip(sums) {
-        // SAFETY: only the functions of `levels` run this, on a CPU with AVX2; every row has sixteen numbers and
-        // `sums` eight.
+        // SAFETY: see the top of the file; every row has sixteen numbers and `sums` eight.
         unsafe {
             // (row 0, row 4) and so on, so that the last step leaves the rows in order.
             let mut fours = [_mm256_setzero_ps(); 4];
             for i in 0..4 {
-                let (a, b) = (halves(&rows[i]), halves(&rows[i + 4]));
+                let (a, b) = (halves(proof, &rows[i]), halves(proof, &rows[i + 4]));
                 // Lanes l and l + 4 of both rows, side by side.
                 let low = _mm256_permute2f128_ps::<0x20>(a, b);
                 fours[i] = _mm256_add_ps(low, _mm256_permute2f128_ps::<0x31>(a, b));
             }
-            let (first, second) = (quarters(fours[0], fours[1]), quarters(fours[2], fours[3]));
+            let (first, second) = (quarters(proof, fours[0], fours[1]), quarters(proof, fours[2], fours[3]));
             let sum = _mm256_add_ps(
                 _mm256_shuffle_ps::<0b10_00_10_00>(first, second),
                 _mm256_shuffle_ps::<0b11_01_11_01>(first, second),

@@ -1,5 +1,6 @@
 //! One note: an exciter, a bank of modes, and what moves their pitch, decay and gain.
 
+mod key_tracking;
 mod strike;
 mod tail;
 
@@ -11,12 +12,14 @@ use super::expression::Expressions;
 use super::fader::Fader;
 use super::modulation::NoteModulation;
 use super::voice_manager::{Note, Voice};
+use crate::dsp::bank::{Bank, Law};
 use crate::dsp::exciter::{Drive, Exciter};
-use crate::dsp::mode_bank::{Law, MAX_MODES, ModeBank, ModeSetup};
+use crate::dsp::mode_bank::{MAX_MODES, ModeSetup};
 use crate::dsp::pitch::{Glide, SweepEnvelope};
 use crate::params::Param;
 use crate::patch::Patch;
 use crate::units::ratio_from_semitones;
+use key_tracking::KeyTracking;
 use libm::{pow, sin};
 use std::f64::consts::TAU;
 
@@ -51,11 +54,9 @@ impl Instrument {
 
     /// The pitch of a note in semitones on the MIDI scale, tracking included.
     pub(crate) fn pitch(&self, note: &Note) -> f64 {
-        MIDDLE_C + (f64::from(note.key) + f64::from(note.detune) - MIDDLE_C) * self.value(Param::KeyTrack) * 0.01
+        KeyTracking::new(self).pitch(note)
     }
 }
-
-const MIDDLE_C: f64 = 60.0;
 
 /// A voice is over when its modes could not add up to more than this: −120 dBFS.
 const SILENCE: f64 = 1e-6;
@@ -72,10 +73,11 @@ pub(crate) struct SynthVoice {
     sample_rate: f64,
     /// Seconds a frame.
     period: f64,
-    pub(super) bank: ModeBank,
+    pub(super) bank: Bank,
     exciter: Exciter,
     drive: Drive,
-    /// T60 of each mode as a multiple of the decay.
+    /// Frequency of each mode as a multiple of the note's, and T60 as a multiple of the decay.
+    ratios: [f64; MAX_MODES],
     t60_scale: [f64; MAX_MODES],
     /// Energy that the exciter has still to bring, and that of the bank at the last tick.
     pending_energy: f64,
@@ -107,6 +109,7 @@ pub(crate) struct SynthVoice {
     controls: Controls,
     patch: u32,
     key: u8,
+    key_tracking: KeyTracking,
     key_scale: f64,
     rings_on: bool,
     released: bool,
@@ -119,6 +122,8 @@ pub(crate) struct SynthVoice {
     /// −0.5 to 0.5.
     brightness: f64,
     damping: Damping,
+    /// The T60s of the modes are to be set at the next control, whether or not `damping` changes.
+    decay_changed: bool,
 
     fader: Fader,
     /// Pitch and gain are taken as they are at the first control, not slid to.
@@ -131,9 +136,10 @@ impl SynthVoice {
         Self {
             sample_rate,
             period: 1.0 / sample_rate,
-            bank: ModeBank::new(sample_rate),
+            bank: Bank::new(sample_rate),
             exciter: Exciter::REST,
             drive: Drive::NONE,
+            ratios: [1.0; MAX_MODES],
             t60_scale: [1.0; MAX_MODES],
             pending_energy: 0.0,
             energy: 0.0,
@@ -156,6 +162,7 @@ impl SynthVoice {
             controls,
             patch: 0,
             key: 0,
+            key_tracking: KeyTracking::NONE,
             key_scale: 1.0,
             rings_on: false,
             released: false,
@@ -165,6 +172,7 @@ impl SynthVoice {
             modulation: NoteModulation::NONE,
             brightness: 0.0,
             damping: Damping { decay: 1.0, release: 1.0, amount: 0.0 },
+            decay_changed: false,
             fader: Fader::CLOSED,
             fresh: true,
         }
@@ -219,7 +227,7 @@ impl SynthVoice {
             release: if amount == 0.0 { 0.0 } else { self.controls.release * self.release_scale },
             amount,
         };
-        if damping != self.damping {
+        if damping != self.damping || std::mem::take(&mut self.decay_changed) {
             self.damping = damping;
             self.end = None;
             for m in 0..self.bank.len() {
@@ -327,11 +335,10 @@ impl SynthVoice {
         }
         self.brightness = f64::from((self.expressions.brightness + channel).clamp(-0.5, 0.5));
         if self.age == 0 {
-            self.couple(instrument);
+            self.set_excitation_gains(instrument);
         }
         self.scale_decay(instrument);
-        // Have the next control tick set the decay of every mode.
-        self.damping.amount = f64::NAN;
+        self.decay_changed = true;
     }
 }
 
@@ -345,29 +352,31 @@ impl Voice for SynthVoice {
             brightness: note.brightness.into(),
             ..Self::new(instrument.sample_rate, instrument.controls)
         };
-        let frequency = self.place(instrument, note);
+        self.read_body(instrument);
+        let frequency = self.place(note, instrument.controls);
         let from = instrument.last_pitch.unwrap_or(self.pitch) - self.pitch;
-        self.glide = Glide::new(from, 0.0, instrument.value(Param::Glide));
+        self.glide = Glide::new(from, 0.0, self.key_tracking.glide_seconds);
         let law = if instrument.modulated.get(Param::Coefficients) == 0.0 { Law::Exact } else { Law::Classic };
+        self.bank = Bank::of(law, instrument.sample_rate);
         let width = instrument.value(Param::Width) * 0.01;
-        let tuning = self.tuning(instrument, frequency);
+        let tuning = self.tuning(frequency);
         let setup = tuning.zip(instrument.modulated.modes.as_slice()).map(|((frequency, t60), mode)| {
             let (left, right) = super::gain::pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
             ModeSetup { frequency, t60, left, right }
         });
-        self.bank.load(law, setup);
+        self.bank.load(setup);
         self.excite(instrument, note);
     }
 
     fn restrike(&mut self, instrument: &Instrument, note: &Note) {
-        self.aim(instrument, note);
+        self.aim(Some(instrument), note);
         self.excite(instrument, note);
         // The age starts again with the sweep; the glide starts now anyway, and the vibrato keeps its phase.
         self.vibrato_phase += self.controls.vibrato_rate * self.seconds(self.age - self.controlled_age);
         (self.age, self.controlled_age, self.glide_start) = (0, 0, 0);
     }
 
-    fn retune(&mut self, instrument: &Instrument, note: &Note) {
+    fn retune(&mut self, instrument: Option<&Instrument>, note: &Note) {
         self.aim(instrument, note);
     }
 

@@ -1,13 +1,15 @@
 //! What a note makes of its patch: how its modes are tuned, damped and moved.
 
-use super::{Instrument, MIDDLE_C, SynthVoice};
-use crate::dsp::mode_bank::Coupling;
+use super::key_tracking::KeyTracking;
+use super::{Instrument, SynthVoice};
+use crate::dsp::mode_bank::ExcitationGains;
 use crate::dsp::pitch::{Glide, SweepEnvelope};
 use crate::dsp::random;
+use crate::engine::controls::Controls;
 use crate::engine::damping::Damping;
 use crate::engine::voice_manager::Note;
 use crate::params::Param;
-use crate::units::{frequency_from_key, gain_from_db, ratio_from_semitones};
+use crate::units::gain_from_db;
 use libm::{fabs, pow, sin};
 use std::f64::consts::{LOG2_10, PI};
 
@@ -30,8 +32,8 @@ const PLUCK: u32 = 2;
 const NOISE: u32 = 3;
 
 impl SynthVoice {
-    /// Reads what the patch says of how the modes are moved. Returns whether noise is among it.
-    pub(super) fn couple(&mut self, instrument: &Instrument) -> bool {
+    /// Computes each mode's excitation gains. Returns whether noise is among them.
+    pub(super) fn set_excitation_gains(&mut self, instrument: &Instrument) -> bool {
         let value = |param| instrument.value(param);
         let modes = instrument.modulated.modes.as_slice();
         let tilt = (value(Param::Tilt) + self.brightness * (2.0 * BRIGHTNESS_TILT)) / (20.0 / LOG2_10);
@@ -50,7 +52,8 @@ impl SynthVoice {
             let noise = if exciter == NOISE { level } else { level * (1.0 - f64::from(mode.strike)) } * noise_gain;
             let plucked = struck * sin(PI * value(Param::Position) * 0.01 * f64::from(mode.ratio));
             let (push, pull) = if exciter == PLUCK { (0.0, plucked) } else { (struck, 0.0) };
-            self.bank.set_coupling(m, Coupling { push: push as f32, pull: pull as f32, noise: noise as f32 });
+            let gains = ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32 };
+            self.bank.set_excitation_gains(m, gains);
             noisy |= noise != 0.0;
             energy += push * push + pull * pull + noise * noise;
         }
@@ -67,7 +70,7 @@ impl SynthVoice {
         let soft = if note.soft { SOFT_FORCE } else { 1.0 };
         // The strike before has brought its energy: this one's is counted below.
         self.squared_force = 0.0;
-        let noisy = self.couple(instrument);
+        let noisy = self.set_excitation_gains(instrument);
         let exciter = instrument.modulated.get(Param::Exciter) as u32;
 
         let force = pow(velocity, 2.0 * percent(Param::Velocity)) * soft;
@@ -91,15 +94,23 @@ impl SynthVoice {
         self.release_velocity = percent(Param::ReleaseVelocity);
     }
 
-    /// Takes the pitch and decay of `note`; returns the frequency of a mode of ratio 1.
-    pub(super) fn place(&mut self, instrument: &Instrument, note: &Note) -> f64 {
-        let value = |param| instrument.value(param);
-        (self.pitch, self.tune) = (instrument.pitch(note), instrument.controls.tune);
-        self.key_scale = ratio_from_semitones(value(Param::DecayKey) * 0.01 * (MIDDLE_C - self.pitch));
-        self.damping = Damping { decay: instrument.controls.decay * self.key_scale, release: 0.0, amount: 0.0 };
+    /// Reads what the patch says of the body: the ratios and T60s of its modes, and how they follow the key.
+    pub(super) fn read_body(&mut self, instrument: &Instrument) {
+        self.key_tracking = KeyTracking::new(instrument);
+        let stretch = instrument.value(Param::Stretch);
+        for (ratio, mode) in self.ratios.iter_mut().zip(instrument.modulated.modes.as_slice()) {
+            *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
+        }
         self.scale_decay(instrument);
+    }
+
+    /// Takes the pitch and decay of `note`; returns the frequency of a mode of ratio 1.
+    pub(super) fn place(&mut self, note: &Note, controls: Controls) -> f64 {
+        (self.pitch, self.tune) = (self.key_tracking.pitch(note), controls.tune);
+        self.key_scale = self.key_tracking.decay_scale(self.pitch);
+        self.damping = Damping { decay: controls.decay * self.key_scale, release: 0.0, amount: 0.0 };
         self.released = false;
-        frequency_from_key(self.pitch + self.tune, value(Param::Tuning))
+        self.key_tracking.frequency(self.pitch + self.tune)
     }
 
     /// Each mode's T60 as a multiple of the decay: the higher, the shorter; dull notes lose their high modes sooner.
@@ -115,38 +126,39 @@ impl SynthVoice {
     }
 
     /// Frequency and T60 of each mode, after [`SynthVoice::place`].
-    pub(super) fn tuning(&self, instrument: &Instrument, frequency: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
-        let (damping, scales, table) = (self.damping, self.t60_scale, instrument.modulated.modes);
-        let stretch = instrument.value(Param::Stretch);
-        scales.into_iter().enumerate().map_while(move |(m, scale)| {
-            let ratio = f64::from(table.as_slice().get(m)?.ratio);
-            let ratio = if stretch == 1.0 { ratio } else { pow(ratio, stretch) };
-            Some((frequency * ratio, damping.t60(scale)))
-        })
+    pub(super) fn tuning(&self, frequency: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
+        let damping = self.damping;
+        let modes = self.ratios.into_iter().zip(self.t60_scale);
+        modes.map(move |(ratio, scale)| (frequency * ratio, damping.t60(scale)))
     }
 
     /// The note that the voice had hands over to `note`, which is told what it is told anew. A gain that the last one
     /// was told fades to this one's.
-    fn take_over(&mut self, instrument: &Instrument, note: &Note) {
+    fn take_over(&mut self, note: &Note) {
         // A MIDI controller that has not let go of the key still presses it.
         let pressure = if note.key == self.key && note.id == -1 { self.expressions.pressure } else { 0.0 };
         self.expressions.clear();
         self.expressions.pressure = pressure;
         self.modulation.let_go();
-        self.follow(instrument);
         self.key = note.key;
         self.brightness = note.brightness.into();
     }
 
-    /// Makes the sounding voice that of `note`, sliding from where its pitch is.
-    pub(super) fn aim(&mut self, instrument: &Instrument, note: &Note) {
+    /// Makes the sounding voice that of `note`, sliding from where its pitch is. Without an instrument, the voice goes
+    /// by what it has read of its own.
+    pub(super) fn aim(&mut self, instrument: Option<&Instrument>, note: &Note) {
         let from = self.pitch + self.glide.at(self.seconds(self.age - self.glide_start));
-        self.take_over(instrument, note);
+        self.take_over(note);
         self.end = None;
-        let frequency = self.place(instrument, note);
-        self.glide = Glide::new(from - self.pitch, 0.0, instrument.value(Param::Glide));
+        if let Some(instrument) = instrument {
+            self.follow(instrument);
+            self.read_body(instrument);
+        }
+        let controls = instrument.map_or(self.controls, |instrument| instrument.controls);
+        let frequency = self.place(note, controls);
+        self.glide = Glide::new(from - self.pitch, 0.0, self.key_tracking.glide_seconds);
         self.glide_start = self.age;
-        let tuning = self.tuning(instrument, frequency);
+        let tuning = self.tuning(frequency);
         self.bank.retune(tuning);
     }
 }

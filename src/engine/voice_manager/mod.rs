@@ -57,8 +57,9 @@ pub trait Voice {
     fn start(&mut self, context: &Self::Context, note: &Note);
     /// Strikes the sounding voice again, perhaps at another pitch.
     fn restrike(&mut self, context: &Self::Context, note: &Note);
-    /// Moves the sounding voice to another pitch without striking it.
-    fn retune(&mut self, context: &Self::Context, note: &Note);
+    /// Moves the sounding voice to another pitch without striking it. There is no context where the instrument has
+    /// another patch than the voice was started with: then the voice goes by what it knows.
+    fn retune(&mut self, context: Option<&Self::Context>, note: &Note);
     /// Lets go of the note, with a release velocity 0–1.
     fn release(&mut self, velocity: f32);
     /// Silences the voice within a few milliseconds, without a click.
@@ -129,6 +130,8 @@ pub struct VoiceManager<V> {
     sostenuto: [bool; 16],
     polyphony: usize,
     mode: PlayMode,
+    /// The patch of the context: see [`Note::patch`].
+    patch: u32,
     held: HeldKeys,
     /// Notes that have ended: their voices are silent or another's, and no key of theirs is waited for.
     ended: Vec<Note>,
@@ -146,6 +149,7 @@ impl<V: Voice> VoiceManager<V> {
             sostenuto: [false; 16],
             polyphony: MAX_VOICES,
             mode: PlayMode::Poly,
+            patch: 0,
             held: HeldKeys::NONE,
             ended: Vec::with_capacity(MAX_ENDED),
             peak: 0,
@@ -163,8 +167,10 @@ impl<V: Voice> VoiceManager<V> {
         self.peak = 0;
     }
 
-    /// Sets how many notes sound at once (1 to [`MAX_VOICES`]) and how they share voices, from the next note on.
-    pub fn configure(&mut self, polyphony: usize, mode: PlayMode) {
+    /// Sets how many notes sound at once (1 to [`MAX_VOICES`]) and how they share voices, from the next note on, and
+    /// which patch the context has.
+    pub fn configure(&mut self, polyphony: usize, mode: PlayMode, patch: u32) {
+        self.patch = patch;
         self.polyphony = polyphony.clamp(1, MAX_VOICES);
         if mode != self.mode {
             self.forget(|_| true);
@@ -278,7 +284,7 @@ impl<V: Voice> VoiceManager<V> {
         let Some(index) = playing else { return self.start(context, note) };
         let slot = &mut self.slots[index];
         if self.mode == PlayMode::Legato && slot.state == State::Held {
-            slot.voice.retune(context, &note);
+            slot.voice.retune(Some(context), &note);
         } else {
             slot.voice.restrike(context, &note);
         }
@@ -295,7 +301,7 @@ impl<V: Voice> VoiceManager<V> {
                 && let Some(slot) =
                     self.slots[..self.used].iter_mut().find(|slot| slot.key_down && slot.is_one_of(&notes))
             {
-                slot.voice.retune(context, &note);
+                slot.voice.retune((slot.note.patch == self.patch).then_some(context), &note);
                 // The voice keeps the sound that it has.
                 let Note { patch, body, choke, .. } = slot.note;
                 let note = Note { patch, body, choke, ..note };

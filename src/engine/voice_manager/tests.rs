@@ -6,26 +6,36 @@ use std::rc::Rc;
 
 type Log = Rc<RefCell<Vec<String>>>;
 
-/// A voice that writes down what it is told.
+/// What the instrument plays now: the number of its patch.
+struct FakeInstrument {
+    patch: u32,
+}
+
+/// A voice that writes down what it is told, and that refuses to read another patch than its own.
 struct FakeVoice {
     log: Log,
+    patch: u32,
     key: u8,
     energy: f64,
     over: bool,
 }
 
 impl Voice for FakeVoice {
-    type Context = ();
-    fn start(&mut self, _: &(), note: &Note) {
+    type Context = FakeInstrument;
+    fn start(&mut self, instrument: &FakeInstrument, note: &Note) {
         (self.key, self.over, self.energy) = (note.key, false, f64::from(note.velocity));
+        self.patch = instrument.patch;
         self.log.borrow_mut().push(format!("start {}", note.key));
     }
-    fn restrike(&mut self, _: &(), note: &Note) {
+    fn restrike(&mut self, instrument: &FakeInstrument, note: &Note) {
+        assert_eq!(instrument.patch, self.patch, "restrike reads another patch");
         self.log.borrow_mut().push(format!("restrike {} as {}", self.key, note.key));
         self.key = note.key;
     }
-    fn retune(&mut self, _: &(), note: &Note) {
-        self.log.borrow_mut().push(format!("retune {} to {}", self.key, note.key));
+    fn retune(&mut self, instrument: Option<&FakeInstrument>, note: &Note) {
+        assert!(instrument.is_none_or(|instrument| instrument.patch == self.patch), "retune reads another patch");
+        let by = if instrument.is_some() { "" } else { " by itself" };
+        self.log.borrow_mut().push(format!("retune {} to {}{by}", self.key, note.key));
         self.key = note.key;
     }
     fn release(&mut self, velocity: f32) {
@@ -47,6 +57,8 @@ enum Do {
     /// Key and choke group.
     OnChoke(u8, u8),
     OnPatch(u8, u32),
+    /// The instrument changes its patch.
+    Patch(u32),
     /// Key, choke group and patch.
     OnChokePatch(u8, u8, u32),
     Off(u8),
@@ -62,8 +74,9 @@ use Do::*;
 /// Plays a script and returns what the voices were told.
 fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
     let log = Log::default();
-    let mut manager = VoiceManager::new(|| FakeVoice { log: log.clone(), key: 0, energy: 0.0, over: false });
-    manager.configure(polyphony, mode);
+    let mut manager = VoiceManager::new(|| FakeVoice { log: log.clone(), patch: 0, key: 0, energy: 0.0, over: false });
+    let mut instrument = FakeInstrument { patch: 0 };
+    manager.configure(polyphony, mode, 0);
     for (serial, action) in script.iter().enumerate() {
         let on = |key, velocity, choke, patch| Note {
             channel: 0,
@@ -78,13 +91,19 @@ fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
             body: patch,
             choke,
         };
+        if let OnPatch(_, patch) | OnChokePatch(_, _, patch) | Patch(patch) = *action {
+            instrument.patch = patch;
+            manager.configure(polyphony, mode, patch);
+        }
+        let patch = instrument.patch;
         match *action {
-            On(key, velocity) => manager.note_on(&(), on(key, velocity, 0, 0)),
-            OnChoke(key, group) => manager.note_on(&(), on(key, 1.0, group, 0)),
-            OnChokePatch(key, group, patch) => manager.note_on(&(), on(key, 1.0, group, patch)),
-            OnPatch(key, patch) => manager.note_on(&(), on(key, 1.0, 0, patch)),
-            Off(key) => manager.note_off(&(), Notes::on(0, key), 0.25),
-            OffId(key, id) => manager.note_off(&(), Notes { id: Some(id), ..Notes::on(0, key) }, 0.25),
+            Patch(_) => {}
+            On(key, velocity) => manager.note_on(&instrument, on(key, velocity, 0, patch)),
+            OnChoke(key, group) => manager.note_on(&instrument, on(key, 1.0, group, patch)),
+            OnChokePatch(key, group, _) => manager.note_on(&instrument, on(key, 1.0, group, patch)),
+            OnPatch(key, _) => manager.note_on(&instrument, on(key, 1.0, 0, patch)),
+            Off(key) => manager.note_off(&instrument, Notes::on(0, key), 0.25),
+            OffId(key, id) => manager.note_off(&instrument, Notes { id: Some(id), ..Notes::on(0, key) }, 0.25),
             Sustain(down) => manager.sustain(0, down),
             Sostenuto(down) => manager.sostenuto(0, down),
             NotesOff => manager.all_notes_off(0),
@@ -199,6 +218,14 @@ fn a_return_to_a_held_key_keeps_the_voice_in_its_patch() {
     let script = [OnPatch(57, 0), OnPatch(64, 1), Off(64), OnPatch(60, 1)];
     let expected = ["start 57", "fade 57", "start 64", "retune 64 to 57", "retune 57 to 60"];
     check(16, PlayMode::Legato, &script, &expected);
+}
+
+#[test]
+fn a_return_after_a_change_of_patch_does_not_read_the_new_one() {
+    for mode in [PlayMode::Mono, PlayMode::Legato] {
+        let told = play(16, mode, &[OnPatch(60, 0), On(64, 1.0), Patch(1), Off(64), Off(60)]);
+        assert_eq!(told[2..], ["retune 64 to 60 by itself", "release 60 at 0.25"], "{mode:?}");
+    }
 }
 
 #[test]

@@ -1,0 +1,114 @@
+//! The bank that a voice plays, of either law.
+
+use super::exciter::Drive;
+use super::mode_bank::{ExcitationGains, ModeSetup};
+use super::{ClassicBank, ModeBank};
+
+/// Which formulas turn pitch and decay into coefficients.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// Tuning and decay are exact, and so are bends; amplitudes do not depend on the pitch.
+    Exact,
+    /// The original formulas ([`super::Coefficients::seed`]), clamped short of exploding.
+    Classic,
+}
+
+/// A bank of modes. Every method is that of [`ModeBank`]. Real-time safe.
+#[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "both are large, and a voice has one of them without allocating")]
+pub enum Bank {
+    /// By the exact law.
+    Exact(ModeBank),
+    /// By the original formulas.
+    Classic(ClassicBank),
+}
+
+/// The same call on either bank.
+macro_rules! either {
+    ($self:expr, $bank:ident => $call:expr) => {
+        match $self {
+            Bank::Exact($bank) => $call,
+            Bank::Classic($bank) => $call,
+        }
+    };
+}
+
+impl Bank {
+    /// An empty bank of the exact law.
+    pub fn new(sample_rate: f64) -> Self {
+        Self::Exact(ModeBank::new(sample_rate))
+    }
+
+    /// An empty bank.
+    pub fn of(law: Law, sample_rate: f64) -> Self {
+        match law {
+            Law::Exact => Self::new(sample_rate),
+            Law::Classic => Self::Classic(ClassicBank::new(sample_rate)),
+        }
+    }
+
+    /// See [`ModeBank::load`].
+    pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
+        either!(self, bank => bank.load(modes));
+    }
+
+    /// See [`ModeBank::len`].
+    pub fn len(&self) -> usize {
+        either!(self, bank => bank.len())
+    }
+
+    /// See [`ModeBank::is_empty`].
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// See [`ModeBank::set_excitation_gains`].
+    pub fn set_excitation_gains(&mut self, m: usize, gains: ExcitationGains) {
+        either!(self, bank => bank.set_excitation_gains(m, gains));
+    }
+
+    /// See [`ModeBank::set_t60`].
+    pub fn set_t60(&mut self, m: usize, t60: f64) {
+        either!(self, bank => bank.set_t60(m, t60));
+    }
+
+    /// See [`ModeBank::retune`].
+    pub fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
+        either!(self, bank => bank.retune(modes));
+    }
+
+    /// See [`ModeBank::sweep_to`].
+    pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
+        either!(self, bank => bank.sweep_to(ratio, frames));
+    }
+
+    /// See [`ModeBank::jump_to`].
+    pub fn jump_to(&mut self, ratio: f64) {
+        either!(self, bank => bank.jump_to(ratio));
+    }
+
+    /// See [`ModeBank::render`].
+    pub fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
+        either!(self, bank => bank.render(drive, frames))
+    }
+
+    /// See [`ModeBank::mass`].
+    pub fn mass(&self, m: usize) -> (f32, f32) {
+        either!(self, bank => bank.mass(m))
+    }
+
+    /// See [`ModeBank::settle`].
+    pub fn settle(&mut self) -> f64 {
+        either!(self, bank => bank.settle())
+    }
+
+    /// See [`ModeBank::frames_until`].
+    pub fn frames_until(&self, total: f64) -> u64 {
+        either!(self, bank => bank.frames_until(total))
+    }
+
+    /// See [`ModeBank::frames_until_at_most`].
+    pub fn frames_until_at_most(&self, total: f64, more: f64) -> u64 {
+        either!(self, bank => bank.frames_until_at_most(total, more))
+    }
+}

@@ -1,0 +1,288 @@
+//! What a bank does now and then, for all modes at once: radius and angle when they change, lines of pitch at control
+//! ticks, and the energy that is left.
+
+use super::MAX_MODES;
+use super::levels::Kernel;
+use super::rows::{Modes, Row, State, Wide};
+use super::vector::{LANES, Partial, Vector};
+use std::f64::consts::PI;
+
+/// Modes up to this angle per sample sound at full level; from here to π they fade out, and beyond they are silent.
+pub(super) const TOP_ANGLE: f64 = 0.98 * PI;
+
+/// What the coefficients of each mode are made from.
+#[derive(Clone, Debug)]
+pub(super) struct Tuning {
+    /// Half the angle per sample at a pitch ratio of 1, which may be beyond what can sound.
+    pub(super) half_angle: Row,
+    /// `1 − r`.
+    loss: Row,
+    /// `r`, and that of the coefficients: they differ from a change of damping until the next line.
+    radius: Wide,
+    damped_radius: Wide,
+    /// `1 − radius / damped_radius`.
+    shrink: Row,
+    /// The state of unit amplitude that a displacement at rest gives.
+    pub(super) pull_x: Row,
+    pub(super) pull_y: Row,
+}
+
+impl Tuning {
+    pub(super) const UNSET: Tuning = Tuning {
+        half_angle: Row::ZERO,
+        loss: Row::ZERO,
+        radius: [1.0; MAX_MODES],
+        damped_radius: [1.0; MAX_MODES],
+        shrink: Row::ZERO,
+        pull_x: Row::ZERO,
+        pull_y: Row::ZERO,
+    };
+}
+
+/// Takes over the logarithm of each mode's radius (at least [`super::LEAST_LN_RADIUS`]) and half its angle.
+///
+/// Plain double precision without a branch: vectorised by the compiler, 1e−12 from the exact values, in a fifth of the
+/// time of `libm`'s exponential and sine.
+pub(super) struct Tune<'a> {
+    pub(super) tuning: &'a mut Tuning,
+    pub(super) ln_radius: &'a Wide,
+    pub(super) half_angle: &'a Wide,
+    pub(super) len: usize,
+}
+
+impl Kernel for Tune<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, _: V::Proof) {
+        let Self { tuning, ln_radius, half_angle, len } = self;
+        for m in 0..len.min(MAX_MODES) {
+            let loss = -expm1_of_radius(ln_radius[m]);
+            let radius = 1.0 - loss;
+            tuning.radius[m] = radius;
+            tuning.shrink.0[m] = (1.0 - radius / tuning.damped_radius[m]) as f32;
+            tuning.loss.0[m] = loss as f32;
+            tuning.half_angle.0[m] = half_angle[m] as f32;
+
+            // A mass displaced by sin θ / ω has unit amplitude; see `Coefficients::energy`. Where it is a frame on,
+            // x (1 − ω²), is Re z · x + Im z · y.
+            let half_chord = sin_to_right_angle(below_top(half_angle[m]));
+            let chord2 = half_chord * half_chord;
+            let zeta = loss * (2.0 - loss);
+            let omega2 = loss * loss + 4.0 * radius * chord2;
+            let omega = omega2.sqrt();
+            tuning.pull_x.0[m] = (2.0 * half_chord * (1.0 - chord2).sqrt() / omega) as f32;
+            tuning.pull_y.0[m] = (0.5 * (zeta - omega2) / (radius * omega)) as f32;
+        }
+    }
+}
+
+/// Sends the modes on straight lines to where a pitch ratio wants them, from where they are on the line before.
+///
+/// A line between two points of the unit disk stays inside it, so that no mass gains energy whatever its pitch does.
+/// But the chord is shorter than the arc: at the share `t` of a line that turns by `Δθ` in all, a frame leaves
+/// `√(1 − 4 t (1−t) sin²(Δθ/2))` of what it would on the arc. What the line before has lost so is given back here, by
+/// the first terms of a series all of whose terms are positive: always a little less than was lost.
+///
+/// Damping acts at once: the coefficients are multiplied by the new radius over the old, which leaves the angle alone.
+pub(super) struct Aim<'a> {
+    pub(super) tuning: &'a mut Tuning,
+    pub(super) modes: &'a mut Modes,
+    pub(super) state: &'a mut State,
+    pub(super) ratio: f32,
+    /// Frames of the line before that have passed.
+    pub(super) passed: usize,
+    /// What they have lost, if it is to be given back.
+    pub(super) lost: Option<ChordLoss>,
+    /// Whether damping has changed.
+    pub(super) damped: bool,
+    /// The share of the way that a frame takes, or none to be there at once.
+    pub(super) per_frame: Option<f32>,
+    /// Modes from here on are at rest: they are put where the line ends.
+    pub(super) live: usize,
+    pub(super) len: usize,
+}
+
+/// The logarithm of what part of a line has lost to the arc, as a polynomial in the squared step `q` of the line:
+/// `first · q + second · q²`.
+///
+/// Over the frames `i = 1 … p` of `K`, with `t = i/K` and `|Δz|² = K² q = 4 r² sin²(Δθ/2)`, the sum of
+/// `−½ ln(1 − 4 t (1−t) sin²(Δθ/2))` begins so. All terms that are left out, and `r² < 1`, make the true loss larger.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ChordLoss {
+    first: f32,
+    second: f32,
+}
+
+impl ChordLoss {
+    /// Over the first `passed` of the `frames` frames of a line.
+    pub(super) fn new(passed: usize, frames: usize) -> Self {
+        let (p, k) = (passed as f32, frames as f32);
+        // Sums of i, i², i³ and i⁴.
+        let sum1 = 0.5 * p * (p + 1.0);
+        let sum2 = sum1 * (2.0 * p + 1.0) * (1.0 / 3.0);
+        let sum3 = sum1 * sum1;
+        let sum4 = sum2 * (3.0 * p * (p + 1.0) - 1.0) * 0.2;
+        Self { first: 0.5 * (k * sum1 - sum2), second: 0.25 * (k * (k * sum2 - 2.0 * sum3) + sum4) }
+    }
+}
+
+impl Kernel for Aim<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, proof: V::Proof) {
+        let Self { tuning, modes, state, ratio, passed, lost, damped, per_frame, live, len } = self;
+        let (zero, one) = (V::splat(proof, 0.0), V::splat(proof, 1.0));
+        let (top, passed) = (V::splat(proof, (0.5 * TOP_ANGLE) as f32), V::splat(proof, passed as f32));
+        let mut at = 0;
+        while at < len.min(MAX_MODES) {
+            let (alpha_step, beta_step): (V, V) = (modes.alpha_step.at(proof, at), modes.beta_step.at(proof, at));
+            if let Some(ChordLoss { first, second }) = lost.filter(|_| at < live) {
+                let step2 = alpha_step.mul_add(alpha_step, beta_step.mul(beta_step));
+                let lost = step2.mul(step2.mul_add(V::splat(proof, second), V::splat(proof, first)));
+                let series = lost.mul_add(V::splat(proof, 1.0 / 6.0), V::splat(proof, 0.5));
+                let factor = lost.mul_add(lost.mul_add(series, one), one);
+                state.x.at::<V>(proof, at).mul(factor).store(&mut state.x.0[at..]);
+                state.y.at::<V>(proof, at).mul(factor).store(&mut state.y.0[at..]);
+            }
+            let loss: V = tuning.loss.at(proof, at);
+            let half = tuning.half_angle.at::<V>(proof, at).mul(V::splat(proof, ratio)).min(top);
+            let (sin, cos) = (sine::<V>(proof, half), cosine::<V>(proof, half));
+            // sin² + cos² − 1: how much too long the turn is by rounding, which would change the decay.
+            let excess = sin.mul_add(sin, cos.mul_add(cos, V::splat(proof, -1.0)));
+            let two_sin = sin.add(sin);
+            let two_sin = two_sin.neg_mul_add(excess, two_sin);
+            let two_sin = two_sin.neg_mul_add(loss, two_sin);
+            let (to_alpha, to_beta) = (two_sin.mul_add(sin, loss), two_sin.mul(cos));
+            match per_frame.filter(|_| at < live) {
+                Some(share) => {
+                    let mut alpha: V = passed.mul_add(alpha_step, modes.alpha.at(proof, at));
+                    let mut beta: V = passed.mul_add(beta_step, modes.beta.at(proof, at));
+                    if damped {
+                        let shrink: V = tuning.shrink.at(proof, at);
+                        alpha = shrink.add(alpha.neg_mul_add(shrink, alpha));
+                        beta = beta.neg_mul_add(shrink, beta);
+                    }
+                    let share = V::splat(proof, share);
+                    alpha.store(&mut modes.alpha.0[at..]);
+                    beta.store(&mut modes.beta.0[at..]);
+                    to_alpha.sub(alpha).mul(share).store(&mut modes.alpha_step.0[at..]);
+                    to_beta.sub(beta).mul(share).store(&mut modes.beta_step.0[at..]);
+                }
+                None => {
+                    to_alpha.store(&mut modes.alpha.0[at..]);
+                    to_beta.store(&mut modes.beta.0[at..]);
+                    zero.store(&mut modes.alpha_step.0[at..]);
+                    zero.store(&mut modes.beta_step.0[at..]);
+                }
+            }
+            at += V::WIDTH;
+        }
+        if damped {
+            tuning.damped_radius = tuning.radius;
+        }
+    }
+}
+
+/// Adds up the squared amplitudes of the live modes, in units of [`UNIT`]², and sets to rest those below [`REST`].
+pub(super) struct Settle<'a> {
+    pub(super) state: &'a mut State,
+    pub(super) live: usize,
+}
+
+impl Kernel for Settle<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn run<V: Vector>(self, proof: V::Proof) -> f32 {
+        let Self { state, live } = self;
+        let mut total = Partial([0.0; LANES]);
+        let scale = V::splat(proof, 1.0 / UNIT);
+        let mut at = 0;
+        while at < live.min(MAX_MODES) {
+            let (x, y): (V, V) = (state.x.at(proof, at), state.y.at(proof, at));
+            let (scaled_x, scaled_y) = (x.mul(scale), y.mul(scale));
+            let energy = scaled_x.mul(scaled_x).add(scaled_y.mul(scaled_y));
+            let lane = &mut total.0[at % LANES..];
+            V::load(proof, lane).add(energy).store(lane);
+            // 1 for a mode that rings and 0 for one that does not.
+            let above = energy.sub(V::splat(proof, (REST / UNIT) * (REST / UNIT))).mul(V::splat(proof, 1e30));
+            let rings = above.max(V::splat(proof, 0.0)).mul(V::splat(proof, 1e30)).min(V::splat(proof, 1.0));
+            x.mul(rings).store(&mut state.x.0[at..]);
+            y.mul(rings).store(&mut state.y.0[at..]);
+            at += V::WIDTH;
+        }
+        let mut sum = [0.0];
+        V::sum_lanes(proof, &[total], &mut sum);
+        sum[0]
+    }
+}
+
+/// Amplitudes are counted in units of this, so that the squares of the smallest that matter are normal numbers.
+pub(super) const UNIT: f32 = 1.0 / (1_u64 << 40) as f32;
+
+/// A mode with less amplitude than this is set to rest before it can become denormal.
+const REST: f32 = 1e-20;
+
+/// Half an angle, at most that of the top of the spectrum.
+#[inline(always)]
+pub(super) fn below_top(half_angle: f64) -> f64 {
+    let top = 0.5 * TOP_ANGLE;
+    if half_angle < top { half_angle } else { top }
+}
+
+/// `r − 1` from `ln r`, for −1.8 ≤ ln r ≤ 0.
+#[inline(always)]
+pub(super) fn expm1_of_radius(ln_radius: f64) -> f64 {
+    // From a quarter of it by (1+u)² − 1 = u (2+u), twice: no digit is lost for r close to 1.
+    let y = 0.25 * ln_radius;
+    let mut sum = 1.0;
+    // The series of (e^y − 1)/y. The first term left out is below 1e−16 of the sum.
+    for n in [13.0, 12.0, 11.0, 10.0, 9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0] {
+        sum = 1.0 + sum * y * (1.0 / n);
+    }
+    let u = sum * y;
+    let u = u * (2.0 + u);
+    u * (2.0 + u)
+}
+
+/// `sin x` for 0 ≤ x ≤ π/2, by its series, within 5e−15.
+#[inline(always)]
+pub(super) fn sin_to_right_angle(x: f64) -> f64 {
+    let x2 = x * x;
+    let mut sum = 1.0;
+    for n in [18.0_f64, 16.0, 14.0, 12.0, 10.0, 8.0, 6.0, 4.0, 2.0] {
+        sum = 1.0 - sum * x2 * (1.0 / (n * (n + 1.0)));
+    }
+    sum * x
+}
+
+/// `sin x` for 0 ≤ x ≤ π/2 in single precision: the series to x¹¹, within 1.3e−7.
+#[inline(always)]
+fn sine<V: Vector>(proof: V::Proof, x: V) -> V {
+    let x2 = x.mul(x);
+    let mut sum = V::splat(proof, -1.0 / 39_916_800.0);
+    for term in [1.0 / 362_880.0, -1.0 / 5_040.0, 1.0 / 120.0, -1.0 / 6.0] {
+        sum = sum.mul_add(x2, V::splat(proof, term));
+    }
+    sum.mul(x2).mul_add(x, x)
+}
+
+/// `cos x` for 0 ≤ x < π/2 in single precision: the series to x¹², within 1.3e−7. (`√(1 − sin²)` costs more: a vector
+/// square root takes as long as twenty multiplications.)
+#[inline(always)]
+fn cosine<V: Vector>(proof: V::Proof, x: V) -> V {
+    let x2 = x.mul(x);
+    let mut sum = V::splat(proof, 1.0 / 479_001_600.0);
+    for term in [-1.0 / 3_628_800.0, 1.0 / 40_320.0, -1.0 / 720.0, 1.0 / 24.0, -0.5, 1.0] {
+        sum = sum.mul_add(x2, V::splat(proof, term));
+    }
+    sum
+}
+
+/// How much of a mode with this half angle is heard: all up to [`TOP_ANGLE`], nothing from π on.
+pub(super) fn audible(half_angle: f32) -> f32 {
+    let share = ((0.5 * PI) as f32 - half_angle) * (2.0 / (PI - TOP_ANGLE)) as f32;
+    share.clamp(0.0, 1.0)
+}
