@@ -1,5 +1,6 @@
-//! What a trajectory is measured against: the closed form, or, of a nonlinear spring, an integration so fine that a
-//! finer one changes nothing.
+//! What a trajectory is measured against: the true motion.
+//!
+//! It is the closed form or, of a nonlinear spring, an integration so fine that a finer one changes nothing.
 
 use super::closed_form::ClosedForm;
 use super::energy::greatest_stiffness;
