@@ -138,9 +138,13 @@ mod tests {
             manual::EXAMPLES,
             manual::COMPLETION_EXAMPLES,
         ];
-        for example in examples.iter().flat_map(|text| text.lines()).filter(|line| line.starts_with("  sprung")) {
-            if let Err(error) = Cli::try_parse_from(words(example)) {
-                panic!("{example}: {error}");
+        for text in examples {
+            let mut lines = text.lines().filter(|line| line.starts_with("  sprung")).peekable();
+            assert!(lines.peek().is_some(), "no example in: {text}");
+            for example in lines {
+                if let Err(error) = Cli::try_parse_from(words(example)) {
+                    panic!("{example}: {error}");
+                }
             }
         }
     }

@@ -75,13 +75,9 @@ fn the_samples_do_not_depend_on_blocks_and_threads() {
     sandbox.succeeds(&format!("{base} --block 1024 --threads 1"));
     let expected = sandbox.read("out.wav");
     assert!(sandbox.wav("out.wav").peak() > 0.01);
-    for block in [1, 7, 64, 480, 65_536] {
-        sandbox.succeeds(&format!("{base} --block {block}"));
-        assert!(sandbox.read("out.wav") == expected, "{block}");
-    }
-    for threads in [2, 3] {
-        sandbox.succeeds(&format!("{base} --threads {threads}"));
-        assert!(sandbox.read("out.wav") == expected, "{threads} threads");
+    for options in ["--block 1", "--block 65536", "--threads 2", "--block 7 --threads 3"] {
+        sandbox.succeeds(&format!("{base} {options}"));
+        assert!(sandbox.read("out.wav") == expected, "{options}");
     }
 }
 
