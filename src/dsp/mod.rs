@@ -2,14 +2,17 @@
 
 pub mod coefficients;
 pub mod exciter;
+pub mod limiter;
 pub mod mode_bank;
 pub mod oscillator;
 pub mod pitch;
 pub mod ramp;
 pub mod random;
 pub mod real;
+pub mod true_peak;
 
 pub use coefficients::Coefficients;
+pub use limiter::Limiter;
 pub use mode_bank::ModeBank;
 pub use oscillator::HarmonicOscillator;
 
