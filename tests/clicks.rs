@@ -40,7 +40,8 @@ fn jump(samples: &[f32]) -> f32 {
 
 /// The sounds that the disturbances are tried on: a sine, a mallet of several modes, a kick that sweeps.
 fn patches() -> [(&'static str, Patch); 3] {
-    let sine = Patch::default().with(Param::Decay, 3.0).with(Param::Gain, 0.0);
+    // The limiter answers to what is loud, disturbed or not.
+    let sine = Patch::default().with(Param::Decay, 3.0).with(Param::Gain, 0.0).with(Param::Limiter, 0.0);
     let mut mallet = sine.with(Param::Exciter, 1.0).with(Param::Hardness, 60.0);
     let modes = [(1.0, 0.6), (3.93, 0.25), (9.6, 0.1), (17.0, 0.05)];
     mallet.modes = ModeTable::new(&modes.map(|(ratio, level)| Mode { ratio, level, ..Mode::UNIT }));
@@ -57,7 +58,7 @@ fn check(
 ) {
     for (name, patch) in patches() {
         let free = patch.with(Param::Voices, 16.0);
-        let programs = [Patch::default().with(Param::Gain, -20.0).with(Param::Exciter, 3.0)];
+        let programs = [Patch::default().with(Param::Gain, -20.0).with(Param::Exciter, 3.0).with(Param::Limiter, 0.0)];
         for key in [28, 40, 60, 84] {
             for moment in [4800, 4811, 4907, 5003, 5151] {
                 let before = largest_jump(&free, &programs, &undisturbed(key, moment));
