@@ -46,7 +46,8 @@ fn jump(sound: &[Vec<f32>; 2]) -> f32 {
 /// The sounds that the disturbances are tried on: a sine, a mallet of several modes on the right and on the left, a kick
 /// that sweeps.
 fn patches() -> [(&'static str, Patch); 3] {
-    let sine = Patch::default().with(Param::Decay, 3.0).with(Param::Gain, 0.0);
+    // The limiter answers to what is loud, disturbed or not.
+    let sine = Patch::default().with(Param::Decay, 3.0).with(Param::Gain, 0.0).with(Param::Limiter, 0.0);
     let mut mallet = sine.with(Param::Exciter, 1.0).with(Param::Hardness, 60.0);
     let modes = [(1.0, 0.6, 0.7), (3.93, 0.25, -0.9), (9.6, 0.1, 0.4), (17.0, 0.05, -0.2)];
     mallet.modes = ModeTable::new(&modes.map(|(ratio, level, pan)| Mode { ratio, level, pan, ..Mode::UNIT }));
@@ -56,7 +57,11 @@ fn patches() -> [(&'static str, Patch); 3] {
 
 /// What a program change changes to: other modes, elsewhere between left and right, quieter and struck otherwise.
 fn program() -> Patch {
-    let mut patch = Patch::default().with(Param::Gain, -12.0).with(Param::Exciter, 2.0).with(Param::Decay, 0.5);
+    let mut patch = Patch::default()
+        .with(Param::Gain, -12.0)
+        .with(Param::Exciter, 2.0)
+        .with(Param::Decay, 0.5)
+        .with(Param::Limiter, 0.0);
     let modes = [(1.0, 0.5, -0.8), (2.76, 0.3, 0.9), (5.4, 0.2, -0.3)];
     patch.modes = ModeTable::new(&modes.map(|(ratio, level, pan)| Mode { ratio, level, pan, ..Mode::UNIT }));
     patch

@@ -1,6 +1,9 @@
 //! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
 
+use super::mix_limiter::MixLimiter;
+use super::synth::allowed;
 use super::{Event, EventKind, Snapshot, Synth};
+use crate::dsp::limiter::Work;
 use crate::params::Param;
 use crate::patch::Patch;
 
@@ -10,11 +13,13 @@ const CHUNK: usize = 1024;
 /// Sixteen synths behind one stream of events.
 ///
 /// Each channel has its own patch, controllers and polyphony. A note of a choke group silences that group on every
-/// channel. Gives the same bits however the frames are divided into blocks. Real-time safe after [`Ensemble::new`].
+/// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a patch that asks
+/// for it. Gives the same bits however the frames are divided into blocks. Real-time safe after [`Ensemble::new`].
 pub struct Ensemble {
     parts: Vec<Part>,
     programs: Vec<Patch>,
     chunk: usize,
+    limiter: MixLimiter,
 }
 
 /// What one channel plays: its synth, and the frames of the chunk that is being mixed.
@@ -48,7 +53,8 @@ impl Ensemble {
             synth.set_patch(patch);
             Part { channel: channel as usize, synth, left: vec![0.0; CHUNK], right: vec![0.0; CHUNK], heard: false }
         };
-        Self { parts: (0..16).map(part).collect(), programs: programs.to_vec(), chunk: CHUNK }
+        let limiter = MixLimiter::new(allowed(sample_rate), patch);
+        Self { parts: (0..16).map(part).collect(), programs: programs.to_vec(), chunk: CHUNK, limiter }
     }
 
     /// The same ensemble, mixing up to `frames` frames (at least 1) at a time: more than it would of itself pay where
@@ -92,7 +98,10 @@ impl Ensemble {
             let programs = &self.programs;
             let chunk = Chunk { events: &events[..now], start, frames: end - start, programs, groups };
             each(&mut self.parts, &|part| part.play(chunk));
-            self.mix(&mut left[start..end], &mut right[start..end]);
+            let (left, right) = (&mut left[start..end], &mut right[start..end]);
+            self.mix(left, right);
+            let is_heard = self.parts.iter().any(|part| part.heard);
+            self.limiter.process(&events[..now], start, &self.programs, is_heard, [left, right]);
             if end == frames {
                 break;
             }
@@ -113,6 +122,7 @@ impl Ensemble {
     /// Plays another patch on a channel from its next note on. Real-time safe.
     pub fn set_patch(&mut self, channel: u8, patch: &Patch) {
         self.parts[usize::from(channel & 15)].synth.set_patch(patch);
+        self.limiter.set_patch(channel, patch);
     }
 
     /// What sounds now, on all channels together. Real-time safe.
@@ -120,6 +130,11 @@ impl Ensemble {
         let mut snapshot = Snapshot::default();
         self.parts.iter().for_each(|part| part.synth.show(&mut snapshot));
         snapshot
+    }
+
+    /// How much the limiter has worked. Real-time safe.
+    pub fn limiter_work(&self) -> Work {
+        self.limiter.work()
     }
 
     /// Whether nothing sounds any more. Real-time safe.
@@ -165,7 +180,7 @@ impl Part {
                 continue;
             }
             let at = (event.frame as usize).saturating_sub(start).min(frames.saturating_sub(1)).max(frame);
-            synth.process(&[], &mut left[frame..at], &mut right[frame..at]);
+            synth.play(&mut left[frame..at], &mut right[frame..at]);
             frame = at;
             match program {
                 Some(patch) => synth.set_patch(patch),
@@ -174,7 +189,7 @@ impl Part {
             *heard |= !synth.is_silent();
         }
         if *heard {
-            synth.process(&[], &mut left[frame..], &mut right[frame..]);
+            synth.play(&mut left[frame..], &mut right[frame..]);
         } else {
             synth.pass(frames - frame);
         }

@@ -17,6 +17,16 @@ pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()
             ),
         );
     }
+    if report.limiter_reduction_db > 0.0 && !as_json {
+        complain(
+            "note",
+            format_args!(
+                "the limiter lowered the sound by up to {:.1} dB, for {:.2} s in all; avoid it with a lower \
+                 --set gain=…, or switch it off with --set limiter=off",
+                report.limiter_reduction_db, report.limiter_seconds
+            ),
+        );
+    }
     match (as_json, target) {
         (true, Target::Path(_)) => print(&format!("{:#}\n", to_json(report, target))),
         (true, Target::Stdout) => {
@@ -62,6 +72,8 @@ fn to_json(report: &Report, target: &Target) -> serde_json::Value {
         "gain_db": report.gain_db,
         "clipped_samples": report.clipped,
         "voices_used": report.voices_used,
+        "limiter_reduction_db": report.limiter_reduction_db,
+        "limiter_seconds": report.limiter_seconds,
         "realtime_factor": report.realtime_factor,
     })
 }
