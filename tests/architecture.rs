@@ -7,16 +7,20 @@ use std::path::Path;
 const ALLOWED: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("error", &[]),
+    ("text", &[]),
     ("dsp", &["dsp"]),
     ("params", &["units"]),
     ("patch", &["params", "dsp"]),
-    ("preset", &["error", "params", "patch", "units", "Error", "Result"]),
+    ("preset", &["error", "params", "patch", "text", "units", "Error", "Result"]),
     ("engine", &["engine", "dsp", "params", "patch", "units"]),
     ("io", &["io", "dsp", "engine", "error", "units", "Error", "Result"]),
     ("render", &["render", "dsp", "engine", "error", "io", "params", "patch", "preset", "units", "Error", "Result"]),
     (
         "realtime",
-        &["realtime", "engine", "error", "io", "params", "patch", "preset", "render", "units", "Error", "Result"],
+        &[
+            "realtime", "engine", "error", "io", "params", "patch", "preset", "render", "text", "units", "Error",
+            "Result",
+        ],
     ),
     ("figure", &["figure", "error", "Error", "Result"]),
     ("analysis", &["analysis", "error", "figure", "units", "Error", "Result"]),
