@@ -1,6 +1,6 @@
 //! The chunks of a MIDI file: its header and the bytes of its tracks, bare or inside a RIFF file (RMID).
 
-use midly::{Format, Header};
+use midly::Header;
 
 /// A MIDI file taken apart. Nothing within the tracks has been looked at.
 pub(super) struct Container<'a> {
@@ -135,7 +135,6 @@ fn read_header(song: &[u8], data: &[u8]) -> Result<(Header, usize), String> {
         return Err(format!("not a valid MIDI file: {expected}, found {frames_per_second}"));
     }
     let (header, tracks) = midly::parse(&song[..8 + data.len()]).map_err(|error| error.kind().message().to_owned())?;
-    debug_assert!(header.format != Format::Sequential);
     Ok((header, tracks.size_hint().0))
 }
 

@@ -126,8 +126,8 @@ impl TrackReader {
         if !self.lenient {
             return Err(self.refused(spot, fault));
         }
-        let of_track = self.repairs.iter_mut().rev().take_while(|repair| repair.track == spot.track);
-        match of_track.into_iter().find(|repair| repair.fault == fault) {
+        let mut of_track = self.repairs.iter_mut().rev().take_while(|repair| repair.track == spot.track);
+        match of_track.find(|repair| repair.fault == fault) {
             Some(repair) => repair.times += 1,
             None => {
                 let (track, fault, place) = (spot.track, fault.to_owned(), self.place(spot));
