@@ -1,5 +1,6 @@
 //! The limiter at the end of an ensemble's mix, and the channels that ask for it.
 
+use super::event::nearest_channel;
 use super::{Event, EventKind};
 use crate::dsp::Limiter;
 use crate::dsp::limiter::Work;
@@ -28,13 +29,13 @@ impl Channels {
     }
 
     fn set_asking(&mut self, channel: u8, value: f32) {
-        let bit = 1 << (channel & 15);
+        let bit = 1 << nearest_channel(channel);
         self.asking = if value == 0.0 { self.asking & !bit } else { self.asking | bit };
     }
 
     fn handle(&mut self, event: &Event, programs: &[Patch]) {
         match event.kind {
-            EventKind::NoteOn { .. } => self.played |= 1 << (event.channel & 15),
+            EventKind::NoteOn { .. } => self.played |= 1 << nearest_channel(event.channel),
             EventKind::Param { param: Param::Limiter, value } => {
                 self.set_asking(event.channel, Param::Limiter.info().clamp(value));
             }

@@ -2,7 +2,7 @@
 
 use super::channel::{Channel, Wheels, controller};
 use super::controls::Smoother;
-use super::event::{Expression, Notes, finite, unit};
+use super::event::{Expression, Notes, finite, nearest_channel, nearest_key, unit};
 use super::modulation::modulated;
 use super::voice::{Instrument, SynthVoice};
 use super::voice_manager::{Note, PlayMode, VoiceManager};
@@ -153,13 +153,15 @@ impl Synth {
         self.limiter.work()
     }
 
-    /// Renders the next `left.len()` frames (any number) over what the slices hold; both are of one length.
-    /// `events` are in order of their frames.
+    /// Renders the next frames over what the slices hold: as many as the shorter of the two has (any number; they are
+    /// meant to be of one length). The rest of a longer one stays as it is. `events` are in order of their frames.
     pub fn process(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
+        let frames = left.len().min(right.len());
+        let (left, right) = (&mut left[..frames], &mut right[..frames]);
         self.manager.clear_ended();
         let mut frame = 0;
         for event in events {
-            let at = (event.frame as usize).min(left.len().saturating_sub(1)).max(frame);
+            let at = (event.frame as usize).min(frames.saturating_sub(1)).max(frame);
             self.play_limited(&mut left[frame..at], &mut right[frame..at]);
             self.handle(event);
             frame = at;
@@ -189,7 +191,7 @@ impl Synth {
 
     /// Takes in one event, at the frame that is rendered next.
     pub fn handle(&mut self, event: &Event) {
-        let index = event.channel & 15;
+        let index = nearest_channel(event.channel);
         // A tempo can wait for the next control tick.
         self.news |= !matches!(event.kind, EventKind::Tempo(_));
         match event.kind {
@@ -198,7 +200,7 @@ impl Synth {
                 let soft = |channel: u8| self.channels[usize::from(channel)].soft;
                 let note = Note {
                     channel: index,
-                    key: key & 127,
+                    key: nearest_key(key),
                     detune: finite(detune).clamp(-128.0, 128.0),
                     velocity: unit(velocity),
                     soft: soft(index) || self.zones.master_of(index).is_some_and(soft),
@@ -214,7 +216,7 @@ impl Synth {
                 self.instrument.last_pitch = Some(self.instrument.pitch(&note));
             }
             EventKind::NoteOff { key, velocity, id } => {
-                let notes = Notes { id: (id != -1).then_some(id), ..Notes::on(index, key & 127) };
+                let notes = Notes { id: (id != -1).then_some(id), ..Notes::on(index, key) };
                 self.manager.note_off(&self.instrument, notes, unit(velocity));
             }
             EventKind::Release { notes, velocity } => {
@@ -222,7 +224,7 @@ impl Synth {
             }
             EventKind::Silence { notes } => self.manager.silence(notes),
             EventKind::PolyPressure { key, pressure } => {
-                self.express(Notes::on(index, key & 127), Expression::Pressure, pressure);
+                self.express(Notes::on(index, key), Expression::Pressure, pressure);
             }
             EventKind::Express { notes, expression, value } => self.express(notes, expression, value),
             EventKind::ChannelPressure(pressure) => self.channels[usize::from(index)].pressure = unit(pressure),

@@ -232,12 +232,13 @@ impl ParamInfo {
         if self.unit == Unit::Choice {
             return Err(format!("‘{value}’ is not one of {}", self.choices.join(", ")));
         }
+        Err(format!("{value} is out of range: expected {}", self.range()))
+    }
+
+    /// `from -60 dB to 12 dB`.
+    fn range(&self) -> String {
         let whole = if self.unit == Unit::Count { "a whole number " } else { "" };
-        Err(format!(
-            "{value} is out of range: expected {whole}from {} to {}",
-            self.format(self.min),
-            self.format(self.max)
-        ))
+        format!("{whole}from {} to {}", self.format(self.min), self.format(self.max))
     }
 
     /// Frames that a sounding note takes to follow a change; none if it does not follow at all.

@@ -1,11 +1,10 @@
 //! What `sprung render` says when it is done.
 
-use crate::cli::{complain, print};
+use crate::cli::{complain, complain_lines, print};
 use serde_json::json;
 use sprung::Result;
 use sprung::io::{SampleFormat, Target};
 use sprung::render::Report;
-use std::io::Write;
 
 pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()> {
     if report.clipped > 0 {
@@ -30,11 +29,11 @@ pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()
     match (as_json, target) {
         (true, Target::Path(_)) => print(&format!("{:#}\n", to_json(report, target))),
         (true, Target::Stdout) => {
-            let _ = writeln!(std::io::stderr(), "{:#}", to_json(report, target));
+            complain_lines(&format!("{:#}\n", to_json(report, target)));
             Ok(())
         }
         (false, _) => {
-            let _ = writeln!(std::io::stderr(), "{}", summary(report, target));
+            complain_lines(&format!("{}\n", summary(report, target)));
             Ok(())
         }
     }
