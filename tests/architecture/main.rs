@@ -14,14 +14,15 @@ use tree::Tree;
 const ALLOWED: &[Row] = &[
     ("units", &[]),
     ("error", &[]),
+    ("text", &[]),
     ("dsp", &[]),
     ("params", &["units"]),
     ("patch", &["params", "dsp"]),
-    ("preset", &["error", "params", "patch", "units"]),
+    ("preset", &["error", "params", "patch", "text", "units"]),
     ("engine", &["dsp", "params", "patch", "units"]),
     ("io", &["dsp", "engine", "error", "units"]),
     ("render", &["dsp", "engine", "error", "io", "params", "patch", "preset", "units"]),
-    ("realtime", &["engine", "error", "io", "params", "patch", "preset", "render", "units"]),
+    ("realtime", &["engine", "error", "io", "params", "patch", "preset", "render", "text", "units"]),
     ("figure", &["error"]),
     ("analysis", &["error", "figure", "units"]),
     ("lab", &["dsp", "error", "figure"]),
@@ -56,7 +57,6 @@ const CRATES: &[&str] =
 /// Pairs of files that still import each other, in the order of the alphabet. The list may only shrink.
 const CIRCLES: &[(&str, &str)] = &[
     // Neighbours.
-    ("src/dsp/mode_bank/kernel.rs", "src/dsp/mode_bank/table.rs"),
     ("src/engine/event.rs", "src/engine/voice_manager/mod.rs"),
     ("src/realtime/player.rs", "src/realtime/song_cursor.rs"),
     ("plugin/src/live.rs", "plugin/src/plugin.rs"),
