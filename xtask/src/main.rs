@@ -5,6 +5,7 @@ mod bless;
 mod bundle;
 mod callgrind;
 mod figures;
+mod files;
 mod install;
 mod python;
 mod setup;
