@@ -1,6 +1,7 @@
 //! `cargo xtask bundle`: the plugin as the files that DAWs load.
 
 use crate::files::{copy, replace, write};
+use crate::patch;
 use crate::shell::{cargo, root};
 use std::path::{Path, PathBuf};
 
@@ -40,8 +41,9 @@ impl Format {
 pub(crate) fn run(release: bool) -> Result<PathBuf, String> {
     // What a debugger would want is most of the library's size.
     let (profile, linking) = if release { ("--release", "-- -C strip=symbols") } else { ("", "") };
+    patch::run()?;
     let mut build = cargo(&format!(
-        "rustc --package sprung-plugin --lib --crate-type cdylib --target-dir target {profile} {linking}"
+        "rustc --manifest-path plugin/Cargo.toml --lib --crate-type cdylib --target-dir target {profile} {linking}"
     ));
     if !build.status().map_err(|error| format!("cargo: {error}"))?.success() {
         return Err("the plugin does not build".to_owned());

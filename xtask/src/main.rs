@@ -7,6 +7,7 @@ mod callgrind;
 mod figures;
 mod files;
 mod install;
+mod patch;
 mod python;
 mod setup;
 mod shell;
@@ -31,6 +32,8 @@ enum Chore {
     Setup,
     /// Run the whole test suite, setup included.
     Test,
+    /// Put the plugin's wrapper, with our corrections, where cargo finds it in the folder `plugin`. Other chores do it too.
+    Patch,
     /// Build the plugin and put Sprung.clap and Sprung.vst3 into target/bundled.
     Bundle {
         /// Optimised, as it is to be played.
@@ -91,6 +94,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
         Chore::Setup => setup::run(),
         Chore::Test => test::run(),
+        Chore::Patch => patch::run().map(drop),
         Chore::Bundle { release } => bundle::run(release).map(drop),
         Chore::Install(place) => install::install(place.scope()),
         Chore::Uninstall(place) => install::uninstall(place.scope()),
