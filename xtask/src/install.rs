@@ -1,6 +1,7 @@
 //! `cargo xtask install` and `uninstall`: the bundles where DAWs look for them.
 
 use crate::bundle::{self, Format};
+use crate::files;
 use std::path::PathBuf;
 
 /// For whom the plugin is installed.
@@ -37,8 +38,8 @@ pub(crate) fn install(scope: Scope) -> Result<(), String> {
     for place in folders {
         let (format, folder) = place?;
         let to = folder.join(format.file_name());
-        bundle::make_folder_of(&to)
-            .and_then(|()| bundle::replace(&to, |aside| bundle::copy(&bundles.join(format.file_name()), aside)))
+        files::make_folder_of(&to)
+            .and_then(|()| files::replace(&to, |aside| files::copy(&bundles.join(format.file_name()), aside)))
             .map_err(|message| explain(message, scope))?;
         println!("installed {}", to.display());
     }
@@ -50,7 +51,7 @@ pub(crate) fn install(scope: Scope) -> Result<(), String> {
 pub(crate) fn uninstall(scope: Scope) -> Result<(), String> {
     for format in Format::ALL {
         let path = folder(format, scope)?.join(format.file_name());
-        let was_there = bundle::remove(&path).map_err(|message| explain(message, scope))?;
+        let was_there = files::remove(&path).map_err(|message| explain(message, scope))?;
         println!("{} {}", if was_there { "removed" } else { "not there:" }, path.display());
     }
     Ok(())

@@ -5,7 +5,9 @@ mod bless;
 mod bundle;
 mod callgrind;
 mod figures;
+mod files;
 mod install;
+mod patch;
 mod python;
 mod setup;
 mod shell;
@@ -35,6 +37,8 @@ enum Chore {
         #[arg(long)]
         strict: bool,
     },
+    /// Put the plugin's wrapper, with our corrections, where cargo finds it in the folder `plugin`. Other chores do it too.
+    Patch,
     /// Build the plugin and put Sprung.clap and Sprung.vst3 into target/bundled.
     Bundle {
         /// Optimised, as it is to be played.
@@ -95,6 +99,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
         Chore::Setup => setup::run(),
         Chore::Test { strict } => test::run(strict || skipped::in_ci()),
+        Chore::Patch => patch::run().map(drop),
         Chore::Bundle { release } => bundle::run(release).map(drop),
         Chore::Install(place) => install::install(place.scope()),
         Chore::Uninstall(place) => install::uninstall(place.scope()),

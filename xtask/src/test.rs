@@ -1,7 +1,7 @@
 //! `cargo xtask test`: the whole suite, step by step, with a count of what really ran.
 
 use crate::shell::{cargo, run_and_read};
-use crate::{bundle, callgrind, setup, skipped};
+use crate::{bundle, callgrind, patch, setup, skipped};
 use std::fmt;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -48,7 +48,7 @@ const STEPS: &[Step] = &[
     },
     Step {
         name: "tests",
-        arguments: "test --workspace --exclude sprung-plugin --all-features --no-fail-fast",
+        arguments: "test --workspace --all-features --no-fail-fast",
         environment: &[],
         shows: Shows::Tests,
     },
@@ -83,6 +83,24 @@ const STEPS: &[Step] = &[
         environment: &[],
         shows: Shows::Benches,
     },
+    Step {
+        name: "plugin, format",
+        arguments: "fmt --manifest-path plugin/Cargo.toml --check",
+        environment: &[],
+        shows: Shows::OneCheck,
+    },
+    Step {
+        name: "plugin, lint",
+        arguments: "clippy --manifest-path plugin/Cargo.toml --all-targets --all-features -- -D warnings",
+        environment: &[],
+        shows: Shows::OneCheck,
+    },
+    Step {
+        name: "plugin, documentation",
+        arguments: "doc --manifest-path plugin/Cargo.toml --no-deps --all-features",
+        environment: &[DENY],
+        shows: Shows::OneCheck,
+    },
 ];
 
 /// How much ran, and how it went.
@@ -114,6 +132,10 @@ pub(crate) fn run(strict: bool) -> Result<(), String> {
         Ok(()) => (Count { passed: 1, ..Count::default() }, ""),
         Err(message) => failed(&message),
     })];
+    outcomes.push(timed("plugin's wrapper", || match patch::run() {
+        Ok(_) => (Count { passed: 1, ..Count::default() }, ""),
+        Err(message) => failed(&message),
+    }));
     outcomes.extend(STEPS.iter().map(|step| timed(step.name, || step.run())));
     outcomes.push(timed("plugin, as bundled", plugin));
     outcomes.push(timed("instructions", instructions));
@@ -148,7 +170,7 @@ impl Count {
 fn plugin() -> (Count, &'static str) {
     match bundle::run(false) {
         Ok(folder) => {
-            let mut command = cargo("test --package sprung-plugin --no-fail-fast");
+            let mut command = cargo("test --manifest-path plugin/Cargo.toml --no-fail-fast");
             command.env("SPRUNG_BUNDLES", folder);
             run_command(command, Shows::Tests)
         }

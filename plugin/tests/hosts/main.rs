@@ -1,4 +1,4 @@
-//! The plugin in real hosts: CLAP in clack, VST3 in pedalboard and dawdreamer, the window under Xvfb.
+//! The plugin in real hosts: CLAP in clack, VST3 in pedalboard, dawdreamer and a host of our own, the window under Xvfb.
 //!
 //! `plugin/tests/README.md` lists what is covered and where.
 
@@ -18,7 +18,10 @@ mod scan;
 mod screen;
 mod song;
 mod state;
+mod storm;
 mod vst3;
+mod vst3_host;
+mod vst3_state;
 mod window;
 
 use libtest_mimic::{Arguments, Trial};
@@ -74,6 +77,7 @@ fn main() -> ExitCode {
     if let Some(work) = process::work() {
         return match work.as_str() {
             "growth" | "reopen" => growth::work(&work),
+            "storm" | "endings" => storm::work(&work),
             "window" | "window-playing" => window::work(&work),
             _ => realtime::work(&work),
         };
@@ -169,6 +173,16 @@ fn main() -> ExitCode {
         Screen: window {
             opens_and_closes_fifty_times
             opens_and_closes_while_audio_runs
+        }
+        Nothing: vst3_state {
+            parameters_have_the_numbers_of_their_ids
+            states_of_all_versions_load
+        }
+        Nothing: storm {
+            instances_end_while_their_changes_are_told
+        }
+        Screen: storm {
+            the_window_comes_and_goes_while_parameters_are_automated
         }
         Python: vst3 {
             every_parameter_can_be_set_and_read

@@ -59,9 +59,14 @@ pub(crate) fn enclosed(own: &str) -> Vec<u8> {
     bytes
 }
 
-/// The plugin's own part of a saved state.
+/// The plugin's own part of a state that a CLAP host has saved, which starts with its length.
 pub(crate) fn own_part(state: &[u8]) -> serde_json::Value {
-    let whole: serde_json::Value = serde_json::from_slice(&state[8..]).unwrap();
+    own_part_of(&state[8..])
+}
+
+/// The plugin's own part of a state that a VST3 host has saved.
+pub(crate) fn own_part_of(state: &[u8]) -> serde_json::Value {
+    let whole: serde_json::Value = serde_json::from_slice(state).unwrap();
     serde_json::from_str(whole["fields"]["sprung"].as_str().expect("the plugin keeps its own field")).unwrap()
 }
 

@@ -18,6 +18,11 @@ pub(crate) fn vst3() -> &'static Path {
     PATH.get_or_init(|| folder().join("Sprung.vst3"))
 }
 
+/// The library within `Sprung.vst3`.
+pub(crate) fn vst3_library() -> PathBuf {
+    vst3().join("Contents").join(architecture()).join("Sprung.so")
+}
+
 /// Whether the bundles to test were given.
 pub(crate) fn are_given() -> bool {
     std::env::var_os(BUNDLES).is_some()

@@ -1,0 +1,110 @@
+//! What holds a plugin's window in the host, with a run loop that counts who is on it, or without one.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use vst3::Steinberg::Linux::{
+    FileDescriptor, IEventHandler, IEventHandlerTrait, IRunLoop, IRunLoopTrait, ITimerHandler, TimerInterval,
+};
+use vst3::Steinberg::{
+    IPlugFrame, IPlugFrameTrait, IPlugView, IPlugViewTrait, ViewRect, kInvalidArgument, kNotImplemented, kResultOk,
+    tresult,
+};
+use vst3::{Class, ComPtr, ComRef};
+
+/// A frame with a run loop. It holds references to its handlers, as the format's own example does.
+#[derive(Default)]
+pub(crate) struct Frame {
+    handlers: Mutex<Vec<(ComPtr<IEventHandler>, FileDescriptor)>>,
+    registered: AtomicUsize,
+    handled: AtomicUsize,
+}
+
+impl Class for Frame {
+    type Interfaces = (IPlugFrame, IRunLoop);
+}
+
+impl Frame {
+    /// How many handlers have come, and how many are there.
+    pub(crate) fn registered(&self) -> (usize, usize) {
+        (self.registered.load(Ordering::Relaxed), self.handlers.lock().unwrap().len())
+    }
+
+    /// How often a handler was called.
+    pub(crate) fn handled(&self) -> usize {
+        self.handled.load(Ordering::Relaxed)
+    }
+
+    /// Calls the handlers whose file descriptors have something to read, within so many milliseconds.
+    pub(crate) fn turn(&self, milliseconds: i32) {
+        let handlers = self.handlers.lock().unwrap().clone();
+        let mut polled: Vec<_> =
+            handlers.iter().map(|(_, fd)| libc::pollfd { fd: *fd, events: libc::POLLIN, revents: 0 }).collect();
+        // SAFETY: the list lives through the call and is as long as it says.
+        unsafe { libc::poll(polled.as_mut_ptr(), polled.len() as libc::nfds_t, milliseconds) };
+        for ((handler, fd), poll) in handlers.iter().zip(&polled) {
+            assert_eq!(poll.revents & libc::POLLNVAL, 0, "file descriptor {fd} is closed and still on the run loop");
+            if poll.revents != 0 {
+                self.handled.fetch_add(1, Ordering::Relaxed);
+                // SAFETY: this list has a reference to the handler.
+                unsafe { handler.onFDIsSet(*fd) };
+            }
+        }
+    }
+}
+
+impl IRunLoopTrait for Frame {
+    unsafe fn registerEventHandler(&self, handler: *mut IEventHandler, fd: FileDescriptor) -> tresult {
+        // SAFETY: the plugin gives a handler, or null.
+        let Some(handler) = (unsafe { ComRef::from_raw(handler) }) else { return kInvalidArgument };
+        self.registered.fetch_add(1, Ordering::Relaxed);
+        self.handlers.lock().unwrap().push((handler.to_com_ptr(), fd));
+        kResultOk
+    }
+
+    unsafe fn unregisterEventHandler(&self, handler: *mut IEventHandler) -> tresult {
+        let mut handlers = self.handlers.lock().unwrap();
+        let Some(place) = handlers.iter().position(|(known, _)| known.as_ptr() == handler) else {
+            return kInvalidArgument;
+        };
+        let removed = handlers.swap_remove(place);
+        // The last reference may go with it, and call back.
+        drop(handlers);
+        drop(removed);
+        kResultOk
+    }
+
+    unsafe fn registerTimer(&self, _: *mut ITimerHandler, _: TimerInterval) -> tresult {
+        kNotImplemented
+    }
+
+    unsafe fn unregisterTimer(&self, _: *mut ITimerHandler) -> tresult {
+        kNotImplemented
+    }
+}
+
+impl IPlugFrameTrait for Frame {
+    unsafe fn resizeView(&self, view: *mut IPlugView, size: *mut ViewRect) -> tresult {
+        // SAFETY: as the caller's.
+        unsafe { resize(view, size) }
+    }
+}
+
+/// A frame that offers no run loop.
+pub(crate) struct FrameWithoutLoop;
+
+impl Class for FrameWithoutLoop {
+    type Interfaces = (IPlugFrame,);
+}
+
+impl IPlugFrameTrait for FrameWithoutLoop {
+    unsafe fn resizeView(&self, view: *mut IPlugView, size: *mut ViewRect) -> tresult {
+        // SAFETY: as the caller's.
+        unsafe { resize(view, size) }
+    }
+}
+
+/// Grants a view the size that it asks for.
+unsafe fn resize(view: *mut IPlugView, size: *mut ViewRect) -> tresult {
+    // SAFETY: the plugin gives its view, or null, and a size that lives through the call.
+    unsafe { ComRef::from_raw(view).map_or(kInvalidArgument, |view| view.onSize(size)) }
+}

@@ -1,0 +1,262 @@
+//! A VST3 host of our own, for what hosts made by others cannot be told to do: the plugin's C interfaces, called directly.
+
+#![allow(unsafe_code, non_snake_case, reason = "the format is a C interface, and its names are the format's")]
+
+mod block;
+mod frame;
+mod stream;
+
+pub(crate) use block::{Automation, Block};
+pub(crate) use frame::{Frame, FrameWithoutLoop};
+
+use crate::host::bundle;
+use std::ffi::{CString, c_void};
+use std::ptr::null_mut;
+use std::sync::Arc;
+use stream::Stream;
+use vst3::Steinberg::Vst::{
+    BusDirections_, IAudioProcessor, IAudioProcessorTrait, IComponent, IComponentHandler, IComponentHandlerTrait,
+    IComponentTrait, IEditController, IEditControllerTrait, MediaTypes_, ParamID, ParamValue, ParameterInfo,
+    ProcessModes_, ProcessSetup, SymbolicSampleSizes_,
+};
+use vst3::Steinberg::{
+    IBStream, IPlugFrame, IPlugView, IPlugViewTrait, IPluginBaseTrait, IPluginFactory, IPluginFactoryTrait,
+    kPlatformTypeX11EmbedWindowID, kResultOk, tresult,
+};
+use vst3::{Class, ComPtr, ComWrapper, Interface};
+
+/// Frames a block.
+pub(crate) const FRAMES: usize = 64;
+
+/// The plugin's class. Pinned: a host finds a project's plugin by it.
+const CLASS: &[u8; 16] = b"SprungMassSpring";
+
+/// The library in the bundle, opened.
+struct Library(*mut c_void);
+
+// SAFETY: a handle of the system's loader may be used on any thread.
+unsafe impl Send for Library {}
+// SAFETY: as above.
+unsafe impl Sync for Library {}
+
+impl Library {
+    fn symbol(&self, name: &str) -> *mut c_void {
+        let name = CString::new(name).unwrap();
+        // SAFETY: the library is open, and the name ends with a zero.
+        let symbol = unsafe { libc::dlsym(self.0, name.as_ptr()) };
+        assert!(!symbol.is_null(), "the bundle has no {name:?}");
+        symbol
+    }
+}
+
+impl Drop for Library {
+    fn drop(&mut self) {
+        // SAFETY: the library has this function, of this type; nothing of the library is used afterwards.
+        unsafe {
+            let exit: extern "C" fn() -> bool = std::mem::transmute(self.symbol("ModuleExit"));
+            assert!(exit());
+            libc::dlclose(self.0);
+        }
+    }
+}
+
+/// The plugin's factory, and the library for as long as anything of it is in use.
+pub(crate) struct Module {
+    factory: ComPtr<IPluginFactory>,
+    library: Arc<Library>,
+}
+
+impl Module {
+    pub(crate) fn open() -> Self {
+        let path = CString::new(bundle::vst3_library().to_str().expect("a path in Unicode")).unwrap();
+        // SAFETY: the bundle's library has these two functions, of these types.
+        unsafe {
+            let library = libc::dlopen(path.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL);
+            assert!(!library.is_null(), "{path:?} cannot be loaded");
+            let library = Library(library);
+            let entry: extern "C" fn(*mut c_void) -> bool = std::mem::transmute(library.symbol("ModuleEntry"));
+            assert!(entry(library.0));
+            let factory: extern "system" fn() -> *mut IPluginFactory =
+                std::mem::transmute(library.symbol("GetPluginFactory"));
+            let factory = ComPtr::from_raw(factory()).expect("a factory");
+            Self { factory, library: Arc::new(library) }
+        }
+    }
+}
+
+/// What the plugin tells of edits in its window.
+struct Handler;
+
+impl Class for Handler {
+    type Interfaces = (IComponentHandler,);
+}
+
+impl IComponentHandlerTrait for Handler {
+    unsafe fn beginEdit(&self, _: ParamID) -> tresult {
+        kResultOk
+    }
+
+    unsafe fn performEdit(&self, _: ParamID, _: ParamValue) -> tresult {
+        kResultOk
+    }
+
+    unsafe fn endEdit(&self, _: ParamID) -> tresult {
+        kResultOk
+    }
+
+    unsafe fn restartComponent(&self, _: i32) -> tresult {
+        kResultOk
+    }
+}
+
+/// An instance of the plugin. What is called on the thread that made it is called on the host's main thread.
+pub(crate) struct Vst3 {
+    // Released in this order, the library last.
+    controller: ComPtr<IEditController>,
+    pub(crate) processor: ComPtr<IAudioProcessor>,
+    component: ComPtr<IComponent>,
+    _library: Arc<Library>,
+}
+
+impl Vst3 {
+    pub(crate) fn new(module: &Module) -> Self {
+        let mut component = null_mut();
+        // SAFETY: what is asked for is what the pointer is for; the handler is counted by the plugin.
+        unsafe {
+            let result = module.factory.createInstance(
+                CLASS.as_ptr().cast(),
+                IComponent::IID.as_ptr().cast(),
+                &raw mut component,
+            );
+            assert_eq!(result, kResultOk, "the class is there");
+            let component = ComPtr::from_raw(component.cast::<IComponent>()).expect("an instance");
+            assert_eq!(component.initialize(null_mut()), kResultOk);
+            let controller = component.cast::<IEditController>().expect("a controller");
+            let processor = component.cast::<IAudioProcessor>().expect("a processor");
+            let handler = ComWrapper::new(Handler).to_com_ptr::<IComponentHandler>().unwrap();
+            assert_eq!(controller.setComponentHandler(handler.as_ptr()), kResultOk);
+            Self { controller, processor, component, _library: module.library.clone() }
+        }
+    }
+
+    /// Ready to process blocks of [`FRAMES`].
+    pub(crate) fn start(&self) {
+        let mut setup = ProcessSetup {
+            processMode: ProcessModes_::kRealtime as i32,
+            symbolicSampleSize: SymbolicSampleSizes_::kSample32 as i32,
+            maxSamplesPerBlock: FRAMES as i32,
+            sampleRate: 48_000.0,
+        };
+        // SAFETY: the calls come in the format's order, with a setup that lives through its call.
+        unsafe {
+            assert_eq!(self.processor.setupProcessing(&raw mut setup), kResultOk);
+            for (media, direction) in
+                [(MediaTypes_::kAudio, BusDirections_::kOutput), (MediaTypes_::kEvent, BusDirections_::kInput)]
+            {
+                assert_eq!(self.component.activateBus(media as i32, direction as i32, 0, 1), kResultOk);
+            }
+            assert_eq!(self.component.setActive(1), kResultOk);
+            assert_eq!(self.processor.setProcessing(1), kResultOk);
+        }
+    }
+
+    /// No longer ready to process.
+    pub(crate) fn stop(&self) {
+        // SAFETY: the calls come in the format's order.
+        unsafe {
+            assert_eq!(self.processor.setProcessing(0), kResultOk);
+            assert_eq!(self.component.setActive(0), kResultOk);
+        }
+    }
+
+    /// Id, title and flags of the parameter at an index, if there is one.
+    pub(crate) fn parameter(&self, index: i32) -> Option<(ParamID, String)> {
+        // SAFETY: zeros are a value of the type, which is a plain record of C.
+        let mut info: ParameterInfo = unsafe { std::mem::zeroed() };
+        // SAFETY: the record lives through the call.
+        if unsafe { self.controller.getParameterInfo(index, &raw mut info) } != kResultOk {
+            return None;
+        }
+        let title: Vec<u16> = info.title.iter().copied().take_while(|unit| *unit != 0).collect();
+        Some((info.id, String::from_utf16(&title).unwrap()))
+    }
+
+    /// How many parameters there are, with those that stand for controllers.
+    pub(crate) fn parameter_count(&self) -> i32 {
+        // SAFETY: the call has no conditions.
+        unsafe { self.controller.getParameterCount() }
+    }
+
+    /// Where a parameter stands, 0–1.
+    pub(crate) fn position(&self, id: ParamID) -> f64 {
+        // SAFETY: the call has no conditions.
+        unsafe { self.controller.getParamNormalized(id) }
+    }
+
+    /// Loads a state; whether the plugin took it.
+    pub(crate) fn load(&self, state: &[u8]) -> bool {
+        let stream = ComWrapper::new(Stream::new(state.to_vec()));
+        let stream = stream.to_com_ptr::<IBStream>().unwrap();
+        // SAFETY: the stream lives through the call.
+        unsafe { self.component.setState(stream.as_ptr()) == kResultOk }
+    }
+
+    /// The state as a project keeps it.
+    pub(crate) fn save(&self) -> Vec<u8> {
+        let stream = ComWrapper::new(Stream::new(Vec::new()));
+        let pointer = stream.to_com_ptr::<IBStream>().unwrap();
+        // SAFETY: the stream lives through the call.
+        assert_eq!(unsafe { self.component.getState(pointer.as_ptr()) }, kResultOk);
+        stream.bytes()
+    }
+
+    /// Opens the window in one of the host's.
+    pub(crate) fn open_window(&self, frame: &ComPtr<IPlugFrame>, parent: u32) -> View {
+        // SAFETY: the frame and the parent outlive the view; the calls come in the format's order.
+        unsafe {
+            let view = ComPtr::from_raw(self.controller.createView(c"editor".as_ptr())).expect("a view");
+            assert_eq!(view.setFrame(frame.as_ptr()), kResultOk);
+            let parent = parent as usize as *mut c_void;
+            assert_eq!(view.attached(parent, kPlatformTypeX11EmbedWindowID), kResultOk, "the window opens");
+            View(view)
+        }
+    }
+}
+
+impl Drop for Vst3 {
+    fn drop(&mut self) {
+        // SAFETY: this comes before the last release.
+        unsafe {
+            self.controller.setComponentHandler(null_mut());
+            self.component.terminate();
+        }
+    }
+}
+
+/// The plugin's window, open.
+pub(crate) struct View(ComPtr<IPlugView>);
+
+impl View {
+    /// Closes the window as hosts do.
+    pub(crate) fn close(self) {
+        // SAFETY: the calls come in the format's order.
+        unsafe {
+            assert_eq!(self.0.removed(), kResultOk, "the window closes");
+            assert_eq!(self.0.setFrame(null_mut()), kResultOk);
+        }
+    }
+
+    /// Closes the window and lets go of it without taking the frame away, as careless hosts do.
+    pub(crate) fn close_carelessly(self) {
+        // SAFETY: the view is attached.
+        assert_eq!(unsafe { self.0.removed() }, kResultOk, "the window closes");
+    }
+}
+
+/// How many threads of this process have this name.
+pub(crate) fn threads_called(name: &str) -> usize {
+    let tasks = std::fs::read_dir("/proc/self/task").unwrap();
+    // Threads may end while they are counted.
+    let names = tasks.filter_map(|task| std::fs::read_to_string(task.unwrap().path().join("comm")).ok());
+    names.filter(|found| found.trim() == name).count()
+}
