@@ -71,8 +71,9 @@ pub(crate) fn check(case: &Case) -> Result<f64, String> {
             let limits = step.checked_sub(1).map_or([0.0; 2], |step| steps[step].output);
             for (side, sample, limit) in [("left", *samples.0, limits[0]), ("right", *samples.1, limits[1])] {
                 let size = f64::from(sample.abs());
-                // Not `>`: that would let NaN pass.
-                if !(size <= limit * (1.0 + TOLERANCE) + FLOOR) {
+                // NaN is not within.
+                let within = size <= limit * (1.0 + TOLERANCE) + FLOOR;
+                if !within {
                     return Err(format!("frame {frame}, {side}: {sample} where the bound is {limit}"));
                 }
                 if limit > 1e-3 {
@@ -93,7 +94,8 @@ pub(crate) fn check(case: &Case) -> Result<f64, String> {
 fn look(player: &mut Player, step: Option<&Step>, frame: usize) -> Result<(), String> {
     let limit = step.map_or(0.0, |step| step.displacement) * (1.0 + TOLERANCE) + FLOOR;
     for (m, mass) in player.snapshot().masses.iter().enumerate() {
-        if !(f64::from(mass.displacement.abs()) <= limit) {
+        let within = f64::from(mass.displacement.abs()) <= limit;
+        if !within {
             return Err(format!("frame {frame}: mass {m} at {} where the bound is {limit}", mass.displacement));
         }
         if !(mass.energy >= 0.0 && f64::from(mass.energy) <= limit * limit) {
