@@ -59,25 +59,54 @@ impl Error {
 /// A result with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// The closest of `candidates` to `word`, when it is close enough to be what was meant.
-pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    candidates
-        .into_iter()
-        .map(|candidate| (strsim::jaro_winkler(&word.to_lowercase(), &candidate.to_lowercase()), candidate))
-        .filter(|(similarity, _)| *similarity > 0.7)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
+/// The candidates that `word` was most likely meant to be, in quotes and joined by “or”: those of which it is a whole
+/// word, or else those that are the fewest edits away. None if all are too far.
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let word = word.trim().to_lowercase();
+    let scored: Vec<_> = candidates.into_iter().map(|candidate| (similarity(&word, candidate), candidate)).collect();
+    let best = scored.iter().map(|(score, _)| *score).max_by(f64::total_cmp).filter(|best| *best > LEAST_SIMILARITY)?;
+    let found = scored.iter().filter(|(score, _)| *score == best).take(MOST_SUGGESTIONS);
+    Some(found.map(|(_, candidate)| format!("‘{candidate}’")).collect::<Vec<_>>().join(" or "))
+}
+
+/// Candidates less like the word than this are not worth naming.
+const LEAST_SIMILARITY: f64 = 0.55;
+
+const MOST_SUGGESTIONS: usize = 3;
+
+/// 0–1, by edits between the two as a whole, or, counting a little less, between `word` and one word of the candidate.
+fn similarity(word: &str, candidate: &str) -> f64 {
+    let candidate = candidate.to_lowercase();
+    let parts = candidate.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());
+    let of_part = parts.map(|part| 0.9 * strsim::normalized_damerau_levenshtein(word, part)).fold(0.0, f64::max);
+    strsim::normalized_damerau_levenshtein(word, &candidate).max(of_part)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn found(word: &str, candidates: &[&str]) -> String {
+        nearest(word, candidates.iter().copied()).unwrap_or_default()
+    }
+
     #[test]
-    fn nearest_finds_the_misspelt_and_leaves_the_unrelated() {
+    fn the_misspelt_is_found_and_the_unrelated_left() {
         let words = ["decay", "release", "gain"];
-        assert_eq!(nearest("deacy", words), Some("decay"));
-        assert_eq!(nearest("Gian", words), Some("gain"));
-        assert_eq!(nearest("xylophone", words), None);
+        assert_eq!(found("deacy", &words), "‘decay’");
+        assert_eq!(found("Gian", &words), "‘gain’");
+        assert_eq!(found("decays", &words), "‘decay’");
+        assert_eq!(found("xylophone", &words), "");
+        assert_eq!(found("", &words), "");
+    }
+
+    #[test]
+    fn a_word_of_a_longer_name_is_enough() {
+        let names = ["Bass", "Church Bell", "Clave", "Closed Hat", "Open Hat", "Sub-Bass"];
+        assert_eq!(found("Bell", &names), "‘Church Bell’");
+        assert_eq!(found("belll", &names), "‘Church Bell’");
+        assert_eq!(found("hat", &names), "‘Closed Hat’ or ‘Open Hat’");
+        assert_eq!(found("bass", &names), "‘Bass’", "a whole name goes before a part of one");
+        assert_eq!(found("rate", &["vibrato", "vibrato_rate"]), "‘vibrato_rate’");
     }
 }

@@ -49,6 +49,7 @@ pub mod preset;
 #[cfg(feature = "realtime")]
 pub mod realtime;
 pub mod render;
+pub mod text;
 pub mod units;
 
 pub use error::{Error, Result};

@@ -74,8 +74,24 @@ pub fn parse_key(text: &str, a4_hz: f64) -> Result<f64, String> {
         }
     };
     // A frequency may lie beyond the keyboard, down to the subsonic and up to any Nyquist limit; keys may not.
-    let range = if text.to_ascii_lowercase().contains("hz") { -60.0..=200.0 } else { 0.0..=127.0 };
-    if range.contains(&key) { Ok(key) } else { Err(format!("note ‘{text}’ is out of range: {expected}")) }
+    let is_frequency = text.to_ascii_lowercase().contains("hz");
+    let range = if is_frequency { -60.0..=200.0 } else { 0.0..=127.0 };
+    if range.contains(&key) {
+        return Ok(key);
+    }
+    let hint =
+        if is_frequency || key < 0.0 { String::new() } else { format!("; for {text} Hz, write {}Hz", text.trim()) };
+    Err(format!("note ‘{text}’ is out of range: {expected}{hint}"))
+}
+
+/// What `text` is with a decimal point, if it is a quantity with a decimal comma: `"0,5 s"` gives `"0.5 s"`.
+pub fn with_decimal_point(text: &str) -> Option<String> {
+    let (whole, rest) = text.split_once(',')?;
+    let between_digits =
+        whole.ends_with(|c: char| c.is_ascii_digit()) && rest.starts_with(|c: char| c.is_ascii_digit());
+    let written = format!("{whole}.{rest}");
+    let (_, unit) = split_quantity(&written)?;
+    (between_digits && !unit.contains([',', '='])).then_some(written)
 }
 
 /// Splits `"-12 dB"` into `(-12.0, "dB")`; `None` if it does not begin with a finite number.
@@ -119,6 +135,22 @@ mod tests {
         }
         for text in ["200", "-1", "nan", "inf", "", "0Hz", "-5Hz", "C", "1e400", "60 s"] {
             assert!(parse_key(text, 440.0).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_number_that_is_no_key_may_have_been_meant_as_a_frequency() {
+        assert!(parse_key("440", 440.0).unwrap_err().ends_with("; for 440 Hz, write 440Hz"));
+        assert!(parse_key("-1", 440.0).unwrap_err().ends_with("(440Hz)"));
+        assert!(parse_key("1e9 Hz", 440.0).unwrap_err().ends_with("(440Hz)"));
+    }
+
+    #[test]
+    fn a_decimal_comma_is_told_from_a_list() {
+        assert_eq!(with_decimal_point("0,5").as_deref(), Some("0.5"));
+        assert_eq!(with_decimal_point("-1,25 dB").as_deref(), Some("-1.25 dB"));
+        for text in ["0.5", "1,2,3", "2s,gain=-3", "2,gain=3", "1, 2", ",5", "a,5", "5,", "1.2,3"] {
+            assert_eq!(with_decimal_point(text), None, "{text}");
         }
     }
 

@@ -27,25 +27,44 @@ fn pedal(frame: u32, controller: u8, value: f32) -> Event {
 
 fn largest_jump(patch: &Patch, programs: &[Patch], events: &[Event]) -> f32 {
     let mut ensemble = Ensemble::new(RATE, 1, patch, programs);
-    let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
-    ensemble.process(events, &mut left, &mut right);
-    assert!(left.iter().any(|sample| sample.abs() > 0.01), "something sounds");
-    jump(&left)
+    let mut sound = [vec![0.0; FRAMES], vec![0.0; FRAMES]];
+    let [left, right] = &mut sound;
+    ensemble.process(events, left, right);
+    jump(&sound)
 }
 
-/// The largest jump between two samples.
-fn jump(samples: &[f32]) -> f32 {
-    samples.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max)
+/// The largest jump between two samples of one channel, in a sound that both channels have.
+fn jump(sound: &[Vec<f32>; 2]) -> f32 {
+    for channel in sound {
+        assert!(channel.iter().any(|sample| sample.abs() > 0.01), "something sounds on either channel");
+    }
+    let jumps = sound.iter().flat_map(|channel| channel.windows(2)).map(|pair| (pair[1] - pair[0]).abs());
+    // A NaN is a jump as well; `max` alone would pass over it.
+    jumps.fold(0.0, |most, jump| if jump.is_nan() { f32::INFINITY } else { f32::max(most, jump) })
 }
 
-/// The sounds that the disturbances are tried on: a sine, a mallet of several modes, a kick that sweeps.
+/// The sounds that the disturbances are tried on: a sine, a mallet of several modes on the right and on the left, a kick
+/// that sweeps.
 fn patches() -> [(&'static str, Patch); 3] {
-    let sine = Patch::default().with(Param::Decay, 3.0).with(Param::Gain, 0.0);
+    // The limiter answers to what is loud, disturbed or not.
+    let sine = Patch::default().with(Param::Decay, 3.0).with(Param::Gain, 0.0).with(Param::Limiter, 0.0);
     let mut mallet = sine.with(Param::Exciter, 1.0).with(Param::Hardness, 60.0);
-    let modes = [(1.0, 0.6), (3.93, 0.25), (9.6, 0.1), (17.0, 0.05)];
-    mallet.modes = ModeTable::new(&modes.map(|(ratio, level)| Mode { ratio, level, ..Mode::UNIT }));
+    let modes = [(1.0, 0.6, 0.7), (3.93, 0.25, -0.9), (9.6, 0.1, 0.4), (17.0, 0.05, -0.2)];
+    mallet.modes = ModeTable::new(&modes.map(|(ratio, level, pan)| Mode { ratio, level, pan, ..Mode::UNIT }));
     let kick = sine.with(Param::Sweep, 24.0).with(Param::SweepTime, 0.08).with(Param::Decay, 0.5);
     [("sine", sine), ("mallet", mallet), ("kick", kick)]
+}
+
+/// What a program change changes to: other modes, elsewhere between left and right, quieter and struck otherwise.
+fn program() -> Patch {
+    let mut patch = Patch::default()
+        .with(Param::Gain, -12.0)
+        .with(Param::Exciter, 2.0)
+        .with(Param::Decay, 0.5)
+        .with(Param::Limiter, 0.0);
+    let modes = [(1.0, 0.5, -0.8), (2.76, 0.3, 0.9), (5.4, 0.2, -0.3)];
+    patch.modes = ModeTable::new(&modes.map(|(ratio, level, pan)| Mode { ratio, level, pan, ..Mode::UNIT }));
+    patch
 }
 
 /// Compares the jumps of `disturbed` to those of `undisturbed`, both made for a key and a moment, on every patch,
@@ -55,12 +74,22 @@ fn check(
     undisturbed: impl Fn(u8, u32) -> Vec<Event>,
     disturbed: impl Fn(u8, u32) -> Vec<Event>,
 ) {
+    check_against(change, |key, moment| [undisturbed(key, moment)], disturbed);
+}
+
+/// As [`check`], with several undisturbed sounds, of which the one with the largest jump counts.
+fn check_against<const N: usize>(
+    change: impl Fn(Patch) -> Patch,
+    undisturbed: impl Fn(u8, u32) -> [Vec<Event>; N],
+    disturbed: impl Fn(u8, u32) -> Vec<Event>,
+) {
     for (name, patch) in patches() {
         let free = patch.with(Param::Voices, 16.0);
-        let programs = [Patch::default().with(Param::Gain, -20.0).with(Param::Exciter, 3.0)];
+        let programs = [program()];
         for key in [28, 40, 60, 84] {
             for moment in [4800, 4811, 4907, 5003, 5151] {
-                let before = largest_jump(&free, &programs, &undisturbed(key, moment));
+                let sounds = undisturbed(key, moment);
+                let before = sounds.iter().map(|events| largest_jump(&free, &programs, events)).fold(0.0, f32::max);
                 let after = largest_jump(&change(patch), &programs, &disturbed(key, moment));
                 assert!(
                     after <= before + ALLOWANCE,
@@ -86,9 +115,10 @@ fn stealing_every_voice_at_once_does_not_click() {
     let undisturbed = largest_jump(&patch, &[], &events);
     let mut synth = Synth::new(RATE, 1);
     synth.set_patch(&patch);
-    let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
-    synth.process(&events, &mut left, &mut right);
-    let disturbed = jump(&left);
+    let mut sound = [vec![0.0; FRAMES], vec![0.0; FRAMES]];
+    let [left, right] = &mut sound;
+    synth.process(&events, left, right);
+    let disturbed = jump(&sound);
     assert!(disturbed <= undisturbed + ALLOWANCE, "a jump of {disturbed} where {undisturbed} is the sound's own");
 }
 
@@ -153,6 +183,35 @@ fn changing_the_preset_does_not_click() {
 }
 
 #[test]
+fn a_note_of_another_preset_does_not_click() {
+    let program = |frame| event(frame, EventKind::Program(0));
+    let other = |event| Event { channel: 1, ..event };
+    // Beside the note that sounds, on its own key, and in its place where there is but one voice.
+    for (interval, voices) in [(7, 16.0), (0, 16.0), (7, 1.0), (0, 1.0)] {
+        for later in [0, 37] {
+            check(
+                |patch| patch.with(Param::Voices, voices),
+                |key, moment| vec![on(0, key), other(program(0)), other(on(moment + later, key + interval))],
+                |key, moment| vec![on(0, key), program(moment), on(moment + later, key + interval)],
+            );
+        }
+    }
+}
+
+#[test]
+fn a_click_is_found_on_either_channel() {
+    let undisturbed = [vec![0.02; 100], vec![0.03; 100]];
+    assert_eq!(jump(&undisturbed), 0.0);
+    for side in [0, 1] {
+        let mut clicks = undisturbed.clone();
+        clicks[side][50..].iter_mut().for_each(|sample| *sample += 2.0 * ALLOWANCE);
+        assert!(jump(&clicks) > ALLOWANCE, "{side}");
+        clicks[side][50] = f32::NAN;
+        assert_eq!(jump(&clicks), f32::INFINITY, "{side}");
+    }
+}
+
+#[test]
 fn silencing_a_channel_does_not_click() {
     check(
         |patch| patch,
@@ -162,13 +221,25 @@ fn silencing_a_channel_does_not_click() {
 }
 
 #[test]
-fn turning_volume_and_gain_does_not_click() {
+fn turning_volume_gain_and_decay_does_not_click() {
     for kind in [
         EventKind::Control { controller: 7, value: 0.0 },
-        EventKind::Control { controller: 10, value: 1.0 },
         EventKind::Param { param: Param::Gain, value: -60.0 },
         EventKind::Param { param: Param::Decay, value: 0.05 },
     ] {
         check(|patch| patch, |key, _| vec![on(0, key)], |key, moment| vec![on(0, key), event(moment, kind)]);
+    }
+}
+
+#[test]
+fn panning_does_not_click() {
+    // Undisturbed are the sound in the middle and the sound on that side, where it is louder.
+    for value in [0.1, 0.9] {
+        let pan = |frame| event(frame, EventKind::Control { controller: 10, value });
+        check_against(
+            |patch| patch,
+            |key, _| [vec![on(0, key)], vec![pan(0), on(0, key)]],
+            |key, moment| vec![on(0, key), pan(moment)],
+        );
     }
 }

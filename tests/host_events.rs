@@ -42,9 +42,9 @@ fn render(patch: &Patch, events: &[Event], frames: usize) -> [Vec<f32>; 2] {
     [left, right]
 }
 
-/// A sine that hardly decays, at full level.
+/// A sine that hardly decays, at full level and as it is.
 fn sine() -> Patch {
-    Patch::default().with(Param::Decay, 60.0).with(Param::Gain, 0.0)
+    Patch::default().with(Param::Decay, 60.0).with(Param::Gain, 0.0).with(Param::Limiter, 0.0)
 }
 
 fn periods(samples: &[f32]) -> usize {

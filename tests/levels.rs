@@ -1,22 +1,89 @@
-//! Every level of vector instructions gives the same bits.
+//! Every level of vector instructions gives the bits of scalar code: one test a level, ignored where the CPU lacks it.
 
+use libtest_mimic::{Arguments, Failed, Trial};
+use sprung::analysis::{diff, level};
 use sprung::dsp::mode_bank::Level;
 use sprung::dsp::random::{key, uniform};
 use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
+use std::process::ExitCode;
+use std::sync::OnceLock;
 
 const FRAMES: usize = 24_000;
-const SOUNDS: u64 = 40;
+const RANDOM_CASES: u64 = 40;
+/// Every factory preset has to be louder than this somewhere, or its bits would say nothing.
+const AUDIBLE: f64 = 0.01;
 
-/// Numbers from 0 to 1, by turns.
+/// Left and right.
+type Stereo = [Vec<f32>; 2];
+
+fn main() -> ExitCode {
+    let trial = |level: Level| {
+        let missing = !level.is_available();
+        if missing {
+            println!("level::{} is ignored: this CPU does not have it", level.name());
+        }
+        Trial::test(format!("level::{}", level.name()), move || has_the_bits_of_scalar_code(level))
+            .with_ignored_flag(missing)
+    };
+    let mut trials: Vec<Trial> = Level::ALL.map(trial).into();
+    trials.push(Trial::test("a_difference_is_named", a_difference_is_named));
+    // The level is the whole process's, so that one test runs at a time.
+    let arguments = Arguments { test_threads: Some(1), ..Arguments::from_args() };
+    libtest_mimic::run(&arguments, trials).exit_code()
+}
+
+/// A sound, what it plays, and the name by which a failure tells of it.
+struct Case {
+    name: String,
+    seed: u64,
+    patch: Patch,
+    events: Vec<Event>,
+}
+
+impl Case {
+    /// The factory presets and random patches, each with random events.
+    fn all() -> Vec<Case> {
+        let preset = |(seed, preset): (u64, &Preset)| Case {
+            name: format!("preset ‘{}’", preset.name),
+            seed,
+            patch: preset.patch,
+            events: events(&mut Stream::new(seed)),
+        };
+        let first_random = Preset::factory().len() as u64;
+        let random = |seed| {
+            let mut stream = Stream::new(seed);
+            let patch = patch(&mut stream, seed);
+            Case { name: format!("random seed {seed}"), seed, patch, events: events(&mut stream) }
+        };
+        (0..)
+            .zip(Preset::factory())
+            .map(preset)
+            .chain((first_random..).take(RANDOM_CASES as usize).map(random))
+            .collect()
+    }
+
+    fn render(&self) -> Stereo {
+        let mut ensemble = Ensemble::new(48_000.0, self.seed, &self.patch, &[]);
+        let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
+        ensemble.process(&self.events, &mut left, &mut right);
+        [left, right]
+    }
+}
+
+/// Numbers from 0 to 1, one after the other.
 struct Stream {
     key: u64,
     n: u64,
 }
 
 impl Stream {
+    fn new(seed: u64) -> Self {
+        Self { key: key(3, seed), n: 0 }
+    }
+
     fn next(&mut self) -> f64 {
         self.n += 1;
         f64::from(uniform(self.key, self.n)) * 0.5 + 0.5
@@ -25,16 +92,16 @@ impl Stream {
 
 /// A random patch of 1 to 64 modes. Every third one is left at its defaults but for the modes and the exciter, so that
 /// all forms of the kernels come up: mono and stereo, ringing, swept and driven, classic.
-fn patch(stream: &mut Stream, sound: u64) -> Patch {
+fn patch(stream: &mut Stream, seed: u64) -> Patch {
     let mut patch = Patch::default();
-    if !sound.is_multiple_of(3) {
+    if !seed.is_multiple_of(3) {
         for info in PARAMS {
             patch.set(info.param, info.denormalise(stream.next()));
         }
     }
-    patch.set(Param::Exciter, (sound % 4) as f32);
-    patch.set(Param::Coefficients, f32::from(u8::from(sound % 7 == 6)));
-    let pan = if sound.is_multiple_of(2) { 0.0 } else { 1.0 };
+    patch.set(Param::Exciter, (seed % 4) as f32);
+    patch.set(Param::Coefficients, f32::from(u8::from(seed % 7 == 6)));
+    let pan = if seed.is_multiple_of(2) { 0.0 } else { 1.0 };
     let modes: Vec<Mode> = (0..1 + (stream.next() * stream.next() * 64.0) as usize)
         .map(|_| Mode {
             ratio: (0.5 + 20.0 * stream.next() * stream.next()) as f32,
@@ -48,7 +115,7 @@ fn patch(stream: &mut Stream, sound: u64) -> Patch {
     patch
 }
 
-/// Notes, releases, bends, pressure and parameters, thick at first and then left to ring.
+/// Notes, releases, bends, pressure and parameters: many at first, then few, so that notes also ring undisturbed.
 fn events(stream: &mut Stream) -> Vec<Event> {
     let mut events: Vec<Event> = (0..60)
         .map(|_| {
@@ -72,38 +139,55 @@ fn events(stream: &mut Stream) -> Vec<Event> {
     events
 }
 
-/// The bits of every sound, the factory's and random ones, mixed into one number (FNV-1a), and the loudest sample.
-fn render_all() -> (u64, f32) {
-    let (mut hash, mut loudest) = (0xCBF2_9CE4_8422_2325_u64, 0.0_f32);
-    let factory = Preset::factory();
-    for sound in 0..SOUNDS + factory.len() as u64 {
-        let mut stream = Stream { key: key(3, sound), n: 0 };
-        let random = patch(&mut stream, sound);
-        let patch = factory.get(sound as usize).map_or(random, |preset| preset.patch);
-        let events = events(&mut stream);
-        let mut ensemble = Ensemble::new(48_000.0, sound, &patch, &[]);
-        let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
-        ensemble.process(&events, &mut left, &mut right);
-        for sample in left.iter().chain(&right) {
-            hash = (hash ^ u64::from(sample.to_bits())).wrapping_mul(0x0000_0100_0000_01B3);
-            loudest = loudest.max(sample.abs());
-        }
-    }
-    (hash, loudest)
+/// Every case as scalar code renders it.
+fn reference() -> &'static [(Case, Stereo)] {
+    static REFERENCE: OnceLock<Vec<(Case, Stereo)>> = OnceLock::new();
+    REFERENCE.get_or_init(|| {
+        assert!(Level::Scalar.force(), "every CPU has scalar code");
+        let rendered = |case: Case| {
+            let audio = case.render();
+            (case, audio)
+        };
+        Case::all().into_iter().map(rendered).collect()
+    })
 }
 
-#[test]
-fn all_levels_give_the_same_bits() {
-    let mut found: Vec<(Level, u64)> = vec![];
-    for level in Level::ALL {
-        if !level.force() {
-            println!("{}: ignored, this CPU does not have it", level.name());
-            continue;
+/// A line for each case in which a level differs from scalar code.
+fn differences(level: Level, found: impl Fn(&Case) -> Stereo) -> Vec<String> {
+    let line = |(case, expected): &(Case, Stereo)| {
+        let found = found(case);
+        let difference = diff::compare([&expected[0], &expected[1]], [&found[0], &found[1]])?;
+        Some(format!("{}: scalar and {} differ: {difference}", case.name, level.name()))
+    };
+    reference().iter().filter_map(line).collect()
+}
+
+fn has_the_bits_of_scalar_code(level: Level) -> Result<(), Failed> {
+    for (case, [left, right]) in reference() {
+        let loudest = level::peak(left).max(level::peak(right));
+        if case.name.starts_with("preset") && loudest < AUDIBLE {
+            return Err(format!("{}: its loudest sample is {loudest}, expected {AUDIBLE} or more", case.name).into());
         }
-        let (hash, loudest) = render_all();
-        println!("{}: {hash:016x}", level.name());
-        assert!(loudest > 0.1, "something sounded");
-        found.push((level, hash));
     }
-    assert!(!found.is_empty() && found.iter().all(|(_, hash)| *hash == found[0].1), "{found:x?}");
+    if !level.force() {
+        return Err(format!("this CPU does not have {}", level.name()).into());
+    }
+    let differences = differences(level, Case::render);
+    if differences.is_empty() { Ok(()) } else { Err(differences.join("\n").into()) }
+}
+
+/// One bit of one sample of the last preset, changed by hand.
+fn a_difference_is_named() -> Result<(), Failed> {
+    let preset = Preset::factory().last().expect("there are factory presets");
+    let planted = |case: &Case| {
+        let mut audio = reference().iter().find(|(other, _)| other.name == case.name).expect("it is a case").1.clone();
+        if case.patch == preset.patch {
+            audio[1][1234] = f32::from_bits(audio[1][1234].to_bits() ^ 1);
+        }
+        audio
+    };
+    let found = differences(Level::Avx2, planted);
+    let expected = format!("preset ‘{}’: scalar and avx2 differ: first differing frame 1234, ", preset.name);
+    let [line] = &found[..] else { return Err(format!("one difference, not {found:?}").into()) };
+    if line.starts_with(&expected) { Ok(()) } else { Err(format!("{line} instead of {expected}…").into()) }
 }

@@ -108,7 +108,11 @@ fn the_classic_sound_of_the_synth_is_the_listing_to_the_bit() {
     let expected = listing(&cases);
     for ((frequency, t60), expected) in settings.into_iter().zip(expected.chunks(9600)) {
         let mut synth = Synth::new(48_000.0, 0);
-        let patch = Patch::default().with(Param::Coefficients, 1.0).with(Param::Decay, t60).with(Param::Gain, 0.0);
+        let patch = Patch::default()
+            .with(Param::Coefficients, 1.0)
+            .with(Param::Decay, t60)
+            .with(Param::Gain, 0.0)
+            .with(Param::Limiter, 0.0);
         synth.set_patch(&patch);
         let key = key_from_frequency(frequency.into(), 440.0);
         let (near, detune) = (libm::round(key) as u8, (key - libm::round(key)) as f32);

@@ -184,6 +184,7 @@ mod tests {
     #[test]
     fn the_host_sees_the_table() {
         let params = SprungParams::default();
+        assert_eq!((params.knobs().len(), params.param_map().len()), (PARAM_COUNT, PARAM_COUNT));
         for ((info, knob), (id, _, section)) in PARAMS.iter().zip(params.knobs()).zip(params.param_map()) {
             assert_eq!((id.as_str(), section.as_str()), (info.id, info.section));
             let (name, steps, modulated) = match knob {

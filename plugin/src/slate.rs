@@ -1,13 +1,11 @@
 //! The patch that was loaded last, exactly, where the audio thread can read it without waiting.
 //!
-//! A sequence lock over atomics: a writer makes the generation odd, writes, and makes it even again; a reader that
-//! finds it odd or changed takes nothing and tries again in the next block. Readers never wait, nothing is allocated,
-//! and what is read is always one whole patch.
+//! It lies in a sequence lock: a reader that comes while it is written takes nothing, and tries again in the next block.
 
 use sprung::params::{PARAM_COUNT, PARAMS};
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
+use sprung_sequence_lock::SequenceLock;
 use std::array::from_fn;
-use std::sync::atomic::{AtomicU32, Ordering, fence};
 
 /// A patch with the knob position that belongs to each value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,67 +36,38 @@ impl Loaded {
     }
 }
 
-/// Words that a [`Loaded`] is kept in: values, positions, modes and their number, and the seed.
+/// Words that a [`Loaded`] is kept in: values, positions, the seed, the number of modes, and the modes.
 const WORDS: usize = 2 * PARAM_COUNT + 5 * MAX_MODES + 3;
 
 /// One [`Loaded`], to be read by any thread and written by one at a time.
-pub(crate) struct Slate {
-    generation: AtomicU32,
-    words: [AtomicU32; WORDS],
-}
+pub(crate) struct Slate(SequenceLock<WORDS>);
 
 impl Slate {
     pub(crate) fn new(loaded: &Loaded) -> Self {
-        let slate = Self { generation: AtomicU32::new(0), words: from_fn(|_| AtomicU32::new(0)) };
-        slate.put(loaded);
+        let slate = Self(SequenceLock::default());
+        slate.write(loaded, || {});
         slate
     }
 
     /// Writes, with `meanwhile` run before readers may read again. One writer at a time: the caller's lock.
     pub(crate) fn write(&self, loaded: &Loaded, meanwhile: impl FnOnce()) {
-        let generation = self.generation.load(Ordering::Relaxed);
-        self.generation.store(generation.wrapping_add(1), Ordering::Relaxed);
-        fence(Ordering::Release);
-        self.put(loaded);
-        meanwhile();
-        self.generation.store(generation.wrapping_add(2), Ordering::Release);
+        let Loaded { patch, positions, seed } = loaded;
+        let modes = patch.modes.as_slice();
+        let values = PARAMS.iter().map(|info| patch.get(info.param)).chain(*positions).map(f32::to_bits);
+        let of_mode = |mode: &Mode| [mode.ratio, mode.level, mode.decay, mode.strike, mode.pan].map(f32::to_bits);
+        let numbers = [*seed as u32, (*seed >> 32) as u32, modes.len() as u32];
+        self.0.write(values.chain(numbers).chain(modes.iter().flat_map(of_mode)), meanwhile);
     }
 
     /// Runs `read` and gives what it gave, with the generation, unless a writer was at work. Real-time safe if
     /// `read` is.
     pub(crate) fn read<T>(&self, read: impl FnOnce(u32) -> T) -> Option<T> {
-        let generation = self.generation.load(Ordering::Acquire);
-        if !generation.is_multiple_of(2) {
-            return None;
-        }
-        let result = read(generation);
-        fence(Ordering::Acquire);
-        (self.generation.load(Ordering::Relaxed) == generation).then_some(result)
-    }
-
-    fn put(&self, loaded: &Loaded) {
-        let mut words = self.words.iter();
-        let mut put = |bits: u32| {
-            if let Some(word) = words.next() {
-                word.store(bits, Ordering::Relaxed);
-            }
-        };
-        PARAMS.iter().for_each(|info| put(loaded.patch.get(info.param).to_bits()));
-        loaded.positions.iter().for_each(|position| put(position.to_bits()));
-        put(loaded.seed as u32);
-        put((loaded.seed >> 32) as u32);
-        let modes = loaded.patch.modes.as_slice();
-        put(modes.len() as u32);
-        for mode in modes {
-            for field in [mode.ratio, mode.level, mode.decay, mode.strike, mode.pan] {
-                put(field.to_bits());
-            }
-        }
+        self.0.read(read)
     }
 
     /// What is written here. Only whole within [`Slate::read`]. Real-time safe.
     pub(crate) fn get(&self) -> Loaded {
-        let mut words = self.words.iter().map(|word| word.load(Ordering::Relaxed));
+        let mut words = self.0.words();
         let mut get = || words.next().unwrap_or(0);
         let mut patch = Patch::default();
         PARAMS.iter().for_each(|info| patch.set(info.param, f32::from_bits(get())));
@@ -120,7 +89,8 @@ mod tests {
     use super::*;
     use sprung::params::Param;
     use sprung::preset::Preset;
-    use std::sync::atomic::AtomicBool;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::time::{Duration, Instant};
 
     fn loaded(name: &str, seed: u64) -> Loaded {
         Loaded::new(Preset::find(name).unwrap().patch, seed)
@@ -142,21 +112,32 @@ mod tests {
         let both = [loaded("Church Bell", 1), loaded("Kick", 2)];
         let slate = Slate::new(&both[0]);
         let done = AtomicBool::new(false);
-        let mut seen = [0, 0];
+        let (mut seen, mut mixtures) = ([0, 0], 0);
         std::thread::scope(|scope| {
             scope.spawn(|| {
-                for turn in 0..20_000 {
+                let mut turn = 0;
+                // An even number of turns, so that the second patch is the last.
+                while turn % 2 == 1 || !done.load(Ordering::Relaxed) {
                     slate.write(&both[turn % 2], || {});
+                    turn += 1;
                 }
-                done.store(true, Ordering::Relaxed);
             });
-            while !done.load(Ordering::Relaxed) {
+            let start = Instant::now();
+            while seen.contains(&0) || start.elapsed() < Duration::from_millis(200) {
+                if start.elapsed() > Duration::from_secs(30) {
+                    break;
+                }
                 let Some(got) = slate.read(|_| slate.get()) else { continue };
-                let which = both.iter().position(|loaded| *loaded == got);
-                seen[which.expect("neither patch, but a mixture")] += 1;
+                match both.iter().position(|loaded| *loaded == got) {
+                    Some(which) => seen[which] += 1,
+                    None => mixtures += 1,
+                }
             }
+            done.store(true, Ordering::Relaxed);
         });
-        assert_eq!(slate.read(|_| slate.get()), Some(both[1]), "{seen:?}");
+        assert_eq!(mixtures, 0, "of {seen:?} whole patches");
+        assert!(!seen.contains(&0), "each patch is read some time: {seen:?}");
+        assert_eq!(slate.read(|_| slate.get()), Some(both[1]));
     }
 
     #[test]

@@ -10,8 +10,11 @@ mod presets;
 mod progress;
 mod quantity;
 mod render;
+mod song;
+mod usage;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use sprung::text::{printable, printable_lines};
 use sprung::{Error, Result};
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
@@ -52,6 +55,14 @@ enum Command {
     #[cfg(feature = "realtime")]
     #[command(after_help = play::EXAMPLES)]
     Play(Box<play::Args>),
+    /// Play live (not in this build)
+    #[cfg(not(feature = "realtime"))]
+    #[command(hide = true, disable_help_flag = true)]
+    Play {
+        /// Whatever `play` would take
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<std::ffi::OsString>,
+    },
     /// List, show or check presets
     #[command(after_help = presets::EXAMPLES)]
     Presets(presets::Args),
@@ -70,10 +81,23 @@ enum Command {
 }
 
 pub(crate) fn run() -> ExitCode {
-    let result = match Cli::parse().command {
+    let command = match Cli::try_parse() {
+        Ok(cli) => cli.command,
+        Err(error) => {
+            let args: Vec<String> = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect();
+            return usage::refuse(error, &Cli::command(), &args);
+        }
+    };
+    let result = match command {
         Command::Render(args) => render::run(&args),
         #[cfg(feature = "realtime")]
         Command::Play(args) => play::run(&args),
+        #[cfg(not(feature = "realtime"))]
+        Command::Play { .. } => Err(Error::value(
+            "play",
+            "this sprung was built without sound devices: expected one built with ‘cargo build --features realtime’; \
+             ‘sprung render’ writes a file",
+        )),
         Command::Presets(args) => presets::run(&args),
         Command::Params(args) => parameters::run(&args),
         Command::Lab(args) => lab::run(&args),
@@ -89,15 +113,21 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
-/// Says something on stderr; if that is closed, there is nobody left to tell.
+/// Says one line on stderr, with nothing in it that steers the terminal.
 fn complain(severity: &str, message: impl Display) {
-    let _ = writeln!(std::io::stderr(), "sprung: {severity}: {message}");
+    complain_lines(&format!("sprung: {severity}: {}\n", printable(&message.to_string())));
 }
 
-/// Writes to stdout. A reader that has gone away, as `head` does, has what it wanted: that is no error.
+/// Writes lines to stderr, with nothing in them that steers the terminal. If it is closed, there is nobody left to tell.
+fn complain_lines(text: &str) {
+    let _ = write!(std::io::stderr(), "{}", printable_lines(text));
+}
+
+/// Writes lines to stdout, with nothing in them that steers the terminal. A reader that has gone away, as `head` does,
+/// has what it wanted: that is no error.
 fn print(text: &str) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    match stdout.write_all(printable_lines(text).as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("stdout", error)),
         _ => Ok(()),
     }
@@ -109,7 +139,7 @@ mod tests {
 
     #[test]
     fn the_command_line_is_consistent() {
-        <Cli as clap::CommandFactory>::command().debug_assert();
+        Cli::command().debug_assert();
     }
 
     /// The arguments of a shell's simple command: split at spaces outside quotes, up to a pipe or redirection.
@@ -138,9 +168,13 @@ mod tests {
             manual::EXAMPLES,
             manual::COMPLETION_EXAMPLES,
         ];
-        for example in examples.iter().flat_map(|text| text.lines()).filter(|line| line.starts_with("  sprung")) {
-            if let Err(error) = Cli::try_parse_from(words(example)) {
-                panic!("{example}: {error}");
+        for text in examples {
+            let mut lines = text.lines().filter(|line| line.starts_with("  sprung")).peekable();
+            assert!(lines.peek().is_some(), "no example in: {text}");
+            for example in lines {
+                if let Err(error) = Cli::try_parse_from(words(example)) {
+                    panic!("{example}: {error}");
+                }
             }
         }
     }

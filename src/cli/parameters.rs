@@ -73,6 +73,7 @@ fn to_json(info: &ParamInfo) -> serde_json::Value {
         },
         "change": match info.change {
             Change::NextNote => json!("next note"),
+            Change::AtOnce => json!("at once"),
             Change::Smoothed(ms) => json!({ "smoothed_ms": ms }),
         },
         "help": info.help,

@@ -1,7 +1,8 @@
 //! `sprung play`: the instrument live, on a sound device.
 
-use super::render::{read_song, warn_of_missing_programs, with_settings};
-use super::{complain, interrupt, presets, quantity};
+use super::render::with_settings;
+use super::song::SongArgs;
+use super::{complain, complain_lines, interrupt, presets, quantity};
 use sprung::io::{Output, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
@@ -10,9 +11,10 @@ use sprung::realtime::{
     Choice, Found, JackMidi, LiveInputs, LiveSender, Load, MidiPorts, PatchSender, Player, Recording, Session, Setup,
     Status, Wanted, device, midi_ports, view,
 };
-use sprung::render::{BLOCKS, SAMPLE_RATES};
+use sprung::render::BLOCKS;
+use sprung::text::printable;
 use sprung::{Error, Result};
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -32,9 +34,11 @@ const POLL: Duration = Duration::from_millis(20);
 pub(super) struct Args {
     /// Standard MIDI file of type 0 or 1 to play; - is stdin
     song: Option<PathBuf>,
-    /// Factory preset or preset file (.toml) that plays what no program change says otherwise
-    #[arg(long, default_value = "init", value_name = "NAME|FILE.toml")]
-    preset: String,
+    #[command(flatten)]
+    reading: SongArgs,
+    /// Factory preset or preset file (.toml) that plays what no program change says otherwise [default: init]
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    preset: Option<String>,
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
     #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting)]
     set: Vec<(Param, f32)>,
@@ -47,16 +51,16 @@ pub(super) struct Args {
     /// Sound system: alsa, jack or another that --list shows
     #[arg(long, value_name = "NAME")]
     host: Option<String>,
-    /// Sample rate, 1000-768000 Hz [default: 48000 if the device has it]
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
-        .range(i64::from(*SAMPLE_RATES.start())..=i64::from(*SAMPLE_RATES.end())))]
+    /// Sample rate, 1000-768000 Hz (44100, 44.1k) [default: 48000 if the device has it]
+    #[arg(long, value_name = "HZ", allow_hyphen_values = true, value_parser = quantity::rate)]
     rate: Option<u32>,
     /// Frames per block, 1-65536: fewer make keys answer sooner, more are safer [default: 256 or the nearest there is]
-    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
-        .range(*BLOCKS.start() as i64..=*BLOCKS.end() as i64))]
+    #[arg(long, value_name = "FRAMES", allow_hyphen_values = true,
+        value_parser = quantity::whole::<u32>(*BLOCKS.start() as u64..=*BLOCKS.end() as u64))]
     buffer: Option<u32>,
     /// Seed of all randomness, 0-18446744073709551615
-    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, value_name = "N", allow_hyphen_values = true,
+        value_parser = quantity::whole::<u64>(0..=u64::MAX))]
     seed: u64,
     /// List sound systems, their devices, and MIDI ports
     #[arg(long)]
@@ -78,12 +82,12 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return list();
     }
     let headless = args.headless || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal();
-    let preset = presets::load(&args.preset)?;
+    let preset = presets::load(args.preset.as_deref().unwrap_or("init"))?;
     let patch = with_settings(preset.patch, &args.set);
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
-    let song = args.song.as_deref().map(read_song).transpose()?;
+    let song = args.song.as_deref().map(|path| args.reading.read(path)).transpose()?;
     if let Some(song) = &song {
-        warn_of_missing_programs(song, programs.len());
+        args.reading.warn_of_programs(song, args.preset.as_ref().map(|_| &patch), &programs);
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;
@@ -100,7 +104,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let status = Arc::new(Status::default());
     let ([keys, midi, closing], inputs) = LiveInputs::new();
     let has_song = song.is_some();
-    let setup = Setup { sample_rate: found.sample_rate(), seed: args.seed, patch: &patch, programs: &programs, song };
+    let heard = args.reading.programs(&programs);
+    let setup = Setup { sample_rate: found.sample_rate(), seed: args.seed, patch: &patch, programs: heard, song };
     let (player, patches) = Player::new(setup, inputs, tap, status.clone());
     let session = match Session::start(&found, choice, player, status.clone()) {
         Ok(session) => session,
@@ -133,7 +138,7 @@ fn list() -> Result<()> {
 
 /// Says something on stderr.
 fn say(line: &str) {
-    let _ = writeln!(std::io::stderr(), "sprung: {line}");
+    complain_lines(&format!("sprung: {}\n", printable(line)));
 }
 
 /// Live input from outside.

@@ -2,6 +2,7 @@
 
 use clap::Subcommand;
 use sprung::preset::Preset;
+use sprung::text::printable;
 use sprung::{Error, Result};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -71,7 +72,10 @@ fn check(files: &[PathBuf]) -> Result<()> {
     let mut wrong = 0;
     for path in files {
         match Preset::load(path) {
-            Ok(preset) => super::print(&format!("{}: ‘{}’ is in order\n", path.display(), preset.name))?,
+            Ok(preset) => {
+                let line = format!("{}: ‘{}’ is in order", path.display(), preset.name);
+                super::print(&format!("{}\n", printable(&line)))?;
+            }
             Err(error) => {
                 wrong += 1;
                 super::complain("error", error);

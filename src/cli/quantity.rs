@@ -2,8 +2,8 @@
 
 use sprung::io::SampleFormat;
 use sprung::params::{PARAMS, Param};
-use sprung::render::{Level, Tail};
-use sprung::units::split_quantity;
+use sprung::render::{Level, SAMPLE_RATES, Tail};
+use sprung::units::{split_quantity, with_decimal_point};
 use std::ops::RangeInclusive;
 
 /// Longest held note and longest tail, in seconds.
@@ -17,15 +17,52 @@ fn in_range(value: f64, range: RangeInclusive<f64>, unit: &str) -> Result<f64, S
     }
 }
 
-/// A plain number, or one with its unit.
-fn number(text: &str, units: &[(&str, f64)], range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
+/// A number with one of the units, or without any if `""` is one.
+fn quantity(text: &str, units: &[(&str, f64)], expected: &str) -> Result<f64, String> {
     let quantity = split_quantity(text).and_then(|(value, suffix)| {
         let scale = units.iter().find(|(name, _)| name.eq_ignore_ascii_case(suffix));
         scale.map(|(_, scale)| value * scale)
     });
-    let value = quantity
-        .ok_or_else(|| format!("‘{text}’ is not a number: expected {} to {}{unit}", range.start(), range.end()))?;
+    quantity.ok_or_else(|| match with_decimal_point(text) {
+        Some(written) => format!("‘{text}’ is not a number: expected {written}, with a decimal point"),
+        None => format!("‘{text}’ is not a number: expected {expected}"),
+    })
+}
+
+/// A quantity in a range.
+fn number(text: &str, units: &[(&str, f64)], range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
+    let value = quantity(text, units, &format!("{} to {}{unit}", range.start(), range.end()))?;
     in_range(value, range, unit)
+}
+
+const HERTZ: [(&str, f64); 4] = [("", 1.0), ("Hz", 1.0), ("k", 1e3), ("kHz", 1e3)];
+
+/// A frequency or rate of any size in Hz: `440`, `44.1k`, `48 kHz`.
+pub(super) fn hertz(text: &str) -> Result<f64, String> {
+    quantity(text, &HERTZ, "Hz, as in 440 or 44.1k")
+}
+
+/// A whole number.
+pub(super) fn whole<T: TryFrom<u64>>(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| {
+        let expected = format!("expected {} to {}", range.start(), range.end());
+        let value = text.trim().parse::<i128>().map_err(|_| format!("‘{text}’ is not a whole number: {expected}"))?;
+        let value = u64::try_from(value).ok().filter(|value| range.contains(value));
+        value.and_then(|value| T::try_from(value).ok()).ok_or_else(|| format!("{text} is out of range: {expected}"))
+    }
+}
+
+/// A sample rate in Hz: `48000`, `44100Hz`, `44.1k`, `48 kHz`.
+pub(super) fn rate(text: &str) -> Result<u32, String> {
+    let (low, high) = SAMPLE_RATES.into_inner();
+    let rate = number(text, &HERTZ, f64::from(low)..=f64::from(high), " Hz")?;
+    let whole = rate.round();
+    // 1e-6 Hz are for what decimal fractions of a kHz lose in binary.
+    if (rate - whole).abs() < 1e-6 {
+        Ok(whole as u32)
+    } else {
+        Err(format!("‘{text}’ is not a whole number of Hz"))
+    }
 }
 
 pub(super) fn seconds(text: &str) -> Result<f64, String> {
@@ -36,6 +73,7 @@ pub(super) fn tail(text: &str) -> Result<Tail, String> {
     match text {
         "auto" => Ok(Tail::Auto),
         "none" => Ok(Tail::None),
+        _ if with_decimal_point(text).is_some() => seconds(text).map(Tail::Seconds),
         _ => seconds(text).map(Tail::Seconds).map_err(|error| format!("{error}, auto or none")),
     }
 }
@@ -50,7 +88,14 @@ pub(super) fn level(text: &str) -> Result<Level, String> {
             number(value, &[("", 1.0), ("dB", 1.0), ("dBFS", 1.0)], -120.0..=0.0, " dBFS").map(Level::Peak)
         }
         Some(("lufs", value)) => number(value, &[("", 1.0), ("LUFS", 1.0)], -70.0..=0.0, " LUFS").map(Level::Loudness),
-        _ => Err("expected peak=DBFS or lufs=LUFS".to_owned()),
+        _ => {
+            let expected = "expected peak=DBFS or lufs=LUFS";
+            Err(match split_quantity(text) {
+                Some((value, unit)) if unit.eq_ignore_ascii_case("lufs") => format!("{expected}, as in lufs={value}"),
+                Some((value, _)) => format!("{expected}, as in peak={value}"),
+                None => expected.to_owned(),
+            })
+        }
     }
 }
 
@@ -72,13 +117,23 @@ pub(super) fn note(text: &str) -> Result<String, String> {
 pub(super) fn setting(text: &str) -> Result<(Param, f32), String> {
     let (id, value) = text.split_once('=').ok_or("expected ID=VALUE, as in decay=0.5")?;
     let id = id.trim();
-    let param =
-        Param::from_id(id).ok_or_else(|| match sprung::error::nearest(id, PARAMS.iter().map(|info| info.id)) {
-            Some(near) => format!("there is no parameter ‘{id}’; the nearest is ‘{near}’"),
-            None => format!("there is no parameter ‘{id}’; ‘sprung params’ shows them all"),
-        })?;
+    let param = Param::from_id(id).ok_or_else(|| no_parameter(id))?;
+    if let Some((first, rest)) = value.split_once(',')
+        && rest.contains('=')
+    {
+        return Err(format!("expected one parameter, as in --set {id}={first} --set {rest}"));
+    }
     let value = param.info().parse(value).map_err(|message| format!("{id}: {message}"))?;
     Ok((param, value))
+}
+
+fn no_parameter(id: &str) -> String {
+    // The name that a window shows may have been meant.
+    let named = PARAMS.iter().find(|info| info.name.eq_ignore_ascii_case(id)).map(|info| format!("‘{}’", info.id));
+    match named.or_else(|| sprung::error::nearest(id, PARAMS.iter().map(|info| info.id))) {
+        Some(near) => format!("there is no parameter ‘{id}’; the nearest is {near}"),
+        None => format!("there is no parameter ‘{id}’; ‘sprung params’ shows them all"),
+    }
 }
 
 #[cfg(test)]
@@ -87,6 +142,19 @@ mod tests {
 
     #[test]
     fn quantities_are_read_with_and_without_units() {
+        for (text, expected) in [
+            ("44.1k", 44_100),
+            ("48kHz", 48_000),
+            ("44100Hz", 44_100),
+            ("22.05 khz", 22_050),
+            ("88200", 88_200),
+            ("11.025K", 11_025),
+            ("768k", 768_000),
+        ] {
+            assert_eq!(rate(text), Ok(expected), "{text}");
+        }
+        assert_eq!(whole::<u8>(1..=127)("127"), Ok(127));
+        assert_eq!(whole::<u64>(0..=u64::MAX)("18446744073709551615"), Ok(u64::MAX));
         assert_eq!(seconds("2"), Ok(2.0));
         assert_eq!(seconds("250 ms"), Ok(0.25));
         assert_eq!(tail("auto"), Ok(Tail::Auto));
@@ -109,6 +177,25 @@ mod tests {
             (level("peak=3").err(), "3 is out of range: expected -120 to 0 dBFS"),
             (level("rms=-3").err(), "expected peak=DBFS or lufs=LUFS"),
             (bits("8").err(), "expected 16, 24 or 32f"),
+            (rate("44,1k").err(), "‘44,1k’ is not a number: expected 44.1k, with a decimal point"),
+            (rate("44.1234567k").err(), "‘44.1234567k’ is not a whole number of Hz"),
+            (rate("999").err(), "999 is out of range: expected 1000 to 768000 Hz"),
+            (rate("769k").err(), "769000 is out of range: expected 1000 to 768000 Hz"),
+            (rate("CD").err(), "‘CD’ is not a number: expected 1000 to 768000 Hz"),
+            (rate("-1").err(), "-1 is out of range: expected 1000 to 768000 Hz"),
+            (hertz("A4").err(), "‘A4’ is not a number: expected Hz, as in 440 or 44.1k"),
+            (whole::<u64>(0..=9)("abc").err(), "‘abc’ is not a whole number: expected 0 to 9"),
+            (whole::<u64>(0..=9)("0.5").err(), "‘0.5’ is not a whole number: expected 0 to 9"),
+            (whole::<u64>(0..=9)("-1").err(), "-1 is out of range: expected 0 to 9"),
+            (whole::<u64>(0..=9)("10").err(), "10 is out of range: expected 0 to 9"),
+            (seconds("0,5").err(), "‘0,5’ is not a number: expected 0.5, with a decimal point"),
+            (tail("2,5 s").err(), "‘2,5 s’ is not a number: expected 2.5 s, with a decimal point"),
+            (level("-1").err(), "expected peak=DBFS or lufs=LUFS, as in peak=-1"),
+            (level("-14 LUFS").err(), "expected peak=DBFS or lufs=LUFS, as in lufs=-14"),
+            (level("peak").err(), "expected peak=DBFS or lufs=LUFS"),
+            (setting("decay=0,5").err(), "decay: ‘0,5’ is not a number in s: expected 0.5, with a decimal point"),
+            (setting("decay=2s,gain=-3").err(), "expected one parameter, as in --set decay=2s --set gain=-3"),
+            (setting("brightness=3").err(), "there is no parameter ‘brightness’; the nearest is ‘tilt’"),
             (setting("gain").err(), "expected ID=VALUE, as in decay=0.5"),
             (setting("deacy=1").err(), "there is no parameter ‘deacy’; the nearest is ‘decay’"),
             (setting("gain=99").err(), "gain: 99 is out of range: expected from -60 dB to 12 dB"),

@@ -4,16 +4,19 @@ pub mod bank;
 pub mod classic_bank;
 pub mod coefficients;
 pub mod exciter;
+pub mod limiter;
 pub mod mode_bank;
 pub mod oscillator;
 pub mod pitch;
 pub mod ramp;
 pub mod random;
 pub mod real;
+pub mod true_peak;
 
 pub use bank::Bank;
 pub use classic_bank::ClassicBank;
 pub use coefficients::Coefficients;
+pub use limiter::Limiter;
 pub use mode_bank::ModeBank;
 pub use oscillator::HarmonicOscillator;
 

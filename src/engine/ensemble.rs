@@ -1,6 +1,10 @@
 //! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
 
+use super::event::nearest_channel;
+use super::mix_limiter::MixLimiter;
+use super::synth::allowed;
 use super::{Event, EventKind, Snapshot, Synth};
+use crate::dsp::limiter::Work;
 use crate::params::Param;
 use crate::patch::Patch;
 
@@ -10,11 +14,13 @@ const CHUNK: usize = 1024;
 /// Sixteen synths behind one stream of events.
 ///
 /// Each channel has its own patch, controllers and polyphony. A note of a choke group silences that group on every
-/// channel. Gives the same bits however the frames are divided into blocks. Real-time safe after [`Ensemble::new`].
+/// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a patch that asks
+/// for it. Gives the same bits however the frames are divided into blocks. Real-time safe after [`Ensemble::new`].
 pub struct Ensemble {
     parts: Vec<Part>,
     programs: Vec<Patch>,
     chunk: usize,
+    limiter: MixLimiter,
 }
 
 /// What one channel plays: its synth, and the frames of the chunk that is being mixed.
@@ -48,7 +54,8 @@ impl Ensemble {
             synth.set_patch(patch);
             Part { channel: channel as usize, synth, left: vec![0.0; CHUNK], right: vec![0.0; CHUNK], heard: false }
         };
-        Self { parts: (0..16).map(part).collect(), programs: programs.to_vec(), chunk: CHUNK }
+        let limiter = MixLimiter::new(allowed(sample_rate), patch);
+        Self { parts: (0..16).map(part).collect(), programs: programs.to_vec(), chunk: CHUNK, limiter }
     }
 
     /// The same ensemble, mixing up to `frames` frames (at least 1) at a time: more than it would of itself pay where
@@ -63,8 +70,8 @@ impl Ensemble {
         self
     }
 
-    /// Renders the next `left.len()` frames (any number) over what the slices hold; both are of one length.
-    /// `events` are in order of their frames.
+    /// Renders the next frames over what the slices hold: as many as the shorter of the two has (any number; they are
+    /// meant to be of one length). The rest of a longer one stays as it is. `events` are in order of their frames.
     pub fn process(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
         self.process_by(|parts, play| parts.iter_mut().for_each(play), events, left, right);
     }
@@ -79,7 +86,7 @@ impl Ensemble {
         left: &mut [f32],
         right: &mut [f32],
     ) {
-        let (mut events, frames, mut start) = (events, left.len(), 0);
+        let (mut events, frames, mut start) = (events, left.len().min(right.len()), 0);
         // At least once: a block of no frames still brings its events.
         loop {
             let end = frames.min(start + self.chunk);
@@ -92,7 +99,10 @@ impl Ensemble {
             let programs = &self.programs;
             let chunk = Chunk { events: &events[..now], start, frames: end - start, programs, groups };
             each(&mut self.parts, &|part| part.play(chunk));
-            self.mix(&mut left[start..end], &mut right[start..end]);
+            let (left, right) = (&mut left[start..end], &mut right[start..end]);
+            self.mix(left, right);
+            let is_heard = self.parts.iter().any(|part| part.heard);
+            self.limiter.process(&events[..now], start, &self.programs, is_heard, [left, right]);
             if end == frames {
                 break;
             }
@@ -110,9 +120,11 @@ impl Ensemble {
         }
     }
 
-    /// Plays another patch on a channel from its next note on. Real-time safe.
+    /// Plays another patch on a channel (one above 15 is taken as 15) from its next note on. Real-time safe.
     pub fn set_patch(&mut self, channel: u8, patch: &Patch) {
-        self.parts[usize::from(channel & 15)].synth.set_patch(patch);
+        let channel = nearest_channel(channel);
+        self.parts[usize::from(channel)].synth.set_patch(patch);
+        self.limiter.set_patch(channel, patch);
     }
 
     /// What sounds now, on all channels together. Real-time safe.
@@ -120,6 +132,11 @@ impl Ensemble {
         let mut snapshot = Snapshot::default();
         self.parts.iter().for_each(|part| part.synth.show(&mut snapshot));
         snapshot
+    }
+
+    /// How much the limiter has worked. Real-time safe.
+    pub fn limiter_work(&self) -> Work {
+        self.limiter.work()
     }
 
     /// Whether nothing sounds any more. Real-time safe.
@@ -142,7 +159,7 @@ impl Part {
         let mut frame = 0;
         *heard = !synth.is_silent();
         for event in events {
-            let sender = usize::from(event.channel & 15);
+            let sender = event.channel_index();
             let program = match event.kind {
                 EventKind::Program(number) => programs.get(usize::from(number)),
                 _ => None,
@@ -165,7 +182,7 @@ impl Part {
                 continue;
             }
             let at = (event.frame as usize).saturating_sub(start).min(frames.saturating_sub(1)).max(frame);
-            synth.process(&[], &mut left[frame..at], &mut right[frame..at]);
+            synth.play(&mut left[frame..at], &mut right[frame..at]);
             frame = at;
             match program {
                 Some(patch) => synth.set_patch(patch),
@@ -174,7 +191,7 @@ impl Part {
             *heard |= !synth.is_silent();
         }
         if *heard {
-            synth.process(&[], &mut left[frame..], &mut right[frame..]);
+            synth.play(&mut left[frame..], &mut right[frame..]);
         } else {
             synth.pass(frames - frame);
         }
@@ -183,4 +200,83 @@ impl Part {
 
 fn add(sum: &mut [f32], part: &[f32]) {
     sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Notes;
+
+    const FRAMES: usize = 480;
+
+    fn on(channel: u8, key: u8) -> Event {
+        let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 };
+        Event { frame: 20, channel, kind }
+    }
+
+    fn off(channel: u8, key: u8) -> Event {
+        Event { frame: 0, channel, kind: EventKind::NoteOff { key, velocity: 0.5, id: -1 } }
+    }
+
+    /// What a synth and an ensemble make of the events, each a block of its own.
+    fn both(events: &[Event]) -> [Vec<f32>; 2] {
+        let patch = Patch::default().with(Param::Release, 0.01);
+        let mut synth = Synth::new(48_000.0, 0);
+        synth.set_patch(&patch);
+        let mut ensemble = Ensemble::new(48_000.0, 0, &patch, &[]);
+        let (mut alone, mut mixed) = (Vec::new(), Vec::new());
+        for event in events {
+            let (mut left, mut right) = ([9.0; FRAMES], [9.0; FRAMES]);
+            synth.process(&[*event], &mut left, &mut right);
+            alone.extend(left);
+            ensemble.process(&[*event], &mut left, &mut right);
+            mixed.extend(left);
+        }
+        [alone, mixed]
+    }
+
+    #[test]
+    fn channels_and_keys_beyond_midi_are_the_last() {
+        let expected = both(&[on(15, 127), off(15, 127)]);
+        assert!(expected.iter().flatten().any(|sample| sample.abs() > 0.01), "it sounds");
+        assert!(expected[0] != both(&[on(15, 127), off(0, 127)])[0], "a note-off elsewhere releases nothing");
+        for (channel, key) in [(16, 127), (31, 200), (255, 255), (15, 128)] {
+            assert!(both(&[on(channel, key), off(15, 127)]) == expected, "{channel} {key}");
+            assert!(both(&[on(15, 127), off(channel, key)]) == expected, "{channel} {key}");
+            let notes = Notes { id: None, channel: Some(channel), key: Some(key) };
+            let release = Event { frame: 0, channel, kind: EventKind::Release { notes, velocity: 0.5 } };
+            assert!(both(&[on(15, 127), release]) == expected, "{channel} {key}");
+        }
+        let mut ensemble = Ensemble::new(48_000.0, 0, &Patch::default(), &[]);
+        ensemble.set_patch(200, &Patch::default().with(Param::Gain, -3.0));
+        assert_eq!(ensemble.parts[15].synth.patch().get(Param::Gain), -3.0);
+    }
+
+    #[test]
+    fn of_sides_that_differ_in_length_the_shorter_counts() {
+        let patch = Patch::default();
+        for (left_frames, right_frames) in [(100, 400), (400, 100), (0, 400)] {
+            let mut synth = Synth::new(48_000.0, 0);
+            let mut ensemble = Ensemble::new(48_000.0, 0, &patch, &[]).with_chunk(64);
+            let (mut left, mut right) = (vec![9.0; left_frames], vec![9.0; right_frames]);
+            synth.process(&[on(0, 60)], &mut left, &mut right);
+            let alone = (left.clone(), right.clone());
+            left.fill(9.0);
+            right.fill(9.0);
+            ensemble.process(&[on(0, 60)], &mut left, &mut right);
+            assert!((left.clone(), right.clone()) == alone);
+            let frames = left_frames.min(right_frames);
+            for side in [&left, &right] {
+                assert!(side[..frames].iter().all(|sample| *sample != 9.0));
+                assert!(side[frames..].iter().all(|sample| *sample == 9.0), "the rest stays as it was");
+            }
+            assert!(frames == 0 || left[..frames].iter().any(|sample| sample.abs() > 0.01), "it sounds");
+            // The next block goes on where this one has ended.
+            let (mut rest, mut whole) = (([0.0; 300], [0.0; 300]), ([0.0; 400], [0.0; 400]));
+            synth.process(&[], &mut rest.0, &mut rest.1);
+            let mut other = Synth::new(48_000.0, 0);
+            other.process(&[on(0, 60)], &mut whole.0, &mut whole.1);
+            assert!(frames == 0 || whole.0[frames..] == rest.0[..400 - frames]);
+        }
+    }
 }

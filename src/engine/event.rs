@@ -8,13 +8,21 @@ use crate::params::Param;
 pub struct Event {
     /// Frame within the block; a frame beyond its end is taken as its last.
     pub frame: u32,
-    /// MIDI channel, 0–15.
+    /// MIDI channel, 0–15; a number above is taken as 15.
     pub channel: u8,
     /// What happens.
     pub kind: EventKind,
 }
 
-/// What happens. Out-of-range numbers are clamped where they are used; NaN counts as zero.
+impl Event {
+    /// The channel as an index, 0–15.
+    pub(super) fn channel_index(&self) -> usize {
+        usize::from(nearest_channel(self.channel))
+    }
+}
+
+/// What happens. Numbers out of range are clamped where they are used, keys and channels as well; NaN counts as zero.
+/// A controller, program or choke group that does not exist changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EventKind {
     /// A key goes down. Velocity 0 strikes with no force; MIDI's "velocity 0 is a note-off" is the reader's to translate.
@@ -126,8 +134,8 @@ impl Notes {
 
     pub(crate) fn include(&self, note: &Note) -> bool {
         self.id.is_none_or(|id| note.id == id || note.id == -1)
-            && self.channel.is_none_or(|channel| note.channel == channel)
-            && self.key.is_none_or(|key| note.key == key)
+            && self.channel.is_none_or(|channel| note.channel == nearest_channel(channel))
+            && self.key.is_none_or(|key| note.key == nearest_key(key))
     }
 }
 
@@ -155,6 +163,16 @@ impl Expression {
     /// Every expression.
     pub const ALL: [Expression; 7] =
         [Self::Tuning, Self::Volume, Self::Pan, Self::Pressure, Self::Brightness, Self::Vibrato, Self::Swell];
+}
+
+/// A MIDI channel, 0–15.
+pub(crate) fn nearest_channel(channel: u8) -> u8 {
+    channel.min(15)
+}
+
+/// A MIDI key, 0–127.
+pub(crate) fn nearest_key(key: u8) -> u8 {
+    key.min(127)
 }
 
 /// A number, 0 where there is none.

@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn there_is_room_for_every_parameter_that_notes_follow() {
         let mut note = NoteModulation::NONE;
-        let followed = PARAMS.iter().filter(|info| info.change != Change::NextNote);
+        let followed = PARAMS.iter().filter(|info| matches!(info.change, Change::Smoothed(_)));
         for info in followed.clone() {
             note.set(info.param, 0.1, 0.0);
             note.set(info.param, 0.2, 0.0);

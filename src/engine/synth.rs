@@ -2,13 +2,14 @@
 
 use super::channel::{Channel, Wheels, controller};
 use super::controls::Smoother;
-use super::event::{Expression, Notes, finite, unit};
+use super::event::{Expression, Notes, finite, nearest_channel, nearest_key, unit};
 use super::modulation::modulated;
 use super::voice::{Instrument, SynthVoice};
 use super::voice_manager::{Note, PlayMode, VoiceManager};
 use super::zones::{MEMBER_BEND_RANGE, Zones};
 use super::{Event, EventKind, Snapshot};
-use crate::dsp::CONTROL_FRAMES;
+use crate::dsp::limiter::Work;
+use crate::dsp::{CONTROL_FRAMES, Limiter};
 use crate::params::{Change, PARAM_COUNT, PARAMS, Param};
 use crate::patch::Patch;
 
@@ -23,6 +24,7 @@ pub struct Synth {
     manager: VoiceManager<SynthVoice>,
     instrument: Instrument,
     smoother: Smoother,
+    limiter: Limiter,
     channels: [Channel; 16],
     zones: Zones,
     /// How far each parameter is moved away from its value, in knob travel.
@@ -49,6 +51,7 @@ impl Synth {
             manager: VoiceManager::new(|| SynthVoice::new(sample_rate, controls)),
             instrument,
             smoother,
+            limiter: Limiter::new(sample_rate),
             channels: [Channel::new(sample_rate); 16],
             zones: Zones::default(),
             offsets: [0.0; PARAM_COUNT],
@@ -74,6 +77,7 @@ impl Synth {
     pub fn reset(&mut self) {
         let sample_rate = self.instrument.sample_rate;
         self.manager.reset();
+        self.limiter.reset();
         self.instrument.modulated = self.instrument.patch;
         self.smoother = Smoother::new(sample_rate, &self.instrument.modulated, DEFAULT_BEAT_RATE);
         self.instrument.controls = self.smoother.after(0);
@@ -144,26 +148,50 @@ impl Synth {
         self.manager.peak()
     }
 
-    /// Renders the next `left.len()` frames (any number) over what the slices hold; both are of one length.
-    /// `events` are in order of their frames.
+    /// How much the limiter has worked since the synth was new or reset. Real-time safe.
+    pub fn limiter_work(&self) -> Work {
+        self.limiter.work()
+    }
+
+    /// Renders the next frames over what the slices hold: as many as the shorter of the two has (any number; they are
+    /// meant to be of one length). The rest of a longer one stays as it is. `events` are in order of their frames.
     pub fn process(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
-        left.fill(0.0);
-        right.fill(0.0);
+        let frames = left.len().min(right.len());
+        let (left, right) = (&mut left[..frames], &mut right[..frames]);
         self.manager.clear_ended();
         let mut frame = 0;
         for event in events {
-            let at = (event.frame as usize).min(left.len().saturating_sub(1)).max(frame);
-            self.render(&mut left[frame..at], &mut right[frame..at]);
+            let at = (event.frame as usize).min(frames.saturating_sub(1)).max(frame);
+            self.play_limited(&mut left[frame..at], &mut right[frame..at]);
             self.handle(event);
             frame = at;
         }
-        self.render(&mut left[frame..], &mut right[frame..]);
-        left.iter_mut().chain(right).for_each(|sample| *sample = without_subnormals(*sample));
+        self.play_limited(&mut left[frame..], &mut right[frame..]);
+    }
+
+    fn play_limited(&mut self, left: &mut [f32], right: &mut [f32]) {
+        let is_heard = self.play(left, right);
+        if is_heard || !self.limiter.is_idle() {
+            self.limiter.process(self.instrument.patch.get(Param::Limiter) != 0.0, left, right);
+        }
+    }
+
+    /// Renders frames in which nothing happens over what the slices hold, without the limiter. Returns whether there
+    /// may be sound in them.
+    pub(super) fn play(&mut self, left: &mut [f32], right: &mut [f32]) -> bool {
+        left.fill(0.0);
+        right.fill(0.0);
+        let is_heard = !self.manager.is_silent();
+        self.render(left, right);
+        if is_heard {
+            left.iter_mut().chain(right).for_each(|sample| *sample = without_subnormals(*sample));
+        }
+        is_heard
     }
 
     /// Takes in one event, at the frame that is rendered next.
     pub fn handle(&mut self, event: &Event) {
-        let index = event.channel & 15;
+        let index = nearest_channel(event.channel);
         // A tempo can wait for the next control tick.
         self.news |= !matches!(event.kind, EventKind::Tempo(_));
         match event.kind {
@@ -172,7 +200,7 @@ impl Synth {
                 let soft = |channel: u8| self.channels[usize::from(channel)].soft;
                 let note = Note {
                     channel: index,
-                    key: key & 127,
+                    key: nearest_key(key),
                     detune: finite(detune).clamp(-128.0, 128.0),
                     velocity: unit(velocity),
                     soft: soft(index) || self.zones.master_of(index).is_some_and(soft),
@@ -188,7 +216,7 @@ impl Synth {
                 self.instrument.last_pitch = Some(self.instrument.pitch(&note));
             }
             EventKind::NoteOff { key, velocity, id } => {
-                let notes = Notes { id: (id != -1).then_some(id), ..Notes::on(index, key & 127) };
+                let notes = Notes { id: (id != -1).then_some(id), ..Notes::on(index, key) };
                 self.manager.note_off(&self.instrument, notes, unit(velocity));
             }
             EventKind::Release { notes, velocity } => {
@@ -196,7 +224,7 @@ impl Synth {
             }
             EventKind::Silence { notes } => self.manager.silence(notes),
             EventKind::PolyPressure { key, pressure } => {
-                self.express(Notes::on(index, key & 127), Expression::Pressure, pressure);
+                self.express(Notes::on(index, key), Expression::Pressure, pressure);
             }
             EventKind::Express { notes, expression, value } => self.express(notes, expression, value),
             EventKind::ChannelPressure(pressure) => self.channels[usize::from(index)].pressure = unit(pressure),
@@ -212,7 +240,7 @@ impl Synth {
             }
             EventKind::Modulate { id: Some(id), param, offset } => {
                 // Notes that were given no identifier cannot be meant.
-                if id >= 0 && param.info().change != Change::NextNote {
+                if id >= 0 && matches!(param.info().change, Change::Smoothed(_)) {
                     let (now, offset) = (self.smoother.now(param), finite(offset).clamp(-1.0, 1.0));
                     let meant = self.manager.active().filter(|(note, _)| note.id == id);
                     meant.for_each(|(_, voice)| voice.modulate(&self.instrument, param, offset, now));
@@ -368,7 +396,7 @@ fn brightness(channels: &[Channel; 16], zones: &Zones, channel: u8) -> f32 {
 /// MIDI's tempo before it has been set: 120 beats a minute.
 const DEFAULT_BEAT_RATE: f64 = 2.0;
 
-fn allowed(sample_rate: f64) -> f64 {
+pub(super) fn allowed(sample_rate: f64) -> f64 {
     let (lowest, highest) = SAMPLE_RATES.into_inner();
     if sample_rate.is_nan() { 48_000.0 } else { sample_rate.clamp(lowest.into(), highest.into()) }
 }

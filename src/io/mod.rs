@@ -1,5 +1,6 @@
 //! Files: MIDI songs in, WAV sound out, and the care with which outputs appear on disk.
 
+mod bars;
 pub mod midi;
 pub mod output;
 mod riff;

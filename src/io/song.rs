@@ -80,6 +80,7 @@ mod tests {
         let song = Song::chord(&[60.0, 69.25, 140.5, 60.25], 0.5, 2.0);
         // The last of them finds its nearest key taken.
         let expected = [(60, 0.0, 0), (69, 0.25, 1), (127, 13.5, 2), (61, -0.75, 3)];
+        assert_eq!(song.events.len(), 2 * expected.len());
         for ((on, off), (key, detune, id)) in song.events[..4].iter().zip(&song.events[4..]).zip(expected) {
             assert_eq!(
                 *on,

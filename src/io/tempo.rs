@@ -17,7 +17,7 @@ impl TempoMap {
     /// A map of `changes`, (tick, microseconds per quarter note) in order of ticks; of several at one tick the last
     /// holds. Ticks of an SMPTE division are of one length and ignore tempo, as the standard has it.
     ///
-    /// Errors: a division or a tempo of zero.
+    /// Errors: a division of zero.
     pub(super) fn new(timing: Timing, changes: &[(u64, u32)]) -> Result<Self, String> {
         match timing {
             Timing::Metrical(ticks) if ticks.as_int() == 0 => {
@@ -28,9 +28,6 @@ impl TempoMap {
                 let divisor = u64::from(ticks.as_int()) * 1_000_000;
                 let mut segments = vec![(0, 0, DEFAULT_TEMPO)];
                 for &(tick, tempo) in changes {
-                    if tempo == 0 {
-                        return Err(format!("the tempo at tick {tick} is 0 µs per quarter note: expected at least 1"));
-                    }
                     let sum = sum_at(&segments, tick);
                     segments.push((tick, sum, tempo));
                 }
@@ -101,9 +98,8 @@ mod tests {
     }
 
     #[test]
-    fn zero_is_an_error() {
+    fn a_division_of_zero_is_an_error() {
         assert!(TempoMap::new(Timing::Metrical(0.into()), &[]).is_err());
         assert!(TempoMap::new(Timing::Timecode(Fps::Fps25, 0), &[]).is_err());
-        assert!(TempoMap::new(Timing::Metrical(96.into()), &[(5, 0)]).is_err());
     }
 }

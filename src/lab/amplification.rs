@@ -1,5 +1,6 @@
-//! What one step does to every state of a linear spring: a 2 × 2 matrix, found by stepping two states, and from it
-//! growth, pitch and decay.
+//! The amplification matrix of a method: what one step does to every state of a linear spring.
+//!
+//! A 2 × 2 matrix, found by stepping two states; growth, pitch and decay follow from it.
 
 use super::method::Method;
 use super::system::{Force, State, System};

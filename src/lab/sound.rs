@@ -3,9 +3,10 @@
 use super::method::Method;
 use super::pitch::play;
 use super::system::{State, System};
+use super::trajectory::{MOST_STEPS, step_count};
 use crate::dsp::{Coefficients, HarmonicOscillator};
-use crate::error::Result;
-use libm::{hypot, log10};
+use crate::error::{Error, Result};
+use libm::{floor, hypot, log10};
 use std::f64::consts::TAU;
 
 /// Peak of a strike that nothing distorts: −6 dBFS.
@@ -30,10 +31,19 @@ pub struct Sound {
 ///
 /// Where the amplitude passes [`CEILING`], the limiter scales the whole state back to it: pitch and waveform go on as
 /// they were, at a steady level, and the growth is summed in `reduction_db`.
+///
+/// # Errors
+/// [`Error::Value`] for a note that cannot be played, and for a sound of more than [`MOST_STEPS`] samples.
 pub fn listen(method: Method, frequency: f64, t60: f64, seconds: f64, sample_rate: f64) -> Result<Sound> {
     // What cannot be played is refused by the same rules.
     play(method, frequency, t60, sample_rate)?;
-    let frames = super::trajectory::step_count(1.0 / sample_rate, seconds)?;
+    let longest = floor(1000.0 * MOST_STEPS as f64 / sample_rate) / 1000.0;
+    if !(seconds > 0.0 && seconds <= longest) {
+        let expected =
+            format!("expected more than 0 s and at most {longest} s, which fit in memory at {sample_rate} Hz");
+        return Err(Error::value("seconds", format!("{seconds} is out of range: {expected}")));
+    }
+    let frames = step_count(1.0 / sample_rate, seconds)?;
     let system = System::from_note(frequency, t60)?;
     let omega = system.omega()?;
     let start = State { x: 0.0, v: STRIKE * TAU * frequency };

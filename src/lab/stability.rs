@@ -1,5 +1,7 @@
-//! How long a step may be: the region of `ω·h` and damping ratio `ζ` in which a method stays bounded, found by running
-//! it, and the limit that theory gives.
+//! How long a step may be before a method explodes.
+//!
+//! The region of `ω·h` and damping ratio `ζ` in which a method stays bounded, found by running it, and the limit that
+//! theory gives.
 
 use super::amplification::Amplification;
 use super::method::Method;

@@ -48,6 +48,8 @@ pub enum Change {
     NextNote,
     /// At once, reaching its new value over this many milliseconds.
     Smoothed(u16),
+    /// At once, by the output as a whole: it can be modulated neither for single notes nor for all.
+    AtOnce,
 }
 
 /// One row of the parameter table.
@@ -104,7 +106,7 @@ macro_rules! params {
     };
 }
 
-use Change::{NextNote, Smoothed};
+use Change::{AtOnce, NextNote, Smoothed};
 
 params! {
     "Exciter" {
@@ -197,6 +199,8 @@ params! {
             "Output level.";
         Pan "pan" "Pan", Percent -100.0..100.0 = 0.0, Linear, Smoothed(20), [],
             "Output position, left to right.";
+        Limiter "limiter" "Limiter", Choice 0.0..1.0 = 1.0, Linear, AtOnce, ["off", "on"],
+            "Keeps the true peak of the output below −0.3 dBFS; what stays below −1 dBFS passes unchanged.";
     }
 }
 
@@ -228,18 +232,19 @@ impl ParamInfo {
         if self.unit == Unit::Choice {
             return Err(format!("‘{value}’ is not one of {}", self.choices.join(", ")));
         }
+        Err(format!("{value} is out of range: expected {}", self.range()))
+    }
+
+    /// `from -60 dB to 12 dB`.
+    fn range(&self) -> String {
         let whole = if self.unit == Unit::Count { "a whole number " } else { "" };
-        Err(format!(
-            "{value} is out of range: expected {whole}from {} to {}",
-            self.format(self.min),
-            self.format(self.max)
-        ))
+        format!("{whole}from {} to {}", self.format(self.min), self.format(self.max))
     }
 
     /// Frames that a sounding note takes to follow a change; none if it does not follow at all.
     pub(crate) fn smoothing_frames(&self, sample_rate: f64) -> Option<u32> {
         match self.change {
-            Change::NextNote => None,
+            Change::NextNote | Change::AtOnce => None,
             Change::Smoothed(milliseconds) => Some((f64::from(milliseconds) * 1e-3 * sample_rate) as u32),
         }
     }
@@ -286,7 +291,7 @@ mod tests {
             tune fine tuning key_track sweep sweep_time sweep_curve sweep_velocity \
             vibrato vibrato_rate vibrato_delay vibrato_sync glide \
             bend_range wheel_vibrato pressure_vibrato pressure_damping release_velocity \
-            voices mode choke gain pan";
+            voices mode choke gain pan limiter";
         assert_eq!(ids, pinned.split_whitespace().collect::<Vec<_>>());
     }
 

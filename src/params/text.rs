@@ -1,7 +1,7 @@
 //! Values as people write them: numbers with units, choices by name.
 
 use super::{ParamInfo, Unit};
-use crate::units::{key_from_note_name, split_quantity};
+use crate::units::{key_from_note_name, split_quantity, with_decimal_point};
 
 impl Unit {
     /// The unit's symbol as written after a number; empty for plain numbers and choices.
@@ -63,7 +63,11 @@ impl ParamInfo {
             None => {
                 let unit = self.unit.symbol();
                 let unit = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
-                Err(format!("‘{text}’ is not a number{unit}"))
+                let expected = match with_decimal_point(text) {
+                    Some(written) => format!("{written}, with a decimal point"),
+                    None => self.range(),
+                };
+                Err(format!("‘{text}’ is not a number{unit}: expected {expected}"))
             }
         }
     }
@@ -119,9 +123,11 @@ mod tests {
     fn bad_values_say_what_would_be_right() {
         for (param, text, expected) in [
             (Param::Gain, "99 dB", "99 is out of range: expected from -60 dB to 12 dB"),
-            (Param::Gain, "loud", "‘loud’ is not a number in dB"),
-            (Param::Gain, "NaN", "‘NaN’ is not a number in dB"),
-            (Param::Decay, "3 Hz", "‘3 Hz’ is not a number in s"),
+            (Param::Gain, "loud", "‘loud’ is not a number in dB: expected from -60 dB to 12 dB"),
+            (Param::Gain, "NaN", "‘NaN’ is not a number in dB: expected from -60 dB to 12 dB"),
+            (Param::Decay, "3 Hz", "‘3 Hz’ is not a number in s: expected from 5 ms to 60 s"),
+            (Param::Decay, "0,5 s", "‘0,5 s’ is not a number in s: expected 0.5 s, with a decimal point"),
+            (Param::Voices, "1,2,3", "‘1,2,3’ is not a number: expected a whole number from 1 to 64"),
             (Param::Voices, "2.5", "2.5 is out of range: expected a whole number from 1 to 64"),
             (Param::Mode, "solo", "‘solo’ is not one of poly, mono, legato"),
         ] {

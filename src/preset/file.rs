@@ -4,8 +4,10 @@ use super::{FORMAT_VERSION, Preset};
 use crate::error::{Error, nearest};
 use crate::params::{PARAMS, Param, ParamInfo, Unit};
 use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
+use crate::text::printable_lines;
 use std::fmt::Write;
 use toml::{Table, Value};
+use toml_writer::{ToTomlValue, TomlStringBuilder};
 
 const KEYS: [&str; 7] = ["format", "name", "author", "tags", "comment", "modes", "params"];
 
@@ -54,7 +56,7 @@ fn check_keys(table: &Table, place: &str, known: &[&str]) -> Result<(), String> 
     match table.keys().find(|key| !known.contains(&key.as_str())) {
         None => Ok(()),
         Some(key) => Err(match nearest(key, known.iter().copied()) {
-            Some(near) => format!("unknown key ‘{place}{key}’; the nearest is ‘{near}’"),
+            Some(near) => format!("unknown key ‘{place}{key}’; the nearest is {near}"),
             None if known.len() <= 10 => format!("unknown key ‘{place}{key}’: expected one of {}", known.join(", ")),
             None => format!("unknown key ‘{place}{key}’; ‘sprung params’ shows them all"),
         }),
@@ -157,12 +159,12 @@ fn read_mode(place: &str, mode: &Value) -> Result<Mode, String> {
 
 pub(super) fn to_toml(preset: &Preset) -> String {
     let mut out = format!("format = {FORMAT_VERSION}\n");
-    let tags = Value::from(preset.tags.clone());
+    let tags: Vec<String> = preset.tags.iter().map(|tag| toml_string(tag)).collect();
     for (key, value) in [
-        ("name", Value::from(preset.name.as_str())),
-        ("author", Value::from(preset.author.as_str())),
-        ("tags", tags),
-        ("comment", Value::from(preset.comment.as_str())),
+        ("name", toml_string(&preset.name)),
+        ("author", toml_string(&preset.author)),
+        ("tags", format!("[{}]", tags.join(", "))),
+        ("comment", toml_string(&preset.comment)),
     ] {
         let _ = writeln!(out, "{key} = {value}");
     }
@@ -186,6 +188,17 @@ pub(super) fn to_toml(preset: &Preset) -> String {
         }
     }
     out
+}
+
+/// A text between quotes, so that whoever prints the file has nothing in it that steers the terminal: where the text has
+/// such characters, they are escapes between double quotes, which read back as they were.
+fn toml_string(text: &str) -> String {
+    let builder = TomlStringBuilder::new(text);
+    let plain = builder.as_default().to_toml_value();
+    if printable_lines(&plain) == plain {
+        return plain;
+    }
+    printable_lines(&builder.as_basic().to_toml_value()).into_owned()
 }
 
 /// The fields that differ from [`Mode::UNIT`]'s, and the ratio. `{:?}` of an `f32` is the shortest text that reads
@@ -268,6 +281,20 @@ mod tests {
             ("format = 1", "x: there is no ‘name’: expected name = \"…\""),
         ] {
             assert_eq!(parse(text, "x").unwrap_err().to_string(), expected);
+        }
+    }
+
+    #[test]
+    fn nothing_in_a_written_file_steers_a_terminal() {
+        for text in
+            ["\u{1b}[2J", "\u{202e}\"gnp\"\\", "a\tb\n\u{9b}1m", "'\u{2066}'\n\"\"\"", "plain \"quotes\"\nand 'lines'"]
+        {
+            let mut preset = parse("format = 1\nname = \"a\"", "x").unwrap();
+            preset.comment = text.to_owned();
+            preset.tags = vec!["\u{200f}b".to_owned()];
+            let written = preset.to_toml();
+            assert_eq!(printable_lines(&written), written);
+            assert_eq!(parse(&written, "x").unwrap(), preset, "{written}");
         }
     }
 

@@ -78,7 +78,7 @@ impl Preset {
         let presets = Self::factory();
         presets.iter().find(|preset| preset.name.eq_ignore_ascii_case(name.trim())).ok_or_else(|| {
             let hint = match nearest(name, presets.iter().map(|preset| preset.name.as_str())) {
-                Some(near) => format!("; the nearest is ‘{near}’"),
+                Some(near) => format!("; the nearest is {near}"),
                 None => "; ‘sprung presets list’ shows them all".to_owned(),
             };
             Error::value("preset", format!("there is no factory preset ‘{name}’{hint}"))

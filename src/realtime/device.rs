@@ -153,7 +153,7 @@ fn named(host: &cpal::Host, id: HostId, wanted: &str) -> Result<(cpal::Device, S
         return Ok((device, name));
     }
     let hint = match nearest(wanted, devices.iter().map(|(_, name, _)| name.as_str())) {
-        Some(near) => format!("the nearest is ‘{near}’; ‘sprung play --list’ shows them all"),
+        Some(near) => format!("the nearest is {near}; ‘sprung play --list’ shows them all"),
         None => "‘sprung play --list’ shows them all".to_owned(),
     };
     Err(Error::value("--device", format!("{} has no device ‘{wanted}’, or several; {hint}", id.name())))

@@ -1,6 +1,7 @@
 //! Live events on their way to the audio thread: bounded queues without locks, merged in the order of time.
 
 use super::{BlockClock, Stamp};
+use crate::engine::event::{nearest_channel, nearest_key};
 use crate::engine::{Event, EventKind};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::time::Instant;
@@ -30,10 +31,11 @@ pub struct LiveSender {
 impl LiveSender {
     /// Hands an event over; false if the queue is full and the event is lost.
     pub fn send(&mut self, event: LiveEvent) -> bool {
-        let (channel, bit) = (usize::from(event.channel & 15), 1 << (event.channel & 15));
+        let channel = usize::from(nearest_channel(event.channel));
+        let bit = 1 << channel;
         match event.kind {
-            EventKind::NoteOn { key, .. } => self.keys[channel] |= 1 << (key & 127),
-            EventKind::NoteOff { key, .. } => self.keys[channel] &= !(1 << (key & 127)),
+            EventKind::NoteOn { key, .. } => self.keys[channel] |= 1 << nearest_key(key),
+            EventKind::NoteOff { key, .. } => self.keys[channel] &= !(1 << nearest_key(key)),
             EventKind::Control { controller: SUSTAIN, value } if value >= 0.5 => self.pedals |= bit,
             EventKind::Control { controller: SUSTAIN, .. } => self.pedals &= !bit,
             _ => {}
@@ -96,18 +98,22 @@ impl LiveInputs {
         (senders, Self(inputs))
     }
 
-    /// Most events that [`LiveInputs::merge`] can add.
+    /// Most events that [`LiveInputs::merge`] adds at a time.
     pub fn capacity(&self) -> usize {
         self.0.len() * CAPACITY
     }
 
     /// Puts the events that are due before frame `end` of the clock's block into `events`, which are in order and stay
-    /// so; `start` is where their frames count from. At one frame, those that are there already come first.
-    /// Real-time safe if `events` has room.
+    /// so; `start` is where their frames count from. At one frame, those that are there already come first. Events
+    /// that are sent during the call may be left for the next one.
+    ///
+    /// Real-time safe if `events` has room for [`LiveInputs::capacity`] more.
     pub fn merge(&mut self, clock: &BlockClock, start: u32, end: u32, events: &mut Vec<Event>) {
         for input in &mut self.0 {
             let mut earliest = 0;
-            while let Ok(&LiveEvent { stamp, channel, kind }) = input.peek() {
+            // Only what waits now: a sender that fills the queue as fast as it is emptied would never let this end.
+            for _ in 0..input.slots() {
+                let Ok(&LiveEvent { stamp, channel, kind }) = input.peek() else { break };
                 let Some(frame) = clock.frame_of(stamp).filter(|frame| *frame < end) else { break };
                 let frame = frame.saturating_sub(start).max(earliest);
                 earliest = frame;
@@ -162,6 +168,32 @@ mod tests {
         sender.release_held();
         let released: Vec<_> = std::iter::from_fn(next).collect();
         assert_eq!(released, [(3, off(61)), (3, off(127)), (15, pedal(0.0))]);
+    }
+
+    #[test]
+    fn a_sender_that_keeps_filling_its_queue_does_not_outgrow_the_capacity() {
+        let ([mut sender], mut inputs) = LiveInputs::new();
+        let mut clock = BlockClock::new(48_000.0);
+        let now = Instant::now() + Duration::from_secs(1);
+        clock.begin(Moment { now, called: Duration::ZERO, heard: Duration::ZERO }, 480);
+        let done = std::sync::atomic::AtomicBool::new(false);
+        let mut most = 0;
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                while !done.load(std::sync::atomic::Ordering::Relaxed) {
+                    sender.send_now(0, EventKind::PitchBend(0.0));
+                }
+            });
+            let start = Instant::now();
+            while start.elapsed() < Duration::from_millis(300) {
+                let mut events = Vec::with_capacity(inputs.capacity());
+                inputs.merge(&clock, 0, 480, &mut events);
+                most = most.max(events.len());
+                assert!(events.len() <= inputs.capacity(), "{}", events.len());
+            }
+            done.store(true, std::sync::atomic::Ordering::Relaxed);
+        });
+        assert!(most > 0, "nothing was sent");
     }
 
     #[test]

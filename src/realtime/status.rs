@@ -1,5 +1,6 @@
 //! What the audio thread tells, and is told, without locks.
 
+use crate::engine::event::{nearest_channel, nearest_key};
 use crate::engine::{EventKind, Snapshot};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicU64};
@@ -117,13 +118,14 @@ impl Status {
 
     /// The keys that are down on a channel, a bit each.
     pub fn keys(&self, channel: u8) -> u128 {
-        let [low, high] = &self.keys[usize::from(channel & 15)];
+        let [low, high] = &self.keys[usize::from(nearest_channel(channel))];
         u128::from(low.load(Relaxed)) | u128::from(high.load(Relaxed)) << 64
     }
 
     /// The program that the last program change chose on a channel, once one has.
     pub fn program(&self, channel: u8) -> Option<u8> {
-        Some(self.programs[usize::from(channel & 15)].load(Relaxed)).filter(|program| *program != NO_PROGRAM)
+        Some(self.programs[usize::from(nearest_channel(channel))].load(Relaxed))
+            .filter(|program| *program != NO_PROGRAM)
     }
 
     /// Whether the song, if there is one, has come to its end.
@@ -154,13 +156,15 @@ impl Status {
     }
 
     pub(super) fn note_event(&self, channel: u8, kind: EventKind) {
-        let channel = usize::from(channel & 15);
+        let channel = usize::from(nearest_channel(channel));
         match kind {
             EventKind::NoteOn { key, .. } => {
-                self.keys[channel][usize::from(key >> 6 & 1)].fetch_or(1 << (key & 63), Relaxed);
+                let key = nearest_key(key);
+                self.keys[channel][usize::from(key >> 6)].fetch_or(1 << (key & 63), Relaxed);
             }
             EventKind::NoteOff { key, .. } => {
-                self.keys[channel][usize::from(key >> 6 & 1)].fetch_and(!(1 << (key & 63)), Relaxed);
+                let key = nearest_key(key);
+                self.keys[channel][usize::from(key >> 6)].fetch_and(!(1 << (key & 63)), Relaxed);
             }
             EventKind::Control { controller: 120 | 123..=127, .. } => {
                 self.keys[channel].iter().for_each(|half| half.store(0, Relaxed));

@@ -5,6 +5,7 @@ mod stream;
 mod threads;
 mod wav;
 
+pub use crate::dsp::limiter::Work as LimiterWork;
 pub use crate::engine::synth::SAMPLE_RATES;
 pub use meter::{Levels, Meter};
 pub use threads::{THREADS, on_threads};
@@ -58,7 +59,7 @@ pub struct Job<'a> {
 }
 
 /// What a rendering came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rendered {
     /// Length in frames.
     pub frames: u64,
@@ -67,6 +68,8 @@ pub struct Rendered {
     /// Most voices that sounded at once on each channel, added up over channels: at least as many as ever sounded at
     /// once on all of them together.
     pub voices_used: usize,
+    /// How much the limiter worked.
+    pub limiter: LimiterWork,
 }
 
 impl Job<'_> {

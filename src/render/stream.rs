@@ -95,6 +95,7 @@ impl<'a> Stream<'a> {
             frames: self.frame,
             tail_frames: self.frame - self.song_frames,
             voices_used: self.ensemble.voices_used(),
+            limiter: self.ensemble.limiter_work(),
         }
     }
 }

@@ -63,6 +63,10 @@ pub struct Report {
     /// Most voices that sounded at once on each channel, added up over channels: at least as many as ever sounded at
     /// once on all of them together.
     pub voices_used: usize,
+    /// Most that the limiter lowered the gain by, in dB; 0 if it had nothing to do.
+    pub limiter_reduction_db: f64,
+    /// How long it lowered the sound by more than 0.1 dB, in seconds.
+    pub limiter_seconds: f64,
     /// Seconds of sound per second of work.
     pub realtime_factor: f64,
 }
@@ -142,6 +146,8 @@ pub fn to_wav(
         gain_db,
         clipped,
         voices_used: rendered.voices_used,
+        limiter_reduction_db: 0.0 - db_from_gain(rendered.limiter.least_gain),
+        limiter_seconds: rendered.limiter.frames as f64 / f64::from(format.sample_rate),
         realtime_factor: seconds / started.elapsed().as_secs_f64().max(1e-9),
     })
 }

@@ -3,7 +3,9 @@
 mod bad_input;
 mod lab;
 mod listings;
+mod messages;
 mod outputs;
+mod songs;
 mod sound;
 
 use assert_cmd::Command;

@@ -51,6 +51,29 @@ fn gain_and_clipping() {
 }
 
 #[test]
+fn the_limiter_tells_how_much_it_worked() {
+    let sandbox = Sandbox::new();
+    let base = "render --note C4,E4,G4,C5 --velocity 127 --length 0.5 --tail none --set gain=6 --bits 32f";
+    let peak = |limiter: &str| {
+        let args = format!("{base} {limiter} --force -o out.wav");
+        let output = sandbox.sprung(&args).assert().success().get_output().clone();
+        let told = String::from_utf8_lossy(&output.stderr).matches("sprung: note: the limiter lowered").count();
+        let report = report(&sandbox, &format!("{base} {limiter} -o out.wav"));
+        let [reduction, seconds] =
+            ["limiter_reduction_db", "limiter_seconds"].map(|field| report[field].as_f64().unwrap());
+        assert_eq!((told == 1, told == 1), (reduction > 0.0, seconds > 0.0), "{told}: {report}");
+        (report["peak_dbfs"].as_f64().unwrap(), reduction, seconds)
+    };
+    let (limited, reduction, seconds) = peak("");
+    assert!((-2.0..-0.3).contains(&limited), "{limited} dBFS");
+    assert!(reduction > 6.0 && (0.1..=0.5).contains(&seconds), "{reduction} dB for {seconds} s");
+    let (unlimited, reduction, seconds) = peak("--set limiter=off");
+    assert!(unlimited > 6.0 && reduction == 0.0 && seconds == 0.0, "{unlimited} dBFS");
+    let (quiet, reduction, seconds) = peak("--set gain=-30");
+    assert!(quiet < -10.0 && reduction == 0.0 && seconds == 0.0, "{quiet} dBFS");
+}
+
+#[test]
 fn mono_is_the_mean_of_both_channels() {
     let sandbox = Sandbox::new();
     let base = "render --note A3 --length 0.2 --tail none --preset Vibraphone.toml --bits 32f";
@@ -75,13 +98,9 @@ fn the_samples_do_not_depend_on_blocks_and_threads() {
     sandbox.succeeds(&format!("{base} --block 1024 --threads 1"));
     let expected = sandbox.read("out.wav");
     assert!(sandbox.wav("out.wav").peak() > 0.01);
-    for block in [1, 7, 64, 480, 65_536] {
-        sandbox.succeeds(&format!("{base} --block {block}"));
-        assert!(sandbox.read("out.wav") == expected, "{block}");
-    }
-    for threads in [2, 3] {
-        sandbox.succeeds(&format!("{base} --threads {threads}"));
-        assert!(sandbox.read("out.wav") == expected, "{threads} threads");
+    for options in ["--block 1", "--block 65536", "--threads 2", "--block 7 --threads 3"] {
+        sandbox.succeeds(&format!("{base} {options}"));
+        assert!(sandbox.read("out.wav") == expected, "{options}");
     }
 }
 

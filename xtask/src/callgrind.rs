@@ -84,6 +84,11 @@ pub(crate) fn can_count() -> bool {
     succeeds("valgrind", &["--version"])
 }
 
+/// The levels that are counted where the CPU has them, and that this one lacks.
+pub(crate) fn missing_levels() -> impl Iterator<Item = Level> {
+    LEVELS.into_iter().filter(|level| !level.is_available())
+}
+
 /// Counts, and compares with what is kept; or keeps what is counted. Gives the number of counts.
 pub(crate) fn run(accept: bool) -> Result<usize, String> {
     let built = cargo("build --release --quiet --package xtask").status().map_err(|error| error.to_string())?;

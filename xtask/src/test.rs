@@ -1,7 +1,7 @@
 //! `cargo xtask test`: the whole suite, step by step, with a count of what really ran.
 
 use crate::shell::{cargo, run_and_read};
-use crate::{bundle, callgrind, setup};
+use crate::{bundle, callgrind, setup, skipped};
 use std::fmt;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -53,6 +53,12 @@ const STEPS: &[Step] = &[
         shows: Shows::Tests,
     },
     Step {
+        name: "orders of the lock",
+        arguments: "test --manifest-path plugin/sequence_lock/Cargo.toml --target-dir target/loom",
+        environment: &[("RUSTFLAGS", "--cfg loom")],
+        shows: Shows::Tests,
+    },
+    Step {
         name: "golden, release",
         arguments: "test --release --package sprung --no-default-features --features analysis --test golden",
         environment: &[],
@@ -86,16 +92,17 @@ const STEPS: &[Step] = &[
 ];
 
 /// How much ran, and how it went.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 struct Count {
     passed: usize,
     failed: usize,
-    skipped: usize,
+    /// By name.
+    skipped: Vec<String>,
 }
 
 impl fmt::Display for Count {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} passed, {} failed, {} skipped", self.passed, self.failed, self.skipped)
+        write!(f, "{} passed, {} failed, {} skipped", self.passed, self.failed, self.skipped.len())
     }
 }
 
@@ -107,8 +114,8 @@ struct Outcome {
     time: Duration,
 }
 
-/// Runs all steps, whatever fails, and sums up.
-pub(crate) fn run() -> Result<(), String> {
+/// Runs all steps, whatever fails, and sums up. If it is `strict`, tests that are skipped without an excuse fail it.
+pub(crate) fn run(strict: bool) -> Result<(), String> {
     let mut outcomes = vec![timed("setup", || match setup::run() {
         Ok(()) => (Count { passed: 1, ..Count::default() }, ""),
         Err(message) => failed(&message),
@@ -119,15 +126,28 @@ pub(crate) fn run() -> Result<(), String> {
 
     println!("\n{:<24} {:<8} {:>9}  ran", "step", "result", "time");
     let mut total = Count::default();
-    for Outcome { name, count, remark, time } in &outcomes {
-        let result = if count.failed == 0 { "ok" } else { "FAILED" };
+    for Outcome { name, count, remark, time } in outcomes {
+        let result = if count.is_good(strict) { "ok" } else { "FAILED" };
         println!("{name:<24} {result:<8} {:>7.1} s  {count}{remark}", time.as_secs_f64());
         total.passed += count.passed;
         total.failed += count.failed;
-        total.skipped += count.skipped;
+        total.skipped.extend(count.skipped);
     }
-    println!("\n{total}");
-    if total.failed == 0 { Ok(()) } else { Err("the suite failed".to_owned()) }
+    let (lines, without_excuse) = skipped::report(&total.skipped);
+    print!("\n{lines}{total}");
+    println!("{}", if strict { ", strict" } else { "" });
+    match (total.failed, total.is_good(strict)) {
+        (0, true) => Ok(()),
+        (0, false) => Err(format!("the suite failed: it is strict, and {without_excuse} tests were skipped")),
+        _ => Err("the suite failed".to_owned()),
+    }
+}
+
+impl Count {
+    /// Whether nothing failed and, if it is `strict`, nothing was skipped without an excuse.
+    fn is_good(&self, strict: bool) -> bool {
+        self.failed == 0 && (!strict || skipped::report(&self.skipped).1 == 0)
+    }
 }
 
 /// The plugin's own tests, and the bundles that musicians install in real hosts.
@@ -145,10 +165,11 @@ fn plugin() -> (Count, &'static str) {
 /// The counts of the kernels' instructions, against those kept.
 fn instructions() -> (Count, &'static str) {
     if !callgrind::can_count() {
-        return (Count { skipped: 1, ..Count::default() }, " (no valgrind)");
+        return (Count { skipped: vec!["instructions".to_owned()], ..Count::default() }, " (no valgrind)");
     }
+    let skipped = callgrind::missing_levels().map(|level| format!("level::{}", level.name())).collect();
     match callgrind::run(false) {
-        Ok(counted) => (Count { passed: counted, ..Count::default() }, ""),
+        Ok(passed) => (Count { passed, failed: 0, skipped }, ""),
         Err(message) => failed(&message),
     }
 }
@@ -210,7 +231,7 @@ impl Shows {
 
 /// The sum of the harness's `test result: ok. 3 passed; 0 failed; 1 ignored; …` lines.
 fn count_tests(lines: &[String]) -> Count {
-    let mut count = Count::default();
+    let (mut count, mut ignored) = (Count::default(), 0);
     for result in lines.iter().filter_map(|line| line.strip_prefix("test result: ")) {
         let numbers = result.split(['.', ';']).filter_map(|part| part.trim().split_once(' '));
         for (number, what) in numbers {
@@ -218,11 +239,12 @@ fn count_tests(lines: &[String]) -> Count {
             match what {
                 "passed" => count.passed += number,
                 "failed" => count.failed += number,
-                "ignored" => count.skipped += number,
+                "ignored" => ignored += number,
                 _ => {}
             }
         }
     }
+    count.skipped = skipped::names(lines, ignored);
     count
 }
 
@@ -237,20 +259,36 @@ mod tests {
     #[test]
     fn results_are_summed() {
         let output = lines(
-            "running 4 tests\ntest a ... ok\n\
+            "running 4 tests\ntest a ... ok\ntest b ... ignored\n\
             test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; 9 filtered out; finished in 0.00s\n\
             test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out; finished in 1.50s",
         );
-        assert_eq!(Shows::Tests.judge(false, &output), (Count { passed: 5, failed: 1, skipped: 1 }, ""));
+        assert_eq!(
+            Shows::Tests.judge(false, &output),
+            (Count { passed: 5, failed: 1, skipped: vec!["b".to_owned()] }, "")
+        );
+    }
+
+    #[test]
+    fn a_skipped_test_is_a_failure_where_it_is_strict() {
+        let skipping = |name: &str| Count { passed: 3, failed: 0, skipped: vec![name.to_owned()] };
+        for (count, lenient, strict) in [
+            (skipping("level::neon"), true, true),
+            (skipping("jack::live_notes_are_in_time_and_in_tune"), true, false),
+            (Count { failed: 1, ..Count::default() }, false, false),
+            (Count::default(), true, true),
+        ] {
+            assert_eq!((count.is_good(false), count.is_good(true)), (lenient, strict), "{count:?}");
+        }
     }
 
     #[test]
     fn a_step_that_ran_nothing_has_failed() {
         let nothing = lines("test result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; 5 filtered out");
         let failed_once = Count { failed: 1, ..Count::default() };
-        assert_eq!(Shows::Tests.judge(true, &nothing), (failed_once, " (nothing ran)"));
-        assert_eq!(Shows::Benches.judge(true, &[]), (failed_once, " (nothing ran)"));
-        assert_eq!(Shows::Tests.judge(false, &[]), (failed_once, " (broke off)"));
+        assert_eq!(Shows::Tests.judge(true, &nothing), (failed_once.clone(), " (nothing ran)"));
+        assert_eq!(Shows::Benches.judge(true, &[]), (failed_once.clone(), " (nothing ran)"));
+        assert_eq!(Shows::Tests.judge(false, &[]), (failed_once.clone(), " (broke off)"));
         assert_eq!(Shows::OneCheck.judge(false, &[]), (failed_once, ""));
         assert_eq!(Shows::OneCheck.judge(true, &[]).0.passed, 1);
     }

@@ -131,6 +131,7 @@ pub(crate) fn a_choke_silences_within_a_fade() {
     let patch = patch().with(Param::Decay, 20.0).with(Param::Release, 20.0);
     let note = Address::note(0, 60, 1);
     let rendered = player(&patch).render(&[Sent::On(note, 1.0).at(0), Sent::Choke(note).at(4_800)], 9_600, || 480);
+    assert_sound("a note that is choked", &rendered.channels);
     let after = &rendered.channels[0][4_800 + 960..];
     assert!(after.iter().all(|sample| *sample == 0.0), "20 ms after a choke nothing sounds");
     assert_eq!(rendered.ended.len(), 1);
@@ -178,6 +179,7 @@ pub(crate) fn a_flood_of_events_loses_none() {
         .collect();
     let whole = player(&patch()).render(&song, 4_800, || 480);
     let parts = player(&patch()).render(&song, 4_800, || 1);
+    assert_sound("a flood", &whole.channels);
     crate::host::reference::assert_same_bits("a flood", &whole.channels, &parts.channels);
     assert_eq!(counts(&whole.ended), counts(&parts.ended));
 }

@@ -2,9 +2,9 @@
 
 use super::deliver::Files;
 use super::system::{MethodArgs, SystemArgs};
-use sprung::Result;
 use sprung::lab::animation::{Animation, gif, svg};
 use sprung::lab::comparison::{Comparison, Setup};
+use sprung::{Error, Result};
 
 #[derive(clap::Args)]
 pub(super) struct Args {
@@ -26,6 +26,9 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
+    if !(args.step > 0.0 && args.step.is_finite()) {
+        return Err(Error::value("--step", format!("must be longer than 0 s, got {}", args.step)));
+    }
     let (system, start) = args.system.build()?;
     let steps = vec![args.step];
     let methods = args.methods.for_system(&system, &steps)?;

@@ -1,6 +1,6 @@
 //! What the lab's commands write: a figure, a table of numbers as CSV, and one as text.
 
-use super::super::{interrupt, print};
+use super::super::{complain_lines, interrupt, print};
 use sprung::figure::{self, Picture};
 use sprung::io::{Output, Target};
 use sprung::{Error, Result};
@@ -111,8 +111,7 @@ impl Deliveries {
             output.commit()?;
         }
         if self.to_stdout {
-            // If stderr is closed, there is nobody left to tell.
-            let _ = write!(std::io::stderr(), "{text}");
+            complain_lines(text);
             return Ok(());
         }
         print(text)

@@ -1,5 +1,6 @@
 //! `sprung lab listen`.
 
+use super::super::quantity;
 use super::deliver::{Files, drawn};
 use super::system::MethodArgs;
 use super::table::{aligned, row};
@@ -7,7 +8,6 @@ use sprung::figure::number::short;
 use sprung::io::{SampleFormat, WavFormat, WavWriter};
 use sprung::lab::figure::sound::SoundFigure;
 use sprung::lab::sound::{Sound, listen};
-use sprung::render::SAMPLE_RATES;
 use sprung::{Error, Result};
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub(super) struct Args {
     #[command(flatten)]
     methods: MethodArgs,
     /// Frequency of the strike in Hz, below half the sample rate
-    #[arg(long, default_value_t = 440.0, value_name = "HZ")]
+    #[arg(long, default_value = "440", value_name = "HZ", value_parser = quantity::hertz)]
     frequency: f64,
     /// Time in which it decays by 60 dB, in s (inf: never)
     #[arg(long, default_value_t = 2.0, value_name = "S")]
@@ -28,9 +28,8 @@ pub(super) struct Args {
     /// Length of the files in s
     #[arg(long, default_value_t = 2.0, value_name = "S")]
     seconds: f64,
-    /// Sample rate in Hz, 1000-768000
-    #[arg(long, default_value_t = 48_000, value_name = "HZ", value_parser = clap::value_parser!(u32)
-        .range(i64::from(*SAMPLE_RATES.start())..=i64::from(*SAMPLE_RATES.end())))]
+    /// Sample rate, 1000-768000 Hz (44100, 44.1k)
+    #[arg(long, default_value = "48000", value_name = "HZ", value_parser = quantity::rate)]
     rate: u32,
     #[command(flatten)]
     files: Files,

@@ -1,5 +1,6 @@
 //! `sprung lab pitch`.
 
+use super::super::quantity;
 use super::deliver::{Files, drawn};
 use super::system::MethodArgs;
 use super::table::{aligned, row};
@@ -13,14 +14,15 @@ use sprung::lab::pitch::{Note, Outcome, musical_steps};
 pub(super) struct Args {
     #[command(flatten)]
     methods: MethodArgs,
-    /// Sample rate in Hz
-    #[arg(long, default_value_t = 48_000.0, value_name = "HZ")]
+    /// Sample rate in Hz (48000, 44.1k)
+    #[arg(long, default_value = "48000", value_name = "HZ", value_parser = quantity::hertz)]
     rate: f64,
     /// Times in which the note decays by 60 dB, in s (inf: never), separated by commas; the figure shows the first
     #[arg(long, default_value = "1,0.1", value_delimiter = ',', value_name = "S,…")]
     t60: Vec<f64>,
     /// Frequencies of the table in Hz, below half the sample rate, separated by commas
-    #[arg(long, default_value = "27.5,110,440,1760,4186,8000,12000,16000", value_delimiter = ',', value_name = "HZ,…")]
+    #[arg(long, default_value = "27.5,110,440,1760,4186,8000,12000,16000", value_delimiter = ',', value_name = "HZ,…",
+        value_parser = quantity::hertz)]
     frequencies: Vec<f64>,
     #[command(flatten)]
     files: Files,

@@ -1,6 +1,6 @@
 //! The options that describe what is integrated, and how.
 
-use super::super::complain;
+use super::super::{complain, quantity};
 use clap::ValueEnum;
 use sprung::Result;
 use sprung::lab::method::Method;
@@ -46,7 +46,7 @@ pub(super) struct SystemArgs {
     #[arg(long, default_value_t = 0.0, value_name = "N")]
     drive: f64,
     /// Frequency of that force in Hz; 0 is a constant one
-    #[arg(long, default_value_t = 0.0, value_name = "HZ")]
+    #[arg(long, default_value = "0", value_name = "HZ", value_parser = quantity::hertz)]
     drive_frequency: f64,
 }
 

@@ -3,20 +3,18 @@
 mod report;
 
 use super::progress::Bar;
-use super::{complain, interrupt, presets, quantity};
+use super::song::SongArgs;
+use super::{interrupt, presets, quantity};
 use clap::ArgGroup;
-use sprung::engine::EventKind;
 use sprung::io::{Output, SampleFormat, Song, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
-use sprung::render::{BLOCKS, Delivery, Job, Level, Options, SAMPLE_RATES, THREADS, Tail, on_threads, to_wav};
+use sprung::render::{BLOCKS, Delivery, Job, Level, Options, THREADS, Tail, on_threads, to_wav};
 use sprung::units::parse_key;
 use sprung::{Error, Result};
-use std::collections::BTreeSet;
-use std::fs::File;
 use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -32,24 +30,25 @@ pub(super) struct Args {
     /// Standard MIDI file of type 0 or 1; - is stdin
     song: Option<PathBuf>,
     /// Notes to strike together, instead of a song: names (C#4), keys 0-127 (60, 60.5) or frequencies (440Hz)
-    #[arg(long, value_delimiter = ',', value_parser = quantity::note, allow_negative_numbers = true)]
+    #[arg(long, value_delimiter = ',', value_parser = quantity::note, allow_hyphen_values = true)]
     note: Vec<String>,
     /// Velocity of the notes, 1-127
-    #[arg(long, default_value_t = 100, allow_negative_numbers = true, conflicts_with = "song", value_parser = clap::value_parser!(u8).range(1..=127))]
+    #[arg(long, default_value_t = 100, allow_hyphen_values = true, conflicts_with = "song", value_parser = quantity::whole::<u8>(1..=127))]
     velocity: u8,
     /// How long the notes are held, 0-86400 s
     #[arg(long, default_value = "2.0", value_name = "SECONDS", conflicts_with = "song",
-        value_parser = quantity::seconds, allow_negative_numbers = true)]
+        value_parser = quantity::seconds, allow_hyphen_values = true)]
     length: f64,
-    /// Factory preset or preset file (.toml) that plays what no program change says otherwise
-    #[arg(long, default_value = "init", value_name = "NAME|FILE.toml")]
-    preset: String,
+    #[command(flatten)]
+    reading: SongArgs,
+    /// Factory preset or preset file (.toml) that plays what no program change says otherwise [default: init]
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    preset: Option<String>,
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
     #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting)]
     set: Vec<(Param, f32)>,
-    /// Sample rate, 1000-768000 Hz
-    #[arg(long, default_value_t = 48_000, value_name = "HZ", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
-        .range(i64::from(*SAMPLE_RATES.start())..=i64::from(*SAMPLE_RATES.end())))]
+    /// Sample rate, 1000-768000 Hz (44100, 44.1k)
+    #[arg(long, default_value_t = 48_000, value_name = "HZ", allow_hyphen_values = true, value_parser = quantity::rate)]
     rate: u32,
     /// Sample format: 16 or 24 bits, or 32f for floats
     #[arg(long, default_value = "24", value_name = "16|24|32f", value_parser = quantity::bits)]
@@ -62,24 +61,26 @@ pub(super) struct Args {
     mono: bool,
     /// What follows the song or the notes: auto goes on until the sound has died, none stops at once, or 0-86400 s
     #[arg(long, default_value = "auto", value_name = "auto|none|SECONDS", value_parser = quantity::tail,
-        allow_negative_numbers = true)]
+        allow_hyphen_values = true)]
     tail: Tail,
     /// Bring the peak (-120-0 dBFS) or the integrated loudness (-70-0 LUFS) to a level
-    #[arg(long, value_name = "peak=DBFS|lufs=LUFS", value_parser = quantity::level, conflicts_with = "gain_db")]
+    #[arg(long, value_name = "peak=DBFS|lufs=LUFS", value_parser = quantity::level, allow_hyphen_values = true,
+        conflicts_with = "gain_db")]
     normalize: Option<Level>,
     /// Gain, -120-120 dB
-    #[arg(long, default_value_t = 0.0, value_name = "DB", value_parser = quantity::gain_db, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, value_name = "DB", value_parser = quantity::gain_db, allow_hyphen_values = true)]
     gain_db: f64,
     /// Seed of all randomness, 0-18446744073709551615
-    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0, value_name = "N", allow_hyphen_values = true,
+        value_parser = quantity::whole::<u64>(0..=u64::MAX))]
     seed: u64,
     /// Frames processed at once, 1-65536; the samples do not depend on it
-    #[arg(long, default_value_t = 4096, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
-        .range(*BLOCKS.start() as i64..=*BLOCKS.end() as i64))]
+    #[arg(long, default_value_t = 4096, value_name = "N", allow_hyphen_values = true,
+        value_parser = quantity::whole::<u32>(*BLOCKS.start() as u64..=*BLOCKS.end() as u64))]
     block: u32,
     /// Threads to work on, 1-256; the samples do not depend on it [default: one a core]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16)
-        .range(i64::from(*THREADS.start())..=i64::from(*THREADS.end())))]
+    #[arg(long, value_name = "N", allow_hyphen_values = true,
+        value_parser = quantity::whole::<u16>((*THREADS.start()).into()..=(*THREADS.end()).into()))]
     threads: Option<u16>,
     /// Overwrite an existing file
     #[arg(long)]
@@ -105,16 +106,17 @@ pub(super) fn run(args: &Args) -> Result<()> {
     {
         return Err(Error::value("--output", format!("‘{}’ is the song: expected another file", output.display())));
     }
-    let patch = with_settings(presets::load(&args.preset)?.patch, &args.set);
+    let preset = args.preset.as_deref();
+    let patch = with_settings(presets::load(preset.unwrap_or("init"))?.patch, &args.set);
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
     let song = match &args.song {
-        Some(path) => read_song(path)?,
+        Some(path) => args.reading.read(path)?,
         None => chord(args, &patch)?,
     };
-    warn_of_missing_programs(&song, programs.len());
+    args.reading.warn_of_programs(&song, preset.map(|_| &patch), &programs);
 
     let options = Options { sample_rate: args.rate, seed: args.seed, block: args.block as usize, tail: args.tail };
-    let job = Job { song: &song, patch: &patch, programs: &programs, options };
+    let job = Job { song: &song, patch: &patch, programs: args.reading.programs(&programs), options };
     let delivery = Delivery {
         samples: args.bits,
         dither: args.dither,
@@ -141,39 +143,10 @@ pub(in crate::cli) fn with_settings(mut patch: Patch, settings: &[(Param, f32)])
     patch
 }
 
-pub(in crate::cli) fn read_song(path: &Path) -> Result<Song> {
-    if path == Path::new("-") {
-        return Song::read(std::io::stdin().lock(), "stdin");
-    }
-    let origin = path.display().to_string();
-    Song::read(File::open(path).map_err(|error| Error::io(&origin, error))?, &origin)
-}
-
 fn chord(args: &Args, patch: &Patch) -> Result<Song> {
     // Frequencies are placed by the patch's own tuning, so that 440 Hz is 440 Hz in every patch.
     let a4_hz = f64::from(patch.get(Param::Tuning));
     let keys: std::result::Result<Vec<f64>, String> = args.note.iter().map(|note| parse_key(note, a4_hz)).collect();
     let keys = keys.map_err(|message| Error::value("--note", message))?;
     Ok(Song::chord(&keys, f32::from(args.velocity) / 127.0, args.length))
-}
-
-pub(in crate::cli) fn warn_of_missing_programs(song: &Song, programs: usize) {
-    let missing: BTreeSet<(u8, u8)> = song
-        .events
-        .iter()
-        .filter_map(|event| match event.kind {
-            EventKind::Program(number) if usize::from(number) >= programs => Some((event.channel, number)),
-            _ => None,
-        })
-        .collect();
-    for (channel, number) in missing {
-        complain(
-            "warning",
-            format_args!(
-                "channel {}: there is no program {number} (the presets are 0 to {}); the channel keeps its preset",
-                channel + 1,
-                programs - 1
-            ),
-        );
-    }
 }

@@ -1,11 +1,10 @@
 //! What `sprung render` says when it is done.
 
-use crate::cli::{complain, print};
+use crate::cli::{complain, complain_lines, print};
 use serde_json::json;
 use sprung::Result;
 use sprung::io::{SampleFormat, Target};
 use sprung::render::Report;
-use std::io::Write;
 
 pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()> {
     if report.clipped > 0 {
@@ -17,14 +16,24 @@ pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()
             ),
         );
     }
+    if report.limiter_reduction_db > 0.0 && !as_json {
+        complain(
+            "note",
+            format_args!(
+                "the limiter lowered the sound by up to {:.1} dB, for {:.2} s in all; avoid it with a lower \
+                 --set gain=…, or switch it off with --set limiter=off",
+                report.limiter_reduction_db, report.limiter_seconds
+            ),
+        );
+    }
     match (as_json, target) {
         (true, Target::Path(_)) => print(&format!("{:#}\n", to_json(report, target))),
         (true, Target::Stdout) => {
-            let _ = writeln!(std::io::stderr(), "{:#}", to_json(report, target));
+            complain_lines(&format!("{:#}\n", to_json(report, target)));
             Ok(())
         }
         (false, _) => {
-            let _ = writeln!(std::io::stderr(), "{}", summary(report, target));
+            complain_lines(&format!("{}\n", summary(report, target)));
             Ok(())
         }
     }
@@ -62,6 +71,8 @@ fn to_json(report: &Report, target: &Target) -> serde_json::Value {
         "gain_db": report.gain_db,
         "clipped_samples": report.clipped,
         "voices_used": report.voices_used,
+        "limiter_reduction_db": report.limiter_reduction_db,
+        "limiter_seconds": report.limiter_seconds,
         "realtime_factor": report.realtime_factor,
     })
 }

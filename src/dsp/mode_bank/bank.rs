@@ -5,7 +5,7 @@ use super::ring::Ring;
 use super::rows::{Form, Modes, Moving, Output, Row, State, Wide};
 use super::step::Step;
 use super::table::{Build, Table};
-use super::tuning::{Aim, ChordLoss, Settle, TOP_ANGLE, Tune, Tuning, UNIT, audible};
+use super::tuning::{Aim, ChordLoss, Settle, Tune, Tuning, UNIT};
 use super::vector::LANES;
 use super::{ExcitationGains, LEAST_LN_RADIUS, MAX_MODES, ModeSetup};
 use crate::dsp::CONTROL_FRAMES;
@@ -68,7 +68,7 @@ enum Motion {
         /// Whether a force has acted on the way.
         driven: bool,
     },
-    /// The pitch has stood still, and nothing has driven the bank, for so many control ticks.
+    /// The pitch stands still, and nothing has driven the bank since so many calls of [`ModeBank::sweep_to`].
     Still { ticks: usize },
     /// As before, and rendered by tables: so many frames of the present tick have been handed out.
     Tabled { handed_out: usize },
@@ -177,8 +177,8 @@ impl ModeBank {
         let same = ratio == self.ratio && !self.retuned && !self.damped;
         match self.motion {
             Motion::Still { ticks } if same => {
-                self.until_tick = frames;
-                return self.stand_still(ticks);
+                (self.motion, self.until_tick) = (Motion::Still { ticks: ticks + 1 }, frames);
+                return;
             }
             Motion::Tabled { .. } if same => return self.until_tick = frames,
             _ => self.leave_tables(),
@@ -206,13 +206,10 @@ impl ModeBank {
     /// Sends the coefficients to those of `ratio`, over so many frames or at once. Of the line before, so many frames
     /// have passed, and what they have lost is given back.
     fn aim(&mut self, frames: Option<usize>, passed: usize, lost: Option<ChordLoss>) {
-        let per_frame = frames.map(|frames| 1.0 / frames as f32);
-        let gains = self.aim_gains(per_frame, passed);
-        self.motion = match frames {
-            Some(frames) => Motion::Line { frames, gains, driven: false },
-            None => Motion::Still { ticks: 0 },
-        };
-        self.instructions.run(Aim {
+        let fades = self.tuning.fades(self.ratio);
+        let faded = std::mem::replace(&mut self.faded, fades);
+        let moved = matches!(self.motion, Motion::Line { gains: true, .. });
+        let gains = self.instructions.run(Aim {
             tuning: &mut self.tuning,
             modes: &mut self.modes,
             state: &mut self.states[self.current],
@@ -220,53 +217,20 @@ impl ModeBank {
             passed,
             lost,
             damped: std::mem::take(&mut self.damped),
-            per_frame,
+            per_frame: frames.map(|frames| 1.0 / frames as f32),
+            fade: (fades || faded || moved).then_some(&self.gains),
             live: self.live,
             len: self.len,
         });
-    }
-
-    /// Sends the gains of modes at the top of the spectrum to what is heard of them. Returns whether any gain moves.
-    fn aim_gains(&mut self, per_frame: Option<f32>, passed: usize) -> bool {
-        let ratio = self.ratio as f32;
-        let highest = self.tuning.half_angle.0[..self.len].iter().fold(0.0_f32, |highest, half| highest.max(*half));
-        let fades = highest * ratio > (0.5 * TOP_ANGLE) as f32;
-        let moves = matches!(self.motion, Motion::Line { gains: true, .. });
-        if !std::mem::replace(&mut self.faded, fades) && !fades && !moves {
-            return false;
-        }
-        let Modes { left, right, left_step, right_step, .. } = &mut self.modes;
-        for ((gain, step), full) in [(left, left_step), (right, right_step)].into_iter().zip(&self.gains) {
-            for m in 0..self.len {
-                let target = full.0[m] * audible(self.tuning.half_angle.0[m] * ratio);
-                match per_frame.filter(|_| m < self.live) {
-                    Some(share) => {
-                        gain.0[m] += passed as f32 * step.0[m];
-                        step.0[m] = (target - gain.0[m]) * share;
-                    }
-                    None => (gain.0[m], step.0[m]) = (target, 0.0),
-                }
-            }
-        }
-        per_frame.is_some()
+        self.motion = match frames {
+            Some(frames) => Motion::Line { frames, gains, driven: false },
+            None => Motion::Still { ticks: 0 },
+        };
     }
 
     /// Frames of a line that have passed.
     fn passed(&self) -> usize {
         if let Motion::Line { frames, .. } = self.motion { frames - self.until_tick } else { 0 }
-    }
-
-    /// At a control tick of a bank whose pitch stands still: makes the tables, once that is worth while.
-    fn stand_still(&mut self, ticks: usize) {
-        if self.until_tick != CONTROL_FRAMES {
-            return;
-        }
-        self.motion = Motion::Still { ticks: ticks + 1 };
-        if ticks >= self.len / MODES_PER_TICK {
-            let Self { table, ln_radius, half_angle, ratio, len, .. } = self;
-            self.instructions.run(Build { table, ln_radius, half_angle, ratio: *ratio, len: *len });
-            self.motion = Motion::Tabled { handed_out: 0 };
-        }
     }
 
     /// Steps on from the start of a tick that is rendered by tables, to the frame that is next.
@@ -295,6 +259,18 @@ impl ModeBank {
         self.instructions.run(Step { form, modes, state, drive, out });
     }
 
+    /// Makes the tables at the start of a tick, once that is worth while.
+    fn make_tables(&mut self) {
+        if let Motion::Still { ticks } = self.motion
+            && ticks > self.len / MODES_PER_TICK
+            && self.until_tick == CONTROL_FRAMES
+        {
+            let Self { table, ln_radius, half_angle, ratio, len, .. } = self;
+            self.instructions.run(Build { table, ln_radius, half_angle, ratio: *ratio, len: *len });
+            self.motion = Motion::Tabled { handed_out: 0 };
+        }
+    }
+
     /// Renders a whole tick by the tables.
     fn ring(&mut self) {
         let form = self.form(false, CONTROL_FRAMES);
@@ -321,6 +297,7 @@ impl ModeBank {
             }
             self.step(drive, true, frames);
         } else {
+            self.make_tables();
             match self.motion {
                 Motion::Tabled { handed_out: 0 } => self.ring(),
                 Motion::Tabled { .. } => {}

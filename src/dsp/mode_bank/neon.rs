@@ -22,7 +22,6 @@ impl Vector for Neon {
     // NEON belongs to AArch64.
     type Proof = ();
     const WIDTH: usize = 4;
-    const INTERLEAVE: usize = 4;
 
     #[inline(always)]
     fn splat((): (), value: f32) -> Self {

@@ -37,7 +37,7 @@ impl State {
 
 /// What the register form reads of each mode: one frame turns the state by `z = r e^(iθ)`.
 ///
-/// What moves has its value at the start of a straight line, and how much it changes a frame: frame `i` of the line has
+/// What moves has its value at the start of a straight line, and how much it changes a frame: after `i` frames it is
 /// `value + i · step`, rounded once. (Adding the step frame by frame would round each time the same way.)
 #[derive(Clone, Debug)]
 pub(super) struct Modes {

@@ -1,6 +1,7 @@
 //! The bank as its users see it.
 
 use super::*;
+use crate::dsp::mode_bank::tuning::TOP_ANGLE;
 use crate::dsp::random::{key, uniform};
 use crate::dsp::{Coefficients, HarmonicOscillator};
 use std::f64::consts::PI;
@@ -47,7 +48,8 @@ fn amplitude(bank: &mut ModeBank) -> f64 {
 }
 
 /// The oscillator in double precision is what a mode is: pushed or displaced, at every pitch and decay. (RMS over a
-/// second. The bank's state is in single precision, whose rounding is that of the peaks, a few decibels above.)
+/// second. Until it has tables, a mode is stepped with coefficients in single precision, whose rounding puts the phase
+/// of a high mode out by some 1e−7 a frame.)
 #[test]
 fn one_mode_is_the_oscillator() {
     for frequency in [20.0, 100.0, 440.0, 4000.0, 12_345.6, 20_000.0, 23_000.0] {
@@ -61,7 +63,8 @@ fn one_mode_is_the_oscillator() {
                 }
                 let rendered = run(&mut bank, 48_000, Some(&strike()));
                 let db = error_db(&rendered, &mut [HarmonicOscillator::new(&c)]);
-                assert!(db < -120.0, "{frequency} Hz, {t60} s, pull {pull}: {db:.1} dB");
+                let most = if frequency > 10_000.0 { -110.0 } else { -120.0 };
+                assert!(db < most, "{frequency} Hz, {t60} s, pull {pull}: {db:.1} dB");
             }
         }
     }

@@ -5,6 +5,7 @@ use super::MAX_MODES;
 use super::levels::Kernel;
 use super::rows::{Modes, Row, State, Wide};
 use super::vector::{LANES, Partial, Vector};
+use crate::dsp::CONTROL_FRAMES;
 use std::f64::consts::PI;
 
 /// Modes up to this angle per sample sound at full level; from here to π they fade out, and beyond they are silent.
@@ -14,7 +15,9 @@ pub(super) const TOP_ANGLE: f64 = 0.98 * PI;
 #[derive(Clone, Debug)]
 pub(super) struct Tuning {
     /// Half the angle per sample at a pitch ratio of 1, which may be beyond what can sound.
-    pub(super) half_angle: Row,
+    half_angle: Row,
+    /// The greatest of them.
+    highest: f32,
     /// `1 − r`.
     loss: Row,
     /// `r`, and that of the coefficients: they differ from a change of damping until the next line.
@@ -30,6 +33,7 @@ pub(super) struct Tuning {
 impl Tuning {
     pub(super) const UNSET: Tuning = Tuning {
         half_angle: Row::ZERO,
+        highest: 0.0,
         loss: Row::ZERO,
         radius: [1.0; MAX_MODES],
         damped_radius: [1.0; MAX_MODES],
@@ -37,6 +41,11 @@ impl Tuning {
         pull_x: Row::ZERO,
         pull_y: Row::ZERO,
     };
+
+    /// Whether a pitch ratio takes any mode to where it is not heard at full level.
+    pub(super) fn fades(&self, ratio: f64) -> bool {
+        self.highest * ratio as f32 > (0.5 * TOP_ANGLE) as f32
+    }
 }
 
 /// Takes over the logarithm of each mode's radius (at least [`super::LEAST_LN_RADIUS`]) and half its angle.
@@ -56,6 +65,7 @@ impl Kernel for Tune<'_> {
     #[inline(always)]
     fn run<V: Vector>(self, _: V::Proof) {
         let Self { tuning, ln_radius, half_angle, len } = self;
+        tuning.highest = half_angle[..len.min(MAX_MODES)].iter().fold(0.0, |highest, half| half.max(highest)) as f32;
         for m in 0..len.min(MAX_MODES) {
             let loss = -expm1_of_radius(ln_radius[m]);
             let radius = 1.0 - loss;
@@ -98,16 +108,31 @@ pub(super) struct Aim<'a> {
     pub(super) damped: bool,
     /// The share of the way that a frame takes, or none to be there at once.
     pub(super) per_frame: Option<f32>,
+    /// Gains to the left and to the right at full level, if some modes are at the top of the spectrum or leave it.
+    pub(super) fade: Option<&'a [Row; 2]>,
     /// Modes from here on are at rest: they are put where the line ends.
     pub(super) live: usize,
     pub(super) len: usize,
 }
 
+/// Frames for which the coefficients on a line stay the same: two operations a mode less in three frames of four.
+/// Frozen: bits depend on it.
+pub(super) const STAIR: usize = 4;
+
+/// The frame of a line, counted from its start, whose coefficients the next frame has once `passed` have passed; and how
+/// many frames, that one included, have them.
+#[inline(always)]
+pub(super) const fn stair(passed: usize) -> (f32, usize) {
+    let into = passed % STAIR;
+    ((passed - into) as f32 + 0.5 * (STAIR + 1) as f32, STAIR - into)
+}
+
 /// The logarithm of what part of a line has lost to the arc, as a polynomial in the squared step `q` of the line:
 /// `first · q + second · q²`.
 ///
-/// Over the frames `i = 1 … p` of `K`, with `t = i/K` and `|Δz|² = K² q = 4 r² sin²(Δθ/2)`, the sum of
-/// `−½ ln(1 − 4 t (1−t) sin²(Δθ/2))` begins so. All terms that are left out, and `r² < 1`, make the true loss larger.
+/// Over frames that lie at `v` of the `K` frames of the line, with `t = v/K` and `|Δz|² = K² q = 4 r² sin²(Δθ/2)`, the
+/// sum of `−½ ln(1 − 4 t (1−t) sin²(Δθ/2))` begins with `½ q Σ v (K−v) + ¼ q² Σ v² (K−v)²`. All terms that are left out,
+/// and `r² < 1`, make the true loss larger.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ChordLoss {
     first: f32,
@@ -117,22 +142,32 @@ pub(super) struct ChordLoss {
 impl ChordLoss {
     /// Over the first `passed` of the `frames` frames of a line.
     pub(super) fn new(passed: usize, frames: usize) -> Self {
-        let (p, k) = (passed as f32, frames as f32);
-        // Sums of i, i², i³ and i⁴.
-        let sum1 = 0.5 * p * (p + 1.0);
-        let sum2 = sum1 * (2.0 * p + 1.0) * (1.0 / 3.0);
-        let sum3 = sum1 * sum1;
-        let sum4 = sum2 * (3.0 * p * (p + 1.0) - 1.0) * 0.2;
-        Self { first: 0.5 * (k * sum1 - sum2), second: 0.25 * (k * (k * sum2 - 2.0 * sum3) + sum4) }
+        const TICK: ChordLoss = ChordLoss::over(CONTROL_FRAMES, CONTROL_FRAMES);
+        if (passed, frames) == (CONTROL_FRAMES, CONTROL_FRAMES) { TICK } else { Self::over(passed, frames) }
+    }
+
+    const fn over(passed: usize, frames: usize) -> Self {
+        let (mut first, mut second, mut done) = (0.0, 0.0, 0);
+        while done < passed {
+            let (v, left) = stair(done);
+            let run = if left < passed - done { left } else { passed - done };
+            let product = v * (frames as f32 - v);
+            first += 0.5 * run as f32 * product;
+            second += 0.25 * run as f32 * product * product;
+            done += run;
+        }
+        Self { first, second }
     }
 }
 
 impl Kernel for Aim<'_> {
-    type Output = ();
+    /// Whether any gain moves.
+    type Output = bool;
 
     #[inline(always)]
-    fn run<V: Vector>(self, proof: V::Proof) {
-        let Self { tuning, modes, state, ratio, passed, lost, damped, per_frame, live, len } = self;
+    fn run<V: Vector>(self, proof: V::Proof) -> bool {
+        let Self { tuning, modes, state, ratio, passed, lost, damped, per_frame, fade, live, len } = self;
+        let mut gain_moves = Partial([0.0; LANES]);
         let (zero, one) = (V::splat(proof, 0.0), V::splat(proof, 1.0));
         let (top, passed) = (V::splat(proof, (0.5 * TOP_ANGLE) as f32), V::splat(proof, passed as f32));
         let mut at = 0;
@@ -147,7 +182,8 @@ impl Kernel for Aim<'_> {
                 state.y.at::<V>(proof, at).mul(factor).store(&mut state.y.0[at..]);
             }
             let loss: V = tuning.loss.at(proof, at);
-            let half = tuning.half_angle.at::<V>(proof, at).mul(V::splat(proof, ratio)).min(top);
+            let wanted = tuning.half_angle.at::<V>(proof, at).mul(V::splat(proof, ratio));
+            let half = wanted.min(top);
             let (sin, cos) = (sine::<V>(proof, half), cosine::<V>(proof, half));
             // sin² + cos² − 1: how much too long the turn is by rounding, which would change the decay.
             let excess = sin.mul_add(sin, cos.mul_add(cos, V::splat(proof, -1.0)));
@@ -155,7 +191,26 @@ impl Kernel for Aim<'_> {
             let two_sin = two_sin.neg_mul_add(excess, two_sin);
             let two_sin = two_sin.neg_mul_add(loss, two_sin);
             let (to_alpha, to_beta) = (two_sin.mul_add(sin, loss), two_sin.mul(cos));
-            match per_frame.filter(|_| at < live) {
+            let per_frame = per_frame.filter(|_| at < live);
+            if let Some(full) = fade {
+                let audible = audible(proof, wanted);
+                let Modes { left, right, left_step, right_step, .. } = modes;
+                for ((gain, step), full) in [(left, left_step), (right, right_step)].into_iter().zip(full) {
+                    let target = full.at::<V>(proof, at).mul(audible);
+                    let (from, new_step) = match per_frame {
+                        Some(share) => {
+                            let now = passed.mul_add(step.at(proof, at), gain.at(proof, at));
+                            (now, target.sub(now).mul(V::splat(proof, share)))
+                        }
+                        None => (target, zero),
+                    };
+                    from.store(&mut gain.0[at..]);
+                    new_step.store(&mut step.0[at..]);
+                    let lane = &mut gain_moves.0[at % LANES..];
+                    new_step.mul_add(new_step, V::load(proof, lane)).store(lane);
+                }
+            }
+            match per_frame {
                 Some(share) => {
                     let mut alpha: V = passed.mul_add(alpha_step, modes.alpha.at(proof, at));
                     let mut beta: V = passed.mul_add(beta_step, modes.beta.at(proof, at));
@@ -182,6 +237,7 @@ impl Kernel for Aim<'_> {
         if damped {
             tuning.damped_radius = tuning.radius;
         }
+        gain_moves.0 != [0.0; LANES]
     }
 }
 
@@ -281,8 +337,9 @@ fn cosine<V: Vector>(proof: V::Proof, x: V) -> V {
     sum
 }
 
-/// How much of a mode with this half angle is heard: all up to [`TOP_ANGLE`], nothing from π on.
-pub(super) fn audible(half_angle: f32) -> f32 {
-    let share = ((0.5 * PI) as f32 - half_angle) * (2.0 / (PI - TOP_ANGLE)) as f32;
-    share.clamp(0.0, 1.0)
+/// How much of modes with these half angles is heard: all up to [`TOP_ANGLE`], nothing from π on.
+#[inline(always)]
+fn audible<V: Vector>(proof: V::Proof, half_angle: V) -> V {
+    let below = V::splat(proof, (0.5 * PI) as f32).sub(half_angle);
+    below.mul(V::splat(proof, (2.0 / (PI - TOP_ANGLE)) as f32)).max(V::splat(proof, 0.0)).min(V::splat(proof, 1.0))
 }

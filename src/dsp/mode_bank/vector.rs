@@ -19,8 +19,8 @@ pub(super) trait Vector: Copy {
     type Proof: Copy;
     /// How many numbers.
     const WIDTH: usize;
-    /// How many vectors of modes are stepped at once, where the coefficients stand still.
-    const INTERLEAVE: usize;
+    /// How many vectors of each group of modes are stepped at once where the coefficients stand still.
+    const SIDE_BY_SIDE: usize = 1;
 
     /// `value` in every lane.
     fn splat(proof: Self::Proof, value: f32) -> Self;
@@ -78,7 +78,6 @@ pub(super) struct Scalar([f32; 4]);
 impl Vector for Scalar {
     type Proof = ();
     const WIDTH: usize = 4;
-    const INTERLEAVE: usize = 1;
 
     #[inline(always)]
     fn splat((): (), value: f32) -> Self {

@@ -1,7 +1,7 @@
 //! Tests of the MIDI reader, on files that midly's writer and a few bytes by hand make.
 
 use super::*;
-use midly::{Fps, Smf, Timing, TrackEvent};
+use midly::{Format, Fps, Header, MetaMessage, Smf, Timing, TrackEvent, TrackEventKind};
 use proptest::prelude::*;
 
 const BEATS: Timing = Timing::Metrical(midly::num::u15::new(480));
@@ -127,25 +127,158 @@ fn unfit_files_are_refused_with_a_reason() {
     };
     let zero_tempo = file(Format::SingleTrack, BEATS, &[vec![meta(7, MetaMessage::Tempo(0.into()))]]);
     for (bytes, expected) in [
-        (vec![], "not a midi file"),
-        (b"RIFF\x04\0\0\0WAVE".to_vec(), "not an rmid riff file"),
-        (b"MThd".to_vec(), "invalid midi header"),
-        (whole[..12].to_vec(), "invalid midi header"),
+        (vec![], "an empty file: expected a Standard MIDI File"),
+        (b"RIFF\x04\0\0\0WAVE".to_vec(), "a WAV sound file: expected a Standard MIDI File (.mid)"),
+        (b"RIFF\x04\0\0\0RMID".to_vec(), "an RMID file without a song"),
+        (b"RIFF\x0c\0\0\0RMIDdata\x04\0\0\0nope".to_vec(), "an RMID file without a song"),
+        (b"fLaC".to_vec(), "a FLAC sound file: expected"),
+        ("format = 1\nname = \"Schöne Glocke\"".into(), "a text file: expected"),
+        (vec![0x7f; 300], "not a MIDI file: expected"),
+        (b"MThd".to_vec(), "not a whole MIDI file: it breaks off in its header"),
+        (whole[..12].to_vec(), "not a whole MIDI file: it breaks off in its header"),
         (whole[..14].to_vec(), "declares 2 tracks and has 0"),
         (with(11, 3), "declares 3 tracks and has 2"),
-        (with(11, 0), "declares 0 tracks and has 0"),
+        (with(11, 0), "declares 0 tracks and has 2"),
         (with(9, 2), "a MIDI file of type 2 (independent patterns): expected type 0 or 1"),
-        (with(9, 7), "invalid midi header"),
+        (with(9, 7), "a MIDI file of type 7: expected type 0 or 1"),
         (with(13, 0).iter().enumerate().map(|(i, b)| if i == 12 { 0 } else { *b }).collect(), "the division is 0"),
         (with(12, 0x80), "found 128"),
-        (with(12, 0x90), "invalid midi header"),
-        (with(23, 0xf5), "track 1: event 1 (after tick 0) is malformed"),
-        (whole[..whole.len() - 1].to_vec(), "is cut off or damaged"),
-        (zero_tempo, "the tempo at tick 7 is 0"),
+        (with(12, 0x90), "found 112"),
+        (with(23, 0xf5), "track 1, bar 1, beat 1 (tick 0, byte 22): status byte 0xf5 has no place in a file"),
+        (with(25, 0x85), "track 1, bar 1, beat 1 (tick 0, byte 22): expected a data byte of at most 0x7f, found 0x85"),
+        (
+            whole[..whole.len() - 1].to_vec(),
+            "track 2, bar 1, beat 1 (tick 9, byte 49): the file is cut off: 7 of the track's 8 bytes are there; \
+             add --lenient to read it nevertheless",
+        ),
+        (
+            zero_tempo,
+            "track 1, bar 1, beat 1 (tick 7, byte 22): the tempo is 0 µs per quarter note: expected at least 1",
+        ),
     ] {
         let error = Song::parse(&bytes, "song.mid").unwrap_err().to_string();
         assert!(error.starts_with("song.mid: ") && error.contains(expected), "{expected}: {error}");
     }
+}
+
+/// A file of one track of these bytes, 96 ticks a beat.
+fn raw(track: &[u8]) -> Vec<u8> {
+    let length = (track.len() as u32).to_be_bytes();
+    [b"MThd\0\0\0\x06\0\0\0\x01\0\x60MTrk", &length[..], track].concat()
+}
+
+fn keys(song: &Song) -> Vec<u8> {
+    let key = |event: &SongEvent| match event.kind {
+        EventKind::NoteOn { key, .. } => Some(key),
+        _ => None,
+    };
+    song.events.iter().filter_map(key).collect()
+}
+
+#[test]
+fn lenient_reading_repairs_what_it_knows_and_says_so() {
+    // A title, then a note without its status byte; a bar of 3/4 later, two more after SysEx.
+    let running: &[u8] = &[
+        0, 0xff, 0x58, 4, 3, 2, 24, 8, 0, 0x90, 60, 100, 0, 0xff, 3, 1, b'x', 0x60, 61, 100, 0, 0xf0, 1, 0xf7, 0x60,
+        62, 100, 0, 0xff, 0x2f, 0,
+    ];
+    let offset: &[u8] = &[0x60, 0xff, 0x54, 5, 0, 0, 0, 30, 0, 0, 0x90, 60, 100, 0, 0xff, 0x2f, 0];
+    let cut: &[u8] = &[0, 0x90, 60, 100, 0x60, 61, 100, 0, 0xff, 0x2f];
+    let tempo: &[u8] = &[0, 0xff, 0x51, 3, 0, 0, 0, 0x60, 0x90, 60, 100];
+    let mut broken_off = raw(&[0, 0x90, 60, 100, 0x60, 61, 100, 0, 62, 100, 0, 0xff, 0x2f, 0]);
+    broken_off.truncate(broken_off.len() - 6);
+    let mut miscounted = raw(&[0, 0x90, 60, 100]);
+    miscounted[11] = 3;
+    let mut uncounted = raw(&[0, 0x90, 60, 100]);
+    uncounted[11] = 0;
+    let rmid = |size: u32, data: u32| {
+        let song = raw(&[0, 0x90, 60, 100]);
+        let (size, data) = (size.to_le_bytes(), data.to_le_bytes());
+        [b"RIFF", &size[..], b"RMIDDISP\x03\0\0\0abc\0data", &data[..], &song[..]].concat()
+    };
+    for (bytes, expected, repairs) in [
+        (
+            raw(running),
+            &[60, 61, 62][..],
+            &[
+                "track 1, bar 1, beat 2 (tick 96, byte 39): an event has no status byte, and a meta or SysEx event ends \
+               running status: it goes on (2 times in this track)",
+            ][..],
+        ),
+        (
+            raw(offset),
+            &[60],
+            &["track 1, bar 1, beat 2 (tick 96, byte 22): the SMPTE offset is no time of day: left out"],
+        ),
+        (raw(cut), &[60, 61], &["track 1, bar 1, beat 2 (tick 96, byte 29): the track ends within an event: left out"]),
+        (
+            broken_off,
+            &[60, 61],
+            &[
+                "track 1, bar 1, beat 2 (tick 96, byte 30): the file is cut off: 8 of the track's 14 bytes are there: played \
+               as far as it goes",
+            ],
+        ),
+        (
+            raw(tempo),
+            &[60],
+            &[
+                "track 1, bar 1, beat 1 (tick 0, byte 22): the tempo is 0 µs per quarter note: expected at least 1: left out",
+            ],
+        ),
+        (miscounted, &[60], &["not a whole MIDI file: it declares 3 tracks and has 1"]),
+        (uncounted, &[60], &["not a whole MIDI file: it declares 0 tracks and has 1"]),
+        (rmid(0, 26), &[60], &["an RMID file of size 0"]),
+        (rmid(0, 0), &[60], &["an RMID file of size 0", "an RMID file whose song has the size 0"]),
+    ] {
+        let refused = Song::parse(&bytes, "x").unwrap_err().to_string();
+        assert!(refused.ends_with("; add --lenient to read it nevertheless"), "{refused}");
+        let (song, told) = Song::parse_leniently(&bytes, "x").unwrap();
+        assert_eq!(
+            (keys(&song).as_slice(), told.iter().map(String::as_str).collect::<Vec<_>>().as_slice()),
+            (expected, repairs)
+        );
+    }
+    assert_eq!(keys(&Song::parse(&rmid(50, 26), "x").unwrap()), [60]);
+}
+
+#[test]
+fn lenient_reading_changes_nothing_of_a_sound_file_and_refuses_what_it_cannot_repair() {
+    let tempo = vec![meta(0, MetaMessage::Tempo(1_000_000.into())), meta(480, MetaMessage::Tempo(250_000.into()))];
+    let bytes = file(Format::Parallel, BEATS, &[tempo, vec![midi(7, 3, on(60, 1)), midi(480, 3, on(60, 0))]]);
+    assert_eq!(Song::parse_leniently(&bytes, "x").unwrap(), (Song::parse(&bytes, "x").unwrap(), vec![]));
+    for track in [&[0, 0xf5, 1][..], &[0, 0x90, 60, 0x90], &[0, 60, 100], &[0x81, 0x82, 0x83, 0x84, 0]] {
+        let strict = Song::parse(&raw(track), "x").unwrap_err().to_string();
+        assert!(!strict.contains("--lenient"), "{strict}");
+        assert_eq!(Song::parse_leniently(&raw(track), "x").unwrap_err().to_string(), strict);
+    }
+}
+
+#[test]
+fn a_lenient_reader_plays_every_truncation_as_far_as_it_goes() {
+    let track =
+        vec![midi(0, 0, on(60, 1)), midi(300, 1, on(61, 1)), midi(300, 0, on(62, 1)), meta(9, MetaMessage::EndOfTrack)];
+    let whole = file(Format::SingleTrack, BEATS, &[track]);
+    let all = Song::parse(&whole, "x").unwrap();
+    for length in 22..whole.len() {
+        let (song, repairs) = Song::parse_leniently(&whole[..length], "x").unwrap();
+        assert_eq!(song.events, all.events[..song.events.len()], "{length}");
+        assert!(!repairs.is_empty(), "{length}");
+    }
+    assert_eq!(Song::parse_leniently(&whole[..whole.len() - 1], "x").unwrap().0.events, all.events);
+}
+
+#[test]
+fn a_title_that_looks_like_a_header_is_a_title() {
+    let title = b"MThd\0\0\0\x06\0\x01\0\x01\x80\x60";
+    let track = [&[0, 0xff, 3, title.len() as u8][..], title, &[0, 0x90, 60, 100]].concat();
+    assert_eq!(keys(&Song::parse(&raw(&track), "x").unwrap()), [60]);
+    // Between tracks it is one.
+    let mut bytes = raw(&[0, 0x90, 60, 100]);
+    bytes[11] = 2;
+    bytes.extend(title);
+    let error = Song::parse(&bytes, "x").unwrap_err().to_string();
+    assert_eq!(error, "x: a second header after track 1: expected one song");
 }
 
 #[test]
@@ -179,6 +312,7 @@ proptest! {
         at in any::<proptest::sample::Index>(),
         byte in any::<u8>(),
     ) {
+        let _ = Song::parse_leniently(&bytes, "x");
         let _ = Song::parse(&bytes, "x");
         let mut framed = b"MThd\0\0\0\x06".to_vec();
         framed.extend(header);

@@ -1,5 +1,6 @@
-//! The exact exponential map: the closed form's transition over one step, applied again and again. Exact but for
-//! rounding; a force is taken at the middle of the step, which makes that part second order.
+//! The exact exponential map: the closed form's transition over one step, applied again and again.
+//!
+//! Exact but for rounding; a force is taken at the middle of the step, which makes that part second order.
 
 use super::Integrator;
 use crate::error::Result;

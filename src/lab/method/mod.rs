@@ -148,7 +148,7 @@ impl Method {
     pub fn from_key(key: &str) -> Result<Self> {
         Self::ALL.into_iter().find(|method| method.key() == key).ok_or_else(|| {
             let keys = Self::ALL.map(Self::key);
-            let hint = nearest(key, keys).map_or(String::new(), |near| format!("; did you mean {near}?"));
+            let hint = nearest(key, keys).map_or(String::new(), |near| format!("; the nearest is {near}"));
             Error::value("methods", format!("{key} is not one of all, {}{hint}", keys.join(", ")))
         })
     }
@@ -196,7 +196,7 @@ mod tests {
             assert_eq!(Method::from_key(method.key()).unwrap(), method);
         }
         let message = Method::from_key("explicit_euler").unwrap_err().to_string();
-        assert!(message.ends_with("did you mean explicit-euler?"), "{message}");
+        assert!(message.ends_with("the nearest is ‘explicit-euler’"), "{message}");
     }
 
     #[test]

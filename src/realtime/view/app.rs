@@ -7,6 +7,7 @@ use crate::params::{PARAMS, ParamInfo, Unit};
 use crate::patch::Patch;
 use crate::preset::Preset;
 use crate::realtime::{Load, PatchSender, Status};
+use crate::text::printable;
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -66,6 +67,8 @@ pub(super) struct App {
 impl App {
     pub(super) fn new(desk: Desk) -> Self {
         let Desk { device, status, keys, patches, name, patch, programs } = desk;
+        // What comes from files and devices must not steer the terminal.
+        let (device, name) = (printable(&device).into_owned(), printable(&name).into_owned());
         let sound = |_| Sound { name: name.clone(), patch, program: None };
         Self {
             device,
@@ -91,7 +94,7 @@ impl App {
 
     /// Tells something for a while.
     pub(super) fn tell(&mut self, message: String) {
-        self.message = Some((message, Instant::now()));
+        self.message = Some((printable(&message).into_owned(), Instant::now()));
     }
 
     pub(super) fn message(&self) -> Option<&str> {

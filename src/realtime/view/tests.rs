@@ -22,13 +22,17 @@ struct Stand {
 
 impl Stand {
     fn new() -> Self {
+        Self::named("a device", "init")
+    }
+
+    fn named(device: &str, name: &str) -> Self {
         let ([keys], inputs) = LiveInputs::new();
         let status = Arc::new(Status::default());
         let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch).collect();
         let patch = programs[0];
         let setup = Setup { sample_rate: 48_000, seed: 0, patch: &patch, programs: &programs, song: None };
         let (player, patches) = Player::new(setup, inputs, None, status.clone());
-        let desk = Desk { device: "a device".into(), status, keys, patches, name: "init".into(), patch, programs };
+        let desk = Desk { device: device.into(), status, keys, patches, name: name.into(), patch, programs };
         Self { app: App::new(desk), player, epoch: Instant::now(), played: Duration::ZERO }
     }
 
@@ -55,6 +59,16 @@ impl Stand {
         let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
         terminal.draw(|frame| draw::draw(&self.app, frame)).unwrap();
         terminal.backend().to_string()
+    }
+}
+
+#[test]
+fn nothing_of_a_name_steers_the_terminal() {
+    let mut stand = Stand::named("card\u{1b}[2J", "gnp\u{202e}.");
+    stand.app.tell("gone: \u{9b}1m\n".to_owned());
+    let screen = stand.screen(100, 24);
+    for shown in ["card\\u001b[2J", "gnp\\u202e.", "gone: \\u009b1m\\u000a"] {
+        assert!(screen.contains(shown), "{shown}: {screen}");
     }
 }
 

@@ -1,0 +1,168 @@
+//! The song that a command plays, and what its program changes mean for `--preset`.
+
+use super::complain;
+use sprung::engine::EventKind;
+use sprung::io::Song;
+use sprung::patch::Patch;
+use sprung::{Error, Result};
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::path::Path;
+
+/// Repairs that are told one by one.
+const MOST_REPAIRS: usize = 10;
+
+/// How a song is read and played.
+#[derive(clap::Args)]
+pub(super) struct SongArgs {
+    /// Repair a MIDI file that strays from the standard, and say how
+    #[arg(long, requires = "song")]
+    lenient: bool,
+    /// Leave program changes out: everything plays on --preset
+    #[arg(long)]
+    ignore_programs: bool,
+}
+
+impl SongArgs {
+    /// Reads the song; `-` is stdin.
+    pub(super) fn read(&self, path: &Path) -> Result<Song> {
+        if path == Path::new("-") {
+            return self.parse(std::io::stdin().lock(), "stdin");
+        }
+        let origin = path.display().to_string();
+        self.parse(File::open(path).map_err(|error| Error::io(&origin, error))?, &origin)
+    }
+
+    fn parse(&self, reader: impl std::io::Read, origin: &str) -> Result<Song> {
+        if !self.lenient {
+            return Song::read(reader, origin);
+        }
+        let (song, repairs) = Song::read_leniently(reader, origin)?;
+        for repair in repairs.iter().take(MOST_REPAIRS) {
+            complain("warning", format_args!("{origin}: {repair}"));
+        }
+        if repairs.len() > MOST_REPAIRS {
+            complain("warning", format_args!("{origin}: {} repairs more", repairs.len() - MOST_REPAIRS));
+        }
+        Ok(song)
+    }
+
+    /// The sounds that program changes choose from.
+    pub(super) fn programs<'a>(&self, programs: &'a [Patch]) -> &'a [Patch] {
+        if self.ignore_programs { &[] } else { programs }
+    }
+
+    /// Warns of program changes that choose nothing, and, if `preset` was asked for, of notes that do not play on it.
+    pub(super) fn warn_of_programs(&self, song: &Song, preset: Option<&Patch>, programs: &[Patch]) {
+        if self.ignore_programs {
+            return;
+        }
+        warn_of_missing_programs(song, programs.len());
+        let Some(preset) = preset else { return };
+        let Elsewhere { channels, notes, all } = Elsewhere::count(song, preset, programs);
+        if notes > 0 {
+            let (them, one) = (channels.len(), channels.len() == 1);
+            complain(
+                "warning",
+                format_args!(
+                    "{notes} of {all} notes, on {them} channel{}, do not play on --preset because of program changes; \
+                     --ignore-programs plays them on it",
+                    if one { "" } else { "s" }
+                ),
+            );
+        }
+    }
+}
+
+/// Notes that do not play on the preset that was asked for.
+#[derive(Debug, Default, PartialEq)]
+struct Elsewhere {
+    channels: BTreeSet<u8>,
+    notes: usize,
+    /// Notes of the song.
+    all: usize,
+}
+
+impl Elsewhere {
+    fn count(song: &Song, preset: &Patch, programs: &[Patch]) -> Self {
+        let mut count = Self::default();
+        let mut changed = BTreeSet::new();
+        for event in &song.events {
+            match event.kind {
+                EventKind::Program(number) => match programs.get(usize::from(number)) {
+                    Some(patch) if patch != preset => drop(changed.insert(event.channel)),
+                    Some(_) => drop(changed.remove(&event.channel)),
+                    None => {}
+                },
+                EventKind::NoteOn { .. } => {
+                    count.all += 1;
+                    if changed.contains(&event.channel) {
+                        count.notes += 1;
+                        count.channels.insert(event.channel);
+                    }
+                }
+                _ => {}
+            }
+        }
+        count
+    }
+}
+
+fn warn_of_missing_programs(song: &Song, programs: usize) {
+    let missing: BTreeSet<(u8, u8)> = song
+        .events
+        .iter()
+        .filter_map(|event| match event.kind {
+            EventKind::Program(number) if usize::from(number) >= programs => Some((event.channel, number)),
+            _ => None,
+        })
+        .collect();
+    for (channel, number) in missing {
+        complain(
+            "warning",
+            format_args!(
+                "channel {}: there is no program {number} (the presets are 0 to {}); the channel keeps its preset",
+                channel + 1,
+                programs - 1
+            ),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::io::SongEvent;
+    use sprung::params::Param;
+
+    #[test]
+    fn notes_are_counted_from_the_program_change_on_that_leaves_the_preset() {
+        let (preset, other) = (Patch::default(), Patch::default().with(Param::Gain, -3.0));
+        let note = EventKind::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: -1 };
+        let program = EventKind::Program;
+        let events = [
+            (0, note),
+            (1, program(1)),
+            (1, note),
+            (0, note),
+            (1, note),
+            (1, program(9)),
+            (1, note),
+            (1, program(0)),
+            (1, note),
+            (3, program(1)),
+            (4, program(1)),
+            (4, note),
+        ];
+        let song = |events: &[(u8, EventKind)]| Song {
+            events: events
+                .iter()
+                .map(|(channel, kind)| SongEvent { seconds: 0.0, channel: *channel, kind: *kind })
+                .collect(),
+            seconds: 0.0,
+        };
+        let count = Elsewhere::count(&song(&events), &preset, &[preset, other]);
+        assert_eq!(count, Elsewhere { channels: [1, 4].into(), notes: 4, all: 7 });
+        assert_eq!(Elsewhere::count(&song(&events), &preset, &[]), Elsewhere { all: 7, ..Elsewhere::default() });
+    }
+}

@@ -1,0 +1,62 @@
+//! What clap says of wrong usage: safe for the terminal, and with what would be right.
+
+use super::complain_lines;
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Command, Error};
+use std::process::ExitCode;
+
+/// Tells a usage error, or prints the help or version that was asked for, and gives the exit code.
+pub(super) fn refuse(mut error: Error, command: &Command, args: &[String]) -> ExitCode {
+    if !error.use_stderr() {
+        error.exit();
+    }
+    if let Some(tip) = tip(&error, subcommand(command, args)) {
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
+    }
+    let plain = error.render().to_string();
+    if sprung::text::printable_lines(&plain) == plain {
+        // With colours. If stderr is closed, there is nobody left to tell.
+        let _ = error.print();
+    } else {
+        complain_lines(&plain);
+    }
+    ExitCode::from(error.exit_code() as u8)
+}
+
+/// The innermost subcommand that the arguments name.
+fn subcommand<'a>(command: &'a Command, args: &[String]) -> &'a Command {
+    let words = args.iter().skip(1).take_while(|arg| !arg.starts_with('-'));
+    words
+        .fold((command, true), |(command, deeper), word| match command.find_subcommand(word) {
+            Some(inner) if deeper => (inner, true),
+            _ => (command, false),
+        })
+        .0
+}
+
+/// What would be right, where clap does not tell.
+fn tip(error: &Error, command: &Command) -> Option<String> {
+    let Some(ContextValue::String(wrong)) = error.get(ContextKind::InvalidArg) else {
+        let missing = matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::Strings(missing))
+            if missing.iter().any(|arg| arg.starts_with("--output")));
+        let tip = "name the file to write, as in '-o out.wav'";
+        return (error.kind() == ErrorKind::MissingRequiredArgument && missing).then(|| tip.to_owned());
+    };
+    let takes = |long: &str| command.get_arguments().any(|arg| arg.get_long() == Some(long));
+    match (error.kind(), wrong.strip_prefix('-')) {
+        (ErrorKind::UnknownArgument, Some(short)) if !short.starts_with('-') => {
+            let longs = command.get_arguments().filter(|arg| !arg.is_hide_set()).filter_map(|arg| arg.get_long());
+            let longs: Vec<_> =
+                longs.filter(|long| long.starts_with(short)).map(|long| format!("'--{long}'")).collect();
+            (!longs.is_empty()).then(|| format!("there is no short '{wrong}'; there is {}", longs.join(" and ")))
+        }
+        (ErrorKind::UnknownArgument, None) if takes("output") && !wrong.contains(' ') => {
+            Some(format!("to write to it, put '-o' before it: '-o {wrong}'"))
+        }
+        (ErrorKind::InvalidValue, _) if wrong.starts_with("--output") => {
+            Some("name the file to write, as in '-o out.wav'".to_owned())
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,323 @@
+//! A stereo true-peak limiter without latency: it lowers what would exceed full scale, and nothing else.
+//!
+//! The gain falls at once and is held for as long as peaks may be apart in the lowest tones; then it rises slowly.
+//! A peak between two samples is known half of [`TAPS`] samples after it has gone out. Until the gain follows, single
+//! samples are lowered so far that no point between samples exceeds [`GUARD`] by what it has so far, which is what it
+//! comes to if silence follows. That is always possible: such a signal may be followed by silence.
+
+use super::true_peak::{Interpolator, Kernel, TAPS};
+use libm::exp;
+
+/// The gain is 1 while no peak, on a sample or between two, exceeds this: −0.92 dBFS. The difference from −1 dBFS is
+/// for meters that interpolate in another way.
+pub const THRESHOLD: f32 = 0.9;
+
+/// What higher peaks are brought down to, −1.9 dBFS: a point of a sine that is not complete can exceed the sine's peak
+/// 1.17 times, which is [`GUARD`] then. So steady tones are never changed but by the gain.
+pub const CEILING: f32 = 0.805;
+
+/// Most that the waveform between samples comes to, −0.45 dBFS: −0.3 dBFS on meters that interpolate in another way.
+pub const GUARD: f32 = 0.95;
+
+/// Samples below this cannot have a peak beyond [`THRESHOLD`] between them: the weights of a point add up to 1.865.
+const QUIET: f32 = 0.48;
+
+/// How long the gain is held: half a period of the lowest tone that is not distorted by its rising between peaks.
+const HOLD_SECONDS: f64 = 0.03;
+
+/// Time constant of the gain's rise.
+const RELEASE_SECONDS: f64 = 0.1;
+
+/// A gain beyond this has risen to 1.
+const SETTLED: f64 = 0.999_99;
+
+/// A gain below this counts as work: −0.1 dB.
+const WORK: f64 = 0.988_6;
+
+/// Frames that are looked at together for whether they are all quiet.
+const SCAN: usize = 64;
+
+/// Keeps a stereo signal's true peak below −0.3 dBFS, with the same gain on both sides and no latency.
+///
+/// A signal whose true peak stays below −1 dBFS passes bit for bit. Otherwise the true peak is at most that of
+/// [`GUARD`] from the first sample beyond [`THRESHOLD`] on, whatever comes. What comes before that sample has been let
+/// through: if samples that are all below the threshold break off or turn round within [`TAPS`] samples, the peak
+/// between them may be higher, once. Only a limiter with latency could have known.
+///
+/// The bits do not depend on how frames are divided into blocks. Real-time safe.
+#[derive(Clone, Debug)]
+pub struct Limiter {
+    kernel: Kernel,
+    input: [Interpolator; 2],
+    output: [Interpolator; 2],
+    /// Limits of the points of the output that are not complete, for the present `ceiling`.
+    limits: [f32; 4 * TAPS],
+    ceiling: f32,
+    gain: f64,
+    /// Share of the way to its target that a rising gain goes each frame.
+    release: f64,
+    recent_peaks: RecentPeaks,
+    /// The last samples that went out, oldest first.
+    last: [[f32; TAPS]; 2],
+    /// The input's interpolators have not seen the last samples.
+    is_stale: bool,
+    /// Frames since one that was lowered, no more than [`TAPS`]: from then on the input's and the output's points are
+    /// the same, and only the input's are kept.
+    unchanged_frames: usize,
+    /// Nothing but silence changes anything.
+    is_idle: bool,
+    work: Work,
+}
+
+/// How much a limiter has done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Work {
+    /// Lowest gain, an amplitude ratio; 1 if it was never lowered. Single samples may have been lowered further.
+    pub least_gain: f64,
+    /// Frames that were lowered by more than 0.1 dB.
+    pub frames: u64,
+}
+
+impl Work {
+    /// None.
+    pub const NONE: Self = Self { least_gain: 1.0, frames: 0 };
+}
+
+impl Limiter {
+    /// A limiter at rest, for a sample rate in Hz.
+    pub fn new(sample_rate: f64) -> Self {
+        let kernel = Kernel::new();
+        Self {
+            limits: limits(&kernel, THRESHOLD),
+            kernel,
+            input: [Interpolator::SILENT; 2],
+            output: [Interpolator::SILENT; 2],
+            ceiling: THRESHOLD,
+            gain: 1.0,
+            release: 1.0 - exp(-1.0 / (RELEASE_SECONDS * sample_rate)),
+            recent_peaks: RecentPeaks::new((HOLD_SECONDS * sample_rate) as u32),
+            last: [[0.0; TAPS]; 2],
+            is_stale: false,
+            unchanged_frames: TAPS,
+            is_idle: true,
+            work: Work::NONE,
+        }
+    }
+
+    /// Back to rest, as after silence.
+    pub fn reset(&mut self) {
+        self.recent_peaks.clear();
+        self.set_ceiling(THRESHOLD);
+        (self.gain, self.work) = (1.0, Work::NONE);
+        self.forget_samples();
+    }
+
+    /// Whether silence would be passed without changing anything, so that it need not be processed.
+    pub fn is_idle(&self) -> bool {
+        self.is_idle
+    }
+
+    /// What it has done since it was made or reset.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Limits the next frames in place; both slices are of one length. Switched off, it passes all frames, once a
+    /// lowered gain has risen to 1 as after a last peak. While it is on, samples that are not finite become 0.
+    pub fn process(&mut self, is_on: bool, left: &mut [f32], right: &mut [f32]) {
+        for (left, right) in left.chunks_mut(SCAN).zip(right.chunks_mut(SCAN)) {
+            let [last_left, last_right] = &self.last;
+            if self.unchanged_frames == TAPS && [&*left, right, last_left, last_right].into_iter().all(is_quiet) {
+                self.is_stale = true;
+            } else if is_on || self.gain < 1.0 {
+                self.catch_up();
+                for (left, right) in left.iter_mut().zip(&mut *right) {
+                    [*left, *right] = self.step(is_on, [*left, *right]);
+                }
+            }
+            self.last.iter_mut().zip([left, right]).for_each(|(last, out)| keep_last(last, out));
+            if !is_on && self.gain == 1.0 {
+                self.forget_samples();
+            }
+        }
+        self.is_idle = self.unchanged_frames == TAPS && self.last == [[0.0; TAPS]; 2];
+    }
+
+    /// Limits one frame.
+    fn step(&mut self, is_on: bool, frame: [f32; 2]) -> [f32; 2] {
+        if self.unchanged_frames == TAPS {
+            if is_on && let Some(points) = self.points_if_passed(frame) {
+                self.input = points;
+                return frame;
+            }
+            self.output = self.input.clone();
+        }
+        let frame = frame.map(|sample| if is_on && !sample.is_finite() { 0.0 } else { sample });
+        let mut peak = frame[0].abs().max(frame[1].abs());
+        for (points, sample) in self.input.iter_mut().zip(frame) {
+            peak = peak.max(points.push(&self.kernel, sample));
+        }
+        let peak = if is_on { peak } else { 0.0 };
+        if peak > THRESHOLD || self.gain < 1.0 {
+            self.follow(peak);
+        }
+        let mut out = frame.map(|sample| sample * self.gain as f32);
+        let mut share = 1.0;
+        if is_on {
+            let points = self.output.iter().zip(out);
+            let shares = points.map(|(points, sample)| points.share_within(&self.kernel, &self.limits, sample));
+            share = shares.fold(1.0, f32::min);
+            out = out.map(|sample| sample * share);
+        }
+        for (points, sample) in self.output.iter_mut().zip(out) {
+            points.push(&self.kernel, sample);
+        }
+        let is_unchanged = self.gain == 1.0 && share == 1.0;
+        self.unchanged_frames = if is_unchanged { TAPS.min(self.unchanged_frames + 1) } else { 0 };
+        self.work.frames += u64::from(self.gain.min(f64::from(share)) < WORK);
+        out
+    }
+
+    /// The input's points after a frame that needs no limiting, which are the output's as well: most of the work that
+    /// there is for loud frames.
+    fn points_if_passed(&self, frame: [f32; 2]) -> Option<[Interpolator; 2]> {
+        let mut points = self.input.clone();
+        let passes = points.iter_mut().zip(frame).all(|(points, sample)| {
+            let peak = points.push(&self.kernel, sample);
+            sample.abs() <= THRESHOLD && peak <= THRESHOLD && points.is_within(&self.limits)
+        });
+        passes.then_some(points)
+    }
+
+    /// Moves the gain by one frame, in which the input's peak is `peak`.
+    fn follow(&mut self, peak: f32) {
+        let highest = self.recent_peaks.add(peak);
+        // From the threshold down to the ceiling as peaks rise, so that the gain has no step where it sets in.
+        self.set_ceiling((2.0 * THRESHOLD - highest).clamp(CEILING, THRESHOLD));
+        let target = if highest > THRESHOLD { f64::from(self.ceiling) / f64::from(highest) } else { 1.0 };
+        if target <= self.gain {
+            self.gain = target;
+            self.work.least_gain = self.work.least_gain.min(target);
+        } else {
+            self.gain += (target - self.gain) * self.release;
+            if target == 1.0 && self.gain > SETTLED {
+                self.gain = 1.0;
+                self.recent_peaks.clear();
+            }
+        }
+    }
+
+    fn set_ceiling(&mut self, ceiling: f32) {
+        if ceiling != self.ceiling {
+            self.ceiling = ceiling;
+            self.limits = limits(&self.kernel, ceiling);
+        }
+    }
+
+    /// Shows the input's interpolators what passed while they were not needed.
+    fn catch_up(&mut self) {
+        if self.is_stale {
+            for (channel, last) in self.last.iter().enumerate() {
+                last.iter().for_each(|sample| _ = self.input[channel].push(&self.kernel, *sample));
+            }
+            self.is_stale = false;
+        }
+    }
+
+    fn forget_samples(&mut self) {
+        self.input = [Interpolator::SILENT; 2];
+        self.output = [Interpolator::SILENT; 2];
+        self.last = [[0.0; TAPS]; 2];
+        (self.is_stale, self.unchanged_frames, self.is_idle) = (false, TAPS, true);
+    }
+}
+
+/// Limits of points that are not complete: [`GUARD`] at the lowest ceiling, and at the threshold as far above it as
+/// those of a signal can be that must not be changed.
+fn limits(kernel: &Kernel, ceiling: f32) -> [f32; 4 * TAPS] {
+    let share = (ceiling - CEILING) / (THRESHOLD - CEILING);
+    kernel.partial_bounds(THRESHOLD).map(|bound| GUARD + share * (bound - GUARD).max(0.0))
+}
+
+/// Whether no sample is beyond [`QUIET`]; false with NaN. Without a branch, so that it is done in vectors.
+fn is_quiet(samples: &[f32]) -> bool {
+    samples.iter().fold(true, |quiet, sample| quiet & (sample.abs() <= QUIET))
+}
+
+/// Appends samples to the last ones.
+fn keep_last(last: &mut [f32; TAPS], samples: &[f32]) {
+    let kept = TAPS.saturating_sub(samples.len());
+    last.copy_within(TAPS - kept.., 0);
+    last[kept..].copy_from_slice(&samples[samples.len() - (TAPS - kept)..]);
+}
+
+/// The highest peak of the last frames, to an eighth of how many they are.
+#[derive(Clone, Debug)]
+struct RecentPeaks {
+    /// The highest peak of each part, the newest first.
+    parts: [f32; 8],
+    part_frames: u32,
+    elapsed: u32,
+}
+
+impl RecentPeaks {
+    fn new(frames: u32) -> Self {
+        Self { parts: [0.0; 8], part_frames: (frames / 8).max(1), elapsed: 0 }
+    }
+
+    fn clear(&mut self) {
+        (self.parts, self.elapsed) = ([0.0; 8], 0);
+    }
+
+    /// Adds the peak of the next frame and returns the highest.
+    fn add(&mut self, peak: f32) -> f32 {
+        if self.elapsed == self.part_frames {
+            self.parts.rotate_right(1);
+            (self.parts[0], self.elapsed) = (0.0, 0);
+        }
+        self.elapsed += 1;
+        self.parts[0] = self.parts[0].max(peak);
+        self.parts.iter().fold(0.0, |highest, part| highest.max(*part))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_samples_are_kept_however_they_come() {
+        let samples: Vec<f32> = (0..40).map(|n| n as f32).collect();
+        for lengths in [&[40][..], &[13, 0, 27], &[30, 1, 1, 3, 5], &[12, 12, 12, 4]] {
+            let (mut last, mut rest) = ([0.0; TAPS], &samples[..]);
+            for length in lengths {
+                keep_last(&mut last, &rest[..*length]);
+                rest = &rest[*length..];
+            }
+            assert_eq!(last[..], samples[40 - TAPS..], "{lengths:?}");
+        }
+    }
+
+    #[test]
+    fn recent_peaks_are_those_of_the_time_they_are_held() {
+        let mut peaks = RecentPeaks::new(80);
+        assert_eq!(peaks.add(0.5), 0.5);
+        assert_eq!(peaks.add(2.0), 2.0);
+        assert!((0..78).all(|_| peaks.add(1.0) == 2.0));
+        assert_eq!(peaks.add(1.0), 1.0);
+    }
+
+    #[test]
+    fn quiet_samples_have_no_peak_beyond_the_threshold_between_them() {
+        let (kernel, mut worst) = (Kernel::new(), 0.0f32);
+        for first in 0..4096 {
+            let mut points = Interpolator::SILENT;
+            // Every choice of signs of the twelve samples that a point is made of.
+            for n in 0..TAPS {
+                let sample = if first >> n & 1 == 1 { QUIET } else { -QUIET };
+                worst = worst.max(points.push(&kernel, sample));
+            }
+        }
+        assert!((0.99 * THRESHOLD..THRESHOLD).contains(&worst), "{worst}");
+    }
+}

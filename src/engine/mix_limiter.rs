@@ -1,0 +1,98 @@
+//! The limiter at the end of an ensemble's mix, and the channels that ask for it.
+
+use super::event::nearest_channel;
+use super::{Event, EventKind};
+use crate::dsp::Limiter;
+use crate::dsp::limiter::Work;
+use crate::params::Param;
+use crate::patch::Patch;
+
+/// One limiter for the mix of sixteen channels. It is on while any channel that has had a note has a patch that asks
+/// for it. Real-time safe once built.
+pub(super) struct MixLimiter {
+    limiter: Limiter,
+    channels: Channels,
+}
+
+/// Sets of channels, a bit each.
+#[derive(Clone, Copy)]
+struct Channels {
+    /// Those with a patch that asks for the limiter.
+    asking: u16,
+    /// Those that have had a note.
+    played: u16,
+}
+
+impl Channels {
+    fn is_on(self) -> bool {
+        self.asking & self.played != 0
+    }
+
+    fn set_asking(&mut self, channel: u8, value: f32) {
+        let bit = 1 << nearest_channel(channel);
+        self.asking = if value == 0.0 { self.asking & !bit } else { self.asking | bit };
+    }
+
+    fn handle(&mut self, event: &Event, programs: &[Patch]) {
+        match event.kind {
+            EventKind::NoteOn { .. } => self.played |= 1 << nearest_channel(event.channel),
+            EventKind::Param { param: Param::Limiter, value } => {
+                self.set_asking(event.channel, Param::Limiter.info().clamp(value));
+            }
+            EventKind::Program(number) => {
+                if let Some(patch) = programs.get(usize::from(number)) {
+                    self.set_asking(event.channel, patch.get(Param::Limiter));
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+impl MixLimiter {
+    /// For sixteen channels that start with `patch`.
+    pub(super) fn new(sample_rate: f64, patch: &Patch) -> Self {
+        let mut channels = Channels { asking: 0, played: 0 };
+        (0..16).for_each(|channel| channels.set_asking(channel, patch.get(Param::Limiter)));
+        Self { limiter: Limiter::new(sample_rate), channels }
+    }
+
+    /// A channel has another patch.
+    pub(super) fn set_patch(&mut self, channel: u8, patch: &Patch) {
+        self.channels.set_asking(channel, patch.get(Param::Limiter));
+    }
+
+    /// What it has done so far.
+    pub(super) fn work(&self) -> Work {
+        self.limiter.work()
+    }
+
+    /// Limits the next frames of the mix in place. Frames of `events` count from `start` frames before them, and
+    /// program changes choose from `programs`. Without `is_heard` the frames are silent.
+    pub(super) fn process(
+        &mut self,
+        events: &[Event],
+        start: usize,
+        programs: &[Patch],
+        is_heard: bool,
+        [left, right]: [&mut [f32]; 2],
+    ) {
+        let mut limit = |is_on: bool, left: &mut [f32], right: &mut [f32]| {
+            if is_heard || !self.limiter.is_idle() {
+                self.limiter.process(is_on, left, right);
+            }
+        };
+        let mut frame = 0;
+        for event in events {
+            let before = self.channels;
+            self.channels.handle(event, programs);
+            if before.is_on() != self.channels.is_on() {
+                let last = left.len().saturating_sub(1);
+                let at = (event.frame as usize).saturating_sub(start).min(last).max(frame);
+                limit(before.is_on(), &mut left[frame..at], &mut right[frame..at]);
+                frame = at;
+            }
+        }
+        limit(self.channels.is_on(), &mut left[frame..], &mut right[frame..]);
+    }
+}

@@ -1,0 +1,95 @@
+//! Where in a song a tick is: bar and beat through its time signatures.
+
+use super::tempo::TempoMap;
+use midly::Timing;
+
+/// Time signatures that are kept: places later than so many of them are off, in messages only.
+const MOST_SIGNATURES: usize = 4096;
+
+/// The bars of a song, as far as it has been read. For messages: songs play without it.
+pub(super) struct Bars {
+    timing: Timing,
+    /// First tick, beats in a bar, and the power of two of the note that a beat lasts.
+    signatures: Vec<(u64, u8, u8)>,
+}
+
+impl Bars {
+    /// Bars of four quarter notes, as until the first time signature (Standard MIDI Files 1.0).
+    pub(super) fn new(timing: Timing) -> Self {
+        Self { timing, signatures: vec![(0, 4, 2)] }
+    }
+
+    /// Takes in a time signature. One that cannot be is left out.
+    pub(super) fn change(&mut self, tick: u64, beats: u8, note: u8) {
+        // Shorter beats than 1/128 are shorter than most ticks.
+        if beats > 0 && note <= 7 && self.signatures.len() < MOST_SIGNATURES {
+            self.signatures.push((tick, beats, note));
+        }
+    }
+
+    /// `bar 3, beat 2` of a tick, counted from 1, or `2.5 s` where ticks are parts of a second.
+    pub(super) fn place(&self, tick: u64) -> String {
+        let Timing::Metrical(division) = self.timing else {
+            let seconds = TempoMap::new(self.timing, &[]).map_or(0.0, |map| map.seconds(tick));
+            return format!("{seconds:.3} s");
+        };
+        let mut signatures = self.signatures.clone();
+        signatures.sort_by_key(|(start, ..)| *start);
+        signatures.retain(|(start, ..)| *start <= tick);
+        // The division counts the ticks of a quarter note.
+        let whole_note = 4 * u128::from(division.as_int().max(1));
+        let (mut bars, mut beat) = (0, 0);
+        for (index, (start, beats, note)) in signatures.iter().enumerate() {
+            let end = signatures.get(index + 1).map_or(tick, |(next, ..)| *next);
+            let passed = u128::from(end - start) << note;
+            let bar = whole_note * u128::from(*beats);
+            beat = passed % bar / whole_note;
+            // A change within a bar starts another.
+            bars += if index + 1 < signatures.len() { passed.div_ceil(bar) } else { passed / bar };
+        }
+        format!("bar {}, beat {}", bars + 1, beat + 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use midly::Fps;
+
+    #[test]
+    fn ticks_become_bars_and_beats_through_every_signature() {
+        let mut bars = Bars::new(Timing::Metrical(96.into()));
+        for (tick, place) in
+            [(0, "bar 1, beat 1"), (95, "bar 1, beat 1"), (96, "bar 1, beat 2"), (384, "bar 2, beat 1")]
+        {
+            assert_eq!(bars.place(tick), place);
+        }
+        // 6/8 from bar 3 on, told after 3/4 from bar 5 on; both of another track than 5/4 amid a bar.
+        bars.change(768 + 2 * 288, 3, 2);
+        bars.change(768, 6, 3);
+        bars.change(768 + 2 * 288 + 100, 5, 2);
+        for (tick, place) in [
+            (767, "bar 2, beat 4"),
+            (768, "bar 3, beat 1"),
+            (768 + 5 * 48, "bar 3, beat 6"),
+            (768 + 288, "bar 4, beat 1"),
+            (768 + 2 * 288, "bar 5, beat 1"),
+            (768 + 2 * 288 + 99, "bar 5, beat 2"),
+            (768 + 2 * 288 + 100, "bar 6, beat 1"),
+            (768 + 2 * 288 + 100 + 480, "bar 7, beat 1"),
+        ] {
+            assert_eq!(bars.place(tick), place, "{tick}");
+        }
+    }
+
+    #[test]
+    fn impossible_signatures_and_huge_ticks_do_no_harm() {
+        let mut bars = Bars::new(Timing::Metrical(0.into()));
+        bars.change(0, 0, 2);
+        bars.change(0, 4, 200);
+        assert_eq!(bars.place(8), "bar 3, beat 1");
+        assert_eq!(bars.place(u64::MAX), "bar 4611686018427387904, beat 4");
+        assert_eq!(Bars::new(Timing::Timecode(Fps::Fps25, 40)).place(2500), "2.500 s");
+        assert_eq!(Bars::new(Timing::Timecode(Fps::Fps25, 0)).place(2500), "0.000 s");
+    }
+}

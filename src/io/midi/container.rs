@@ -1,0 +1,162 @@
+//! The chunks of a MIDI file: its header and the bytes of its tracks, bare or inside a RIFF file (RMID).
+
+use midly::Header;
+
+/// A MIDI file taken apart. Nothing within the tracks has been looked at.
+pub(super) struct Container<'a> {
+    pub(super) header: Header,
+    /// The tracks that are there; no more are looked for than the header declares.
+    pub(super) tracks: Vec<Track<'a>>,
+    /// What had to be repaired, if that was allowed.
+    pub(super) repairs: Vec<String>,
+}
+
+/// The bytes of a track.
+pub(super) struct Track<'a> {
+    pub(super) bytes: &'a [u8],
+    /// Where they start in the file.
+    pub(super) start: usize,
+    /// How many there should be: more than there are if the file breaks off.
+    pub(super) promised: usize,
+}
+
+/// What people take for a MIDI file, by its first bytes.
+const OTHERS: [(&[u8], &str); 9] = [
+    (b"RF64", "a WAV sound file"),
+    (b"RIFF", "a RIFF file without a song"),
+    (b"FORM", "an AIFF sound file"),
+    (b"fLaC", "a FLAC sound file"),
+    (b"OggS", "an Ogg sound file"),
+    (b"ID3", "an MP3 sound file"),
+    (b"PK\x03\x04", "a ZIP archive"),
+    (b"\x1f\x8b", "a gzip archive"),
+    (b"<", "an XML file"),
+];
+
+impl<'a> Container<'a> {
+    /// Takes a file apart. Where `lenient` allows it, sizes and numbers of tracks that are wrong are repaired.
+    pub(super) fn open(file: &'a [u8], lenient: bool) -> Result<Self, String> {
+        let mut repairs = Vec::new();
+        let mut repair = |fault: String| {
+            if !lenient {
+                return Err(fault);
+            }
+            repairs.push(fault);
+            Ok(())
+        };
+        let song = song_in(file, &mut repair)?;
+        let mut at = file.len() - song.len();
+        let header_chunk = next_chunk(file, &mut at, u32::from_be_bytes).filter(|chunk| chunk.promised >= 6);
+        let (header, declared) = match header_chunk {
+            Some(chunk) if chunk.bytes.len() == chunk.promised => read_header(song, chunk.bytes)?,
+            _ => return Err("not a whole MIDI file: it breaks off in its header".to_owned()),
+        };
+        // A file that declares no tracks is one whose writer did not come back to fill in the number.
+        let wanted = if declared == 0 { usize::MAX } else { declared };
+        let mut tracks = Vec::new();
+        while tracks.len() < wanted
+            && let Some(chunk) = next_chunk(file, &mut at, u32::from_be_bytes)
+        {
+            match &chunk.id {
+                b"MTrk" => tracks.push(chunk.into_track()),
+                b"MThd" => return Err(format!("a second header after track {}: expected one song", tracks.len())),
+                _ => {}
+            }
+        }
+        if tracks.len() != declared || declared == 0 {
+            let fault = format!("not a whole MIDI file: it declares {declared} tracks and has {}", tracks.len());
+            if tracks.is_empty() {
+                return Err(fault);
+            }
+            repair(fault)?;
+        }
+        Ok(Self { header, tracks, repairs })
+    }
+}
+
+/// From the song's header to the end of the song's bytes in the file.
+fn song_in<'a>(file: &'a [u8], repair: &mut impl FnMut(String) -> Result<(), String>) -> Result<&'a [u8], String> {
+    if file.starts_with(b"MThd") {
+        return Ok(file);
+    }
+    if !(file.starts_with(b"RIFF") && file.get(8..12) == Some(b"RMID")) {
+        return Err(format!("{}: expected a Standard MIDI File (.mid)", describe(file)));
+    }
+    if file[4..8] == [0; 4] {
+        repair("an RMID file of size 0".to_owned())?;
+    }
+    let mut at = 12;
+    while let Some(chunk) = next_chunk(file, &mut at, u32::from_le_bytes) {
+        if &chunk.id == b"data" {
+            let start = chunk.start;
+            if chunk.promised == 0 {
+                repair("an RMID file whose song has the size 0".to_owned())?;
+            }
+            // Where the song ends follows from its own chunks.
+            let song = &file[start..];
+            return if song.starts_with(b"MThd") { Ok(song) } else { Err("an RMID file without a song".to_owned()) };
+        }
+        // Chunks of RIFF files start at even places.
+        at += chunk.promised % 2;
+    }
+    Err("an RMID file without a song".to_owned())
+}
+
+/// What a file is that holds no song.
+fn describe(file: &[u8]) -> String {
+    if file.is_empty() {
+        return "an empty file".to_owned();
+    }
+    if file.starts_with(b"RIFF") && file.get(8..12) == Some(b"WAVE") {
+        return "a WAV sound file".to_owned();
+    }
+    if let Some((_, name)) = OTHERS.iter().find(|(start, _)| file.starts_with(start)) {
+        return (*name).to_owned();
+    }
+    let start = &file[..file.len().min(512)];
+    let text = start.utf8_chunks().next().is_some_and(|chunk| {
+        let valid = chunk.valid();
+        // A character may be cut at the end.
+        valid.len() + 4 > start.len() && !valid.chars().any(|c| c.is_control() && !c.is_whitespace())
+    });
+    if text { "a text file".to_owned() } else { "not a MIDI file".to_owned() }
+}
+
+fn read_header(song: &[u8], data: &[u8]) -> Result<(Header, usize), String> {
+    let kind = u16::from_be_bytes([data[0], data[1]]);
+    if kind > 1 {
+        let meaning = if kind == 2 { " (independent patterns)" } else { "" };
+        return Err(format!("a MIDI file of type {kind}{meaning}: expected type 0 or 1"));
+    }
+    // An upper byte of 0x80 would overflow inside midly, which negates it as an i8.
+    let frames_per_second = data[4].wrapping_neg();
+    if data[4] >= 0x80 && !matches!(frames_per_second, 24 | 25 | 29 | 30) {
+        let expected = "expected 24, 25, 29 or 30 SMPTE frames per second";
+        return Err(format!("not a valid MIDI file: {expected}, found {frames_per_second}"));
+    }
+    let (header, tracks) = midly::parse(&song[..8 + data.len()]).map_err(|error| error.kind().message().to_owned())?;
+    Ok((header, tracks.size_hint().0))
+}
+
+struct Chunk<'a> {
+    id: [u8; 4],
+    bytes: &'a [u8],
+    start: usize,
+    promised: usize,
+}
+
+impl<'a> Chunk<'a> {
+    fn into_track(self) -> Track<'a> {
+        Track { bytes: self.bytes, start: self.start, promised: self.promised }
+    }
+}
+
+/// The chunk at `at`, which moves on to the next one; none where the file ends before a chunk's bytes start.
+fn next_chunk<'a>(file: &'a [u8], at: &mut usize, length: fn([u8; 4]) -> u32) -> Option<Chunk<'a>> {
+    let (id, rest) = file.get(*at..)?.split_first_chunk::<4>()?;
+    let (size, rest) = rest.split_first_chunk::<4>()?;
+    let (start, promised) = (*at + 8, length(*size) as usize);
+    let bytes = &rest[..promised.min(rest.len())];
+    *at = start.saturating_add(promised);
+    Some(Chunk { id: *id, bytes, start, promised })
+}

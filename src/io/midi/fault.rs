@@ -1,0 +1,122 @@
+//! What is wrong with an event that midly refuses: for messages, and for the repairs of lenient reading.
+
+/// Why an event cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fault {
+    /// The time before it takes more than four bytes.
+    LongTime,
+    /// The track ends within it.
+    CutOff,
+    /// It has no status byte, and no running status holds.
+    NoStatus,
+    /// Its status byte has no place in a file.
+    Status(u8),
+    /// A channel message has a data byte above 127.
+    Data(u8),
+    /// A meta event is complete, but its contents cannot be.
+    Meta(u8),
+}
+
+/// A fault and where it leaves the track.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Found<'a> {
+    pub(super) fault: Fault,
+    /// Ticks before the event, as far as they can be read.
+    pub(super) delta: u32,
+    /// What follows the event, where its length is known.
+    pub(super) after: Option<&'a [u8]>,
+}
+
+impl Fault {
+    /// Looks for the fault of the event that `bytes` start with. `running` is the running status.
+    pub(super) fn find(bytes: &[u8], running: Option<u8>) -> Found<'_> {
+        let Some((delta, event)) = variable_length(bytes) else {
+            let fault = if bytes.len() < 4 { Self::CutOff } else { Self::LongTime };
+            return Found { fault, delta: 0, after: None };
+        };
+        let found = |fault| Found { fault, delta, after: None };
+        let Some((&status, rest)) = event.split_first() else { return found(Self::CutOff) };
+        match status {
+            0..0x80 => found(match running {
+                None => Self::NoStatus,
+                Some(running) => Self::of_data(running, event),
+            }),
+            0x80..0xf0 => found(Self::of_data(status, rest)),
+            0xff => match rest.split_first().and_then(|(kind, rest)| Some((*kind, variable_length(rest)?))) {
+                Some((kind, (length, data))) if data.len() >= length as usize => {
+                    Found { fault: Self::Meta(kind), delta, after: Some(&data[length as usize..]) }
+                }
+                _ => found(Self::CutOff),
+            },
+            // Their data are not looked at, so what can be wrong is their length.
+            0xf0 | 0xf7 => found(Self::CutOff),
+            _ => found(Self::Status(status)),
+        }
+    }
+
+    fn of_data(status: u8, data: &[u8]) -> Self {
+        // Program changes and channel pressure have one data byte, the other channel messages two (MIDI 1.0).
+        let length = if (0xc0..0xe0).contains(&status) { 1 } else { 2 };
+        let above = data.iter().take(length).find(|byte| **byte > 127);
+        above.map_or(Self::CutOff, |byte| Self::Data(*byte))
+    }
+}
+
+impl std::fmt::Display for Fault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::LongTime => write!(f, "the time before the event takes more than 4 bytes"),
+            Self::CutOff => write!(f, "the track ends within an event"),
+            Self::NoStatus => write!(f, "an event has no status byte, and a meta or SysEx event ends running status"),
+            Self::Status(byte) => write!(f, "status byte {byte:#04x} has no place in a file"),
+            Self::Data(byte) => write!(f, "expected a data byte of at most 0x7f, found {byte:#04x}"),
+            Self::Meta(0x54) => write!(f, "the SMPTE offset is no time of day"),
+            Self::Meta(kind) => write!(f, "meta event {kind:#04x} has contents that it cannot have"),
+        }
+    }
+}
+
+/// A number of variable length (at most four bytes) and what follows it; none if it is longer or cut off.
+fn variable_length(bytes: &[u8]) -> Option<(u32, &[u8])> {
+    let length = 1 + bytes.iter().take(4).position(|byte| *byte < 0x80)?;
+    let (number, rest) = bytes.split_at(length);
+    Some((number.iter().fold(0, |sum, byte| sum << 7 | u32::from(byte & 0x7f)), rest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use midly::EventIter;
+
+    #[test]
+    fn each_fault_is_told_from_the_others() {
+        for (bytes, running, fault, delta) in [
+            (&[0x81][..], None, Fault::CutOff, 0),
+            (&[0x81, 0x82, 0x83, 0x84, 0], None, Fault::LongTime, 0),
+            (&[0x81, 0x02], None, Fault::CutOff, 130),
+            (&[5, 60, 100], None, Fault::NoStatus, 5),
+            (&[5, 60, 0x90], Some(0x91), Fault::Data(0x90), 5),
+            (&[5, 60], Some(0x91), Fault::CutOff, 5),
+            (&[0, 0xc3, 0x80], None, Fault::Data(0x80), 0),
+            (&[0, 0xc3], None, Fault::CutOff, 0),
+            (&[0, 0xe3, 1], None, Fault::CutOff, 0),
+            (&[7, 0xf5, 1], None, Fault::Status(0xf5), 7),
+            (&[7, 0xf8], None, Fault::Status(0xf8), 7),
+            (&[7, 0xf0, 3, 1, 2], None, Fault::CutOff, 7),
+            (&[7, 0xff], None, Fault::CutOff, 7),
+            (&[7, 0xff, 0x2f], None, Fault::CutOff, 7),
+            (&[7, 0xff, 0x51, 3, 1, 2], None, Fault::CutOff, 7),
+        ] {
+            let mut events = EventIter::new(bytes);
+            *events.running_status_mut() = running;
+            assert!(events.next().is_some_and(|event| event.is_err()), "{bytes:?}: midly reads it");
+            assert_eq!(Fault::find(bytes, running), Found { fault, delta, after: None }, "{bytes:?}");
+        }
+        // 30 frames of 24 a second, a key signature without its mode.
+        for meta in [&[7, 0xff, 0x54, 5, 0, 0, 0, 30, 0, 9, 9][..], &[7, 0xff, 0x59, 1, 3, 9, 9]] {
+            assert!(EventIter::new(meta).next().is_some_and(|event| event.is_err()), "{meta:?}: midly reads it");
+            let expected = Found { fault: Fault::Meta(meta[2]), delta: 7, after: Some(&[9, 9][..]) };
+            assert_eq!(Fault::find(meta, None), expected);
+        }
+    }
+}

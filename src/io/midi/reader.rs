@@ -1,0 +1,147 @@
+//! The events of tracks, by tick, and what is wrong with those that cannot be read.
+
+use super::container::Track;
+use super::fault::{Fault, Found};
+use super::{MAX_EVENTS, translate};
+use crate::engine::EventKind;
+use crate::io::bars::Bars;
+use midly::{EventIter, MetaMessage, Timing, TrackEvent, TrackEventKind};
+use std::fmt;
+
+/// What the tracks so far have in them.
+pub(super) struct TrackReader {
+    /// Tick, channel and event.
+    pub(super) events: Vec<(u64, u8, EventKind)>,
+    /// Tick and microseconds per quarter note.
+    pub(super) tempos: Vec<(u64, u32)>,
+    pub(super) last_tick: u64,
+    pub(super) repairs: Vec<Repair>,
+    bars: Bars,
+    lenient: bool,
+}
+
+/// A fault that was repaired, once or several times in a track.
+pub(super) struct Repair {
+    track: usize,
+    fault: String,
+    /// What was done about it.
+    remedy: &'static str,
+    /// Where it was first.
+    place: String,
+    times: usize,
+}
+
+/// Where an event is: the number of its track, its tick, and its first byte in the file.
+#[derive(Clone, Copy)]
+struct Spot {
+    track: usize,
+    tick: u64,
+    byte: usize,
+}
+
+impl fmt::Display for Repair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { fault, remedy, place, times, .. } = self;
+        write!(f, "{place}: {fault}: {remedy}")?;
+        if *times > 1 { write!(f, " ({times} times in this track)") } else { Ok(()) }
+    }
+}
+
+impl TrackReader {
+    pub(super) fn new(timing: Timing, lenient: bool) -> Self {
+        let (events, tempos, repairs) = (Vec::new(), Vec::new(), Vec::new());
+        Self { events, tempos, last_tick: 0, repairs, bars: Bars::new(timing), lenient }
+    }
+
+    /// Reads the track of this number. An error names the place.
+    pub(super) fn read(&mut self, track: &Track, number: usize) -> Result<(), String> {
+        let whole = track.bytes.len() == track.promised;
+        let mut tick = 0u64;
+        let mut events = EventIter::new(track.bytes);
+        // The status byte of the last channel message: where reading is lenient, it holds beyond meta events.
+        let mut status = None;
+        while let (rest, running, Some(event)) = (events.unread(), events.running_status(), events.next()) {
+            let spot = |tick| Spot { track: number, tick, byte: track.start + track.bytes.len() - rest.len() };
+            let Ok(event) = event else {
+                let Found { fault, delta, after } = Fault::find(rest, running);
+                let spot = spot(tick + u64::from(delta));
+                match (fault, status, after) {
+                    (Fault::CutOff, ..) => {
+                        if whole {
+                            self.repair(spot, &fault.to_string(), "left out")?;
+                        }
+                        break;
+                    }
+                    (Fault::NoStatus, Some(_), _) => {
+                        self.repair(spot, &fault.to_string(), "it goes on")?;
+                        events = EventIter::new(rest);
+                        *events.running_status_mut() = status;
+                    }
+                    (Fault::Meta(_), _, Some(after)) => {
+                        self.repair(spot, &fault.to_string(), "left out")?;
+                        tick = spot.tick;
+                        events = EventIter::new(after);
+                    }
+                    _ => return Err(self.refused(spot, &fault.to_string())),
+                }
+                continue;
+            };
+            status = events.running_status().or(status);
+            tick += u64::from(event.delta.as_int());
+            self.last_tick = self.last_tick.max(tick);
+            if self.take(event, spot(tick))? {
+                break;
+            }
+        }
+        if !whole {
+            let (there, promised) = (track.bytes.len(), track.promised);
+            let spot = Spot { track: number, tick, byte: track.start + there };
+            let fault = format!("the file is cut off: {there} of the track's {promised} bytes are there");
+            self.repair(spot, &fault, "played as far as it goes")?;
+        }
+        Ok(())
+    }
+
+    /// Takes in an event. True if it ends the track.
+    fn take(&mut self, event: TrackEvent, spot: Spot) -> Result<bool, String> {
+        let tick = spot.tick;
+        match event.kind {
+            TrackEventKind::Midi { channel, message } => self.events.push((tick, channel.as_int(), translate(message))),
+            TrackEventKind::Meta(MetaMessage::Tempo(tempo)) if tempo == 0 => {
+                self.repair(spot, "the tempo is 0 µs per quarter note: expected at least 1", "left out")?;
+            }
+            TrackEventKind::Meta(MetaMessage::Tempo(tempo)) => self.tempos.push((tick, tempo.as_int())),
+            TrackEventKind::Meta(MetaMessage::TimeSignature(beats, note, ..)) => self.bars.change(tick, beats, note),
+            TrackEventKind::Meta(MetaMessage::EndOfTrack) => return Ok(true),
+            _ => {}
+        }
+        if self.events.len() + self.tempos.len() > MAX_EVENTS {
+            return Err(self.refused(spot, &format!("too many events: expected at most {MAX_EVENTS} in the file")));
+        }
+        Ok(false)
+    }
+
+    /// Notes a repair; an error where reading is strict.
+    fn repair(&mut self, spot: Spot, fault: &str, remedy: &'static str) -> Result<(), String> {
+        if !self.lenient {
+            return Err(self.refused(spot, fault));
+        }
+        let mut of_track = self.repairs.iter_mut().rev().take_while(|repair| repair.track == spot.track);
+        match of_track.find(|repair| repair.fault == fault) {
+            Some(repair) => repair.times += 1,
+            None => {
+                let (track, fault, place) = (spot.track, fault.to_owned(), self.place(spot));
+                self.repairs.push(Repair { track, fault, remedy, place, times: 1 });
+            }
+        }
+        Ok(())
+    }
+
+    fn refused(&self, spot: Spot, fault: &str) -> String {
+        format!("{}: {fault}", self.place(spot))
+    }
+
+    fn place(&self, Spot { track, tick, byte }: Spot) -> String {
+        format!("track {track}, {} (tick {tick}, byte {byte})", self.bars.place(tick))
+    }
+}

@@ -1,0 +1,68 @@
+//! Text from outside (files, names, devices) as a terminal may safely show it.
+
+use std::borrow::Cow;
+
+/// The text with everything that could steer a terminal or reorder what is read there written as `\u001b`: control
+/// characters (line ends and tabs included), bidirectional formatting, and the line and paragraph separators.
+///
+/// This is also how TOML and JSON write these characters between double quotes.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    escape(text, is_printable)
+}
+
+/// [`printable`] for several lines: line ends (`\n`) and tabs stay.
+pub fn printable_lines(text: &str) -> Cow<'_, str> {
+    escape(text, |character| matches!(character, '\n' | '\t') || is_printable(character))
+}
+
+fn escape(text: &str, stays: impl Fn(char) -> bool) -> Cow<'_, str> {
+    if text.chars().all(&stays) {
+        return Cow::Borrowed(text);
+    }
+    let mut escaped = String::with_capacity(text.len() + 16);
+    for character in text.chars() {
+        if stays(character) {
+            escaped.push(character);
+        } else {
+            // Four digits are enough: those that are not printable lie within the first 65,536 characters.
+            escaped += &format!("\\u{:04x}", u32::from(character));
+        }
+    }
+    Cow::Owned(escaped)
+}
+
+/// Bidirectional formatting: Unicode Standard Annex #9, 2. "Directional Formatting Characters".
+fn is_printable(character: char) -> bool {
+    let reorders = matches!(
+        character,
+        '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+    );
+    !(character.is_control() || reorders || matches!(character, '\u{2028}' | '\u{2029}'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_steers_a_terminal_is_spelled_out() {
+        for (text, expected) in [
+            ("\u{1b}[31mred\u{7}", "\\u001b[31mred\\u0007"),
+            ("a\u{9b}2Jb\u{7f}", "a\\u009b2Jb\\u007f"),
+            ("exe.\u{202e}vaw", "exe.\\u202evaw"),
+            ("\u{2066}x\u{2069}\u{200f}\u{061c}", "\\u2066x\\u2069\\u200f\\u061c"),
+            ("two\r\nlines\u{2028}\tand more", "two\\u000d\\u000alines\\u2028\\u0009and more"),
+        ] {
+            assert_eq!(printable(text), expected);
+        }
+        assert_eq!(printable_lines("a\n\tx\u{1b}[2Jb\n\r"), "a\n\tx\\u001b[2Jb\n\\u000d");
+    }
+
+    #[test]
+    fn what_people_write_stays_as_it_is() {
+        for text in ["Glockenspiel “laut”, 12 dB × 3", "Гонг", "锣", "é", "שלום", "\\u001b", ""] {
+            assert!(matches!(printable(text), Cow::Borrowed(same) if same == text), "{text}");
+        }
+        assert!(matches!(printable_lines("a\nb"), Cow::Borrowed("a\nb")));
+    }
+}

@@ -1,0 +1,200 @@
+//! What ARCHITECTURE.md says of the sources: dependencies point one way, and every file says what it is for.
+
+mod module;
+mod planted;
+mod rules;
+mod tree;
+
+use rules::Row;
+use std::fs;
+use std::path::{Path, PathBuf};
+use tree::Tree;
+
+/// What each module of the library may use of it.
+const ALLOWED: &[Row] = &[
+    ("units", &[]),
+    ("error", &[]),
+    ("dsp", &[]),
+    ("params", &["units"]),
+    ("patch", &["params", "dsp"]),
+    ("preset", &["error", "params", "patch", "units"]),
+    ("engine", &["dsp", "params", "patch", "units"]),
+    ("io", &["dsp", "engine", "error", "units"]),
+    ("render", &["dsp", "engine", "error", "io", "params", "patch", "preset", "units"]),
+    ("realtime", &["engine", "error", "io", "params", "patch", "preset", "render", "units"]),
+    ("figure", &["error"]),
+    ("analysis", &["error", "figure", "units"]),
+    ("lab", &["dsp", "error", "figure"]),
+];
+
+/// Crates, and parts of the standard library, that only the named modules may use.
+const OUTSIDE: &[Row] = &[
+    ("clap", &["cli"]),
+    ("hound", &["io"]),
+    ("midly", &["io"]),
+    ("toml", &["preset", "analysis"]),
+    ("plotters", &["figure", "analysis", "lab"]),
+    ("ebur128", &["render"]),
+    ("rayon", &["render"]),
+    ("std::fs", &["io", "preset", "analysis", "cli"]),
+    ("alsa", &["realtime"]),
+    ("cpal", &["realtime"]),
+    ("jack", &["realtime"]),
+    ("midir", &["realtime"]),
+    ("rtrb", &["realtime"]),
+    ("ratatui", &["realtime"]),
+    ("std::thread", &["realtime", "cli"]),
+];
+
+/// What the plugin must not use: it has no signal processing of its own.
+const NOT_OF_THE_PLUGIN: &[Row] = &[("sprung::dsp", &[]), ("libm", &[])];
+
+/// Roots of the crates whose files must not import each other.
+const CRATES: &[&str] =
+    &["src/lib.rs", "src/main.rs", "plugin/src/lib.rs", "xtask/src/main.rs", "plugin/tests/hosts/main.rs"];
+
+/// Pairs of files that still import each other, in the order of the alphabet. The list may only shrink.
+const CIRCLES: &[(&str, &str)] = &[
+    // Neighbours.
+    ("src/dsp/mode_bank/kernel.rs", "src/dsp/mode_bank/table.rs"),
+    ("src/engine/event.rs", "src/engine/voice_manager/mod.rs"),
+    ("src/realtime/player.rs", "src/realtime/song_cursor.rs"),
+    ("plugin/src/live.rs", "plugin/src/plugin.rs"),
+    ("plugin/tests/hosts/host/instance.rs", "plugin/tests/hosts/host/player.rs"),
+    // A folder's own file and one in it.
+    ("src/dsp/mode_bank/classic.rs", "src/dsp/mode_bank/mod.rs"),
+    ("src/dsp/mode_bank/control.rs", "src/dsp/mode_bank/mod.rs"),
+    ("src/dsp/mode_bank/kernel.rs", "src/dsp/mode_bank/mod.rs"),
+    ("src/dsp/mode_bank/mod.rs", "src/dsp/mode_bank/table.rs"),
+    ("src/engine/voice_manager/held_keys.rs", "src/engine/voice_manager/mod.rs"),
+    ("src/lab/method/chou.rs", "src/lab/method/mod.rs"),
+    ("src/lab/method/explicit_euler.rs", "src/lab/method/mod.rs"),
+    ("src/lab/method/exponential.rs", "src/lab/method/mod.rs"),
+    ("src/lab/method/heun.rs", "src/lab/method/mod.rs"),
+    ("src/lab/method/implicit_euler.rs", "src/lab/method/mod.rs"),
+    ("src/lab/method/mod.rs", "src/lab/method/runge_kutta.rs"),
+    ("src/lab/method/mod.rs", "src/lab/method/symplectic_euler.rs"),
+    ("src/lab/method/mod.rs", "src/lab/method/synth_step.rs"),
+    ("src/lab/method/mod.rs", "src/lab/method/verlet.rs"),
+    ("src/preset/factory.rs", "src/preset/mod.rs"),
+    ("src/preset/file.rs", "src/preset/mod.rs"),
+    ("src/realtime/view/app.rs", "src/realtime/view/mod.rs"),
+    ("src/render/mod.rs", "src/render/stream.rs"),
+    ("src/cli/manual.rs", "src/cli/mod.rs"),
+    ("src/cli/mod.rs", "src/cli/parameters.rs"),
+    ("src/cli/mod.rs", "src/cli/play.rs"),
+    ("src/cli/mod.rs", "src/cli/presets.rs"),
+    ("src/cli/mod.rs", "src/cli/render/mod.rs"),
+    ("plugin/src/editor/mod.rs", "plugin/src/editor/window.rs"),
+];
+
+/// Files whose purpose still takes more than a line. The list may only shrink.
+const LONGER_PURPOSES: &[&str] = &["src/dsp/mode_bank/control.rs", "src/dsp/mode_bank/kernel.rs"];
+
+fn project() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(root: &str) -> Tree {
+    Tree::read(Path::new(root), &|file| fs::read_to_string(project().join(file)).ok()).unwrap()
+}
+
+#[track_caller]
+fn assert_none(breaches: &[String]) {
+    assert!(breaches.is_empty(), "\n{}", breaches.join("\n"));
+}
+
+#[test]
+fn dependencies_point_one_way() {
+    let library = read("src/lib.rs");
+    assert!(library.len() > 80, "only {} modules were found", library.len());
+    assert_none(&rules::directions(&library, ALLOWED));
+    let round = ALLOWED.iter().filter(|(name, _)| rules::reaches(ALLOWED, name, name)).map(|(name, _)| *name);
+    assert_eq!(round.collect::<Vec<_>>(), [""; 0], "the rows themselves go round");
+}
+
+#[test]
+fn the_rows_do_not_go_against_the_document() {
+    let document = fs::read_to_string(project().join("ARCHITECTURE.md")).unwrap();
+    let section = document.split("**Dependencies point one way.**").nth(1).unwrap().split("\n\n").next().unwrap();
+    // `a, b ← c ← {d, e}`: neither `a` nor `b` may use `c`, and `c` uses neither `d` nor `e`.
+    let chains: Vec<Vec<Vec<&str>>> = section
+        .split('`')
+        .filter(|code| code.contains('←'))
+        .map(|chain| {
+            chain
+                .split('←')
+                .map(|names| names.split([',', ' ', '{', '}']).filter(|name| !name.is_empty()).collect())
+                .collect()
+        })
+        .collect();
+    assert_eq!(chains.len(), 2, "{section}");
+    for pair in chains.iter().flat_map(|chain| chain.windows(2)) {
+        for (used, user) in pair[0].iter().flat_map(|used| pair[1].iter().map(move |user| (*used, *user))) {
+            for name in [used, user] {
+                // The command is a crate of its own, which none of the rows can name.
+                assert!(name == "cli" || ALLOWED.iter().any(|(row, _)| *row == name), "{name} has no row");
+            }
+            assert!(!rules::reaches(ALLOWED, used, user), "the rows let {used} use {user}");
+        }
+    }
+}
+
+#[test]
+fn outside_crates_stay_where_they_belong() {
+    for root in ["src/lib.rs", "src/main.rs"] {
+        assert_none(&rules::outside(&read(root), OUTSIDE));
+    }
+}
+
+#[test]
+fn the_plugin_has_no_dsp() {
+    for root in ["plugin/src/lib.rs", "plugin/src/main.rs"] {
+        assert_none(&rules::outside(&read(root), NOT_OF_THE_PLUGIN));
+    }
+}
+
+#[test]
+fn no_two_files_import_each_other_but_those_listed() {
+    let found: Vec<_> = CRATES.iter().flat_map(|root| rules::circles(&read(root))).collect();
+    let listed = |one: &Path, other: &Path| CIRCLES.contains(&(&one.to_string_lossy(), &other.to_string_lossy()));
+    let new = found.iter().filter(|((one, other), _)| !listed(one, other)).map(|((one, other), [there, back])| {
+        format!("{}:{there} and {}:{back} import each other", one.display(), other.display())
+    });
+    assert_none(&new.collect::<Vec<_>>());
+    let is_found =
+        |pair: &&(&str, &str)| found.iter().any(|((one, other), _)| (one, other) == (&pair.0.into(), &pair.1.into()));
+    let gone = CIRCLES.iter().filter(|pair| !is_found(pair));
+    assert_none(
+        &gone
+            .map(|(one, other)| format!("{one} and {other} no longer import each other: remove them from CIRCLES"))
+            .collect::<Vec<_>>(),
+    );
+}
+
+/// Rust files in a folder, relative to the project.
+fn files(folder: &Path, into: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(project().join(folder)).unwrap() {
+        let path = folder.join(entry.unwrap().file_name());
+        if project().join(&path).is_dir() {
+            files(&path, into);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            into.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_file_opens_with_its_purpose() {
+    let mut all = Vec::new();
+    for folder in ["src", "tests", "benches", "plugin", "xtask"] {
+        files(Path::new(folder), &mut all);
+    }
+    assert!(all.len() > 150, "only {} files were found", all.len());
+    let breach = |file: &PathBuf| rules::purpose(file, &fs::read_to_string(project().join(file)).unwrap());
+    let (listed, others): (Vec<_>, Vec<_>) =
+        all.into_iter().partition(|file| LONGER_PURPOSES.contains(&&*file.to_string_lossy()));
+    assert_none(&others.iter().filter_map(breach).collect::<Vec<_>>());
+    let kept: Vec<_> = listed.iter().filter(|file| breach(file).is_some()).map(|file| file.to_string_lossy()).collect();
+    assert_eq!(kept, LONGER_PURPOSES, "files whose purpose is one line now are not listed any more");
+}

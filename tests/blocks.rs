@@ -1,0 +1,291 @@
+//! The same bits, ended notes and tails into whatever blocks frames are divided: random sounds, events, rates, divisions.
+
+use proptest::prelude::*;
+use proptest::sample::select;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
+use sprung::io::midi::parse_message;
+use sprung::params::{PARAMS, Param};
+use sprung::patch::{Mode, ModeTable, Patch};
+use std::cell::Cell;
+use std::collections::BTreeSet;
+
+const FRAMES: usize = 9_600;
+const CASES: u32 = 64;
+const RATES: [f64; 8] = [1_000.0, 8_000.0, 22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0, 768_000.0];
+
+/// What is played, and how the ensemble and the blocks divide it.
+#[derive(Clone, Debug)]
+struct Case {
+    sample_rate: f64,
+    seed: u64,
+    patch: Patch,
+    programs: Vec<Patch>,
+    /// In the order of their frames.
+    events: Vec<Event>,
+    /// Lengths of blocks, over and over.
+    blocks: Vec<usize>,
+    /// Frames that the ensemble mixes at a time.
+    chunk: usize,
+}
+
+fn any_patch() -> impl Strategy<Value = Patch> {
+    let mode = (0.5..20.0f32, -1.0..1.0f32, 0.01..4.0f32, 0.0..1.0f32, -1.0..1.0f32)
+        .prop_map(|(ratio, level, decay, strike, pan)| Mode { ratio, level, decay, strike, pan });
+    // Half of the parameters keep their defaults: all of them at random are seldom loud for long.
+    let position = prop::option::of(0.0..1.0f64);
+    (prop::collection::vec(mode, 1..20), prop::collection::vec(position, PARAMS.len())).prop_map(
+        |(modes, positions)| {
+            let mut patch = Patch::default();
+            patch.modes = ModeTable::new(&modes);
+            for (info, position) in PARAMS.iter().zip(positions) {
+                if let Some(position) = position {
+                    patch.set(info.param, info.denormalise(position));
+                }
+            }
+            patch
+        },
+    )
+}
+
+fn any_channel() -> impl Strategy<Value = u8> + Clone {
+    select(vec![0, 0, 0, 0, 1, 1, 2, 9, 15])
+}
+
+/// Few, so that events meet the notes that they are for.
+fn any_key() -> impl Strategy<Value = u8> + Clone {
+    36..60u8
+}
+
+fn any_id() -> impl Strategy<Value = i32> + Clone {
+    -1..6i32
+}
+
+fn any_notes() -> impl Strategy<Value = Notes> {
+    let id = prop::option::of(0..6i32);
+    (id, prop::option::of(any_channel()), prop::option::of(any_key())).prop_map(|(id, channel, key)| Notes {
+        id,
+        channel,
+        key,
+    })
+}
+
+fn any_param() -> impl Strategy<Value = Param> {
+    (0..PARAMS.len()).prop_map(|index| PARAMS[index].param)
+}
+
+fn any_kind() -> impl Strategy<Value = EventKind> {
+    let unit = 0.0..1.0f32;
+    prop_oneof![
+        10 => (any_key(), -0.5..0.5f32, 0.2..1.0f32, any_id())
+            .prop_map(|(key, detune, velocity, id)| EventKind::NoteOn { key, detune, velocity, id }),
+        4 => (any_key(), unit.clone(), any_id())
+            .prop_map(|(key, velocity, id)| EventKind::NoteOff { key, velocity, id }),
+        1 => (any_key(), unit.clone()).prop_map(|(key, pressure)| EventKind::PolyPressure { key, pressure }),
+        1 => (any_notes(), unit.clone()).prop_map(|(notes, velocity)| EventKind::Release { notes, velocity }),
+        1 => any_notes().prop_map(|notes| EventKind::Silence { notes }),
+        3 => (any_notes(), select(Expression::ALL.to_vec()), -1.0..4.0f32)
+            .prop_map(|(notes, expression, value)| EventKind::Express { notes, expression, value }),
+        1 => unit.clone().prop_map(EventKind::ChannelPressure),
+        2 => (-1.0..1.0f32).prop_map(EventKind::PitchBend),
+        3 => (select(vec![1, 7, 10, 11, 64, 66, 67, 74, 120, 121, 123]), unit)
+            .prop_map(|(controller, value)| EventKind::Control { controller, value }),
+        3 => (any_param(), 0.0..1.0f64)
+            .prop_map(|(param, position)| EventKind::Param { param, value: param.info().denormalise(position) }),
+        3 => (prop::option::of(0..6i32), any_param(), -1.0..1.0f32)
+            .prop_map(|(id, param, offset)| EventKind::Modulate { id, param, offset }),
+        1 => (20.0..300.0f32).prop_map(EventKind::Tempo),
+        1 => (0..3u8).prop_map(|group| EventKind::Choke { group }),
+        2 => (0..4u8).prop_map(EventKind::Program),
+    ]
+}
+
+/// A controller with a value as MIDI counts it.
+fn control(channel: u8, controller: u8, value: u8) -> (u8, EventKind) {
+    (channel, EventKind::Control { controller, value: f32::from(value) / 127.0 })
+}
+
+/// What happens at one frame: an event, a MIDI message, or a registered parameter, which takes several messages.
+fn any_group() -> impl Strategy<Value = Vec<(u8, EventKind)>> {
+    prop_oneof![
+        12 => (any_channel(), any_kind()).prop_map(|one| vec![one]),
+        4 => (0x80..0xF0u8, 0..128u8, 0..128u8)
+            .prop_map(|(status, first, second)| parse_message(&[status, first, second]).into_iter().collect()),
+        // 0 is the bend range, 6 the number of members of an MPE zone.
+        1 => (select(vec![0, 1, 15]), select(vec![0, 6]), 0..16u8).prop_map(|(channel, number, value)| {
+            vec![control(channel, 101, 0), control(channel, 100, number), control(channel, 6, value)]
+        }),
+    ]
+}
+
+fn any_events() -> impl Strategy<Value = Vec<Event>> {
+    prop::collection::vec((0..FRAMES as u32, any_group()), 1..60).prop_map(|mut groups| {
+        groups.sort_by_key(|(frame, _)| *frame);
+        let at = |frame, (channel, kind)| Event { frame, channel, kind };
+        groups.into_iter().flat_map(|(frame, group)| group.into_iter().map(move |one| at(frame, one))).collect()
+    })
+}
+
+fn any_case() -> impl Strategy<Value = Case> {
+    let block = prop_oneof![Just(0_usize), Just(1), 2..32_usize, Just(32), 33..700_usize];
+    let blocks =
+        (prop::collection::vec(block, 0..20), 1..1_000_usize).prop_map(|(blocks, last)| [blocks, vec![last]].concat());
+    let programs = prop::collection::vec(any_patch(), 0..4);
+    let chunk = select(vec![1, 31, 64, 1_000, 20_000]);
+    (select(RATES.to_vec()), any::<u64>(), any_patch(), programs, any_events(), blocks, chunk).prop_map(
+        |(sample_rate, seed, patch, programs, events, blocks, chunk)| Case {
+            sample_rate,
+            seed,
+            patch,
+            programs,
+            events,
+            blocks,
+            chunk,
+        },
+    )
+}
+
+/// Something that plays blocks.
+trait Plays {
+    fn play(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]);
+    /// Adds what is known after a block besides its sound.
+    fn note(&mut self, is_last: bool, about: &mut About);
+}
+
+/// What was told of a render: notes that ended, by their serial numbers, and the tail after the last block.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct About {
+    ended: BTreeSet<(u64, i32, u8, u8)>,
+    times_ended: usize,
+    tail: u64,
+    is_silent: bool,
+    voices: usize,
+}
+
+impl Plays for Synth {
+    fn play(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
+        self.process(events, left, right);
+    }
+
+    fn note(&mut self, is_last: bool, about: &mut About) {
+        about.times_ended += self.ended().len();
+        about.ended.extend(self.ended().iter().map(|note| (note.serial, note.id, note.channel, note.key)));
+        if is_last {
+            about.tail = self.tail_frames();
+        }
+        (about.is_silent, about.voices) = (self.is_silent(), self.voices_used());
+    }
+}
+
+impl Plays for Ensemble {
+    fn play(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
+        self.process(events, left, right);
+    }
+
+    fn note(&mut self, _: bool, about: &mut About) {
+        (about.is_silent, about.voices) = (self.is_silent(), self.voices_used());
+    }
+}
+
+/// Renders in blocks of these lengths, over and over; the samples' bits and what was told.
+fn render(player: &mut impl Plays, events: &[Event], blocks: &[usize]) -> ([Vec<u32>; 2], About) {
+    // Anything but zero: what a block leaves unwritten has to show.
+    let [mut left, mut right] = [(); 2].map(|()| vec![f32::NAN; FRAMES]);
+    let (mut start, mut rest, mut about) = (0, events, About::default());
+    for length in blocks.iter().cycle() {
+        let end = FRAMES.min(start + length);
+        // A block without frames brings what happens at its place.
+        let now = rest.partition_point(|event| (event.frame as usize) < end.max(start + 1));
+        let inside: Vec<Event> =
+            rest[..now].iter().map(|event| Event { frame: event.frame - start as u32, ..*event }).collect();
+        rest = &rest[now..];
+        player.play(&inside, &mut left[start..end], &mut right[start..end]);
+        start = end;
+        player.note(start == FRAMES, &mut about);
+        if start == FRAMES {
+            break;
+        }
+    }
+    ([left, right].map(|channel| channel.into_iter().map(f32::to_bits).collect()), about)
+}
+
+/// The first frame in which one of the channels differs.
+fn first_difference(whole: &[Vec<u32>; 2], parts: &[Vec<u32>; 2]) -> Option<usize> {
+    (0..FRAMES).find(|frame| (0..2).any(|side| whole[side][*frame] != parts[side][*frame]))
+}
+
+/// Whether it sounds; an error if blocks make a difference.
+fn check(case: &Case) -> Result<bool, TestCaseError> {
+    let synth = || {
+        let mut synth = Synth::new(case.sample_rate, case.seed);
+        synth.set_patch(&case.patch);
+        synth
+    };
+    let ensemble = || Ensemble::new(case.sample_rate, case.seed, &case.patch, &case.programs);
+    let mut sounds = false;
+    for (what, whole, parts) in [
+        ("synth", render(&mut synth(), &case.events, &[FRAMES]), render(&mut synth(), &case.events, &case.blocks)),
+        (
+            "ensemble",
+            render(&mut ensemble(), &case.events, &[FRAMES]),
+            render(&mut ensemble().with_chunk(case.chunk), &case.events, &case.blocks),
+        ),
+    ] {
+        prop_assert_eq!(first_difference(&whole.0, &parts.0), None, "{}: the first frame that differs", what);
+        prop_assert_eq!(&whole.1, &parts.1, "{}: one block's, and that of several", what);
+        prop_assert_eq!(whole.1.ended.len(), whole.1.times_ended, "{}: a note ends once", what);
+        let samples = || whole.0.iter().flatten().map(|bits| f32::from_bits(*bits));
+        prop_assert!(samples().all(f32::is_finite), "{} is not finite", what);
+        sounds |= samples().any(|sample| sample.abs() > 0.01);
+    }
+    Ok(sounds)
+}
+
+#[test]
+fn blocks_make_no_difference() {
+    let sounding = Cell::new(0);
+    let config = ProptestConfig { cases: CASES, ..ProptestConfig::default() };
+    let result = TestRunner::new(config).run(&any_case(), |case| {
+        let sounds = check(&case)?;
+        sounding.set(sounding.get() + u32::from(sounds));
+        Ok(())
+    });
+    if let Err(error) = result {
+        panic!("{error}");
+    }
+    assert!(sounding.get() > CASES / 2, "only {} of {CASES} cases sounded", sounding.get());
+}
+
+/// A number for each kind of event. A new kind does not compile before it has one here.
+fn number(kind: EventKind) -> usize {
+    match kind {
+        EventKind::NoteOn { .. } => 0,
+        EventKind::NoteOff { .. } => 1,
+        EventKind::PolyPressure { .. } => 2,
+        EventKind::Release { .. } => 3,
+        EventKind::Silence { .. } => 4,
+        EventKind::Express { .. } => 5,
+        EventKind::ChannelPressure(_) => 6,
+        EventKind::PitchBend(_) => 7,
+        EventKind::Control { .. } => 8,
+        EventKind::Param { .. } => 9,
+        EventKind::Modulate { .. } => 10,
+        EventKind::Tempo(_) => 11,
+        EventKind::Choke { .. } => 12,
+        EventKind::Program(_) => 13,
+    }
+}
+
+const KINDS: usize = 14;
+
+#[test]
+fn every_kind_of_event_comes_up() {
+    let mut runner = TestRunner::deterministic();
+    let mut seen = BTreeSet::new();
+    for _ in 0..CASES {
+        let events = any_events().new_tree(&mut runner).unwrap().current();
+        seen.extend(events.into_iter().map(|event| number(event.kind)));
+    }
+    assert_eq!(seen, (0..KINDS).collect());
+}

@@ -1,0 +1,88 @@
+//! MIDI files that stray from the standard, and program changes beside `--preset`.
+
+use crate::{Sandbox, end, midi, note_on, song};
+use midly::MidiMessage;
+
+/// Runs the command, expects it to work, and gives what it said on stderr.
+fn said(sandbox: &Sandbox, args: &str) -> String {
+    let output = sandbox.sprung(args).assert().success().get_output().clone();
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// A file of one track of these bytes, 96 ticks a beat.
+fn raw(track: &[u8]) -> Vec<u8> {
+    let length = (track.len() as u32).to_be_bytes();
+    [b"MThd\0\0\0\x06\0\0\0\x01\0\x60MTrk", &length[..], track].concat()
+}
+
+#[test]
+fn lenient_reading_plays_what_strict_reading_refuses() {
+    let sandbox = Sandbox::new();
+    let good = [0, 0x90, 60, 100, 0x60, 0x90, 64, 100, 0, 0xff, 0x2f, 0];
+    let running = [0, 0x90, 60, 100, 0, 0xff, 3, 1, b'x', 0x60, 64, 100, 0, 0xff, 0x2f, 0];
+    let offset = [&[0, 0xff, 0x54, 5, 99, 99, 99, 99, 99][..], &good].concat();
+    let whole = raw(&good);
+    let rmid = [b"RIFF\0\0\0\0RMIDdata", &(whole.len() as u32).to_le_bytes()[..], &whole].concat();
+    let base = "--bits 32f --force -o";
+    sandbox.write("good.mid", &whole);
+    sandbox.succeeds(&format!("render good.mid --lenient {base} good.wav"));
+    for (name, bytes, message) in [
+        ("running", raw(&running), "track 1, bar 1, beat 2 (tick 96, byte 31): an event has no status byte"),
+        ("offset", raw(&offset), "track 1, bar 1, beat 1 (tick 0, byte 22): the SMPTE offset is no time of day"),
+        ("short", whole[..whole.len() - 1].to_vec(), "the file is cut off: 11 of the track's 12 bytes are there"),
+        ("rmid", rmid, "an RMID file of size 0"),
+    ] {
+        sandbox.write("in.mid", bytes);
+        sandbox.fails("render in.mid -o out.wav", 1, &format!("in.mid: {message}"));
+        sandbox.fails("render in.mid -o out.wav", 1, "; add --lenient to read it nevertheless");
+        let warnings = said(&sandbox, &format!("render in.mid --lenient {base} again.wav"));
+        assert!(warnings.contains(&format!("sprung: warning: in.mid: {message}")), "{name}: {warnings}");
+        assert!(sandbox.read("again.wav") == sandbox.read("good.wav"), "{name}");
+    }
+    // What has no remedy stays an error.
+    sandbox.write("in.mid", raw(&[0, 0x90, 60, 200]));
+    sandbox.fails("render in.mid --lenient -o out.wav", 1, "expected a data byte of at most 0x7f, found 0xc8");
+}
+
+#[test]
+fn what_is_no_midi_file_is_called_what_it_is() {
+    let sandbox = Sandbox::new();
+    sandbox.succeeds("render --note 60 --length 0.1 --tail none -o sound.wav");
+    sandbox.fails(
+        "render sound.wav -o out.wav",
+        1,
+        "sound.wav: a WAV sound file: expected a Standard MIDI File (.mid)",
+    );
+    let preset = sandbox.succeeds("presets show Kick");
+    sandbox.write("kick.toml", preset);
+    sandbox.fails("render kick.toml -o out.wav", 1, "kick.toml: a text file: expected a Standard MIDI File (.mid)");
+    let mut patterns = song(&[note_on(0, 0, 60), end(1)]);
+    patterns[9] = 2;
+    sandbox.write("patterns.mid", patterns);
+    sandbox.fails("render patterns.mid --lenient -o out.wav", 1, "type 2 (independent patterns): expected type 0 or 1");
+}
+
+#[test]
+fn program_changes_are_told_and_can_be_left_out() {
+    let sandbox = Sandbox::new();
+    let program = |channel, number: u8| midi(0, channel, MidiMessage::ProgramChange { program: number.into() });
+    let (first, rest) = ([note_on(0, 0, 60), note_on(0, 5, 40)], [note_on(48, 0, 64), note_on(48, 5, 43), end(480)]);
+    sandbox.write("plain.mid", song(&[&first[..], &rest].concat()));
+    sandbox.write("changes.mid", song(&[&first[..], &[program(5, 30), program(0, 37), program(3, 2)], &rest].concat()));
+    let base = "--bits 32f --force -o";
+    let plain = said(&sandbox, &format!("render plain.mid --preset Kalimba {base} plain.wav"));
+    assert!(!plain.contains("warning"), "{plain}");
+    let told = said(&sandbox, &format!("render changes.mid --preset Kalimba {base} changes.wav"));
+    let expected = "sprung: warning: 2 of 4 notes, on 2 channels, do not play on --preset because of program changes; \
+                    --ignore-programs plays them on it\n";
+    assert!(told.starts_with(expected), "{told}");
+    assert!(sandbox.read("changes.wav") != sandbox.read("plain.wav"));
+    let ignored = said(&sandbox, &format!("render changes.mid --preset Kalimba --ignore-programs {base} changes.wav"));
+    assert!(!ignored.contains("warning"), "{ignored}");
+    assert!(sandbox.read("changes.wav") == sandbox.read("plain.wav"));
+    // Without --preset nobody asked for one sound; what it stands for is no other.
+    for args in ["changes.mid", "changes.mid --ignore-programs"] {
+        let told = said(&sandbox, &format!("render {args} {base} out.wav"));
+        assert!(!told.contains("warning"), "{told}");
+    }
+}

@@ -1,0 +1,68 @@
+//! Tests that were skipped, and the few that may be where nothing else may.
+
+/// Tests that a machine may be unable to run whatever is installed on it, and why.
+const EXCUSED: &[(&str, &str)] = &[
+    ("level::sse2", "x86-64 CPUs have SSE2"),
+    ("level::avx2", "x86-64 CPUs since 2013 have AVX2"),
+    ("level::avx512", "some x86-64 CPUs have AVX-512"),
+    ("level::neon", "AArch64 CPUs have NEON"),
+];
+
+/// What stands for a test that a harness counted as ignored without showing its name.
+const NAMELESS: &str = "a test whose name was not shown";
+
+/// Whether this runs for a continuous integration service: they all set this variable.
+pub(crate) fn in_ci() -> bool {
+    std::env::var_os("CI").is_some_and(|value| !value.is_empty())
+}
+
+/// Why a test may be skipped even where nothing else may.
+pub(crate) fn excuse(name: &str) -> Option<&'static str> {
+    EXCUSED.iter().find(|(excused, _)| *excused == name).map(|(_, why)| *why)
+}
+
+/// The names of the `count` tests that the output of a test harness tells to be ignored.
+pub(crate) fn names(lines: &[String], count: usize) -> Vec<String> {
+    let name = |line: &String| {
+        let (name, result) = line.strip_prefix("test ")?.split_once(" ... ")?;
+        let is_ignored = result == "ignored" || result.starts_with("ignored, ");
+        is_ignored.then(|| name.trim_end().to_owned())
+    };
+    let mut names: Vec<String> = lines.iter().filter_map(name).collect();
+    names.resize(count.max(names.len()), NAMELESS.to_owned());
+    names
+}
+
+/// A line for each test that was skipped; and how many of them have no excuse.
+pub(crate) fn report(skipped: &[String]) -> (String, usize) {
+    let line = |name: &String| match excuse(name) {
+        Some(why) => format!("skipped: {name}; this machine cannot run it: {why}\n"),
+        None => format!("skipped: {name}; `cargo xtask setup` says what it needs\n"),
+    };
+    (skipped.iter().map(line).collect(), skipped.iter().filter(|name| excuse(name).is_none()).count())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ignored_tests_are_named() {
+        let output = "running 4 tests\ntest a::b ... ok\ntest level::neon ... ignored\n\
+            test c ... ignored, takes an hour\ntest d ... FAILED\n\
+            test ignored ... ok\nit is said that test e ... ignored";
+        let lines: Vec<String> = output.lines().map(str::to_owned).collect();
+        assert_eq!(names(&lines, 2), ["level::neon", "c"]);
+        assert_eq!(names(&lines, 3), ["level::neon", "c", NAMELESS]);
+    }
+
+    #[test]
+    fn only_what_the_machine_cannot_do_is_excused() {
+        let skipped = ["level::neon", "jack::live_notes_are_in_time_and_in_tune", NAMELESS].map(str::to_owned);
+        let (text, without_excuse) = report(&skipped);
+        assert_eq!(without_excuse, 2, "{text}");
+        assert_eq!(text.lines().count(), 3);
+        assert!(text.starts_with("skipped: level::neon; this machine cannot run it: AArch64 CPUs have NEON\n"));
+        assert_eq!(report(&[]), (String::new(), 0));
+    }
+}
