@@ -85,6 +85,8 @@ impl Mode {
         let c = Coefficients::seed(self.frequency.min(highest) as f32, frames, 1.0, rate);
         self.mass.damp(&c);
         self.unit_push = c.v0 as f32;
+        // What is still to come of a force is in velocities of this tuning.
+        self.set_excitation_gains(self.gains);
         self.sweep = self.sweep.min(self.highest_sweep());
     }
 

@@ -72,6 +72,12 @@ const STEPS: &[Step] = &[
         shows: Shows::Tests,
     },
     Step {
+        name: "storms, release",
+        arguments: "test --release --package sprung --no-default-features --features analysis --test storm",
+        environment: &[],
+        shows: Shows::Tests,
+    },
+    Step {
         name: "documentation",
         arguments: "doc --workspace --no-deps --all-features",
         environment: &[DENY],

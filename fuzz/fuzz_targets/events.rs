@@ -1,0 +1,18 @@
+//! Any patch and any stream of events: nothing panics, all that comes out is finite and within what the strikes bring.
+//!
+//! The case, its bound and the comparison are those of `tests/storm`, which also replays this target's kept corpus.
+
+#![no_main]
+
+#[path = "../../tests/storm/bound.rs"]
+mod bound;
+#[path = "../../tests/storm/case.rs"]
+mod case;
+#[path = "../../tests/storm/check.rs"]
+mod check;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    if let Err(failure) = check::check(&case::decode(bytes)) {
+        panic!("{failure}");
+    }
+});

@@ -1,0 +1,276 @@
+//! One case: a patch, a sample rate and a stream of events, decoded from bytes so that chance and a fuzzer can make it.
+//!
+//! Five bytes of header, then records of five bytes each. Every string of bytes is a case, and what is left of a case
+//! when records are taken out of it is one too: that is what makes failing cases easy to shrink.
+
+use sprung::engine::{Event, EventKind, Expression, Notes};
+use sprung::params::Param;
+use sprung::patch::{Mode, ModeTable, Patch};
+use sprung::preset::Preset;
+
+/// Bytes of the header, and of each record.
+pub(crate) const RECORD: usize = 5;
+/// Longest case, in frames.
+pub(crate) const MAX_FRAMES: u32 = 1 << 16;
+/// Most events of a case.
+const MAX_EVENTS: usize = 2048;
+
+/// What is played.
+#[derive(Clone, Debug)]
+pub(crate) struct Case {
+    /// Hz.
+    pub(crate) sample_rate: f64,
+    pub(crate) seed: u64,
+    /// One synth on sixteen channels, or an ensemble of sixteen synths.
+    pub(crate) ensemble: bool,
+    pub(crate) patch: Patch,
+    /// What program changes choose from (ensemble only).
+    pub(crate) programs: Vec<Patch>,
+    /// Frames of a block.
+    pub(crate) block: usize,
+    /// Frames are counted from the start, in order.
+    pub(crate) events: Vec<Event>,
+    pub(crate) frames: usize,
+}
+
+/// What a record says. Its byte is the place in [`Kind::ALL`], counted round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// A mode of the patch.
+    Mode,
+    /// A parameter of the patch.
+    Set,
+    NoteOn,
+    NoteOff,
+    /// Several note-ons at equal intervals.
+    Roll,
+    Bend,
+    ChannelPressure,
+    PolyPressure,
+    Control,
+    /// A registered parameter: bend range, tuning, MPE zone.
+    Registered,
+    Express,
+    Param,
+    Modulate,
+    Release,
+    Silence,
+    Tempo,
+    Choke,
+    Program,
+}
+
+impl Kind {
+    /// Every kind. Their order is part of the kept cases: new ones come last.
+    pub(crate) const ALL: [Kind; 18] = [
+        Kind::Mode,
+        Kind::Set,
+        Kind::NoteOn,
+        Kind::NoteOff,
+        Kind::Roll,
+        Kind::Bend,
+        Kind::ChannelPressure,
+        Kind::PolyPressure,
+        Kind::Control,
+        Kind::Registered,
+        Kind::Express,
+        Kind::Param,
+        Kind::Modulate,
+        Kind::Release,
+        Kind::Silence,
+        Kind::Tempo,
+        Kind::Choke,
+        Kind::Program,
+    ];
+}
+
+/// The parameters by the numbers that kept cases have for them: new ones come last. The limiter is not among them,
+/// because it would hide what the bound is to find.
+pub(crate) const PARAM_IDS: &str = "exciter hardness hardness_velocity position noise_level noise_time velocity decay \
+    release note_off decay_key decay_tilt tilt stretch width coefficients tune fine tuning key_track sweep sweep_time \
+    sweep_curve sweep_velocity vibrato vibrato_rate vibrato_delay vibrato_sync glide bend_range wheel_vibrato \
+    pressure_vibrato pressure_damping release_velocity voices mode choke gain pan";
+
+/// The parameter of a number, counted round.
+pub(crate) fn param(number: u8) -> Param {
+    let ids = || PARAM_IDS.split_whitespace();
+    let id = ids().nth(usize::from(number) % ids().count());
+    id.and_then(Param::from_id).expect("an id of the table")
+}
+
+/// The patch with its limiter off, if it has one.
+pub(crate) fn without_limiter(mut patch: Patch) -> Patch {
+    if let Some(limiter) = Param::from_id("limiter") {
+        let off = limiter.info().choices.iter().position(|choice| *choice == "off");
+        patch.set(limiter, off.expect("a limiter can be off") as f32);
+    }
+    patch
+}
+
+/// Half of the bytes choose from these, the others cover 1–768 kHz by equal ratios.
+const RATES: [u32; 16] = [
+    48_000, 44_100, 22_050, 96_000, 1_000, 768_000, 8_000, 11_025, 16_000, 32_000, 88_200, 176_400, 192_000, 384_000,
+    2_000, 4_000,
+];
+const BLOCKS: [usize; 8] = [512, 1 << 16, 32, 480, 64, 7, 1, 1000];
+const CONTROLLERS: [u8; 12] = [1, 7, 10, 11, 64, 66, 67, 74, 120, 121, 123, 6];
+const GARBAGE: [f32; 4] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30];
+
+/// The case of these bytes.
+pub(crate) fn decode(bytes: &[u8]) -> Case {
+    let header: [u8; RECORD] = std::array::from_fn(|i| bytes.get(i).copied().unwrap_or(0));
+    let [rate, base, form, seed, tail] = header;
+    let factory = Preset::factory();
+    let base = match base.checked_sub(128) {
+        None => Patch::default(),
+        Some(number) => factory[usize::from(number) % factory.len()].patch,
+    };
+    let records = || {
+        let rest = bytes.get(RECORD..).unwrap_or(&[]);
+        rest.chunks_exact(RECORD).map(|record| {
+            let [kind, rest @ ..] = [0, 1, 2, 3, 4].map(|i| record[i]);
+            (Kind::ALL[usize::from(kind) % Kind::ALL.len()], rest)
+        })
+    };
+
+    let mut patch = base;
+    let modes: Vec<Mode> = records().filter(|(kind, _)| *kind == Kind::Mode).map(|(_, rest)| mode(rest)).collect();
+    if !modes.is_empty() {
+        patch.modes = ModeTable::new(&modes);
+    }
+    for (_, [_, number, high, low]) in records().filter(|(kind, _)| *kind == Kind::Set) {
+        let param = param(number);
+        patch.set(param, setting(param, high, low));
+    }
+
+    let (mut events, mut now) = (vec![], 0_u32);
+    for (kind, [pause, a, b, c]) in records() {
+        if matches!(kind, Kind::Mode | Kind::Set) {
+            continue;
+        }
+        now += wait(pause);
+        if now >= MAX_FRAMES || events.len() >= MAX_EVENTS {
+            break;
+        }
+        let channel = c & 15;
+        let one = |kind| Event { frame: now, channel, kind };
+        match kind {
+            Kind::Roll => {
+                let (count, step, interval) = (1 + u32::from(b & 31), b >> 5, 1 + u32::from(c));
+                for n in 0..count {
+                    let key = a.wrapping_add(n as u8 * step);
+                    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 };
+                    events.push(Event { frame: now + n * interval, channel: 0, kind });
+                }
+                now += (count - 1) * interval;
+            }
+            Kind::Registered => {
+                let entry = |controller, value: u8| {
+                    one(EventKind::Control { controller, value: f32::from(value & 127) / 127.0 })
+                };
+                events.extend([entry(101, 0), entry(100, [0, 1, 2, 6][usize::from(a & 3)]), entry(6, b)]);
+            }
+            _ => events.push(one(event(kind, a, b, c))),
+        }
+    }
+    events.retain(|event| event.frame < MAX_FRAMES);
+    let frames = now.saturating_add(1 + wait(tail)).min(MAX_FRAMES) as usize;
+    let programs = factory.iter().take(8).map(|preset| without_limiter(preset.patch)).collect();
+    let (ensemble, block) = (form & 128 != 0, BLOCKS[usize::from(form & 7)]);
+    let (sample_rate, seed, patch) = (sample_rate(rate), u64::from(seed), without_limiter(patch));
+    Case { sample_rate, seed, ensemble, patch, programs, block, events, frames }
+}
+
+fn sample_rate(byte: u8) -> f64 {
+    match byte.checked_sub(128) {
+        None => RATES[usize::from(byte & 15)].into(),
+        Some(travel) => libm::round(1000.0 * libm::pow(768.0, f64::from(travel) / 127.0)),
+    }
+}
+
+/// Frames of a byte: up to 127 as it is, then by about equal ratios up to 31,744.
+fn wait(byte: u8) -> u32 {
+    match byte.checked_sub(128) {
+        None => byte.into(),
+        Some(more) => (128 << (more >> 4)) + ((8 << (more >> 4)) * u32::from(more & 15)),
+    }
+}
+
+fn unit(byte: u8) -> f32 {
+    f32::from(byte) / 255.0
+}
+
+/// −1 to 1; 0 at 128.
+fn signed(byte: u8) -> f32 {
+    ((f32::from(byte) - 128.0) / 127.0).max(-1.0)
+}
+
+/// From `low` to `high` by equal ratios.
+fn between(low: f32, high: f32, byte: u8) -> f32 {
+    low * libm::powf(high / low, unit(byte))
+}
+
+fn mode([ratio, level, decay, rest]: [u8; 4]) -> Mode {
+    Mode {
+        ratio: between(0.01, 1000.0, ratio),
+        level: signed(level),
+        decay: between(0.001, 10.0, decay),
+        strike: f32::from(rest >> 4) / 15.0,
+        pan: ((f32::from(rest & 15) - 8.0) / 7.0).max(-1.0),
+    }
+}
+
+/// A value of a parameter at a position of 16 bits; the position below the highest is no number.
+fn setting(param: Param, high: u8, low: u8) -> f32 {
+    match u16::from_be_bytes([high, low]) {
+        0xFFFE => f32::NAN,
+        position => param.info().denormalise(f64::from(position) / 65_535.0),
+    }
+}
+
+fn event(kind: Kind, a: u8, b: u8, c: u8) -> EventKind {
+    // One in 256 numbers is out of all range.
+    let number = |value: f32| if c == 255 { GARBAGE[usize::from(b & 3)] } else { value };
+    let id = i32::from((c >> 4) & 3) - 1;
+    let notes = match c >> 6 {
+        0 => Notes::default(),
+        1 => Notes { id: Some(id), ..Notes::default() },
+        2 => Notes::on(c & 15, a),
+        _ => Notes { channel: Some(c & 15), ..Notes::default() },
+    };
+    match kind {
+        Kind::NoteOn => {
+            let detune = number([0.0, 0.37, -12.7, 7.5][usize::from(c >> 6)]);
+            EventKind::NoteOn { key: a, detune, velocity: number(unit(b)), id }
+        }
+        Kind::NoteOff => EventKind::NoteOff { key: a, velocity: number(unit(b)), id },
+        Kind::Bend => EventKind::PitchBend(number(signed(b))),
+        Kind::ChannelPressure => EventKind::ChannelPressure(number(unit(b))),
+        Kind::PolyPressure => EventKind::PolyPressure { key: a, pressure: number(unit(b)) },
+        Kind::Control => {
+            let controller = CONTROLLERS[usize::from(a) % CONTROLLERS.len()];
+            EventKind::Control { controller, value: number(unit(b)) }
+        }
+        Kind::Express => {
+            let expression = Expression::ALL[usize::from(a) % Expression::ALL.len()];
+            let value = match expression {
+                Expression::Tuning => signed(b) * 48.0,
+                Expression::Volume => unit(b) * 4.0,
+                Expression::Pan => signed(b),
+                _ => unit(b),
+            };
+            EventKind::Express { notes, expression, value: number(value) }
+        }
+        Kind::Param => EventKind::Param { param: param(a), value: setting(param(a), b, c) },
+        Kind::Modulate => {
+            let id = (c & 128 != 0).then_some(id);
+            EventKind::Modulate { id, param: param(a), offset: number(signed(b)) }
+        }
+        Kind::Release => EventKind::Release { notes, velocity: number(unit(b)) },
+        Kind::Silence => EventKind::Silence { notes },
+        Kind::Tempo => EventKind::Tempo(number(between(1.0, 10_000.0, b))),
+        Kind::Choke => EventKind::Choke { group: a % 18 },
+        Kind::Program => EventKind::Program(a % 10),
+        Kind::Mode | Kind::Set | Kind::Roll | Kind::Registered => unreachable!("handled by the caller"),
+    }
+}
