@@ -2,7 +2,7 @@
 
 use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
 use sprung::params::{PARAMS, Param};
-use sprung::patch::Patch;
+use sprung::patch::{Mode, ModeTable, Patch};
 
 fn event(frame: u32, kind: EventKind) -> Event {
     Event { frame, channel: 0, kind }
@@ -214,5 +214,29 @@ fn a_sweep_from_beyond_the_spectrum_arrives() {
         let (left, _) = render(&zap, &[on(0, key, 1.0)], 57_600);
         assert!(periods(&left[9600..]).abs_diff(periods_expected) <= 2, "{key}: {}", periods(&left[9600..]));
         assert!(rms(&left[9600..14_400]) > 0.1, "{key}: {}", rms(&left[9600..14_400]));
+    }
+}
+
+/// A held key that takes the voice back after a change of patch is played by the patch that the voice was started with:
+/// its ratios, decay, tracking and tuning, not those of the new one.
+#[test]
+fn a_voice_returns_to_a_held_key_in_its_own_patch() {
+    let first = Patch::default().with(Param::Decay, 20.0).with(Param::Limiter, 0.0);
+    let second = first.with(Param::Decay, 0.05).with(Param::Stretch, 0.5).with(Param::KeyTrack, 0.0);
+    let mut other = second.with(Param::Tuning, 400.0);
+    other.modes = ModeTable::new(&[Mode { ratio: 0.25, ..Mode::UNIT }]);
+    for mode in [1.0, 2.0] {
+        let patch = first.with(Param::Mode, mode);
+        let [kept, changed] = [None, Some(other.with(Param::Mode, mode))].map(|program| {
+            let mut synth = Synth::new(48_000.0, 1);
+            synth.set_patch(&patch);
+            let (mut left, mut right) = (vec![0.0; 9_600], vec![0.0; 9_600]);
+            synth.process(&[on(0, 60, 1.0), on(4_800, 64, 1.0)], &mut left, &mut right);
+            program.iter().for_each(|program| synth.set_patch(program));
+            synth.process(&[off(0, 64)], &mut left, &mut right);
+            left
+        });
+        assert_eq!(periods(&kept), 52, "mode {mode}: 261.6 Hz for a fifth of a second");
+        assert!(kept == changed, "mode {mode}: {} periods", periods(&changed));
     }
 }

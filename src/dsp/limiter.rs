@@ -39,10 +39,11 @@ const SCAN: usize = 64;
 
 /// Keeps a stereo signal's true peak below −0.3 dBFS, with the same gain on both sides and no latency.
 ///
-/// A signal whose true peak stays below −1 dBFS passes bit for bit. Otherwise the true peak is at most that of
-/// [`GUARD`] from the first sample beyond [`THRESHOLD`] on, whatever comes. What comes before that sample has been let
-/// through: if samples that are all below the threshold break off or turn round within [`TAPS`] samples, the peak
-/// between them may be higher, once. Only a limiter with latency could have known.
+/// A signal whose true peak stays below −1 dBFS passes bit for bit. From the first peak beyond [`THRESHOLD`] on, a point
+/// between samples is held to [`GUARD`], as this module interpolates. What had been let through before that peak stays:
+/// where samples below the threshold break off or turn round within [`TAPS`] samples, as in white noise, the point
+/// between them may be higher, once (up to half a decibel beyond full scale was seen). Only a limiter with latency could
+/// have known.
 ///
 /// The bits do not depend on how frames are divided into blocks. Real-time safe.
 #[derive(Clone, Debug)]

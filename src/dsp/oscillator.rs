@@ -3,7 +3,11 @@
 use super::coefficients::Coefficients;
 use super::real::Real;
 
-/// A mass on a spring, stepped once a sample.
+/// A mass on a spring, stepped once a sample: what a mode *is*.
+///
+/// This is the definition from which the coefficients of [`super::ModeBank`] follow and with which its tests compare it.
+/// The bank keeps the same mass in other coordinates, `(x, y)`, in which its pitch may move as it likes: there `y` is the
+/// displacement a quarter turn ahead, and with coefficients that stand still both give the same samples.
 ///
 /// `x` is the displacement (the audio sample), `v` the velocity in displacement per sample. Source: `Step` and
 /// `StepWithSweep` of "Harmonic oscillator, I turned jiggle physics code into a synthesizer", operation for operation.
@@ -43,6 +47,12 @@ impl<T: Real> HarmonicOscillator<T> {
     }
 
     /// The next sample at a swept pitch (about `sweep` times the frequency; [`Coefficients::sweep_for_ratio`] is exact).
+    ///
+    /// At any constant sweep below [`Coefficients::sweep_for_ratio`]'s limit this is as exact as [`Self::step`]. The sweep
+    /// may be modulated slowly against the oscillation and well below half the sample rate: a bend, a vibrato of a few
+    /// hertz, a kick's fall. What moves at a rate near twice the mass's frequency, or near half the sample rate, pumps energy
+    /// into it without bound (+108 dB in two seconds at 23 kHz under a vibrato of ±800 cents at 20 Hz and 48 kHz), and so
+    /// does damping that changes while the sweep moves. The bank has no such limits.
     #[inline]
     pub fn step_with_sweep(&mut self, sweep: T) -> T {
         self.v -= self.v * self.zeta + self.x * self.omega2 * sweep;

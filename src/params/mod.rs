@@ -200,7 +200,7 @@ params! {
         Pan "pan" "Pan", Percent -100.0..100.0 = 0.0, Linear, Smoothed(20), [],
             "Output position, left to right.";
         Limiter "limiter" "Limiter", Choice 0.0..1.0 = 1.0, Linear, AtOnce, ["off", "on"],
-            "Keeps the true peak of the output below −0.3 dBFS; what stays below −1 dBFS passes unchanged.";
+            "Brings loud chords below −0.3 dBFS true peak, without latency; what stays below −1 dBFS passes unchanged.";
     }
 }
 
