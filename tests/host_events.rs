@@ -336,3 +336,24 @@ fn a_tail_told_during_a_strike_is_never_too_short() {
         assert!(told + 1 >= found && told < found + 2 * RATE as u64, "{exciter}: {told} told, {found} found");
     }
 }
+
+#[test]
+fn a_note_that_never_ends_has_an_endless_tail() {
+    // The original formula rounds so little damping to none.
+    let endless = Mode { decay: 10.0, ..Mode::UNIT };
+    let short = Mode { ratio: 2.0, decay: 0.01, ..Mode::UNIT };
+    for modes in [&[endless][..], &[endless, short]] {
+        let mut patch = Patch::default().with(Param::Coefficients, 1.0).with(Param::Decay, 60.0);
+        patch = patch.with(Param::DecayKey, -100.0);
+        patch.modes = ModeTable::new(modes);
+        let mut synth = synth(&patch);
+        let (mut left, mut right) = (vec![0.0; 4800], vec![0.0; 4800]);
+        for events in [&[on(0, 0, 110, 1)][..], &[]] {
+            events.iter().for_each(|event| synth.handle(event));
+            // While the strike is still to come, and long after it.
+            assert!(synth.tail_frames() > 1 << 49, "{} frames", synth.tail_frames());
+            synth.process(&[], &mut left, &mut right);
+        }
+        assert!(left[4700..].iter().any(|sample| sample.abs() > 0.4), "it does ring on");
+    }
+}

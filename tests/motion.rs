@@ -1,5 +1,6 @@
-//! Decay and tuning do not depend on how the pitch moves: one mass is measured on rendered audio before it bends,
-//! glides or vibrates, and after it has come back.
+//! Decay and tuning do not depend on how the pitch moves.
+//!
+//! One mass is measured on rendered audio before it bends, glides or vibrates, and after it has come back.
 
 use sprung::analysis::damped_sine::{DampedSine, fit};
 use sprung::engine::{Event, EventKind, Synth};

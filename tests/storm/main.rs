@@ -1,6 +1,7 @@
-//! Nothing that happens while a note sounds makes it explode: every sample stays within the sum over strikes of what
-//! each brings (`bound`), whatever events come (`case`), by chance (`chance`), from the fuzzer's kept corpus, and in the
-//! cases that once exploded (`known`).
+//! Nothing that happens while a note sounds makes it explode.
+//!
+//! Every sample stays within the sum over strikes of what each brings (`bound`), whatever events come (`case`), by chance
+//! (`chance`), from the fuzzer's kept corpus, and in the cases that once exploded (`known`).
 //!
 //! A case that fails is made small (`shrink`) and shown as bytes, to be kept in `fuzz/corpus/events`.
 //! `SPRUNG_STORM_CASES` sets how many cases are drawn.

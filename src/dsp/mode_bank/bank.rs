@@ -249,8 +249,9 @@ impl ModeBank {
             Motion::Line { .. } => Moving::Pitch,
             Motion::Still { .. } | Motion::Tabled { .. } => Moving::Nothing,
         };
+        let line = if let Motion::Line { frames, .. } = self.motion { frames } else { 0 };
         let stereo = self.stereo || self.faded || moving == Moving::PitchAndGain;
-        Form { moving, driven, stereo, live: self.live, frames, passed: self.passed() }
+        Form { moving, driven, stereo, live: self.live, frames, line, passed: self.passed() }
     }
 
     fn step(&mut self, drive: &Drive, driven: bool, frames: usize) {

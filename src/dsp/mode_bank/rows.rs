@@ -95,8 +95,10 @@ pub(super) struct Form {
     pub(super) stereo: bool,
     /// Modes that may be ringing, from the first.
     pub(super) live: usize,
-    /// How many, at most [`CONTROL_FRAMES`], and how many of the line have passed before them.
+    /// How many, at most [`CONTROL_FRAMES`].
     pub(super) frames: usize,
+    /// Frames of the line, and how many of them have passed before these.
+    pub(super) line: usize,
     pub(super) passed: usize,
 }
 

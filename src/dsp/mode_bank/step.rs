@@ -157,7 +157,7 @@ fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const 
     while start < frames {
         let mut end = frames;
         if MOVING != NOTHING {
-            let (middle, left) = stair(form.passed + start);
+            let (middle, left) = stair(form.passed + start, form.line);
             end = frames.min(start + left);
             let middle = V::splat(proof, middle);
             for n in 0..N {

@@ -41,8 +41,11 @@ impl Energies {
                 sum += left;
                 slope += left * rate;
             }
-            if sum <= total || slope >= 0.0 {
+            if sum <= total {
                 break;
+            }
+            if slope >= 0.0 {
+                return LONGEST_FRAMES as u64;
             }
             let step = (target - log(sum)) * sum / slope;
             time += step;

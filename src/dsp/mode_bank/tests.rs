@@ -197,7 +197,9 @@ fn nothing_but_a_strike_adds_energy() {
                 bank.set_t60(0, between(10 * n + 8, 0.001, 60.0));
             }
             let frames = 1 + (unit(10_000 * case + 10 * n + 7) * 31.0) as usize;
-            bank.sweep_to(between(10 * n + 6, 0.01, 100.0), CONTROL_FRAMES);
+            // As events do: lines of any length, most of them broken off.
+            let line = frames + (unit(10_000 * case + 10 * n + 5) * (CONTROL_FRAMES - frames) as f64) as usize;
+            bank.sweep_to(between(10 * n + 6, 0.01, 100.0), line);
             let peak = bank.render(None, frames)[0].iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
             // By rounding, a mode that hardly decays can gain 1e−7 a frame.
             let rounding = 1.0 + 4e-7 * (32 + 32 * n) as f64;

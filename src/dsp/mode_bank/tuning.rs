@@ -1,5 +1,4 @@
-//! What a bank does now and then, for all modes at once: radius and angle when they change, lines of pitch at control
-//! ticks, and the energy that is left.
+//! What a bank does at control ticks, for all modes at once: tuning, lines of pitch, and the energy that is left.
 
 use super::MAX_MODES;
 use super::levels::Kernel;
@@ -119,12 +118,13 @@ pub(super) struct Aim<'a> {
 /// Frozen: bits depend on it.
 pub(super) const STAIR: usize = 4;
 
-/// The frame of a line, counted from its start, whose coefficients the next frame has once `passed` have passed; and how
-/// many frames, that one included, have them.
+/// Where on a line of `frames` frames the coefficients of the next frame lie once `passed` have passed: in the middle of
+/// its stair, of which the last ends with the line. And how many frames, that one included, have them.
 #[inline(always)]
-pub(super) const fn stair(passed: usize) -> (f32, usize) {
-    let into = passed % STAIR;
-    ((passed - into) as f32 + 0.5 * (STAIR + 1) as f32, STAIR - into)
+pub(super) const fn stair(passed: usize, frames: usize) -> (f32, usize) {
+    let first = passed - passed % STAIR;
+    let last = if first + STAIR < frames { first + STAIR } else { frames };
+    (0.5 * (first + 1 + last) as f32, last - passed)
 }
 
 /// The logarithm of what part of a line has lost to the arc, as a polynomial in the squared step `q` of the line:
@@ -149,7 +149,7 @@ impl ChordLoss {
     const fn over(passed: usize, frames: usize) -> Self {
         let (mut first, mut second, mut done) = (0.0, 0.0, 0);
         while done < passed {
-            let (v, left) = stair(done);
+            let (v, left) = stair(done, frames);
             let run = if left < passed - done { left } else { passed - done };
             let product = v * (frames as f32 - v);
             first += 0.5 * run as f32 * product;
