@@ -2,7 +2,7 @@
 
 use super::render::{read_song, warn_of_missing_programs, with_settings};
 use super::{complain, interrupt, presets, quantity};
-use sprung::io::{Output, Target};
+use sprung::io::{Inputs, Output, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
@@ -12,6 +12,7 @@ use sprung::realtime::{
 };
 use sprung::render::{BLOCKS, SAMPLE_RATES};
 use sprung::{Error, Result};
+use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -34,7 +35,7 @@ pub(super) struct Args {
     song: Option<PathBuf>,
     /// Factory preset or preset file (.toml) that plays what no program change says otherwise
     #[arg(long, default_value = "init", value_name = "NAME|FILE.toml")]
-    preset: String,
+    preset: OsString,
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
     #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting)]
     set: Vec<(Param, f32)>,
@@ -78,19 +79,22 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return list();
     }
     let headless = args.headless || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal();
-    let preset = presets::load(&args.preset)?;
+    let record = args.record.as_ref().map(Target::new);
+    record.as_ref().map_or(Ok(()), Target::check_wav)?;
+    let mut inputs = Inputs::default();
+    let preset = presets::load(&args.preset, &mut inputs)?;
     let patch = with_settings(preset.patch, &args.set);
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
-    let song = args.song.as_deref().map(read_song).transpose()?;
+    let song = args.song.as_deref().map(|path| read_song(path, &mut inputs)).transpose()?;
     if let Some(song) = &song {
         warn_of_missing_programs(song, programs.len());
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;
-    let (tap, recording) = match &args.record {
-        Some(path) => {
-            let (tap, recording) =
-                Recording::start(Output::create(&Target::new(path), args.force)?, found.sample_rate())?;
+    let (tap, recording) = match &record {
+        Some(target) => {
+            let output = Output::create(target, args.force, &inputs)?;
+            let (tap, recording) = Recording::start(output, found.sample_rate())?;
             (Some(tap), Some(recording))
         }
         None => (None, None),

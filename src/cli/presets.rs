@@ -1,8 +1,10 @@
 //! `sprung presets`: the factory's, and checks of one's own.
 
 use clap::Subcommand;
+use sprung::io::Inputs;
 use sprung::preset::Preset;
 use sprung::{Error, Result};
+use std::ffi::{OsStr, OsString};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -26,7 +28,7 @@ enum Action {
     /// Print a preset's file, to start one's own from
     Show {
         /// Name of a factory preset, or a file ending in .toml
-        name: String,
+        name: OsString,
     },
     /// Check preset files and report what is wrong with each
     Check {
@@ -39,20 +41,29 @@ enum Action {
 pub(super) fn run(args: &Args) -> Result<()> {
     match &args.action {
         Action::List => super::print(&list(Preset::factory())),
-        Action::Show { name } => super::print(&load(name)?.to_toml()),
+        Action::Show { name } => {
+            let mut inputs = Inputs::default();
+            let preset = load(name, &mut inputs)?;
+            inputs.check_stdout()?;
+            super::print(&preset.to_toml())
+        }
         Action::Check { files } => check(files),
     }
 }
 
 /// The preset that a user names: a file if it looks like one, else the factory's.
-pub(super) fn load(name: &str) -> Result<Preset> {
+pub(super) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Preset> {
     let path = Path::new(name);
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) || path.components().count() > 1
     {
-        Preset::load(path)
+        read(path, inputs)
     } else {
-        Preset::find(name).cloned()
+        Preset::find(&name.to_string_lossy()).cloned()
     }
+}
+
+fn read(path: &Path, inputs: &mut Inputs) -> Result<Preset> {
+    Preset::read(inputs.open(path)?, &path.display().to_string())
 }
 
 fn list(presets: &[Preset]) -> String {
@@ -68,9 +79,11 @@ fn list(presets: &[Preset]) -> String {
 }
 
 fn check(files: &[PathBuf]) -> Result<()> {
-    let mut wrong = 0;
+    let (mut wrong, mut inputs) = (0, Inputs::default());
     for path in files {
-        match Preset::load(path) {
+        let read = read(path, &mut inputs);
+        inputs.check_stdout()?;
+        match read {
             Ok(preset) => super::print(&format!("{}: ‘{}’ is in order\n", path.display(), preset.name))?,
             Err(error) => {
                 wrong += 1;

@@ -72,8 +72,8 @@ pub struct Report {
 /// `progress` is called after each block and can end the work with an error.
 ///
 /// # Errors
-/// [`Error::Value`] if the length does not fit into a WAV file (before any work if the song alone does not), an
-/// option is out of range, or there is nothing to bring to a level; [`Error::Io`]; those of `progress`.
+/// [`Error::Value`] if an option is out of range, or there is nothing to bring to a level; [`Error::Io`], before any
+/// work if there is no room for the song alone; those of `progress`.
 pub fn to_wav(
     job: &Job,
     delivery: &Delivery,
@@ -84,7 +84,7 @@ pub fn to_wav(
     let channels = if delivery.mono { 1 } else { 2 };
     let format = WavFormat { sample_rate: job.options.sample_rate, channels, samples: delivery.samples };
     let least_frames = job.known_frames().unwrap_or(job.song_frames());
-    format.check_frames(least_frames)?;
+    output.check_room(format.file_len(least_frames)?)?;
 
     let length_needed = !output.is_seekable() && job.known_frames().is_none();
     let two_passes = length_needed || !matches!(delivery.level, Level::Gain(_));
@@ -100,10 +100,7 @@ pub fn to_wav(
     if two_passes {
         let mut meter = Meter::new(format.sample_rate, channels)?;
         let mut mix = Mix::new(delivery.mono, 1.0);
-        let mut frames = 0;
         let rendered = job.render(|left, right| {
-            frames += left.len() as u64;
-            format.check_frames(frames)?;
             let (left, right) = mix.apply(left, right);
             meter.add(left, right)?;
             advance(left.len())
@@ -220,7 +217,9 @@ mod tests {
     #[test]
     fn a_normalised_peak_is_the_peak_asked_for() {
         for peak in [1.0e-30f32, 0.123_456_7, 0.999, 3.0] {
-            let gain_db = gain_db(Level::Peak(0.0), Some(Levels { peak: peak.into(), rms: 0.0, lufs: None })).unwrap();
+            let gain_db =
+                gain_db(Level::Peak(0.0), Some(Levels { peak: peak.into(), rms: 0.0, lufs: None }))
+                    .unwrap();
             let mut mix = Mix::new(false, gain_from_db(gain_db));
             let (left, right) = mix.apply(&[peak, -peak], &[0.0, peak]);
             assert_eq!((left, right), (&[1.0, -1.0][..], &[0.0, 1.0][..]));

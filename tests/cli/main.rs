@@ -1,6 +1,7 @@
 //! The command `sprung` from outside: what it writes, what it says, how it ends.
 
 mod bad_input;
+mod inputs;
 mod lab;
 mod listings;
 mod outputs;

@@ -6,7 +6,7 @@ use super::progress::Bar;
 use super::{complain, interrupt, presets, quantity};
 use clap::ArgGroup;
 use sprung::engine::EventKind;
-use sprung::io::{Output, SampleFormat, Song, Target};
+use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
@@ -14,7 +14,7 @@ use sprung::render::{BLOCKS, Delivery, Job, Level, Options, SAMPLE_RATES, THREAD
 use sprung::units::parse_key;
 use sprung::{Error, Result};
 use std::collections::BTreeSet;
-use std::fs::File;
+use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
@@ -43,7 +43,7 @@ pub(super) struct Args {
     length: f64,
     /// Factory preset or preset file (.toml) that plays what no program change says otherwise
     #[arg(long, default_value = "init", value_name = "NAME|FILE.toml")]
-    preset: String,
+    preset: OsString,
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
     #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting)]
     set: Vec<(Param, f32)>,
@@ -100,15 +100,12 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if target == Target::Stdout && std::io::stdout().is_terminal() {
         return Err(Error::value("--output", "stdout is a terminal: expected a file, or stdout sent to one"));
     }
-    if let (Some(song), Target::Path(output)) = (&args.song, &target)
-        && song.canonicalize().is_ok_and(|song| output.canonicalize().is_ok_and(|output| output == song))
-    {
-        return Err(Error::value("--output", format!("‘{}’ is the song: expected another file", output.display())));
-    }
-    let patch = with_settings(presets::load(&args.preset)?.patch, &args.set);
+    target.check_wav()?;
+    let mut inputs = Inputs::default();
+    let patch = with_settings(presets::load(&args.preset, &mut inputs)?.patch, &args.set);
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
     let song = match &args.song {
-        Some(path) => read_song(path)?,
+        Some(path) => read_song(path, &mut inputs)?,
         None => chord(args, &patch)?,
     };
     warn_of_missing_programs(&song, programs.len());
@@ -121,7 +118,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
         mono: args.mono,
         level: args.normalize.unwrap_or(Level::Gain(args.gain_db)),
     };
-    let mut output = Output::create(&target, args.force)?;
+    if args.json {
+        inputs.check_stdout()?;
+    }
+    let mut output = Output::create(&target, args.force, &inputs)?;
     interrupt::catch(output.is_seekable())?;
     let mut bar = Bar::new();
     let progress = |progress| {
@@ -141,12 +141,11 @@ pub(in crate::cli) fn with_settings(mut patch: Patch, settings: &[(Param, f32)])
     patch
 }
 
-pub(in crate::cli) fn read_song(path: &Path) -> Result<Song> {
+pub(in crate::cli) fn read_song(path: &Path, inputs: &mut Inputs) -> Result<Song> {
     if path == Path::new("-") {
-        return Song::read(std::io::stdin().lock(), "stdin");
+        return Song::read(inputs.stdin()?.lock(), "stdin");
     }
-    let origin = path.display().to_string();
-    Song::read(File::open(path).map_err(|error| Error::io(&origin, error))?, &origin)
+    Song::read(inputs.open(path)?, &path.display().to_string())
 }
 
 fn chord(args: &Args, patch: &Patch) -> Result<Song> {
