@@ -50,12 +50,15 @@ pub struct Report {
     pub seconds: f64,
     /// How much of it follows the end of the song, in seconds.
     pub tail_seconds: f64,
-    /// Largest sample in dBFS, before rounding to integers; none for silence.
+    /// Largest finite sample in dBFS, before rounding to integers; none for silence.
     pub peak_dbfs: Option<f64>,
     /// RMS over all channels, in dB against a full-scale square wave; none for silence.
     pub rms_dbfs: Option<f64>,
-    /// Integrated loudness; none for silence and for less than 400 ms.
+    /// Integrated loudness; none for silence, for less than 400 ms, and if a sample is not finite.
     pub lufs: Option<f64>,
+    /// Samples that are infinite or not a number, of which there should be none: an integer format holds silence or
+    /// full scale in their place.
+    pub non_finite: u64,
     /// Gain that [`Level`] came to, in dB.
     pub gain_db: f64,
     /// Samples beyond full scale that an integer format could not hold.
@@ -136,6 +139,7 @@ pub fn to_wav(
         peak_dbfs: decibels(levels.peak),
         rms_dbfs: decibels(levels.rms),
         lufs: levels.lufs,
+        non_finite: levels.non_finite,
         gain_db,
         clipped,
         voices_used: rendered.voices_used,
@@ -147,6 +151,10 @@ fn gain_db(level: Level, measured: Option<Levels>) -> Result<f64> {
     let silent = || Error::value("normalize", "the sound is silent and has no level to change");
     match (level, measured) {
         (Level::Gain(gain_db), _) => Ok(gain_db),
+        (_, Some(Levels { non_finite: 1.., .. })) => Err(Error::value(
+            "normalize",
+            "the sound has samples that are infinite or not a number, so it has no level to change",
+        )),
         (Level::Peak(target), Some(levels)) if levels.peak > 0.0 => Ok(target - db_from_gain(levels.peak)),
         (Level::Loudness(target), Some(Levels { lufs: Some(lufs), .. })) => {
             // The loudness meter uses the system's mathematics. Rounded, the gain is the same on every machine.
@@ -197,7 +205,8 @@ mod tests {
 
     #[test]
     fn levels_become_gains() {
-        let levels = |peak, lufs| Some(Levels { peak, rms: 0.1, lufs });
+        let levels = |peak, lufs| Some(Levels { peak, rms: 0.1, lufs, non_finite: 0 });
+        let broken = |peak| Some(Levels { peak, rms: 0.1, lufs: None, non_finite: 1 });
         for (level, measured, expected) in [
             (Level::Gain(-3.0), None, -3.0),
             (Level::Peak(-1.0), levels(1.0, None), -1.0),
@@ -209,6 +218,9 @@ mod tests {
             (Level::Peak(-1.0), levels(0.0, None), "silent"),
             (Level::Loudness(-14.0), levels(0.0, None), "silent"),
             (Level::Loudness(-14.0), levels(0.1, None), "too short"),
+            (Level::Peak(-1.0), broken(1.0), "infinite or not a number"),
+            (Level::Peak(-1.0), broken(0.0), "infinite or not a number"),
+            (Level::Loudness(-14.0), broken(1.0), "infinite or not a number"),
         ] {
             assert!(gain_db(level, measured).unwrap_err().to_string().contains(expected));
         }
@@ -218,7 +230,7 @@ mod tests {
     fn a_normalised_peak_is_the_peak_asked_for() {
         for peak in [1.0e-30f32, 0.123_456_7, 0.999, 3.0] {
             let gain_db =
-                gain_db(Level::Peak(0.0), Some(Levels { peak: peak.into(), rms: 0.0, lufs: None }))
+                gain_db(Level::Peak(0.0), Some(Levels { peak: peak.into(), rms: 0.0, lufs: None, non_finite: 0 }))
                     .unwrap();
             let mut mix = Mix::new(false, gain_from_db(gain_db));
             let (left, right) = mix.apply(&[peak, -peak], &[0.0, peak]);
