@@ -2,6 +2,8 @@
 
 mod bad_input;
 mod inputs;
+#[cfg(unix)]
+mod interrupts;
 mod lab;
 mod listings;
 mod outputs;
