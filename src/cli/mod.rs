@@ -70,16 +70,28 @@ enum Command {
 }
 
 pub(crate) fn run() -> ExitCode {
-    let result = match Cli::parse().command {
-        Command::Render(args) => render::run(&args),
+    match Cli::try_parse() {
+        Ok(cli) => finish(execute(&cli.command)),
+        // `--help` and `--version` are no errors, and go to stdout.
+        Err(error) if !error.use_stderr() => finish(checked(error.print().and_then(|()| std::io::stdout().flush()))),
+        Err(error) => error.exit(),
+    }
+}
+
+fn execute(command: &Command) -> Result<()> {
+    match command {
+        Command::Render(args) => render::run(args),
         #[cfg(feature = "realtime")]
-        Command::Play(args) => play::run(&args),
-        Command::Presets(args) => presets::run(&args),
-        Command::Params(args) => parameters::run(&args),
-        Command::Lab(args) => lab::run(&args),
-        Command::Completions(args) => manual::completions(&args),
-        Command::Man(args) => manual::run(&args),
-    };
+        Command::Play(args) => play::run(args),
+        Command::Presets(args) => presets::run(args),
+        Command::Params(args) => parameters::run(args),
+        Command::Lab(args) => lab::run(args),
+        Command::Completions(args) => manual::completions(args),
+        Command::Man(args) => manual::run(args),
+    }
+}
+
+fn finish(result: Result<()>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -94,10 +106,15 @@ fn complain(severity: &str, message: impl Display) {
     let _ = writeln!(std::io::stderr(), "sprung: {severity}: {message}");
 }
 
-/// Writes to stdout. A reader that has gone away, as `head` does, has what it wanted: that is no error.
+/// Writes to stdout.
 fn print(text: &str) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    checked(stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()))
+}
+
+/// What came of writing to stdout. A reader that has gone away, as `head` does, has what it wanted: that is no error.
+fn checked(written: std::io::Result<()>) -> Result<()> {
+    match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("stdout", error)),
         _ => Ok(()),
     }
