@@ -1,28 +1,16 @@
-//! `sprung completions` and `sprung man`: what a package installs beside the command.
+//! `sprung man`: the manual pages.
 
 use clap::CommandFactory;
-use clap_complete::Shell;
 use clap_mangen::Man;
 use sprung::io::{Inputs, Output, Target};
 use sprung::{Error, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-pub(super) const COMPLETION_EXAMPLES: &str = "\
-Examples:
-  sprung completions bash > ~/.local/share/bash-completion/completions/sprung
-  sprung completions fish > ~/.config/fish/completions/sprung.fish";
-
 pub(super) const EXAMPLES: &str = "\
 Examples:
   sprung man | man -l -
   sprung man ~/.local/share/man/man1";
-
-#[derive(clap::Args)]
-pub(super) struct CompletionArgs {
-    /// The shell to complete for
-    shell: Shell,
-}
 
 #[derive(clap::Args)]
 pub(super) struct Args {
@@ -31,13 +19,6 @@ pub(super) struct Args {
     /// Overwrite existing pages
     #[arg(long, requires = "directory")]
     force: bool,
-}
-
-pub(super) fn completions(args: &CompletionArgs) -> Result<()> {
-    // clap_complete panics when its writer fails; a buffer does not.
-    let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut super::Cli::command(), "sprung", &mut script);
-    super::print(&String::from_utf8_lossy(&script))
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {

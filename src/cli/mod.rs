@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod completion;
 mod interrupt;
 mod lab;
 mod manual;
@@ -62,14 +63,19 @@ enum Command {
     #[command(after_help = lab::EXAMPLES)]
     Lab(lab::Args),
     /// Print a completion script for a shell
-    #[command(after_help = manual::COMPLETION_EXAMPLES)]
-    Completions(manual::CompletionArgs),
+    #[command(after_help = completion::EXAMPLES)]
+    Completions(completion::Args),
     /// Print the manual page, or write one page per subcommand
     #[command(after_help = manual::EXAMPLES)]
     Man(manual::Args),
 }
 
 pub(crate) fn run() -> ExitCode {
+    match completion::answer() {
+        Ok(true) => return finish(checked(std::io::stdout().flush())),
+        Ok(false) => {}
+        Err(error) => error.exit(),
+    }
     match Cli::try_parse() {
         Ok(cli) => finish(execute(&cli.command)),
         // `--help` and `--version` are no errors, and go to stdout.
@@ -86,7 +92,7 @@ fn execute(command: &Command) -> Result<()> {
         Command::Presets(args) => presets::run(args),
         Command::Params(args) => parameters::run(args),
         Command::Lab(args) => lab::run(args),
-        Command::Completions(args) => manual::completions(args),
+        Command::Completions(args) => completion::run(args),
         Command::Man(args) => manual::run(args),
     }
 }
@@ -153,7 +159,7 @@ mod tests {
             play::EXAMPLES,
             lab::EXAMPLES,
             manual::EXAMPLES,
-            manual::COMPLETION_EXAMPLES,
+            completion::EXAMPLES,
         ];
         for example in examples.iter().flat_map(|text| text.lines()).filter(|line| line.starts_with("  sprung")) {
             if let Err(error) = Cli::try_parse_from(words(example)) {

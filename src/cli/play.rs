@@ -1,7 +1,8 @@
 //! `sprung play`: the instrument live, on a sound device.
 
 use super::render::{read_song, warn_of_missing_programs, with_settings};
-use super::{complain, interrupt, presets, quantity};
+use super::{complain, completion, interrupt, presets, quantity};
+use clap_complete::ArgValueCompleter;
 use sprung::io::{Inputs, Output, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
@@ -34,13 +35,15 @@ pub(super) struct Args {
     /// Standard MIDI file of type 0 or 1 to play; - is stdin
     song: Option<PathBuf>,
     /// Factory preset or preset file (.toml) that plays what no program change says otherwise
-    #[arg(long, default_value = "init", value_name = "NAME|FILE.toml")]
+    #[arg(long, default_value = "init", value_name = "NAME|FILE.toml",
+        add = ArgValueCompleter::new(completion::presets))]
     preset: OsString,
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
-    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting)]
+    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
+        add = ArgValueCompleter::new(completion::settings))]
     set: Vec<(Param, f32)>,
     /// MIDI ports to listen to: all, none, or those with this in their name
-    #[arg(long, default_value = "all", value_name = "NAME|all|none")]
+    #[arg(long, default_value = "all", value_name = "NAME|all|none", add = completion::among(&["all", "none"]))]
     midi_in: String,
     /// Sound device, by its name or a part of it. See --list
     #[arg(long, value_name = "NAME")]

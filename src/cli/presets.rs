@@ -1,6 +1,8 @@
 //! `sprung presets`: the factory's, and checks of one's own.
 
+use super::completion;
 use clap::Subcommand;
+use clap_complete::ArgValueCompleter;
 use sprung::io::Inputs;
 use sprung::preset::Preset;
 use sprung::{Error, Result};
@@ -28,6 +30,7 @@ enum Action {
     /// Print a preset's file, to start one's own from
     Show {
         /// Name of a factory preset, or a file ending in .toml
+        #[arg(add = ArgValueCompleter::new(completion::presets))]
         name: OsString,
     },
     /// Check preset files and report what is wrong with each

@@ -1,4 +1,4 @@
-//! What the command tells about itself: presets, parameters, manual, completions.
+//! What the command tells about itself: presets, parameters, manual, completion scripts.
 
 use crate::Sandbox;
 use sprung::params::PARAMS;
@@ -52,7 +52,7 @@ fn manual_and_completions_are_written() {
     assert!(pages.len() > 5 && sandbox.path("pages/man1/sprung-render.1").exists());
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = String::from_utf8(sandbox.succeeds(&format!("completions {shell}"))).unwrap();
-        assert!(script.contains("normalize"), "{shell}");
+        assert!(script.contains("SPRUNG_COMPLETE"), "{shell}");
     }
     sandbox.fails("man pages/man1", 1, "sprung.1: the file exists; add --force to overwrite it");
     sandbox.write("pages/man1/sprung-render.1", "old");

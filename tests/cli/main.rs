@@ -1,6 +1,8 @@
 //! The command `sprung` from outside: what it writes, what it says, how it ends.
 
 mod bad_input;
+#[cfg(unix)]
+mod completion;
 mod inputs;
 #[cfg(unix)]
 mod interrupts;

@@ -3,8 +3,9 @@
 mod report;
 
 use super::progress::Bar;
-use super::{complain, interrupt, presets, quantity};
+use super::{complain, completion, interrupt, presets, quantity};
 use clap::ArgGroup;
+use clap_complete::ArgValueCompleter;
 use sprung::engine::EventKind;
 use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
 use sprung::params::Param;
@@ -42,17 +43,20 @@ pub(super) struct Args {
         value_parser = quantity::seconds, allow_negative_numbers = true)]
     length: f64,
     /// Factory preset or preset file (.toml) that plays what no program change says otherwise
-    #[arg(long, default_value = "init", value_name = "NAME|FILE.toml")]
+    #[arg(long, default_value = "init", value_name = "NAME|FILE.toml",
+        add = ArgValueCompleter::new(completion::presets))]
     preset: OsString,
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
-    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting)]
+    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
+        add = ArgValueCompleter::new(completion::settings))]
     set: Vec<(Param, f32)>,
     /// Sample rate, 1000-768000 Hz
     #[arg(long, default_value_t = 48_000, value_name = "HZ", allow_negative_numbers = true, value_parser = clap::value_parser!(u32)
         .range(i64::from(*SAMPLE_RATES.start())..=i64::from(*SAMPLE_RATES.end())))]
     rate: u32,
     /// Sample format: 16 or 24 bits, or 32f for floats
-    #[arg(long, default_value = "24", value_name = "16|24|32f", value_parser = quantity::bits)]
+    #[arg(long, default_value = "24", value_name = "16|24|32f", value_parser = quantity::bits,
+        add = completion::among(&["16", "24", "32f"]))]
     bits: SampleFormat,
     /// Add TPDF dither before rounding to 16 or 24 bits
     #[arg(long)]
@@ -62,10 +66,11 @@ pub(super) struct Args {
     mono: bool,
     /// What follows the song or the notes: auto goes on until the sound has died, none stops at once, or 0-86400 s
     #[arg(long, default_value = "auto", value_name = "auto|none|SECONDS", value_parser = quantity::tail,
-        allow_negative_numbers = true)]
+        allow_negative_numbers = true, add = completion::among(&["auto", "none"]))]
     tail: Tail,
     /// Bring the peak (-120-0 dBFS) or the integrated loudness (-70-0 LUFS) to a level
-    #[arg(long, value_name = "peak=DBFS|lufs=LUFS", value_parser = quantity::level, conflicts_with = "gain_db")]
+    #[arg(long, value_name = "peak=DBFS|lufs=LUFS", value_parser = quantity::level, conflicts_with = "gain_db",
+        add = completion::among(&["peak=", "lufs="]))]
     normalize: Option<Level>,
     /// Gain, -120-120 dB
     #[arg(long, default_value_t = 0.0, value_name = "DB", value_parser = quantity::gain_db, allow_negative_numbers = true)]
