@@ -1,7 +1,7 @@
 //! What is asked for is what sounds: frequency and T60 of a single mass, measured on rendered audio.
 
 use sprung::analysis::damped_sine::{DampedSine, fit_unknown};
-use sprung::io::{Output, SampleFormat, Song, Target};
+use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::render::{Delivery, Job, Level, Options, Tail, to_wav};
@@ -24,7 +24,7 @@ fn measure(folder: &Path, sample_rate: u32, frequency: f64, t60: f64) -> Option<
     let job = Job { song: &song, patch: &patch, programs: &[], options };
     let delivery = Delivery { samples: SampleFormat::Float32, dither: false, mono: true, level: Level::Gain(0.0) };
     let path = folder.join("note.wav");
-    let mut output = Output::create(&Target::new(&path), true).unwrap();
+    let mut output = Output::create(&Target::new(&path), true, &Inputs::default()).unwrap();
     to_wav(&job, &delivery, &mut output, |_| Ok(())).unwrap();
     output.commit().unwrap();
     let samples: Vec<f32> =

@@ -2,7 +2,7 @@
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use sprung::engine::EventKind;
-use sprung::io::{Output, Song, Target};
+use sprung::io::{Inputs, Output, Song, Target};
 use sprung::patch::Patch;
 use sprung::realtime::convert::DeviceSample;
 use sprung::realtime::{LiveInputs, Moment, Player, Recording, Setup, Status};
@@ -15,7 +15,7 @@ static ALLOCATOR: AllocDisabler = AllocDisabler;
 /// Plays half a second in blocks of `frames`, everything happening at once.
 fn play<T: DeviceSample>(frames: usize, channels: usize) {
     let directory = tempfile::tempdir().unwrap();
-    let output = Output::create(&Target::new(directory.path().join("take.wav")), false).unwrap();
+    let output = Output::create(&Target::new(directory.path().join("take.wav")), false, &Inputs::default()).unwrap();
     let (tap, recording) = Recording::start(output, 48_000).unwrap();
     let ([mut keys], inputs) = LiveInputs::new();
     let status = Arc::new(Status::default());

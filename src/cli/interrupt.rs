@@ -1,4 +1,5 @@
-//! Ctrl-C, SIGTERM and SIGHUP: outputs that are not whole yet do not stay.
+//! Ctrl-C, SIGTERM and SIGHUP: outputs that are not whole yet are removed. What was ignored when the program started,
+//! as `nohup` has it, stays ignored.
 
 use sprung::io::Output;
 use sprung::{Error, Result};
@@ -43,8 +44,39 @@ pub(super) fn remove(output: &Output) {
     TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner).extend(temporary);
 }
 
+/// Calls `handler`, on a thread of its own, each time that an interrupt comes.
+#[cfg(unix)]
+fn install(mut handler: impl FnMut() + 'static + Send) -> Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let heeded = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| !is_ignored(*signal));
+    let mut signals = signal_hook::iterator::Signals::new(heeded).map_err(failed)?;
+    std::thread::Builder::new()
+        .name("interrupt".to_owned())
+        .spawn(move || signals.forever().for_each(|_| handler()))
+        .map(drop)
+        .map_err(failed)
+}
+
+/// Whether a signal is ignored; once a handler is installed, it is not.
+#[cfg(unix)]
+#[expect(unsafe_code, reason = "no crate tells by a safe function how a signal is handled")]
+fn is_ignored(signal: std::ffi::c_int) -> bool {
+    let mut action = std::mem::MaybeUninit::<libc::sigaction>::uninit();
+    // SAFETY: without a new action, `sigaction` only writes the present one, which it has done when it gives 0.
+    unsafe {
+        libc::sigaction(signal, std::ptr::null(), action.as_mut_ptr()) == 0
+            && action.assume_init().sa_sigaction == libc::SIG_IGN
+    }
+}
+
+/// Calls `handler`, on a thread of its own, each time that an interrupt comes.
+#[cfg(windows)]
 fn install(handler: impl FnMut() + 'static + Send) -> Result<()> {
-    ctrlc::set_handler(handler).map_err(|error| Error::value("Ctrl-C", error.to_string()))
+    ctrlc::set_handler(handler).map_err(failed)
+}
+
+fn failed(error: impl std::fmt::Display) -> Error {
+    Error::value("Ctrl-C", error.to_string())
 }
 
 fn end() -> ! {

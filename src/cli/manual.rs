@@ -1,14 +1,11 @@
-//! `sprung completions` and `sprung man`: what a package installs beside the command.
+//! `sprung man`: the manual pages.
 
 use clap::CommandFactory;
-use clap_complete::Shell;
+use clap_mangen::Man;
+use sprung::io::{Inputs, Output, Target};
 use sprung::{Error, Result};
-use std::path::PathBuf;
-
-pub(super) const COMPLETION_EXAMPLES: &str = "\
-Examples:
-  sprung completions bash > ~/.local/share/bash-completion/completions/sprung
-  sprung completions fish > ~/.config/fish/completions/sprung.fish";
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -16,34 +13,45 @@ Examples:
   sprung man ~/.local/share/man/man1";
 
 #[derive(clap::Args)]
-pub(super) struct CompletionArgs {
-    /// The shell to complete for
-    shell: Shell,
-}
-
-#[derive(clap::Args)]
 pub(super) struct Args {
     /// Write a page for the command and each subcommand into this directory, made if missing, instead of stdout
     directory: Option<PathBuf>,
-}
-
-pub(super) fn completions(args: &CompletionArgs) -> Result<()> {
-    // clap_complete panics when its writer fails; a buffer does not.
-    let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut super::Cli::command(), "sprung", &mut script);
-    super::print(&String::from_utf8_lossy(&script))
+    /// Overwrite existing pages
+    #[arg(long, requires = "directory")]
+    force: bool,
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    let command = super::Cli::command();
     match &args.directory {
-        Some(directory) => std::fs::create_dir_all(directory)
-            .and_then(|()| clap_mangen::generate_to(command, directory))
-            .map_err(|error| Error::io(directory.display().to_string(), error)),
-        None => {
-            let mut page = Vec::new();
-            clap_mangen::Man::new(command).render(&mut page).map_err(|error| Error::io("stdout", error))?;
-            super::print(&String::from_utf8_lossy(&page))
-        }
+        Some(directory) => write_pages(directory, args.force),
+        None => super::print(&String::from_utf8_lossy(&rendered(&Man::new(super::Cli::command()))?)),
     }
+}
+
+/// Writes all pages or, if one of them cannot be written, none.
+fn write_pages(directory: &Path, force: bool) -> Result<()> {
+    std::fs::create_dir_all(directory).map_err(|error| Error::io(directory.display().to_string(), error))?;
+    let mut command = super::Cli::command().disable_help_subcommand(true);
+    command.build();
+    let mut written = Vec::new();
+    for page in pages(&command) {
+        // Manual pages are made from the command line itself.
+        let target = Target::Path(directory.join(page.get_filename()));
+        let mut output = Output::create(&target, force, &Inputs::default())?;
+        output.stream().write_all(&rendered(&page)?).map_err(|error| Error::io(output.name(), error))?;
+        written.push(output);
+    }
+    written.into_iter().try_for_each(Output::commit)
+}
+
+/// A page for a command and for each subcommand below it.
+fn pages(command: &clap::Command) -> Vec<Man> {
+    let below = command.get_subcommands().filter(|command| !command.is_hide_set()).flat_map(pages);
+    std::iter::once(Man::new(command.clone())).chain(below).collect()
+}
+
+fn rendered(page: &Man) -> Result<Vec<u8>> {
+    let mut text = Vec::new();
+    page.render(&mut text).map_err(|error| Error::io("the manual page", error))?;
+    Ok(text)
 }

@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod completion;
 mod interrupt;
 mod lab;
 mod manual;
@@ -73,37 +74,47 @@ enum Command {
     #[command(after_help = lab::EXAMPLES)]
     Lab(lab::Args),
     /// Print a completion script for a shell
-    #[command(after_help = manual::COMPLETION_EXAMPLES)]
-    Completions(manual::CompletionArgs),
+    #[command(after_help = completion::EXAMPLES)]
+    Completions(completion::Args),
     /// Print the manual page, or write one page per subcommand
     #[command(after_help = manual::EXAMPLES)]
     Man(manual::Args),
 }
 
 pub(crate) fn run() -> ExitCode {
-    let command = match Cli::try_parse() {
-        Ok(cli) => cli.command,
-        Err(error) => {
-            let args: Vec<String> = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect();
-            return usage::refuse(error, &Cli::command(), &args);
-        }
-    };
-    let result = match command {
-        Command::Render(args) => render::run(&args),
+    match completion::answer() {
+        Ok(true) => return finish(checked(std::io::stdout().flush())),
+        Ok(false) => {}
+        Err(error) => return usage::refuse(error, &Cli::command()),
+    }
+    match Cli::try_parse() {
+        Ok(cli) => finish(execute(&cli.command)),
+        // `--help` and `--version` are no errors, and go to stdout.
+        Err(error) if !error.use_stderr() => finish(checked(error.print().and_then(|()| std::io::stdout().flush()))),
+        Err(error) => usage::refuse(error, &Cli::command()),
+    }
+}
+
+fn execute(command: &Command) -> Result<()> {
+    match command {
+        Command::Render(args) => render::run(args),
         #[cfg(feature = "realtime")]
-        Command::Play(args) => play::run(&args),
+        Command::Play(args) => play::run(args),
         #[cfg(not(feature = "realtime"))]
         Command::Play { .. } => Err(Error::value(
             "play",
             "this sprung was built without sound devices: expected one built with ‘cargo build --features realtime’; \
              ‘sprung render’ writes a file",
         )),
-        Command::Presets(args) => presets::run(&args),
-        Command::Params(args) => parameters::run(&args),
-        Command::Lab(args) => lab::run(&args),
-        Command::Completions(args) => manual::completions(&args),
-        Command::Man(args) => manual::run(&args),
-    };
+        Command::Presets(args) => presets::run(args),
+        Command::Params(args) => parameters::run(args),
+        Command::Lab(args) => lab::run(args),
+        Command::Completions(args) => completion::run(args),
+        Command::Man(args) => manual::run(args),
+    }
+}
+
+fn finish(result: Result<()>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -123,11 +134,15 @@ fn complain_lines(text: &str) {
     let _ = write!(std::io::stderr(), "{}", printable_lines(text));
 }
 
-/// Writes lines to stdout, with nothing in them that steers the terminal. A reader that has gone away, as `head` does,
-/// has what it wanted: that is no error.
+/// Writes lines to stdout, with nothing in them that steers the terminal.
 fn print(text: &str) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(printable_lines(text).as_bytes()).and_then(|()| stdout.flush()) {
+    checked(stdout.write_all(printable_lines(text).as_bytes()).and_then(|()| stdout.flush()))
+}
+
+/// What came of writing to stdout. A reader that has gone away, as `head` does, has what it wanted: that is no error.
+fn checked(written: std::io::Result<()>) -> Result<()> {
+    match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("stdout", error)),
         _ => Ok(()),
     }
@@ -166,7 +181,7 @@ mod tests {
             play::EXAMPLES,
             lab::EXAMPLES,
             manual::EXAMPLES,
-            manual::COMPLETION_EXAMPLES,
+            completion::EXAMPLES,
         ];
         for text in examples {
             let mut lines = text.lines().filter(|line| line.starts_with("  sprung")).peekable();

@@ -2,8 +2,9 @@
 
 use super::render::with_settings;
 use super::song::SongArgs;
-use super::{complain, complain_lines, interrupt, presets, quantity};
-use sprung::io::{Output, Target};
+use super::{complain, complain_lines, completion, interrupt, presets, quantity};
+use clap_complete::ArgValueCompleter;
+use sprung::io::{Inputs, Output, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
@@ -14,6 +15,7 @@ use sprung::realtime::{
 use sprung::render::BLOCKS;
 use sprung::text::printable;
 use sprung::{Error, Result};
+use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -37,13 +39,14 @@ pub(super) struct Args {
     #[command(flatten)]
     reading: SongArgs,
     /// Factory preset or preset file (.toml) that plays what no program change says otherwise [default: init]
-    #[arg(long, value_name = "NAME|FILE.toml")]
-    preset: Option<String>,
+    #[arg(long, value_name = "NAME|FILE.toml", add = ArgValueCompleter::new(completion::presets))]
+    preset: Option<OsString>,
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
-    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting)]
+    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
+        add = ArgValueCompleter::new(completion::settings))]
     set: Vec<(Param, f32)>,
     /// MIDI ports to listen to: all, none, or those with this in their name
-    #[arg(long, default_value = "all", value_name = "NAME|all|none")]
+    #[arg(long, default_value = "all", value_name = "NAME|all|none", add = completion::among(&["all", "none"]))]
     midi_in: String,
     /// Sound device, by its name or a part of it. See --list
     #[arg(long, value_name = "NAME")]
@@ -82,19 +85,22 @@ pub(super) fn run(args: &Args) -> Result<()> {
         return list();
     }
     let headless = args.headless || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal();
-    let preset = presets::load(args.preset.as_deref().unwrap_or("init"))?;
+    let record = args.record.as_ref().map(Target::new);
+    record.as_ref().map_or(Ok(()), Target::check_wav)?;
+    let mut inputs = Inputs::default();
+    let preset = presets::load_or_init(args.preset.as_deref(), &mut inputs)?;
     let patch = with_settings(preset.patch, &args.set);
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
-    let song = args.song.as_deref().map(|path| args.reading.read(path)).transpose()?;
+    let song = args.song.as_deref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
     if let Some(song) = &song {
         args.reading.warn_of_programs(song, args.preset.as_ref().map(|_| &patch), &programs);
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;
-    let (tap, recording) = match &args.record {
-        Some(path) => {
-            let (tap, recording) =
-                Recording::start(Output::create(&Target::new(path), args.force)?, found.sample_rate())?;
+    let (tap, recording) = match &record {
+        Some(target) => {
+            let output = Output::create(target, args.force, &inputs)?;
+            let (tap, recording) = Recording::start(output, found.sample_rate())?;
             (Some(tap), Some(recording))
         }
         None => (None, None),

@@ -1,9 +1,13 @@
 //! `sprung presets`: the factory's, and checks of one's own.
 
+use super::completion;
 use clap::Subcommand;
+use clap_complete::ArgValueCompleter;
+use sprung::io::Inputs;
 use sprung::preset::Preset;
 use sprung::text::printable;
 use sprung::{Error, Result};
+use std::ffi::{OsStr, OsString};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -27,7 +31,8 @@ enum Action {
     /// Print a preset's file, to start one's own from
     Show {
         /// Name of a factory preset, or a file ending in .toml
-        name: String,
+        #[arg(add = ArgValueCompleter::new(completion::presets))]
+        name: OsString,
     },
     /// Check preset files and report what is wrong with each
     Check {
@@ -40,20 +45,34 @@ enum Action {
 pub(super) fn run(args: &Args) -> Result<()> {
     match &args.action {
         Action::List => super::print(&list(Preset::factory())),
-        Action::Show { name } => super::print(&load(name)?.to_toml()),
+        Action::Show { name } => {
+            let mut inputs = Inputs::default();
+            let preset = load(name, &mut inputs)?;
+            inputs.check_stdout()?;
+            super::print(&preset.to_toml())
+        }
         Action::Check { files } => check(files),
     }
 }
 
+/// The preset that `--preset` names, or `init`.
+pub(super) fn load_or_init(name: Option<&OsStr>, inputs: &mut Inputs) -> Result<Preset> {
+    load(name.unwrap_or(OsStr::new("init")), inputs)
+}
+
 /// The preset that a user names: a file if it looks like one, else the factory's.
-pub(super) fn load(name: &str) -> Result<Preset> {
+fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Preset> {
     let path = Path::new(name);
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) || path.components().count() > 1
     {
-        Preset::load(path)
+        read(path, inputs)
     } else {
-        Preset::find(name).cloned()
+        Preset::find(&name.to_string_lossy()).cloned()
     }
+}
+
+fn read(path: &Path, inputs: &mut Inputs) -> Result<Preset> {
+    Preset::read(inputs.open(path)?, &path.display().to_string())
 }
 
 fn list(presets: &[Preset]) -> String {
@@ -69,9 +88,11 @@ fn list(presets: &[Preset]) -> String {
 }
 
 fn check(files: &[PathBuf]) -> Result<()> {
-    let mut wrong = 0;
+    let (mut wrong, mut inputs) = (0, Inputs::default());
     for path in files {
-        match Preset::load(path) {
+        let read = read(path, &mut inputs);
+        inputs.check_stdout()?;
+        match read {
             Ok(preset) => {
                 let line = format!("{}: ‘{}’ is in order", path.display(), preset.name);
                 super::print(&format!("{}\n", printable(&line)))?;

@@ -1,12 +1,11 @@
 //! The song that a command plays, and what its program changes mean for `--preset`.
 
 use super::complain;
+use sprung::Result;
 use sprung::engine::EventKind;
-use sprung::io::Song;
+use sprung::io::{Inputs, Song};
 use sprung::patch::Patch;
-use sprung::{Error, Result};
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::path::Path;
 
 /// Repairs that are told one by one.
@@ -25,12 +24,11 @@ pub(super) struct SongArgs {
 
 impl SongArgs {
     /// Reads the song; `-` is stdin.
-    pub(super) fn read(&self, path: &Path) -> Result<Song> {
+    pub(super) fn read(&self, path: &Path, inputs: &mut Inputs) -> Result<Song> {
         if path == Path::new("-") {
-            return self.parse(std::io::stdin().lock(), "stdin");
+            return self.parse(inputs.stdin()?.lock(), "stdin");
         }
-        let origin = path.display().to_string();
-        self.parse(File::open(path).map_err(|error| Error::io(&origin, error))?, &origin)
+        self.parse(inputs.open(path)?, &path.display().to_string())
     }
 
     fn parse(&self, reader: impl std::io::Read, origin: &str) -> Result<Song> {

@@ -6,12 +6,10 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, Error};
 use std::process::ExitCode;
 
-/// Tells a usage error, or prints the help or version that was asked for, and gives the exit code.
-pub(super) fn refuse(mut error: Error, command: &Command, args: &[String]) -> ExitCode {
-    if !error.use_stderr() {
-        error.exit();
-    }
-    if let Some(tip) = tip(&error, subcommand(command, args)) {
+/// Tells a usage error and gives the exit code.
+pub(super) fn refuse(mut error: Error, command: &Command) -> ExitCode {
+    let args: Vec<String> = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect();
+    if let Some(tip) = tip(&error, subcommand(command, &args)) {
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
     }
     let plain = error.render().to_string();

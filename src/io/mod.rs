@@ -1,13 +1,18 @@
 //! Files: MIDI songs in, WAV sound out, and the care with which outputs appear on disk.
 
 mod bars;
+pub mod inputs;
 pub mod midi;
 pub mod output;
 mod riff;
 pub mod song;
+pub mod target;
 mod tempo;
+mod temporary;
 pub mod wav;
 
-pub use output::{Output, Target};
+pub use inputs::Inputs;
+pub use output::Output;
 pub use song::{Song, SongEvent};
+pub use target::Target;
 pub use wav::{SampleFormat, WavFormat, WavWriter};

@@ -1,42 +1,20 @@
 //! Where output goes: a file that appears whole or not at all, a device, a named pipe, or standard output.
 
-use super::riff;
+use super::inputs::Inputs;
+use super::target::{Target, resolve};
 use super::wav::WavFormat;
+use super::{riff, temporary};
 use crate::error::{Error, Result};
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, ErrorKind, Seek, SeekFrom, Stdout, Write};
+use same_file::Handle;
+use std::fs::{self, File, Metadata, OpenOptions};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
-
-/// What the user named as output.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Target {
-    /// Standard output, written `-`.
-    Stdout,
-    /// A file, device or named pipe.
-    Path(PathBuf),
-}
-
-impl Target {
-    /// `-` is standard output; all else is a path.
-    pub fn new(path: impl Into<PathBuf>) -> Self {
-        let path = path.into();
-        if path == Path::new("-") { Self::Stdout } else { Self::Path(path) }
-    }
-
-    /// The target as errors call it.
-    pub fn name(&self) -> String {
-        match self {
-            Self::Stdout => "stdout".to_owned(),
-            Self::Path(path) => path.display().to_string(),
-        }
-    }
-}
 
 /// An output under way. Dropping it before [`Output::commit`] leaves no trace of it on disk.
 pub struct Output {
     name: String,
-    stream: OutputStream,
+    stream: File,
     pending: Option<Pending>,
 }
 
@@ -47,55 +25,50 @@ struct Pending {
     replace: bool,
 }
 
-/// The bytes of an output. Seeks only if [`Output::is_seekable`].
-pub enum OutputStream {
-    /// A temporary file beside its target.
-    File(File),
-    /// A device or named pipe.
-    Device(File),
-    /// Standard output.
-    Stdout(Stdout),
-}
-
 impl Output {
-    /// Opens `target`. A file is written under a temporary name beside it, and an existing one stays untouched
-    /// until [`Output::commit`]; devices and pipes are written straight. `force` allows to replace a file.
+    /// Opens `target`, which must be none of the `inputs`. A file is written under a temporary name beside it, and an
+    /// existing one stays untouched until [`Output::commit`]; devices and pipes are written straight. `force` allows
+    /// to replace a file. What a symbolic link points to is replaced or made, not the link.
     ///
     /// # Errors
-    /// [`Error::Exists`] for an existing file without `force`; [`Error::Io`] if nothing can be written there.
-    pub fn create(target: &Target, force: bool) -> Result<Self> {
+    /// [`Error::Value`] for one of the inputs; [`Error::Exists`] for an existing file without `force`; [`Error::Io`]
+    /// if nothing can be written there.
+    pub fn create(target: &Target, force: bool, inputs: &Inputs) -> Result<Self> {
         let name = target.name();
-        let Target::Path(path) = target else {
-            return Ok(Self { name, stream: OutputStream::Stdout(io::stdout()), pending: None });
-        };
         let failed = |source| Error::io(&name, source);
+        let Target::Path(path) = target else {
+            inputs.check_stdout()?;
+            let stream = stdout().map_err(failed)?;
+            return Ok(Self { name, stream, pending: None });
+        };
         let existing = match fs::metadata(path) {
             Ok(metadata) if metadata.is_dir() => return Err(failed(ErrorKind::IsADirectory.into())),
             Ok(metadata) if !metadata.is_file() => {
-                let device = OpenOptions::new().write(true).open(path).map_err(failed)?;
-                return Ok(Self { name, stream: OutputStream::Device(device), pending: None });
+                let stream = OpenOptions::new().write(true).open(path).map_err(failed)?;
+                return Ok(Self { name, stream, pending: None });
             }
             Ok(metadata) => Some(metadata),
             Err(error) if error.kind() == ErrorKind::NotFound => None,
             Err(error) => return Err(failed(error)),
         };
-        // A symbolic link that leads nowhere is not to be lost either.
-        if !force && (existing.is_some() || fs::symlink_metadata(path).is_ok()) {
-            return Err(Error::Exists { path: name });
-        }
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if let Some(folder) = folder.filter(|folder| !folder.exists()) {
+        let target = match &existing {
+            Some(metadata) => {
+                check_replaceable(path, metadata, &name, force, inputs)?;
+                fs::canonicalize(path).map_err(failed)?
+            }
+            None => resolve(path),
+        };
+        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if !folder.exists() {
             let message = format!("there is no folder {}", folder.display());
             return Err(failed(io::Error::new(ErrorKind::NotFound, message)));
         }
-        // What a link points to is replaced, not the link.
-        let target = if existing.is_some() { fs::canonicalize(path).map_err(failed)? } else { path.clone() };
-        let (file, temporary) = temporary_beside(&target).map_err(failed)?;
+        let (stream, temporary) = temporary::create_in(folder).map_err(|error| failed(in_folder(folder, &error)))?;
         if let Some(metadata) = existing {
-            file.set_permissions(metadata.permissions()).map_err(failed)?;
+            stream.set_permissions(metadata.permissions()).map_err(failed)?;
         }
         let pending = Some(Pending { temporary, target, replace: force });
-        Ok(Self { name, stream: OutputStream::File(file), pending })
+        Ok(Self { name, stream, pending })
     }
 
     /// What errors call the output.
@@ -113,9 +86,22 @@ impl Output {
         self.pending.as_ref().map(|pending| &*pending.temporary)
     }
 
-    /// The stream to write to.
-    pub fn stream(&mut self) -> &mut OutputStream {
+    /// Where to write to.
+    pub fn stream(&mut self) -> &mut File {
         &mut self.stream
+    }
+
+    /// Refuses more bytes than there is room for, where that can be told.
+    ///
+    /// # Errors
+    /// [`Error::Io`] with both numbers.
+    pub fn check_room(&self, bytes: u64) -> Result<()> {
+        let Some(room) = self.temporary().and_then(|path| fs4::available_space(path).ok()) else { return Ok(()) };
+        if bytes <= room {
+            return Ok(());
+        }
+        let message = format!("{bytes} bytes do not fit: {room} are free there");
+        Err(Error::io(&self.name, io::Error::new(ErrorKind::StorageFull, message)))
     }
 
     /// Completes a WAV whose writing failed, so that what got as far as the disk can be played: cuts it after its last
@@ -124,10 +110,12 @@ impl Output {
     /// # Errors
     /// [`Error::Io`] if the file cannot be changed, has no whole header, or is not a file.
     pub fn salvage_wav(&mut self, format: WavFormat) -> Result<u64> {
-        let OutputStream::File(file) = &mut self.stream else {
-            return Err(Error::io(&self.name, ErrorKind::NotSeekable.into()));
+        let salvaged = if self.is_seekable() {
+            riff::salvage(&mut self.stream, &format)
+        } else {
+            Err(ErrorKind::NotSeekable.into())
         };
-        riff::salvage(file, format.frame_len()).map_err(|source| Error::io(&self.name, source))
+        salvaged.map_err(|source| Error::io(&self.name, source))
     }
 
     /// Gives the file its name. All must have been written and flushed.
@@ -138,7 +126,7 @@ impl Output {
         let Some(Pending { temporary, target, replace }) = self.pending else {
             return Ok(());
         };
-        drop(self.stream);
+        // The file stays open, and so locked, until it has its name.
         let renamed = if replace { temporary.persist(&target) } else { temporary.persist_noclobber(&target) };
         renamed.map_err(|failure| match failure.error.kind() {
             ErrorKind::AlreadyExists => Error::Exists { path: self.name },
@@ -147,54 +135,47 @@ impl Output {
     }
 }
 
-/// A new file in the directory of `target`, so that renaming stays within one file system, with the permissions that
-/// any new file would get.
-fn temporary_beside(target: &Path) -> io::Result<(File, TempPath)> {
-    let directory = match target.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".sprung-").suffix(".part");
+/// Refuses an existing file that is one of the inputs, is not to be replaced, or cannot be written.
+fn check_replaceable(path: &Path, metadata: &Metadata, name: &str, force: bool, inputs: &Inputs) -> Result<()> {
+    let failed = |source| Error::io(name, source);
+    let open = || OpenOptions::new().write(true).open(path);
+    // A file that can be written but not read is still told apart.
+    let handle = Handle::from_path(path).or_else(|_| Handle::from_file(open()?)).map_err(failed)?;
+    inputs.check(name, &handle)?;
+    if !force {
+        return Err(Error::Exists { path: name.to_owned() });
+    }
+    // Renaming would replace it all the same, and the superuser can open it all the same.
+    if metadata.permissions().readonly() {
+        let message = "the file is read-only: make it writable, or choose another name";
+        return Err(failed(io::Error::new(ErrorKind::PermissionDenied, message)));
+    }
+    open().map(drop).map_err(failed)
+}
+
+/// Errors are to speak of the folder, not of a temporary name that nobody gave.
+fn in_folder(folder: &Path, error: &io::Error) -> io::Error {
+    let reason = error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error);
+    io::Error::new(error.kind(), format!("no file can be made in the folder {}: {reason}", folder.display()))
+}
+
+/// Standard output, unbuffered.
+fn stdout() -> io::Result<File> {
     #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    // Errors are to speak of the target, not of a name that nobody gave.
-    builder.tempfile_in(directory).map(tempfile::NamedTempFile::into_parts).map_err(|error| {
-        match error.raw_os_error() {
-            Some(code) => io::Error::from_raw_os_error(code),
-            None => error.kind().into(),
-        }
-    })
-}
-
-impl Write for OutputStream {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self {
-            Self::File(file) | Self::Device(file) => file.write(bytes),
-            Self::Stdout(stdout) => stdout.write(bytes),
-        }
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        match self {
-            Self::File(file) | Self::Device(file) => file.flush(),
-            Self::Stdout(stdout) => stdout.flush(),
-        }
-    }
-}
-
-impl Seek for OutputStream {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        match self {
-            Self::File(file) => file.seek(to),
-            Self::Device(_) | Self::Stdout(_) => Err(ErrorKind::NotSeekable.into()),
-        }
-    }
+    let stdout = std::os::fd::AsFd::as_fd(&io::stdout()).try_clone_to_owned();
+    #[cfg(windows)]
+    let stdout = std::os::windows::io::AsHandle::as_handle(&io::stdout()).try_clone_to_owned();
+    stdout.map(File::from)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Write;
+
+    fn create(path: impl Into<PathBuf>, force: bool) -> Result<Output> {
+        Output::create(&Target::new(path), force, &Inputs::default())
+    }
 
     fn names(directory: &Path) -> Vec<String> {
         let mut names: Vec<_> =
@@ -207,14 +188,14 @@ mod tests {
     fn a_file_appears_only_when_it_is_whole() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.wav");
-        let mut output = Output::create(&Target::new(&path), false).unwrap();
+        let mut output = create(&path, false).unwrap();
         output.stream().write_all(b"half").unwrap();
         assert!(!path.exists());
         assert_eq!(fs::read(output.temporary().unwrap()).unwrap(), b"half");
         drop(output);
         assert!(names(directory.path()).is_empty(), "an abandoned output leaves nothing");
 
-        let mut output = Output::create(&Target::new(&path), false).unwrap();
+        let mut output = create(&path, false).unwrap();
         output.stream().write_all(b"whole").unwrap();
         output.commit().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"whole");
@@ -226,12 +207,12 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.wav");
         // One that appears while the other is being written is not lost either.
-        let racing = Output::create(&Target::new(&path), false).unwrap();
+        let racing = create(&path, false).unwrap();
         fs::write(&path, b"old").unwrap();
         assert!(matches!(racing.commit(), Err(Error::Exists { .. })));
-        assert!(matches!(Output::create(&Target::new(&path), false), Err(Error::Exists { .. })));
+        assert!(matches!(create(&path, false), Err(Error::Exists { .. })));
         assert_eq!(fs::read(&path).unwrap(), b"old");
-        let mut output = Output::create(&Target::new(&path), true).unwrap();
+        let mut output = create(&path, true).unwrap();
         output.stream().write_all(b"new").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"old");
         output.commit().unwrap();
@@ -243,7 +224,7 @@ mod tests {
     fn unwritable_places_are_named() {
         let directory = tempfile::tempdir().unwrap();
         for path in [directory.path().join("none/a.wav"), directory.path().to_owned()] {
-            let error = Output::create(&Target::new(&path), true).err().unwrap().to_string();
+            let error = create(&path, true).err().unwrap().to_string();
             assert!(error.starts_with(&format!("{}: ", path.display())) && !error.contains(".part"), "{error}");
         }
     }
@@ -256,18 +237,69 @@ mod tests {
         let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
         let (plain, path, link) = (directory.path().join("p"), directory.path().join("a"), directory.path().join("l"));
         File::create(&plain).unwrap();
-        Output::create(&Target::new(&path), false).unwrap().commit().unwrap();
+        create(&path, false).unwrap().commit().unwrap();
         assert_eq!(mode(&path), mode(&plain), "a new file's permissions");
         fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
         symlink(&path, &link).unwrap();
-        let mut output = Output::create(&Target::new(&link), true).unwrap();
+        let mut output = create(&link, true).unwrap();
         output.stream().write_all(b"through").unwrap();
         output.commit().unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!((fs::read(&path).unwrap().as_slice(), mode(&path)), (&b"through"[..], 0o640));
 
-        let output = Output::create(&Target::new("/dev/null"), false).unwrap();
+        let output = create("/dev/null", false).unwrap();
         assert!(!output.is_seekable());
         output.commit().unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_no_file_yet_is_written_through() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = |name: &str| directory.path().join(name);
+        fs::create_dir(path("folder")).unwrap();
+        std::os::unix::fs::symlink("folder/new", path("link")).unwrap();
+        std::os::unix::fs::symlink("link", path("far")).unwrap();
+        let mut output = create(path("far"), false).unwrap();
+        output.stream().write_all(b"through").unwrap();
+        output.commit().unwrap();
+        assert!(["link", "far"].iter().all(|link| fs::symlink_metadata(path(link)).unwrap().is_symlink()));
+        assert_eq!(fs::read(path("folder/new")).unwrap(), b"through");
+        assert!(matches!(create(path("far"), false), Err(Error::Exists { .. })));
+
+        std::os::unix::fs::symlink("none/new", path("lost")).unwrap();
+        let error = create(path("lost"), true).err().unwrap().to_string();
+        assert!(error.ends_with(&format!("there is no folder {}", path("none").display())), "{error}");
+    }
+
+    #[test]
+    fn a_read_only_file_is_not_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.wav");
+        fs::write(&path, "old").unwrap();
+        let mut permissions = fs::metadata(&path).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&path, permissions).unwrap();
+        let error = create(&path, true).err().unwrap().to_string();
+        assert!(error.ends_with("a.wav: the file is read-only: make it writable, or choose another name"), "{error}");
+        assert_eq!((names(directory.path()), fs::read(&path).unwrap()), (vec!["a.wav".to_owned()], b"old".to_vec()));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_folder_that_takes_no_files_is_named() {
+        // Not even the superuser can make a file here.
+        let error = create("/sys/a.wav", false).err().unwrap().to_string();
+        assert!(error.starts_with("/sys/a.wav: no file can be made in the folder /sys: "), "{error}");
+        assert!(!error.contains(".part"), "{error}");
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_the_numbers() {
+        let directory = tempfile::tempdir().unwrap();
+        let output = create(directory.path().join("a.wav"), false).unwrap();
+        output.check_room(1).unwrap();
+        let error = output.check_room(u64::MAX).unwrap_err().to_string();
+        assert!(error.contains("a.wav: 18446744073709551615 bytes do not fit: "), "{error}");
     }
 }

@@ -1,147 +1,137 @@
-//! Between hound and the output: completes the header of a WAV that cannot be gone back to, and pads odd chunks.
+//! The header of a WAV file: RIFF up to 4 GiB, RF64 beyond.
 
+use super::wav::WavFormat;
 use std::fs::File;
-use std::io::{Error, ErrorKind, Read, Result, Seek, SeekFrom, Write};
+use std::io::{Error, ErrorKind, Result, Seek, SeekFrom, Write};
 
 /// Bytes of `RIFF` and its size, which the size itself does not count.
 const RIFF_PREAMBLE: u64 = 8;
 
-/// Takes what hound writes (a header with empty sizes, samples, then a seek back and the sizes) and sees to it that
-///
-/// - with a known length, the header goes out with its sizes filled in and nothing is written after the samples,
-///   so that the output need not seek;
-/// - a data chunk of odd length is followed by a zero byte that only the RIFF size counts, which the format asks for
-///   (Multimedia Programming Interface and Data Specifications 1.0, 1991) and hound leaves out.
-pub(super) struct RiffSink<W> {
-    inner: W,
-    /// Length of the data chunk in bytes, where it is known beforehand.
-    data_len: Option<u32>,
-    header_len: u64,
-    position: u64,
-    /// Where hound's next correction goes, once it has sought back.
-    patching: Option<u64>,
-    padding: u32,
+/// Length of the contents of a `ds64` chunk without a table: the sizes of RIFF and data, the number of frames, and
+/// the length of the table.
+const DS64_LEN: u32 = 3 * 8 + 4;
+
+/// What the 32-bit size fields of an RF64 file hold.
+const IN_DS64: u32 = u32::MAX;
+
+/// The header of a file of so many frames. Its length is the same for every number of frames, so that it can be
+/// written again once the number is known: what holds the 64-bit sizes of an RF64 file (EBU Tech 3306) is a `JUNK`
+/// chunk in a RIFF file, as EBU Tech 3306 recommends.
+pub(super) fn header(format: &WavFormat, frames: u64) -> Vec<u8> {
+    // From hound: `RIFF`, its size, `WAVE`, the chunk `fmt `, `data` and its size.
+    let plain = format.spec().into_header_for_infinite_file();
+    let (riff, chunks) = plain.split_at(12);
+    let chunks = &chunks[..chunks.len() - 4];
+
+    let data_len = frames * format.frame_len();
+    let header_len = plain.len() as u64 + 8 + u64::from(DS64_LEN);
+    let riff_len = header_len - RIFF_PREAMBLE + data_len + padding(data_len);
+    let rf64 = riff_len >= u64::from(IN_DS64);
+    let size = |len: u64| if rf64 { IN_DS64 } else { len as u32 };
+
+    let mut header = Vec::with_capacity(header_len as usize);
+    header.extend(if rf64 { b"RF64" } else { &riff[..4] });
+    header.extend(size(riff_len).to_le_bytes());
+    header.extend(&riff[8..]);
+    header.extend(if rf64 { b"ds64" } else { b"JUNK" });
+    header.extend(DS64_LEN.to_le_bytes());
+    for value in [riff_len, data_len, frames] {
+        header.extend(if rf64 { value } else { 0 }.to_le_bytes());
+    }
+    header.extend(0u32.to_le_bytes());
+    header.extend(chunks);
+    header.extend(size(data_len).to_le_bytes());
+    header
 }
 
-impl<W: Write + Seek> RiffSink<W> {
-    pub(super) fn new(inner: W, data_len: Option<u32>) -> Self {
-        Self { inner, data_len, header_len: 0, position: 0, patching: None, padding: 0 }
-    }
-
-    fn write_header(&mut self, header: &[u8]) -> Result<()> {
-        self.header_len = header.len() as u64;
-        let Some(data_len) = self.data_len else {
-            return self.inner.write_all(header);
-        };
-        let mut header = header.to_vec();
-        let riff_len = header.len() as u32 - RIFF_PREAMBLE as u32 + data_len + data_len % 2;
-        let data_field = header.len() - 4;
-        header[4..8].copy_from_slice(&riff_len.to_le_bytes());
-        header[data_field..].copy_from_slice(&data_len.to_le_bytes());
-        self.inner.write_all(&header)
-    }
-
-    /// hound's size fields: at 4 that of the RIFF chunk, else that of the data.
-    fn write_patch(&mut self, offset: u64, bytes: &[u8]) -> Result<()> {
-        if self.data_len.is_some() {
-            return Ok(());
-        }
-        let mut field: [u8; 4] = bytes.try_into().map_err(|_| Error::from(ErrorKind::InvalidInput))?;
-        if offset == 4 {
-            field = (u32::from_le_bytes(field) + self.padding).to_le_bytes();
-        }
-        self.inner.seek(SeekFrom::Start(offset))?;
-        self.inner.write_all(&field)
-    }
+/// Bytes that follow the samples: a chunk of odd length is followed by a zero that only the RIFF size counts
+/// (Multimedia Programming Interface and Data Specifications 1.0, 1991).
+pub(super) fn padding(data_len: u64) -> u64 {
+    data_len % 2
 }
 
-impl<W: Write + Seek> Write for RiffSink<W> {
-    fn write(&mut self, bytes: &[u8]) -> Result<usize> {
-        if let Some(offset) = self.patching {
-            self.write_patch(offset, bytes)?;
-            self.patching = Some(offset + bytes.len() as u64);
-            return Ok(bytes.len());
-        }
-        let written = if self.position == 0 {
-            // hound writes its header at once.
-            self.write_header(bytes)?;
-            bytes.len()
-        } else {
-            self.inner.write(bytes)?
-        };
-        self.position += written as u64;
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> Result<()> {
-        self.inner.flush()
-    }
-}
-
-impl<W: Write + Seek> Seek for RiffSink<W> {
-    fn seek(&mut self, to: SeekFrom) -> Result<u64> {
-        let SeekFrom::Start(offset) = to else {
-            return Err(ErrorKind::Unsupported.into());
-        };
-        if self.patching.is_none() && (self.position - self.header_len) % 2 == 1 {
-            self.inner.write_all(&[0])?;
-            self.padding = 1;
-        }
-        self.patching = Some(offset);
-        Ok(offset)
-    }
-}
-
-/// Makes the file that a broken-off writer left a whole one: ends it after its last whole frame and sets the sizes of
-/// the RIFF and data chunks. Gives the number of frames. `frame_len` is even, so that no padding is needed.
-pub(super) fn salvage(file: &mut File, frame_len: u64) -> Result<u64> {
-    let len = file.metadata()?.len().min(u64::from(u32::MAX));
-    let mut header = [0; 256];
-    file.seek(SeekFrom::Start(0))?;
-    let header_len = file.read(&mut header)?;
-    let data = header[..header_len].windows(4).position(|id| id == b"data").map(|id| id as u64 + 8);
-    let Some(data) = data.filter(|data| *data <= len) else {
+/// Completes the file of a writer that failed: ends it after its last whole frame and writes the header for that
+/// length. Gives the number of frames.
+pub(super) fn salvage(file: &mut File, format: &WavFormat) -> Result<u64> {
+    let header_len = header(format, 0).len() as u64;
+    let Some(data_len) = file.metadata()?.len().checked_sub(header_len) else {
         return Err(Error::new(ErrorKind::UnexpectedEof, "nothing was recorded"));
     };
-    let frames = (len - data) / frame_len;
-    let data_len = frames * frame_len;
-    file.set_len(data + data_len)?;
-    for (position, size) in [(4, data + data_len - RIFF_PREAMBLE), (data - 4, data_len)] {
-        file.seek(SeekFrom::Start(position))?;
-        file.write_all(&(size as u32).to_le_bytes())?;
-    }
+    let frames = data_len / format.frame_len();
+    let end = header_len + frames * format.frame_len();
+    file.set_len(end)?;
+    file.set_len(end + padding(end - header_len))?;
+    file.seek(SeekFrom::Start(0))?;
+    file.write_all(&header(format, frames))?;
     Ok(frames)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::{SampleFormat, WavFormat, WavWriter};
+    use crate::io::{SampleFormat, WavWriter};
+    use std::io::Cursor;
+
+    const FORMAT: WavFormat = WavFormat { sample_rate: 48_000, channels: 2, samples: SampleFormat::Float32 };
+
+    fn number(bytes: &[u8], at: usize, len: usize) -> u64 {
+        bytes[at..at + len].iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte))
+    }
+
+    #[test]
+    fn sizes_beyond_32_bits_are_in_the_ds64_chunk() {
+        let header_len = header(&FORMAT, 0).len() as u64;
+        // The longest that RIFF can count, since its largest number says that RF64 does.
+        let longest = (u64::from(u32::MAX) - 1 - (header_len - 8)) / 8;
+        let riff = header(&FORMAT, longest);
+        assert_eq!((&riff[..4], &riff[12..16]), (&b"RIFF"[..], &b"JUNK"[..]));
+        assert_eq!(number(&riff, 4, 4), header_len - 8 + longest * 8);
+        assert_eq!(number(&riff, riff.len() - 4, 4), longest * 8);
+        assert!(riff[20..48].iter().all(|byte| *byte == 0));
+
+        for frames in [longest + 1, 10_000_000_000] {
+            let rf64 = header(&FORMAT, frames);
+            assert_eq!((&rf64[..4], &rf64[8..16]), (&b"RF64"[..], &b"WAVEds64"[..]));
+            assert_eq!((number(&rf64, 4, 4), number(&rf64, rf64.len() - 4, 4)), (0xffff_ffff, 0xffff_ffff));
+            assert_eq!(number(&rf64, 16, 4), 28);
+            let sizes = [20, 28, 36].map(|at| number(&rf64, at, 8));
+            assert_eq!(sizes, [header_len - 8 + frames * 8, frames * 8, frames]);
+            assert_eq!(number(&rf64, 44, 4), 0, "there is no table");
+            assert_eq!((rf64.len(), &rf64[48..rf64.len() - 4]), (riff.len(), &riff[48..riff.len() - 4]));
+        }
+    }
 
     #[test]
     fn a_file_that_broke_off_is_whole_up_to_there() {
-        let format = WavFormat { sample_rate: 8000, channels: 2, samples: SampleFormat::Float32 };
-        let mut whole = std::io::Cursor::new(Vec::new());
-        let mut writer = WavWriter::new(&mut whole, "x", format, None, None).unwrap();
-        writer.write(&[1.0, 2.0, 3.0], &[-1.0, -2.0, -3.0]).unwrap();
-        writer.finish().unwrap();
-        let mut whole = whole.into_inner();
-        let data = whole.len() - 24;
-        // As it is before the sizes are written.
-        whole[4..8].fill(0);
-        whole[data - 4..data].fill(0);
-        for (len, expected) in
-            [(whole.len(), Some(3)), (data + 15, Some(1)), (data, Some(0)), (data - 1, None), (0, None)]
-        {
-            let mut file = tempfile::tempfile().unwrap();
-            file.write_all(&whole[..len]).unwrap();
-            let frames = salvage(&mut file, 8).ok();
-            assert_eq!(frames, expected, "{len} bytes");
-            file.seek(SeekFrom::Start(0)).unwrap();
-            if let Some(frames) = frames {
-                let samples: Vec<f32> =
-                    hound::WavReader::new(file).unwrap().into_samples().map(|sample| sample.unwrap()).collect();
-                assert_eq!(samples, [1.0, -1.0, 2.0, -2.0, 3.0, -3.0][..2 * frames as usize]);
+        let mono = WavFormat { sample_rate: 8000, channels: 1, samples: SampleFormat::Int24 };
+        for format in [FORMAT, mono] {
+            let write = |frames: usize| {
+                let mut whole = Cursor::new(Vec::new());
+                let mut writer = WavWriter::new(&mut whole, "x", format, None, None).unwrap();
+                let signal = &[0.25, 0.5, 0.75][..frames];
+                writer.write(signal, signal).unwrap();
+                writer.finish().unwrap();
+                whole.into_inner()
+            };
+            let (mut broken, data) = (write(3), header(&format, 0).len());
+            // As it is before the sizes are written.
+            broken[..data].copy_from_slice(&header(&format, 0));
+            let frame_len = format.frame_len() as usize;
+            for (len, expected) in [
+                (data + 3 * frame_len, Some(3)),
+                (data + 2 * frame_len - 1, Some(1)),
+                (data, Some(0)),
+                (data - 1, None),
+                (0, None),
+            ] {
+                let mut file = tempfile::tempfile().unwrap();
+                file.write_all(&broken[..len]).unwrap();
+                assert_eq!(salvage(&mut file, &format).ok(), expected, "{len} bytes");
+                let Some(frames) = expected else { continue };
+                let mut salvaged = Vec::new();
+                file.seek(SeekFrom::Start(0)).unwrap();
+                std::io::Read::read_to_end(&mut file, &mut salvaged).unwrap();
+                assert!(salvaged == write(frames as usize), "{len} bytes");
             }
         }
     }

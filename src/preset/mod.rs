@@ -51,18 +51,24 @@ impl Preset {
     /// as [`Preset::parse`] says.
     pub fn load(path: &Path) -> Result<Self> {
         let origin = path.display().to_string();
+        Self::read(std::fs::File::open(path).map_err(|source| Error::io(&origin, source))?, &origin)
+    }
+
+    /// Reads a preset file from `reader`, which errors call `origin`.
+    ///
+    /// # Errors
+    /// As [`Preset::load`].
+    pub fn read(reader: impl Read, origin: &str) -> Result<Self> {
         let mut bytes = Vec::new();
-        std::fs::File::open(path)
-            .and_then(|file| file.take(MAX_FILE_SIZE + 1).read_to_end(&mut bytes))
-            .map_err(|source| Error::io(&origin, source))?;
+        reader.take(MAX_FILE_SIZE + 1).read_to_end(&mut bytes).map_err(|source| Error::io(origin, source))?;
         if bytes.len() as u64 > MAX_FILE_SIZE {
             return Err(Error::format(origin, "too large for a preset: expected at most 1 MiB of TOML"));
         }
         let text = String::from_utf8(bytes).map_err(|error| {
             let at = error.utf8_error().valid_up_to();
-            Error::format(&origin, format!("not a preset: expected UTF-8 text, but byte {at} is not"))
+            Error::format(origin, format!("not a preset: expected UTF-8 text, but byte {at} is not"))
         })?;
-        Self::parse(&text, &origin)
+        Self::parse(&text, origin)
     }
 
     /// The presets built into the library, in the order of their MIDI program numbers from 0.

@@ -153,11 +153,11 @@ fn write(mut queue: Consumer<f32>, output: &mut Output, format: WavFormat, order
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::Target;
+    use crate::io::{Inputs, Target};
 
     fn start(directory: &tempfile::TempDir, rate: u32) -> (Tap, Recording, std::path::PathBuf) {
         let path = directory.path().join("take.wav");
-        let output = Output::create(&Target::new(&path), false).unwrap();
+        let output = Output::create(&Target::new(&path), false, &Inputs::default()).unwrap();
         let (tap, recording) = Recording::start(output, rate).unwrap();
         (tap, recording, path)
     }
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn pipes_and_devices_are_refused() {
-        let output = Output::create(&Target::new("/dev/null"), false).unwrap();
+        let output = Output::create(&Target::new("/dev/null"), false, &Inputs::default()).unwrap();
         let error = Recording::start(output, 48_000).err().unwrap().to_string();
         assert_eq!(error, "--record: /dev/null is a pipe or device: expected a file");
     }

@@ -10,18 +10,22 @@ pub struct Meter {
     peak: f32,
     sum_of_squares: f64,
     samples: u64,
+    non_finite: u64,
     loudness: EbuR128,
 }
 
 /// What a [`Meter`] has measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levels {
-    /// Largest absolute sample; 1 is full scale.
+    /// Largest absolute sample that is finite; 1 is full scale.
     pub peak: f64,
-    /// Root of the mean square over all samples of all channels.
+    /// Root of the mean square over all samples of all channels, those that are not finite counting as 0.
     pub rms: f64,
-    /// Integrated loudness in LUFS (ITU-R BS.1770, EBU R 128), to about 0.1 LU; none for silence and for less than 400 ms.
+    /// Integrated loudness in LUFS (ITU-R BS.1770, EBU R 128), to about 0.1 LU; none for silence, for less than 400 ms,
+    /// and if a sample is not finite.
     pub lufs: Option<f64>,
+    /// Samples that are infinite or not a number.
+    pub non_finite: u64,
 }
 
 impl Meter {
@@ -32,7 +36,7 @@ impl Meter {
     pub fn new(sample_rate: u32, channels: u16) -> Result<Self> {
         let loudness = EbuR128::new(channels.into(), sample_rate, Mode::I | Mode::HISTOGRAM)
             .map_err(|error| Error::value("loudness", error.to_string()))?;
-        Ok(Self { channels: channels.into(), peak: 0.0, sum_of_squares: 0.0, samples: 0, loudness })
+        Ok(Self { channels: channels.into(), peak: 0.0, sum_of_squares: 0.0, samples: 0, non_finite: 0, loudness })
     }
 
     /// Measures a block; of one channel, only `left` is looked at.
@@ -44,6 +48,10 @@ impl Meter {
         for frame in 0..left.len() {
             for channel in channels {
                 let sample = channel[frame];
+                if !sample.is_finite() {
+                    self.non_finite += 1;
+                    continue;
+                }
                 self.peak = self.peak.max(sample.abs());
                 self.sum_of_squares += f64::from(sample) * f64::from(sample);
             }
@@ -55,8 +63,8 @@ impl Meter {
     /// The levels so far.
     pub fn levels(&self) -> Levels {
         let rms = if self.samples == 0 { 0.0 } else { (self.sum_of_squares / self.samples as f64).sqrt() };
-        let lufs = self.loudness.loudness_global().ok().filter(|lufs| lufs.is_finite());
-        Levels { peak: self.peak.into(), rms, lufs }
+        let lufs = self.loudness.loudness_global().ok().filter(|lufs| lufs.is_finite() && self.non_finite == 0);
+        Levels { peak: self.peak.into(), rms, lufs, non_finite: self.non_finite }
     }
 }
 
@@ -87,10 +95,26 @@ mod tests {
     #[test]
     fn silence_and_snippets_have_no_loudness() {
         let mut meter = Meter::new(48_000, 1).unwrap();
-        assert_eq!(meter.levels(), Levels { peak: 0.0, rms: 0.0, lufs: None });
+        assert_eq!(meter.levels(), Levels { peak: 0.0, rms: 0.0, lufs: None, non_finite: 0 });
         meter.add(&sine(19_000, 0.5), &[]).unwrap();
         assert_eq!(meter.levels().lufs, None);
         meter.add(&sine(1_000, 0.5), &[]).unwrap();
         assert!(meter.levels().lufs.is_some());
+    }
+
+    #[test]
+    fn samples_that_are_not_finite_are_counted_and_leave_the_levels_alone() {
+        let mut meter = Meter::new(48_000, 2).unwrap();
+        let mut signal = sine(48_000, 0.5);
+        let silence = vec![0.0; signal.len()];
+        meter.add(&signal, &silence).unwrap();
+        let finite = meter.levels();
+        assert_eq!(finite.non_finite, 0);
+        (signal[3], signal[4], signal[5]) = (f32::NAN, f32::INFINITY, f32::NEG_INFINITY);
+        let mut meter = Meter::new(48_000, 2).unwrap();
+        meter.add(&signal, &silence).unwrap();
+        let levels = meter.levels();
+        assert_eq!((levels.non_finite, levels.lufs, levels.peak), (3, None, finite.peak));
+        assert!((levels.rms / finite.rms - 1.0).abs() < 1e-3, "{levels:?}");
     }
 }

@@ -50,12 +50,15 @@ pub struct Report {
     pub seconds: f64,
     /// How much of it follows the end of the song, in seconds.
     pub tail_seconds: f64,
-    /// Largest sample in dBFS, before rounding to integers; none for silence.
+    /// Largest finite sample in dBFS, before rounding to integers; none for silence.
     pub peak_dbfs: Option<f64>,
     /// RMS over all channels, in dB against a full-scale square wave; none for silence.
     pub rms_dbfs: Option<f64>,
-    /// Integrated loudness; none for silence and for less than 400 ms.
+    /// Integrated loudness; none for silence, for less than 400 ms, and if a sample is not finite.
     pub lufs: Option<f64>,
+    /// Samples that are infinite or not a number, of which there should be none: an integer format holds silence or
+    /// full scale in their place.
+    pub non_finite: u64,
     /// Gain that [`Level`] came to, in dB.
     pub gain_db: f64,
     /// Samples beyond full scale that an integer format could not hold.
@@ -76,8 +79,8 @@ pub struct Report {
 /// `progress` is called after each block and can end the work with an error.
 ///
 /// # Errors
-/// [`Error::Value`] if the length does not fit into a WAV file (before any work if the song alone does not), an
-/// option is out of range, or there is nothing to bring to a level; [`Error::Io`]; those of `progress`.
+/// [`Error::Value`] if an option is out of range, or there is nothing to bring to a level; [`Error::Io`], before any
+/// work if there is no room for the song alone; those of `progress`.
 pub fn to_wav(
     job: &Job,
     delivery: &Delivery,
@@ -88,7 +91,7 @@ pub fn to_wav(
     let channels = if delivery.mono { 1 } else { 2 };
     let format = WavFormat { sample_rate: job.options.sample_rate, channels, samples: delivery.samples };
     let least_frames = job.known_frames().unwrap_or(job.song_frames());
-    format.check_frames(least_frames)?;
+    output.check_room(format.file_len(least_frames)?)?;
 
     let length_needed = !output.is_seekable() && job.known_frames().is_none();
     let two_passes = length_needed || !matches!(delivery.level, Level::Gain(_));
@@ -104,10 +107,7 @@ pub fn to_wav(
     if two_passes {
         let mut meter = Meter::new(format.sample_rate, channels)?;
         let mut mix = Mix::new(delivery.mono, 1.0);
-        let mut frames = 0;
         let rendered = job.render(|left, right| {
-            frames += left.len() as u64;
-            format.check_frames(frames)?;
             let (left, right) = mix.apply(left, right);
             meter.add(left, right)?;
             advance(left.len())
@@ -143,6 +143,7 @@ pub fn to_wav(
         peak_dbfs: decibels(levels.peak),
         rms_dbfs: decibels(levels.rms),
         lufs: levels.lufs,
+        non_finite: levels.non_finite,
         gain_db,
         clipped,
         voices_used: rendered.voices_used,
@@ -156,6 +157,10 @@ fn gain_db(level: Level, measured: Option<Levels>) -> Result<f64> {
     let silent = || Error::value("normalize", "the sound is silent and has no level to change");
     match (level, measured) {
         (Level::Gain(gain_db), _) => Ok(gain_db),
+        (_, Some(Levels { non_finite: 1.., .. })) => Err(Error::value(
+            "normalize",
+            "the sound has samples that are infinite or not a number, so it has no level to change",
+        )),
         (Level::Peak(target), Some(levels)) if levels.peak > 0.0 => Ok(target - db_from_gain(levels.peak)),
         (Level::Loudness(target), Some(Levels { lufs: Some(lufs), .. })) => {
             // The loudness meter uses the system's mathematics. Rounded, the gain is the same on every machine.
@@ -206,7 +211,8 @@ mod tests {
 
     #[test]
     fn levels_become_gains() {
-        let levels = |peak, lufs| Some(Levels { peak, rms: 0.1, lufs });
+        let levels = |peak, lufs| Some(Levels { peak, rms: 0.1, lufs, non_finite: 0 });
+        let broken = |peak| Some(Levels { peak, rms: 0.1, lufs: None, non_finite: 1 });
         for (level, measured, expected) in [
             (Level::Gain(-3.0), None, -3.0),
             (Level::Peak(-1.0), levels(1.0, None), -1.0),
@@ -218,6 +224,9 @@ mod tests {
             (Level::Peak(-1.0), levels(0.0, None), "silent"),
             (Level::Loudness(-14.0), levels(0.0, None), "silent"),
             (Level::Loudness(-14.0), levels(0.1, None), "too short"),
+            (Level::Peak(-1.0), broken(1.0), "infinite or not a number"),
+            (Level::Peak(-1.0), broken(0.0), "infinite or not a number"),
+            (Level::Loudness(-14.0), broken(1.0), "infinite or not a number"),
         ] {
             assert!(gain_db(level, measured).unwrap_err().to_string().contains(expected));
         }
@@ -226,7 +235,9 @@ mod tests {
     #[test]
     fn a_normalised_peak_is_the_peak_asked_for() {
         for peak in [1.0e-30f32, 0.123_456_7, 0.999, 3.0] {
-            let gain_db = gain_db(Level::Peak(0.0), Some(Levels { peak: peak.into(), rms: 0.0, lufs: None })).unwrap();
+            let gain_db =
+                gain_db(Level::Peak(0.0), Some(Levels { peak: peak.into(), rms: 0.0, lufs: None, non_finite: 0 }))
+                    .unwrap();
             let mut mix = Mix::new(false, gain_from_db(gain_db));
             let (left, right) = mix.apply(&[peak, -peak], &[0.0, peak]);
             assert_eq!((left, right), (&[1.0, -1.0][..], &[0.0, 1.0][..]));

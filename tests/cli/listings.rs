@@ -1,4 +1,4 @@
-//! What the command tells about itself: presets, parameters, manual, completions.
+//! What the command tells about itself: presets, parameters, manual, completion scripts.
 
 use crate::Sandbox;
 use sprung::params::PARAMS;
@@ -52,8 +52,15 @@ fn manual_and_completions_are_written() {
     assert!(pages.len() > 5 && sandbox.path("pages/man1/sprung-render.1").exists());
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = String::from_utf8(sandbox.succeeds(&format!("completions {shell}"))).unwrap();
-        assert!(script.contains("normalize"), "{shell}");
+        assert!(script.contains("SPRUNG_COMPLETE"), "{shell}");
     }
+    sandbox.fails("man pages/man1", 1, "sprung.1: the file exists; add --force to overwrite it");
+    sandbox.write("pages/man1/sprung-render.1", "old");
+    std::fs::remove_file(sandbox.path("pages/man1/sprung.1")).unwrap();
+    sandbox.fails("man pages/man1", 1, "sprung-render.1: the file exists; add --force to overwrite it");
+    assert!(!sandbox.path("pages/man1/sprung.1").exists(), "all pages or none");
+    sandbox.succeeds("man --force pages/man1");
+    assert!(sandbox.read("pages/man1/sprung-render.1").starts_with(b".ie"));
     sandbox.write("file", "");
     sandbox.fails("man file", 1, "file: ");
 }
@@ -79,7 +86,9 @@ fn a_reader_that_has_seen_enough_is_no_error() {
 #[test]
 fn a_full_disk_behind_stdout_is_an_error() {
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    for args in ["presets list", "params --json", "render --note C2 -o -"] {
+    let commands =
+        ["presets list", "presets show Kick", "params --json", "man", "completions bash", "render --note C2 -o -"];
+    for args in commands.into_iter().chain(["--help", "render --help", "--version", "help lab"]) {
         let output = Command::new(assert_cmd::cargo::cargo_bin!("sprung"))
             .args(args.split_whitespace())
             .stdout(full.try_clone().unwrap())

@@ -1,6 +1,11 @@
 //! The command `sprung` from outside: what it writes, what it says, how it ends.
 
 mod bad_input;
+#[cfg(unix)]
+mod completion;
+mod inputs;
+#[cfg(unix)]
+mod interrupts;
 mod lab;
 mod listings;
 mod messages;

@@ -1,9 +1,8 @@
-//! Where WAVs go: files, pipes, devices; and what is left when nobody waits for the end.
+//! Where WAVs go: files, links, pipes, devices.
 
 use crate::{Sandbox, Wav, end, exists, note_on, song};
 use std::io::Read;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 #[test]
 fn lengths_are_exact_in_frames() {
@@ -81,17 +80,6 @@ fn force_replaces_a_file() {
 }
 
 #[test]
-fn a_song_is_not_replaced_by_its_sound() {
-    let sandbox = Sandbox::new();
-    let song = song(&[note_on(0, 0, 60), end(240)]);
-    sandbox.write("song.mid", &song);
-    for output in ["song.mid", "./song.mid"] {
-        sandbox.fails(&format!("render song.mid --force -o {output}"), 1, "is the song: expected another file");
-    }
-    assert!(sandbox.read("song.mid") == song);
-}
-
-#[test]
 fn a_song_comes_through_stdin() {
     let sandbox = Sandbox::new();
     let song = song(&[note_on(0, 0, 60), end(240)]);
@@ -135,38 +123,42 @@ fn devices_and_named_pipes_are_written_straight() {
     assert_eq!(sandbox.files(), ["fifo", "out.wav"]);
 }
 
-/// Ends a render of `args` with SIGINT once it is under way, which `ready` tells.
-#[cfg(unix)]
-fn interrupt(sandbox: &Sandbox, args: &str, mut ready: impl FnMut(&mut std::process::Child) -> bool) -> Option<i32> {
-    let mut child = Command::new(assert_cmd::cargo::cargo_bin!("sprung"))
-        .args(args.split_whitespace())
-        .current_dir(sandbox.path("."))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let limit = Instant::now() + Duration::from_secs(60);
-    while !ready(&mut child) {
-        assert!(Instant::now() < limit && child.try_wait().unwrap().is_none(), "it never got going");
-        std::thread::sleep(Duration::from_millis(5));
+#[cfg(target_os = "linux")]
+#[test]
+fn stdout_is_written_by_its_names() {
+    let sandbox = Sandbox::new();
+    let args = "render --note C2 --length 0.1";
+    sandbox.succeeds(&format!("{args} -o out.wav"));
+    for name in ["/dev/stdout", "/proc/self/fd/1", "/dev/fd/1"] {
+        assert!(sandbox.succeeds(&format!("{args} -o {name}")) == sandbox.read("out.wav"), "through a pipe to {name}");
+        // The report does not get between the samples.
+        let stdout = std::fs::File::create(sandbox.path("redirected.wav")).unwrap();
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sprung"));
+        command.args(format!("{args} --json -o {name}").split_whitespace()).stdout(stdout).stderr(Stdio::null());
+        assert!(command.status().unwrap().success());
+        assert!(sandbox.read("redirected.wav") == sandbox.read("out.wav"), "into a file by {name}");
     }
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    child.wait().unwrap().code()
 }
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_leaves_nothing_behind() {
+fn a_link_that_leads_nowhere_is_written_through() {
     let sandbox = Sandbox::new();
-    // The first 64 KiB are on disk: the handler has long been in place.
-    let ready = |_: &mut std::process::Child| {
-        sandbox.files().iter().any(|name| std::fs::metadata(sandbox.path(name)).is_ok_and(|file| file.len() > 0))
-    };
-    let args = "render --note C2 --length 86400 --rate 8000 --bits 16 --mono -o out.wav";
-    assert_eq!(interrupt(&sandbox, args, ready), Some(130));
-    assert!(sandbox.files().is_empty(), "{:?}", sandbox.files());
+    std::fs::create_dir(sandbox.path("folder")).unwrap();
+    std::os::unix::fs::symlink("folder/out.wav", sandbox.path("link.wav")).unwrap();
+    sandbox.succeeds("render --note C2 --length 0.1 --force -o link.wav");
+    assert!(std::fs::symlink_metadata(sandbox.path("link.wav")).unwrap().is_symlink());
+    assert_eq!(sandbox.wav("folder/out.wav").spec.channels, 2);
+    assert_eq!(sandbox.files(), ["folder", "link.wav"]);
+}
 
-    let args = "render --note C2 --length 86400 --rate 8000 --bits 16 --mono --tail none -o -";
-    let code = interrupt(&sandbox, args, |child| child.stdout.as_mut().unwrap().read_exact(&mut [0; 100]).is_ok());
-    assert_eq!(code, Some(130), "also while nobody reads the pipe");
+#[test]
+fn a_read_only_file_is_not_replaced() {
+    let sandbox = Sandbox::new();
+    let path = sandbox.write("out.wav", "keep me");
+    let mut permissions = std::fs::metadata(&path).unwrap().permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(&path, permissions).unwrap();
+    sandbox.fails("render --note C2 --force -o out.wav", 1, "out.wav: the file is read-only: make it writable, or");
+    assert_eq!(sandbox.read("out.wav"), b"keep me");
 }

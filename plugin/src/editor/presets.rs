@@ -5,7 +5,7 @@ use crate::params::SprungParams;
 use crate::state::State;
 use egui::{ComboBox, TextEdit, Ui};
 use nice_plug_core::context::gui::GuiContext;
-use sprung::io::output::{Output, Target};
+use sprung::io::{Inputs, Output, Target};
 use sprung::preset::Preset;
 use std::io::Write as _;
 use std::path::Path;
@@ -88,7 +88,7 @@ fn write(mut preset: Preset, path: &str, replace: bool) -> sprung::Result<String
     let text = preset.to_toml();
     // A name may be no name for a preset, and what is saved must load.
     Preset::parse(&text, &path.display().to_string())?;
-    let mut output = Output::create(&Target::new(path), replace)?;
+    let mut output = Output::create(&Target::new(path), replace, &Inputs::default())?;
     let written = output.stream().write_all(text.as_bytes());
     written.map_err(|source| sprung::Error::io(path.display().to_string(), source))?;
     output.commit()?;

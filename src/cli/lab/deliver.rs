@@ -2,7 +2,7 @@
 
 use super::super::{complain_lines, interrupt, print};
 use sprung::figure::{self, Picture};
-use sprung::io::{Output, Target};
+use sprung::io::{Inputs, Output, Target};
 use sprung::{Error, Result};
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -52,7 +52,8 @@ impl Files {
 }
 
 fn create(target: &Target, force: bool) -> Result<Output> {
-    let output = Output::create(target, force)?;
+    // The lab reads no files.
+    let output = Output::create(target, force, &Inputs::default())?;
     interrupt::remove(&output);
     Ok(output)
 }

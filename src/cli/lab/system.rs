@@ -2,6 +2,7 @@
 
 use super::super::{complain, quantity};
 use clap::ValueEnum;
+use clap_complete::{ArgValueCandidates, CompletionCandidate};
 use sprung::Result;
 use sprung::lab::method::Method;
 use sprung::lab::system::{Force, Spring, State, System};
@@ -76,7 +77,8 @@ impl SystemArgs {
 pub(super) struct MethodArgs {
     /// Methods, separated by commas: all, explicit-euler, implicit-euler, symplectic-euler, symplectic-euler-xv, heun,
     /// rk4, chou-semi-implicit, chou-implicit, synth-seed, synth-exact, verlet, exponential
-    #[arg(long, default_value = "all", value_delimiter = ',', value_name = "all|A,B,…")]
+    #[arg(long, default_value = "all", value_delimiter = ',', value_name = "all|A,B,…",
+        add = ArgValueCandidates::new(|| Method::ALL.map(|method| CompletionCandidate::new(method.key())).into()))]
     methods: Vec<String>,
 }
 

@@ -4,15 +4,17 @@ mod report;
 
 use super::progress::Bar;
 use super::song::SongArgs;
-use super::{interrupt, presets, quantity};
+use super::{completion, interrupt, presets, quantity};
 use clap::ArgGroup;
-use sprung::io::{Output, SampleFormat, Song, Target};
+use clap_complete::ArgValueCompleter;
+use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
 use sprung::render::{BLOCKS, Delivery, Job, Level, Options, THREADS, Tail, on_threads, to_wav};
 use sprung::units::parse_key;
 use sprung::{Error, Result};
+use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
@@ -42,16 +44,18 @@ pub(super) struct Args {
     #[command(flatten)]
     reading: SongArgs,
     /// Factory preset or preset file (.toml) that plays what no program change says otherwise [default: init]
-    #[arg(long, value_name = "NAME|FILE.toml")]
-    preset: Option<String>,
+    #[arg(long, value_name = "NAME|FILE.toml", add = ArgValueCompleter::new(completion::presets))]
+    preset: Option<OsString>,
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
-    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting)]
+    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
+        add = ArgValueCompleter::new(completion::settings))]
     set: Vec<(Param, f32)>,
     /// Sample rate, 1000-768000 Hz (44100, 44.1k)
     #[arg(long, default_value_t = 48_000, value_name = "HZ", allow_hyphen_values = true, value_parser = quantity::rate)]
     rate: u32,
     /// Sample format: 16 or 24 bits, or 32f for floats
-    #[arg(long, default_value = "24", value_name = "16|24|32f", value_parser = quantity::bits)]
+    #[arg(long, default_value = "24", value_name = "16|24|32f", value_parser = quantity::bits,
+        add = completion::among(&["16", "24", "32f"]))]
     bits: SampleFormat,
     /// Add TPDF dither before rounding to 16 or 24 bits
     #[arg(long)]
@@ -61,11 +65,11 @@ pub(super) struct Args {
     mono: bool,
     /// What follows the song or the notes: auto goes on until the sound has died, none stops at once, or 0-86400 s
     #[arg(long, default_value = "auto", value_name = "auto|none|SECONDS", value_parser = quantity::tail,
-        allow_hyphen_values = true)]
+        allow_hyphen_values = true, add = completion::among(&["auto", "none"]))]
     tail: Tail,
     /// Bring the peak (-120-0 dBFS) or the integrated loudness (-70-0 LUFS) to a level
     #[arg(long, value_name = "peak=DBFS|lufs=LUFS", value_parser = quantity::level, allow_hyphen_values = true,
-        conflicts_with = "gain_db")]
+        conflicts_with = "gain_db", add = completion::among(&["peak=", "lufs="]))]
     normalize: Option<Level>,
     /// Gain, -120-120 dB
     #[arg(long, default_value_t = 0.0, value_name = "DB", value_parser = quantity::gain_db, allow_hyphen_values = true)]
@@ -101,19 +105,16 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if target == Target::Stdout && std::io::stdout().is_terminal() {
         return Err(Error::value("--output", "stdout is a terminal: expected a file, or stdout sent to one"));
     }
-    if let (Some(song), Target::Path(output)) = (&args.song, &target)
-        && song.canonicalize().is_ok_and(|song| output.canonicalize().is_ok_and(|output| output == song))
-    {
-        return Err(Error::value("--output", format!("‘{}’ is the song: expected another file", output.display())));
-    }
-    let preset = args.preset.as_deref();
-    let patch = with_settings(presets::load(preset.unwrap_or("init"))?.patch, &args.set);
+    target.check_wav()?;
+    let mut inputs = Inputs::default();
+    let preset = presets::load_or_init(args.preset.as_deref(), &mut inputs)?;
+    let patch = with_settings(preset.patch, &args.set);
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
     let song = match &args.song {
-        Some(path) => args.reading.read(path)?,
+        Some(path) => args.reading.read(path, &mut inputs)?,
         None => chord(args, &patch)?,
     };
-    args.reading.warn_of_programs(&song, preset.map(|_| &patch), &programs);
+    args.reading.warn_of_programs(&song, args.preset.as_ref().map(|_| &patch), &programs);
 
     let options = Options { sample_rate: args.rate, seed: args.seed, block: args.block as usize, tail: args.tail };
     let job = Job { song: &song, patch: &patch, programs: args.reading.programs(&programs), options };
@@ -123,7 +124,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
         mono: args.mono,
         level: args.normalize.unwrap_or(Level::Gain(args.gain_db)),
     };
-    let mut output = Output::create(&target, args.force)?;
+    if args.json {
+        inputs.check_stdout()?;
+    }
+    let mut output = Output::create(&target, args.force, &inputs)?;
     interrupt::catch(output.is_seekable())?;
     let mut bar = Bar::new();
     let progress = |progress| {

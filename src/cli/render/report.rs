@@ -26,6 +26,15 @@ pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()
             ),
         );
     }
+    if report.non_finite > 0 {
+        complain(
+            "warning",
+            format_args!(
+                "{} samples are infinite or not a number, which is a defect of the synthesizer",
+                report.non_finite
+            ),
+        );
+    }
     match (as_json, target) {
         (true, Target::Path(_)) => print(&format!("{:#}\n", to_json(report, target))),
         (true, Target::Stdout) => {
@@ -47,14 +56,18 @@ fn summary(report: &Report, target: &Target) -> String {
         report.seconds,
         report.tail_seconds,
         report.format.sample_rate,
-        if report.peak_dbfs.is_some() { level(report.peak_dbfs, "dBFS peak") } else { ", silent".to_owned() },
+        match report.peak_dbfs {
+            None if report.non_finite == 0 => ", silent".to_owned(),
+            peak => level(peak, "dBFS peak"),
+        },
         level(report.lufs, "LUFS"),
         report.voices_used,
         report.realtime_factor,
     )
 }
 
-/// The report under the names of [`Report`]'s fields: `voices_used`, too, is added up over channels.
+/// The report under the names of [`Report`]'s fields: `voices_used`, too, is added up over channels. In silence the
+/// levels are null and `non_finite_samples` is 0.
 fn to_json(report: &Report, target: &Target) -> serde_json::Value {
     json!({
         "output": target.name(),
@@ -68,6 +81,7 @@ fn to_json(report: &Report, target: &Target) -> serde_json::Value {
         "peak_dbfs": report.peak_dbfs,
         "rms_dbfs": report.rms_dbfs,
         "lufs": report.lufs,
+        "non_finite_samples": report.non_finite,
         "gain_db": report.gain_db,
         "clipped_samples": report.clipped,
         "voices_used": report.voices_used,
@@ -75,4 +89,36 @@ fn to_json(report: &Report, target: &Target) -> serde_json::Value {
         "limiter_seconds": report.limiter_seconds,
         "realtime_factor": report.realtime_factor,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::io::WavFormat;
+
+    #[test]
+    fn silence_and_samples_that_are_not_finite_are_told_apart() {
+        let format = WavFormat { sample_rate: 48_000, channels: 2, samples: SampleFormat::Int24 };
+        let report = |non_finite| Report {
+            format,
+            frames: 1,
+            seconds: 1.0,
+            tail_seconds: 0.0,
+            peak_dbfs: None,
+            rms_dbfs: None,
+            lufs: None,
+            non_finite,
+            gain_db: 0.0,
+            clipped: 0,
+            voices_used: 1,
+            limiter_reduction_db: 0.0,
+            limiter_seconds: 0.0,
+            realtime_factor: 1.0,
+        };
+        for (non_finite, silent) in [(0, true), (7, false)] {
+            let json = to_json(&report(non_finite), &Target::Stdout);
+            assert_eq!((&json["peak_dbfs"], &json["non_finite_samples"]), (&json!(null), &json!(non_finite)));
+            assert_eq!(summary(&report(non_finite), &Target::Stdout).contains("silent"), silent);
+        }
+    }
 }

@@ -1,0 +1,113 @@
+//! What the user names as output, and where that is.
+
+use crate::error::{Error, Result};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What the user named as output.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// Standard output, written `-`.
+    Stdout,
+    /// A file, device or named pipe.
+    Path(PathBuf),
+}
+
+/// Endings of files that sound is kept in, and that are not WAV.
+const OTHER_FORMATS: [&str; 22] = [
+    "aac", "aif", "aifc", "aiff", "alac", "ape", "au", "caf", "flac", "m4a", "mid", "midi", "mka", "mp2", "mp3", "mp4",
+    "oga", "ogg", "opus", "snd", "w64", "wma",
+];
+
+/// Most symbolic links that are followed one after the other, as in Linux.
+const MAX_LINKS: usize = 40;
+
+impl Target {
+    /// `-` is standard output, as are its names in the file system (`/dev/stdout`); all else is a path.
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        let path = path.into();
+        if path == Path::new("-") || links(&path).any(|path| is_stdout(&path)) {
+            Self::Stdout
+        } else {
+            Self::Path(path)
+        }
+    }
+
+    /// The target as errors call it.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Stdout => "stdout".to_owned(),
+            Self::Path(path) => path.display().to_string(),
+        }
+    }
+
+    /// Refuses a name that promises another format than WAV.
+    ///
+    /// # Errors
+    /// [`Error::Value`] that says what would be right.
+    pub fn check_wav(&self) -> Result<()> {
+        let Self::Path(path) = self else { return Ok(()) };
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        if OTHER_FORMATS.contains(&ending.as_str()) {
+            let message = format!("only WAV can be written, not .{ending}: expected a name that ends in .wav");
+            return Err(Error::value(self.name(), message));
+        }
+        Ok(())
+    }
+}
+
+/// Where a file is that gets the name `path`: what symbolic links lead to, whether or not there is a file yet.
+pub(super) fn resolve(path: &Path) -> PathBuf {
+    links(path).last().unwrap_or_else(|| path.to_owned())
+}
+
+/// The path, and if it is a symbolic link, what it leads to, and so on.
+fn links(path: &Path) -> impl Iterator<Item = PathBuf> {
+    let next = |path: &PathBuf| {
+        let to = fs::read_link(path).ok()?;
+        Some(path.parent().unwrap_or(Path::new("")).join(to))
+    };
+    std::iter::successors(Some(path.to_owned()), next).take(MAX_LINKS)
+}
+
+/// Whether a path is the descriptor of standard output in the folder of this process's descriptors.
+fn is_stdout(path: &Path) -> bool {
+    let folder = || path.parent().and_then(|folder| fs::canonicalize(folder).ok());
+    path.file_name().is_some_and(|name| name == "1")
+        && folder().is_some_and(|folder| {
+            ["/proc/self/fd", "/dev/fd"].iter().any(|known| fs::canonicalize(known).is_ok_and(|known| known == folder))
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn stdout_has_several_names() {
+        let directory = tempfile::tempdir().unwrap();
+        let link = directory.path().join("link");
+        std::os::unix::fs::symlink("/dev/stdout", &link).unwrap();
+        for name in
+            [Path::new("-"), Path::new("/dev/stdout"), Path::new("/proc/self/fd/1"), Path::new("/dev/fd/1"), &link]
+        {
+            assert_eq!(Target::new(name), Target::Stdout, "{}", name.display());
+        }
+        for name in ["./-", "/dev/stderr", "/dev/fd/2", "1", "/dev/null", "out.wav"] {
+            assert_eq!(Target::new(name), Target::Path(name.into()));
+        }
+    }
+
+    #[test]
+    fn names_that_promise_another_format_are_refused() {
+        for name in ["a.mp3", "a.MP3", "a.wav.flac"] {
+            let ending = name.rsplit('.').next().unwrap().to_ascii_lowercase();
+            let expected = format!("{name}: only WAV can be written, not .{ending}: expected a name that ends in .wav");
+            assert_eq!(Target::new(name).check_wav().unwrap_err().to_string(), expected);
+        }
+        for name in ["a.wav", "a.WAV", "a.wave", "a.rf64", "a", "a.mp3.wav", "a.tmp", "-", "mp3", ".mp3"] {
+            assert!(Target::new(name).check_wav().is_ok(), "{name}");
+        }
+    }
+}

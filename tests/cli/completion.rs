@@ -1,0 +1,88 @@
+//! What bash offers when Tab is pressed: a real one, asked as it asks itself.
+
+use crate::{Sandbox, exists};
+use sprung::params::PARAMS;
+use sprung::preset::Preset;
+use std::process::Command;
+
+/// Sources the script in an interactive bash, types `line` and a tab, and gives what the line has become.
+fn typed(sandbox: &Sandbox, line: &str) -> String {
+    let program = assert_cmd::cargo::cargo_bin!("sprung");
+    let folder = program.parent().unwrap().display();
+    // A key that writes the line to a file; readline runs it as any other.
+    let rc = format!(
+        "PATH={folder}:$PATH\nsource <(sprung completions bash)\nbind 'set bell-style none'\n\
+         show() {{ printf '%s' \"$READLINE_LINE\" > line; exit; }}\nbind -x '\"\\C-x\": show'\n"
+    );
+    sandbox.write("rc", rc);
+    let input = sandbox.write("keys", format!("{line}\t\x18"));
+    // `script` gives bash a terminal, without which readline does not run.
+    let status = Command::new("script")
+        .args(["-qec", "bash --noprofile --rcfile rc -i", "/dev/null"])
+        .current_dir(sandbox.path("."))
+        .env("TERM", "dumb")
+        .stdin(std::fs::File::open(input).unwrap())
+        .output()
+        .unwrap();
+    std::fs::read_to_string(sandbox.path("line")).unwrap_or_else(|error| panic!("{line}: {error}: {status:?}"))
+}
+
+#[test]
+fn tab_completes_presets_parameters_and_choices() {
+    if !exists("/bin/bash") || Command::new("script").arg("--version").output().is_err() {
+        println!("ignored: needs bash and script (util-linux)");
+        return;
+    }
+    let sandbox = Sandbox::new();
+    sandbox.write("mine.toml", "");
+    for (line, expected) in [
+        ("sprung ren", "sprung render "),
+        ("sprung render --pres", "sprung render --preset "),
+        ("sprung render --preset Church", "sprung render --preset Church\\ Bell "),
+        ("sprung render --preset church", "sprung render --preset Church\\ Bell "),
+        ("sprung render --preset Church\\ B", "sprung render --preset Church\\ Bell "),
+        ("sprung render --preset \"Church B", "sprung render --preset \"Church Bell\" "),
+        ("sprung render --preset=Church", "sprung render --preset=Church\\ Bell "),
+        ("sprung render --preset min", "sprung render --preset mine.toml "),
+        ("sprung presets show Church", "sprung presets show Church\\ Bell "),
+        ("sprung render --set exc", "sprung render --set exciter="),
+        ("sprung render --set exciter=pl", "sprung render --set exciter=pluck "),
+        ("sprung render --set=exciter=pl", "sprung render --set=exciter=pluck "),
+        ("sprung render --note C4 --set mode=leg", "sprung render --note C4 --set mode=legato "),
+        ("sprung render --normalize pe", "sprung render --normalize peak="),
+        ("sprung render --bits 32", "sprung render --bits 32f "),
+        ("sprung lab pitch --methods synth-exact,verl", "sprung lab pitch --methods synth-exact,verlet "),
+        ("sprung render min", "sprung render mine.toml "),
+    ] {
+        assert_eq!(typed(&sandbox, line), expected);
+    }
+}
+
+/// What the program answers to bash's script, whose last word is being typed.
+fn offered(words: &[&str]) -> Vec<String> {
+    let output = Command::new(assert_cmd::cargo::cargo_bin!("sprung"))
+        .env("SPRUNG_COMPLETE", "bash")
+        .env("SPRUNG_COMPLETE_INDEX", words.len().to_string())
+        .args(["--", "sprung"])
+        .args(words)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn everything_that_there_is_is_offered() {
+    let presets = offered(&["render", "--preset", ""]);
+    let missing = |name: &&str| !presets.contains(&name.replace(' ', "\\ ").replace('\'', "\\'"));
+    let missing: Vec<&str> = Preset::factory().iter().map(|preset| preset.name.as_str()).filter(missing).collect();
+    assert!(missing.is_empty(), "{missing:?} not in {presets:?}");
+    assert_eq!(
+        offered(&["render", "--set", ""]),
+        PARAMS.iter().map(|info| format!("{}=", info.id)).collect::<Vec<_>>()
+    );
+    for info in PARAMS.iter().filter(|info| !info.choices.is_empty()) {
+        assert_eq!(offered(&["render", "--set", info.id, "="]), info.choices);
+    }
+    assert!(offered(&["render", "--set", "decay", "="]).is_empty());
+}

@@ -1,0 +1,90 @@
+//! What is left when a command is interrupted or killed.
+
+use crate::{Sandbox, Wav};
+use std::io::Read;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+/// Work of many hours.
+const ENDLESS: &str = "render --note C2 --length 86400 --rate 8000 --bits 16 --mono";
+
+/// Starts `sprung`, below another program if there is one, and waits until it is under way, which `ready` tells.
+fn start(sandbox: &Sandbox, below: &[&str], args: &str, mut ready: impl FnMut(&mut Child) -> bool) -> Child {
+    let words = below.iter().copied().chain([assert_cmd::cargo::cargo_bin!("sprung").to_str().unwrap()]);
+    let words: Vec<&str> = words.chain(args.split_whitespace()).collect();
+    let mut child = Command::new(words[0])
+        .args(&words[1..])
+        .current_dir(sandbox.path("."))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let limit = Instant::now() + Duration::from_secs(60);
+    while !ready(&mut child) {
+        assert!(Instant::now() < limit && child.try_wait().unwrap().is_none(), "it never got going");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child
+}
+
+/// Whether the first 64 KiB are on disk: handlers have long been in place.
+fn has_begun(sandbox: &Sandbox) -> bool {
+    sandbox.files().iter().any(|name| std::fs::metadata(sandbox.path(name)).is_ok_and(|file| file.len() > 0))
+}
+
+fn send(child: &Child, signal: &str) {
+    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+}
+
+fn end(mut child: Child, signal: &str) -> ExitStatus {
+    send(&child, signal);
+    child.wait().unwrap()
+}
+
+#[test]
+fn interrupts_leave_nothing_behind() {
+    for signal in ["-INT", "-TERM", "-HUP"] {
+        let sandbox = Sandbox::new();
+        let child = start(&sandbox, &[], &format!("{ENDLESS} -o out.wav"), |_| has_begun(&sandbox));
+        assert_eq!(end(child, signal).code(), Some(130), "{signal}");
+        assert!(sandbox.files().is_empty(), "{:?}", sandbox.files());
+    }
+    let sandbox = Sandbox::new();
+    let ready = |child: &mut Child| child.stdout.as_mut().unwrap().read_exact(&mut [0; 100]).is_ok();
+    let child = start(&sandbox, &[], &format!("{ENDLESS} --tail none -o -"), ready);
+    assert_eq!(end(child, "-INT").code(), Some(130), "also while nobody reads the pipe");
+}
+
+#[test]
+fn signals_that_were_ignored_stay_ignored() {
+    let sandbox = Sandbox::new();
+    // A shell's `trap '' …` is inherited, as what `nohup` does is.
+    for (signal, trap) in [("-HUP", "HUP"), ("-INT", "INT"), ("-TERM", "TERM")] {
+        let script = format!("trap '' {trap}; exec \"$@\"");
+        let below = ["sh", "-c", &script, "sh"];
+        let child = start(&sandbox, &below, &format!("{ENDLESS} -o out.wav"), |_| has_begun(&sandbox));
+        send(&child, signal);
+        std::thread::sleep(Duration::from_millis(200));
+        let other = if signal == "-INT" { "-TERM" } else { "-INT" };
+        let mut child = child;
+        assert!(child.try_wait().unwrap().is_none(), "{signal} ended it");
+        assert_eq!(end(child, other).code(), Some(130), "the others are not ignored");
+        assert!(sandbox.files().is_empty(), "{:?}", sandbox.files());
+    }
+}
+
+#[test]
+fn what_a_killed_render_left_goes_with_the_next_one() {
+    let sandbox = Sandbox::new();
+    let child = start(&sandbox, &[], &format!("{ENDLESS} -o out.wav"), |_| has_begun(&sandbox));
+    let left = sandbox.files();
+    assert!(left.len() == 1 && left[0].starts_with(".sprung-") && left[0].ends_with(".part"), "{left:?}");
+    // One that is still being written stays.
+    sandbox.succeeds("render --note C2 --length 0.1 -o one.wav");
+    assert_eq!(sandbox.files(), [&left[0], "one.wav"]);
+    end(child, "-KILL");
+    assert_eq!(sandbox.files(), [&left[0], "one.wav"]);
+    sandbox.succeeds("render --note C2 --length 0.1 -o two.wav");
+    assert_eq!(sandbox.files(), ["one.wav", "two.wav"]);
+    Wav::read(&sandbox.read("two.wav"));
+}
