@@ -54,7 +54,7 @@ fn automate(plugin: &Vst3, parameters: &[ParamID], stop: &AtomicBool, blocks: &A
     let mut peak = 0.0_f32;
     while !stop.load(Ordering::Relaxed) {
         let block = blocks.load(Ordering::Relaxed);
-        let key = (block % 128 == 0).then_some(40 + (block / 128 % 40) as i16);
+        let key = block.is_multiple_of(128).then_some(40 + (block / 128 % 40) as i16);
         let Block(samples) = Block::process(plugin, Automation::of(parameters, block), key);
         let samples = samples.as_flattened();
         assert!(samples.iter().all(|sample| sample.is_finite()), "block {block}");
