@@ -169,6 +169,8 @@ fn t60_and_tuning_are_the_same_however_the_pitch_moves() {
                     [1.0, 10.0, FASTEST].iter().map(|speed| bends(sample_rate, t60, *speed, TICK)).collect();
                 // Not in step with control ticks.
                 motions.push(bends(sample_rate, t60, 5.0, 100));
+                // Out of step with control ticks: most lines are broken off.
+                motions.push(bends(sample_rate, t60, FASTEST, 23));
                 motions.push(vibrato(sample_rate, t60, 50.0, 5.5, rest));
                 motions.push(vibrato(sample_rate, t60, 400.0, 20.0, rest));
                 motions.push(vibrato(sample_rate, t60, 1200.0, 4.0, rest));

@@ -1,5 +1,6 @@
-//! Ctrl-C, SIGTERM and SIGHUP: outputs that are not whole yet are removed. What was ignored when the program started,
-//! as `nohup` has it, stays ignored.
+//! Ctrl-C, SIGTERM and SIGHUP: outputs that are not whole yet are removed.
+//!
+//! What was ignored when the program started, as `nohup` has it, stays ignored.
 
 use sprung::io::Output;
 use sprung::{Error, Result};

@@ -61,11 +61,8 @@ const CIRCLES: &[(&str, &str)] = &[
     ("src/realtime/player.rs", "src/realtime/song_cursor.rs"),
     ("plugin/src/live.rs", "plugin/src/plugin.rs"),
     ("plugin/tests/hosts/host/instance.rs", "plugin/tests/hosts/host/player.rs"),
+    ("src/io/riff.rs", "src/io/wav.rs"),
     // A folder's own file and one in it.
-    ("src/dsp/mode_bank/classic.rs", "src/dsp/mode_bank/mod.rs"),
-    ("src/dsp/mode_bank/control.rs", "src/dsp/mode_bank/mod.rs"),
-    ("src/dsp/mode_bank/kernel.rs", "src/dsp/mode_bank/mod.rs"),
-    ("src/dsp/mode_bank/mod.rs", "src/dsp/mode_bank/table.rs"),
     ("src/engine/voice_manager/held_keys.rs", "src/engine/voice_manager/mod.rs"),
     ("src/lab/method/chou.rs", "src/lab/method/mod.rs"),
     ("src/lab/method/explicit_euler.rs", "src/lab/method/mod.rs"),
@@ -80,11 +77,14 @@ const CIRCLES: &[(&str, &str)] = &[
     ("src/preset/file.rs", "src/preset/mod.rs"),
     ("src/realtime/view/app.rs", "src/realtime/view/mod.rs"),
     ("src/render/mod.rs", "src/render/stream.rs"),
+    ("src/cli/completion.rs", "src/cli/mod.rs"),
     ("src/cli/manual.rs", "src/cli/mod.rs"),
     ("src/cli/mod.rs", "src/cli/parameters.rs"),
     ("src/cli/mod.rs", "src/cli/play.rs"),
     ("src/cli/mod.rs", "src/cli/presets.rs"),
     ("src/cli/mod.rs", "src/cli/render/mod.rs"),
+    ("src/cli/mod.rs", "src/cli/usage.rs"),
+    ("src/io/midi.rs", "src/io/midi/reader.rs"),
     ("plugin/src/editor/mod.rs", "plugin/src/editor/window.rs"),
 ];
 

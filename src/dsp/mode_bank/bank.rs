@@ -183,7 +183,7 @@ impl ModeBank {
             Motion::Tabled { .. } if same => return self.until_tick = frames,
             _ => self.leave_tables(),
         }
-        let passed = self.passed();
+        let (passed, left) = (self.passed(), self.until_tick);
         let (mut arrived, mut lost) = (false, None);
         if let Motion::Line { frames, driven, .. } = self.motion {
             arrived = same && passed == frames;
@@ -192,7 +192,7 @@ impl ModeBank {
         }
         self.tune();
         (self.ratio, self.until_tick) = (ratio, frames);
-        self.aim((!arrived).then_some(frames), passed, lost);
+        self.aim((!arrived).then_some(frames), [passed, left], lost);
     }
 
     /// Puts every mode at a pitch ratio at once: for modes at rest.
@@ -200,12 +200,12 @@ impl ModeBank {
         self.leave_tables();
         self.tune();
         (self.ratio, self.until_tick) = (ratio, 0);
-        self.aim(None, 0, None);
+        self.aim(None, [0, 0], None);
     }
 
     /// Sends the coefficients to those of `ratio`, over so many frames or at once. Of the line before, so many frames
-    /// have passed, and what they have lost is given back.
-    fn aim(&mut self, frames: Option<usize>, passed: usize, lost: Option<ChordLoss>) {
+    /// have passed and so many are left, and what those that passed have lost is given back.
+    fn aim(&mut self, frames: Option<usize>, [passed, left]: [usize; 2], lost: Option<ChordLoss>) {
         let fades = self.tuning.fades(self.ratio);
         let faded = std::mem::replace(&mut self.faded, fades);
         let moved = matches!(self.motion, Motion::Line { gains: true, .. });
@@ -215,6 +215,7 @@ impl ModeBank {
             state: &mut self.states[self.current],
             ratio: self.ratio as f32,
             passed,
+            left,
             lost,
             damped: std::mem::take(&mut self.damped),
             per_frame: frames.map(|frames| 1.0 / frames as f32),

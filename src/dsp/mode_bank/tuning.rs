@@ -99,8 +99,9 @@ pub(super) struct Aim<'a> {
     pub(super) modes: &'a mut Modes,
     pub(super) state: &'a mut State,
     pub(super) ratio: f32,
-    /// Frames of the line before that have passed.
+    /// Frames of the line before that have passed, and how many there are left of it.
     pub(super) passed: usize,
+    pub(super) left: usize,
     /// What they have lost, if it is to be given back.
     pub(super) lost: Option<ChordLoss>,
     /// Whether damping has changed.
@@ -166,10 +167,12 @@ impl Kernel for Aim<'_> {
 
     #[inline(always)]
     fn run<V: Vector>(self, proof: V::Proof) -> bool {
-        let Self { tuning, modes, state, ratio, passed, lost, damped, per_frame, fade, live, len } = self;
+        let Self { tuning, modes, state, ratio, passed, left, lost, damped, per_frame, fade, live, len } = self;
         let mut gain_moves = Partial([0.0; LANES]);
         let (zero, one) = (V::splat(proof, 0.0), V::splat(proof, 1.0));
-        let (top, passed) = (V::splat(proof, (0.5 * TOP_ANGLE) as f32), V::splat(proof, passed as f32));
+        let top = V::splat(proof, (0.5 * TOP_ANGLE) as f32);
+        let (broken_off, lift) = (passed * left > 0, V::splat(proof, (passed * left) as f32));
+        let passed = V::splat(proof, passed as f32);
         let mut at = 0;
         while at < len.min(MAX_MODES) {
             let (alpha_step, beta_step): (V, V) = (modes.alpha_step.at(proof, at), modes.beta_step.at(proof, at));
@@ -214,6 +217,15 @@ impl Kernel for Aim<'_> {
                 Some(share) => {
                     let mut alpha: V = passed.mul_add(alpha_step, modes.alpha.at(proof, at));
                     let mut beta: V = passed.mul_add(beta_step, modes.beta.at(proof, at));
+                    if broken_off {
+                        // In the midst of the chord the point lies inside the circle, by the factor √(1 − p (K−p) q): the
+                        // next line is to start on it. Again by the first terms of a series, all of them positive.
+                        let step2 = alpha_step.mul_add(alpha_step, beta_step.mul(beta_step));
+                        let inside = step2.mul(lift);
+                        let more = inside.mul(inside.mul_add(V::splat(proof, 0.375), V::splat(proof, 0.5)));
+                        alpha = alpha.mul_add(more, alpha.sub(more));
+                        beta = beta.mul_add(more, beta);
+                    }
                     if damped {
                         let shrink: V = tuning.shrink.at(proof, at);
                         alpha = shrink.add(alpha.neg_mul_add(shrink, alpha));

@@ -1,6 +1,5 @@
 //! How pitch and decay follow the key.
 
-use super::Instrument;
 use crate::engine::voice_manager::Note;
 use crate::params::Param;
 use crate::units::{frequency_from_key, ratio_from_semitones};
@@ -26,13 +25,13 @@ impl KeyTracking {
     /// Every key has its own pitch, at 440 Hz, and one decay.
     pub(super) const NONE: Self = Self { pitch: 1.0, decay: 0.0, a4_hz: 440.0, glide_seconds: 0.0 };
 
-    /// That of an instrument's patch.
-    pub(super) fn new(instrument: &Instrument) -> Self {
+    /// That of a patch with these values.
+    pub(super) fn new(value: impl Fn(Param) -> f64) -> Self {
         Self {
-            pitch: instrument.value(Param::KeyTrack) * 0.01,
-            decay: instrument.value(Param::DecayKey) * 0.01,
-            a4_hz: instrument.value(Param::Tuning),
-            glide_seconds: instrument.value(Param::Glide),
+            pitch: value(Param::KeyTrack) * 0.01,
+            decay: value(Param::DecayKey) * 0.01,
+            a4_hz: value(Param::Tuning),
+            glide_seconds: value(Param::Glide),
         }
     }
 

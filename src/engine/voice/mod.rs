@@ -54,7 +54,7 @@ impl Instrument {
 
     /// The pitch of a note in semitones on the MIDI scale, tracking included.
     pub(crate) fn pitch(&self, note: &Note) -> f64 {
-        KeyTracking::new(self).pitch(note)
+        KeyTracking::new(|param| self.value(param)).pitch(note)
     }
 }
 

@@ -96,7 +96,7 @@ impl SynthVoice {
 
     /// Reads what the patch says of the body: the ratios and T60s of its modes, and how they follow the key.
     pub(super) fn read_body(&mut self, instrument: &Instrument) {
-        self.key_tracking = KeyTracking::new(instrument);
+        self.key_tracking = KeyTracking::new(|param| instrument.value(param));
         let stretch = instrument.value(Param::Stretch);
         for (ratio, mode) in self.ratios.iter_mut().zip(instrument.modulated.modes.as_slice()) {
             *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
