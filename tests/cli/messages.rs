@@ -91,7 +91,7 @@ fn nothing_from_a_file_or_its_name_steers_the_terminal() {
     for (args, expected) in [
         (&["presets", "check", &toml][..], format!("{shown}.toml: ‘a\\u202eb’ is in order")),
         (&["presets", "check", &bad], format!("{shown}.bad.toml: unknown key ‘\\u001b[31m\\u202e’")),
-        (&["presets", "show", &toml], "\\u001b[31m\\u009b2J".to_owned()),
+        (&["presets", "show", &toml], "\\u001B[31m\\u009b2J".to_owned()),
         (&["render", &mid, "-o", "x.wav"], format!("{shown}.mid: not a whole MIDI file")),
         (&["render", "none.mid", &mid, "-o", "x.wav"], "\\u202e".to_owned()),
         (&["render", "--note", evil, "-o", "x.wav"], "is not a note".to_owned()),

@@ -29,7 +29,11 @@ fn lenient_reading_plays_what_strict_reading_refuses() {
     for (name, bytes, message) in [
         ("running", raw(&running), "track 1, bar 1, beat 2 (tick 96, byte 31): an event has no status byte"),
         ("offset", raw(&offset), "track 1, bar 1, beat 1 (tick 0, byte 22): the SMPTE offset is no time of day"),
-        ("short", whole[..whole.len() - 1].to_vec(), "the file is cut off: 11 of the track's 12 bytes are there"),
+        (
+            "short",
+            whole[..whole.len() - 1].to_vec(),
+            "track 1, bar 1, beat 2 (tick 96, byte 33): the file is cut off: 11 of the track's 12 bytes are there",
+        ),
         ("rmid", rmid, "an RMID file of size 0"),
     ] {
         sandbox.write("in.mid", bytes);

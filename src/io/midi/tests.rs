@@ -148,7 +148,7 @@ fn unfit_files_are_refused_with_a_reason() {
         (with(25, 0x85), "track 1, bar 1, beat 1 (tick 0, byte 22): expected a data byte of at most 0x7f, found 0x85"),
         (
             whole[..whole.len() - 1].to_vec(),
-            "track 2, bar 1, beat 1 (tick 9, byte 49): the file is cut off: 7 of the track's 8 bytes are there; \
+            "track 2, bar 1, beat 1 (tick 0, byte 45): the file is cut off: 7 of the track's 8 bytes are there; \
              add --lenient to read it nevertheless",
         ),
         (
