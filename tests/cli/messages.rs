@@ -78,7 +78,7 @@ fn nothing_from_a_file_or_its_name_steers_the_terminal() {
     let named = |ending: &str| format!("{evil}{ending}");
     sandbox.write(&named(".toml"), preset);
     sandbox.write(&named(".mid"), "MThd");
-    sandbox.write(&named(".bad.toml"), format!("format = 1\nname = \"b\"\n\"\\u001b[31m\u{202e}\" = 1"));
+    sandbox.write(&named(".bad.toml"), "format = 1\nname = \"b\"\n\"\\u001b[31m\u{202e}\" = 1");
     let run = |args: &[&str]| {
         let mut command = sandbox.sprung("");
         let output = command.args(args).output().unwrap();
