@@ -82,7 +82,6 @@ const CIRCLES: &[(&str, &str)] = &[
     ("src/cli/mod.rs", "src/cli/parameters.rs"),
     ("src/cli/mod.rs", "src/cli/play.rs"),
     ("src/cli/mod.rs", "src/cli/presets.rs"),
-    ("src/cli/mod.rs", "src/cli/render/mod.rs"),
     ("src/cli/mod.rs", "src/cli/usage.rs"),
     ("src/io/midi/reader.rs", "src/io/midi.rs"),
     ("plugin/src/editor/mod.rs", "plugin/src/editor/window.rs"),

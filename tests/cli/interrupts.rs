@@ -1,6 +1,6 @@
 //! What is left when a command is interrupted or killed.
 
-use crate::{Sandbox, Wav};
+use crate::{DEFAULT_SIGNALS, Sandbox, Wav};
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
@@ -10,7 +10,8 @@ const ENDLESS: &str = "render --note C2 --length 86400 --rate 8000 --bits 16 --m
 
 /// Starts `sprung`, below another program if there is one, and waits until it is under way, which `ready` tells.
 fn start(sandbox: &Sandbox, below: &[&str], args: &str, mut ready: impl FnMut(&mut Child) -> bool) -> Child {
-    let words = below.iter().copied().chain([assert_cmd::cargo::cargo_bin!("sprung").to_str().unwrap()]);
+    let sprung = assert_cmd::cargo::cargo_bin!("sprung").to_str().unwrap();
+    let words = DEFAULT_SIGNALS.iter().chain(below).copied().chain([sprung]);
     let words: Vec<&str> = words.chain(args.split_whitespace()).collect();
     let mut child = Command::new(words[0])
         .args(&words[1..])

@@ -1,6 +1,6 @@
 //! `sprung lab` from outside: tables, figures, numbers, sounds, and bad input.
 
-use crate::Sandbox;
+use crate::{DEFAULT_SIGNALS, Sandbox};
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -125,7 +125,9 @@ fn numbers_go_to_stdout_and_the_table_out_of_their_way() {
 
 /// Starts `sprung`; what it says is for the caller to read.
 fn start(sandbox: &Sandbox, args: &str) -> Child {
-    Command::new(assert_cmd::cargo::cargo_bin!("sprung"))
+    let [env, defaults] = DEFAULT_SIGNALS;
+    Command::new(env)
+        .args([defaults, assert_cmd::cargo::cargo_bin!("sprung").to_str().unwrap()])
         .args(args.split_whitespace())
         .current_dir(sandbox.path("."))
         .stdout(Stdio::piped())

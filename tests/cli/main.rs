@@ -19,6 +19,10 @@ use midly::{Format, Header, MetaMessage, MidiMessage, Smf, Timing, TrackEvent, T
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
+/// A program that starts another with signals as they are by default. A suite that runs in the background or under
+/// `nohup` ignores some of them, and its children inherit that.
+pub(crate) const DEFAULT_SIGNALS: [&str; 2] = ["env", "--default-signal=HUP,INT,TERM"];
+
 /// The command, in a directory of its own.
 pub(crate) struct Sandbox(TempDir);
 
