@@ -335,6 +335,8 @@ fn what_is_not_finite_does_not_come_out() {
             assert!(finite(&left) && finite(&right), "{bad} at {at}");
             assert!((left[47_999] - 0.1).abs() < 1e-3, "{bad}: it goes on");
         }
+        // What became 0 is told: the limiter must not hide a defect.
+        assert_eq!(limiter.work().non_finite, if bad.is_finite() { 0 } else { 10 }, "{bad}");
     }
 }
 

@@ -28,7 +28,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// Writes all pages or, if one of them cannot be written, none.
+/// Writes all pages before the first of them gets its name, so that one that cannot be written leaves the others as they
+/// were.
 fn write_pages(directory: &Path, force: bool) -> Result<()> {
     std::fs::create_dir_all(directory).map_err(|error| Error::io(directory.display().to_string(), error))?;
     let mut command = super::Cli::command().disable_help_subcommand(true);

@@ -14,8 +14,8 @@ const MARGIN: f64 = 0.99;
 /// A mode with less energy than this (an amplitude of 1e−20) is set to rest before it can become denormal.
 const REST_ENERGY: f64 = 1e-40;
 
-/// A strike at the highest pitch gives seven times the amplitude asked for. No mode rings louder than this many times
-/// what strikes have asked for.
+/// A strike at the highest pitch gives seven times the amplitude asked for. A mode that rings louder than this many times
+/// what strikes have asked for is brought back to that at the next control tick.
 const MOST_GAIN: f64 = 8.0;
 
 /// A bank of [`HarmonicOscillator`]s with [`Coefficients::seed`], the sweep used as the pitch ratio. Real-time safe.

@@ -35,8 +35,8 @@ pub struct Synth {
     note_serial: u64,
     /// Frames since the start: control ticks fall on its multiples of [`CONTROL_FRAMES`].
     clock: u64,
-    /// Something has happened at this frame that voices have not yet heard of.
-    news: bool,
+    /// An event was handled since the last `control()`: run it before rendering.
+    needs_control: bool,
 }
 
 impl Synth {
@@ -58,7 +58,7 @@ impl Synth {
             gains_moving: 0,
             note_serial: 0,
             clock: 0,
-            news: false,
+            needs_control: false,
         };
         synth.configure();
         synth
@@ -86,7 +86,7 @@ impl Synth {
         self.channels = [Channel::new(sample_rate); 16];
         self.zones = Zones::default();
         self.offsets = [0.0; PARAM_COUNT];
-        (self.gains_moving, self.note_serial, self.clock, self.news) = (0, 0, 0, false);
+        (self.gains_moving, self.note_serial, self.clock, self.needs_control) = (0, 0, 0, false);
         self.configure();
     }
 
@@ -116,8 +116,8 @@ impl Synth {
         &self.instrument.patch
     }
 
-    /// Notes that have ended in the last [`Synth::process`] or since: each note once, when its voice is silent or has
-    /// gone to another note and its key is not waited for. After more than [`MAX_ENDED`] in one call the rest are not
+    /// Finished notes, kept until the next [`Synth::process`]. Each is reported once: when its voice is silent or plays
+    /// another note, and no held key will return to it. After more than [`MAX_ENDED`] in one call the rest are not
     /// told.
     ///
     /// [`MAX_ENDED`]: super::voice_manager::MAX_ENDED
@@ -193,7 +193,7 @@ impl Synth {
     pub fn handle(&mut self, event: &Event) {
         let index = nearest_channel(event.channel);
         // A tempo can wait for the next control tick.
-        self.news |= !matches!(event.kind, EventKind::Tempo(_));
+        self.needs_control |= !matches!(event.kind, EventKind::Tempo(_));
         match event.kind {
             EventKind::NoteOn { key, detune, velocity, id } => {
                 self.instrument.controls = self.smoother.after(0);
@@ -336,7 +336,7 @@ impl Synth {
         while frame < frames {
             let into_tick = (self.clock % CONTROL_FRAMES as u64) as usize;
             if self.manager.is_silent() {
-                self.news = false;
+                self.needs_control = false;
                 return self.pass(frames - frame);
             }
             let to_tick = CONTROL_FRAMES - into_tick;
@@ -344,7 +344,7 @@ impl Synth {
                 self.manager.active().for_each(|(_, voice)| voice.settle());
                 self.manager.free_finished();
             }
-            if into_tick == 0 || self.news {
+            if into_tick == 0 || self.needs_control {
                 let controls = self.smoother.after(to_tick as u32);
                 for (note, voice) in self.manager.active() {
                     let channel = |number: u8| &self.channels[usize::from(number)];
@@ -354,7 +354,7 @@ impl Synth {
                     voice.control(controls, &self.smoother, wheels, to_tick);
                 }
                 self.manager.active().for_each(|(_, voice)| voice.sweep(to_tick));
-                self.news = false;
+                self.needs_control = false;
             }
             let end = frames.min(frame + to_tick);
             for (_, voice) in self.manager.active() {

@@ -107,9 +107,12 @@ impl<W: Write + Seek> WavWriter<W> {
     /// [`Error::Io`] if writing fails.
     pub fn write(&mut self, left: &[f32], right: &[f32]) -> Result<()> {
         let bits = self.format.samples.bits();
-        for (index, pair) in left.iter().zip(right).enumerate() {
+        let channels = &[left, right][..self.format.channels.into()];
+        let frames = channels.iter().map(|samples| samples.len()).min().unwrap_or(0);
+        for index in 0..frames {
             let n = self.frames + index as u64;
-            for (channel, sample) in [*pair.0, *pair.1].into_iter().enumerate().take(self.format.channels.into()) {
+            for (channel, samples) in channels.iter().enumerate() {
+                let sample = samples[index];
                 match self.format.samples {
                     SampleFormat::Float32 => hound::Sample::write(sample, &mut self.out, bits),
                     _ => hound::Sample::write(self.quantise(sample, channel, n), &mut self.out, bits),
@@ -117,7 +120,7 @@ impl<W: Write + Seek> WavWriter<W> {
                 .map_err(|error| wav_error(&self.name, error))?;
             }
         }
-        self.frames += left.len() as u64;
+        self.frames += frames as u64;
         Ok(())
     }
 

@@ -28,6 +28,15 @@ pub struct Levels {
     pub non_finite: u64,
 }
 
+impl Levels {
+    /// The same levels, with so many more samples that were not finite before a limiter made them 0.
+    pub(crate) fn with_non_finite(mut self, more: u64) -> Self {
+        self.non_finite += more;
+        self.lufs = self.lufs.filter(|_| self.non_finite == 0);
+        self
+    }
+}
+
 impl Meter {
     /// A meter of one or two channels.
     ///

@@ -113,7 +113,7 @@ pub fn to_wav(
             advance(left.len())
         })?;
         length = Some(rendered.frames);
-        measured = Some(meter.levels());
+        measured = Some(meter.levels().with_non_finite(rendered.limiter.non_finite));
     }
     let gain_db = gain_db(delivery.level, measured)?;
 
@@ -132,7 +132,7 @@ pub fn to_wav(
     let clipped = writer.clipped();
     writer.finish()?;
 
-    let levels = meter.levels();
+    let levels = meter.levels().with_non_finite(rendered.limiter.non_finite);
     let decibels = |amplitude: f64| (amplitude > 0.0).then(|| db_from_gain(amplitude));
     let seconds = rendered.frames as f64 / f64::from(format.sample_rate);
     Ok(Report {
@@ -147,11 +147,14 @@ pub fn to_wav(
         gain_db,
         clipped,
         voices_used: rendered.voices_used,
-        limiter_reduction_db: 0.0 - db_from_gain(rendered.limiter.least_gain),
+        limiter_reduction_db: 0.0 - db_from_gain(rendered.limiter.least_gain.max(LEAST_GAIN)),
         limiter_seconds: rendered.limiter.frames as f64 / f64::from(format.sample_rate),
         realtime_factor: seconds / started.elapsed().as_secs_f64().max(1e-9),
     })
 }
+
+/// What the limiter's work is told down to, −200 dB, so that it can be written as a number.
+const LEAST_GAIN: f64 = 1e-10;
 
 fn gain_db(level: Level, measured: Option<Levels>) -> Result<f64> {
     let silent = || Error::value("normalize", "the sound is silent and has no level to change");

@@ -189,7 +189,7 @@ pub(crate) fn what_cannot_be_played_on_says_what_can() {
         ),
         ("play --device fixed", 1, "--device: ‘fixed’ cannot be used: "),
         ("play --host tape", 1, "--host: there is no ‘tape’ here: expected "),
-        ("play --rate 700", 2, "700 is not in 1000..=768000"),
+        ("play --rate 700", 2, "700 is out of range: expected 1000 to 768000 Hz"),
         ("play --record /dev/null --device some", 1, "--record: /dev/null is a pipe or device: expected a file"),
         ("play none.mid", 1, "none.mid: No such file"),
         ("play --preset kcik", 1, "the nearest is ‘Kick’"),

@@ -43,8 +43,11 @@ impl Sandbox {
     }
 }
 
+/// The command, with signals as they are by default: a suite that runs in the background or under `nohup` ignores some
+/// of them, and its children inherit that.
 fn sprung(arguments: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sprung"));
+    let mut command = Command::new("env");
+    command.args(["--default-signal=HUP,INT,TERM", env!("CARGO_BIN_EXE_sprung")]);
     command.args(arguments.split_whitespace()).stdin(Stdio::null()).stdout(Stdio::null());
     command
 }

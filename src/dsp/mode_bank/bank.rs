@@ -109,7 +109,8 @@ impl ModeBank {
     /// Fills the bank with modes at rest, at a pitch ratio of 1. Modes beyond [`MAX_MODES`] are left out.
     pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
         (self.len, self.stereo, self.faded) = (0, false, false);
-        (self.states[self.current], self.motion) = (State::REST, Motion::Still { ticks: 0 });
+        // Both, since each becomes the other at the end of a tick that is rendered by tables.
+        (self.states, self.motion) = ([State::REST; 2], Motion::Still { ticks: 0 });
         for (m, mode) in modes.take(MAX_MODES).enumerate() {
             self.len = m + 1;
             (self.gains[0].0[m], self.gains[1].0[m]) = (mode.left, mode.right);
@@ -149,7 +150,7 @@ impl ModeBank {
     /// Changes the T60 of mode `m` to `t60` seconds, at once. Follow with [`ModeBank::sweep_to`].
     pub fn set_t60(&mut self, m: usize, t60: f64) {
         self.leave_tables();
-        self.ln_radius[m] = (LN_MINUS_60_DB / (t60 * self.sample_rate)).max(LEAST_LN_RADIUS);
+        self.ln_radius[m] = (LN_MINUS_60_DB / (t60 * self.sample_rate)).clamp(LEAST_LN_RADIUS, 0.0);
         self.retuned = true;
     }
 
@@ -174,6 +175,7 @@ impl ModeBank {
     /// Moves every mode to a pitch ratio, in a straight line of the coefficients over `frames` frames: those until the
     /// next control tick, at which it is to be called again.
     pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
+        let frames = frames.max(1);
         let same = ratio == self.ratio && !self.retuned && !self.damped;
         match self.motion {
             Motion::Still { ticks } if same => {

@@ -113,6 +113,40 @@ fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
     }
 }
 
+/// What was loaded before is not heard, however many lanes a vector has.
+#[test]
+fn a_bank_that_is_loaded_again_has_forgotten_its_modes() {
+    let many: Vec<_> = (0..64).map(|m| (200.0 + 50.0 * f64::from(m), 10.0)).collect();
+    let few = &many[..20];
+    let mut used = bank(&many);
+    run(&mut used, 32 * 20, Some(&strike()));
+    let setup = |(frequency, t60): &(f64, f64)| ModeSetup { frequency: *frequency, t60: *t60, left: 1.0, right: 1.0 };
+    used.load(few.iter().map(setup));
+    let gains = ExcitationGains { push: 1.0, ..ExcitationGains::default() };
+    (0..used.len()).for_each(|m| used.set_excitation_gains(m, gains));
+    let mut fresh = bank(few);
+    for _ in 0..3 {
+        let [found, expected] = [&mut used, &mut fresh].map(|bank| run(bank, 32 * 20, Some(&strike())));
+        assert_eq!(found, expected);
+    }
+}
+
+/// Nothing that a caller gets wrong makes a bank grow or hang.
+#[test]
+fn odd_requests_are_brought_into_range() {
+    let mut bank = bank(&[(1000.0, 1.0)]);
+    run(&mut bank, 32, Some(&strike()));
+    bank.set_t60(0, -1.0);
+    bank.sweep_to(2.0, 0);
+    bank.sweep_to(1.5, CONTROL_FRAMES);
+    for _ in 0..100 {
+        assert!(
+            bank.render(None, CONTROL_FRAMES.min(bank.until_tick))[0].iter().all(|sample| sample.abs() <= 1.0 + 1e-4)
+        );
+        bank.sweep_to(1.5, CONTROL_FRAMES);
+    }
+}
+
 /// Modes at rest are left out of a sweep: struck in the midst of one, they must not sound where they fell asleep.
 #[test]
 fn a_mode_that_wakes_is_where_the_sweep_is() {

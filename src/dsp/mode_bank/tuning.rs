@@ -123,6 +123,8 @@ pub(super) const STAIR: usize = 4;
 /// its stair, of which the last ends with the line. And how many frames, that one included, have them.
 #[inline(always)]
 pub(super) const fn stair(passed: usize, frames: usize) -> (f32, usize) {
+    // Beyond the end of the line nothing moves.
+    let passed = if passed < frames { passed } else { frames - 1 };
     let first = passed - passed % STAIR;
     let last = if first + STAIR < frames { first + STAIR } else { frames };
     (0.5 * (first + 1 + last) as f32, last - passed)

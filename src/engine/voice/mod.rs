@@ -115,7 +115,7 @@ pub(crate) struct SynthVoice {
     released: bool,
     release_scale: f64,
     release_velocity: f64,
-    /// What the note has been told.
+    /// Note expressions: tuning, volume, pan, pressure, brightness, vibrato.
     expressions: Expressions,
     /// What moves the instrument's parameters for this note.
     modulation: NoteModulation,
@@ -260,8 +260,7 @@ impl SynthVoice {
         self.bank.sweep_to(self.ratio, frames);
     }
 
-    /// Takes stock at a control tick: what energy is left, and which modes have come to rest. Every few ticks are
-    /// enough, until the voice is nearly silent or its strike has just ended.
+    /// Measures the remaining energy and puts silent modes to rest, at control ticks. Every few ticks are enough, until the voice is nearly silent or its strike has just ended.
     pub(crate) fn settle(&mut self) {
         let strike_over = self.pending_energy > 0.0 && !self.exciter.is_active();
         if self.until_stock == 0 || strike_over || self.loudest() < NEARLY_SILENT * NEARLY_SILENT {

@@ -8,6 +8,9 @@ use crate::io::bars::Bars;
 use midly::{EventIter, MetaMessage, Timing, TrackEvent, TrackEventKind};
 use std::fmt;
 
+/// Kinds of faults that lenient reading repairs in a file, a track each; a file with more is not meant to be one.
+const MOST_REPAIRS: usize = 1000;
+
 /// What the tracks so far have in them.
 pub(super) struct TrackReader {
     /// Tick, channel and event.
@@ -126,9 +129,13 @@ impl TrackReader {
         if !self.lenient {
             return Err(self.refused(spot, fault));
         }
+        let is_full = self.repairs.len() >= MOST_REPAIRS;
         let mut of_track = self.repairs.iter_mut().rev().take_while(|repair| repair.track == spot.track);
         match of_track.find(|repair| repair.fault == fault) {
             Some(repair) => repair.times += 1,
+            None if is_full => {
+                return Err(self.refused(spot, &format!("more than {MOST_REPAIRS} faults: this is hardly a MIDI file")));
+            }
             None => {
                 let (track, fault, place) = (spot.track, fault.to_owned(), self.place(spot));
                 self.repairs.push(Repair { track, fault, remedy, place, times: 1 });
