@@ -356,7 +356,10 @@ impl Voice for SynthVoice {
         let from = instrument.last_pitch.unwrap_or(self.pitch) - self.pitch;
         self.glide = Glide::new(from, 0.0, self.key_tracking.glide_seconds);
         let law = if instrument.modulated.get(Param::Coefficients) == 0.0 { Law::Exact } else { Law::Classic };
-        self.bank = Bank::of(law, instrument.sample_rate);
+        if law != Law::Exact {
+            // A new voice has a bank of the exact law already.
+            self.bank = Bank::of(law, instrument.sample_rate);
+        }
         let width = instrument.value(Param::Width) * 0.01;
         let tuning = self.tuning(frequency);
         let setup = tuning.zip(instrument.modulated.modes.as_slice()).map(|((frequency, t60), mode)| {
