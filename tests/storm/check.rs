@@ -14,13 +14,13 @@ const LOOK_FRAMES: usize = 256;
 /// A synth or an ensemble.
 enum Player {
     Synth(Box<Synth>),
-    Ensemble(Ensemble),
+    Ensemble(Box<Ensemble>),
 }
 
 impl Player {
     fn new(case: &Case) -> Self {
         if case.ensemble {
-            return Player::Ensemble(Ensemble::new(case.sample_rate, case.seed, &case.patch, &case.programs));
+            return Player::Ensemble(Box::new(Ensemble::new(case.sample_rate, case.seed, &case.patch, &case.programs)));
         }
         let mut synth = Box::new(Synth::new(case.sample_rate, case.seed));
         synth.set_patch(&case.patch);
