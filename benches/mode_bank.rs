@@ -7,8 +7,8 @@
 mod struck;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use sprung::dsp::mode_bank::{Level, MAX_MODES, ModeBank, ModeSetup};
-use sprung::dsp::{CONTROL_FRAMES, Coefficients, HarmonicOscillator};
+use sprung::dsp::mode_bank::{MAX_MODES, ModeBank, ModeSetup};
+use sprung::dsp::{CONTROL_FRAMES, Coefficients, HarmonicOscillator, Level};
 use std::time::Duration;
 use struck::{StruckBank, Work};
 

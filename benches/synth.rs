@@ -4,7 +4,7 @@ mod chord;
 
 use chord::{Chord, FRAMES, moving, patch};
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use sprung::dsp::mode_bank::Level;
+use sprung::dsp::Level;
 use sprung::engine::{Ensemble, Synth};
 use sprung::patch::Patch;
 use std::time::{Duration, Instant};

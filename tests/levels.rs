@@ -2,7 +2,7 @@
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use sprung::analysis::{diff, level};
-use sprung::dsp::mode_bank::Level;
+use sprung::dsp::Level;
 use sprung::dsp::random::{key, uniform};
 use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::params::{PARAMS, Param};

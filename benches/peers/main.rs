@@ -13,7 +13,7 @@ use fundsp::biquad_bank::BiquadBank;
 use fundsp::buffer::BufferArray;
 use fundsp::numeric_array::typenum::{U1, U8};
 use fundsp::{F32x, Float, Frame};
-use sprung::dsp::mode_bank::Level;
+use sprung::dsp::Level;
 use std::hint::black_box;
 use std::time::Duration;
 use struck::{StruckBank, Work};

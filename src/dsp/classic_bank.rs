@@ -3,8 +3,8 @@
 use super::coefficients::Coefficients;
 use super::exciter::Drive;
 use super::mode_bank::tail::Energies;
-use super::mode_bank::vector::{LANES, Partial, sum_frames};
 use super::mode_bank::{ExcitationGains, MAX_MODES, ModeSetup};
+use super::simd::vector::{LANES, Partial, sum_frames};
 use super::{CONTROL_FRAMES, HarmonicOscillator};
 use std::f64::consts::PI;
 

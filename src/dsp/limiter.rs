@@ -5,7 +5,9 @@
 //! samples are lowered so far that no point between samples exceeds [`GUARD`] by what it has so far, which is what it
 //! comes to if silence follows. It is always possible: a sample of 0 adds nothing to any point.
 
-use super::true_peak::{Interpolator, Kernel, TAPS};
+use super::simd::vector::Vector;
+use super::simd::{Instructions, Kernel};
+use super::true_peak::{ByAge, Interpolator, TAPS, Weights};
 use libm::exp;
 
 /// The gain is 1 while no peak, on a sample or between two, exceeds this: −0.92 dBFS. The difference from −1 dBFS is
@@ -48,11 +50,12 @@ const SCAN: usize = 64;
 /// The bits do not depend on how frames are divided into blocks. Real-time safe.
 #[derive(Clone, Debug)]
 pub struct Limiter {
-    kernel: Kernel,
+    instructions: Instructions,
+    weights: Weights,
     input: [Interpolator; 2],
     output: [Interpolator; 2],
     /// Limits of the points of the output that are not complete, for the present `ceiling`.
-    limits: [f32; 4 * TAPS],
+    limits: ByAge,
     ceiling: f32,
     gain: f64,
     /// Share of the way to its target that a rising gain goes each frame.
@@ -89,10 +92,11 @@ impl Work {
 impl Limiter {
     /// A limiter at rest, for a sample rate in Hz.
     pub fn new(sample_rate: f64) -> Self {
-        let kernel = Kernel::new();
+        let weights = Weights::new();
         Self {
-            limits: limits(&kernel, THRESHOLD),
-            kernel,
+            limits: limits(&weights, THRESHOLD),
+            instructions: Instructions::current(),
+            weights,
             input: [Interpolator::SILENT; 2],
             output: [Interpolator::SILENT; 2],
             ceiling: THRESHOLD,
@@ -134,9 +138,7 @@ impl Limiter {
                 self.is_stale = true;
             } else if is_on || self.gain < 1.0 {
                 self.catch_up();
-                for (left, right) in left.iter_mut().zip(&mut *right) {
-                    [*left, *right] = self.step(is_on, [*left, *right]);
-                }
+                self.instructions.run(Steps { limiter: self, is_on, left, right });
             }
             self.last.iter_mut().zip([left, right]).for_each(|(last, out)| keep_last(last, out));
             if !is_on && self.gain == 1.0 {
@@ -147,13 +149,13 @@ impl Limiter {
     }
 
     /// Limits one frame.
+    #[inline(always)]
     fn step(&mut self, is_on: bool, frame: [f32; 2]) -> [f32; 2] {
         if self.unchanged_frames == TAPS {
-            if is_on && let Some(points) = self.points_if_passed(frame) {
-                self.input = points;
+            if is_on && self.passes(frame) {
                 return frame;
             }
-            self.output = self.input.clone();
+            self.output = self.input;
         }
         let frame = frame.map(|sample| {
             let is_wrong = is_on && !sample.is_finite();
@@ -162,7 +164,8 @@ impl Limiter {
         });
         let mut peak = frame[0].abs().max(frame[1].abs());
         for (points, sample) in self.input.iter_mut().zip(frame) {
-            peak = peak.max(points.push(&self.kernel, sample));
+            peak = peak.max(points.peak_with(&self.weights, sample));
+            points.push(&self.weights, sample);
         }
         let peak = if is_on { peak } else { 0.0 };
         if peak > THRESHOLD || self.gain < 1.0 {
@@ -172,12 +175,12 @@ impl Limiter {
         let mut share = 1.0;
         if is_on {
             let points = self.output.iter().zip(out);
-            let shares = points.map(|(points, sample)| points.share_within(&self.kernel, &self.limits, sample));
+            let shares = points.map(|(points, sample)| points.share_within(&self.weights, &self.limits, sample));
             share = shares.fold(1.0, f32::min);
             out = out.map(|sample| sample * share);
         }
         for (points, sample) in self.output.iter_mut().zip(out) {
-            points.push(&self.kernel, sample);
+            points.push(&self.weights, sample);
         }
         let is_unchanged = self.gain == 1.0 && share == 1.0;
         self.unchanged_frames = if is_unchanged { TAPS.min(self.unchanged_frames + 1) } else { 0 };
@@ -187,15 +190,19 @@ impl Limiter {
         out
     }
 
-    /// The input's points after a frame that needs no limiting, which are the output's as well: most of the work that
-    /// there is for loud frames.
-    fn points_if_passed(&self, frame: [f32; 2]) -> Option<[Interpolator; 2]> {
-        let mut points = self.input.clone();
-        let passes = points.iter_mut().zip(frame).all(|(points, sample)| {
-            let peak = points.push(&self.kernel, sample);
-            sample.abs() <= THRESHOLD && peak <= THRESHOLD && points.is_within(&self.limits)
+    /// Takes in a frame that needs no limiting; of any other it takes in nothing. The output's points are the same as
+    /// the input's: most of the work that there is for loud frames.
+    #[inline(always)]
+    fn passes(&mut self, frame: [f32; 2]) -> bool {
+        let passes = self.input.iter().zip(frame).all(|(points, sample)| {
+            sample.abs() <= THRESHOLD
+                && points.peak_with(&self.weights, sample) <= THRESHOLD
+                && points.is_within(&self.weights, &self.limits, sample)
         });
-        passes.then_some(points)
+        if passes {
+            self.input.iter_mut().zip(frame).for_each(|(points, sample)| points.push(&self.weights, sample));
+        }
+        passes
     }
 
     /// Moves the gain by one frame, in which the input's peak is `peak`.
@@ -218,7 +225,7 @@ impl Limiter {
     fn set_ceiling(&mut self, ceiling: f32) {
         if ceiling != self.ceiling {
             self.ceiling = ceiling;
-            self.limits = limits(&self.kernel, ceiling);
+            self.limits = limits(&self.weights, ceiling);
         }
     }
 
@@ -226,7 +233,7 @@ impl Limiter {
     fn catch_up(&mut self) {
         if self.is_stale {
             for (channel, last) in self.last.iter().enumerate() {
-                last.iter().for_each(|sample| _ = self.input[channel].push(&self.kernel, *sample));
+                last.iter().for_each(|sample| self.input[channel].push(&self.weights, *sample));
             }
             self.is_stale = false;
         }
@@ -240,11 +247,30 @@ impl Limiter {
     }
 }
 
+/// Limits some frames, one after the other. That the points of a frame fill vectors is for the compiler to see.
+struct Steps<'a> {
+    limiter: &'a mut Limiter,
+    is_on: bool,
+    left: &'a mut [f32],
+    right: &'a mut [f32],
+}
+
+impl Kernel for Steps<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, _: V::Proof) {
+        for (left, right) in self.left.iter_mut().zip(self.right) {
+            [*left, *right] = self.limiter.step(self.is_on, [*left, *right]);
+        }
+    }
+}
+
 /// Limits of points that are not complete: [`GUARD`] at the lowest ceiling, and at the threshold as far above it as
 /// those of a signal can be that must not be changed.
-fn limits(kernel: &Kernel, ceiling: f32) -> [f32; 4 * TAPS] {
+fn limits(weights: &Weights, ceiling: f32) -> ByAge {
     let share = (ceiling - CEILING) / (THRESHOLD - CEILING);
-    kernel.partial_bounds(THRESHOLD).map(|bound| GUARD + share * (bound - GUARD).max(0.0))
+    weights.partial_bounds(THRESHOLD).map(|bound| GUARD + share * (bound - GUARD).max(0.0))
 }
 
 /// Whether no sample is beyond [`QUIET`]; false with NaN. Without a branch, so that it is done in vectors.
@@ -264,17 +290,19 @@ fn keep_last(last: &mut [f32; TAPS], samples: &[f32]) {
 struct RecentPeaks {
     /// The highest peak of each part, the newest first.
     parts: [f32; 8],
+    /// The highest of all but the newest.
+    highest_before: f32,
     part_frames: u32,
     elapsed: u32,
 }
 
 impl RecentPeaks {
     fn new(frames: u32) -> Self {
-        Self { parts: [0.0; 8], part_frames: (frames / 8).max(1), elapsed: 0 }
+        Self { parts: [0.0; 8], highest_before: 0.0, part_frames: (frames / 8).max(1), elapsed: 0 }
     }
 
     fn clear(&mut self) {
-        (self.parts, self.elapsed) = ([0.0; 8], 0);
+        (self.parts, self.highest_before, self.elapsed) = ([0.0; 8], 0.0, 0);
     }
 
     /// Adds the peak of the next frame and returns the highest.
@@ -282,10 +310,11 @@ impl RecentPeaks {
         if self.elapsed == self.part_frames {
             self.parts.rotate_right(1);
             (self.parts[0], self.elapsed) = (0.0, 0);
+            self.highest_before = self.parts.iter().fold(0.0, |highest, part| highest.max(*part));
         }
         self.elapsed += 1;
         self.parts[0] = self.parts[0].max(peak);
-        self.parts.iter().fold(0.0, |highest, part| highest.max(*part))
+        self.parts[0].max(self.highest_before)
     }
 }
 
@@ -317,13 +346,14 @@ mod tests {
 
     #[test]
     fn quiet_samples_have_no_peak_beyond_the_threshold_between_them() {
-        let (kernel, mut worst) = (Kernel::new(), 0.0f32);
+        let (weights, mut worst) = (Weights::new(), 0.0f32);
         for first in 0..4096 {
             let mut points = Interpolator::SILENT;
             // Every choice of signs of the twelve samples that a point is made of.
             for n in 0..TAPS {
                 let sample = if first >> n & 1 == 1 { QUIET } else { -QUIET };
-                worst = worst.max(points.push(&kernel, sample));
+                worst = worst.max(points.peak_with(&weights, sample));
+                points.push(&weights, sample);
             }
         }
         assert!((0.99 * THRESHOLD..THRESHOLD).contains(&worst), "{worst}");

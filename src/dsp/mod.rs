@@ -11,6 +11,8 @@ pub mod pitch;
 pub mod ramp;
 pub mod random;
 pub mod real;
+#[allow(unsafe_code)]
+pub mod simd;
 pub mod true_peak;
 
 pub use bank::Bank;
@@ -19,6 +21,7 @@ pub use coefficients::Coefficients;
 pub use limiter::Limiter;
 pub use mode_bank::ModeBank;
 pub use oscillator::HarmonicOscillator;
+pub use simd::Level;
 
 /// Frames between two control ticks. Frozen: pitch and gain move in straight lines between ticks.
 pub const CONTROL_FRAMES: usize = 32;

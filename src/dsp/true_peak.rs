@@ -11,85 +11,133 @@ const POINTS: usize = 4;
 
 const WEIGHTS: usize = TAPS * POINTS;
 
+/// A number for each point that is not complete, by age: those that are complete with the newest sample first. Twice
+/// over, so that it can be read from any age on.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub struct ByAge([f32; 2 * WEIGHTS]);
+
+impl ByAge {
+    fn new(number: impl Fn(usize) -> f32) -> Self {
+        Self(std::array::from_fn(|index| number(index % WEIGHTS)))
+    }
+
+    /// The same with every number changed.
+    pub fn map(self, change: impl Fn(f32) -> f32) -> Self {
+        Self(self.0.map(change))
+    }
+
+    /// The numbers for points that are kept from place `next` on, in the order of their places.
+    #[inline(always)]
+    fn from(&self, next: usize) -> &[f32; WEIGHTS] {
+        let start = (TAPS - next) * POINTS;
+        self.0[start..].first_chunk().unwrap_or(&[0.0; WEIGHTS])
+    }
+}
+
 /// The interpolation of ITU-R BS.1770-5, annex 2, at four times the sample rate: a sinc function under a Hann window.
 /// Plain data; making one calls transcendental functions.
 #[derive(Clone, Debug)]
-pub struct Kernel {
-    /// Weight of the newest sample in each point that it contributes to, by age of the point: those that are complete
-    /// with it first.
-    weights: [f32; WEIGHTS],
+pub struct Weights {
+    /// Weight of the newest sample in each point that it contributes to.
+    of_newest: ByAge,
+    /// 0 for points that were complete with the sample before, whose places the newest points take, and 1 for others.
+    kept: ByAge,
     /// The most that each point can be so far, if it and all before it never exceed 1 once complete.
-    partial_bounds: [f32; WEIGHTS],
+    partial_bounds: ByAge,
 }
 
-impl Kernel {
-    /// The kernel; the same bits on every machine.
+impl Weights {
+    /// The weights; the same bits on every machine.
     pub fn new() -> Self {
-        let weights = std::array::from_fn(|index| {
+        let of_newest: [f32; WEIGHTS] = std::array::from_fn(|index| {
             let window = 0.5 * (1.0 - cos(2.0 * PI * index as f64 / WEIGHTS as f64));
             let x = PI * (index as f64 - WEIGHTS as f64 / 2.0) / POINTS as f64;
             (if x == 0.0 { 1.0 } else { window * sin(x) / x }) as f32
         });
         // What a point has so far is at most the sum of the weights had, since samples are at most 1, and at most what
         // it will be and the sum of the weights to come.
-        let partial_bounds = std::array::from_fn(|index| {
+        let partial_bounds = ByAge::new(|index| {
             let of_point = |range: std::ops::Range<usize>| -> f32 {
-                range.skip(index % POINTS).step_by(POINTS).map(|index| f32::abs(weights[index])).sum()
+                range.skip(index % POINTS).step_by(POINTS).map(|index| f32::abs(of_newest[index])).sum()
             };
             let to_come = index - index % POINTS;
             of_point(to_come..WEIGHTS).min(1.0 + of_point(0..to_come))
         });
-        Self { weights, partial_bounds }
+        let kept = ByAge::new(|index| if index < WEIGHTS - POINTS { 1.0 } else { 0.0 });
+        Self { of_newest: ByAge::new(|index| of_newest[index]), kept, partial_bounds }
     }
 
-    /// The most that each point can be so far, in the order of its weights, where no point ever exceeds `peak` once
-    /// complete.
-    pub fn partial_bounds(&self, peak: f32) -> [f32; WEIGHTS] {
+    /// The most that each point can be so far, where no point ever exceeds `peak` once complete.
+    pub fn partial_bounds(&self, peak: f32) -> ByAge {
         self.partial_bounds.map(|bound| bound * peak)
     }
 }
 
-impl Default for Kernel {
+impl Default for Weights {
     fn default() -> Self {
         Self::new()
     }
 }
 
-/// The points of one channel. Its state depends on the last [`TAPS`] samples only, to the bit. Real-time safe.
-#[derive(Clone, Debug)]
+/// The points of one channel. They depend on the last [`TAPS`] samples only, to the bit. Real-time safe.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub struct Interpolator {
-    /// The points by their age, as [`Kernel::weights`] has them; after them, what a new point starts from.
-    sums: [f32; WEIGHTS + POINTS],
+    /// What each point has so far. A point stays in its place until it is complete; then a new one takes it.
+    sums: [f32; WEIGHTS],
+    /// The place, in groups of [`POINTS`], of the points that the next sample completes.
+    next: usize,
 }
 
 impl Interpolator {
     /// After silence.
-    pub const SILENT: Self = Self { sums: [0.0; WEIGHTS + POINTS] };
+    pub const SILENT: Self = Self { sums: [0.0; WEIGHTS], next: 0 };
 
-    /// Takes in the next sample and returns the largest magnitude of the points that it completes, which lie half of
-    /// [`TAPS`] samples back.
-    pub fn push(&mut self, kernel: &Kernel, sample: f32) -> f32 {
-        for (index, weight) in kernel.weights.iter().enumerate() {
-            self.sums[index] = self.sums[index + POINTS] + weight * sample;
-        }
-        self.sums[..POINTS].iter().fold(0.0, |peak, point| peak.max(point.abs()))
+    /// What each point has before the next sample, and that sample's weight in it.
+    #[inline(always)]
+    fn points<'a>(&'a self, weights: &'a Weights) -> impl Iterator<Item = (f32, f32)> + 'a {
+        let kept = self.sums.iter().zip(weights.kept.from(self.next)).map(|(sum, kept)| sum * kept);
+        kept.zip(weights.of_newest.from(self.next).iter().copied())
     }
 
-    /// Whether no point exceeds its limit, those that are not complete by what they have so far.
-    pub fn is_within(&self, limits: &[f32; WEIGHTS]) -> bool {
+    /// The largest magnitude of the points that the next sample completes, which lie half of [`TAPS`] samples back.
+    #[inline(always)]
+    pub fn peak_with(&self, weights: &Weights, sample: f32) -> f32 {
+        let (sums, weights) = (self.sums.as_chunks::<POINTS>().0, weights.of_newest.0.as_chunks::<POINTS>().0);
+        let mut peak = 0.0;
+        for point in 0..POINTS {
+            let magnitude = (sums[self.next][point] + weights[0][point] * sample).abs();
+            peak = if magnitude > peak { magnitude } else { peak };
+        }
+        peak
+    }
+
+    /// Takes in the next sample.
+    #[inline(always)]
+    pub fn push(&mut self, weights: &Weights, sample: f32) {
+        let mut sums = [0.0; WEIGHTS];
+        sums.iter_mut().zip(self.points(weights)).for_each(|(to, (sum, weight))| *to = sum + weight * sample);
+        self.sums = sums;
+        self.next = if self.next + 1 < TAPS { self.next + 1 } else { 0 };
+    }
+
+    /// Whether no point exceeds its limit by what it has with the next sample.
+    #[inline(always)]
+    pub fn is_within(&self, weights: &Weights, limits: &ByAge, sample: f32) -> bool {
+        let points = self.points(weights).zip(limits.from(self.next));
         // Without a branch, so that it is done in vectors.
-        self.sums.iter().zip(limits).fold(true, |within, (sum, limit)| within & (sum.abs() <= *limit))
+        points.fold(true, |within, ((sum, weight), limit)| within & ((sum + weight * sample).abs() <= *limit))
     }
 
     /// The largest share of `sample`, 0–1, with which no point so far exceeds its limit. A point that does already
     /// does not grow.
-    pub fn share_within(&self, kernel: &Kernel, limits: &[f32; WEIGHTS], sample: f32) -> f32 {
-        let mut whole = self.clone();
-        whole.push(kernel, sample);
-        if whole.is_within(limits) {
+    #[inline(always)]
+    pub fn share_within(&self, weights: &Weights, limits: &ByAge, sample: f32) -> f32 {
+        if self.is_within(weights, limits, sample) {
             return 1.0;
         }
-        let points = self.sums[POINTS..].iter().zip(&kernel.weights).zip(limits);
+        let points = self.points(weights).zip(limits.from(self.next));
         points.fold(1.0, |share, ((sum, weight), limit)| {
             let (change, limit) = (weight * sample, limit.max(sum.abs()));
             let room = if change > 0.0 { limit - sum } else { limit + sum };
@@ -102,13 +150,19 @@ impl Interpolator {
 mod tests {
     use super::*;
 
+    fn push(points: &mut Interpolator, weights: &Weights, sample: f32) -> f32 {
+        let peak = points.peak_with(weights, sample);
+        points.push(weights, sample);
+        peak
+    }
+
     #[test]
     fn a_sine_is_as_high_between_samples_as_it_is() {
-        let kernel = Kernel::new();
+        let weights = Weights::new();
         for frequency in [0.01, 0.1, 0.25, 0.4] {
             let mut interpolator = Interpolator::SILENT;
             let samples = (0..400).map(|n| sin(2.0 * PI * (frequency * f64::from(n) + 0.125)) as f32);
-            let peaks: Vec<f32> = samples.map(|sample| interpolator.push(&kernel, sample)).collect();
+            let peaks: Vec<f32> = samples.map(|sample| push(&mut interpolator, &weights, sample)).collect();
             let peak = peaks[TAPS..].iter().fold(0.0, |peak: f32, point| peak.max(*point));
             assert!((0.97..1.03).contains(&peak), "{frequency}: {peak}");
         }
@@ -116,35 +170,34 @@ mod tests {
 
     #[test]
     fn the_state_is_that_of_the_last_samples() {
-        let kernel = Kernel::new();
+        let weights = Weights::new();
         let (mut long, mut short) = (Interpolator::SILENT, Interpolator::SILENT);
         let sample = |n: u32| sin(f64::from(n * n)) as f32;
-        (0..100).for_each(|n| _ = long.push(&kernel, sample(n)));
-        (100 - TAPS as u32..100).for_each(|n| _ = short.push(&kernel, sample(n)));
+        (0..100).for_each(|n| long.push(&weights, sample(n)));
+        (100 - TAPS as u32..100).for_each(|n| short.push(&weights, sample(n)));
+        long.sums.rotate_left(long.next * POINTS);
         assert_eq!(long.sums, short.sums);
     }
 
     #[test]
     fn a_share_keeps_every_point_within_its_limit() {
-        let kernel = Kernel::new();
-        let limits = kernel.partial_bounds(0.5);
+        let weights = Weights::new();
+        let limits = weights.partial_bounds(0.5);
         let mut interpolator = Interpolator::SILENT;
         for n in 0..2000_u32 {
             let sample = 2.0 * sin(f64::from(n * n)) as f32;
-            let share = interpolator.share_within(&kernel, &limits, sample);
+            let share = interpolator.share_within(&weights, &limits, sample);
             assert!((0.0..=1.0).contains(&share));
-            let before = interpolator.sums;
-            interpolator.push(&kernel, sample * share);
-            for (index, limit) in limits.iter().enumerate() {
-                let limit = limit.max(before[index + POINTS].abs());
-                assert!(interpolator.sums[index].abs() <= limit * (1.0 + 1e-6), "{n}");
-            }
+            let limits = limits.from(interpolator.next).iter().zip(interpolator.sums);
+            let least: Vec<_> = limits.map(|(limit, before)| limit.max(before.abs()) * (1.0 + 1e-6)).collect();
+            interpolator.push(&weights, sample * share);
+            assert!(interpolator.sums.iter().zip(least).all(|(sum, limit)| sum.abs() <= limit), "{n}");
         }
     }
 
     #[test]
     fn partial_bounds_hold_for_signals_within_their_peak() {
-        let kernel = Kernel::new();
+        let weights = Weights::new();
         for (seed, frequency) in [0.003, 0.11, 0.25, 0.31, 0.45, 0.49, 0.499].into_iter().enumerate() {
             let wave = |n: u32| {
                 let n = f64::from(n);
@@ -152,12 +205,12 @@ mod tests {
             };
             let mut interpolator = Interpolator::SILENT;
             let mut largest = 0.0f32;
-            (0..4000).for_each(|n| largest = largest.max(interpolator.push(&kernel, wave(n) as f32)));
-            let (limits, mut again) = (kernel.partial_bounds(1.0), Interpolator::SILENT);
+            (0..4000).for_each(|n| largest = largest.max(push(&mut interpolator, &weights, wave(n) as f32)));
+            let (limits, mut again) = (weights.partial_bounds(1.0), Interpolator::SILENT);
             for n in 0..4000 {
                 let sample = wave(n) as f32 / largest;
-                assert_eq!(again.share_within(&kernel, &limits.map(|limit| limit * 1.000_01), sample), 1.0);
-                again.push(&kernel, sample);
+                assert_eq!(again.share_within(&weights, &limits.map(|limit| limit * 1.000_01), sample), 1.0);
+                again.push(&weights, sample);
             }
         }
     }

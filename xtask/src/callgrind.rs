@@ -7,7 +7,8 @@ mod struck;
 
 use crate::shell::{cargo, root, succeeds};
 use sprung::dsp::CONTROL_FRAMES;
-use sprung::dsp::mode_bank::{Level, MAX_MODES};
+use sprung::dsp::Level;
+use sprung::dsp::mode_bank::MAX_MODES;
 use sprung::engine::{Ensemble, Synth};
 use sprung::patch::Patch;
 use std::fmt::Write as _;

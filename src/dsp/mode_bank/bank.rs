@@ -1,16 +1,16 @@
 //! The bank as its users see it: load modes, strike them, move their pitch, hear them.
 
-use super::levels::{Instructions, Level};
 use super::ring::Ring;
 use super::rows::{Form, Modes, Moving, Output, Row, State, Wide};
 use super::step::Step;
 use super::table::{Build, Table};
 use super::tuning::{Aim, ChordLoss, Settle, Tune, Tuning, UNIT};
-use super::vector::LANES;
 use super::{ExcitationGains, LEAST_LN_RADIUS, MAX_MODES, ModeSetup};
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
 use crate::dsp::exciter::Drive;
+use crate::dsp::simd::vector::LANES;
+use crate::dsp::simd::{Instructions, Level};
 
 /// A bank is worth making tables for once it has rung freely at one pitch for a control tick per so many modes: with
 /// few modes they are paid for in a tick, with 64 in about eight.

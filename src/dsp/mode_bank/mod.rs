@@ -8,15 +8,9 @@
 //!
 //! `bank` has the bank as its users see it, `rows` its data, `step` and `ring` what happens every sample, `tuning` what
 //! happens at control ticks, `table` the tables of freely ringing modes, `tail` how long they ring. Kernels are written
-//! once over `vector`; `x86` and `neon` have the vector instructions, `levels` chooses among them. Vector instructions
-//! are the only unsafe code of the crate.
+//! once for all vector instructions of [`super::simd`].
 
 mod bank;
-#[allow(unsafe_code)]
-mod levels;
-#[cfg(target_arch = "aarch64")]
-#[allow(unsafe_code)]
-mod neon;
 #[allow(clippy::needless_range_loop, reason = "kernels index several arrays in step")]
 mod ring;
 mod rows;
@@ -25,14 +19,8 @@ mod step;
 mod table;
 pub(super) mod tail;
 mod tuning;
-#[allow(clippy::needless_range_loop, reason = "as in `ring`")]
-pub(super) mod vector;
-#[cfg(target_arch = "x86_64")]
-#[allow(unsafe_code)]
-mod x86;
 
 pub use bank::ModeBank;
-pub use levels::Level;
 
 /// Most modes in a bank.
 pub const MAX_MODES: usize = 64;

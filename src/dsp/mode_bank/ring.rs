@@ -7,11 +7,11 @@
 //! coordinates apart, then modes and then shares. Modes at rest add `+0` and can be left out without changing a bit.
 
 use super::MAX_MODES;
-use super::levels::Kernel;
 use super::rows::{Form, Modes, Output, Row, State};
 use super::table::{Pairs, Table, Taps, Turn, WINDOW};
-use super::vector::Vector;
 use crate::dsp::CONTROL_FRAMES;
+use crate::dsp::simd::Kernel;
+use crate::dsp::simd::vector::Vector;
 
 /// The output of the live modes over one control tick, by their tables; `end` becomes the state after it.
 pub(super) struct Ring<'a> {

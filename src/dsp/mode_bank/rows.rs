@@ -1,8 +1,8 @@
 //! What a bank keeps of its modes: a row of numbers each, so that vectors of modes lie side by side.
 
 use super::MAX_MODES;
-use super::vector::Vector;
 use crate::dsp::CONTROL_FRAMES;
+use crate::dsp::simd::vector::Vector;
 
 /// A number for each mode.
 #[derive(Clone, Copy, Debug)]

@@ -6,12 +6,12 @@
 //! [`super::tuning::STAIR`] frames.
 
 use super::MAX_MODES;
-use super::levels::Kernel;
 use super::rows::{Form, Modes, Moving, Output, Row, State};
 use super::tuning::stair;
-use super::vector::{LANES, Partial, Vector};
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::exciter::Drive;
+use crate::dsp::simd::Kernel;
+use crate::dsp::simd::vector::{LANES, Partial, Vector};
 
 /// How much of a [`Drive`] is read: nothing, one force that acts on `y`, or all that there is.
 const FREE: u8 = 0;

@@ -7,10 +7,10 @@
 //! rate, and with the diagonal kept apart from 1 still by 0.2 % at 22 kHz.
 
 use super::MAX_MODES;
-use super::levels::Kernel;
 use super::rows::{Row, Wide};
 use super::tuning::{below_top, expm1_of_radius, sin_to_right_angle};
-use super::vector::Vector;
+use crate::dsp::simd::Kernel;
+use crate::dsp::simd::vector::Vector;
 
 /// Frames that a table covers. Frozen: bits depend on it. Two of them are a control tick.
 pub(super) const WINDOW: usize = 16;
@@ -114,8 +114,8 @@ impl Complex {
 mod tests {
     use super::*;
     use crate::dsp::coefficients::LN_MINUS_60_DB;
-    use crate::dsp::mode_bank::vector::Scalar;
     use crate::dsp::random::{key, uniform};
+    use crate::dsp::simd::vector::Scalar;
     use libm::{atan2, log, pow};
     use std::f64::consts::PI;
 

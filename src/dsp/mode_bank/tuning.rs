@@ -1,10 +1,10 @@
 //! What a bank does at control ticks, for all modes at once: tuning, lines of pitch, and the energy that is left.
 
 use super::MAX_MODES;
-use super::levels::Kernel;
 use super::rows::{Modes, Row, State, Wide};
-use super::vector::{LANES, Partial, Vector};
 use crate::dsp::CONTROL_FRAMES;
+use crate::dsp::simd::Kernel;
+use crate::dsp::simd::vector::{LANES, Partial, Vector};
 use std::f64::consts::PI;
 
 /// Modes up to this angle per sample sound at full level; from here to π they fade out, and beyond they are silent.

@@ -2,7 +2,7 @@
 
 use super::measured::Measured;
 use super::peers::Peer;
-use sprung::dsp::mode_bank::Level;
+use sprung::dsp::Level;
 use std::fmt::Write as _;
 
 const WORKS: [&str; 3] = ["ringing", "modulated", "driven"];

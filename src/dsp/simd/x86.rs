@@ -8,7 +8,7 @@ use std::arch::x86_64::*;
 
 /// Proof that this CPU has AVX2 and FMA.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct HasAvx2(());
+pub(in crate::dsp) struct HasAvx2(());
 
 impl HasAvx2 {
     /// The proof, if the CPU has them.
@@ -19,7 +19,7 @@ impl HasAvx2 {
 
 /// Proof that this CPU has AVX-512F, and AVX2 and FMA as well.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct HasAvx512(HasAvx2);
+pub(in crate::dsp) struct HasAvx512(HasAvx2);
 
 impl HasAvx512 {
     /// The proof, if the CPU has them.

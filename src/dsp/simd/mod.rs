@@ -1,13 +1,25 @@
-//! The levels of vector instructions: which of them the CPU has, and a kernel run with one.
-
-use super::vector::{Scalar, Vector};
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU8, Ordering};
+//! Vector instructions: which levels of them the CPU has, and work that is written once and run with the best.
+//!
+//! `vector` says what work may ask of a CPU; `x86` and `neon` have the instructions. They are the only unsafe code of
+//! the crate.
 
 #[cfg(target_arch = "aarch64")]
-use super::neon::Neon;
+#[allow(unsafe_code)]
+mod neon;
+#[allow(clippy::needless_range_loop, reason = "several arrays are indexed in step")]
+pub(super) mod vector;
 #[cfg(target_arch = "x86_64")]
-use super::x86::{Avx2, Avx512, HasAvx2, HasAvx512, Sse2};
+#[allow(unsafe_code)]
+mod x86;
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU8, Ordering};
+use vector::{Scalar, Vector};
+
+#[cfg(target_arch = "aarch64")]
+use neon::Neon;
+#[cfg(target_arch = "x86_64")]
+use x86::{Avx2, Avx512, HasAvx2, HasAvx512, Sse2};
 
 /// A level of vector instructions. All give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,7 +86,7 @@ impl Level {
 static FORCED: AtomicU8 = AtomicU8::new(u8::MAX);
 
 /// Work that is written once for all vectors.
-pub(super) trait Kernel {
+pub(in crate::dsp) trait Kernel {
     /// What it comes to.
     type Output;
 
@@ -85,7 +97,7 @@ pub(super) trait Kernel {
 
 /// A level that this CPU has, with the proof of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Instructions {
+pub(in crate::dsp) enum Instructions {
     Scalar,
     #[cfg(target_arch = "x86_64")]
     Sse2,
@@ -99,7 +111,7 @@ pub(super) enum Instructions {
 
 impl Instructions {
     /// Those of [`Level::current`].
-    pub(super) fn current() -> Self {
+    pub(in crate::dsp) fn current() -> Self {
         Self::detect(Level::current()).unwrap_or(Self::Scalar)
     }
 
@@ -123,7 +135,7 @@ impl Instructions {
     }
 
     /// Their level.
-    pub(super) fn level(self) -> Level {
+    pub(in crate::dsp) fn level(self) -> Level {
         match self {
             Self::Scalar => Level::Scalar,
             #[cfg(target_arch = "x86_64")]
@@ -139,7 +151,7 @@ impl Instructions {
 
     /// Runs a kernel that is compiled for them.
     #[inline]
-    pub(super) fn run<K: Kernel>(self, kernel: K) -> K::Output {
+    pub(in crate::dsp) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
             Self::Scalar => kernel.run::<Scalar>(()),
             #[cfg(target_arch = "x86_64")]

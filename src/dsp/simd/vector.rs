@@ -14,7 +14,7 @@ pub(in crate::dsp) struct Partial(pub(in crate::dsp) [f32; LANES]);
 ///
 /// The functions that make a vector ask for a proof that this CPU has the instructions. Only detection hands out
 /// proofs, so whoever holds a vector or a proof may execute them, and the operations are safe.
-pub(super) trait Vector: Copy {
+pub(in crate::dsp) trait Vector: Copy {
     /// Exists only where the CPU has the instructions.
     type Proof: Copy;
     /// How many numbers.
@@ -73,7 +73,7 @@ pub(in crate::dsp) fn sum_frames(frames: &[Partial], sums: &mut [f32]) {
 
 /// Four numbers in plain Rust: for CPUs without a kernel of their own, and the reference for those with one.
 #[derive(Clone, Copy)]
-pub(super) struct Scalar([f32; 4]);
+pub(in crate::dsp) struct Scalar([f32; 4]);
 
 impl Vector for Scalar {
     type Proof = ();
