@@ -7,6 +7,7 @@ use proptest::test_runner::TestRunner;
 use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
 use sprung::io::midi::parse_message;
 use sprung::params::{PARAMS, Param};
+use sprung::patch::routes::{Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -33,16 +34,31 @@ struct Case {
 fn any_patch() -> impl Strategy<Value = Patch> {
     let mode = (0.5..20.0f32, -1.0..1.0f32, 0.01..4.0f32, 0.0..1.0f32, -1.0..1.0f32)
         .prop_map(|(ratio, level, decay, strike, pan)| Mode { ratio, level, decay, strike, pan });
+    let route = (select(Source::ALL.to_vec()), any_param(), select(Response::ALL.to_vec())).prop_flat_map(
+        |(source, destination, response)| {
+            prop::option::of(select(Source::ALL.to_vec())).prop_map(move |scale| Route {
+                source,
+                destination,
+                response,
+                scale,
+            })
+        },
+    );
+    let routes = prop::collection::vec((route, -60.0..60.0f32), 0..6);
     // Half of the parameters keep their defaults: all of them at random are seldom loud for long.
     let position = prop::option::of(0.0..1.0f64);
-    (prop::collection::vec(mode, 1..20), prop::collection::vec(position, PARAMS.len())).prop_map(
-        |(modes, positions)| {
+    (prop::collection::vec(mode, 1..20), prop::collection::vec(position, PARAMS.len()), routes).prop_map(
+        |(modes, positions, routes)| {
             let mut patch = Patch::default();
             patch.modes = ModeTable::new(&modes);
             for (info, position) in PARAMS.iter().zip(positions) {
                 if let Some(position) = position {
                     patch.set(info.param, info.denormalise(position));
                 }
+            }
+            for (place, (route, amount)) in routes.into_iter().enumerate() {
+                patch.routes.set(place, Some(route));
+                patch.set(amount_param(place), amount);
             }
             patch
         },
@@ -89,7 +105,7 @@ fn any_kind() -> impl Strategy<Value = EventKind> {
             .prop_map(|(notes, expression, value)| EventKind::Express { notes, expression, value }),
         1 => unit.clone().prop_map(EventKind::ChannelPressure),
         2 => (-1.0..1.0f32).prop_map(EventKind::PitchBend),
-        3 => (select(vec![1, 7, 10, 11, 64, 66, 67, 74, 120, 121, 123]), unit)
+        3 => (select(vec![1, 2, 7, 10, 11, 64, 66, 67, 74, 120, 121, 123]), unit)
             .prop_map(|(controller, value)| EventKind::Control { controller, value }),
         3 => (any_param(), 0.0..1.0f64)
             .prop_map(|(param, position)| EventKind::Param { param, value: param.info().denormalise(position) }),

@@ -6,6 +6,7 @@ use sprung::dsp::Level;
 use sprung::dsp::random::{key, uniform};
 use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::params::{PARAMS, Param};
+use sprung::patch::routes::{Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 use std::process::ExitCode;
@@ -112,6 +113,15 @@ fn patch(stream: &mut Stream, seed: u64) -> Patch {
         })
         .collect();
     patch.modes = ModeTable::new(&modes);
+    for place in 0..(stream.next() * stream.next() * 17.0) as usize {
+        let mut one_of = |count: usize| (stream.next() * count as f64) as usize % count;
+        let source = Source::ALL[one_of(Source::ALL.len())];
+        let scale = Source::ALL.get(one_of(2 * Source::ALL.len())).copied();
+        let response = Response::ALL[one_of(Response::ALL.len())];
+        let destination = PARAMS[one_of(PARAMS.len())].param;
+        patch.routes.set(place, Some(Route { source, destination, response, scale }));
+        patch.set(amount_param(place), (stream.next() * 60.0 - 30.0) as f32);
+    }
     patch
 }
 
@@ -126,7 +136,7 @@ fn events(stream: &mut Stream) -> Vec<Event> {
                 5 => EventKind::NoteOff { key, velocity: value, id: -1 },
                 6 => EventKind::PitchBend(value * 2.0 - 1.0),
                 7 => EventKind::ChannelPressure(value),
-                8 => EventKind::Control { controller: [1, 7, 10, 11, 64][(value * 4.9) as usize], value },
+                8 => EventKind::Control { controller: [1, 2, 7, 10, 11, 64][(value * 5.9) as usize], value },
                 _ => {
                     let info = &PARAMS[(stream.next() * PARAMS.len() as f64) as usize % PARAMS.len()];
                     EventKind::Param { param: info.param, value: info.denormalise(value.into()) }

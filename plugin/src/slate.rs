@@ -3,6 +3,7 @@
 //! It lies in a sequence lock: a reader that comes while it is written takes nothing, and tries again in the next block.
 
 use sprung::params::{PARAM_COUNT, PARAMS};
+use sprung::patch::routes::{MAX_ROUTES, Response, Route, Source};
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use sprung_sequence_lock::SequenceLock;
 use std::array::from_fn;
@@ -36,8 +37,8 @@ impl Loaded {
     }
 }
 
-/// Words that a [`Loaded`] is kept in: values, positions, the seed, the number of modes, and the modes.
-const WORDS: usize = 2 * PARAM_COUNT + 5 * MAX_MODES + 3;
+/// Words that a [`Loaded`] is kept in: values, positions, the seed, the routes, the number of modes, and the modes.
+const WORDS: usize = 2 * PARAM_COUNT + MAX_ROUTES + 5 * MAX_MODES + 3;
 
 /// One [`Loaded`], to be read by any thread and written by one at a time.
 pub(crate) struct Slate(SequenceLock<WORDS>);
@@ -55,7 +56,9 @@ impl Slate {
         let modes = patch.modes.as_slice();
         let values = PARAMS.iter().map(|info| patch.get(info.param)).chain(*positions).map(f32::to_bits);
         let of_mode = |mode: &Mode| [mode.ratio, mode.level, mode.decay, mode.strike, mode.pan].map(f32::to_bits);
-        let numbers = [*seed as u32, (*seed >> 32) as u32, modes.len() as u32];
+        let numbers = [*seed as u32, (*seed >> 32) as u32];
+        let routes = (0..MAX_ROUTES).map(|place| patch.routes.get(place).map_or(0, word));
+        let numbers = numbers.into_iter().chain(routes).chain([modes.len() as u32]);
         self.0.write(values.chain(numbers).chain(modes.iter().flat_map(of_mode)), meanwhile);
     }
 
@@ -73,6 +76,7 @@ impl Slate {
         PARAMS.iter().for_each(|info| patch.set(info.param, f32::from_bits(get())));
         let positions = from_fn(|_| f32::from_bits(get()));
         let seed = u64::from(get()) | u64::from(get()) << 32;
+        (0..MAX_ROUTES).for_each(|place| patch.routes.set(place, route(get())));
         let mut modes = [Mode::UNIT; MAX_MODES];
         let count = (get() as usize).min(MAX_MODES);
         for mode in &mut modes[..count] {
@@ -82,6 +86,24 @@ impl Slate {
         patch.modes = ModeTable::new(&modes[..count]);
         Loaded { patch, positions, seed }
     }
+}
+
+/// A route as a word: four bytes, of which the last says that there is one. A scale is counted from 1.
+fn word(Route { source, destination, response, scale }: Route) -> u32 {
+    let scale = scale.map_or(0, |scale| scale as u32 + 1);
+    const { assert!(PARAM_COUNT <= 256) }
+    source as u32 | (destination as u32) << 8 | scale << 16 | (response as u32 | 128) << 24
+}
+
+/// The route of a word.
+fn route(word: u32) -> Option<Route> {
+    let [source, destination, scale, response] = word.to_le_bytes().map(usize::from);
+    Some(Route {
+        source: *Source::ALL.get(source)?,
+        destination: PARAMS.get(destination)?.param,
+        response: *Response::ALL.get(response.checked_sub(128)?)?,
+        scale: scale.checked_sub(1).and_then(|scale| Source::ALL.get(scale).copied()),
+    })
 }
 
 #[cfg(test)]
@@ -102,6 +124,11 @@ mod tests {
         for (seed, preset) in [0, 1 << 40, u64::MAX].into_iter().zip(Preset::factory()) {
             let mut loaded = Loaded::new(preset.patch, seed);
             loaded.positions[3] = 0.123;
+            for (place, source) in Source::ALL.iter().enumerate().take(seed as usize % 17) {
+                let (response, scale) = (Response::ALL[place % 4], Source::ALL.get(2 * place).copied());
+                let destination = Param::Route16;
+                loaded.patch.routes.set(place, Some(Route { source: *source, destination, response, scale }));
+            }
             slate.write(&loaded, || assert_eq!(slate.read(|_| ()), None, "nothing is read while it is written"));
             assert_eq!(slate.read(|_| slate.get()), Some(loaded));
         }

@@ -1,6 +1,7 @@
 //! What a MIDI channel remembers: its wheel, pressure, controllers and registered parameters.
 
 use super::gain::StereoGain;
+use super::modulation::Positions;
 
 /// Channel controllers, in the units that voices use them in. Real-time safe.
 #[derive(Clone, Copy, Debug)]
@@ -15,10 +16,13 @@ pub(crate) struct Channel {
     pub(crate) pressure: f32,
     /// −0.5 to 0.5, of controller 74.
     pub(crate) brightness: f32,
+    /// 0–1.
+    pub(crate) breath: f32,
     /// The soft pedal.
     pub(crate) soft: bool,
     volume: f32,
-    expression: f32,
+    /// 0–1.
+    pub(crate) expression: f32,
     pan: f32,
     gain: StereoGain,
     registered: Registered,
@@ -63,6 +67,7 @@ impl Registered {
 /// MIDI's numbers of the controllers that are acted on, here or by the voice manager.
 pub(super) mod controller {
     pub(in crate::engine) const WHEEL: u8 = 1;
+    pub(in crate::engine) const BREATH: u8 = 2;
     pub(in crate::engine) const DATA: u8 = 6;
     pub(in crate::engine) const VOLUME: u8 = 7;
     pub(in crate::engine) const PAN: u8 = 10;
@@ -90,6 +95,7 @@ impl Channel {
             wheel: 0.0,
             pressure: 0.0,
             brightness: 0.0,
+            breath: 0.0,
             soft: false,
             volume: 1.0,
             expression: 1.0,
@@ -104,6 +110,7 @@ impl Channel {
         let data = (value * 127.0 + 0.5) as u8;
         match controller {
             controller::WHEEL => self.wheel = value,
+            controller::BREATH => self.breath = value,
             controller::SOFT => self.soft = value >= 0.5,
             controller::BRIGHTNESS => self.brightness = centred(value) - 0.5,
             controller::VOLUME => self.volume = value,
@@ -152,6 +159,7 @@ impl Channel {
     fn reset_controllers(&mut self) {
         self.bend = 0.0;
         self.wheel = 0.0;
+        self.breath = 0.0;
         self.pressure = 0.0;
         self.expression = 1.0;
         self.soft = false;
@@ -195,6 +203,18 @@ impl Wheels<'_> {
         let tuning = |channel: &Channel| f64::from(channel.tuning());
         let own = (bend(self.channel), tuning(self.channel));
         self.master.map_or(own, |master| (own.0 + bend(master), own.1 + tuning(master)))
+    }
+
+    /// Where wheels, breath and pressure are, for the modulation of a note whose brightness is from −0.5 to 0.5.
+    pub(super) fn positions(&self, brightness: f64) -> Positions {
+        Positions {
+            pressure: self.most(|channel| channel.pressure) as f32,
+            timbre: (2.0 * brightness) as f32,
+            bend: (self.channel.bend + self.master.map_or(0.0, |master| master.bend)).clamp(-1.0, 1.0),
+            wheel: self.most(|channel| channel.wheel) as f32,
+            breath: self.most(|channel| channel.breath) as f32,
+            expression: self.channel.expression * self.master.map_or(1.0, |master| master.expression),
+        }
     }
 
     pub(super) fn gains_after(&self, frames: u32) -> (f32, f32) {

@@ -1,7 +1,7 @@
 //! The parameters that sounding voices follow, smoothed.
 
 use super::gain::pan_gains;
-use super::modulation::NoteModulation;
+use super::modulation::{NoteModulation, Settings, rate_at};
 use crate::dsp::ramp::Ramp;
 use crate::params::{PARAM_COUNT, PARAMS, Param};
 use crate::patch::Patch;
@@ -64,18 +64,23 @@ impl Smoother {
     }
 
     fn at(&self, frames: u32) -> Controls {
-        Controls::new(|param| self.ramps[param as usize].after(frames), self.beat_rate)
+        Controls::new(|param| self.value_after(param, frames), self.beat_rate)
+    }
+
+    /// What modulators follow, `frames` frames from now.
+    pub(crate) fn settings_after(&self, frames: u32) -> Settings {
+        Settings::new(|param| self.value_after(param, frames), self.beat_rate)
+    }
+
+    /// The value of a parameter, `frames` frames from now.
+    pub(crate) fn value_after(&self, param: Param, frames: u32) -> f32 {
+        self.ramps[param as usize].after(frames)
     }
 
     /// What a note follows that has a modulation of its own, `frames` frames from now.
     pub(crate) fn modulated(&self, modulation: &NoteModulation, frames: u32) -> Controls {
         let value = |param: Param| modulation.after(param, frames);
-        Controls::new(|param| value(param).unwrap_or_else(|| self.ramps[param as usize].after(frames)), self.beat_rate)
-    }
-
-    /// The value of a parameter at this frame.
-    pub(crate) fn now(&self, param: Param) -> f32 {
-        self.ramps[param as usize].after(0)
+        Controls::new(|param| value(param).unwrap_or_else(|| self.value_after(param, frames)), self.beat_rate)
     }
 }
 
@@ -86,12 +91,17 @@ pub(crate) struct Controls {
     pub(crate) decay: f64,
     /// T60 in seconds.
     pub(crate) release: f64,
-    /// Semitones.
+    /// Semitones, of `coarse` and `fine` together.
     pub(crate) tune: f64,
+    coarse: f32,
+    /// Cents.
+    fine: f32,
     /// Semitones.
     pub(crate) vibrato: f64,
     /// Hz.
     pub(crate) vibrato_rate: f64,
+    /// The rate is that of a note value.
+    is_synchronised: bool,
     /// Semitones.
     pub(crate) wheel_vibrato: f64,
     /// Semitones.
@@ -104,34 +114,71 @@ pub(crate) struct Controls {
     pub(crate) gain_left: f32,
     /// Amplitude ratio.
     pub(crate) gain_right: f32,
+    /// What both come from: decibels, and per cent from left to right.
+    gain_db: f32,
+    pan: f32,
 }
 
 impl Controls {
     fn new(value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
-        let gain = gain_from_db(value(Param::Gain).into()) as f32;
-        let (left, right) = pan_gains(value(Param::Pan) * 0.005 + 0.5);
+        let (coarse, fine) = (value(Param::Tune), value(Param::Fine));
+        let (gain_db, pan) = (value(Param::Gain), value(Param::Pan));
+        let (gain_left, gain_right) = gains(gain_db, pan);
+        let sync = value(Param::VibratoSync);
         Self {
             decay: value(Param::Decay).into(),
             release: value(Param::Release).into(),
-            tune: f64::from(value(Param::Tune)) + f64::from(value(Param::Fine)) * 0.01,
+            tune: semitones(coarse, fine),
+            coarse,
+            fine,
             vibrato: f64::from(value(Param::Vibrato)) * 0.01,
-            vibrato_rate: match VIBRATO_BEATS[value(Param::VibratoSync) as usize] {
-                0.0 => value(Param::VibratoRate).into(),
-                beats => beat_rate / beats,
-            },
+            vibrato_rate: rate_at(sync, value(Param::VibratoRate).into(), beat_rate),
+            is_synchronised: sync != 0.0,
             wheel_vibrato: f64::from(value(Param::WheelVibrato)) * 0.01,
             pressure_vibrato: f64::from(value(Param::PressureVibrato)) * 0.01,
             pressure_damping: f64::from(value(Param::PressureDamping)) * 0.01,
             bend_range: value(Param::BendRange),
-            gain_left: gain * left,
-            gain_right: gain * right,
+            gain_left,
+            gain_right,
+            gain_db,
+            pan,
+        }
+    }
+
+    /// Puts one parameter at a value that modulation has found. Those that are read elsewhere change nothing here.
+    pub(crate) fn set(&mut self, param: Param, value: f32) {
+        let wide = f64::from(value);
+        match param {
+            Param::Decay => self.decay = wide,
+            Param::Release => self.release = wide,
+            Param::Tune | Param::Fine => {
+                *(if param == Param::Tune { &mut self.coarse } else { &mut self.fine }) = value;
+                self.tune = semitones(self.coarse, self.fine);
+            }
+            Param::Vibrato => self.vibrato = wide * 0.01,
+            Param::VibratoRate if !self.is_synchronised => self.vibrato_rate = wide,
+            Param::WheelVibrato => self.wheel_vibrato = wide * 0.01,
+            Param::PressureVibrato => self.pressure_vibrato = wide * 0.01,
+            Param::PressureDamping => self.pressure_damping = wide * 0.01,
+            Param::BendRange => self.bend_range = value,
+            Param::Gain | Param::Pan => {
+                *(if param == Param::Gain { &mut self.gain_db } else { &mut self.pan }) = value;
+                (self.gain_left, self.gain_right) = gains(self.gain_db, self.pan);
+            }
+            _ => {}
         }
     }
 }
 
-/// Quarter notes that a vibrato takes, in the order of the choices of [`Param::VibratoSync`]; 0 for one that keeps
-/// its own time.
-const VIBRATO_BEATS: [f64; 10] = [0.0, 4.0, 2.0, 1.5, 1.0, 2.0 / 3.0, 0.75, 0.5, 1.0 / 3.0, 0.25];
+fn semitones(coarse: f32, fine: f32) -> f64 {
+    f64::from(coarse) + f64::from(fine) * 0.01
+}
+
+fn gains(gain_db: f32, pan: f32) -> (f32, f32) {
+    let gain = gain_from_db(gain_db.into()) as f32;
+    let (left, right) = pan_gains(pan * 0.005 + 0.5);
+    (gain * left, gain * right)
+}
 
 #[cfg(test)]
 mod tests {
@@ -157,7 +204,6 @@ mod tests {
 
     #[test]
     fn a_synchronised_vibrato_follows_the_tempo() {
-        assert_eq!(VIBRATO_BEATS.len(), Param::VibratoSync.info().choices.len());
         let mut smoother = Smoother::new(48_000.0, &Patch::default(), 2.0);
         for (choice, rate) in [("off", 5.0), ("1/1", 0.5), ("1/4", 2.0), ("1/8T", 6.0), ("1/4.", 4.0 / 3.0)] {
             smoother.set(Param::VibratoSync, Param::VibratoSync.info().parse(choice).unwrap());

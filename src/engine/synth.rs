@@ -3,7 +3,7 @@
 use super::channel::{Channel, Wheels, controller};
 use super::controls::Smoother;
 use super::event::{Expression, Notes, finite, nearest_channel, nearest_key, unit};
-use super::modulation::modulated;
+use super::modulation::{Bus, SharedLfos, modulated};
 use super::voice::{Instrument, SynthVoice};
 use super::voice_manager::{Note, PlayMode, VoiceManager};
 use super::zones::{MEMBER_BEND_RANGE, Zones};
@@ -31,6 +31,10 @@ pub struct Synth {
     offsets: [f32; PARAM_COUNT],
     /// Frames until the gains of all channels have arrived.
     gains_moving: u32,
+    /// A patch since the start has had routes.
+    has_routes: bool,
+    /// The frame at which the instrument's shared oscillators are.
+    shared_clock: u64,
     /// Counts the notes started.
     note_serial: u64,
     /// Frames since the start: control ticks fall on its multiples of [`CONTROL_FRAMES`].
@@ -56,6 +60,8 @@ impl Synth {
             zones: Zones::default(),
             offsets: [0.0; PARAM_COUNT],
             gains_moving: 0,
+            has_routes: false,
+            shared_clock: 0,
             note_serial: 0,
             clock: 0,
             needs_control: false,
@@ -82,6 +88,9 @@ impl Synth {
         self.smoother = Smoother::new(sample_rate, &self.instrument.modulated, DEFAULT_BEAT_RATE);
         self.instrument.controls = self.smoother.after(0);
         self.instrument.last_pitch = None;
+        self.instrument.bus = Bus::new(&self.instrument.patch.routes);
+        (self.instrument.shared, self.shared_clock) = (SharedLfos::new(self.instrument.seed), 0);
+        self.has_routes = !self.instrument.bus.is_empty();
         (self.instrument.patch_serial, self.instrument.body_serial) = (0, 0);
         self.channels = [Channel::new(sample_rate); 16];
         self.zones = Zones::default();
@@ -105,6 +114,8 @@ impl Synth {
         }
         self.instrument.patch_serial += 1;
         self.instrument.body_serial += 1;
+        self.instrument.bus = Bus::new(&patch.routes);
+        self.has_routes |= !self.instrument.bus.is_empty();
         // Voices of the old patch keep its controls, so the new ones need no slope.
         let beat_rate = self.smoother.beat_rate();
         self.smoother = Smoother::new(self.instrument.sample_rate, &self.instrument.modulated, beat_rate);
@@ -197,6 +208,11 @@ impl Synth {
         match event.kind {
             EventKind::NoteOn { key, detune, velocity, id } => {
                 self.instrument.controls = self.smoother.after(0);
+                if self.has_routes {
+                    self.move_shared(0);
+                    let brightness = brightness(&self.channels, &self.zones, index);
+                    self.instrument.positions = self.wheels(index).positions(brightness.into());
+                }
                 let soft = |channel: u8| self.channels[usize::from(channel)].soft;
                 let note = Note {
                     channel: index,
@@ -241,7 +257,7 @@ impl Synth {
             EventKind::Modulate { id: Some(id), param, offset } => {
                 // Notes that were given no identifier cannot be meant.
                 if id >= 0 && matches!(param.info().change, Change::Smoothed(_)) {
-                    let (now, offset) = (self.smoother.now(param), finite(offset).clamp(-1.0, 1.0));
+                    let (now, offset) = (self.smoother.value_after(param, 0), finite(offset).clamp(-1.0, 1.0));
                     let meant = self.manager.active().filter(|(note, _)| note.id == id);
                     meant.for_each(|(_, voice)| voice.modulate(&self.instrument, param, offset, now));
                 }
@@ -346,12 +362,15 @@ impl Synth {
             }
             if into_tick == 0 || self.needs_control {
                 let controls = self.smoother.after(to_tick as u32);
+                if self.has_routes {
+                    self.move_shared(to_tick as u32);
+                }
                 for (note, voice) in self.manager.active() {
                     let channel = |number: u8| &self.channels[usize::from(number)];
                     let master = self.zones.master_of(note.channel).map(channel);
                     let wheels = Wheels { channel: channel(note.channel), master };
                     let controls = (note.patch == self.instrument.patch_serial).then_some(&controls);
-                    voice.control(controls, &self.smoother, wheels, to_tick);
+                    voice.control(&self.instrument, controls, &self.smoother, wheels, to_tick);
                 }
                 self.manager.active().for_each(|(_, voice)| voice.sweep(to_tick));
                 self.needs_control = false;
@@ -363,6 +382,20 @@ impl Synth {
             self.pass(end - frame);
             frame = end;
         }
+    }
+
+    /// Moves the shared oscillators to this frame, and reads what modulators are to follow `ahead` frames from now.
+    fn move_shared(&mut self, ahead: u32) {
+        let seconds = (self.clock - self.shared_clock) as f64 / self.instrument.sample_rate;
+        self.shared_clock = self.clock;
+        self.instrument.settings = self.smoother.settings_after(ahead);
+        self.instrument.shared.advance(&self.instrument.settings, seconds);
+    }
+
+    /// What a note on a channel follows of it and of the master of its zone.
+    fn wheels(&self, channel: u8) -> Wheels<'_> {
+        let channels = |number: u8| &self.channels[usize::from(number)];
+        Wheels { channel: channels(channel), master: self.zones.master_of(channel).map(channels) }
     }
 
     /// Lets time pass for everything but the voices: all there is to do while none sounds.

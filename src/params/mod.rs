@@ -3,8 +3,6 @@
 //! The engine, the command, preset files, the documentation and any plugin shell derive from [`PARAMS`].
 //! Ids are part of every saved preset and song: a test pins them, and an id that goes is never used again.
 
-mod text;
-
 use libm::{exp10, floor, log, log10, pow, round};
 
 /// What a parameter's number counts.
@@ -75,17 +73,32 @@ pub struct ParamInfo {
     pub curve: Curve,
     /// When a change is heard.
     pub change: Change,
+    /// Whether nothing can modulate it although it is a quantity.
+    is_fixed: bool,
     /// Names of the values when `unit` is [`Unit::Choice`].
     pub choices: &'static [&'static str],
     /// One sentence for tooltips and tables.
     pub help: &'static str,
 }
 
-macro_rules! params {
-    ($($section:literal {
+mod body;
+mod control;
+mod envelope;
+mod exciter;
+mod lfo;
+mod macros;
+mod output;
+mod pitch;
+mod routes;
+mod text;
+mod voices;
+
+/// Makes [`Param`] and [`PARAMS`] of the rows of all modules.
+macro_rules! table {
+    ({ $($section:literal {
         $($param:ident $id:literal $name:literal, $unit:ident $min:literal..$max:literal = $default:literal,
-          $curve:ident, $change:expr, [$($choice:literal),*], $help:literal;)*
-    })*) => {
+          $curve:ident, $change:expr, $($fixed:ident)? [$($choice:literal),*], $help:literal;)*
+    })* }) => {
         /// A parameter, in table order.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Param {
@@ -97,6 +110,7 @@ macro_rules! params {
             $($(ParamInfo {
                 param: Param::$param, id: $id, name: $name, section: $section, unit: Unit::$unit,
                 min: $min, max: $max, default: $default, curve: Curve::$curve, change: $change,
+                is_fixed: { const FIXED: &[&str] = &[$(stringify!($fixed))?]; !FIXED.is_empty() },
                 choices: &[$($choice),*], help: $help,
             },)*)*
         ];
@@ -107,102 +121,13 @@ macro_rules! params {
 }
 
 use Change::{AtOnce, NextNote, Smoothed};
+use {
+    body::body, control::control, envelope::envelope, exciter::exciter, lfo::lfo, macros::macros, output::output,
+    pitch::pitch, routes::routes, voices::voices,
+};
 
-params! {
-    "Exciter" {
-        Exciter "exciter" "Exciter", Choice 0.0..3.0 = 0.0, Linear, NextNote, ["impulse", "strike", "pluck", "noise"],
-            "What moves the masses: a one-sample impulse, a mallet's force pulse, a pulled-and-released displacement, or a noise burst.";
-        Hardness "hardness" "Hardness", Percent 0.0..100.0 = 70.0, Linear, NextNote, [],
-            "Mallet or plectrum hardness: contact time from 10 ms (0 %) to 0.05 ms (100 %).";
-        HardnessVelocity "hardness_velocity" "Velocity to hardness", Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
-            "How much softer quiet notes strike.";
-        Position "position" "Pluck position", Percent 1.0..50.0 = 50.0, Linear, NextNote, [],
-            "Where along the string it is plucked; 50 % is the middle and silences even harmonics.";
-        NoiseLevel "noise_level" "Noise level", Decibels -60.0..24.0 = 0.0, Linear, NextNote, [],
-            "Strength of the noise burst against a strike of the same velocity.";
-        NoiseTime "noise_time" "Noise time", Seconds 0.001..1.0 = 0.02, Logarithmic, NextNote, [],
-            "Length of the noise burst.";
-        Velocity "velocity" "Velocity to force", Percent 0.0..100.0 = 100.0, Linear, NextNote, [],
-            "How much velocity sets the force: 100 % is the square of velocity, 0 % is full force always.";
-    }
-    "Body" {
-        Decay "decay" "Decay", Seconds 0.005..60.0 = 1.0, Logarithmic, Smoothed(20), [],
-            "Time in which a held note falls by 60 dB (T60).";
-        Release "release" "Release", Seconds 0.005..60.0 = 0.3, Logarithmic, Smoothed(20), [],
-            "Longest T60 once the note is released: the damper.";
-        NoteOff "note_off" "Note off", Choice 0.0..1.0 = 0.0, Linear, NextNote, ["damp", "ring"],
-            "Whether a released note is damped or rings on as a drum does.";
-        DecayKey "decay_key" "Decay by key", Percent -100.0..100.0 = 0.0, Linear, NextNote, [],
-            "How higher keys decay faster: at 100 % the T60 halves per octave above C4.";
-        DecayTilt "decay_tilt" "Decay by mode", Number 0.0..2.0 = 0.0, Linear, NextNote, [],
-            "How higher modes decay faster: the T60 of a mode is divided by its ratio to this power.";
-        Tilt "tilt" "Brightness", DecibelsPerOctave -24.0..24.0 = 0.0, Linear, NextNote, [],
-            "Tilts the levels of the modes by their ratio.";
-        Stretch "stretch" "Stretch", Number 0.5..2.0 = 1.0, Linear, NextNote, [],
-            "Raises the ratios of the modes to this power: spreads or squeezes the spectrum.";
-        Width "width" "Width", Percent 0.0..100.0 = 100.0, Linear, NextNote, [],
-            "How far apart the modes are panned.";
-        Coefficients "coefficients" "Coefficients", Choice 0.0..1.0 = 0.0, Linear, NextNote, ["exact", "classic"],
-            "Exact tuning and decay, or the original formulas with their drift, clamped short of exploding.";
-    }
-    "Pitch" {
-        Tune "tune" "Tune", Semitones -48.0..48.0 = 0.0, Linear, Smoothed(10), [],
-            "Transposition.";
-        Fine "fine" "Fine tune", Cents -100.0..100.0 = 0.0, Linear, Smoothed(10), [],
-            "Fine transposition.";
-        Tuning "tuning" "Tuning A4", Hertz 400.0..480.0 = 440.0, Linear, NextNote, [],
-            "Frequency of A4.";
-        KeyTrack "key_track" "Key tracking", Percent 0.0..100.0 = 100.0, Linear, NextNote, [],
-            "How far pitch follows the key, about C4; 0 % gives every key the pitch of C4.";
-        Sweep "sweep" "Sweep", Semitones -60.0..60.0 = 0.0, Linear, NextNote, [],
-            "Where the pitch starts, above or below the note.";
-        SweepTime "sweep_time" "Sweep time", Seconds 0.001..10.0 = 0.1, Logarithmic, NextNote, [],
-            "Time until the sweep has arrived at the note.";
-        SweepCurve "sweep_curve" "Sweep curve", Percent -100.0..100.0 = 50.0, Linear, NextNote, [],
-            "0 % is a straight line; above, the sweep falls fast and settles slowly; below, the reverse.";
-        SweepVelocity "sweep_velocity" "Velocity to sweep", Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
-            "How much velocity scales the depth of the sweep.";
-        Vibrato "vibrato" "Vibrato", Cents 0.0..1200.0 = 0.0, Linear, Smoothed(20), [],
-            "Vibrato depth, each way.";
-        VibratoRate "vibrato_rate" "Vibrato rate", Hertz 0.05..20.0 = 5.0, Logarithmic, Smoothed(20), [],
-            "Vibrato frequency.";
-        VibratoDelay "vibrato_delay" "Vibrato delay", Seconds 0.0..5.0 = 0.0, Linear, NextNote, [],
-            "Time over which the patch's own vibrato fades in; wheel and pressure act at once.";
-        VibratoSync "vibrato_sync" "Vibrato sync", Choice 0.0..9.0 = 0.0, Linear, Smoothed(0),
-            ["off", "1/1", "1/2", "1/4.", "1/4", "1/4T", "1/8.", "1/8", "1/8T", "1/16"],
-            "Note value that one vibrato lasts at the song's tempo, in place of the vibrato rate.";
-        Glide "glide" "Glide", Seconds 0.0..10.0 = 0.0, Linear, NextNote, [],
-            "Time to slide from the note before; 0 is off.";
-    }
-    "Control" {
-        BendRange "bend_range" "Bend range", Semitones 0.0..48.0 = 2.0, Linear, Smoothed(0), [],
-            "Pitch-bend range, unless the channel has set its own (RPN 0).";
-        WheelVibrato "wheel_vibrato" "Wheel to vibrato", Cents 0.0..1200.0 = 50.0, Linear, Smoothed(20), [],
-            "Vibrato that the modulation wheel adds.";
-        PressureVibrato "pressure_vibrato" "Pressure to vibrato", Cents 0.0..1200.0 = 0.0, Linear, Smoothed(20), [],
-            "Vibrato that pressure adds.";
-        PressureDamping "pressure_damping" "Pressure to damping", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "How far pressure damps the note: at 100 % full pressure damps as a release does.";
-        ReleaseVelocity "release_velocity" "Release velocity", Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
-            "How much a quick release shortens, and a slow one lengthens, the release time.";
-    }
-    "Voices" {
-        Voices "voices" "Voices", Count 1.0..64.0 = 16.0, Linear, NextNote, [],
-            "How many notes sound at once.";
-        Mode "mode" "Mode", Choice 0.0..2.0 = 0.0, Linear, NextNote, ["poly", "mono", "legato"],
-            "Many notes, one note struck each time, or one note struck only after a rest.";
-        Choke "choke" "Choke group", Count 0.0..16.0 = 0.0, Linear, NextNote, [],
-            "Notes of a choke group silence each other; 0 is none.";
-    }
-    "Output" {
-        Gain "gain" "Gain", Decibels -60.0..12.0 = -6.0, Linear, Smoothed(20), [],
-            "Output level.";
-        Pan "pan" "Pan", Percent -100.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "Output position, left to right.";
-        Limiter "limiter" "Limiter", Choice 0.0..1.0 = 1.0, Linear, AtOnce, ["off", "on"],
-            "Brings loud chords below −0.3 dBFS true peak, without latency; what stays below −1 dBFS passes unchanged.";
-    }
-}
+// Each adds its rows to those before it and hands them on.
+exciter! { {} body pitch control lfo envelope macros routes voices output table }
 
 impl Param {
     /// This parameter's row of the table.
@@ -239,6 +164,11 @@ impl ParamInfo {
     fn range(&self) -> String {
         let whole = if self.unit == Unit::Count { "a whole number " } else { "" };
         format!("{whole}from {} to {}", self.format(self.min), self.format(self.max))
+    }
+
+    /// Whether routes can move it: it is a quantity, and belongs to the notes and not to the output as a whole.
+    pub const fn is_modulatable(&self) -> bool {
+        !matches!(self.unit, Unit::Count | Unit::Choice) && !matches!(self.change, Change::AtOnce) && !self.is_fixed
     }
 
     /// Frames that a sounding note takes to follow a change; none if it does not follow at all.
@@ -291,6 +221,16 @@ mod tests {
             tune fine tuning key_track sweep sweep_time sweep_curve sweep_velocity \
             vibrato vibrato_rate vibrato_delay vibrato_sync glide \
             bend_range wheel_vibrato pressure_vibrato pressure_damping release_velocity \
+            lfo1_rate lfo1_sync lfo1_shape lfo1_phase lfo1_fade lfo1_scope \
+            lfo2_rate lfo2_sync lfo2_shape lfo2_phase lfo2_fade lfo2_scope \
+            lfo3_rate lfo3_sync lfo3_shape lfo3_phase lfo3_fade lfo3_scope \
+            envelope1_delay envelope1_attack envelope1_hold envelope1_decay envelope1_sustain envelope1_release \
+            envelope1_curve \
+            envelope2_delay envelope2_attack envelope2_hold envelope2_decay envelope2_sustain envelope2_release \
+            envelope2_curve \
+            macro1 macro2 macro3 macro4 macro5 macro6 macro7 macro8 \
+            route1 route2 route3 route4 route5 route6 route7 route8 \
+            route9 route10 route11 route12 route13 route14 route15 route16 \
             voices mode choke gain pan limiter";
         assert_eq!(ids, pinned.split_whitespace().collect::<Vec<_>>());
     }

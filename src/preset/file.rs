@@ -1,15 +1,17 @@
 //! The TOML of a preset file, read key by key so that every error names its place and what would be right.
 
+use super::routes;
+use super::value::{check_keys, param_value, unexpected};
 use super::{FORMAT_VERSION, Preset};
-use crate::error::{Error, nearest};
-use crate::params::{PARAMS, Param, ParamInfo, Unit};
+use crate::error::Error;
+use crate::params::{PARAMS, Param, Unit};
 use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use crate::text::printable_lines;
 use std::fmt::Write;
 use toml::{Table, Value};
 use toml_writer::{ToTomlValue, TomlStringBuilder};
 
-const KEYS: [&str; 7] = ["format", "name", "author", "tags", "comment", "modes", "params"];
+const KEYS: [&str; 8] = ["format", "name", "author", "tags", "comment", "modes", "routes", "params"];
 
 /// Longest name, author or tag, in characters: what a list can still show.
 const MAX_LABEL: usize = 100;
@@ -33,8 +35,15 @@ fn syntax_error(text: &str, origin: &str, error: &toml::de::Error) -> Error {
 fn read(table: &Table) -> Result<Preset, String> {
     // The version first: in another version's file, its other keys mean nothing to this one.
     match table.get("format") {
-        Some(Value::Integer(FORMAT_VERSION)) => {}
-        Some(other) => return Err(format!("format {other} is unknown: this version reads format = {FORMAT_VERSION}")),
+        Some(Value::Integer(1..=FORMAT_VERSION)) => {}
+        Some(Value::Integer(newer)) if *newer > FORMAT_VERSION => {
+            return Err(format!(
+                "format {newer} is of a newer version: this one reads up to format = {FORMAT_VERSION}"
+            ));
+        }
+        Some(other) => {
+            return Err(format!("format {other} is unknown: this version reads format = 1 to {FORMAT_VERSION}"));
+        }
         None => return Err(format!("there is no ‘format’: expected format = {FORMAT_VERSION}")),
     }
     check_keys(table, "", &KEYS)?;
@@ -49,22 +58,8 @@ fn read(table: &Table) -> Result<Preset, String> {
         None => {}
     }
     patch.modes = ModeTable::new(&read_modes(table.get("modes"))?);
+    routes::read(table, &mut patch)?;
     Ok(Preset { name, author: label(table, "author")?, tags: tags(table)?, comment: text(table, "comment")?, patch })
-}
-
-fn check_keys(table: &Table, place: &str, known: &[&str]) -> Result<(), String> {
-    match table.keys().find(|key| !known.contains(&key.as_str())) {
-        None => Ok(()),
-        Some(key) => Err(match nearest(key, known.iter().copied()) {
-            Some(near) => format!("unknown key ‘{place}{key}’; the nearest is {near}"),
-            None if known.len() <= 10 => format!("unknown key ‘{place}{key}’: expected one of {}", known.join(", ")),
-            None => format!("unknown key ‘{place}{key}’; ‘sprung params’ shows them all"),
-        }),
-    }
-}
-
-fn unexpected(key: &str, expected: &str, found: &Value) -> String {
-    format!("{key}: expected {expected}, found {} ‘{}’", found.type_str(), found.to_string().trim())
 }
 
 fn text(table: &Table, key: &str) -> Result<String, String> {
@@ -109,16 +104,6 @@ fn read_params(params: &Table, patch: &mut Patch) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-fn param_value(info: &ParamInfo, value: &Value) -> Result<f32, String> {
-    match (value, info.unit) {
-        (Value::String(text), _) => info.parse(text),
-        (_, Unit::Choice) => Err(format!("‘{}’ is not one of {}", value.to_string().trim(), info.choices.join(", "))),
-        (Value::Integer(number), _) => info.check(*number as f32),
-        (Value::Float(number), _) => info.check(*number as f32),
-        (other, _) => Err(format!("expected a number or a text with a unit, found {}", other.type_str())),
-    }
 }
 
 fn read_modes(modes: Option<&Value>) -> Result<Vec<Mode>, String> {
@@ -176,10 +161,11 @@ pub(super) fn to_toml(preset: &Preset) -> String {
         }
         out.push_str("]\n");
     }
+    out.push_str(&routes::to_toml(&preset.patch));
     out.push_str("\n[params]\n");
     for info in PARAMS {
         let value = preset.patch.get(info.param);
-        if value != info.default {
+        if value != info.default && !routes::writes(&preset.patch, info.param) {
             let _ = match info.unit {
                 Unit::Choice => writeln!(out, "{} = \"{}\"", info.id, info.choices[value as usize]),
                 Unit::Count => writeln!(out, "{} = {value}", info.id),
@@ -275,9 +261,10 @@ mod tests {
     #[test]
     fn the_version_comes_before_all_else() {
         for (text, expected) in [
-            ("format = 2\nwarp = 1", "x: format 2 is unknown: this version reads format = 1"),
-            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1"),
-            ("name = \"a\"", "x: there is no ‘format’: expected format = 1"),
+            ("format = 3\nwarp = 1", "x: format 3 is of a newer version: this one reads up to format = 2"),
+            ("format = 0", "x: format 0 is unknown: this version reads format = 1 to 2"),
+            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1 to 2"),
+            ("name = \"a\"", "x: there is no ‘format’: expected format = 2"),
             ("format = 1", "x: there is no ‘name’: expected name = \"…\""),
         ] {
             assert_eq!(parse(text, "x").unwrap_err().to_string(), expected);

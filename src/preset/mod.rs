@@ -2,14 +2,16 @@
 
 mod factory;
 mod file;
+mod routes;
+mod value;
 
 use crate::error::{Error, Result, nearest};
 use crate::patch::Patch;
 use std::io::Read;
 use std::path::Path;
 
-/// The preset format that this version reads and writes.
-pub const FORMAT_VERSION: i64 = 1;
+/// The preset format that this version writes. It reads those before as well: 1 had no routes.
+pub const FORMAT_VERSION: i64 = 2;
 
 /// Largest preset file that is read, in bytes.
 pub const MAX_FILE_SIZE: u64 = 1 << 20;
@@ -33,7 +35,7 @@ impl Preset {
     /// Reads a preset. `origin` names the text in errors: a path, or where else it came from.
     ///
     /// # Errors
-    /// [`Error::Format`] for anything but a preset of [`FORMAT_VERSION`] whose every key is known and every value
+    /// [`Error::Format`] for anything but a preset of a format up to [`FORMAT_VERSION`] whose every key is known and every value
     /// in range; it names the key and what would be right.
     pub fn parse(text: &str, origin: &str) -> Result<Self> {
         file::parse(text, origin)

@@ -5,6 +5,7 @@
 
 use sprung::engine::{Event, EventKind, Expression, Notes};
 use sprung::params::Param;
+use sprung::patch::routes::{MAX_ROUTES, Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 
@@ -58,11 +59,13 @@ pub(crate) enum Kind {
     Tempo,
     Choke,
     Program,
+    /// A route of the patch, with its amount.
+    Route,
 }
 
 impl Kind {
     /// Every kind. Their order is part of the kept cases: new ones come last.
-    pub(crate) const ALL: [Kind; 18] = [
+    pub(crate) const ALL: [Kind; 19] = [
         Kind::Mode,
         Kind::Set,
         Kind::NoteOn,
@@ -81,6 +84,7 @@ impl Kind {
         Kind::Tempo,
         Kind::Choke,
         Kind::Program,
+        Kind::Route,
     ];
 }
 
@@ -89,7 +93,41 @@ impl Kind {
 pub(crate) const PARAM_IDS: &str = "exciter hardness hardness_velocity position noise_level noise_time velocity decay \
     release note_off decay_key decay_tilt tilt stretch width coefficients tune fine tuning key_track sweep sweep_time \
     sweep_curve sweep_velocity vibrato vibrato_rate vibrato_delay vibrato_sync glide bend_range wheel_vibrato \
-    pressure_vibrato pressure_damping release_velocity voices mode choke gain pan";
+    pressure_vibrato pressure_damping release_velocity voices mode choke gain pan \
+    lfo1_rate lfo1_sync lfo1_shape lfo1_phase lfo1_fade lfo1_scope lfo2_rate lfo2_sync lfo2_shape lfo2_phase \
+    lfo2_fade lfo2_scope lfo3_rate lfo3_sync lfo3_shape lfo3_phase lfo3_fade lfo3_scope \
+    envelope1_delay envelope1_attack envelope1_hold envelope1_decay envelope1_sustain envelope1_release \
+    envelope1_curve envelope2_delay envelope2_attack envelope2_hold envelope2_decay envelope2_sustain \
+    envelope2_release envelope2_curve macro1 macro2 macro3 macro4 macro5 macro6 macro7 macro8 \
+    route1 route2 route3 route4 route5 route6 route7 route8 route9 route10 route11 route12 route13 route14 route15 \
+    route16";
+
+/// What routes lead to here: all that moves pitch and damping, but nothing that the bound is made of, and the
+/// modulation's own parameters. New ones come last.
+const DESTINATIONS: [Param; 22] = [
+    Param::Tune,
+    Param::Fine,
+    Param::Decay,
+    Param::Release,
+    Param::Vibrato,
+    Param::VibratoRate,
+    Param::WheelVibrato,
+    Param::PressureVibrato,
+    Param::PressureDamping,
+    Param::BendRange,
+    Param::Sweep,
+    Param::SweepTime,
+    Param::SweepCurve,
+    Param::Hardness,
+    Param::DecayTilt,
+    Param::DecayKey,
+    Param::Lfo1Rate,
+    Param::Lfo2Rate,
+    Param::Lfo3Rate,
+    Param::Route2,
+    Param::Route3,
+    Param::Envelope1Attack,
+];
 
 /// The parameter of a number, counted round.
 pub(crate) fn param(number: u8) -> Param {
@@ -113,7 +151,7 @@ const RATES: [u32; 16] = [
     2_000, 4_000,
 ];
 const BLOCKS: [usize; 8] = [512, 1 << 16, 32, 480, 64, 7, 1, 1000];
-const CONTROLLERS: [u8; 12] = [1, 7, 10, 11, 64, 66, 67, 74, 120, 121, 123, 6];
+const CONTROLLERS: [u8; 13] = [1, 7, 10, 11, 64, 66, 67, 74, 120, 121, 123, 6, 2];
 const GARBAGE: [f32; 4] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30];
 
 /// The case of these bytes.
@@ -142,10 +180,19 @@ pub(crate) fn decode(bytes: &[u8]) -> Case {
         let param = param(number);
         patch.set(param, setting(param, high, low));
     }
+    for (_, [form, source, destination, amount]) in records().filter(|(kind, _)| *kind == Kind::Route) {
+        let place = usize::from(form) % MAX_ROUTES;
+        let numbered = |number: u8| Source::ALL[usize::from(number) % Source::ALL.len()];
+        let (source, scale) = (numbered(source), (source >= 128).then(|| numbered(source / 2)));
+        let destination = DESTINATIONS[usize::from(destination) % DESTINATIONS.len()];
+        let response = Response::ALL[usize::from(form >> 4) % Response::ALL.len()];
+        patch.routes.set(place, Some(Route { source, destination, response, scale }));
+        patch.set(amount_param(place), (f32::from(amount) - 127.5) / 1.275);
+    }
 
     let (mut events, mut now) = (vec![], 0_u32);
     for (kind, [pause, a, b, c]) in records() {
-        if matches!(kind, Kind::Mode | Kind::Set) {
+        if matches!(kind, Kind::Mode | Kind::Set | Kind::Route) {
             continue;
         }
         now += wait(pause);
@@ -271,6 +318,6 @@ fn event(kind: Kind, a: u8, b: u8, c: u8) -> EventKind {
         Kind::Tempo => EventKind::Tempo(number(between(1.0, 10_000.0, b))),
         Kind::Choke => EventKind::Choke { group: a % 18 },
         Kind::Program => EventKind::Program(a % 10),
-        Kind::Mode | Kind::Set | Kind::Roll | Kind::Registered => unreachable!("handled by the caller"),
+        Kind::Mode | Kind::Set | Kind::Route | Kind::Roll | Kind::Registered => unreachable!("handled by the caller"),
     }
 }

@@ -71,6 +71,11 @@ pub(crate) fn case(seed: u64, serial: u64) -> Vec<u8> {
         }
     }
     if s.chance(0.4) {
+        for _ in 0..1 + s.below(8) {
+            bytes.extend([byte_of(Kind::Route), s.byte(), s.byte(), s.byte(), s.edgy()]);
+        }
+    }
+    if s.chance(0.4) {
         let modes = if s.chance(0.1) { 1 + s.below(64) } else { 1 + s.below(4) };
         // Most ratios from 0.5 to 20.
         let spread = if s.chance(0.2) { 256.0 } else { 80.0 };

@@ -10,7 +10,7 @@ use super::damping::Damping;
 use super::event::Expression;
 use super::expression::Expressions;
 use super::fader::Fader;
-use super::modulation::NoteModulation;
+use super::modulation::{Bus, Modulators, NoteModulation, Positions, Settings, SharedLfos};
 use super::voice_manager::{Note, Voice};
 use crate::dsp::bank::{Bank, Law};
 use crate::dsp::exciter::{Drive, Exciter};
@@ -39,15 +39,37 @@ pub(crate) struct Instrument {
     pub(crate) controls: Controls,
     /// Pitch of the note before, in semitones, to glide from.
     pub(crate) last_pitch: Option<f64>,
+    /// The routes of the patch.
+    pub(crate) bus: Bus,
+    /// What modulators follow.
+    pub(crate) settings: Settings,
+    /// Oscillators that all voices can follow, at the last control tick.
+    pub(crate) shared: SharedLfos,
+    /// Where hands and breath are on the channel of the next note.
+    pub(crate) positions: Positions,
 }
 
 impl Instrument {
     /// An instrument with its first patch.
     pub(crate) fn new(patch: Patch, sample_rate: f64, seed: u64, controls: Controls) -> Self {
         let (patch_serial, body_serial) = (0, 0);
-        Self { patch, modulated: patch, patch_serial, body_serial, sample_rate, seed, controls, last_pitch: None }
+        Self {
+            patch,
+            modulated: patch,
+            patch_serial,
+            body_serial,
+            sample_rate,
+            seed,
+            controls,
+            last_pitch: None,
+            bus: Bus::new(&patch.routes),
+            settings: Settings::STILL,
+            shared: SharedLfos::new(seed),
+            positions: Positions::default(),
+        }
     }
 
+    /// The value of a parameter without the routes' part.
     fn value(&self, param: Param) -> f64 {
         self.modulated.get(param).into()
     }
@@ -119,6 +141,10 @@ pub(crate) struct SynthVoice {
     expressions: Expressions,
     /// What moves the instrument's parameters for this note.
     modulation: NoteModulation,
+    /// What its routes make of its sources.
+    modulators: Modulators,
+    /// The release that the modulators have still to be told of.
+    let_go: Option<f32>,
     /// −0.5 to 0.5.
     brightness: f64,
     damping: Damping,
@@ -170,6 +196,8 @@ impl SynthVoice {
             release_velocity: 0.0,
             expressions: Expressions::new(sample_rate),
             modulation: NoteModulation::NONE,
+            modulators: Modulators::none(),
+            let_go: None,
             brightness: 0.0,
             damping: Damping { decay: 1.0, release: 1.0, amount: 0.0 },
             decay_changed: false,
@@ -211,7 +239,14 @@ impl SynthVoice {
     /// Sets out for where pitch, decay and gain are to be in `frames` frames: at the next control tick.
     /// `controls` are what `smoother` has for the instrument at that time, or none for a voice of an earlier patch,
     /// which keeps the last it had.
-    pub(crate) fn control(&mut self, controls: Option<&Controls>, smoother: &Smoother, wheels: Wheels, frames: usize) {
+    pub(crate) fn control(
+        &mut self,
+        instrument: &Instrument,
+        controls: Option<&Controls>,
+        smoother: &Smoother,
+        wheels: Wheels,
+        frames: usize,
+    ) {
         let passed = self.seconds(self.age - self.controlled_age);
         self.vibrato_phase += self.controls.vibrato_rate * passed;
         self.vibrato_phase -= libm::floor(self.vibrato_phase);
@@ -219,6 +254,19 @@ impl SynthVoice {
         if let Some(controls) = controls {
             let own = !self.modulation.is_none();
             self.controls = if own { smoother.modulated(&self.modulation, frames as u32) } else { *controls };
+        }
+        if !self.modulators.are_idle() {
+            self.modulators.advance(passed);
+            if let Some(velocity) = self.let_go.take() {
+                self.modulators.release(velocity);
+            }
+            if controls.is_some() {
+                let own = |param| self.modulation.after(param, frames as u32);
+                let value = |param| own(param).unwrap_or_else(|| smoother.value_after(param, frames as u32));
+                self.modulators.follow(&instrument.settings, &instrument.shared, value);
+            }
+            // A note starts where its modulation starts: its pitch goes on from there below.
+            self.move_controls(wheels, if self.fresh { 0 } else { frames });
         }
 
         let amount = if self.released { 1.0 } else { self.controls.pressure_damping * self.pressure(wheels) };
@@ -237,6 +285,9 @@ impl SynthVoice {
         if self.fresh {
             let ratio = self.ratio(self.offset(wheels, 0));
             self.bank.jump_to(ratio);
+            if !self.modulators.are_idle() {
+                self.move_controls(wheels, frames);
+            }
         }
         self.ratio(self.offset(wheels, frames));
 
@@ -252,6 +303,15 @@ impl SynthVoice {
             self.end = None;
         }
         self.fresh = false;
+    }
+
+    /// Puts the controls where the routes want them in `frames` frames.
+    fn move_controls(&mut self, wheels: Wheels, frames: usize) {
+        let mut positions = wheels.positions(self.brightness);
+        positions.pressure = self.pressure(wheels) as f32;
+        positions.wheel = positions.wheel.max(self.expressions.vibrato);
+        let (seconds, controls) = (self.seconds(frames as u64), &mut self.controls);
+        self.modulators.control(seconds, &positions, |param, value| controls.set(param, value));
     }
 
     /// Sends the modes to the pitch that [`SynthVoice::control`] has found. Apart from it, so that what one voice
@@ -351,6 +411,10 @@ impl Voice for SynthVoice {
             brightness: note.brightness.into(),
             ..Self::new(instrument.sample_rate, instrument.controls)
         };
+        if !instrument.bus.is_empty() {
+            self.modulators.load(&instrument.bus);
+            self.strike_modulators(instrument, note, true);
+        }
         self.read_body(instrument);
         let frequency = self.place(note, instrument.controls);
         let from = instrument.last_pitch.unwrap_or(self.pitch) - self.pitch;
@@ -360,7 +424,7 @@ impl Voice for SynthVoice {
             // A new voice has a bank of the exact law already.
             self.bank = Bank::of(law, instrument.sample_rate);
         }
-        let width = instrument.value(Param::Width) * 0.01;
+        let width = self.value(instrument, Param::Width) * 0.01;
         let tuning = self.tuning(frequency);
         let setup = tuning.zip(instrument.modulated.modes.as_slice()).map(|((frequency, t60), mode)| {
             let (left, right) = super::gain::pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
@@ -371,6 +435,11 @@ impl Voice for SynthVoice {
     }
 
     fn restrike(&mut self, instrument: &Instrument, note: &Note) {
+        if !self.modulators.are_idle() {
+            self.modulators.advance(self.seconds(self.age - self.controlled_age));
+            self.let_go = None;
+            self.strike_modulators(instrument, note, false);
+        }
         self.aim(Some(instrument), note);
         self.excite(instrument, note);
         // The age starts again with the sweep; the glide starts now anyway, and the vibrato keeps its phase.
@@ -383,6 +452,7 @@ impl Voice for SynthVoice {
     }
 
     fn release(&mut self, velocity: f32) {
+        self.let_go = Some(velocity);
         if !self.rings_on {
             self.released = true;
             self.release_scale = pow(2.0, self.release_velocity * (1.0 - 2.0 * f64::from(velocity)));

@@ -7,6 +7,7 @@ use crate::dsp::pitch::{Glide, SweepEnvelope};
 use crate::dsp::random;
 use crate::engine::controls::Controls;
 use crate::engine::damping::Damping;
+use crate::engine::modulation::Struck;
 use crate::engine::voice_manager::Note;
 use crate::params::Param;
 use crate::units::gain_from_db;
@@ -32,25 +33,38 @@ const PLUCK: u32 = 2;
 const NOISE: u32 = 3;
 
 impl SynthVoice {
+    /// The value that a parameter has for this strike.
+    pub(super) fn value(&self, instrument: &Instrument, param: Param) -> f64 {
+        self.modulators.struck_value(param, |param| instrument.modulated.get(param)).into()
+    }
+
+    /// Tells the modulators of a strike, the `first` of the voice or a later one.
+    pub(super) fn strike_modulators(&mut self, instrument: &Instrument, note: &Note, first: bool) {
+        let (pitch, seed, serial) = (instrument.pitch(note), instrument.seed, note.serial);
+        let struck = Struck { velocity: note.velocity, pitch, seed, serial };
+        let Instrument { positions, settings, shared, modulated, .. } = instrument;
+        self.modulators.strike(&struck, positions, settings, shared, |param| modulated.get(param), first);
+    }
+
     /// Computes each mode's excitation gains. Returns whether noise is among them.
     pub(super) fn set_excitation_gains(&mut self, instrument: &Instrument) -> bool {
-        let value = |param| instrument.value(param);
+        let value = |param| self.value(instrument, param);
         let modes = instrument.modulated.modes.as_slice();
         let tilt = (value(Param::Tilt) + self.brightness * (2.0 * BRIGHTNESS_TILT)) / (20.0 / LOG2_10);
+        let (noise_gain, position) = (gain_from_db(value(Param::NoiseLevel)), value(Param::Position));
         let tilted = |mode: &crate::patch::Mode| f64::from(mode.level) * pow(f64::from(mode.ratio), tilt);
         let plain: f64 = modes.iter().map(|mode| fabs(mode.level.into())).sum();
         let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
         let balance = if tilt != 0.0 && total > 0.0 { plain / total } else { 1.0 };
 
         let exciter = instrument.modulated.get(Param::Exciter) as u32;
-        let noise_gain = gain_from_db(value(Param::NoiseLevel));
         // Energy is what a strike of force 1 brings: the sum of the squared levels.
         let (mut noisy, mut energy) = (false, 0.0);
         for (m, mode) in modes.iter().enumerate() {
             let level = tilted(mode) * balance;
             let struck = if exciter == NOISE { 0.0 } else { level * f64::from(mode.strike) };
             let noise = if exciter == NOISE { level } else { level * (1.0 - f64::from(mode.strike)) } * noise_gain;
-            let plucked = struck * sin(PI * value(Param::Position) * 0.01 * f64::from(mode.ratio));
+            let plucked = struck * sin(PI * position * 0.01 * f64::from(mode.ratio));
             let (push, pull) = if exciter == PLUCK { (0.0, plucked) } else { (struck, 0.0) };
             let gains = ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32 };
             self.bank.set_excitation_gains(m, gains);
@@ -64,7 +78,8 @@ impl SynthVoice {
 
     /// Reads what the patch says of a strike, and strikes.
     pub(super) fn excite(&mut self, instrument: &Instrument, note: &Note) {
-        let value = |param| instrument.value(param);
+        let modulators = self.modulators;
+        let value = |param| f64::from(modulators.struck_value(param, |param| instrument.modulated.get(param)));
         let velocity = f64::from(note.velocity);
         let percent = |param| value(param) * 0.01;
         let soft = if note.soft { SOFT_FORCE } else { 1.0 };
@@ -96,8 +111,8 @@ impl SynthVoice {
 
     /// Reads what the patch says of the body: the ratios and T60s of its modes, and how they follow the key.
     pub(super) fn read_body(&mut self, instrument: &Instrument) {
-        self.key_tracking = KeyTracking::new(|param| instrument.value(param));
-        let stretch = instrument.value(Param::Stretch);
+        self.key_tracking = KeyTracking::new(|param| self.value(instrument, param));
+        let stretch = self.value(instrument, Param::Stretch);
         for (ratio, mode) in self.ratios.iter_mut().zip(instrument.modulated.modes.as_slice()) {
             *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
         }
@@ -115,7 +130,7 @@ impl SynthVoice {
 
     /// Each mode's T60 as a multiple of the decay: the higher, the shorter; dull notes lose their high modes sooner.
     pub(super) fn scale_decay(&mut self, instrument: &Instrument) {
-        let tilt = -instrument.value(Param::DecayTilt);
+        let tilt = -self.value(instrument, Param::DecayTilt);
         let dullness = 2.0 * self.brightness.min(0.0);
         for (scale, mode) in self.t60_scale.iter_mut().zip(instrument.modulated.modes.as_slice()) {
             *scale = f64::from(mode.decay) * pow(mode.ratio.into(), tilt);
@@ -156,6 +171,7 @@ impl SynthVoice {
         }
         let controls = instrument.map_or(self.controls, |instrument| instrument.controls);
         let frequency = self.place(note, controls);
+        self.modulators.set_pitch(self.pitch);
         self.glide = Glide::new(from - self.pitch, 0.0, self.key_tracking.glide_seconds);
         self.glide_start = self.age;
         let tuning = self.tuning(frequency);

@@ -1,7 +1,10 @@
-//! A patch: one value per parameter and the table of modes. Plain data of fixed size, so that the audio thread can copy it.
+//! A patch: one value per parameter, the table of modes and the routes. Plain data of fixed size, so that the audio thread can copy it.
+
+pub mod routes;
 
 pub use crate::dsp::mode_bank::MAX_MODES;
 use crate::params::{PARAM_COUNT, PARAMS, Param};
+use routes::Routes;
 
 /// One mode of the body: one mass on its spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,12 +74,14 @@ impl PartialEq for ModeTable {
     }
 }
 
-/// A sound: a value for each parameter and the modes of its body.
+/// A sound: a value for each parameter, the modes of its body, and what moves its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     values: [f32; PARAM_COUNT],
     /// The body.
     pub modes: ModeTable,
+    /// What moves which parameter.
+    pub routes: Routes,
 }
 
 impl Default for Patch {
@@ -86,7 +91,7 @@ impl Default for Patch {
         for (value, info) in values.iter_mut().zip(PARAMS) {
             *value = info.default;
         }
-        Self { values, modes: ModeTable::new(&[Mode::UNIT]) }
+        Self { values, modes: ModeTable::new(&[Mode::UNIT]), routes: Routes::NONE }
     }
 }
 

@@ -1,0 +1,284 @@
+//! The modulation of one voice: its sources as they are now, and what the routes make of them at each control tick.
+
+use super::bus::{Bus, Sources};
+use super::envelope::{Envelope, Times};
+use super::lfo::{Lfo, Shape};
+use crate::dsp::random;
+use crate::params::{PARAMS, Param};
+use crate::patch::routes::{MAX_ROUTES, Source, amount_param};
+
+/// How many slow oscillators and envelopes there are.
+pub(crate) const LFOS: usize = 3;
+const ENVELOPES: usize = 2;
+
+/// Streams of random numbers beside those of a note's noise.
+const STRIKE_STREAM: u64 = 0x5354_5249_4b45;
+const LFO_STREAM: u64 = 0x4c46_4f00;
+
+/// The parameter of an oscillator that is `first` of the first one.
+fn of_lfo(first: Param, index: usize) -> Param {
+    let rows = Param::Lfo2Rate as usize - Param::Lfo1Rate as usize;
+    PARAMS[first as usize + index * rows].param
+}
+
+/// What voices follow of the modulators' own parameters. Plain data.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Settings {
+    /// Rounds a second.
+    rates: [f64; LFOS],
+    shapes: [Shape; LFOS],
+    macros: [f32; 8],
+    amounts: [f32; MAX_ROUTES],
+}
+
+impl Settings {
+    /// Nothing moves.
+    pub(crate) const STILL: Self =
+        Self { rates: [0.0; LFOS], shapes: [Shape::Sine; LFOS], macros: [0.0; 8], amounts: [0.0; MAX_ROUTES] };
+
+    /// Those of parameters with these values, at a tempo in beats per second.
+    pub(crate) fn new(value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
+        Self {
+            rates: std::array::from_fn(|index| {
+                let rate = f64::from(value(of_lfo(Param::Lfo1Rate, index)));
+                super::rate_at(value(of_lfo(Param::Lfo1Sync, index)), rate, beat_rate)
+            }),
+            shapes: std::array::from_fn(|index| Shape::of(value(of_lfo(Param::Lfo1Shape, index)))),
+            macros: std::array::from_fn(|index| value(PARAMS[Param::Macro1 as usize + index].param) * 0.01),
+            amounts: std::array::from_fn(|place| value(amount_param(place)) * 0.01),
+        }
+    }
+}
+
+/// Oscillators that all voices of an instrument can follow.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SharedLfos([Lfo; LFOS]);
+
+impl SharedLfos {
+    /// At their start, for a seed.
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(std::array::from_fn(|index| Lfo::new(0.0, random::key(seed, LFO_STREAM + index as u64))))
+    }
+
+    /// Lets time pass.
+    pub(crate) fn advance(&mut self, settings: &Settings, seconds: f64) {
+        self.0.iter_mut().zip(settings.rates).for_each(|(lfo, rate)| lfo.advance(rate * seconds));
+    }
+}
+
+/// Positions of what hands and breath hold.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Positions {
+    pub(crate) pressure: f32,
+    pub(crate) timbre: f32,
+    pub(crate) bend: f32,
+    pub(crate) wheel: f32,
+    pub(crate) breath: f32,
+    pub(crate) expression: f32,
+}
+
+/// What a strike says that stays until the next.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Struck {
+    pub(crate) velocity: f32,
+    /// In semitones on the MIDI scale.
+    pub(crate) pitch: f64,
+    pub(crate) seed: u64,
+    /// Counts the notes.
+    pub(crate) serial: u64,
+}
+
+/// The modulation of one voice. Real-time safe.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Modulators {
+    bus: Bus,
+    settings: Settings,
+    sources: Sources,
+    /// How far each destination of the bus is moved.
+    offsets: [f32; MAX_ROUTES],
+    /// Values of the destinations without that.
+    bases: [f32; MAX_ROUTES],
+    /// Rounds a second as they are modulated.
+    rates: [f64; LFOS],
+    lfos: [Lfo; LFOS],
+    /// Share of a round at which each oscillator starts.
+    phases: [f64; LFOS],
+    /// Seconds in which it fades in.
+    fades: [f64; LFOS],
+    /// Whether it is where the shared one is. A copy of that: a voice that outlives its patch goes on by itself.
+    are_shared: [bool; LFOS],
+    envelopes: [Envelope; ENVELOPES],
+    /// Seconds since the strike.
+    age: f64,
+}
+
+impl Modulators {
+    /// Without routes.
+    pub(crate) fn none() -> Self {
+        Self {
+            bus: Bus::EMPTY,
+            settings: Settings::STILL,
+            sources: [0.0; Source::ALL.len()],
+            offsets: [0.0; MAX_ROUTES],
+            bases: [0.0; MAX_ROUTES],
+            rates: [0.0; LFOS],
+            lfos: [Lfo::new(0.0, 0); LFOS],
+            phases: [0.0; LFOS],
+            fades: [0.0; LFOS],
+            are_shared: [false; LFOS],
+            envelopes: [Envelope::REST; ENVELOPES],
+            age: 0.0,
+        }
+    }
+
+    /// Whether there are no routes: then there is nothing to do.
+    pub(crate) fn are_idle(&self) -> bool {
+        self.bus.is_empty()
+    }
+
+    /// Takes over the routes of an instrument. Those that a voice is started with are its own until it ends.
+    pub(crate) fn load(&mut self, bus: &Bus) {
+        self.bus = *bus;
+    }
+
+    /// A note is struck, while hands and breath are where they are. `value` has the instrument's parameters. A
+    /// `first` strike starts the oscillators.
+    pub(crate) fn strike(
+        &mut self,
+        struck: &Struck,
+        positions: &Positions,
+        settings: &Settings,
+        shared: &SharedLfos,
+        value: impl Fn(Param) -> f32,
+        first: bool,
+    ) {
+        let stream = random::key(struck.seed ^ STRIKE_STREAM, struck.serial);
+        self.settings = *settings;
+        let strike = [
+            (Source::Velocity, struck.velocity),
+            (Source::ReleaseVelocity, 0.0),
+            (Source::Key, key_position(struck.pitch)),
+            (Source::Random, random::uniform(stream, 0)),
+            (Source::Alternation, if struck.serial.is_multiple_of(2) { 1.0 } else { -1.0 }),
+        ];
+        strike.into_iter().for_each(|(source, value)| self.sources[source as usize] = value);
+        self.age = 0.0;
+        for index in 0..LFOS {
+            let value = |param| f64::from(value(of_lfo(param, index)));
+            self.phases[index] = value(Param::Lfo1Phase) * 0.01;
+            self.fades[index] = value(Param::Lfo1Fade);
+            self.are_shared[index] = value(Param::Lfo1Scope) != 0.0;
+            if first {
+                let stream = random::key(stream, LFO_STREAM + index as u64);
+                self.lfos[index] = Lfo::new(self.phases[index], stream);
+            }
+        }
+        self.share(shared);
+        if first {
+            self.rates = settings.rates;
+            self.envelopes = [Envelope::REST; ENVELOPES];
+        }
+        // At the strike, oscillators and envelopes are at their start; the envelopes' own times follow from that.
+        self.read(0.0, positions);
+        self.offsets = self.bus.offsets(&self.sources, self.settings.amounts);
+        for index in 0..ENVELOPES {
+            let times = Times::new(index, |param| f64::from(self.struck_value(param, &value)));
+            self.envelopes[index].strike(times);
+        }
+    }
+
+    /// The value that a parameter has for the strike.
+    pub(crate) fn struck_value(&self, param: Param, value: impl Fn(Param) -> f32) -> f32 {
+        let place = self.bus.destinations().iter().position(|destination| destination.param == param);
+        match place {
+            Some(place) => self.bus.destinations()[place].moved(value(param), self.offsets[place]),
+            None => value(param),
+        }
+    }
+
+    /// The key has come up.
+    pub(crate) fn release(&mut self, velocity: f32) {
+        self.sources[Source::ReleaseVelocity as usize] = velocity;
+        self.envelopes.iter_mut().for_each(Envelope::release);
+    }
+
+    /// Lets time pass.
+    pub(crate) fn advance(&mut self, seconds: f64) {
+        self.age += seconds;
+        self.lfos.iter_mut().zip(self.rates).for_each(|(lfo, rate)| lfo.advance(rate * seconds));
+        self.envelopes.iter_mut().for_each(|envelope| envelope.advance(seconds));
+    }
+
+    /// The note has slid to another pitch, in semitones on the MIDI scale.
+    pub(crate) fn set_pitch(&mut self, pitch: f64) {
+        self.sources[Source::Key as usize] = key_position(pitch);
+    }
+
+    /// Takes over the instrument's present settings and values, and where its oscillators are.
+    pub(crate) fn follow(&mut self, settings: &Settings, shared: &SharedLfos, value: impl Fn(Param) -> f32) {
+        self.settings = *settings;
+        self.share(shared);
+        for (destination, base) in self.bus.destinations().iter().zip(&mut self.bases) {
+            *base = value(destination.param);
+        }
+    }
+
+    /// Finds where the destinations are to be in some seconds, and hands each with its value to `set`.
+    pub(crate) fn control(&mut self, seconds: f64, positions: &Positions, mut set: impl FnMut(Param, f32)) {
+        self.read(seconds, positions);
+        self.rates = self.settings.rates;
+        self.offsets = self.bus.offsets(&self.sources, self.settings.amounts);
+        for (place, destination) in self.bus.destinations().iter().enumerate() {
+            let value = destination.moved(self.bases[place], self.offsets[place]);
+            match (0..LFOS).find(|index| of_lfo(Param::Lfo1Rate, *index) == destination.param) {
+                Some(index) => self.rates[index] = f64::from(value),
+                None => set(destination.param, value),
+            }
+        }
+    }
+
+    fn share(&mut self, shared: &SharedLfos) {
+        for (index, common) in shared.0.iter().enumerate().filter(|(index, _)| self.are_shared[*index]) {
+            self.lfos[index] = *common;
+            self.lfos[index].advance(self.phases[index]);
+        }
+    }
+
+    /// Reads the sources that move while a note sounds, as they will be in some seconds.
+    fn read(&mut self, seconds: f64, positions: &Positions) {
+        let held = [
+            (Source::Pressure, positions.pressure),
+            (Source::Timbre, positions.timbre),
+            (Source::Bend, positions.bend),
+            (Source::Wheel, positions.wheel),
+            (Source::Breath, positions.breath),
+            (Source::Expression, positions.expression),
+        ];
+        held.into_iter().for_each(|(source, value)| self.sources[source as usize] = value);
+        for index in 0..LFOS {
+            let source = Source::Lfo1 as usize + index;
+            if self.bus.reads(Source::ALL[source]) {
+                let mut lfo = self.lfos[index];
+                lfo.advance(self.rates[index] * seconds);
+                let age = self.age + seconds;
+                let fade = if age < self.fades[index] { (age / self.fades[index]) as f32 } else { 1.0 };
+                self.sources[source] = fade * lfo.value(self.settings.shapes[index]);
+            }
+        }
+        for (index, envelope) in self.envelopes.iter().enumerate() {
+            let source = Source::Envelope1 as usize + index;
+            if self.bus.reads(Source::ALL[source]) {
+                let mut envelope = *envelope;
+                envelope.advance(seconds);
+                self.sources[source] = envelope.level();
+            }
+        }
+        let macros = &mut self.sources[Source::Macro1 as usize..];
+        macros.iter_mut().zip(self.settings.macros).for_each(|(source, value)| *source = value);
+    }
+}
+
+/// Where a pitch lies for [`Source::Key`].
+fn key_position(pitch: f64) -> f32 {
+    ((pitch - 60.0) / 60.0).clamp(-1.0, 1.0) as f32
+}

@@ -1,0 +1,30 @@
+//! Rows of the modes, and how they ring.
+
+macro_rules! body {
+    ({ $($before:tt)* } $next:ident $($rest:ident)*) => {
+        $next! { { $($before)*
+    "Body" {
+        Decay "decay" "Decay", Seconds 0.005..60.0 = 1.0, Logarithmic, Smoothed(20), [],
+            "Time in which a held note falls by 60 dB (T60).";
+        Release "release" "Release", Seconds 0.005..60.0 = 0.3, Logarithmic, Smoothed(20), [],
+            "Longest T60 once the note is released: the damper.";
+        NoteOff "note_off" "Note off", Choice 0.0..1.0 = 0.0, Linear, NextNote, ["damp", "ring"],
+            "Whether a released note is damped or rings on as a drum does.";
+        DecayKey "decay_key" "Decay by key", Percent -100.0..100.0 = 0.0, Linear, NextNote, [],
+            "How higher keys decay faster: at 100 % the T60 halves per octave above C4.";
+        DecayTilt "decay_tilt" "Decay by mode", Number 0.0..2.0 = 0.0, Linear, NextNote, [],
+            "How higher modes decay faster: the T60 of a mode is divided by its ratio to this power.";
+        Tilt "tilt" "Brightness", DecibelsPerOctave -24.0..24.0 = 0.0, Linear, NextNote, [],
+            "Tilts the levels of the modes by their ratio.";
+        Stretch "stretch" "Stretch", Number 0.5..2.0 = 1.0, Linear, NextNote, [],
+            "Raises the ratios of the modes to this power: spreads or squeezes the spectrum.";
+        Width "width" "Width", Percent 0.0..100.0 = 100.0, Linear, NextNote, [],
+            "How far apart the modes are panned.";
+        Coefficients "coefficients" "Coefficients", Choice 0.0..1.0 = 0.0, Linear, NextNote, ["exact", "classic"],
+            "Exact tuning and decay, or the original formulas with their drift, clamped short of exploding.";
+    }
+        } $($rest)* }
+    };
+}
+
+pub(super) use body;

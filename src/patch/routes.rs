@@ -1,0 +1,210 @@
+//! Routes: which source moves which parameter, and how.
+//!
+//! How far is the value of the parameter `route1` to `route16`, so that a host can automate it and a route can move it.
+
+use crate::params::{PARAMS, Param};
+
+/// Most routes of a sound.
+pub const MAX_ROUTES: usize = 16;
+
+macro_rules! named {
+    ($(#[$about:meta])* $name:ident { $($(#[$help:meta])* $variant:ident $id:literal,)* }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $name {
+            $($(#[$help])* $variant,)*
+        }
+
+        impl $name {
+            /// All of them, in order.
+            pub const ALL: &'static [$name] = &[$($name::$variant,)*];
+
+            /// Stable identifier in files.
+            pub fn id(self) -> &'static str {
+                match self {
+                    $($name::$variant => $id,)*
+                }
+            }
+
+            /// The one with this identifier.
+            pub fn from_id(id: &str) -> Option<Self> {
+                Self::ALL.iter().copied().find(|one| one.id() == id)
+            }
+        }
+    };
+}
+
+named! {
+    /// What can move parameters, each note its own. Those of a strike keep their value until the next.
+    Source {
+        /// Velocity of the strike, 0–1.
+        Velocity "velocity",
+        /// How quickly the key came up, 0–1; 0 until then.
+        ReleaseVelocity "release_velocity",
+        /// The note's pitch: octaves from C4, a fifth of them: −1 is MIDI key 0, 1 is key 120.
+        Key "key",
+        /// A random number of the strike, −1 to 1.
+        Random "random",
+        /// 1 for one strike, −1 for the next.
+        Alternation "alternation",
+        /// Pressure on the key or channel, 0–1.
+        Pressure "pressure",
+        /// Brightness of the note and its channel (controller 74), −1 to 1.
+        Timbre "timbre",
+        /// The pitch wheel, −1 to 1.
+        Bend "bend",
+        /// The modulation wheel, or the note's vibrato expression, 0–1.
+        Wheel "wheel",
+        /// Breath (controller 2), 0–1.
+        Breath "breath",
+        /// Expression (controller 11), 0–1.
+        Expression "expression",
+        /// The first slow oscillator, −1 to 1.
+        Lfo1 "lfo1",
+        /// The second, −1 to 1.
+        Lfo2 "lfo2",
+        /// The third, −1 to 1.
+        Lfo3 "lfo3",
+        /// The first envelope, 0–1.
+        Envelope1 "envelope1",
+        /// The second, 0–1.
+        Envelope2 "envelope2",
+        /// A knob, 0–1.
+        Macro1 "macro1",
+        /// A knob, 0–1.
+        Macro2 "macro2",
+        /// A knob, 0–1.
+        Macro3 "macro3",
+        /// A knob, 0–1.
+        Macro4 "macro4",
+        /// A knob, 0–1.
+        Macro5 "macro5",
+        /// A knob, 0–1.
+        Macro6 "macro6",
+        /// A knob, 0–1.
+        Macro7 "macro7",
+        /// A knob, 0–1.
+        Macro8 "macro8",
+    }
+}
+
+named! {
+    /// What a route makes of its source before it counts: 0 stays 0, ±1 stay, and both sides are bent alike.
+    Response {
+        /// As it is.
+        Linear "linear",
+        /// Its square: little at first.
+        Squared "squared",
+        /// Its square root: much at first.
+        Root "root",
+        /// `x² (3 − 2x)`: little at both ends.
+        Smooth "smooth",
+    }
+}
+
+impl Response {
+    /// The bent value of a source from −1 to 1. Real-time safe.
+    pub fn apply(self, value: f32) -> f32 {
+        let magnitude = value.abs();
+        match self {
+            Response::Linear => value,
+            Response::Squared => value * magnitude,
+            Response::Root => libm::sqrtf(magnitude).copysign(value),
+            Response::Smooth => value * magnitude * (3.0 - 2.0 * magnitude),
+        }
+    }
+}
+
+/// A route: a source that moves a parameter. Its place in [`Routes`] says which parameter has its amount.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Route {
+    /// What moves it.
+    pub source: Source,
+    /// What is moved: one that is [`crate::params::ParamInfo::is_modulatable`].
+    pub destination: Param,
+    /// How the source counts.
+    pub response: Response,
+    /// A second source that scales the first.
+    pub scale: Option<Source>,
+}
+
+/// Up to [`MAX_ROUTES`] routes. Plain data of fixed size, so that the audio thread can copy it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Routes([Option<Route>; MAX_ROUTES]);
+
+impl Routes {
+    /// No route.
+    pub const NONE: Routes = Routes([None; MAX_ROUTES]);
+
+    /// The route at a place, 0 to 15.
+    pub fn get(&self, place: usize) -> Option<Route> {
+        self.0.get(place).copied().flatten()
+    }
+
+    /// Puts a route at a place, or takes away the one that is there. Places beyond the last change nothing, as do
+    /// routes to what cannot be modulated.
+    pub fn set(&mut self, place: usize, route: Option<Route>) {
+        let is_allowed = route.is_none_or(|route| route.destination.info().is_modulatable());
+        if let Some(slot) = self.0.get_mut(place).filter(|_| is_allowed) {
+            *slot = route;
+        }
+    }
+
+    /// The routes with their places.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, Route)> + '_ {
+        self.0.iter().enumerate().filter_map(|(place, route)| Some((place, (*route)?)))
+    }
+}
+
+/// The parameter that has the amount of the route at a place, 0 to 15; that of the last beyond them.
+pub fn amount_param(place: usize) -> Param {
+    PARAMS[Param::Route1 as usize + place.min(MAX_ROUTES - 1)].param
+}
+
+/// The place of the route whose amount a parameter is.
+pub fn place_of_amount(param: Param) -> Option<usize> {
+    (param as usize).checked_sub(Param::Route1 as usize).filter(|place| *place < MAX_ROUTES)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_read_back() {
+        assert!(Source::ALL.iter().all(|source| Source::from_id(source.id()) == Some(*source)));
+        assert!(Response::ALL.iter().all(|response| Response::from_id(response.id()) == Some(*response)));
+        assert_eq!(Source::from_id("lfo4"), None);
+    }
+
+    #[test]
+    fn responses_keep_the_ends_and_the_middle() {
+        for response in Response::ALL {
+            assert_eq!([-1.0, 0.0, 1.0].map(|value| response.apply(value)), [-1.0, 0.0, 1.0], "{response:?}");
+            assert_eq!(response.apply(-0.3), -response.apply(0.3), "{response:?}");
+        }
+        assert_eq!(Response::Smooth.apply(0.5), 0.5);
+    }
+
+    #[test]
+    fn every_place_has_its_amount() {
+        for place in 0..MAX_ROUTES {
+            assert_eq!(amount_param(place).info().id, format!("route{}", place + 1));
+            assert_eq!(place_of_amount(amount_param(place)), Some(place));
+        }
+        assert_eq!(place_of_amount(Param::Macro8), None);
+        assert_eq!(place_of_amount(Param::Voices), None);
+    }
+
+    #[test]
+    fn what_cannot_be_moved_has_no_route() {
+        let route = |destination| Route { source: Source::Lfo1, destination, response: Response::Linear, scale: None };
+        let mut routes = Routes::NONE;
+        for param in [Param::Exciter, Param::Voices, Param::Limiter, Param::Glide] {
+            routes.set(0, Some(route(param)));
+        }
+        assert_eq!(routes, Routes::NONE);
+        routes.set(15, Some(route(Param::Route1)));
+        assert_eq!(routes.iter().collect::<Vec<_>>(), [(15, route(Param::Route1))]);
+    }
+}

@@ -1,0 +1,33 @@
+//! TOML values as the parts of a preset file read them, with errors that say what would be right.
+
+use crate::error::nearest;
+use crate::params::{ParamInfo, Unit};
+use toml::{Table, Value};
+
+/// That a table at `place` (empty, or ending in a dot) has no other keys than these.
+pub(super) fn check_keys(table: &Table, place: &str, known: &[&str]) -> Result<(), String> {
+    match table.keys().find(|key| !known.contains(&key.as_str())) {
+        None => Ok(()),
+        Some(key) => Err(match nearest(key, known.iter().copied()) {
+            Some(near) => format!("unknown key ‘{place}{key}’; the nearest is {near}"),
+            None if known.len() <= 10 => format!("unknown key ‘{place}{key}’: expected one of {}", known.join(", ")),
+            None => format!("unknown key ‘{place}{key}’; ‘sprung params’ shows them all"),
+        }),
+    }
+}
+
+/// What was expected of a key, and what is there.
+pub(super) fn unexpected(key: &str, expected: &str, found: &Value) -> String {
+    format!("{key}: expected {expected}, found {} ‘{}’", found.type_str(), found.to_string().trim())
+}
+
+/// A parameter's value: a number in its unit, or a text with one.
+pub(super) fn param_value(info: &ParamInfo, value: &Value) -> Result<f32, String> {
+    match (value, info.unit) {
+        (Value::String(text), _) => info.parse(text),
+        (_, Unit::Choice) => Err(format!("‘{}’ is not one of {}", value.to_string().trim(), info.choices.join(", "))),
+        (Value::Integer(number), _) => info.check(*number as f32),
+        (Value::Float(number), _) => info.check(*number as f32),
+        (other, _) => Err(format!("expected a number or a text with a unit, found {}", other.type_str())),
+    }
+}

@@ -1,0 +1,224 @@
+//! What routes do to a note: every source and kind of destination, heard.
+
+use sprung::engine::{Event, EventKind, Expression, Notes, Synth};
+use sprung::params::{Param, Param::*};
+use sprung::patch::Patch;
+use sprung::patch::routes::{Response, Route, Source, amount_param};
+
+const RATE: f64 = 48_000.0;
+
+fn event(frame: u32, kind: EventKind) -> Event {
+    Event { frame, channel: 0, kind }
+}
+
+fn on(frame: u32, key: u8, velocity: f32) -> Event {
+    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 })
+}
+
+fn off(frame: u32, key: u8) -> Event {
+    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+}
+
+fn control(frame: u32, controller: u8, value: f32) -> Event {
+    event(frame, EventKind::Control { controller, value })
+}
+
+/// A long note of one mass, at full level whatever the velocity, with routes: source, destination, per cent of travel.
+fn patch(routes: &[(Source, Param, f32)]) -> Patch {
+    let mut patch = Patch::default().with(Decay, 60.0).with(Velocity, 0.0).with(Limiter, 0.0).with(Release, 60.0);
+    for (place, (source, destination, amount)) in routes.iter().enumerate() {
+        let route = Route { source: *source, destination: *destination, response: Response::Linear, scale: None };
+        patch.routes.set(place, Some(route));
+        patch.set(amount_param(place), *amount);
+    }
+    patch
+}
+
+fn render(patch: &Patch, seed: u64, events: &[Event], frames: usize) -> Vec<f32> {
+    let mut synth = Synth::new(RATE, seed);
+    synth.set_patch(patch);
+    let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
+    synth.process(events, &mut left, &mut right);
+    left
+}
+
+/// Largest magnitude of 100 ms from a time on.
+fn peak(sound: &[f32], seconds: f64) -> f32 {
+    let start = (seconds * RATE) as usize;
+    sound[start..start + 4800].iter().fold(0.0, |peak, sample| peak.max(sample.abs()))
+}
+
+/// Frequency of 100 ms from a time on, by the first and last upward zero crossing.
+fn frequency(sound: &[f32], seconds: f64) -> f64 {
+    let start = (seconds * RATE) as usize;
+    let part = &sound[start..start + 4800];
+    let crossings: Vec<f64> = part
+        .windows(2)
+        .enumerate()
+        .filter(|(_, pair)| pair[0] < 0.0 && pair[1] >= 0.0)
+        .map(|(n, pair)| n as f64 + f64::from(pair[0] / (pair[0] - pair[1])))
+        .collect();
+    (crossings.len() - 1) as f64 * RATE / (crossings[crossings.len() - 1] - crossings[0])
+}
+
+#[track_caller]
+fn assert_near(found: f64, expected: f64, tolerance: f64) {
+    assert!((found / expected - 1.0).abs() < tolerance, "{found}, not {expected}");
+}
+
+/// How far a source moves the gain of a note, in dB: 12 dB by a sixth of the knob.
+#[track_caller]
+fn assert_moves_gain(source: Source, events: &[Event], expected_db: f64) {
+    let frames = 24_000;
+    let moved = render(&patch(&[(source, Gain, 100.0 / 6.0)]), 0, events, frames);
+    let plain = render(&patch(&[]), 0, events, frames);
+    let found = 20.0 * libm::log10(f64::from(peak(&moved, 0.35) / peak(&plain, 0.35)));
+    assert!((found - expected_db).abs() < 0.02, "{source:?}: {found} dB, not {expected_db}");
+}
+
+#[test]
+fn sources_of_the_strike_and_the_hand_move_a_gain() {
+    let pressure = event(9600, EventKind::ChannelPressure(0.5));
+    let key_pressure = event(9600, EventKind::PolyPressure { key: 60, pressure: 0.5 });
+    let timbre = EventKind::Express { notes: Notes::default(), expression: Expression::Brightness, value: 0.25 };
+    for (source, events, expected) in [
+        (Source::Velocity, vec![on(0, 60, 0.5)], 6.0),
+        (Source::ReleaseVelocity, vec![on(0, 60, 1.0), off(2400, 60)], 6.0),
+        (Source::Key, vec![on(0, 90, 1.0)], 6.0),
+        (Source::Key, vec![on(0, 30, 1.0)], -6.0),
+        (Source::Alternation, vec![on(0, 60, 1.0)], 12.0),
+        (Source::Alternation, vec![on(0, 60, 1.0), on(4800, 60, 1.0)], -12.0),
+        (Source::Pressure, vec![on(0, 60, 1.0), pressure], 6.0),
+        (Source::Pressure, vec![on(0, 60, 1.0), key_pressure], 6.0),
+        (Source::Timbre, vec![on(0, 60, 1.0), event(9600, timbre)], -6.0),
+        (Source::Bend, vec![on(0, 60, 1.0), event(9600, EventKind::PitchBend(-1.0))], -12.0),
+        (Source::Wheel, vec![on(0, 60, 1.0), control(9600, 1, 1.0)], 12.0),
+        (Source::Breath, vec![on(0, 60, 1.0), control(9600, 2, 0.5)], 6.0),
+        (Source::Expression, vec![on(0, 60, 1.0), control(9600, 11, 0.5)], 6.0),
+        (Source::Macro3, vec![on(0, 60, 1.0), event(9600, EventKind::Param { param: Macro3, value: 25.0 })], 3.0),
+        (Source::Envelope1, vec![on(0, 60, 1.0)], 6.0),
+    ] {
+        // Vibrato by wheel and pressure would not change levels, but crossings of the two would differ.
+        assert_moves_gain(source, &events, expected);
+    }
+}
+
+#[test]
+fn an_oscillator_at_the_vibrato_s_rate_and_depth_is_a_vibrato() {
+    let vibrato = patch(&[]).with(Vibrato, 96.0).with(VibratoRate, 6.0);
+    // 96 cents are 1 % of the travel of `tune`.
+    let routed = patch(&[(Source::Lfo1, Tune, 1.0)]).with(Lfo1Rate, 6.0);
+    let events = [on(100, 69, 1.0)];
+    let (expected, found) = (render(&vibrato, 0, &events, 48_000), render(&routed, 0, &events, 48_000));
+    let worst = expected.iter().zip(&found).fold(0.0f32, |worst, (a, b)| worst.max((a - b).abs()));
+    assert!(worst < 2e-3, "{worst}");
+}
+
+#[test]
+fn a_tempo_sets_the_rate_and_a_fade_lets_it_begin_slowly() {
+    // A square that lasts a beat: up for half a beat, down for the other half.
+    let square = patch(&[(Source::Lfo2, Tune, 10.0)]).with(Lfo2Sync, 4.0).with(Lfo2Shape, 3.0);
+    let sound = render(&square, 0, &[event(0, EventKind::Tempo(60.0)), on(0, 69, 1.0)], 96_000);
+    let (up, down) = (440.0 * libm::exp2(9.6 / 12.0), 440.0 * libm::exp2(-9.6 / 12.0));
+    for (seconds, expected) in [(0.1, up), (0.6, down), (1.1, up), (1.6, down)] {
+        assert_near(frequency(&sound, seconds), expected, 1e-4);
+    }
+    let sound =
+        render(&square.with(Lfo2Fade, 1.0).with(Lfo2Sync, 0.0).with(Lfo2Rate, 0.01), 0, &[on(0, 69, 1.0)], 96_000);
+    assert_near(frequency(&sound, 0.45), 440.0 * libm::exp2(4.8 / 12.0), 2e-3);
+    assert_near(frequency(&sound, 1.5), up, 1e-4);
+}
+
+#[test]
+fn an_envelope_follows_the_key() {
+    let envelope = patch(&[(Source::Envelope2, Tune, 12.5)])
+        .with(Envelope2Delay, 0.2)
+        .with(Envelope2Attack, 0.001)
+        .with(Envelope2Hold, 0.2)
+        .with(Envelope2Decay, 0.001)
+        .with(Envelope2Sustain, 50.0)
+        .with(Envelope2Release, 0.001);
+    let sound = render(&envelope, 0, &[on(0, 57, 1.0), off(38_400, 57)], 58_000);
+    for (seconds, semitones) in [(0.05, 0.0), (0.25, 12.0), (0.5, 6.0), (0.9, 0.0)] {
+        assert_near(frequency(&sound, seconds), 220.0 * libm::exp2(semitones / 12.0), 1e-4);
+    }
+}
+
+#[test]
+fn what_a_strike_reads_is_moved_by_what_it_knows() {
+    // Velocity makes the sweep: 15 semitones at full velocity.
+    let routed = patch(&[(Source::Velocity, Sweep, 12.5)]).with(SweepTime, 0.2);
+    for velocity in [0.25, 1.0] {
+        let plain = patch(&[]).with(SweepTime, 0.2).with(Sweep, 15.0 * velocity);
+        let events = [on(0, 60, velocity)];
+        assert!(render(&routed, 0, &events, 9600) == render(&plain, 0, &events, 9600), "{velocity}");
+    }
+    // As do the modulators' own times.
+    let envelope = |amount| patch(&[(Source::Velocity, Envelope1Hold, amount), (Source::Envelope1, Tune, 12.5)]);
+    let plain = envelope(0.0).with(Envelope1Hold, 5.0);
+    assert!(render(&envelope(50.0), 0, &[on(0, 60, 1.0)], 48_000) == render(&plain, 0, &[on(0, 60, 1.0)], 48_000));
+}
+
+#[test]
+fn random_strikes_differ_and_repeat_with_the_seed() {
+    let random =
+        patch(&[(Source::Random, Tune, 10.0), (Source::Lfo3, Gain, 20.0)]).with(Lfo3Shape, 4.0).with(Lfo3Rate, 40.0);
+    let events = [on(0, 60, 1.0)];
+    let sound = |seed| render(&random, seed, &events, 9600);
+    assert!(sound(1) == sound(1) && sound(1) != sound(2));
+    let twice = render(&random, 1, &[on(0, 60, 1.0), off(100, 60), on(24_000, 72, 1.0)], 48_000);
+    assert!(libm::log2(frequency(&twice, 0.1) / 261.63).abs() > 1e-4, "it is moved");
+}
+
+#[test]
+fn routes_scale_each_other() {
+    let mut by_wheel = patch(&[(Source::Macro1, Tune, 12.5), (Source::Wheel, Route1, -50.0)]);
+    let pitch = |patch: &Patch, wheel| {
+        let full = event(0, EventKind::Param { param: Macro1, value: 100.0 });
+        let sound = render(patch, 0, &[full, control(0, 1, wheel), on(0, 57, 1.0)], 20_000);
+        12.0 * libm::log2(frequency(&sound, 0.2) / 220.0)
+    };
+    // Vibrato by the wheel would blur what is measured.
+    by_wheel.set(WheelVibrato, 0.0);
+    // Half of the travel of an amount is from 12.5 % to −87.5 %.
+    assert!((pitch(&by_wheel, 0.0) - 12.0).abs() < 0.01);
+    assert!((pitch(&by_wheel, 0.125) - 0.0).abs() < 0.01);
+    let mut scaled = patch(&[(Source::Macro1, Tune, 12.5)]).with(WheelVibrato, 0.0);
+    let route = scaled.routes.get(0).unwrap();
+    scaled.routes.set(0, Some(Route { scale: Some(Source::Wheel), response: Response::Squared, ..route }));
+    assert!((pitch(&scaled, 0.25) - 3.0).abs() < 0.01);
+    assert!((pitch(&scaled.with(Macro1, 50.0), 0.0) - 0.0).abs() < 0.01);
+}
+
+#[test]
+fn a_shared_oscillator_is_the_same_for_all_notes() {
+    let one = patch(&[(Source::Lfo1, Tune, 5.0)]).with(Lfo1Rate, 1.0).with(Lfo1Shape, 2.0);
+    for (scope, same) in [(1.0, true), (0.0, false)] {
+        let patch = one.with(Lfo1Scope, scope);
+        let late = render(&patch.with(Voices, 1.0), 0, &[on(0, 45, 1.0), on(14_400, 57, 1.0)], 48_000);
+        let early = render(&patch, 0, &[on(0, 57, 1.0)], 48_000);
+        let ratio = frequency(&late, 0.6) / frequency(&early, 0.6);
+        // Within 100 ms of a rise by 10 semitones a second, crossings are counted from one period or the next.
+        assert_eq!((ratio - 1.0).abs() < 4e-3, same, "{ratio}");
+    }
+}
+
+#[test]
+fn a_note_keeps_its_routes_when_the_patch_changes() {
+    let vibrato = patch(&[(Source::Lfo1, Tune, 2.0), (Source::Wheel, Gain, 10.0)]);
+    let mut synth = Synth::new(RATE, 0);
+    synth.set_patch(&vibrato);
+    let mut sound = [vec![0.0; 48_000], vec![0.0; 48_000]];
+    let [left, right] = &mut sound;
+    synth.process(&[on(0, 69, 1.0)], &mut left[..4800], &mut right[..4800]);
+    synth.set_patch(&patch(&[(Source::Macro1, Tune, 50.0)]).with(Macro1, 100.0));
+    synth.process(&[], &mut left[4800..], &mut right[4800..]);
+    assert!(sound[0] == render(&vibrato, 0, &[on(0, 69, 1.0)], 48_000));
+}
+
+#[test]
+fn a_route_without_amount_changes_nothing() {
+    let events = [on(0, 60, 0.8), on(2000, 64, 0.3), off(9000, 60)];
+    let idle = patch(&[(Source::Lfo1, Tune, 0.0), (Source::Velocity, Decay, 0.0), (Source::Envelope1, Gain, 0.0)]);
+    assert!(render(&idle, 0, &events, 24_000) == render(&patch(&[]), 0, &events, 24_000));
+}
