@@ -1,9 +1,11 @@
-//! `cargo xtask patch`: the plugin's wrapper, nice-plug, as crates.io has it but for the corrections in this folder.
+//! `cargo xtask patch`: packages of the plugin's, as crates.io has them but for the corrections in this folder.
 //!
-//! They keep its VST3 from ending its host and from leaving file descriptors behind. ARCHITECTURE.md, “Around the
-//! wrapper”, tells the faults in the words of a report.
+//! They keep the wrapper's VST3 from ending its host and from leaving file descriptors behind, and see to it that a
+//! window is gone once it is closed. ARCHITECTURE.md, “Around the wrapper”, tells the faults in the words of a report.
 
+mod baseview;
 mod calls;
+mod digest;
 mod edit;
 mod run_loop;
 mod window;
@@ -12,103 +14,163 @@ mod worker;
 use crate::files::{copy, make_folder_of, replace, write};
 use crate::shell::{cargo, root};
 use edit::Edit;
-use sha2::{Digest as _, Sha256};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The version that the corrections are for.
-const VERSION: &str = "0.4.2";
+/// A package that is corrected.
+struct Package {
+    name: &'static str,
+    /// The version that the corrections are for.
+    version: &'static str,
+    /// The SHA-256 of that version's files, as [`digest::of_folder`] reckons it.
+    source: &'static str,
+    /// The corrections, fault by fault.
+    edits: &'static [&'static [Edit]],
+}
 
-/// The SHA-256 of that version's files, as [`digest_of`] reckons it.
-const SOURCE: &str = "391d811e2293b24ebd2b8fa589194d71b32ae003415a61e5ba6222c7abcb7961";
+const PACKAGES: [Package; 2] = [
+    Package {
+        name: "nice-plug",
+        version: "0.4.2",
+        source: "391d811e2293b24ebd2b8fa589194d71b32ae003415a61e5ba6222c7abcb7961",
+        edits: &[worker::EDITS, window::EDITS, run_loop::EDITS, calls::EDITS],
+    },
+    Package {
+        name: "baseview",
+        version: "0.4.2",
+        source: "010bdeb0ca653a1a2568e52137b4496548ec0fa7d74594a03f04c3e864603840",
+        edits: &[baseview::EDITS],
+    },
+];
 
-/// The corrections, fault by fault.
-const EDITS: [&[Edit]; 4] = [worker::EDITS, window::EDITS, run_loop::EDITS, calls::EDITS];
-
-/// Where plugin/Cargo.toml looks for the wrapper. The folder's name is in cargo's message if the wrapper is not there.
-const PLACE: &str = "target/run-cargo-xtask-patch/nice-plug";
+/// Where plugin/Cargo.toml looks for the packages. The folder's name is in cargo's message if they are not there.
+const PLACE: &str = "target/run-cargo-xtask-patch";
 
 /// A file beside the patched source, with the digest of what it was made with.
 const STAMP: &str = "made-with";
 
-/// Writes the patched wrapper to where the plugin's workspace expects it, unless it is there already.
+/// Writes the patched packages to where the plugin's workspace expects them, unless they are there already.
 ///
 /// # Errors
 /// If the plugin asks for another version than the corrections were made for, if the source of that version cannot be
 /// had or is not the one that they were made for, or if it cannot be written.
-pub(crate) fn run() -> Result<PathBuf, String> {
-    check_version(&read(&root().join("plugin/Cargo.toml"))?)?;
-    let place = root().join(PLACE);
-    let wanted = stamp();
-    if fs::read_to_string(place.join(STAMP)).is_ok_and(|found| found == wanted) {
-        return Ok(place);
-    }
-    let source = source()?;
-    let found = digest_of(&source)?;
-    if found != SOURCE {
-        return Err(format!(
-            "{}: this is not nice-plug {VERSION} as crates.io has it (SHA-256 {found} in place of {SOURCE}): delete \
-             the folder, and cargo will unpack it again",
-            source.display()
-        ));
-    }
-    make_folder_of(&place)?;
-    replace(&place, |aside| {
-        copy(&source, aside)?;
-        // Files of the registry may be read-only; those that are edited are written anew.
-        for file in files() {
-            let path = aside.join(file);
-            let text = apply(file, &read(&path)?)?;
-            fs::remove_file(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-            write(&path, &text)?;
+pub(crate) fn run() -> Result<(), String> {
+    let manifest = read(&root().join("plugin/Cargo.toml"))?;
+    PACKAGES.iter().try_for_each(|package| package.patch(&manifest))
+}
+
+impl Package {
+    /// Writes the package with its corrections, unless it is there already.
+    fn patch(&self, manifest: &str) -> Result<(), String> {
+        self.check_version(manifest)?;
+        let Self { name, version, .. } = self;
+        let place = root().join(PLACE).join(name);
+        let wanted = self.stamp();
+        if fs::read_to_string(place.join(STAMP)).is_ok_and(|found| found == wanted) {
+            return Ok(());
         }
-        write(&aside.join(STAMP), &wanted)
-    })?;
-    println!("{}: nice-plug {VERSION} with {} corrections", place.display(), edits().count());
-    Ok(place)
-}
-
-/// Whether the plugin asks for the version that the rule is for.
-fn check_version(manifest: &str) -> Result<(), String> {
-    let manifest: toml::Table = manifest.parse().map_err(|error| format!("plugin/Cargo.toml: {error}"))?;
-    let asked = manifest["dependencies"]["nice-plug"]["version"].as_str().unwrap_or("no version");
-    if asked == format!("={VERSION}") {
-        return Ok(());
+        let source = self.source()?;
+        let found = digest::of_folder(&source)?;
+        if found != self.source {
+            return Err(format!(
+                "{}: this is not {name} {version} as crates.io has it (SHA-256 {found} in place of {}): delete the \
+                 folder, and cargo will unpack it again",
+                source.display(),
+                self.source
+            ));
+        }
+        make_folder_of(&place)?;
+        replace(&place, |aside| {
+            copy(&source, aside)?;
+            // Files of the registry may be read-only; those that are edited are written anew.
+            for file in self.files() {
+                let path = aside.join(file);
+                let text = self.apply(file, &read(&path)?)?;
+                fs::remove_file(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+                write(&path, &text)?;
+            }
+            write(&aside.join(STAMP), &wanted)
+        })?;
+        println!("{}: {name} {version} with {} corrections", place.display(), self.edits().count());
+        Ok(())
     }
-    Err(format!(
-        "plugin/Cargo.toml asks for nice-plug {asked}, and the corrections in xtask/src/patch are for \
-         ={VERSION}: look which of them that version still needs (ARCHITECTURE.md, “Around the wrapper”), then write \
-         its number and the SHA-256 of its source there"
-    ))
-}
 
-/// The folder in which cargo keeps the source of the registry's nice-plug, fetched if need be.
-fn source() -> Result<PathBuf, String> {
-    // A package that depends on the wrapper and nothing else, with the plugin's own versions of all below.
-    let folder = root().join("target/run-cargo-xtask-patch/fetch");
-    let manifest = format!(
-        "[package]\nname = \"fetch\"\nedition = \"2024\"\n[workspace]\n[lib]\npath = \"lib.rs\"\n[dependencies]\n\
-         nice-plug = {{ version = \"={VERSION}\", default-features = false }}\n"
-    );
-    write(&folder.join("Cargo.toml"), &manifest)?;
-    write(&folder.join("lib.rs"), "")?;
-    write(&folder.join("Cargo.lock"), &read(&root().join("plugin/Cargo.lock"))?)?;
-    let mut command = cargo("metadata --format-version 1 --filter-platform");
-    let output = command
-        .arg(host()?)
-        .arg("--manifest-path")
-        .arg(folder.join("Cargo.toml"))
-        .output()
-        .map_err(|error| format!("cargo: {error}"))?;
-    if !output.status.success() {
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        return Err(format!("the source of nice-plug {VERSION} cannot be fetched:\n{said}"));
+    /// Whether the plugin asks for the version that the corrections are for.
+    fn check_version(&self, manifest: &str) -> Result<(), String> {
+        let Self { name, version, .. } = self;
+        let manifest: toml::Table = manifest.parse().map_err(|error| format!("plugin/Cargo.toml: {error}"))?;
+        let asked = manifest["dependencies"].get(name).and_then(|package| package["version"].as_str());
+        let asked = asked.unwrap_or("no version");
+        if asked == format!("={version}") {
+            return Ok(());
+        }
+        Err(format!(
+            "plugin/Cargo.toml asks for {name} {asked}, and the corrections in xtask/src/patch are for ={version}: look \
+             which of them that version still needs (ARCHITECTURE.md, “Around the wrapper”), then write its number and \
+             the SHA-256 of its source there"
+        ))
     }
-    let metadata: serde_json::Value =
-        serde_json::from_slice(&output.stdout).map_err(|error| format!("cargo metadata: {error}"))?;
-    let package = metadata["packages"].as_array().into_iter().flatten().find(|package| package["name"] == "nice-plug");
-    let manifest = package.and_then(|package| package["manifest_path"].as_str()).map(Path::new);
-    manifest.and_then(Path::parent).map(Path::to_owned).ok_or_else(|| "cargo metadata: no nice-plug in it".to_owned())
+
+    /// The folder in which cargo keeps the registry's source of the package, fetched if need be.
+    fn source(&self) -> Result<PathBuf, String> {
+        let Self { name, version, .. } = self;
+        // A package that depends on this one and nothing else, with the plugin's own versions of all below.
+        let folder = root().join(PLACE).join("fetch");
+        let manifest = format!(
+            "[package]\nname = \"fetch\"\nedition = \"2024\"\n[workspace]\n[lib]\npath = \"lib.rs\"\n[dependencies]\n\
+             {name} = {{ version = \"={version}\", default-features = false }}\n"
+        );
+        write(&folder.join("Cargo.toml"), &manifest)?;
+        write(&folder.join("lib.rs"), "")?;
+        write(&folder.join("Cargo.lock"), &read(&root().join("plugin/Cargo.lock"))?)?;
+        let mut command = cargo("metadata --format-version 1 --filter-platform");
+        let output = command
+            .arg(host()?)
+            .arg("--manifest-path")
+            .arg(folder.join("Cargo.toml"))
+            .output()
+            .map_err(|error| format!("cargo: {error}"))?;
+        if !output.status.success() {
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            return Err(format!("the source of {name} {version} cannot be fetched:\n{said}"));
+        }
+        let metadata: serde_json::Value =
+            serde_json::from_slice(&output.stdout).map_err(|error| format!("cargo metadata: {error}"))?;
+        let package = metadata["packages"].as_array().into_iter().flatten().find(|package| package["name"] == *name);
+        let manifest = package.and_then(|package| package["manifest_path"].as_str()).map(Path::new);
+        manifest.and_then(Path::parent).map(Path::to_owned).ok_or_else(|| format!("cargo metadata: no {name} in it"))
+    }
+
+    fn edits(&self) -> impl Iterator<Item = &'static Edit> {
+        self.edits.iter().copied().flatten()
+    }
+
+    /// The files that are edited, each once.
+    fn files(&self) -> Vec<&'static str> {
+        let mut files: Vec<_> = self.edits().map(|edit| edit.file).collect();
+        files.sort_unstable();
+        files.dedup();
+        files
+    }
+
+    /// A file of the package with its corrections.
+    fn apply(&self, file: &str, text: &str) -> Result<String, String> {
+        let mut text = text.to_owned();
+        for Edit { old, new, times, .. } in self.edits().filter(|edit| edit.file == file) {
+            let found = text.matches(old).count();
+            if found != *times {
+                return Err(format!("{}'s {file} has this {found} times in place of {times}:\n{old}", self.name));
+            }
+            text = text.replace(old, new);
+        }
+        Ok(text)
+    }
+
+    /// The digest of everything that the patched source depends on.
+    fn stamp(&self) -> String {
+        let edits = self.edits().map(|Edit { file, old, new, .. }| format!("{file}\n{old}\n{new}\n"));
+        digest::of_texts([self.source.to_owned()].into_iter().chain(edits))
+    }
 }
 
 /// The target that this machine's compiler builds for.
@@ -118,77 +180,6 @@ fn host() -> Result<String, String> {
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let host = text.lines().find_map(|line| line.strip_prefix("host: "));
     host.map(str::to_owned).ok_or_else(|| format!("rustc -vV names no host: {text}"))
-}
-
-fn edits() -> impl Iterator<Item = &'static Edit> {
-    EDITS.into_iter().flatten()
-}
-
-/// The files that are edited, each once.
-fn files() -> Vec<&'static str> {
-    let mut files: Vec<_> = edits().map(|edit| edit.file).collect();
-    files.sort_unstable();
-    files.dedup();
-    files
-}
-
-/// A file of the wrapper with its corrections.
-fn apply(file: &str, text: &str) -> Result<String, String> {
-    let mut text = text.to_owned();
-    for Edit { old, new, times, .. } in edits().filter(|edit| edit.file == file) {
-        let found = text.matches(old).count();
-        if found != *times {
-            return Err(format!("nice-plug's {file} has this {found} times in place of {times}:\n{old}"));
-        }
-        text = text.replace(old, new);
-    }
-    Ok(text)
-}
-
-/// The digest of all files in a package's folder with their paths, but for what cargo adds when it unpacks them.
-fn digest_of(folder: &Path) -> Result<String, String> {
-    let mut files = Vec::new();
-    list(folder, &mut files)?;
-    let mut paths: Vec<(String, PathBuf)> = files
-        .into_iter()
-        .map(|path| {
-            let inside = path.strip_prefix(folder).expect("it was found in the folder");
-            let parts: Vec<_> = inside.iter().map(|part| part.to_string_lossy()).collect();
-            (parts.join("/"), path)
-        })
-        .filter(|(name, _)| name != ".cargo-ok")
-        .collect();
-    paths.sort();
-    let mut sum = Sha256::new();
-    for (name, path) in paths {
-        let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        sum.update(format!("{name}\n{}\n", bytes.len()));
-        sum.update(bytes);
-    }
-    Ok(hex(sum))
-}
-
-/// The digest of everything that the patched source depends on.
-fn stamp() -> String {
-    let mut sum = Sha256::new();
-    sum.update(SOURCE);
-    for Edit { file, old, new, .. } in edits() {
-        sum.update(format!("{file}\n{old}\n{new}\n"));
-    }
-    hex(sum)
-}
-
-fn hex(sum: Sha256) -> String {
-    sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), String> {
-    let failed = |error: std::io::Error| format!("{}: {error}", folder.display());
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if path.is_dir() { list(&path, files)? } else { files.push(path) }
-    }
-    Ok(())
 }
 
 fn read(path: &Path) -> Result<String, String> {
@@ -206,40 +197,27 @@ mod tests {
 
     #[test]
     fn another_version_is_refused_with_what_to_do() {
-        let asks = |version: &str| format!("[dependencies]\nnice-plug = {{ version = \"{version}\" }}");
-        assert_eq!(check_version(&asks("=0.4.2")), Ok(()));
-        for version in ["=0.4.3", "0.4.2", "^0.4"] {
-            let message = check_version(&asks(version)).unwrap_err();
-            assert!(message.contains(&format!("asks for nice-plug {version},")), "{message}");
-            assert!(message.contains("are for =0.4.2") && message.contains("xtask/src/patch"), "{message}");
+        for package in PACKAGES {
+            let name = package.name;
+            let asks = |version: &str| format!("[dependencies]\n{name} = {{ version = \"{version}\" }}");
+            assert_eq!(package.check_version(&asks("=0.4.2")), Ok(()));
+            for version in ["=0.4.3", "0.4.2", "^0.4"] {
+                let message = package.check_version(&asks(version)).unwrap_err();
+                assert!(message.contains(&format!("asks for {name} {version},")), "{message}");
+                assert!(message.contains("are for =0.4.2") && message.contains("xtask/src/patch"), "{message}");
+            }
+            let message = package.check_version("[dependencies]").unwrap_err();
+            assert!(message.contains(&format!("asks for {name} no version,")), "{message}");
         }
     }
 
     #[test]
     fn every_edit_says_what_it_finds() {
-        for edit in edits() {
+        for edit in PACKAGES.iter().flat_map(Package::edits) {
             assert!(edit.old != edit.new && !edit.old.is_empty() && edit.times > 0, "{}", edit.old);
         }
-        let message = apply(edit::WORKER, "something else").unwrap_err();
+        let message = PACKAGES[0].apply(edit::WORKER, "something else").unwrap_err();
         assert!(message.contains(edit::WORKER) && message.contains("0 times in place of 1"), "{message}");
-    }
-
-    #[test]
-    fn the_digest_knows_every_byte_and_path() {
-        let folder = root().join("target/tmp").join(format!("digest-{}", std::process::id()));
-        let digest = |files: &[(&str, &str)]| {
-            for (name, text) in files {
-                write(&folder.join(name), text).unwrap();
-            }
-            let digest = digest_of(&folder).unwrap();
-            fs::remove_dir_all(&folder).unwrap();
-            digest
-        };
-        let first = digest(&[("a", "1"), ("b/c", "2")]);
-        assert_eq!(first, digest(&[("b/c", "2"), ("a", "1"), (".cargo-ok", "unpacked")]));
-        assert_ne!(first, digest(&[("a", "1"), ("b/c", "3")]));
-        assert_ne!(first, digest(&[("a", "1"), ("b/d", "2")]));
-        assert_ne!(first, digest(&[("a", "1"), ("b/c", "2"), ("e", "")]));
     }
 
     /// The plugin is a workspace of its own and cannot inherit: what both have must be the same.
@@ -258,7 +236,9 @@ mod tests {
             table(&plugin, &["profile", "release", "debug"]),
             "line numbers"
         );
-        let place = table(&plugin, &["patch", "crates-io", "nice-plug", "path"]).as_str().unwrap();
-        assert_eq!(place, format!("../{PLACE}"));
+        for Package { name, .. } in PACKAGES {
+            let place = table(&plugin, &["patch", "crates-io", name, "path"]).as_str().unwrap();
+            assert_eq!(place, format!("../{PLACE}/{name}"));
+        }
     }
 }
