@@ -4,7 +4,6 @@ use crate::process::{Stops, command, succeeds, wait_until};
 use crate::screen::{Onlooker, Screen};
 use crate::vst3_host::{Automation, Block, FRAMES, Frame, FrameWithoutLoop, Module, Vst3, threads_called};
 use sprung::params::PARAMS;
-use std::os::unix::process::ExitStatusExt;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
@@ -25,24 +24,11 @@ const WARM_UP: usize = 5;
 const WORKER: &str = "bg-worker";
 
 pub(crate) fn the_window_comes_and_goes_while_parameters_are_automated() {
-    // Beside all other tests one run in three ended with a segmentation fault whose place is not known yet (alone, none
-    // did). An abort, which is what this test is about, fails at once; so does a second fault.
-    for attempt in 1..=2 {
-        let screen = Screen::new();
-        let mut storm = command("storm");
-        storm.env("DISPLAY", &screen.display);
-        let output = storm.output().expect("the test's own program runs");
-        if output.status.success() {
-            return;
-        }
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(attempt == 1 && output.status.signal() == Some(SEGMENTATION_FAULT), "{}\n{said}", output.status);
-        eprintln!("{}: once more", output.status);
-    }
+    let screen = Screen::new();
+    let mut storm = command("storm");
+    storm.env("DISPLAY", &screen.display);
+    succeeds(storm);
 }
-
-/// The number of the signal on Linux.
-const SEGMENTATION_FAULT: i32 = 11;
 
 pub(crate) fn instances_end_while_their_changes_are_told() {
     succeeds(command("endings"));
@@ -133,8 +119,9 @@ fn windows() {
         let view = plugin.open_window(&with_loop, parent);
         view.close();
         let held = held.expect("it was counted");
+        // The clipboard's thread ends a little after its window: there may have been one more then, and may be now.
         wait_until(&format!("{held:?} files and threads, as after {WARM_UP} windows, not {:?}", held_now()), || {
-            held_now() == held
+            held_now().iter().zip(held).all(|(now, then)| *now <= then)
         });
         drop(stops);
         playing.join().unwrap();
