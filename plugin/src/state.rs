@@ -196,7 +196,7 @@ mod tests {
             (change("\"gain\":0.12345678", "\"gain\":null"), "not a state of Sprung: invalid type: null"),
             (change("\"gain\":0.12345678", "\"mode\":0.5"), "positions.mode: 0.5 is not a position of that knob"),
             (change("\"gain\":0.12345678", "\"gian\":0.5"), "positions: there is no parameter ‘gian’"),
-            (change("format = 1", "format = 9"), "the state's preset: format 9 is unknown"),
+            (change("format = 2", "format = 9"), "the state's preset: format 9 is of a newer version"),
             (change("decay = 0.12345679", "decay = nan"), "the state's preset: params.decay: NaN is out of range"),
             (change("decay = 0.12345679", "decya = 1"), "the state's preset: unknown key ‘params.decya’"),
             (change("ratio = ", "ratio = -"), "the state's preset: modes[0].ratio: -"),

@@ -8,6 +8,7 @@ pub mod limiter;
 pub mod mode_bank;
 pub mod oscillator;
 pub mod pitch;
+pub mod power;
 pub mod ramp;
 pub mod random;
 pub mod real;
@@ -21,6 +22,7 @@ pub use coefficients::Coefficients;
 pub use limiter::Limiter;
 pub use mode_bank::ModeBank;
 pub use oscillator::HarmonicOscillator;
+pub use power::power_of_two;
 pub use simd::Level;
 
 /// Frames between two control ticks. Frozen: pitch and gain move in straight lines between ticks.

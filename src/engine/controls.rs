@@ -1,7 +1,8 @@
 //! The parameters that sounding voices follow, smoothed.
 
 use super::gain::pan_gains;
-use super::modulation::{NoteModulation, Settings, rate_at};
+use super::modulation::{Bus, NoteModulation, Settings, rate_at};
+use crate::dsp::power_of_two;
 use crate::dsp::ramp::Ramp;
 use crate::params::{PARAM_COUNT, PARAMS, Param};
 use crate::patch::Patch;
@@ -15,6 +16,8 @@ pub(crate) struct Smoother {
     ramps: [Ramp; PARAM_COUNT],
     /// Frames until all have arrived.
     moving: u32,
+    /// Counts what has been set.
+    changes: u32,
     /// What voices follow once they have.
     arrived: Controls,
 }
@@ -24,12 +27,13 @@ impl Smoother {
     pub(crate) fn new(sample_rate: f64, patch: &Patch, beat_rate: f64) -> Self {
         let ramps = std::array::from_fn(|index| Ramp::at_rest(patch.get(PARAMS[index].param)));
         let arrived = Controls::new(|param| patch.get(param), beat_rate);
-        Self { sample_rate, beat_rate, ramps, moving: 0, arrived }
+        Self { sample_rate, beat_rate, ramps, moving: 0, changes: 0, arrived }
     }
 
     /// Sets the tempo, in beats per second.
     pub(crate) fn set_tempo(&mut self, beat_rate: f64) {
         self.beat_rate = beat_rate;
+        self.changes = self.changes.wrapping_add(1);
         self.arrived = self.at(u32::MAX);
     }
 
@@ -45,6 +49,7 @@ impl Smoother {
             && ramp.after(u32::MAX) != value
         {
             ramp.set(value, frames);
+            self.changes = self.changes.wrapping_add(1);
             self.moving = self.moving.max(frames);
             self.arrived = self.at(u32::MAX);
         }
@@ -67,9 +72,16 @@ impl Smoother {
         Controls::new(|param| self.value_after(param, frames), self.beat_rate)
     }
 
-    /// What modulators follow, `frames` frames from now.
-    pub(crate) fn settings_after(&self, frames: u32) -> Settings {
-        Settings::new(|param| self.value_after(param, frames), self.beat_rate)
+    /// What modulators follow next, `frames` frames from now; none if that is what they followed when there had been so
+    /// many changes.
+    pub(crate) fn settings_after(&self, frames: u32, before: &Settings, bus: &Bus, changes: u32) -> Option<Settings> {
+        let next = || before.next(bus, |param| self.value_after(param, frames), self.beat_rate);
+        (self.moving > 0 || changes != self.changes).then(next)
+    }
+
+    /// Counts what has been set.
+    pub(crate) fn changes(&self) -> u32 {
+        self.changes
     }
 
     /// The value of a parameter, `frames` frames from now.
@@ -146,6 +158,7 @@ impl Controls {
     }
 
     /// Puts one parameter at a value that modulation has found. Those that are read elsewhere change nothing here.
+    /// [`Controls::find_gains`] must follow, since level and pan make the gains together.
     pub(crate) fn set(&mut self, param: Param, value: f32) {
         let wide = f64::from(value);
         match param {
@@ -161,14 +174,29 @@ impl Controls {
             Param::PressureVibrato => self.pressure_vibrato = wide * 0.01,
             Param::PressureDamping => self.pressure_damping = wide * 0.01,
             Param::BendRange => self.bend_range = value,
-            Param::Gain | Param::Pan => {
-                *(if param == Param::Gain { &mut self.gain_db } else { &mut self.pan }) = value;
-                (self.gain_left, self.gain_right) = gains(self.gain_db, self.pan);
-            }
+            Param::Gain => self.gain_db = value,
+            Param::Pan => self.pan = value,
             _ => {}
         }
     }
+
+    /// Takes over a level and a pan that differ from these.
+    pub(crate) fn find_gains(&mut self, [gain_db, pan]: [f32; 2]) {
+        if [self.gain_db, self.pan] != [gain_db, pan] {
+            let (left, right) = pan_gains(self.pan * 0.005 + 0.5);
+            let gain = power_of_two(self.gain_db * DOUBLINGS_PER_DB);
+            (self.gain_left, self.gain_right) = (gain * left, gain * right);
+        }
+    }
+
+    /// What the gains come from.
+    pub(crate) fn level_and_pan(&self) -> [f32; 2] {
+        [self.gain_db, self.pan]
+    }
 }
+
+/// log₂ 10 / 20.
+const DOUBLINGS_PER_DB: f32 = std::f32::consts::LOG2_10 / 20.0;
 
 fn semitones(coarse: f32, fine: f32) -> f64 {
     f64::from(coarse) + f64::from(fine) * 0.01

@@ -33,6 +33,8 @@ pub struct Synth {
     gains_moving: u32,
     /// A patch since the start has had routes.
     has_routes: bool,
+    /// Changes of the smoother that the instrument's settings have seen.
+    settings_changes: u32,
     /// The frame at which the instrument's shared oscillators are.
     shared_clock: u64,
     /// Counts the notes started.
@@ -61,6 +63,7 @@ impl Synth {
             offsets: [0.0; PARAM_COUNT],
             gains_moving: 0,
             has_routes: false,
+            settings_changes: u32::MAX,
             shared_clock: 0,
             note_serial: 0,
             clock: 0,
@@ -86,6 +89,7 @@ impl Synth {
         self.limiter.reset();
         self.instrument.modulated = self.instrument.patch;
         self.smoother = Smoother::new(sample_rate, &self.instrument.modulated, DEFAULT_BEAT_RATE);
+        self.settings_changes = u32::MAX;
         self.instrument.controls = self.smoother.after(0);
         self.instrument.last_pitch = None;
         self.instrument.bus = Bus::new(&self.instrument.patch.routes);
@@ -119,6 +123,7 @@ impl Synth {
         // Voices of the old patch keep its controls, so the new ones need no slope.
         let beat_rate = self.smoother.beat_rate();
         self.smoother = Smoother::new(self.instrument.sample_rate, &self.instrument.modulated, beat_rate);
+        self.settings_changes = u32::MAX;
         self.configure();
     }
 
@@ -388,7 +393,11 @@ impl Synth {
     fn move_shared(&mut self, ahead: u32) {
         let seconds = (self.clock - self.shared_clock) as f64 / self.instrument.sample_rate;
         self.shared_clock = self.clock;
-        self.instrument.settings = self.smoother.settings_after(ahead);
+        let Instrument { bus, settings, .. } = &self.instrument;
+        if let Some(settings) = self.smoother.settings_after(ahead, settings, bus, self.settings_changes) {
+            self.instrument.settings = settings;
+        }
+        self.settings_changes = self.smoother.changes();
         self.instrument.shared.advance(&self.instrument.settings, seconds);
     }
 

@@ -1,10 +1,14 @@
 //! The routes of a sound in the order in which they count, and how far they move what they lead to.
 
-use crate::params::{Curve, Param};
+use crate::dsp::power_of_two;
+use crate::params::{Change, Curve, Param};
 use crate::patch::routes::{MAX_ROUTES, Response, Routes, Source, place_of_amount};
 
+/// How many sources there are.
+pub(crate) const SOURCES: usize = Source::ALL.len();
+
 /// Values of all sources, by `Source as usize`.
-pub(crate) type Sources = [f32; Source::ALL.len()];
+pub(crate) type Sources = [f32; SOURCES];
 
 /// What the routes lead to, and the routes to each: those that move amounts of others come first, and otherwise the
 /// order of their places counts. Plain data.
@@ -26,36 +30,69 @@ struct Link {
     scale: Option<Source>,
     response: Response,
     to: u8,
+    /// The place of the route whose amount is moved.
+    moves: Option<u8>,
 }
 
 /// A parameter that routes lead to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Destination {
     pub(crate) param: Param,
-    /// The parameter's range, or the logarithm of the ratio of its ends.
-    span: f64,
+    pub(crate) target: Target,
+    min: f32,
+    max: f32,
+    /// The parameter's range, or how often its ends are doubled.
+    span: f32,
+    is_logarithmic: bool,
+}
+
+/// Who heeds a destination.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// The next strike.
+    Strike,
+    /// What sounding voices follow.
+    Control,
+    /// The rate of an oscillator.
+    Lfo(u8),
 }
 
 impl Destination {
+    const NONE: Self =
+        Self { param: Param::Gain, target: Target::Strike, min: 0.0, max: 0.0, span: 0.0, is_logarithmic: false };
+
+    fn new(param: Param) -> Self {
+        let info = param.info();
+        let is_logarithmic = info.curve == Curve::Logarithmic;
+        let (min, max) = (info.min, info.max);
+        let octaves = || libm::log2(f64::from(max) / f64::from(min)) as f32;
+        let target = match (param, info.change) {
+            (Param::Lfo1Rate, _) => Target::Lfo(0),
+            (Param::Lfo2Rate, _) => Target::Lfo(1),
+            (Param::Lfo3Rate, _) => Target::Lfo(2),
+            (_, Change::Smoothed(_)) if place_of_amount(param).is_none() => Target::Control,
+            _ => Target::Strike,
+        };
+        Self { param, target, min, max, span: if is_logarithmic { octaves() } else { max - min }, is_logarithmic }
+    }
+
     /// A value moved by an offset in knob travel, within the parameter's range. Real-time safe.
     pub(crate) fn moved(&self, value: f32, offset: f32) -> f32 {
-        let (info, way) = (self.param.info(), f64::from(offset) * self.span);
-        let moved = match info.curve {
-            Curve::Linear => f64::from(value) + way,
-            Curve::Logarithmic => f64::from(value) * libm::exp(way),
-        };
-        (moved as f32).clamp(info.min, info.max)
+        let way = offset * self.span;
+        let moved = if self.is_logarithmic { value * power_of_two(way) } else { value + way };
+        moved.clamp(self.min, self.max)
     }
 }
 
 impl Bus {
     /// No routes.
     pub(crate) const EMPTY: Self = {
-        let link = Link { place: 0, source: Source::Velocity, scale: None, response: Response::Linear, to: 0 };
+        let (source, response) = (Source::Velocity, Response::Linear);
+        let link = Link { place: 0, source, scale: None, response, to: 0, moves: None };
         Self {
             links: [link; MAX_ROUTES],
             links_len: 0,
-            destinations: [Destination { param: Param::Gain, span: 0.0 }; MAX_ROUTES],
+            destinations: [Destination::NONE; MAX_ROUTES],
             destinations_len: 0,
             read: 0,
         }
@@ -70,12 +107,13 @@ impl Bus {
                 let param = route.destination;
                 let known = bus.destinations().iter().position(|destination| destination.param == param);
                 let to = known.unwrap_or_else(|| {
-                    bus.destinations[bus.destinations_len] = Destination { param, span: span(param) };
+                    bus.destinations[bus.destinations_len] = Destination::new(param);
                     bus.destinations_len += 1;
                     bus.destinations_len - 1
                 });
                 let (source, scale, response) = (route.source, route.scale, route.response);
-                bus.links[bus.links_len] = Link { place: place as u8, source, scale, response, to: to as u8 };
+                let moves = place_of_amount(param).map(|place| place as u8);
+                bus.links[bus.links_len] = Link { place: place as u8, source, scale, response, to: to as u8, moves };
                 bus.links_len += 1;
                 bus.read |= 1 << source as u32 | scale.map_or(0, |scale| 1 << scale as u32);
             }
@@ -87,9 +125,9 @@ impl Bus {
         self.links_len == 0
     }
 
-    /// Whether any route reads a source.
-    pub(crate) fn reads(&self, source: Source) -> bool {
-        self.read & 1 << source as u32 != 0
+    /// Whether any route reads the source that is so many after `first`.
+    pub(crate) fn reads_nth(&self, first: Source, nth: usize) -> bool {
+        self.read & 1 << (first as usize + nth) != 0
     }
 
     /// What the routes lead to; offsets are in this order.
@@ -99,27 +137,19 @@ impl Bus {
 
     /// How far each destination is moved, in knob travel, by sources with these values through routes with these
     /// amounts. Real-time safe.
-    pub(crate) fn offsets(&self, sources: &Sources, mut amounts: [f32; MAX_ROUTES]) -> [f32; MAX_ROUTES] {
-        let mut offsets = [0.0; MAX_ROUTES];
+    pub(crate) fn offsets(&self, sources: &Sources, amounts: &[f32; MAX_ROUTES]) -> [f32; MAX_ROUTES] {
+        let (mut amounts, mut offsets) = (*amounts, [0.0; MAX_ROUTES]);
         for link in &self.links[..self.links_len] {
             let scale = link.scale.map_or(1.0, |scale| sources[scale as usize]);
             let way = amounts[usize::from(link.place)] * link.response.apply(sources[link.source as usize]) * scale;
-            let to = usize::from(link.to);
-            offsets[to] += way;
-            if let Some(place) = place_of_amount(self.destinations[to].param) {
+            offsets[usize::from(link.to)] += way;
+            if let Some(place) = link.moves {
                 // Knob travel of an amount is half of its range, which is from −1 to 1.
-                amounts[place] = (amounts[place] + 2.0 * way).clamp(-1.0, 1.0);
+                let amount = &mut amounts[usize::from(place)];
+                *amount = (*amount + 2.0 * way).clamp(-1.0, 1.0);
             }
         }
         offsets
-    }
-}
-
-fn span(param: Param) -> f64 {
-    let (min, max) = (f64::from(param.info().min), f64::from(param.info().max));
-    match param.info().curve {
-        Curve::Linear => max - min,
-        Curve::Logarithmic => libm::log(max / min),
     }
 }
 
@@ -143,15 +173,15 @@ mod tests {
         for (source, value) in
             [(Source::Velocity, 0.5), (Source::Lfo1, -1.0), (Source::Wheel, 0.25), (Source::Bend, -0.5)]
         {
-            assert!(bus.reads(source));
+            assert!(bus.reads_nth(source, 0));
             sources[source as usize] = value;
         }
-        assert!(!bus.reads(Source::Random));
+        assert!(!bus.reads_nth(Source::Random, 0));
         let mut amounts = [9.0; MAX_ROUTES];
         (amounts[3], amounts[5], amounts[7]) = (0.5, 1.0, -1.0);
         let params: Vec<_> = bus.destinations().iter().map(|destination| destination.param).collect();
         assert_eq!(params, [Param::Gain, Param::Decay]);
-        assert_eq!(bus.offsets(&sources, amounts)[..2], [0.0, 0.25]);
+        assert_eq!(bus.offsets(&sources, &amounts)[..2], [0.0, 0.25]);
     }
 
     #[test]
@@ -165,7 +195,7 @@ mod tests {
             (sources[Source::Lfo1 as usize], sources[Source::Wheel as usize]) = (1.0, 0.5);
             let mut amounts = [0.0; MAX_ROUTES];
             amounts[mover] = 0.25;
-            let offsets = bus.offsets(&sources, amounts);
+            let offsets = bus.offsets(&sources, &amounts);
             assert_eq!(bus.destinations()[1].param, Param::Tune);
             assert_eq!(offsets[1], 0.25, "half of a quarter, twice");
         }
@@ -173,7 +203,7 @@ mod tests {
 
     #[test]
     fn values_move_along_the_knob_and_stay_in_range() {
-        let destination = |param| Destination { param, span: span(param) };
+        let destination = Destination::new;
         assert_eq!(destination(Param::Gain).moved(-24.0, 0.25), -6.0);
         assert_eq!(destination(Param::Gain).moved(-24.0, 9.0), 12.0);
         let decay = destination(Param::Decay);

@@ -41,6 +41,9 @@ pub(crate) struct Lfo {
 }
 
 impl Lfo {
+    /// At the start of a round that is not told from others.
+    pub(crate) const REST: Self = Self { phase: 0.0, round: 0, stream: 0 };
+
     /// At the start of its first round, less the share `phase` of it that is left out.
     pub(crate) fn new(phase: f64, stream: u64) -> Self {
         Self { phase: phase - libm::floor(phase), round: 0, stream }
@@ -49,8 +52,8 @@ impl Lfo {
     /// Goes on by some rounds, any number from 0.
     pub(crate) fn advance(&mut self, rounds: f64) {
         let phase = self.phase + rounds;
-        let whole = libm::floor(phase);
-        self.phase = phase - whole;
+        let whole = phase as i64;
+        self.phase = phase - whole as f64;
         self.round = self.round.wrapping_add(whole as u64);
     }
 

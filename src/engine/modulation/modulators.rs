@@ -1,6 +1,6 @@
 //! The modulation of one voice: its sources as they are now, and what the routes make of them at each control tick.
 
-use super::bus::{Bus, Sources};
+use super::bus::{Bus, SOURCES, Sources, Target};
 use super::envelope::{Envelope, Times};
 use super::lfo::{Lfo, Shape};
 use crate::dsp::random;
@@ -21,24 +21,38 @@ fn of_lfo(first: Param, index: usize) -> Param {
     PARAMS[first as usize + index * rows].param
 }
 
-/// What voices follow of the modulators' own parameters. Plain data.
+/// What voices follow of the modulators' own parameters, and of those that routes lead to. Plain data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
+    /// Counts how often they were made anew.
+    serial: u32,
     /// Rounds a second.
     rates: [f64; LFOS],
     shapes: [Shape; LFOS],
     macros: [f32; 8],
     amounts: [f32; MAX_ROUTES],
+    /// Values of the bus's destinations before they are moved.
+    bases: [f32; MAX_ROUTES],
 }
 
 impl Settings {
     /// Nothing moves.
-    pub(crate) const STILL: Self =
-        Self { rates: [0.0; LFOS], shapes: [Shape::Sine; LFOS], macros: [0.0; 8], amounts: [0.0; MAX_ROUTES] };
+    pub(crate) const STILL: Self = Self {
+        serial: 0,
+        rates: [0.0; LFOS],
+        shapes: [Shape::Sine; LFOS],
+        macros: [0.0; 8],
+        amounts: [0.0; MAX_ROUTES],
+        bases: [0.0; MAX_ROUTES],
+    };
 
-    /// Those of parameters with these values, at a tempo in beats per second.
-    pub(crate) fn new(value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
+    /// Those after these: of parameters with these values, at a tempo in beats per second.
+    pub(crate) fn next(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
+        let mut bases = [0.0; MAX_ROUTES];
+        bus.destinations().iter().zip(&mut bases).for_each(|(destination, base)| *base = value(destination.param));
         Self {
+            serial: self.serial.wrapping_add(1),
+            bases,
             rates: std::array::from_fn(|index| {
                 let rate = f64::from(value(of_lfo(Param::Lfo1Rate, index)));
                 super::rate_at(value(of_lfo(Param::Lfo1Sync, index)), rate, beat_rate)
@@ -96,20 +110,43 @@ pub(crate) struct Modulators {
     sources: Sources,
     /// How far each destination of the bus is moved.
     offsets: [f32; MAX_ROUTES],
-    /// Values of the destinations without that.
-    bases: [f32; MAX_ROUTES],
     /// Rounds a second as they are modulated.
     rates: [f64; LFOS],
-    lfos: [Lfo; LFOS],
+    moving: Moving,
+    /// What moves, as it will be `ahead_seconds` later: at the next control tick, as a rule.
+    ahead: Moving,
+    ahead_seconds: f64,
     /// Share of a round at which each oscillator starts.
     phases: [f64; LFOS],
     /// Seconds in which it fades in.
     fades: [f64; LFOS],
     /// Whether it is where the shared one is. A copy of that: a voice that outlives its patch goes on by itself.
     are_shared: [bool; LFOS],
+}
+
+/// What goes on by itself.
+#[derive(Clone, Copy, Debug)]
+struct Moving {
+    lfos: [Lfo; LFOS],
     envelopes: [Envelope; ENVELOPES],
     /// Seconds since the strike.
     age: f64,
+}
+
+impl Moving {
+    const REST: Self = Self { lfos: [Lfo::REST; LFOS], envelopes: [Envelope::REST; ENVELOPES], age: 0.0 };
+
+    /// Lets time pass for what routes read.
+    fn advance(&mut self, bus: &Bus, rates: &[f64; LFOS], seconds: f64) {
+        self.age += seconds;
+        for (index, lfo) in self.lfos.iter_mut().enumerate().filter(|(index, _)| bus.reads_nth(Source::Lfo1, *index)) {
+            lfo.advance(rates[index] * seconds);
+        }
+        let envelopes = self.envelopes.iter_mut().enumerate();
+        for (_, envelope) in envelopes.filter(|(index, _)| bus.reads_nth(Source::Envelope1, *index)) {
+            envelope.advance(seconds);
+        }
+    }
 }
 
 impl Modulators {
@@ -118,16 +155,15 @@ impl Modulators {
         Self {
             bus: Bus::EMPTY,
             settings: Settings::STILL,
-            sources: [0.0; Source::ALL.len()],
+            sources: [0.0; SOURCES],
             offsets: [0.0; MAX_ROUTES],
-            bases: [0.0; MAX_ROUTES],
             rates: [0.0; LFOS],
-            lfos: [Lfo::new(0.0, 0); LFOS],
+            moving: Moving::REST,
+            ahead: Moving::REST,
+            ahead_seconds: 0.0,
             phases: [0.0; LFOS],
             fades: [0.0; LFOS],
             are_shared: [false; LFOS],
-            envelopes: [Envelope::REST; ENVELOPES],
-            age: 0.0,
         }
     }
 
@@ -154,6 +190,7 @@ impl Modulators {
     ) {
         let stream = random::key(struck.seed ^ STRIKE_STREAM, struck.serial);
         self.settings = *settings;
+        self.ahead_seconds = 0.0;
         let strike = [
             (Source::Velocity, struck.velocity),
             (Source::ReleaseVelocity, 0.0),
@@ -162,7 +199,7 @@ impl Modulators {
             (Source::Alternation, if struck.serial.is_multiple_of(2) { 1.0 } else { -1.0 }),
         ];
         strike.into_iter().for_each(|(source, value)| self.sources[source as usize] = value);
-        self.age = 0.0;
+        self.moving.age = 0.0;
         for index in 0..LFOS {
             let value = |param| f64::from(value(of_lfo(param, index)));
             self.phases[index] = value(Param::Lfo1Phase) * 0.01;
@@ -170,21 +207,21 @@ impl Modulators {
             self.are_shared[index] = value(Param::Lfo1Scope) != 0.0;
             if first {
                 let stream = random::key(stream, LFO_STREAM + index as u64);
-                self.lfos[index] = Lfo::new(self.phases[index], stream);
+                self.moving.lfos[index] = Lfo::new(self.phases[index], stream);
             }
         }
         self.share(shared);
         if first {
             self.rates = settings.rates;
-            self.envelopes = [Envelope::REST; ENVELOPES];
+            self.moving.envelopes = [Envelope::REST; ENVELOPES];
         }
         // At the strike, oscillators and envelopes are at their start; the envelopes' own times follow from that.
-        self.read(0.0, positions);
-        self.offsets = self.bus.offsets(&self.sources, self.settings.amounts);
+        self.look_ahead(0.0, positions);
         for index in 0..ENVELOPES {
             let times = Times::new(index, |param| f64::from(self.struck_value(param, &value)));
-            self.envelopes[index].strike(times);
+            self.moving.envelopes[index].strike(times);
         }
+        self.ahead = self.moving;
     }
 
     /// The value that a parameter has for the strike.
@@ -199,14 +236,16 @@ impl Modulators {
     /// The key has come up.
     pub(crate) fn release(&mut self, velocity: f32) {
         self.sources[Source::ReleaseVelocity as usize] = velocity;
-        self.envelopes.iter_mut().for_each(Envelope::release);
+        self.moving.envelopes.iter_mut().for_each(Envelope::release);
     }
 
     /// Lets time pass.
     pub(crate) fn advance(&mut self, seconds: f64) {
-        self.age += seconds;
-        self.lfos.iter_mut().zip(self.rates).for_each(|(lfo, rate)| lfo.advance(rate * seconds));
-        self.envelopes.iter_mut().for_each(|envelope| envelope.advance(seconds));
+        if seconds == self.ahead_seconds {
+            self.moving = self.ahead;
+        } else {
+            self.moving.advance(&self.bus, &self.rates, seconds);
+        }
     }
 
     /// The note has slid to another pitch, in semitones on the MIDI scale.
@@ -214,38 +253,47 @@ impl Modulators {
         self.sources[Source::Key as usize] = key_position(pitch);
     }
 
-    /// Takes over the instrument's present settings and values, and where its oscillators are.
-    pub(crate) fn follow(&mut self, settings: &Settings, shared: &SharedLfos, value: impl Fn(Param) -> f32) {
-        self.settings = *settings;
+    /// Takes over the instrument's present settings, and where its oscillators are.
+    pub(crate) fn follow(&mut self, settings: &Settings, shared: &SharedLfos) {
+        if settings.serial != self.settings.serial {
+            self.settings = *settings;
+        }
         self.share(shared);
-        for (destination, base) in self.bus.destinations().iter().zip(&mut self.bases) {
-            *base = value(destination.param);
+    }
+
+    /// Takes the values that destinations have for this note alone, where there are any.
+    pub(crate) fn take_own(&mut self, own: impl Fn(Param) -> Option<f32>) {
+        for (destination, base) in self.bus.destinations().iter().zip(&mut self.settings.bases) {
+            *base = own(destination.param).unwrap_or(*base);
         }
     }
 
     /// Finds where the destinations are to be in some seconds, and hands each with its value to `set`.
     pub(crate) fn control(&mut self, seconds: f64, positions: &Positions, mut set: impl FnMut(Param, f32)) {
-        self.read(seconds, positions);
+        self.look_ahead(seconds, positions);
         self.rates = self.settings.rates;
-        self.offsets = self.bus.offsets(&self.sources, self.settings.amounts);
         for (place, destination) in self.bus.destinations().iter().enumerate() {
-            let value = destination.moved(self.bases[place], self.offsets[place]);
-            match (0..LFOS).find(|index| of_lfo(Param::Lfo1Rate, *index) == destination.param) {
-                Some(index) => self.rates[index] = f64::from(value),
-                None => set(destination.param, value),
+            let value = || destination.moved(self.settings.bases[place], self.offsets[place]);
+            match destination.target {
+                Target::Strike => {}
+                Target::Control => set(destination.param, value()),
+                Target::Lfo(index) => self.rates[usize::from(index)] = f64::from(value()),
             }
         }
     }
 
     fn share(&mut self, shared: &SharedLfos) {
         for (index, common) in shared.0.iter().enumerate().filter(|(index, _)| self.are_shared[*index]) {
-            self.lfos[index] = *common;
-            self.lfos[index].advance(self.phases[index]);
+            self.moving.lfos[index] = *common;
+            self.moving.lfos[index].advance(self.phases[index]);
         }
     }
 
-    /// Reads the sources that move while a note sounds, as they will be in some seconds.
-    fn read(&mut self, seconds: f64, positions: &Positions) {
+    /// Reads the sources as they will be in some seconds, and finds how far they move what the routes lead to.
+    fn look_ahead(&mut self, seconds: f64, positions: &Positions) {
+        (self.ahead, self.ahead_seconds) = (self.moving, seconds);
+        self.ahead.advance(&self.bus, &self.rates, seconds);
+        let Moving { lfos, envelopes, age } = &self.ahead;
         let held = [
             (Source::Pressure, positions.pressure),
             (Source::Timbre, positions.timbre),
@@ -255,26 +303,21 @@ impl Modulators {
             (Source::Expression, positions.expression),
         ];
         held.into_iter().for_each(|(source, value)| self.sources[source as usize] = value);
-        for index in 0..LFOS {
-            let source = Source::Lfo1 as usize + index;
-            if self.bus.reads(Source::ALL[source]) {
-                let mut lfo = self.lfos[index];
-                lfo.advance(self.rates[index] * seconds);
-                let age = self.age + seconds;
-                let fade = if age < self.fades[index] { (age / self.fades[index]) as f32 } else { 1.0 };
-                self.sources[source] = fade * lfo.value(self.settings.shapes[index]);
+        for (index, lfo) in lfos.iter().enumerate() {
+            if self.bus.reads_nth(Source::Lfo1, index) {
+                let fade = if *age < self.fades[index] { (age / self.fades[index]) as f32 } else { 1.0 };
+                let value = lfo.value(self.settings.shapes[index]);
+                self.sources[Source::Lfo1 as usize + index] = fade * value;
             }
         }
-        for (index, envelope) in self.envelopes.iter().enumerate() {
-            let source = Source::Envelope1 as usize + index;
-            if self.bus.reads(Source::ALL[source]) {
-                let mut envelope = *envelope;
-                envelope.advance(seconds);
-                self.sources[source] = envelope.level();
+        for (index, envelope) in envelopes.iter().enumerate() {
+            if self.bus.reads_nth(Source::Envelope1, index) {
+                self.sources[Source::Envelope1 as usize + index] = envelope.level();
             }
         }
         let macros = &mut self.sources[Source::Macro1 as usize..];
         macros.iter_mut().zip(self.settings.macros).for_each(|(source, value)| *source = value);
+        self.offsets = self.bus.offsets(&self.sources, &self.settings.amounts);
     }
 }
 

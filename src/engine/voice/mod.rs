@@ -261,9 +261,10 @@ impl SynthVoice {
                 self.modulators.release(velocity);
             }
             if controls.is_some() {
-                let own = |param| self.modulation.after(param, frames as u32);
-                let value = |param| own(param).unwrap_or_else(|| smoother.value_after(param, frames as u32));
-                self.modulators.follow(&instrument.settings, &instrument.shared, value);
+                self.modulators.follow(&instrument.settings, &instrument.shared);
+                if !self.modulation.is_none() {
+                    self.modulators.take_own(|param| self.modulation.after(param, frames as u32));
+                }
             }
             // A note starts where its modulation starts: its pitch goes on from there below.
             self.move_controls(wheels, if self.fresh { 0 } else { frames });
@@ -311,7 +312,9 @@ impl SynthVoice {
         positions.pressure = self.pressure(wheels) as f32;
         positions.wheel = positions.wheel.max(self.expressions.vibrato);
         let (seconds, controls) = (self.seconds(frames as u64), &mut self.controls);
+        let before = controls.level_and_pan();
         self.modulators.control(seconds, &positions, |param, value| controls.set(param, value));
+        controls.find_gains(before);
     }
 
     /// Sends the modes to the pitch that [`SynthVoice::control`] has found. Apart from it, so that what one voice
