@@ -5,6 +5,7 @@ use sprung::io::Song;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
 use sprung::render::{Job, Options, Tail, on_threads};
+use sprung::sound::Tuning;
 use std::time::Duration;
 
 fn render(criterion: &mut Criterion) {
@@ -12,7 +13,7 @@ fn render(criterion: &mut Criterion) {
     let song = Song::read(std::fs::File::open(file).unwrap(), file).unwrap();
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch).collect();
     let options = Options { sample_rate: 48_000, seed: 0, block: 4096, tail: Tail::None };
-    let job = Job { song: &song, patch: &programs[0], programs: &programs, options };
+    let job = Job { song: &song, patch: &programs[0], programs: &programs, tuning: &Tuning::EQUAL, options };
     let mut group = criterion.benchmark_group("suite.mid");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(job.song_frames()));
     for threads in [1, 2] {

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | [`dsp`] | pure numerics: the oscillator, the bank of modes, exciters, pitch envelopes, smoothing |
 //! | [`params`], [`patch`], [`preset`] | what can be set, a set of values, and its file |
+//! | [`sound`] | what the keys play: their tuning, also by Scala's files |
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
 //! | [`io`], [`render`](mod@render) | MIDI files in, WAV files out, and the offline renderer between them |
 //! | [`lab`] | ways to integrate a mass on a spring, side by side: what the oscillator is measured against |
@@ -49,6 +50,7 @@ pub mod preset;
 #[cfg(feature = "realtime")]
 pub mod realtime;
 pub mod render;
+pub mod sound;
 pub mod text;
 pub mod units;
 

@@ -5,6 +5,7 @@ use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
 use sprung::params::PARAMS;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::render::Meter;
+use sprung::sound::Tuning;
 
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
@@ -50,7 +51,9 @@ fn processing_does_not_allocate() {
     let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
     let blocks: Vec<_> = (0..40).map(storm).collect();
     let mut loudest = 0.0_f32;
-    for events in &blocks {
+    let gaps = Tuning::from_scala("\n1\n3/2", Some("3\n0\n127\n60\n60\n256.0\n2\n0\nx\n1")).unwrap();
+    for (events, tuning) in blocks.iter().zip([gaps, Tuning::EQUAL].iter().cycle()) {
+        assert_no_alloc(|| ensemble.set_tuning(tuning));
         assert_no_alloc(|| ensemble.process(events, &mut left, &mut right));
         loudest = left.iter().fold(loudest, |peak, sample| peak.max(sample.abs()));
     }

@@ -6,6 +6,7 @@ use sprung::io::{Inputs, Output, Song, Target};
 use sprung::patch::Patch;
 use sprung::realtime::convert::DeviceSample;
 use sprung::realtime::{LiveInputs, Moment, Player, Recording, Setup, Status};
+use sprung::sound::Tuning;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -21,7 +22,14 @@ fn play<T: DeviceSample>(frames: usize, channels: usize) {
     let status = Arc::new(Status::default());
     let song = Song::chord(&[40.0, 50.5, 60.0, 70.0], 1.0, 0.2);
     let patch = Patch::default();
-    let setup = Setup { sample_rate: 48_000, seed: 0, patch: &patch, programs: &[patch; 3], song: Some(song) };
+    let setup = Setup {
+        sample_rate: 48_000,
+        seed: 0,
+        patch: &patch,
+        programs: &[patch; 3],
+        tuning: &Tuning::EQUAL,
+        song: Some(song),
+    };
     let (mut player, mut patches) = Player::new(setup, inputs, Some(tap), status.clone());
     let start = Instant::now();
     let mut out = vec![T::SILENCE; frames * channels];

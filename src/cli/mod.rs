@@ -12,6 +12,7 @@ mod progress;
 mod quantity;
 mod render;
 mod song;
+mod tuning;
 mod usage;
 
 use clap::{CommandFactory, Parser, Subcommand};

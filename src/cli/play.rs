@@ -2,6 +2,7 @@
 
 use super::render::with_settings;
 use super::song::SongArgs;
+use super::tuning::TuningArgs;
 use super::{complain, complain_lines, completion, interrupt, presets, quantity};
 use clap_complete::ArgValueCompleter;
 use sprung::io::{Inputs, Output, Target};
@@ -45,6 +46,8 @@ pub(super) struct Args {
     #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
         add = ArgValueCompleter::new(completion::settings))]
     set: Vec<(Param, f32)>,
+    #[command(flatten)]
+    tuning: TuningArgs,
     /// MIDI ports to listen to: all, none, or those with this in their name
     #[arg(long, default_value = "all", value_name = "NAME|all|none", add = completion::among(&["all", "none"]))]
     midi_in: String,
@@ -91,6 +94,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let preset = presets::load_or_init(args.preset.as_deref(), &mut inputs)?;
     let patch = with_settings(preset.patch, &args.set);
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
+    let tuning = args.tuning.read(&mut inputs)?;
     let song = args.song.as_deref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
     if let Some(song) = &song {
         args.reading.warn_of_programs(song, args.preset.as_ref().map(|_| &patch), &programs);
@@ -111,7 +115,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let ([keys, midi, closing], inputs) = LiveInputs::new();
     let has_song = song.is_some();
     let heard = args.reading.programs(&programs);
-    let setup = Setup { sample_rate: found.sample_rate(), seed: args.seed, patch: &patch, programs: heard, song };
+    let (sample_rate, seed) = (found.sample_rate(), args.seed);
+    let setup = Setup { sample_rate, seed, patch: &patch, programs: heard, tuning: &tuning, song };
     let (player, patches) = Player::new(setup, inputs, tap, status.clone());
     let session = match Session::start(&found, choice, player, status.clone()) {
         Ok(session) => session,

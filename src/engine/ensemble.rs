@@ -1,12 +1,13 @@
 //! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
 
-use super::event::nearest_channel;
+use super::event::{nearest_channel, nearest_key};
 use super::mix_limiter::MixLimiter;
 use super::synth::allowed;
 use super::{Event, EventKind, Snapshot, Synth};
 use crate::dsp::limiter::Work;
 use crate::params::Param;
 use crate::patch::Patch;
+use crate::sound::Tuning;
 
 /// Frames that are mixed at a time, unless [`Ensemble::with_chunk`] says otherwise.
 const CHUNK: usize = 1024;
@@ -127,6 +128,12 @@ impl Ensemble {
         self.limiter.set_patch(channel, patch);
     }
 
+    /// Tunes the keys of all channels in another way from the next note on. Notes that sound keep their pitch.
+    /// Real-time safe.
+    pub fn set_tuning(&mut self, tuning: &Tuning) {
+        self.parts.iter_mut().for_each(|part| part.synth.set_tuning(tuning));
+    }
+
     /// What sounds now, on all channels together. Real-time safe.
     pub fn snapshot(&self) -> Snapshot {
         let mut snapshot = Snapshot::default();
@@ -165,7 +172,10 @@ impl Part {
                 _ => None,
             };
             let kind = match event.kind {
-                EventKind::NoteOn { .. } if sender != *channel => EventKind::Choke { group: groups[sender] as u8 },
+                EventKind::NoteOn { key, .. } if sender != *channel => {
+                    let is_mapped = synth.tuning().pitch(nearest_key(key)).is_some();
+                    EventKind::Choke { group: if is_mapped { groups[sender] as u8 } else { 0 } }
+                }
                 kind => kind,
             };
             if let Some(patch) = program {

@@ -25,11 +25,11 @@ impl Event {
 /// A controller, program or choke group that does not exist changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EventKind {
-    /// A key goes down. Velocity 0 strikes with no force; MIDI's "velocity 0 is a note-off" is the reader's to translate.
+    /// A key goes down; one that the tuning leaves unmapped starts nothing. Velocity 0 strikes with no force; MIDI's "velocity 0 is a note-off" is the reader's to translate.
     NoteOn {
         /// MIDI key, 0–127.
         key: u8,
-        /// Offset from the key in semitones, for pitches between keys.
+        /// Offset from the tuned key in semitones, for pitches between keys.
         detune: f32,
         /// 0–1.
         velocity: f32,

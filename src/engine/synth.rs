@@ -12,6 +12,8 @@ use crate::dsp::limiter::Work;
 use crate::dsp::{CONTROL_FRAMES, Limiter};
 use crate::params::{Change, PARAM_COUNT, PARAMS, Param};
 use crate::patch::Patch;
+use crate::sound::Tuning;
+use crate::sound::tuning::Pitch;
 
 /// Sample rates that the engine runs at, in Hz.
 pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
@@ -23,6 +25,7 @@ pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
 pub struct Synth {
     manager: VoiceManager<SynthVoice>,
     instrument: Instrument,
+    tuning: Tuning,
     smoother: Smoother,
     limiter: Limiter,
     channels: [Channel; 16],
@@ -56,6 +59,7 @@ impl Synth {
         let mut synth = Self {
             manager: VoiceManager::new(|| SynthVoice::new(sample_rate, controls)),
             instrument,
+            tuning: Tuning::EQUAL,
             smoother,
             limiter: Limiter::new(sample_rate),
             channels: [Channel::new(sample_rate); 16],
@@ -73,16 +77,16 @@ impl Synth {
         synth
     }
 
-    /// Changes the sample rate and starts anew, keeping the patch.
+    /// Changes the sample rate and starts anew, keeping the patch and the tuning.
     pub fn prepare(&mut self, sample_rate: f64) {
-        let patch = self.instrument.patch;
+        let (patch, tuning) = (self.instrument.patch, self.tuning);
         *self = Self::new(sample_rate, self.instrument.seed);
-        self.instrument.patch = patch;
+        (self.instrument.patch, self.tuning) = (patch, tuning);
         self.reset();
     }
 
-    /// Silences everything and forgets all controllers, modulation and tempo; the patch stays. What follows is what a
-    /// new synth would play.
+    /// Silences everything and forgets all controllers, modulation and tempo; the patch and the tuning stay. What
+    /// follows is what a new synth would play.
     pub fn reset(&mut self) {
         let sample_rate = self.instrument.sample_rate;
         self.manager.reset();
@@ -106,6 +110,16 @@ impl Synth {
     /// What is random starts from another seed with the next note. Real-time safe.
     pub fn set_seed(&mut self, seed: u64) {
         self.instrument.seed = seed;
+    }
+
+    /// Tunes the keys in another way from the next note on. Notes that sound keep their pitch. Real-time safe.
+    pub fn set_tuning(&mut self, tuning: &Tuning) {
+        self.tuning = *tuning;
+    }
+
+    /// The tuning in use. Real-time safe.
+    pub fn tuning(&self) -> &Tuning {
+        &self.tuning
     }
 
     /// Plays another patch from the next note on. Notes that sound go on with the sound that they have.
@@ -218,10 +232,13 @@ impl Synth {
                     let brightness = brightness(&self.channels, &self.zones, index);
                     self.instrument.positions = self.wheels(index).positions(brightness.into());
                 }
+                let key = nearest_key(key);
+                let pitch = self.tuning.pitch(key);
                 let soft = |channel: u8| self.channels[usize::from(channel)].soft;
                 let note = Note {
                     channel: index,
-                    key: nearest_key(key),
+                    key,
+                    pitch: pitch.unwrap_or(Pitch::Semitones(key.into())),
                     detune: finite(detune).clamp(-128.0, 128.0),
                     velocity: unit(velocity),
                     soft: soft(index) || self.zones.master_of(index).is_some_and(soft),
@@ -233,6 +250,9 @@ impl Synth {
                     choke: self.instrument.modulated.get(Param::Choke) as u8,
                 };
                 self.note_serial += 1;
+                if pitch.is_none() {
+                    return self.manager.turn_away(note);
+                }
                 self.manager.note_on(&self.instrument, note);
                 self.instrument.last_pitch = Some(self.instrument.pitch(&note));
             }

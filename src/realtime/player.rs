@@ -9,6 +9,7 @@ use super::status::Status;
 use crate::engine::{Ensemble, Event, EventKind};
 use crate::io::Song;
 use crate::patch::Patch;
+use crate::sound::Tuning;
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::Arc;
 use std::time::Duration;
@@ -35,6 +36,8 @@ pub struct Setup<'a> {
     pub patch: &'a Patch,
     /// The sounds that program changes choose from.
     pub programs: &'a [Patch],
+    /// The pitches of the keys, on all channels.
+    pub tuning: &'a Tuning,
     /// Played from the first frame on.
     pub song: Option<Song>,
 }
@@ -76,8 +79,10 @@ impl Player {
         let song = setup.song.map(|song| SongCursor::new(song, sample_rate));
         let densest = song.as_ref().map_or(0, SongCursor::densest_block);
         let (sender, patches) = RingBuffer::new(PATCH_CAPACITY);
+        let mut ensemble = Ensemble::new(sample_rate, setup.seed, setup.patch, setup.programs);
+        ensemble.set_tuning(setup.tuning);
         let player = Self {
-            ensemble: Ensemble::new(sample_rate, setup.seed, setup.patch, setup.programs),
+            ensemble,
             sample_rate,
             programs: setup.programs.len(),
             song,
@@ -170,7 +175,8 @@ mod tests {
     fn player(song: Option<Song>, patch: &Patch) -> (Player, [LiveSender; 1], PatchSender, Arc<Status>) {
         let (senders, inputs) = LiveInputs::new();
         let status = Arc::new(Status::default());
-        let setup = Setup { sample_rate: SETTINGS.0, seed: SETTINGS.1, patch, programs: &[], song };
+        let setup =
+            Setup { sample_rate: SETTINGS.0, seed: SETTINGS.1, patch, programs: &[], tuning: &Tuning::EQUAL, song };
         let (player, patches) = Player::new(setup, inputs, None, status.clone());
         (player, senders, patches, status)
     }
@@ -188,7 +194,7 @@ mod tests {
         let song = Song::chord(&[60.0, 64.25, 67.0], 0.8, 0.3);
         let options = Options { sample_rate: SETTINGS.0, seed: SETTINGS.1, block: 512, tail: Tail::Auto };
         let mut expected = Vec::new();
-        Job { song: &song, patch: &short(), programs: &[], options }
+        Job { song: &song, patch: &short(), programs: &[], tuning: &Tuning::EQUAL, options }
             .render(|left, right| {
                 expected.extend(left.iter().zip(right).flat_map(|(left, right)| [*left, *right]));
                 Ok(())

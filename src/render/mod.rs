@@ -15,6 +15,7 @@ use crate::error::{Error, Result};
 use crate::io::Song;
 use crate::io::song;
 use crate::patch::Patch;
+use crate::sound::Tuning;
 use std::ops::RangeInclusive;
 use stream::{SHARED_FRAMES, Stream};
 
@@ -54,6 +55,8 @@ pub struct Job<'a> {
     pub patch: &'a Patch,
     /// The sounds that program changes choose from.
     pub programs: &'a [Patch],
+    /// The pitches of the keys, on all channels.
+    pub tuning: &'a Tuning,
     /// How.
     pub options: Options,
 }
@@ -148,7 +151,7 @@ mod tests {
     fn render(song: &Song, options: Options) -> (Rendered, Vec<f32>) {
         let patch = Patch::default().with(Param::Decay, 0.2).with(Param::Release, 0.05);
         let mut samples = Vec::new();
-        let job = Job { song, patch: &patch, programs: &[], options };
+        let job = Job { song, patch: &patch, programs: &[], tuning: &Tuning::EQUAL, options };
         let rendered = job
             .render(|left, right| {
                 assert!(left.len() <= options.block && left.len() == right.len());
@@ -198,10 +201,16 @@ mod tests {
         let patch = Patch::default();
         for options in [options(0, 64, Tail::None), options(48_000, 0, Tail::None), options(48_000, 65_537, Tail::None)]
         {
-            let job = Job { song: &song, patch: &patch, programs: &[], options };
+            let job = Job { song: &song, patch: &patch, programs: &[], tuning: &Tuning::EQUAL, options };
             assert!(matches!(job.render(|_, _| Ok(())), Err(Error::Value { .. })));
         }
-        let job = Job { song: &song, patch: &patch, programs: &[], options: options(48_000, 64, Tail::None) };
+        let job = Job {
+            song: &song,
+            patch: &patch,
+            programs: &[],
+            tuning: &Tuning::EQUAL,
+            options: options(48_000, 64, Tail::None),
+        };
         let mut blocks = 0;
         let result = job.render(|_, _| {
             blocks += 1;

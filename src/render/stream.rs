@@ -31,8 +31,10 @@ impl<'a> Stream<'a> {
     pub(super) fn new(job: &Job<'a>) -> Self {
         let options = &job.options;
         let sample_rate = f64::from(options.sample_rate);
+        let mut ensemble = Ensemble::new(sample_rate, options.seed, job.patch, job.programs).with_chunk(options.block);
+        ensemble.set_tuning(job.tuning);
         Self {
-            ensemble: Ensemble::new(sample_rate, options.seed, job.patch, job.programs).with_chunk(options.block),
+            ensemble,
             pending: job.song.events.iter().peekable(),
             events: Vec::new(),
             sample_rate,
@@ -108,6 +110,7 @@ mod tests {
     use crate::params::Param;
     use crate::patch::{Mode, ModeTable, Patch};
     use crate::render::{Job, Options, Rendered, Tail, on_threads};
+    use crate::sound::Tuning;
 
     /// Notes on all channels, which change their sounds and choke each other now and then.
     fn song() -> Song {
@@ -130,7 +133,7 @@ mod tests {
         let programs = [short.with(Param::Choke, 2.0), rich, short.with(Param::Vibrato, 1.0)];
         let (song, mut bits) = (song(), Vec::new());
         let options = Options { sample_rate: 48_000, seed: 3, block, tail };
-        let job = Job { song: &song, patch: &short, programs: &programs, options };
+        let job = Job { song: &song, patch: &short, programs: &programs, tuning: &Tuning::EQUAL, options };
         let sink = |left: &[f32], right: &[f32]| {
             bits.extend(left.iter().zip(right).flat_map(|(left, right)| [left.to_bits(), right.to_bits()]));
             Ok(())

@@ -12,6 +12,7 @@ mod messages;
 mod outputs;
 mod songs;
 mod sound;
+mod tuning;
 
 use assert_cmd::Command;
 use midly::num::{u4, u7, u15, u28};

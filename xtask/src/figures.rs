@@ -6,6 +6,7 @@ use sprung::io::Song;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
 use sprung::render::{Job, Options, Tail};
+use sprung::sound::Tuning;
 use std::fs::File;
 
 /// Renders the suite and draws it to `assets/demo.png`.
@@ -19,7 +20,7 @@ fn draw() -> sprung::Result<()> {
     let song = Song::read(file, origin)?;
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch).collect();
     let options = Options { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::Auto };
-    let job = Job { song: &song, patch: &programs[0], programs: &programs, options };
+    let job = Job { song: &song, patch: &programs[0], programs: &programs, tuning: &Tuning::EQUAL, options };
     let (mut left, mut right) = (Vec::new(), Vec::new());
     job.render(|block_left, block_right| {
         left.extend(block_left);

@@ -8,6 +8,7 @@ use sprung::dsp::random::{key, uniform};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::patch::Patch;
 use sprung::render::{Job, Options, Tail};
+use sprung::sound::Tuning;
 use std::path::Path;
 
 /// A name, and the lengths of blocks one after the other.
@@ -33,7 +34,7 @@ fn divisions() -> Vec<Division> {
 pub(crate) fn rendered_by_the_command(midi: &[u8], patch: &Patch) -> Vec<Vec<f32>> {
     let song = phrase::song(midi);
     let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 1024, tail: Tail::None };
-    let job = Job { song: &song, patch, programs: &[], options };
+    let job = Job { song: &song, patch, programs: &[], tuning: &Tuning::EQUAL, options };
     let mut channels = vec![Vec::new(), Vec::new()];
     job.render(|left, right| {
         channels[0].extend(left);

@@ -4,6 +4,7 @@ mod report;
 
 use super::progress::Bar;
 use super::song::SongArgs;
+use super::tuning::TuningArgs;
 use super::{completion, interrupt, presets, quantity};
 use clap::ArgGroup;
 use clap_complete::ArgValueCompleter;
@@ -24,6 +25,7 @@ Examples:
   sprung render song.mid --preset mine.toml --normalize lufs=-14 --bits 16 --dither -o song.wav
   sprung render --note C2 --preset Kick --tail none --length 0.5 -o kick.wav
   sprung render --note C4,E4,67.5,440Hz --set decay=\"3 s\" --set exciter=pluck -o chord.wav
+  sprung render song.mid --scale mine.scl --keymap mine.kbm -o song.wav
   sprung render song.mid -o - | flac - -o song.flac";
 
 #[derive(clap::Args)]
@@ -50,6 +52,8 @@ pub(super) struct Args {
     #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
         add = ArgValueCompleter::new(completion::settings))]
     set: Vec<(Param, f32)>,
+    #[command(flatten)]
+    tuning: TuningArgs,
     /// Sample rate, 1000-768000 Hz (44100, 44.1k)
     #[arg(long, default_value_t = 48_000, value_name = "HZ", allow_hyphen_values = true, value_parser = quantity::rate)]
     rate: u32,
@@ -110,6 +114,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let preset = presets::load_or_init(args.preset.as_deref(), &mut inputs)?;
     let patch = with_settings(preset.patch, &args.set);
     let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
+    let tuning = args.tuning.read(&mut inputs)?;
     let song = match &args.song {
         Some(path) => args.reading.read(path, &mut inputs)?,
         None => chord(args, &patch)?,
@@ -117,7 +122,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     args.reading.warn_of_programs(&song, args.preset.as_ref().map(|_| &patch), &programs);
 
     let options = Options { sample_rate: args.rate, seed: args.seed, block: args.block as usize, tail: args.tail };
-    let job = Job { song: &song, patch: &patch, programs: args.reading.programs(&programs), options };
+    let job = Job { song: &song, patch: &patch, programs: args.reading.programs(&programs), tuning: &tuning, options };
     let delivery = Delivery {
         samples: args.bits,
         dither: args.dither,
@@ -148,6 +153,7 @@ pub(in crate::cli) fn with_settings(mut patch: Patch, settings: &[(Param, f32)])
 }
 
 fn chord(args: &Args, patch: &Patch) -> Result<Song> {
+    args.tuning.check_notes(&args.note)?;
     // Frequencies are placed by the patch's own tuning, so that 440 Hz is 440 Hz in every patch.
     let a4_hz = f64::from(patch.get(Param::Tuning));
     let keys: std::result::Result<Vec<f64>, String> = args.note.iter().map(|note| parse_key(note, a4_hz)).collect();

@@ -11,7 +11,7 @@ const MIDDLE_C: f64 = 60.0;
 /// the time that a held key takes the voice back.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct KeyTracking {
-    /// Semitones per key.
+    /// Semitones per semitone of the tuned key.
     pitch: f64,
     /// Octaves of T60 per octave of pitch.
     decay: f64,
@@ -37,7 +37,7 @@ impl KeyTracking {
 
     /// The pitch of a note in semitones on the MIDI scale.
     pub(super) fn pitch(&self, note: &Note) -> f64 {
-        MIDDLE_C + (f64::from(note.key) + f64::from(note.detune) - MIDDLE_C) * self.pitch
+        MIDDLE_C + (note.pitch.semitones(self.a4_hz) + f64::from(note.detune) - MIDDLE_C) * self.pitch
     }
 
     /// What a pitch in semitones multiplies T60s by.

@@ -3,6 +3,7 @@
 mod held_keys;
 
 use super::event::Notes;
+use crate::sound::tuning::Pitch;
 use held_keys::HeldKeys;
 
 /// A note as the manager hands it to a voice.
@@ -12,7 +13,9 @@ pub struct Note {
     pub channel: u8,
     /// MIDI key, 0–127.
     pub key: u8,
-    /// Offset from the key in semitones.
+    /// Pitch that the tuning gives the key.
+    pub pitch: Pitch,
+    /// Offset from that pitch in semitones.
     pub detune: f32,
     /// 0–1.
     pub velocity: f32,
@@ -37,6 +40,7 @@ impl Note {
     const NONE: Self = Self {
         channel: 0,
         key: 0,
+        pitch: Pitch::Semitones(0.0),
         detune: 0.0,
         velocity: 0.0,
         soft: false,
@@ -187,6 +191,11 @@ impl<V: Voice> VoiceManager<V> {
     /// Forgets the notes that have ended.
     pub fn clear_ended(&mut self) {
         self.ended.clear();
+    }
+
+    /// Takes a note that has no voice: it has ended as it began.
+    pub fn turn_away(&mut self, note: Note) {
+        self.retire(note);
     }
 
     /// A voice or a held key has let go of a note: it has ended, unless another has it still.

@@ -81,6 +81,7 @@ fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
         let on = |key, velocity, choke, patch| Note {
             channel: 0,
             key,
+            pitch: Pitch::Semitones(key.into()),
             detune: 0.0,
             velocity,
             soft: false,

@@ -6,6 +6,7 @@ use crate::params::Param;
 use crate::patch::Patch;
 use crate::preset::Preset;
 use crate::realtime::{LiveInputs, Moment, Player, Setup, Status};
+use crate::sound::Tuning;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
@@ -30,7 +31,14 @@ impl Stand {
         let status = Arc::new(Status::default());
         let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch).collect();
         let patch = programs[0];
-        let setup = Setup { sample_rate: 48_000, seed: 0, patch: &patch, programs: &programs, song: None };
+        let setup = Setup {
+            sample_rate: 48_000,
+            seed: 0,
+            patch: &patch,
+            programs: &programs,
+            tuning: &Tuning::EQUAL,
+            song: None,
+        };
         let (player, patches) = Player::new(setup, inputs, None, status.clone());
         let desk = Desk { device: device.into(), status, keys, patches, name: name.into(), patch, programs };
         Self { app: App::new(desk), player, epoch: Instant::now(), played: Duration::ZERO }
