@@ -1,7 +1,7 @@
 //! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
 
-use super::event::nearest_channel;
 use super::mix_limiter::MixLimiter;
+use super::note::nearest_channel;
 use super::synth::allowed;
 use super::{Event, EventKind, Snapshot, Synth};
 use crate::dsp::limiter::Work;

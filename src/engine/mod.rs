@@ -12,6 +12,7 @@ mod fader;
 mod gain;
 mod mix_limiter;
 mod modulation;
+pub mod note;
 pub mod snapshot;
 pub mod synth;
 mod voice;
@@ -19,6 +20,7 @@ pub mod voice_manager;
 mod zones;
 
 pub use ensemble::Ensemble;
-pub use event::{Event, EventKind, Expression, Notes};
+pub use event::{Event, EventKind, Expression};
+pub use note::{Note, Notes};
 pub use snapshot::Snapshot;
 pub use synth::Synth;

@@ -1,7 +1,7 @@
 //! Live events on their way to the audio thread: bounded queues without locks, merged in the order of time.
 
 use super::{BlockClock, Stamp};
-use crate::engine::event::{nearest_channel, nearest_key};
+use crate::engine::note::{nearest_channel, nearest_key};
 use crate::engine::{Event, EventKind};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::time::Instant;

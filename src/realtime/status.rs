@@ -1,6 +1,6 @@
 //! What the audio thread tells, and is told, without locks.
 
-use crate::engine::event::{nearest_channel, nearest_key};
+use crate::engine::note::{nearest_channel, nearest_key};
 use crate::engine::{EventKind, Snapshot};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, AtomicU64};
