@@ -62,8 +62,6 @@ const CIRCLES: &[(&str, &str)] = &[
     ("plugin/tests/hosts/host/instance.rs", "plugin/tests/hosts/host/player.rs"),
     ("src/io/riff.rs", "src/io/wav.rs"),
     // A folder's own file and one in it.
-    ("src/preset/factory.rs", "src/preset/mod.rs"),
-    ("src/preset/file.rs", "src/preset/mod.rs"),
     ("src/realtime/view/app.rs", "src/realtime/view/mod.rs"),
     ("src/render/mod.rs", "src/render/stream.rs"),
     ("src/cli/completion.rs", "src/cli/mod.rs"),
