@@ -10,9 +10,11 @@ pub mod target;
 mod tempo;
 mod temporary;
 pub mod wav;
+mod wav_format;
 
 pub use inputs::Inputs;
 pub use output::Output;
 pub use song::{Song, SongEvent};
 pub use target::Target;
-pub use wav::{SampleFormat, WavFormat, WavWriter};
+pub use wav::WavWriter;
+pub use wav_format::{SampleFormat, WavFormat};

@@ -2,7 +2,7 @@
 
 use super::inputs::Inputs;
 use super::target::{Target, resolve};
-use super::wav::WavFormat;
+use super::wav_format::WavFormat;
 use super::{riff, temporary};
 use crate::error::{Error, Result};
 use same_file::Handle;

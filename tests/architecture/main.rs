@@ -60,7 +60,6 @@ const CIRCLES: &[(&str, &str)] = &[
     ("src/realtime/player.rs", "src/realtime/song_cursor.rs"),
     ("plugin/src/live.rs", "plugin/src/plugin.rs"),
     ("plugin/tests/hosts/host/instance.rs", "plugin/tests/hosts/host/player.rs"),
-    ("src/io/riff.rs", "src/io/wav.rs"),
     // A folder's own file and one in it.
     ("src/realtime/view/app.rs", "src/realtime/view/mod.rs"),
     ("src/render/mod.rs", "src/render/stream.rs"),
@@ -70,7 +69,6 @@ const CIRCLES: &[(&str, &str)] = &[
     ("src/cli/mod.rs", "src/cli/play.rs"),
     ("src/cli/mod.rs", "src/cli/presets.rs"),
     ("src/cli/mod.rs", "src/cli/usage.rs"),
-    ("src/io/midi/reader.rs", "src/io/midi.rs"),
     ("plugin/src/editor/mod.rs", "plugin/src/editor/window.rs"),
 ];
 

@@ -2,11 +2,14 @@
 
 use super::container::Track;
 use super::fault::{Fault, Found};
-use super::{MAX_EVENTS, translate};
+use super::message::translate;
 use crate::engine::EventKind;
 use crate::io::bars::Bars;
 use midly::{EventIter, MetaMessage, Timing, TrackEvent, TrackEventKind};
 use std::fmt;
+
+/// Most events that a song can have: 32 bytes of memory each.
+pub const MAX_EVENTS: usize = 8_000_000;
 
 /// Kinds of faults that lenient reading repairs in a file, a track each; a file with more is not meant to be one.
 const MOST_REPAIRS: usize = 1000;

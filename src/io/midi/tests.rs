@@ -1,7 +1,7 @@
 //! Tests of the MIDI reader, on files that midly's writer and a few bytes by hand make.
 
 use super::*;
-use midly::{Format, Fps, Header, MetaMessage, Smf, Timing, TrackEvent, TrackEventKind};
+use midly::{Format, Fps, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, TrackEvent, TrackEventKind};
 use proptest::prelude::*;
 
 const BEATS: Timing = Timing::Metrical(midly::num::u15::new(480));
