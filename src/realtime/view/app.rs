@@ -1,6 +1,6 @@
 //! What the view shows, and what keys do to it.
 
-use super::Desk;
+use super::desk::Desk;
 use super::keyboard::Keyboard;
 use crate::engine::{EventKind, Snapshot};
 use crate::params::{PARAMS, ParamInfo, Unit};
