@@ -1,6 +1,7 @@
 //! A job rendered into a WAV: channels, level and length settled, and the numbers of what came out.
 
-use super::{Job, Levels, Meter};
+use super::job::Job;
+use super::meter::{Levels, Meter};
 use crate::error::{Error, Result};
 use crate::io::{Output, SampleFormat, WavFormat, WavWriter};
 use crate::units::{db_from_gain, gain_from_db};
