@@ -1,13 +1,11 @@
 //! `sprung play`: the instrument live, on a sound device.
 
-use super::render::with_settings;
 use super::song::SongArgs;
-use super::{complain, complain_lines, completion, interrupt, presets, quantity};
-use clap_complete::ArgValueCompleter;
+use super::sound::{SoundArgs, Sounds};
+use super::terminal::{complain, complain_lines, print};
+use super::{completion, interrupt, quantity};
 use sprung::io::{Inputs, Output, Target};
-use sprung::params::Param;
 use sprung::patch::Patch;
-use sprung::preset::Preset;
 use sprung::realtime::{
     Choice, Found, JackMidi, LiveInputs, LiveSender, Load, MidiPorts, PatchSender, Player, Recording, Session, Setup,
     Status, Wanted, device, midi_ports, view,
@@ -15,7 +13,6 @@ use sprung::realtime::{
 use sprung::render::BLOCKS;
 use sprung::text::printable;
 use sprung::{Error, Result};
-use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -38,13 +35,8 @@ pub(super) struct Args {
     song: Option<PathBuf>,
     #[command(flatten)]
     reading: SongArgs,
-    /// Factory preset or preset file (.toml) that plays what no program change says otherwise [default: init]
-    #[arg(long, value_name = "NAME|FILE.toml", add = ArgValueCompleter::new(completion::presets))]
-    preset: Option<OsString>,
-    /// Set a parameter of every preset used; may be repeated. See `sprung params`
-    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
-        add = ArgValueCompleter::new(completion::settings))]
-    set: Vec<(Param, f32)>,
+    #[command(flatten)]
+    sound: SoundArgs,
     /// MIDI ports to listen to: all, none, or those with this in their name
     #[arg(long, default_value = "all", value_name = "NAME|all|none", add = completion::among(&["all", "none"]))]
     midi_in: String,
@@ -61,10 +53,6 @@ pub(super) struct Args {
     #[arg(long, value_name = "FRAMES", allow_hyphen_values = true,
         value_parser = quantity::whole::<u32>(*BLOCKS.start() as u64..=*BLOCKS.end() as u64))]
     buffer: Option<u32>,
-    /// Seed of all randomness, 0-18446744073709551615
-    #[arg(long, default_value_t = 0, value_name = "N", allow_hyphen_values = true,
-        value_parser = quantity::whole::<u64>(0..=u64::MAX))]
-    seed: u64,
     /// List sound systems, their devices, and MIDI ports
     #[arg(long)]
     list: bool,
@@ -88,12 +76,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let record = args.record.as_ref().map(Target::new);
     record.as_ref().map_or(Ok(()), Target::check_wav)?;
     let mut inputs = Inputs::default();
-    let preset = presets::load_or_init(args.preset.as_deref(), &mut inputs)?;
-    let patch = with_settings(preset.patch, &args.set);
-    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
+    let Sounds { name, patch, programs } = args.sound.load(&mut inputs)?;
     let song = args.song.as_deref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
     if let Some(song) = &song {
-        args.reading.warn_of_programs(song, args.preset.as_ref().map(|_| &patch), &programs);
+        args.reading.warn_of_programs(song, args.sound.asked_for(&patch), &programs);
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;
@@ -111,7 +97,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let ([keys, midi, closing], inputs) = LiveInputs::new();
     let has_song = song.is_some();
     let heard = args.reading.programs(&programs);
-    let setup = Setup { sample_rate: found.sample_rate(), seed: args.seed, patch: &patch, programs: heard, song };
+    let setup = Setup { sample_rate: found.sample_rate(), seed: args.sound.seed, patch: &patch, programs: heard, song };
     let (player, patches) = Player::new(setup, inputs, tap, status.clone());
     let session = match Session::start(&found, choice, player, status.clone()) {
         Ok(session) => session,
@@ -129,7 +115,6 @@ pub(super) fn run(args: &Args) -> Result<()> {
         status,
         has_song,
     };
-    let name = preset.name.clone();
     if headless { stage.headless(closing) } else { stage.on_terminal(keys, patches, closing, name, patch, programs) }
 }
 
@@ -139,7 +124,7 @@ fn list() -> Result<()> {
         true => "  no ports\n".to_owned(),
         false => ports.iter().map(|name| format!("  --midi-in {name:?}\n")).collect(),
     };
-    super::print(&format!("{}MIDI\n{ports}", device::list()))
+    print(&format!("{}MIDI\n{ports}", device::list()))
 }
 
 /// Says something on stderr.

@@ -61,12 +61,6 @@ const CIRCLES: &[(&str, &str)] = &[
     ("plugin/src/live.rs", "plugin/src/plugin.rs"),
     ("plugin/tests/hosts/host/instance.rs", "plugin/tests/hosts/host/player.rs"),
     // A folder's own file and one in it.
-    ("src/cli/completion.rs", "src/cli/mod.rs"),
-    ("src/cli/manual.rs", "src/cli/mod.rs"),
-    ("src/cli/mod.rs", "src/cli/parameters.rs"),
-    ("src/cli/mod.rs", "src/cli/play.rs"),
-    ("src/cli/mod.rs", "src/cli/presets.rs"),
-    ("src/cli/mod.rs", "src/cli/usage.rs"),
     ("plugin/src/editor/mod.rs", "plugin/src/editor/window.rs"),
 ];
 
