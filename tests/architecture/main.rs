@@ -58,10 +58,7 @@ const CRATES: &[&str] =
 const CIRCLES: &[(&str, &str)] = &[
     // Neighbours.
     ("src/realtime/player.rs", "src/realtime/song_cursor.rs"),
-    ("plugin/src/live.rs", "plugin/src/plugin.rs"),
-    ("plugin/tests/hosts/host/instance.rs", "plugin/tests/hosts/host/player.rs"),
     // A folder's own file and one in it.
-    ("plugin/src/editor/mod.rs", "plugin/src/editor/window.rs"),
 ];
 
 /// Files whose purpose still takes more than a line. The list may only shrink.
