@@ -12,7 +12,6 @@ pub mod midi_ports;
 pub mod player;
 pub mod recorder;
 pub mod session;
-mod song_cursor;
 pub mod status;
 mod stream;
 pub mod view;

@@ -4,10 +4,9 @@ use super::block_clock::{BlockClock, Moment};
 use super::convert::{DeviceSample, interleave};
 use super::live::LiveInputs;
 use super::recorder::Tap;
-use super::song_cursor::SongCursor;
 use super::status::Status;
 use crate::engine::{Ensemble, Event, EventKind};
-use crate::io::Song;
+use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use crate::patch::Patch;
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::Arc;
@@ -21,9 +20,6 @@ const PATCH_CAPACITY: usize = 32;
 
 /// How often the masses are shown, in Hz.
 const SNAPSHOT_RATE: f64 = 40.0;
-
-/// As in the offline renderer, the song is over when nothing sounds at a multiple of this many frames after its end.
-const SILENCE_INTERVAL: u64 = 64;
 
 /// What a player plays, and how.
 pub struct Setup<'a> {
@@ -54,7 +50,7 @@ pub struct Player {
     ensemble: Ensemble,
     sample_rate: f64,
     programs: usize,
-    song: Option<SongCursor>,
+    song: Option<SongCursor<Song>>,
     inputs: LiveInputs,
     patches: Consumer<(u8, Patch)>,
     clock: BlockClock,
@@ -74,7 +70,7 @@ impl Player {
     pub fn new(setup: Setup, inputs: LiveInputs, tap: Option<Tap>, status: Arc<Status>) -> (Self, PatchSender) {
         let sample_rate = f64::from(setup.sample_rate);
         let song = setup.song.map(|song| SongCursor::new(song, sample_rate));
-        let densest = song.as_ref().map_or(0, SongCursor::densest_block);
+        let densest = song.as_ref().map_or(0, |song| song.densest_block(MAX_BLOCK));
         let (sender, patches) = RingBuffer::new(PATCH_CAPACITY);
         let player = Self {
             ensemble: Ensemble::new(sample_rate, setup.seed, setup.patch, setup.programs),

@@ -3,18 +3,12 @@
 use super::job::{Job, Rendered};
 use crate::engine::{Ensemble, Event};
 use crate::error::Result;
-use crate::io::song::SongEvent;
+use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
-use std::iter::Peekable;
-use std::slice;
 
 /// From this many frames on, other cores are asked for help: handing work over takes them some microseconds, and so
 /// many frames of a voice or two take some tens.
 const SHARED_FRAMES: usize = 512;
-
-/// In a tail, silence is looked for each time that this many frames have passed since the end of the song: often
-/// enough for a tight end, and at frames that do not depend on the block.
-const SILENCE_INTERVAL: u64 = 64;
 
 impl Job<'_> {
     /// Renders from the start and hands each block, left and right, to `sink`, whose first error ends it.
@@ -50,13 +44,10 @@ impl Job<'_> {
 /// Renders a job from its start, as many frames at a time as there is room for.
 struct Stream<'a> {
     ensemble: Ensemble,
-    pending: Peekable<slice::Iter<'a, SongEvent>>,
+    song: SongCursor<&'a Song>,
     /// Events of the frames that are being rendered.
     events: Vec<Event>,
-    sample_rate: f64,
-    song_frames: u64,
     known_frames: Option<u64>,
-    frame: u64,
 }
 
 impl<'a> Stream<'a> {
@@ -65,12 +56,9 @@ impl<'a> Stream<'a> {
         let sample_rate = f64::from(options.sample_rate);
         Self {
             ensemble: Ensemble::new(sample_rate, options.seed, job.patch, job.programs).with_chunk(options.block),
-            pending: job.song.events.iter().peekable(),
+            song: SongCursor::new(job.song, sample_rate),
             events: Vec::new(),
-            sample_rate,
-            song_frames: job.song_frames(),
             known_frames: job.known_frames(),
-            frame: 0,
         }
     }
 
@@ -80,7 +68,7 @@ impl<'a> Stream<'a> {
         while filled < left.len()
             && let Some(end) = self.next_end()
         {
-            let frames = (end - self.frame).min((left.len() - filled) as u64) as usize;
+            let frames = (end - self.song.frame()).min((left.len() - filled) as u64) as usize;
             self.render(&mut left[filled..][..frames], &mut right[filled..][..frames]);
             filled += frames;
         }
@@ -88,28 +76,26 @@ impl<'a> Stream<'a> {
     }
 
     /// The frame up to which there is sound to come for certain; none at the end.
-    fn next_end(&mut self) -> Option<u64> {
+    fn next_end(&self) -> Option<u64> {
+        let (frame, song_frames) = (self.song.frame(), self.song.song_frames());
         let end = match self.known_frames {
             Some(end) => end,
-            None if self.frame < self.song_frames => self.song_frames,
+            None if frame < song_frames => song_frames,
             None => {
-                let into_tail = self.frame - self.song_frames;
-                let may_end = into_tail.is_multiple_of(SILENCE_INTERVAL) && self.pending.peek().is_none();
+                let into_tail = frame - song_frames;
+                let may_end = into_tail.is_multiple_of(SILENCE_INTERVAL) && self.song.is_over();
                 if may_end && self.ensemble.is_silent() {
                     return None;
                 }
-                self.song_frames + (into_tail / SILENCE_INTERVAL + 1) * SILENCE_INTERVAL
+                song_frames + (into_tail / SILENCE_INTERVAL + 1) * SILENCE_INTERVAL
             }
         };
-        (self.frame < end).then_some(end)
+        (frame < end).then_some(end)
     }
 
     fn render(&mut self, left: &mut [f32], right: &mut [f32]) {
-        let end = self.frame + left.len() as u64;
         self.events.clear();
-        while let Some(event) = self.pending.next_if(|event| event.frame(self.sample_rate) < end) {
-            self.events.push(event.at(event.frame(self.sample_rate).saturating_sub(self.frame) as u32));
-        }
+        self.song.advance(left.len(), &mut self.events);
         if left.len() < SHARED_FRAMES {
             self.ensemble.process(&self.events, left, right);
         } else {
@@ -118,14 +104,13 @@ impl<'a> Stream<'a> {
                 |parts: &mut [_], play: &(dyn Fn(&mut _) + Sync)| parts.par_iter_mut().with_max_len(1).for_each(play);
             self.ensemble.process_by(each, &self.events, left, right);
         }
-        self.frame = end;
     }
 
     /// What it came to, at the end.
     fn rendered(&self) -> Rendered {
         Rendered {
-            frames: self.frame,
-            tail_frames: self.frame - self.song_frames,
+            frames: self.song.frame(),
+            tail_frames: self.song.frame() - self.song.song_frames(),
             voices_used: self.ensemble.voices_used(),
             limiter: self.ensemble.limiter_work(),
         }
