@@ -2,7 +2,6 @@
 
 mod container;
 mod fault;
-mod message;
 mod reader;
 
 use super::song::{Song, SongEvent};
@@ -13,7 +12,6 @@ use container::Container;
 use reader::TrackReader;
 use std::io::Read;
 
-pub use message::parse_message;
 pub use reader::MAX_EVENTS;
 
 /// Largest MIDI file that is read, in bytes.

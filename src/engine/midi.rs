@@ -1,0 +1,63 @@
+//! MIDI 1.0 channel messages as events.
+
+use super::EventKind;
+
+/// The channel and event of one complete MIDI message, as a port delivers it; none for what is not a channel message.
+/// Real-time safe.
+pub fn parse_message(bytes: &[u8]) -> Option<(u8, EventKind)> {
+    let (&status, data) = bytes.split_first()?;
+    let data = |index: usize| data.get(index).copied().filter(|byte| *byte < 128);
+    let unit = |byte: u8| f32::from(byte) / 127.0;
+    let first = data(0)?;
+    let kind = match status >> 4 {
+        0x8 => EventKind::NoteOff { key: first, velocity: unit(data(1)?), id: -1 },
+        0x9 => match data(1)? {
+            // A note-on of velocity 0 is a note-off whose velocity the controller does not tell.
+            0 => EventKind::NoteOff { key: first, velocity: 0.5, id: -1 },
+            velocity => EventKind::NoteOn { key: first, detune: 0.0, velocity: unit(velocity), id: -1 },
+        },
+        0xA => EventKind::PolyPressure { key: first, pressure: unit(data(1)?) },
+        0xB => EventKind::Control { controller: first, value: unit(data(1)?) },
+        0xC => EventKind::Program(first),
+        0xD => EventKind::ChannelPressure(unit(first)),
+        0xE => EventKind::PitchBend(bend_position(i16::from(data(1)?) << 7 | i16::from(first))),
+        _ => return None,
+    };
+    Some((status & 15, kind))
+}
+
+/// 0…16383 as −1…1: both ends and the centre are exact, so the upper half has steps of its own.
+fn bend_position(value: i16) -> f32 {
+    let steps = f32::from(value - 8192);
+    if steps < 0.0 { steps / 8192.0 } else { steps / 8191.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_are_read_one_by_one() {
+        use EventKind as E;
+        for (bytes, expected) in [
+            (&[0x91, 60, 127][..], Some((1, E::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: -1 }))),
+            (&[0x9f, 60, 0], Some((15, E::NoteOff { key: 60, velocity: 0.5, id: -1 }))),
+            (&[0x80, 60, 127], Some((0, E::NoteOff { key: 60, velocity: 1.0, id: -1 }))),
+            (&[0xa3, 1, 127], Some((3, E::PolyPressure { key: 1, pressure: 1.0 }))),
+            (&[0xb3, 64, 127], Some((3, E::Control { controller: 64, value: 1.0 }))),
+            (&[0xc2, 7], Some((2, E::Program(7)))),
+            (&[0xd2, 0], Some((2, E::ChannelPressure(0.0)))),
+            (&[0xe0, 0, 0], Some((0, E::PitchBend(-1.0)))),
+            (&[0xe0, 0, 64], Some((0, E::PitchBend(0.0)))),
+            (&[0xe0, 127, 127], Some((0, E::PitchBend(1.0)))),
+            (&[0xf8], None),
+            (&[0xf0, 1, 2, 0xf7], None),
+            (&[0x90, 60], None),
+            (&[0x90, 128, 1], None),
+            (&[60, 60], None),
+            (&[], None),
+        ] {
+            assert_eq!(parse_message(bytes), expected, "{bytes:?}");
+        }
+    }
+}
