@@ -1,5 +1,6 @@
 //! The header of a WAV file: RIFF up to 4 GiB, RF64 beyond.
 
+use super::output::Output;
 use super::wav_format::WavFormat;
 use crate::error::Error;
 use std::fs::File;
@@ -68,9 +69,24 @@ pub(super) fn padding(data_len: u64) -> u64 {
     data_len % 2
 }
 
+impl Output {
+    /// Completes a WAV whose writing failed, so that what got as far as the disk can be played: cuts it after its last
+    /// whole frame and tells the header its length, which takes no further room. Gives the number of frames.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be changed, has no whole header, or is not a file.
+    pub fn salvage_wav(&mut self, format: WavFormat) -> crate::Result<u64> {
+        let salvaged = match self.is_seekable() {
+            true => salvage(self.stream(), &format),
+            false => Err(ErrorKind::NotSeekable.into()),
+        };
+        salvaged.map_err(|source| Error::io(self.name(), source))
+    }
+}
+
 /// Completes the file of a writer that failed: ends it after its last whole frame and writes the header for that
 /// length. Gives the number of frames.
-pub(super) fn salvage(file: &mut File, format: &WavFormat) -> io::Result<u64> {
+fn salvage(file: &mut File, format: &WavFormat) -> io::Result<u64> {
     let header_len = header(format, 0).len() as u64;
     let Some(data_len) = file.metadata()?.len().checked_sub(header_len) else {
         return Err(io::Error::new(ErrorKind::UnexpectedEof, "nothing was recorded"));

@@ -50,6 +50,9 @@ const OUTSIDE: &[Row] = &[
 /// What the plugin must not use: it has no signal processing of its own.
 const NOT_OF_THE_PLUGIN: &[Row] = &[("sprung::dsp", &[]), ("libm", &[])];
 
+/// Crates that the library needs without any feature: all that the plugin builds of it.
+const ALWAYS_BUILT: &[&str] = &["libm", "same-file", "strsim", "tempfile", "thiserror", "toml", "toml_writer"];
+
 /// Roots of the crates whose files must not import each other.
 const CRATES: &[&str] = &[
     "src/lib.rs",
@@ -126,6 +129,18 @@ fn the_plugin_has_no_dsp() {
     for root in ["plugin/src/lib.rs", "plugin/src/main.rs"] {
         assert_none(&rules::outside(&read(root), NOT_OF_THE_PLUGIN));
     }
+}
+
+#[test]
+fn the_plugin_builds_nothing_that_only_the_command_needs() {
+    let manifest = |file: &str| -> toml::Table { fs::read_to_string(project().join(file)).unwrap().parse().unwrap() };
+    let library = manifest("Cargo.toml");
+    let is_optional = |value: &toml::Value| value.get("optional").and_then(toml::Value::as_bool) == Some(true);
+    let always = library["dependencies"].as_table().unwrap().iter().filter(|(_, value)| !is_optional(value));
+    assert_eq!(always.map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ALWAYS_BUILT);
+    let used = &manifest("plugin/Cargo.toml")["dependencies"]["sprung"];
+    assert_eq!(used.get("default-features").and_then(toml::Value::as_bool), Some(false));
+    assert!(used.get("features").is_none());
 }
 
 #[test]
