@@ -4,11 +4,12 @@ use super::song::SongArgs;
 use super::sound::{SoundArgs, Sounds};
 use super::terminal::{complain, complain_lines, print};
 use super::{completion, interrupt, quantity};
+use sprung::engine::telemetry::Load;
 use sprung::io::{Inputs, Output, Target};
 use sprung::patch::Patch;
 use sprung::realtime::{
-    Choice, Found, JackMidi, LiveInputs, LiveSender, Load, MidiPorts, PatchSender, Player, Recording, Session, Setup,
-    Status, Wanted, device, midi_ports, view,
+    Choice, Found, JackMidi, LiveInputs, LiveSender, MidiPorts, PatchSender, Player, Recording, Session, Setup, Status,
+    Wanted, device, midi_ports, view,
 };
 use sprung::render::BLOCKS;
 use sprung::text::printable;
@@ -224,7 +225,7 @@ impl Stage {
         if !session.finish(&mut closing) {
             complain("warning", "the sound device does not answer; left it behind");
         }
-        say(&summary(&status.load(), sample_rate));
+        say(&summary(&status.telemetry().load(), status.xruns(), sample_rate));
         let Some(Take { recording, .. }) = recording else { return Ok(()) };
         let recorded = recording.finish()?;
         let seconds = recorded.frames as f64 / f64::from(sample_rate);
@@ -239,16 +240,16 @@ impl Stage {
     }
 }
 
-fn summary(load: &Load, sample_rate: u32) -> String {
+fn summary(load: &Load, xruns: u64, sample_rate: u32) -> String {
     format!(
         "played {:.3} s in blocks of {:.0} frames: {} xruns; a block took {:.1} % of its time on average, {:.1} % at most, \
          {} of {} more than all of it",
         load.frames as f64 / f64::from(sample_rate),
-        load.frames as f64 / load.callbacks.max(1) as f64,
-        load.xruns,
+        load.frames as f64 / load.blocks.max(1) as f64,
+        xruns,
         100.0 * load.mean_share,
         100.0 * load.worst_share,
-        load.late_callbacks,
-        load.callbacks,
+        load.late_blocks,
+        load.blocks,
     )
 }

@@ -24,4 +24,4 @@ pub use midi_ports::{MidiPorts, Wanted};
 pub use player::{PatchSender, Player, Setup};
 pub use recorder::{Recorded, Recording, Tap};
 pub use session::Session;
-pub use status::{Load, Status};
+pub use status::Status;

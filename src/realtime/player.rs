@@ -5,21 +5,17 @@ use super::convert::{DeviceSample, interleave};
 use super::live::LiveInputs;
 use super::recorder::Tap;
 use super::status::Status;
-use crate::engine::{Ensemble, Event, EventKind};
+use crate::engine::{Ensemble, Event, EventKind, TelemetryWriter};
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use crate::patch::Patch;
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::Arc;
-use std::time::Duration;
 
 /// Frames that are rendered at a time; a longer block of the device is rendered in pieces.
 pub const MAX_BLOCK: usize = 4096;
 
 /// Patches that wait for the audio thread to take them.
 const PATCH_CAPACITY: usize = 32;
-
-/// How often the masses are shown, in Hz.
-const SNAPSHOT_RATE: f64 = 40.0;
 
 /// What a player plays, and how.
 pub struct Setup<'a> {
@@ -59,10 +55,10 @@ pub struct Player {
     right: Vec<f32>,
     tap: Option<Tap>,
     status: Arc<Status>,
+    telemetry: TelemetryWriter,
     /// Frames since the song was over.
     tail: u64,
     ended: bool,
-    to_snapshot: f64,
 }
 
 impl Player {
@@ -84,10 +80,10 @@ impl Player {
             left: vec![0.0; MAX_BLOCK],
             right: vec![0.0; MAX_BLOCK],
             tap,
+            telemetry: TelemetryWriter::new(status.telemetry().clone(), sample_rate),
             status,
             tail: 0,
             ended: false,
-            to_snapshot: 0.0,
         };
         (player, PatchSender(sender))
     }
@@ -116,8 +112,8 @@ impl Player {
             self.render(start as u32, len);
             interleave(&self.left[..len], &self.right[..len], channels, out);
         }
-        let period = Duration::from_secs_f64(frames as f64 / self.sample_rate);
-        self.status.note_callback(frames as u64, moment.now.elapsed(), period, self.clock.delay());
+        self.status.note_delay(self.clock.delay());
+        self.telemetry.note_block(frames, moment.now.elapsed());
     }
 
     /// Renders a piece of a block that starts `start` frames after the block's own start.
@@ -131,7 +127,7 @@ impl Player {
         for event in &self.events {
             let known = !matches!(event.kind, EventKind::Program(number) if usize::from(number) >= self.programs);
             if known {
-                self.status.note_event(event.channel, event.kind);
+                self.telemetry.note_event(event);
             }
         }
         let (left, right) = (&mut self.left[..len], &mut self.right[..len]);
@@ -142,13 +138,8 @@ impl Player {
         let silent = self.ensemble.is_silent();
         self.tail = if was_over { self.tail + len as u64 } else { 0 };
         self.ended = silent && was_over && (self.ended || self.tail >= SILENCE_INTERVAL);
-        let peak = |samples: &[f32]| samples.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
-        self.status.note_sound([peak(left), peak(right)], self.ended, silent);
-        self.to_snapshot -= len as f64;
-        if self.to_snapshot <= 0.0 && self.status.is_watched() {
-            self.to_snapshot = self.sample_rate / SNAPSHOT_RATE;
-            self.status.note_snapshot(&self.ensemble.snapshot());
-        }
+        self.status.note_song(self.ended);
+        self.telemetry.note_sound(left, right, silent, || self.ensemble.snapshot());
     }
 }
 
@@ -159,7 +150,7 @@ mod tests {
     use crate::params::Param;
     use crate::realtime::live::LiveSender;
     use crate::render::{Job, Options, Tail};
-    use std::time::Instant;
+    use std::time::{Duration, Instant};
 
     const SETTINGS: (u32, u64) = (44_100, 7);
 
@@ -237,6 +228,6 @@ mod tests {
         for _ in 0..10_000 {
             player.fill(&mut out, 2, now());
         }
-        assert!(status.is_song_over() && status.is_silent());
+        assert!(status.is_song_over() && status.telemetry().is_silent());
     }
 }
