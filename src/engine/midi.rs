@@ -1,6 +1,44 @@
-//! MIDI 1.0 channel messages as events.
+//! MIDI 1.0: channel messages as events, and the numbers of controllers.
 
 use super::EventKind;
+
+/// Numbers of the controllers that are acted on.
+pub mod controller {
+    /// Modulation wheel.
+    pub const WHEEL: u8 = 1;
+    /// Data entry of the registered parameter that was chosen, most significant seven bits.
+    pub const DATA: u8 = 6;
+    /// Channel volume.
+    pub const VOLUME: u8 = 7;
+    /// Pan.
+    pub const PAN: u8 = 10;
+    /// Expression.
+    pub const EXPRESSION: u8 = 11;
+    /// Data entry, least significant seven bits.
+    pub const DATA_FINE: u8 = 38;
+    /// Sustain pedal.
+    pub const SUSTAIN: u8 = 64;
+    /// Sostenuto pedal.
+    pub const SOSTENUTO: u8 = 66;
+    /// Soft pedal.
+    pub const SOFT: u8 = 67;
+    /// Brightness.
+    pub const BRIGHTNESS: u8 = 74;
+    /// Chooses a parameter that is not registered, least significant seven bits.
+    pub const NRPN_FINE: u8 = 98;
+    /// Chooses a parameter that is not registered, most significant seven bits.
+    pub const NRPN: u8 = 99;
+    /// Chooses a registered parameter, least significant seven bits.
+    pub const RPN_FINE: u8 = 100;
+    /// Chooses a registered parameter, most significant seven bits.
+    pub const RPN: u8 = 101;
+    /// All sound off.
+    pub const ALL_SOUND_OFF: u8 = 120;
+    /// Reset all controllers.
+    pub const RESET: u8 = 121;
+    /// All notes off; so are the mode messages above it, up to 127.
+    pub const ALL_NOTES_OFF: u8 = 123;
+}
 
 /// The channel and event of one complete MIDI message, as a port delivers it; none for what is not a channel message.
 /// Real-time safe.

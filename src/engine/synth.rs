@@ -1,8 +1,9 @@
 //! The instrument: one patch, its voices, and a stream of events in; stereo samples out.
 
-use super::channel::{Channel, Wheels, controller};
+use super::channel::{Channel, Wheels};
 use super::controls::Smoother;
 use super::event::{Expression, finite, unit};
+use super::midi::controller;
 use super::modulation::modulated;
 use super::note::{Note, Notes, nearest_channel, nearest_key};
 use super::voice::{Instrument, SynthVoice};

@@ -1,5 +1,6 @@
 //! What sounds, how loudly, and how the audio thread keeps up, for a display to read while it plays.
 
+use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF};
 use super::note::{nearest_channel, nearest_key};
 use super::{Event, EventKind, Snapshot};
 use crate::dsp::mode_bank::MAX_MODES;
@@ -127,7 +128,7 @@ impl TelemetryWriter {
                 let key = nearest_key(key);
                 keys[usize::from(key >> 6)].fetch_and(!(1 << (key & 63)), Relaxed);
             }
-            EventKind::Control { controller: 120 | 123..=127, .. } => {
+            EventKind::Control { controller: ALL_SOUND_OFF | ALL_NOTES_OFF..=127, .. } => {
                 keys.iter().for_each(|half| half.store(0, Relaxed));
             }
             EventKind::Program(number) => self.telemetry.programs[channel].store(u16::from(number) + 1, Relaxed),
@@ -240,7 +241,7 @@ mod tests {
             tell(EventKind::Program(number));
             assert_eq!(telemetry.program(3), Some(number));
         }
-        tell(EventKind::Control { controller: 123, value: 0.0 });
+        tell(EventKind::Control { controller: ALL_NOTES_OFF, value: 0.0 });
         assert_eq!(telemetry.keys(3), 0);
     }
 
