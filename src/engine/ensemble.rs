@@ -159,7 +159,7 @@ impl Part {
         let mut frame = 0;
         *heard = !synth.is_silent();
         for event in events {
-            let sender = event.channel_index();
+            let sender = usize::from(nearest_channel(event.channel));
             let program = match event.kind {
                 EventKind::Program(number) => programs.get(usize::from(number)),
                 _ => None,

@@ -1,6 +1,6 @@
 //! What happens to the engine, and at which frame.
 
-use super::note::{Notes, nearest_channel};
+use super::note::Notes;
 use crate::params::Param;
 
 /// An event at a frame of the block that it is handed over with.
@@ -12,13 +12,6 @@ pub struct Event {
     pub channel: u8,
     /// What happens.
     pub kind: EventKind,
-}
-
-impl Event {
-    /// The channel as an index, 0–15.
-    pub(super) fn channel_index(&self) -> usize {
-        usize::from(nearest_channel(self.channel))
-    }
 }
 
 /// What happens. Numbers out of range are clamped where they are used, keys and channels as well; NaN counts as zero.
