@@ -8,6 +8,7 @@ use nice_plug::prelude::*;
 use nice_plug_core::midi::{Channel, Key, VoiceID};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::{PARAM_COUNT, PARAMS, Param};
+use sprung::units::mono_from_stereo;
 use std::ops::Range;
 
 /// Frames that are rendered at a time where the output is mono.
@@ -198,7 +199,7 @@ impl Live {
                     let (left, right) = (&mut left[..part.len()], &mut right[..part.len()]);
                     self.synth.process(&[], left, right);
                     for ((mono, left), right) in part.iter_mut().zip(left).zip(right) {
-                        *mono = 0.5 * (*left + *right);
+                        *mono = mono_from_stereo(*left, *right);
                     }
                     self.told = 0;
                     self.tell(last, context);

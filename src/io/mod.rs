@@ -6,6 +6,7 @@ pub mod inputs;
 #[cfg(feature = "render")]
 pub mod midi;
 pub mod output;
+mod quantise;
 #[cfg(feature = "render")]
 mod riff;
 #[cfg(feature = "render")]
@@ -23,6 +24,7 @@ mod wav_format;
 
 pub use inputs::Inputs;
 pub use output::Output;
+pub use quantise::quantise;
 pub use song::{Song, SongEvent};
 pub use song_cursor::{SILENCE_INTERVAL, SongCursor};
 pub use target::Target;

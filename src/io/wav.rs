@@ -1,5 +1,6 @@
 //! WAV files: 16- and 24-bit integers with or without dither, and 32-bit floats.
 
+use super::quantise::quantise;
 use super::riff;
 use super::wav_format::{SampleFormat, WavFormat};
 use crate::dsp::random;
@@ -87,7 +88,6 @@ impl<W: Write + Seek> WavWriter<W> {
     }
 
     fn quantise(&mut self, sample: f32, channel: usize, n: u64) -> i32 {
-        let full_scale = f64::from(1u32 << (self.format.samples.bits() - 1));
         let noise = self.dither.map_or(0.0, |keys| {
             let uniform = |n| f64::from(random::uniform(keys[channel], n));
             0.5 * (uniform(2 * n) + uniform(2 * n + 1))
@@ -96,7 +96,7 @@ impl<W: Write + Seek> WavWriter<W> {
         if sample.abs() > 1.0 {
             self.clipped += 1;
         }
-        (f64::from(sample) * full_scale + noise).round_ties_even().clamp(-full_scale, full_scale - 1.0) as i32
+        quantise(sample, self.format.samples.bits(), noise)
     }
 }
 
