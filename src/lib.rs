@@ -9,8 +9,9 @@
 //! | [`params`], [`patch`], [`preset`] | what can be set, a set of values, and its file |
 //! | [`sound`] | what the keys play: their tuning, also by Scala's files |
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
-//! | [`io`], [`render`](mod@render) | MIDI files in, WAV files out, and the offline renderer between them |
-//! | [`lab`] | ways to integrate a mass on a spring, side by side: what the oscillator is measured against |
+//! | [`io`] | songs, and files that are written whole or not at all; MIDI files in and WAV files out (feature `render`) |
+//! | `render` | the offline renderer (feature `render`) |
+//! | `lab` | ways to integrate a mass on a spring, side by side: what the oscillator is measured against (feature `lab`) |
 //! | `realtime` | sound devices, MIDI ports and a terminal to play from (feature `realtime`) |
 //!
 //! A note, rendered:
@@ -43,12 +44,14 @@ pub mod error;
 #[cfg(feature = "figures")]
 pub mod figure;
 pub mod io;
+#[cfg(feature = "lab")]
 pub mod lab;
 pub mod params;
 pub mod patch;
 pub mod preset;
 #[cfg(feature = "realtime")]
 pub mod realtime;
+#[cfg(feature = "render")]
 pub mod render;
 pub mod sound;
 pub mod text;

@@ -58,6 +58,11 @@ pub fn key_from_note_name(name: &str) -> Option<u8> {
     u8::try_from(key).ok().filter(|key| *key < 128)
 }
 
+/// One channel of two: their mean. Real-time safe.
+pub fn mono_from_stereo(left: f32, right: f32) -> f32 {
+    0.5 * (left + right)
+}
+
 /// A fractional MIDI key from what a person writes: `C#4`, `60`, `60.5`, `440Hz`. `a4_hz` places frequencies.
 pub fn parse_key(text: &str, a4_hz: f64) -> Result<f64, String> {
     let expected = "expected a note name (C#4), a key from 0 to 127 (60, 60.5) or a frequency (440Hz)";

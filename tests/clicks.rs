@@ -1,5 +1,8 @@
 //! Nothing clicks: the largest jump between two samples stays within that of the undisturbed sound plus −60 dBFS.
 
+mod events;
+
+use events::{event, off, on};
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::params::Param;
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -8,18 +11,6 @@ const RATE: f64 = 48_000.0;
 const FRAMES: usize = 24_000;
 /// −60 dBFS.
 const ALLOWANCE: f32 = 0.001;
-
-fn event(frame: u32, kind: EventKind) -> Event {
-    Event { frame, channel: 0, kind }
-}
-
-fn on(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 })
-}
-
-fn off(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
-}
 
 fn pedal(frame: u32, controller: u8, value: f32) -> Event {
     event(frame, EventKind::Control { controller, value })

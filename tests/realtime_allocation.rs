@@ -42,11 +42,11 @@ fn play<T: DeviceSample>(frames: usize, channels: usize) {
             keys.send_now(n, EventKind::PitchBend(0.1));
         }
         patches.send((block % 16) as u8, &patch);
-        let _ = (status.snapshot(), status.load());
+        let _ = (status.telemetry().snapshot(), status.telemetry().load());
         let since = Duration::from_secs_f64(f64::from(block) * frames as f64 / 48_000.0);
         let moment = Moment { now: start + since, called: since, heard: since };
         assert_no_alloc(|| player.fill(&mut out, channels, moment));
-        blocks_with_sound += usize::from(status.take_peaks()[0] > 0.01);
+        blocks_with_sound += usize::from(status.telemetry().take_peaks()[0] > 0.01);
     }
     assert!(blocks_with_sound > 2, "something sounded");
     drop(player);

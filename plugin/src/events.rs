@@ -2,8 +2,8 @@
 
 use nice_plug::prelude::{NoteEvent, PluginApi};
 use nice_plug_core::midi::{Channel, Key, VoiceID};
+use sprung::engine::midi::parse_message;
 use sprung::engine::{EventKind, Expression, Notes};
-use sprung::io::midi::parse_message;
 use sprung::params::PARAMS;
 
 /// The engine's event, and its channel. `None` for what an instrument has no use for, and for a note without a key.

@@ -2,17 +2,21 @@
 
 use crate::events::translate;
 use crate::params::{Look, SprungParams};
-use crate::plugin::Sprung;
 use crate::slate::Loaded;
 use crate::tail::Tail;
 use nice_plug::prelude::*;
 use nice_plug_core::midi::{Channel, Key, VoiceID};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::{PARAM_COUNT, PARAMS, Param};
+use sprung::units::mono_from_stereo;
 use std::ops::Range;
 
 /// Frames that are rendered at a time where the output is mono.
 const MONO_FRAMES: usize = 256;
+
+/// Events that the wrapper hands over in a block without allocating. A host may send all of VST3's 2,080 controllers at
+/// once, several times a block.
+pub(crate) const EVENT_CAPACITY: usize = 8192;
 
 /// Most voices that there ever are.
 pub(crate) const MAX_VOICES: u32 = sprung::engine::voice_manager::MAX_VOICES as u32;
@@ -53,7 +57,7 @@ impl Live {
             voices: 0,
             tail: Tail::new(offline),
             told: 0,
-            early: Vec::with_capacity(Sprung::INPUT_EVENT_CAPACITY),
+            early: Vec::with_capacity(EVENT_CAPACITY),
             stereo: [[0.0; MONO_FRAMES]; 2],
         };
         live.reset(params);
@@ -120,11 +124,11 @@ impl Live {
     }
 
     /// Renders a block over `outputs`, one channel or two.
-    pub(crate) fn process(
+    pub(crate) fn process<P: Plugin<SysExMessage = ()>>(
         &mut self,
         params: &SprungParams,
         outputs: &mut [&mut [f32]],
-        context: &mut impl ProcessContext<Sprung>,
+        context: &mut impl ProcessContext<P>,
     ) -> ProcessStatus {
         self.follow(params);
         self.follow_host(params, context.transport().tempo);
@@ -160,7 +164,12 @@ impl Live {
     }
 
     /// Takes in one event at a frame of the block.
-    fn take(&mut self, event: &NoteEvent<()>, frame: usize, context: &mut impl ProcessContext<Sprung>) {
+    fn take<P: Plugin<SysExMessage = ()>>(
+        &mut self,
+        event: &NoteEvent<()>,
+        frame: usize,
+        context: &mut impl ProcessContext<P>,
+    ) {
         if let Some((channel, kind)) = translate(event, context.plugin_api()) {
             self.handle(channel, kind);
             self.tell(frame, context);
@@ -168,7 +177,12 @@ impl Live {
     }
 
     /// Renders the frames at a range of the outputs, and tells the host which notes have ended.
-    fn render(&mut self, outputs: &mut [&mut [f32]], frames: Range<usize>, context: &mut impl ProcessContext<Sprung>) {
+    fn render<P: Plugin<SysExMessage = ()>>(
+        &mut self,
+        outputs: &mut [&mut [f32]],
+        frames: Range<usize>,
+        context: &mut impl ProcessContext<P>,
+    ) {
         if frames.is_empty() {
             return;
         }
@@ -185,7 +199,7 @@ impl Live {
                     let (left, right) = (&mut left[..part.len()], &mut right[..part.len()]);
                     self.synth.process(&[], left, right);
                     for ((mono, left), right) in part.iter_mut().zip(left).zip(right) {
-                        *mono = 0.5 * (*left + *right);
+                        *mono = mono_from_stereo(*left, *right);
                     }
                     self.told = 0;
                     self.tell(last, context);
@@ -196,7 +210,7 @@ impl Live {
     }
 
     /// Tells the host at a frame of the block which notes have ended since it was last told.
-    fn tell(&mut self, frame: usize, context: &mut impl ProcessContext<Sprung>) {
+    fn tell<P: Plugin<SysExMessage = ()>>(&mut self, frame: usize, context: &mut impl ProcessContext<P>) {
         let ended = self.synth.ended();
         for note in ended.get(self.told..).unwrap_or_default() {
             let voice_id = if note.id >= 0 { VoiceID::ID(note.id) } else { VoiceID::Wildcard };

@@ -1,7 +1,7 @@
 //! What hosts are told of the instrument, and their calls.
 
 use crate::editor::SprungEditor;
-use crate::live::{Live, MAX_VOICES};
+use crate::live::{EVENT_CAPACITY, Live, MAX_VOICES};
 use crate::params::{Knob, SprungParams};
 use crate::state;
 use nice_plug::prelude::*;
@@ -44,8 +44,7 @@ impl Plugin for Sprung {
     // Bend, pedals and the wheel come only with all controllers.
     const MIDI_INPUT: MidiConfig = MidiConfig::MidiCCs;
     const SAMPLE_ACCURATE_AUTOMATION: bool = true;
-    // A host may send all of VST3's 2,080 controllers at once, several times a block; beyond this the wrapper allocates.
-    const INPUT_EVENT_CAPACITY: usize = 8192;
+    const INPUT_EVENT_CAPACITY: usize = EVENT_CAPACITY;
 
     type Editor = SprungEditor;
     type SysExMessage = ();

@@ -1,6 +1,6 @@
 //! `sprung completions`: what a shell offers when Tab is pressed. The shell's script asks this program each time.
 
-use clap::CommandFactory;
+use super::terminal::print;
 use clap_complete::engine::{ValueCompleter, complete};
 use clap_complete::env::{CompleteEnv, EnvCompleter, Shells};
 use clap_complete::{CompletionCandidate, PathCompleter, Shell};
@@ -40,16 +40,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
     completer
         .write_registration(VARIABLE, "sprung", "sprung", "sprung", &mut script)
         .map_err(|error| Error::io("the script", error))?;
-    super::print(&String::from_utf8_lossy(&script))
+    print(&String::from_utf8_lossy(&script))
 }
 
-/// Answers a shell's script; false if none asks.
-pub(super) fn answer() -> clap::error::Result<bool> {
+/// Answers a shell's script about a command; false if none asks.
+pub(super) fn answer(command: fn() -> clap::Command) -> clap::error::Result<bool> {
     let folder = std::env::current_dir().ok();
-    CompleteEnv::with_factory(super::Cli::command)
-        .var(VARIABLE)
-        .shells(SHELLS)
-        .try_complete(std::env::args_os(), folder.as_deref())
+    CompleteEnv::with_factory(command).var(VARIABLE).shells(SHELLS).try_complete(std::env::args_os(), folder.as_deref())
 }
 
 /// Factory presets, whatever the case, and preset files.

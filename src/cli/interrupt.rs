@@ -2,11 +2,15 @@
 //!
 //! What was ignored when the program started, as `nohup` has it, stays ignored.
 
+use super::terminal::complain;
 use sprung::io::Output;
 use sprung::{Error, Result};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
+
+/// What the shell reports for a program that Ctrl-C has ended.
+pub(super) const INTERRUPTED: u8 = 130;
 
 static REQUESTED: AtomicBool = AtomicBool::new(false);
 /// What [`end_at_once`] removes.
@@ -81,8 +85,8 @@ fn failed(error: impl std::fmt::Display) -> Error {
 }
 
 fn end() -> ! {
-    super::complain("error", "interrupted");
-    std::process::exit(super::INTERRUPTED.into())
+    complain("error", "interrupted");
+    std::process::exit(INTERRUPTED.into())
 }
 
 /// Fails once an interrupt has come.

@@ -1,6 +1,6 @@
 //! `sprung man`: the manual pages.
 
-use clap::CommandFactory;
+use super::terminal::print;
 use clap_mangen::Man;
 use sprung::io::{Inputs, Output, Target};
 use sprung::{Error, Result};
@@ -21,18 +21,19 @@ pub(super) struct Args {
     force: bool,
 }
 
-pub(super) fn run(args: &Args) -> Result<()> {
+/// Tells of `command`, which is the whole of `sprung`.
+pub(super) fn run(args: &Args, command: clap::Command) -> Result<()> {
     match &args.directory {
-        Some(directory) => write_pages(directory, args.force),
-        None => super::print(&String::from_utf8_lossy(&rendered(&Man::new(super::Cli::command()))?)),
+        Some(directory) => write_pages(command, directory, args.force),
+        None => print(&String::from_utf8_lossy(&rendered(&Man::new(command))?)),
     }
 }
 
 /// Writes all pages before the first of them gets its name, so that one that cannot be written leaves the others as they
 /// were.
-fn write_pages(directory: &Path, force: bool) -> Result<()> {
+fn write_pages(command: clap::Command, directory: &Path, force: bool) -> Result<()> {
     std::fs::create_dir_all(directory).map_err(|error| Error::io(directory.display().to_string(), error))?;
-    let mut command = super::Cli::command().disable_help_subcommand(true);
+    let mut command = command.disable_help_subcommand(true);
     command.build();
     let mut written = Vec::new();
     for page in pages(&command) {

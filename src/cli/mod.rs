@@ -12,18 +12,17 @@ mod progress;
 mod quantity;
 mod render;
 mod song;
+mod sound;
+mod terminal;
 mod tuning;
 mod usage;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use sprung::text::{printable, printable_lines};
+use interrupt::INTERRUPTED;
 use sprung::{Error, Result};
-use std::fmt::Display;
-use std::io::{ErrorKind, Write};
+use std::io::Write;
 use std::process::ExitCode;
-
-/// What the shell reports for a program that Ctrl-C has ended.
-const INTERRUPTED: u8 = 130;
+use terminal::{checked, complain};
 
 #[derive(Parser)]
 #[command(
@@ -33,7 +32,7 @@ const INTERRUPTED: u8 = 130;
     after_help = EXAMPLES,
     arg_required_else_help = true
 )]
-pub(crate) struct Cli {
+struct Cli {
     #[command(subcommand)]
     command: Command,
 }
@@ -83,7 +82,7 @@ enum Command {
 }
 
 pub(crate) fn run() -> ExitCode {
-    match completion::answer() {
+    match completion::answer(Cli::command) {
         Ok(true) => return finish(checked(std::io::stdout().flush())),
         Ok(false) => {}
         Err(error) => return usage::refuse(error, &Cli::command()),
@@ -111,7 +110,7 @@ fn execute(command: &Command) -> Result<()> {
         Command::Params(args) => parameters::run(args),
         Command::Lab(args) => lab::run(args),
         Command::Completions(args) => completion::run(args),
-        Command::Man(args) => manual::run(args),
+        Command::Man(args) => manual::run(args, Cli::command()),
     }
 }
 
@@ -122,30 +121,6 @@ fn finish(result: Result<()>) -> ExitCode {
             complain("error", &error);
             if matches!(error, Error::Interrupted) { ExitCode::from(INTERRUPTED) } else { ExitCode::FAILURE }
         }
-    }
-}
-
-/// Says one line on stderr, with nothing in it that steers the terminal.
-fn complain(severity: &str, message: impl Display) {
-    complain_lines(&format!("sprung: {severity}: {}\n", printable(&message.to_string())));
-}
-
-/// Writes lines to stderr, with nothing in them that steers the terminal. If it is closed, there is nobody left to tell.
-fn complain_lines(text: &str) {
-    let _ = write!(std::io::stderr(), "{}", printable_lines(text));
-}
-
-/// Writes lines to stdout, with nothing in them that steers the terminal.
-fn print(text: &str) -> Result<()> {
-    let mut stdout = std::io::stdout().lock();
-    checked(stdout.write_all(printable_lines(text).as_bytes()).and_then(|()| stdout.flush()))
-}
-
-/// What came of writing to stdout. A reader that has gone away, as `head` does, has what it wanted: that is no error.
-fn checked(written: std::io::Result<()>) -> Result<()> {
-    match written {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("stdout", error)),
-        _ => Ok(()),
     }
 }
 

@@ -1,5 +1,6 @@
 //! `sprung params`: the parameter table as text, Markdown or JSON.
 
+use super::terminal::print;
 use serde_json::json;
 use sprung::Result;
 use sprung::params::{Change, Curve, PARAMS, ParamInfo, Unit};
@@ -21,7 +22,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<()> {
-    super::print(&match args {
+    print(&match args {
         Args { json: true, .. } => format!("{:#}\n", PARAMS.iter().map(to_json).collect::<serde_json::Value>()),
         Args { markdown: true, .. } => markdown(),
         _ => text(),

@@ -1,22 +1,20 @@
 //! `sprung play`: the instrument live, on a sound device.
 
-use super::render::with_settings;
 use super::song::SongArgs;
-use super::tuning::TuningArgs;
-use super::{complain, complain_lines, completion, interrupt, presets, quantity};
-use clap_complete::ArgValueCompleter;
+use super::sound::{SoundArgs, Sounds};
+use super::terminal::{complain, complain_lines, print};
+use super::{completion, interrupt, quantity};
+use sprung::engine::telemetry::Load;
 use sprung::io::{Inputs, Output, Target};
-use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
 use sprung::realtime::{
-    Choice, Found, JackMidi, LiveInputs, LiveSender, Load, MidiPorts, PatchSender, Player, Recording, Session, Setup,
-    Status, Wanted, device, midi_ports, view,
+    Choice, Found, JackMidi, LiveInputs, LiveSender, MidiPorts, PatchSender, Player, Recording, Session, Setup, Status,
+    Wanted, device, midi_ports, view,
 };
 use sprung::render::BLOCKS;
 use sprung::text::printable;
 use sprung::{Error, Result};
-use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -39,15 +37,8 @@ pub(super) struct Args {
     song: Option<PathBuf>,
     #[command(flatten)]
     reading: SongArgs,
-    /// Factory preset or preset file (.toml) that plays what no program change says otherwise [default: init]
-    #[arg(long, value_name = "NAME|FILE.toml", add = ArgValueCompleter::new(completion::presets))]
-    preset: Option<OsString>,
-    /// Set a parameter of every preset used; may be repeated. See `sprung params`
-    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
-        add = ArgValueCompleter::new(completion::settings))]
-    set: Vec<(Param, f32)>,
     #[command(flatten)]
-    tuning: TuningArgs,
+    sound: SoundArgs,
     /// MIDI ports to listen to: all, none, or those with this in their name
     #[arg(long, default_value = "all", value_name = "NAME|all|none", add = completion::among(&["all", "none"]))]
     midi_in: String,
@@ -64,10 +55,6 @@ pub(super) struct Args {
     #[arg(long, value_name = "FRAMES", allow_hyphen_values = true,
         value_parser = quantity::whole::<u32>(*BLOCKS.start() as u64..=*BLOCKS.end() as u64))]
     buffer: Option<u32>,
-    /// Seed of all randomness, 0-18446744073709551615
-    #[arg(long, default_value_t = 0, value_name = "N", allow_hyphen_values = true,
-        value_parser = quantity::whole::<u64>(0..=u64::MAX))]
-    seed: u64,
     /// List sound systems, their devices, and MIDI ports
     #[arg(long)]
     list: bool,
@@ -91,13 +78,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let record = args.record.as_ref().map(Target::new);
     record.as_ref().map_or(Ok(()), Target::check_wav)?;
     let mut inputs = Inputs::default();
-    let preset = presets::load_or_init(args.preset.as_deref(), &mut inputs)?;
-    let patch = with_settings(preset.patch, &args.set);
-    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
-    let tuning = args.tuning.read(&mut inputs)?;
+    let Sounds { preset, programs, tuning } = args.sound.load(&mut inputs)?;
+    let Preset { name, patch, .. } = preset;
     let song = args.song.as_deref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
     if let Some(song) = &song {
-        args.reading.warn_of_programs(song, args.preset.as_ref().map(|_| &patch), &programs);
+        args.reading.warn_of_programs(song, args.sound.asked_for(&patch), &programs);
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;
@@ -115,7 +100,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let ([keys, midi, closing], inputs) = LiveInputs::new();
     let has_song = song.is_some();
     let heard = args.reading.programs(&programs);
-    let (sample_rate, seed) = (found.sample_rate(), args.seed);
+    let (sample_rate, seed) = (found.sample_rate(), args.sound.seed);
     let setup = Setup { sample_rate, seed, patch: &patch, programs: heard, tuning: &tuning, song };
     let (player, patches) = Player::new(setup, inputs, tap, status.clone());
     let session = match Session::start(&found, choice, player, status.clone()) {
@@ -134,7 +119,6 @@ pub(super) fn run(args: &Args) -> Result<()> {
         status,
         has_song,
     };
-    let name = preset.name.clone();
     if headless { stage.headless(closing) } else { stage.on_terminal(keys, patches, closing, name, patch, programs) }
 }
 
@@ -144,7 +128,7 @@ fn list() -> Result<()> {
         true => "  no ports\n".to_owned(),
         false => ports.iter().map(|name| format!("  --midi-in {name:?}\n")).collect(),
     };
-    super::print(&format!("{}MIDI\n{ports}", device::list()))
+    print(&format!("{}MIDI\n{ports}", device::list()))
 }
 
 /// Says something on stderr.
@@ -244,7 +228,7 @@ impl Stage {
         if !session.finish(&mut closing) {
             complain("warning", "the sound device does not answer; left it behind");
         }
-        say(&summary(&status.load(), sample_rate));
+        say(&summary(&status.telemetry().load(), status.xruns(), sample_rate));
         let Some(Take { recording, .. }) = recording else { return Ok(()) };
         let recorded = recording.finish()?;
         let seconds = recorded.frames as f64 / f64::from(sample_rate);
@@ -259,16 +243,16 @@ impl Stage {
     }
 }
 
-fn summary(load: &Load, sample_rate: u32) -> String {
+fn summary(load: &Load, xruns: u64, sample_rate: u32) -> String {
     format!(
         "played {:.3} s in blocks of {:.0} frames: {} xruns; a block took {:.1} % of its time on average, {:.1} % at most, \
          {} of {} more than all of it",
         load.frames as f64 / f64::from(sample_rate),
-        load.frames as f64 / load.callbacks.max(1) as f64,
-        load.xruns,
+        load.frames as f64 / load.blocks.max(1) as f64,
+        xruns,
         100.0 * load.mean_share,
         100.0 * load.worst_share,
-        load.late_callbacks,
-        load.callbacks,
+        load.late_blocks,
+        load.blocks,
     )
 }

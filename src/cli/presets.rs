@@ -1,6 +1,7 @@
 //! `sprung presets`: the factory's, and checks of one's own.
 
 use super::completion;
+use super::terminal::{complain, print};
 use clap::Subcommand;
 use clap_complete::ArgValueCompleter;
 use sprung::io::Inputs;
@@ -44,24 +45,19 @@ enum Action {
 
 pub(super) fn run(args: &Args) -> Result<()> {
     match &args.action {
-        Action::List => super::print(&list(Preset::factory())),
+        Action::List => print(&list(Preset::factory())),
         Action::Show { name } => {
             let mut inputs = Inputs::default();
             let preset = load(name, &mut inputs)?;
             inputs.check_stdout()?;
-            super::print(&preset.to_toml())
+            print(&preset.to_toml())
         }
         Action::Check { files } => check(files),
     }
 }
 
-/// The preset that `--preset` names, or `init`.
-pub(super) fn load_or_init(name: Option<&OsStr>, inputs: &mut Inputs) -> Result<Preset> {
-    load(name.unwrap_or(OsStr::new("init")), inputs)
-}
-
 /// The preset that a user names: a file if it looks like one, else the factory's.
-fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Preset> {
+pub(super) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Preset> {
     let path = Path::new(name);
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) || path.components().count() > 1
     {
@@ -95,11 +91,11 @@ fn check(files: &[PathBuf]) -> Result<()> {
         match read {
             Ok(preset) => {
                 let line = format!("{}: ‘{}’ is in order", path.display(), preset.name);
-                super::print(&format!("{}\n", printable(&line)))?;
+                print(&format!("{}\n", printable(&line)))?;
             }
             Err(error) => {
                 wrong += 1;
-                super::complain("error", error);
+                complain("error", error);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The song that a command plays, and what its program changes mean for `--preset`.
 
-use super::complain;
+use super::terminal::complain;
 use sprung::Result;
 use sprung::engine::EventKind;
 use sprung::io::{Inputs, Song};

@@ -1,6 +1,6 @@
 //! What clap says of wrong usage: safe for the terminal, and with what would be right.
 
-use super::complain_lines;
+use super::terminal::complain_lines;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, Error};

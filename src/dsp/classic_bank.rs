@@ -95,16 +95,21 @@ impl Mode {
         (limit(zeta) / libm::sqrt(omega2)) as f32
     }
 
-    /// The squared amplitude at which the mass rings at the present sweep.
-    fn energy(&self) -> f64 {
+    /// The coefficients at the present sweep.
+    fn swept(&self) -> Coefficients {
         let c = self.mass.coefficients();
         let sweep = f64::from(self.sweep);
-        let (x, v) = (c.x0, c.v0 * sweep);
-        let omega2 = c.omega2 * sweep * sweep;
-        let keep = 1.0 - c.zeta;
+        Coefficients { omega2: c.omega2 * sweep * sweep, v0: c.v0 * sweep, ..c }
+    }
+
+    /// The squared amplitude at which the mass rings at the present sweep.
+    fn energy(&self) -> f64 {
+        let swept = self.swept();
+        let Coefficients { zeta, omega2, x0: x, v0: v } = swept;
+        let keep = 1.0 - zeta;
         let half_trace = 0.5 * (1.0 + keep - omega2);
         let discriminant = keep - half_trace * half_trace;
-        let form = omega2 * x * x + (c.zeta - omega2) * x * v + keep * v * v;
+        let form = swept.quadratic_form(x, v);
         if discriminant > 1e-12 && keep > 0.0 {
             form * keep / discriminant
         } else {
@@ -115,10 +120,9 @@ impl Mode {
 
     /// The logarithm of what a frame leaves of the energy: the square of the larger root of the step.
     fn energy_rate(&self) -> f64 {
-        let Coefficients { zeta, omega2, .. } = self.mass.coefficients();
-        let sweep = f64::from(self.sweep);
+        let Coefficients { zeta, omega2, .. } = self.swept();
         let keep = 1.0 - zeta;
-        let half_trace = 0.5 * (1.0 + keep - omega2 * sweep * sweep);
+        let half_trace = 0.5 * (1.0 + keep - omega2);
         let discriminant = half_trace * half_trace - keep;
         // A mode without a memory has no logarithm: what is left after a frame is not heard.
         let keep = keep.max(1e-30);
@@ -244,10 +248,9 @@ impl ClassicBank {
     }
 
     fn aim(&mut self, per_frame: Option<f32>) {
-        let ratio = self.ratio;
+        let ratio = self.ratio as f32;
         for mode in self.modes() {
-            let Coefficients { zeta, omega2, .. } = mode.mass.coefficients();
-            let sweep = ratio.min(limit(zeta) / libm::sqrt(omega2)) as f32;
+            let sweep = ratio.min(mode.highest_sweep());
             match per_frame {
                 Some(share) => mode.sweep_step = (sweep - mode.sweep) * share,
                 None => (mode.sweep, mode.sweep_step) = (sweep, 0.0),

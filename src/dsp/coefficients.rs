@@ -140,7 +140,8 @@ impl Coefficients {
         self.quadratic_form(x, v).max(0.0) / self.sin_squared_angle()
     }
 
-    fn quadratic_form(&self, x: f64, v: f64) -> f64 {
+    /// `A² sin²θ` of a state: a form that every step multiplies by `r²`.
+    pub(super) fn quadratic_form(&self, x: f64, v: f64) -> f64 {
         self.omega2 * x * x + (self.zeta - self.omega2) * x * v + (1.0 - self.zeta) * v * v
     }
 

@@ -1,6 +1,7 @@
 //! What a MIDI channel remembers: its wheel, pressure, controllers and registered parameters.
 
 use super::gain::StereoGain;
+use super::midi::controller;
 use super::modulation::Positions;
 
 /// Channel controllers, in the units that voices use them in. Real-time safe.
@@ -62,28 +63,6 @@ impl Registered {
         let fine = (f32::from(high) * 128.0 + f32::from(low) - 8192.0) / 8192.0;
         f32::from(self.data[Self::COARSE].0) - 64.0 + fine
     }
-}
-
-/// MIDI's numbers of the controllers that are acted on, here or by the voice manager.
-pub(super) mod controller {
-    pub(in crate::engine) const WHEEL: u8 = 1;
-    pub(in crate::engine) const BREATH: u8 = 2;
-    pub(in crate::engine) const DATA: u8 = 6;
-    pub(in crate::engine) const VOLUME: u8 = 7;
-    pub(in crate::engine) const PAN: u8 = 10;
-    pub(in crate::engine) const EXPRESSION: u8 = 11;
-    pub(in crate::engine) const DATA_FINE: u8 = 38;
-    pub(in crate::engine) const SUSTAIN: u8 = 64;
-    pub(in crate::engine) const SOSTENUTO: u8 = 66;
-    pub(in crate::engine) const SOFT: u8 = 67;
-    pub(in crate::engine) const BRIGHTNESS: u8 = 74;
-    pub(in crate::engine) const NRPN_FINE: u8 = 98;
-    pub(in crate::engine) const NRPN: u8 = 99;
-    pub(in crate::engine) const RPN_FINE: u8 = 100;
-    pub(in crate::engine) const RPN: u8 = 101;
-    pub(in crate::engine) const ALL_SOUND_OFF: u8 = 120;
-    pub(in crate::engine) const RESET: u8 = 121;
-    pub(in crate::engine) const ALL_NOTES_OFF: u8 = 123;
 }
 
 impl Channel {

@@ -1,7 +1,7 @@
 //! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
 
-use super::event::{nearest_channel, nearest_key};
 use super::mix_limiter::MixLimiter;
+use super::note::{nearest_channel, nearest_key};
 use super::synth::allowed;
 use super::{Event, EventKind, Snapshot, Synth};
 use crate::dsp::limiter::Work;
@@ -166,7 +166,7 @@ impl Part {
         let mut frame = 0;
         *heard = !synth.is_silent();
         for event in events {
-            let sender = event.channel_index();
+            let sender = usize::from(nearest_channel(event.channel));
             let program = match event.kind {
                 EventKind::Program(number) => programs.get(usize::from(number)),
                 _ => None,

@@ -1,6 +1,6 @@
 //! What happens to the engine, and at which frame.
 
-use super::voice_manager::Note;
+use super::note::Notes;
 use crate::params::Param;
 
 /// An event at a frame of the block that it is handed over with.
@@ -12,13 +12,6 @@ pub struct Event {
     pub channel: u8,
     /// What happens.
     pub kind: EventKind,
-}
-
-impl Event {
-    /// The channel as an index, 0–15.
-    pub(super) fn channel_index(&self) -> usize {
-        usize::from(nearest_channel(self.channel))
-    }
 }
 
 /// What happens. Numbers out of range are clamped where they are used, keys and channels as well; NaN counts as zero.
@@ -114,31 +107,6 @@ pub enum EventKind {
     Program(u8),
 }
 
-/// Which notes of a synth an event is for: those that agree in all that is given. The event's own channel plays no
-/// part in a synth; in an ensemble it chooses the synth, as it does for every event.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Notes {
-    /// The host's identifier; a note that was given none agrees with any.
-    pub id: Option<i32>,
-    /// MIDI channel, 0–15.
-    pub channel: Option<u8>,
-    /// MIDI key, 0–127.
-    pub key: Option<u8>,
-}
-
-impl Notes {
-    /// All notes of a key on a channel.
-    pub fn on(channel: u8, key: u8) -> Self {
-        Self { id: None, channel: Some(channel), key: Some(key) }
-    }
-
-    pub(crate) fn include(&self, note: &Note) -> bool {
-        self.id.is_none_or(|id| note.id == id || note.id == -1)
-            && self.channel.is_none_or(|channel| note.channel == nearest_channel(channel))
-            && self.key.is_none_or(|key| note.key == nearest_key(key))
-    }
-}
-
 /// What a note can be told while it sounds: the expressions of CLAP and VST3, and MIDI's polyphonic pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expression {
@@ -163,16 +131,6 @@ impl Expression {
     /// Every expression.
     pub const ALL: [Expression; 7] =
         [Self::Tuning, Self::Volume, Self::Pan, Self::Pressure, Self::Brightness, Self::Vibrato, Self::Swell];
-}
-
-/// A MIDI channel, 0–15.
-pub(crate) fn nearest_channel(channel: u8) -> u8 {
-    channel.min(15)
-}
-
-/// A MIDI key, 0–127.
-pub(crate) fn nearest_key(key: u8) -> u8 {
-    key.min(127)
 }
 
 /// A number, 0 where there is none.

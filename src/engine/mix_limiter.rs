@@ -1,6 +1,6 @@
 //! The limiter at the end of an ensemble's mix, and the channels that ask for it.
 
-use super::event::nearest_channel;
+use super::note::nearest_channel;
 use super::{Event, EventKind};
 use crate::dsp::Limiter;
 use crate::dsp::limiter::Work;

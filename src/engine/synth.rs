@@ -1,11 +1,13 @@
 //! The instrument: one patch, its voices, and a stream of events in; stereo samples out.
 
-use super::channel::{Channel, Wheels, controller};
+use super::channel::{Channel, Wheels};
 use super::controls::Smoother;
-use super::event::{Expression, Notes, finite, nearest_channel, nearest_key, unit};
+use super::event::{Expression, finite, unit};
+use super::midi::controller;
 use super::modulation::{Bus, SharedLfos, modulated};
+use super::note::{Note, Notes, nearest_channel, nearest_key};
 use super::voice::{Instrument, SynthVoice};
-use super::voice_manager::{Note, PlayMode, VoiceManager};
+use super::voice_manager::{PlayMode, VoiceManager};
 use super::zones::{MEMBER_BEND_RANGE, Zones};
 use super::{Event, EventKind, Snapshot};
 use crate::dsp::limiter::Work;

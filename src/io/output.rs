@@ -2,8 +2,7 @@
 
 use super::inputs::Inputs;
 use super::target::{Target, resolve};
-use super::wav::WavFormat;
-use super::{riff, temporary};
+use super::temporary;
 use crate::error::{Error, Result};
 use same_file::Handle;
 use std::fs::{self, File, Metadata, OpenOptions};
@@ -89,33 +88,6 @@ impl Output {
     /// Where to write to.
     pub fn stream(&mut self) -> &mut File {
         &mut self.stream
-    }
-
-    /// Refuses more bytes than there is room for, where that can be told.
-    ///
-    /// # Errors
-    /// [`Error::Io`] with both numbers.
-    pub fn check_room(&self, bytes: u64) -> Result<()> {
-        let Some(room) = self.temporary().and_then(|path| fs4::available_space(path).ok()) else { return Ok(()) };
-        if bytes <= room {
-            return Ok(());
-        }
-        let message = format!("{bytes} bytes do not fit: {room} are free there");
-        Err(Error::io(&self.name, io::Error::new(ErrorKind::StorageFull, message)))
-    }
-
-    /// Completes a WAV whose writing failed, so that what got as far as the disk can be played: cuts it after its last
-    /// whole frame and tells the header its length, which takes no further room. Gives the number of frames.
-    ///
-    /// # Errors
-    /// [`Error::Io`] if the file cannot be changed, has no whole header, or is not a file.
-    pub fn salvage_wav(&mut self, format: WavFormat) -> Result<u64> {
-        let salvaged = if self.is_seekable() {
-            riff::salvage(&mut self.stream, &format)
-        } else {
-            Err(ErrorKind::NotSeekable.into())
-        };
-        salvaged.map_err(|source| Error::io(&self.name, source))
     }
 
     /// Gives the file its name. All must have been written and flushed.
@@ -292,14 +264,5 @@ mod tests {
         let error = create("/sys/a.wav", false).err().unwrap().to_string();
         assert!(error.starts_with("/sys/a.wav: no file can be made in the folder /sys: "), "{error}");
         assert!(!error.contains(".part"), "{error}");
-    }
-
-    #[test]
-    fn what_does_not_fit_is_refused_with_the_numbers() {
-        let directory = tempfile::tempdir().unwrap();
-        let output = create(directory.path().join("a.wav"), false).unwrap();
-        output.check_room(1).unwrap();
-        let error = output.check_room(u64::MAX).unwrap_err().to_string();
-        assert!(error.contains("a.wav: 18446744073709551615 bytes do not fit: "), "{error}");
     }
 }

@@ -1,8 +1,10 @@
 //! The header of a WAV file: RIFF up to 4 GiB, RF64 beyond.
 
-use super::wav::WavFormat;
+use super::output::Output;
+use super::wav_format::WavFormat;
+use crate::error::Error;
 use std::fs::File;
-use std::io::{Error, ErrorKind, Result, Seek, SeekFrom, Write};
+use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
 
 /// Bytes of `RIFF` and its size, which the size itself does not count.
 const RIFF_PREAMBLE: u64 = 8;
@@ -13,6 +15,23 @@ const DS64_LEN: u32 = 3 * 8 + 4;
 
 /// What the 32-bit size fields of an RF64 file hold.
 const IN_DS64: u32 = u32::MAX;
+
+/// Longest file in bytes: what a file system's signed 64-bit offsets can tell.
+const MAX_LEN: u64 = i64::MAX as u64;
+
+impl WavFormat {
+    /// Length in bytes of a file of so many frames.
+    ///
+    /// # Errors
+    /// [`Error::Value`] for more than a file can have.
+    pub fn file_len(&self, frames: u64) -> crate::Result<u64> {
+        let header_len = header(self, 0).len() as u64;
+        let data_len = frames.checked_mul(self.frame_len()).filter(|len| *len < MAX_LEN - header_len);
+        let data_len =
+            data_len.ok_or_else(|| Error::value("length", format!("{frames} frames are more than a file can have")))?;
+        Ok(header_len + data_len + padding(data_len))
+    }
+}
 
 /// The header of a file of so many frames. Its length is the same for every number of frames, so that it can be
 /// written again once the number is known: what holds the 64-bit sizes of an RF64 file (EBU Tech 3306) is a `JUNK`
@@ -50,12 +69,27 @@ pub(super) fn padding(data_len: u64) -> u64 {
     data_len % 2
 }
 
+impl Output {
+    /// Completes a WAV whose writing failed, so that what got as far as the disk can be played: cuts it after its last
+    /// whole frame and tells the header its length, which takes no further room. Gives the number of frames.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be changed, has no whole header, or is not a file.
+    pub fn salvage_wav(&mut self, format: WavFormat) -> crate::Result<u64> {
+        let salvaged = match self.is_seekable() {
+            true => salvage(self.stream(), &format),
+            false => Err(ErrorKind::NotSeekable.into()),
+        };
+        salvaged.map_err(|source| Error::io(self.name(), source))
+    }
+}
+
 /// Completes the file of a writer that failed: ends it after its last whole frame and writes the header for that
 /// length. Gives the number of frames.
-pub(super) fn salvage(file: &mut File, format: &WavFormat) -> Result<u64> {
+fn salvage(file: &mut File, format: &WavFormat) -> io::Result<u64> {
     let header_len = header(format, 0).len() as u64;
     let Some(data_len) = file.metadata()?.len().checked_sub(header_len) else {
-        return Err(Error::new(ErrorKind::UnexpectedEof, "nothing was recorded"));
+        return Err(io::Error::new(ErrorKind::UnexpectedEof, "nothing was recorded"));
     };
     let frames = data_len / format.frame_len();
     let end = header_len + frames * format.frame_len();

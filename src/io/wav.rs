@@ -1,76 +1,11 @@
 //! WAV files: 16- and 24-bit integers with or without dither, and 32-bit floats.
 
+use super::quantise::quantise;
 use super::riff;
+use super::wav_format::{SampleFormat, WavFormat};
 use crate::dsp::random;
 use crate::error::{Error, Result};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
-
-/// How a sample is stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SampleFormat {
-    /// 16-bit integers.
-    Int16,
-    /// 24-bit integers.
-    Int24,
-    /// 32-bit IEEE floats: the engine's own samples, unrounded and never clipped.
-    Float32,
-}
-
-impl SampleFormat {
-    /// Bits of one sample.
-    pub fn bits(self) -> u16 {
-        match self {
-            Self::Int16 => 16,
-            Self::Int24 => 24,
-            Self::Float32 => 32,
-        }
-    }
-}
-
-/// What a WAV file holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WavFormat {
-    /// Frames per second.
-    pub sample_rate: u32,
-    /// Samples per frame: 1 or 2.
-    pub channels: u16,
-    /// How samples are stored.
-    pub samples: SampleFormat,
-}
-
-/// Longest file in bytes: what a file system's signed 64-bit offsets can tell.
-const MAX_LEN: u64 = i64::MAX as u64;
-
-impl WavFormat {
-    /// Bytes of one frame.
-    pub fn frame_len(&self) -> u64 {
-        u64::from(self.channels) * u64::from(self.samples.bits() / 8)
-    }
-
-    /// Length in bytes of a file of so many frames.
-    ///
-    /// # Errors
-    /// [`Error::Value`] for more than a file can have.
-    pub fn file_len(&self, frames: u64) -> Result<u64> {
-        let header_len = riff::header(self, 0).len() as u64;
-        let data_len = frames.checked_mul(self.frame_len()).filter(|len| *len < MAX_LEN - header_len);
-        let data_len =
-            data_len.ok_or_else(|| Error::value("length", format!("{frames} frames are more than a file can have")))?;
-        Ok(header_len + data_len + riff::padding(data_len))
-    }
-
-    pub(super) fn spec(&self) -> hound::WavSpec {
-        hound::WavSpec {
-            channels: self.channels,
-            sample_rate: self.sample_rate,
-            bits_per_sample: self.samples.bits(),
-            sample_format: match self.samples {
-                SampleFormat::Float32 => hound::SampleFormat::Float,
-                _ => hound::SampleFormat::Int,
-            },
-        }
-    }
-}
 
 /// Writes blocks of frames as a WAV: RIFF up to 4 GiB, RF64 (EBU Tech 3306) beyond.
 pub struct WavWriter<W: Write + Seek> {
@@ -153,7 +88,6 @@ impl<W: Write + Seek> WavWriter<W> {
     }
 
     fn quantise(&mut self, sample: f32, channel: usize, n: u64) -> i32 {
-        let full_scale = f64::from(1u32 << (self.format.samples.bits() - 1));
         let noise = self.dither.map_or(0.0, |keys| {
             let uniform = |n| f64::from(random::uniform(keys[channel], n));
             0.5 * (uniform(2 * n) + uniform(2 * n + 1))
@@ -162,7 +96,7 @@ impl<W: Write + Seek> WavWriter<W> {
         if sample.abs() > 1.0 {
             self.clipped += 1;
         }
-        (f64::from(sample) * full_scale + noise).round_ties_even().clamp(-full_scale, full_scale - 1.0) as i32
+        quantise(sample, self.format.samples.bits(), noise)
     }
 }
 

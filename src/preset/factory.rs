@@ -1,6 +1,7 @@
 //! The presets built into the library.
 
 use super::Preset;
+use crate::error::{Error, Result, nearest};
 use std::sync::OnceLock;
 
 macro_rules! embed {
@@ -53,17 +54,45 @@ const FILES: &[(&str, &str)] = embed! {
     "39-wine-glass"
 };
 
-pub(super) fn presets() -> &'static [Preset] {
-    static PRESETS: OnceLock<Vec<Preset>> = OnceLock::new();
-    PRESETS.get_or_init(|| {
-        let parsed = FILES.iter().map(|(name, text)| Preset::parse(text, name));
-        parsed.collect::<Result<_, _>>().expect("the embedded presets are checked by a test")
-    })
+impl Preset {
+    /// The presets built into the library, in the order of their MIDI program numbers from 0.
+    pub fn factory() -> &'static [Preset] {
+        static PRESETS: OnceLock<Vec<Preset>> = OnceLock::new();
+        PRESETS.get_or_init(|| {
+            let parsed = FILES.iter().map(|(name, text)| Self::parse(text, name));
+            parsed.collect::<Result<_>>().expect("the embedded presets are checked by a test")
+        })
+    }
+
+    /// The factory preset of this name; case does not matter.
+    ///
+    /// # Errors
+    /// [`Error::Value`] naming the nearest name if there is none.
+    pub fn find(name: &str) -> Result<&'static Preset> {
+        let presets = Self::factory();
+        presets.iter().find(|preset| preset.name.eq_ignore_ascii_case(name.trim())).ok_or_else(|| {
+            let hint = match nearest(name, presets.iter().map(|preset| preset.name.as_str())) {
+                Some(near) => format!("; the nearest is {near}"),
+                None => "; ‘sprung presets list’ shows them all".to_owned(),
+            };
+            Error::value("preset", format!("there is no factory preset ‘{name}’{hint}"))
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::patch::Patch;
+
+    #[test]
+    fn factory_presets_are_found_by_name() {
+        assert_eq!(Preset::find("INIT").unwrap().patch, Patch::default());
+        assert_eq!(Preset::find("kick").unwrap().name, "Kick");
+        let error = Preset::find("kcik").unwrap_err().to_string();
+        assert_eq!(error, "preset: there is no factory preset ‘kcik’; the nearest is ‘Kick’");
+        assert!(Preset::find("").is_err());
+    }
 
     #[test]
     fn every_factory_preset_is_complete_and_named_once() {
@@ -81,7 +110,7 @@ mod tests {
         names.sort();
         names.dedup();
         assert_eq!(names.len(), FILES.len(), "two presets have one name");
-        assert_eq!(presets().len(), FILES.len());
+        assert_eq!(Preset::factory().len(), FILES.len());
     }
 
     #[test]

@@ -1,5 +1,8 @@
 //! Stereo floats to the frames of a device: its sample format and its number of channels.
 
+use crate::io::quantise;
+use crate::units::mono_from_stereo;
+
 /// A sample as a device takes it.
 pub trait DeviceSample: Copy {
     /// Silence.
@@ -22,7 +25,7 @@ impl DeviceSample for i16 {
     const SILENCE: Self = 0;
 
     fn from_float(sample: f32) -> Self {
-        step(sample, 32_768.0) as i16
+        quantise(sample, 16, 0.0) as i16
     }
 }
 
@@ -30,7 +33,7 @@ impl DeviceSample for i32 {
     const SILENCE: Self = 0;
 
     fn from_float(sample: f32) -> Self {
-        step(sample, 2_147_483_648.0) as i32
+        quantise(sample, 32, 0.0)
     }
 }
 
@@ -38,14 +41,8 @@ impl DeviceSample for u8 {
     const SILENCE: Self = 128;
 
     fn from_float(sample: f32) -> Self {
-        (step(sample, 128.0) + 128.0) as u8
+        (quantise(sample, 8, 0.0) + 128) as u8
     }
-}
-
-/// Rounds as the WAV writer does without dither, so that both give the same integers.
-fn step(sample: f32, full_scale: f64) -> f64 {
-    let sample = if sample.is_nan() { 0.0 } else { sample };
-    (f64::from(sample) * full_scale).round_ties_even().clamp(-full_scale, full_scale - 1.0)
 }
 
 /// Writes stereo into the interleaved frames of a device. One channel gets (L + R) / 2; of more than two, the first
@@ -54,7 +51,7 @@ pub fn interleave<T: DeviceSample>(left: &[f32], right: &[f32], channels: usize,
     let frames = out.chunks_exact_mut(channels.max(1));
     for ((&left, &right), frame) in left.iter().zip(right).zip(frames) {
         match frame {
-            [mono] => *mono = T::from_float(0.5 * (left + right)),
+            [mono] => *mono = T::from_float(mono_from_stereo(left, right)),
             [first, second, others @ ..] => {
                 *first = T::from_float(left);
                 *second = T::from_float(right);

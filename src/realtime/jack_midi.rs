@@ -3,7 +3,7 @@
 use super::block_clock::Stamp;
 use super::live::{LiveEvent, LiveSender};
 use super::midi_ports::Wanted;
-use crate::io::midi::parse_message;
+use crate::engine::midi::parse_message;
 use jack::{AsyncClient, Client, ClientOptions, ClientStatus, Control, MidiIn, Port, PortFlags, ProcessScope};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,7 +1,8 @@
 //! Live events on their way to the audio thread: bounded queues without locks, merged in the order of time.
 
 use super::{BlockClock, Stamp};
-use crate::engine::event::{nearest_channel, nearest_key};
+use crate::engine::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF, SOSTENUTO, SUSTAIN};
+use crate::engine::note::{nearest_channel, nearest_key};
 use crate::engine::{Event, EventKind};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::time::Instant;
@@ -77,11 +78,6 @@ impl LiveSender {
         }
     }
 }
-
-const SUSTAIN: u8 = 64;
-const SOSTENUTO: u8 = 66;
-const ALL_SOUND_OFF: u8 = 120;
-const ALL_NOTES_OFF: u8 = 123;
 
 /// The receiving ends of all queues.
 pub struct LiveInputs(Vec<Consumer<LiveEvent>>);

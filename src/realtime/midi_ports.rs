@@ -2,7 +2,7 @@
 
 use super::block_clock::Stamp;
 use super::live::{LiveEvent, LiveSender};
-use crate::io::midi::parse_message;
+use crate::engine::midi::parse_message;
 use midir::{Ignore, MidiInput, MidiInputConnection, MidiInputPort};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};

@@ -4,27 +4,19 @@ use super::block_clock::{BlockClock, Moment};
 use super::convert::{DeviceSample, interleave};
 use super::live::LiveInputs;
 use super::recorder::Tap;
-use super::song_cursor::SongCursor;
 use super::status::Status;
-use crate::engine::{Ensemble, Event, EventKind};
-use crate::io::Song;
+use crate::engine::{Ensemble, Event, EventKind, TelemetryWriter};
+use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use crate::patch::Patch;
 use crate::sound::Tuning;
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::Arc;
-use std::time::Duration;
 
 /// Frames that are rendered at a time; a longer block of the device is rendered in pieces.
 pub const MAX_BLOCK: usize = 4096;
 
 /// Patches that wait for the audio thread to take them.
 const PATCH_CAPACITY: usize = 32;
-
-/// How often the masses are shown, in Hz.
-const SNAPSHOT_RATE: f64 = 40.0;
-
-/// As in the offline renderer, the song is over when nothing sounds at a multiple of this many frames after its end.
-const SILENCE_INTERVAL: u64 = 64;
 
 /// What a player plays, and how.
 pub struct Setup<'a> {
@@ -57,7 +49,7 @@ pub struct Player {
     ensemble: Ensemble,
     sample_rate: f64,
     programs: usize,
-    song: Option<SongCursor>,
+    song: Option<SongCursor<Song>>,
     inputs: LiveInputs,
     patches: Consumer<(u8, Patch)>,
     clock: BlockClock,
@@ -66,10 +58,10 @@ pub struct Player {
     right: Vec<f32>,
     tap: Option<Tap>,
     status: Arc<Status>,
+    telemetry: TelemetryWriter,
     /// Frames since the song was over.
     tail: u64,
     ended: bool,
-    to_snapshot: f64,
 }
 
 impl Player {
@@ -77,7 +69,7 @@ impl Player {
     pub fn new(setup: Setup, inputs: LiveInputs, tap: Option<Tap>, status: Arc<Status>) -> (Self, PatchSender) {
         let sample_rate = f64::from(setup.sample_rate);
         let song = setup.song.map(|song| SongCursor::new(song, sample_rate));
-        let densest = song.as_ref().map_or(0, SongCursor::densest_block);
+        let densest = song.as_ref().map_or(0, |song| song.densest_block(MAX_BLOCK));
         let (sender, patches) = RingBuffer::new(PATCH_CAPACITY);
         let mut ensemble = Ensemble::new(sample_rate, setup.seed, setup.patch, setup.programs);
         ensemble.set_tuning(setup.tuning);
@@ -93,10 +85,10 @@ impl Player {
             left: vec![0.0; MAX_BLOCK],
             right: vec![0.0; MAX_BLOCK],
             tap,
+            telemetry: TelemetryWriter::new(status.telemetry().clone(), sample_rate),
             status,
             tail: 0,
             ended: false,
-            to_snapshot: 0.0,
         };
         (player, PatchSender(sender))
     }
@@ -125,8 +117,8 @@ impl Player {
             self.render(start as u32, len);
             interleave(&self.left[..len], &self.right[..len], channels, out);
         }
-        let period = Duration::from_secs_f64(frames as f64 / self.sample_rate);
-        self.status.note_callback(frames as u64, moment.now.elapsed(), period, self.clock.delay());
+        self.status.note_delay(self.clock.delay());
+        self.telemetry.note_block(frames, moment.now.elapsed());
     }
 
     /// Renders a piece of a block that starts `start` frames after the block's own start.
@@ -140,7 +132,7 @@ impl Player {
         for event in &self.events {
             let known = !matches!(event.kind, EventKind::Program(number) if usize::from(number) >= self.programs);
             if known {
-                self.status.note_event(event.channel, event.kind);
+                self.telemetry.note_event(event);
             }
         }
         let (left, right) = (&mut self.left[..len], &mut self.right[..len]);
@@ -151,13 +143,8 @@ impl Player {
         let silent = self.ensemble.is_silent();
         self.tail = if was_over { self.tail + len as u64 } else { 0 };
         self.ended = silent && was_over && (self.ended || self.tail >= SILENCE_INTERVAL);
-        let peak = |samples: &[f32]| samples.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
-        self.status.note_sound([peak(left), peak(right)], self.ended, silent);
-        self.to_snapshot -= len as f64;
-        if self.to_snapshot <= 0.0 && self.status.is_watched() {
-            self.to_snapshot = self.sample_rate / SNAPSHOT_RATE;
-            self.status.note_snapshot(&self.ensemble.snapshot());
-        }
+        self.status.note_song(self.ended);
+        self.telemetry.note_sound(left, right, silent, || self.ensemble.snapshot());
     }
 }
 
@@ -168,7 +155,7 @@ mod tests {
     use crate::params::Param;
     use crate::realtime::live::LiveSender;
     use crate::render::{Job, Options, Tail};
-    use std::time::Instant;
+    use std::time::{Duration, Instant};
 
     const SETTINGS: (u32, u64) = (44_100, 7);
 
@@ -247,6 +234,6 @@ mod tests {
         for _ in 0..10_000 {
             player.fill(&mut out, 2, now());
         }
-        assert!(status.is_song_over() && status.is_silent());
+        assert!(status.is_song_over() && status.telemetry().is_silent());
     }
 }

@@ -110,10 +110,10 @@ impl Session {
     /// Waits until nothing sounds and all that was sent has been heard.
     fn wait_for_silence(&self, limit: Duration) -> bool {
         let start = Instant::now();
-        let sent = self.status.load().delay.min(limit.as_secs_f64());
+        let sent = self.status.delay().min(limit.as_secs_f64());
         let heard = start + Duration::from_secs_f64(sent);
         while self.is_playing() && start.elapsed() < limit {
-            if self.status.is_silent() && Instant::now() > heard {
+            if self.status.telemetry().is_silent() && Instant::now() > heard {
                 return true;
             }
             std::thread::sleep(Duration::from_millis(5));
@@ -124,7 +124,7 @@ impl Session {
     fn open(&mut self, found: &Found) -> Result<()> {
         let Some(player) = self.player.take() else { return Ok(()) };
         self.trouble.1.try_iter().for_each(drop);
-        self.last_frames = (self.status.frames(), Instant::now());
+        self.last_frames = (self.status.telemetry().frames(), Instant::now());
         match stream::open(found, player, self.home.0.clone(), self.trouble.0.clone(), self.status.clone()) {
             Ok(stream) => {
                 self.stream = Some(stream);
@@ -146,7 +146,7 @@ impl Session {
     }
 
     fn stalled(&mut self) -> Option<String> {
-        let frames = self.status.frames();
+        let frames = self.status.telemetry().frames();
         if frames != self.last_frames.0 {
             self.last_frames = (frames, Instant::now());
         }

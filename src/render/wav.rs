@@ -1,9 +1,10 @@
 //! A job rendered into a WAV: channels, level and length settled, and the numbers of what came out.
 
-use super::{Job, Levels, Meter};
+use super::job::Job;
+use super::meter::{Levels, Meter};
 use crate::error::{Error, Result};
 use crate::io::{Output, SampleFormat, WavFormat, WavWriter};
-use crate::units::{db_from_gain, gain_from_db};
+use crate::units::{db_from_gain, gain_from_db, mono_from_stereo};
 use std::time::Instant;
 
 /// How loud a WAV is to be.
@@ -178,7 +179,7 @@ fn gain_db(level: Level, measured: Option<Levels>) -> Result<f64> {
     }
 }
 
-/// Settles channels and gain, in buffers that are used again for each block.
+/// Settles channels and gain, in buffers that are used again for each block. A sound of one channel has no right one.
 struct Mix {
     mono: bool,
     gain: f64,
@@ -198,8 +199,7 @@ impl Mix {
         self.right.clear();
         if mono {
             let pairs = left.iter().zip(right);
-            self.left.extend(pairs.map(|(left, right)| scaled(0.5 * (left + right))));
-            self.right.resize(left.len(), 0.0);
+            self.left.extend(pairs.map(|(left, right)| scaled(mono_from_stereo(*left, *right))));
         } else {
             self.left.extend(left.iter().map(|sample| scaled(*sample)));
             self.right.extend(right.iter().map(|sample| scaled(*sample)));

@@ -51,45 +51,23 @@ const OUTSIDE: &[Row] = &[
 /// What the plugin must not use: it has no signal processing of its own.
 const NOT_OF_THE_PLUGIN: &[Row] = &[("sprung::dsp", &[]), ("libm", &[])];
 
+/// Crates that the library needs without any feature: all that the plugin builds of it.
+const ALWAYS_BUILT: &[&str] = &["libm", "same-file", "strsim", "tempfile", "thiserror", "toml", "toml_writer"];
+
 /// Roots of the crates whose files must not import each other.
-const CRATES: &[&str] =
-    &["src/lib.rs", "src/main.rs", "plugin/src/lib.rs", "xtask/src/main.rs", "plugin/tests/hosts/main.rs"];
-
-/// Pairs of files that still import each other, in the order of the alphabet. The list may only shrink.
-const CIRCLES: &[(&str, &str)] = &[
-    // Neighbours.
-    ("src/engine/event.rs", "src/engine/voice_manager/mod.rs"),
-    ("src/realtime/player.rs", "src/realtime/song_cursor.rs"),
-    ("plugin/src/live.rs", "plugin/src/plugin.rs"),
-    ("plugin/tests/hosts/host/instance.rs", "plugin/tests/hosts/host/player.rs"),
-    ("src/io/riff.rs", "src/io/wav.rs"),
-    // A folder's own file and one in it.
-    ("src/engine/voice_manager/held_keys.rs", "src/engine/voice_manager/mod.rs"),
-    ("src/lab/method/chou.rs", "src/lab/method/mod.rs"),
-    ("src/lab/method/explicit_euler.rs", "src/lab/method/mod.rs"),
-    ("src/lab/method/exponential.rs", "src/lab/method/mod.rs"),
-    ("src/lab/method/heun.rs", "src/lab/method/mod.rs"),
-    ("src/lab/method/implicit_euler.rs", "src/lab/method/mod.rs"),
-    ("src/lab/method/mod.rs", "src/lab/method/runge_kutta.rs"),
-    ("src/lab/method/mod.rs", "src/lab/method/symplectic_euler.rs"),
-    ("src/lab/method/mod.rs", "src/lab/method/synth_step.rs"),
-    ("src/lab/method/mod.rs", "src/lab/method/verlet.rs"),
-    ("src/preset/factory.rs", "src/preset/mod.rs"),
-    ("src/preset/file.rs", "src/preset/mod.rs"),
-    ("src/realtime/view/app.rs", "src/realtime/view/mod.rs"),
-    ("src/render/mod.rs", "src/render/stream.rs"),
-    ("src/cli/completion.rs", "src/cli/mod.rs"),
-    ("src/cli/manual.rs", "src/cli/mod.rs"),
-    ("src/cli/mod.rs", "src/cli/parameters.rs"),
-    ("src/cli/mod.rs", "src/cli/play.rs"),
-    ("src/cli/mod.rs", "src/cli/presets.rs"),
-    ("src/cli/mod.rs", "src/cli/usage.rs"),
-    ("src/io/midi/reader.rs", "src/io/midi.rs"),
-    ("plugin/src/editor/mod.rs", "plugin/src/editor/window.rs"),
+const CRATES: &[&str] = &[
+    "src/lib.rs",
+    "src/main.rs",
+    "plugin/src/lib.rs",
+    "plugin/tests/hosts/main.rs",
+    "xtask/src/main.rs",
+    "benches/peers/main.rs",
+    "tests/architecture/main.rs",
+    "tests/cli/main.rs",
+    "tests/golden/main.rs",
+    "tests/realtime/main.rs",
+    "tests/storm/main.rs",
 ];
-
-/// Files whose purpose still takes more than a line. The list may only shrink.
-const LONGER_PURPOSES: &[&str] = &[];
 
 fn project() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -155,21 +133,24 @@ fn the_plugin_has_no_dsp() {
 }
 
 #[test]
-fn no_two_files_import_each_other_but_those_listed() {
-    let found: Vec<_> = CRATES.iter().flat_map(|root| rules::circles(&read(root))).collect();
-    let listed = |one: &Path, other: &Path| CIRCLES.contains(&(&one.to_string_lossy(), &other.to_string_lossy()));
-    let new = found.iter().filter(|((one, other), _)| !listed(one, other)).map(|((one, other), [there, back])| {
+fn the_plugin_builds_nothing_that_only_the_command_needs() {
+    let manifest = |file: &str| -> toml::Table { fs::read_to_string(project().join(file)).unwrap().parse().unwrap() };
+    let library = manifest("Cargo.toml");
+    let is_optional = |value: &toml::Value| value.get("optional").and_then(toml::Value::as_bool) == Some(true);
+    let always = library["dependencies"].as_table().unwrap().iter().filter(|(_, value)| !is_optional(value));
+    assert_eq!(always.map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ALWAYS_BUILT);
+    let used = &manifest("plugin/Cargo.toml")["dependencies"]["sprung"];
+    assert_eq!(used.get("default-features").and_then(toml::Value::as_bool), Some(false));
+    assert!(used.get("features").is_none());
+}
+
+#[test]
+fn no_two_files_import_each_other() {
+    let found = CRATES.iter().flat_map(|root| rules::circles(&read(root)));
+    let told = found.map(|((one, other), [there, back])| {
         format!("{}:{there} and {}:{back} import each other", one.display(), other.display())
     });
-    assert_none(&new.collect::<Vec<_>>());
-    let is_found =
-        |pair: &&(&str, &str)| found.iter().any(|((one, other), _)| (one, other) == (&pair.0.into(), &pair.1.into()));
-    let gone = CIRCLES.iter().filter(|pair| !is_found(pair));
-    assert_none(
-        &gone
-            .map(|(one, other)| format!("{one} and {other} no longer import each other: remove them from CIRCLES"))
-            .collect::<Vec<_>>(),
-    );
+    assert_none(&told.collect::<Vec<_>>());
 }
 
 /// Rust files in a folder, relative to the project.
@@ -192,9 +173,5 @@ fn every_file_opens_with_its_purpose() {
     }
     assert!(all.len() > 150, "only {} files were found", all.len());
     let breach = |file: &PathBuf| rules::purpose(file, &fs::read_to_string(project().join(file)).unwrap());
-    let (listed, others): (Vec<_>, Vec<_>) =
-        all.into_iter().partition(|file| LONGER_PURPOSES.contains(&&*file.to_string_lossy()));
-    assert_none(&others.iter().filter_map(breach).collect::<Vec<_>>());
-    let kept: Vec<_> = listed.iter().filter(|file| breach(file).is_some()).map(|file| file.to_string_lossy()).collect();
-    assert_eq!(kept, LONGER_PURPOSES, "files whose purpose is one line now are not listed any more");
+    assert_none(&all.iter().filter_map(breach).collect::<Vec<_>>());
 }

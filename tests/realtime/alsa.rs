@@ -1,6 +1,6 @@
 //! On ALSA's file plugin: what reaches the device, what is recorded, and what goes wrong.
 
-use super::{Running, Sandbox, song, sprung, text, wait_until};
+use super::sandbox::{Running, Sandbox, song, sprung, text, wait_until};
 use std::fs::File;
 use std::io::Read;
 use std::path::PathBuf;
@@ -56,7 +56,7 @@ impl Device {
             .arg(format!("{shell}; exec timeout -k 5 60 \"$0\" \"$@\""))
             .arg(program.get_program())
             .args(program.get_args())
-            .current_dir(self.sandbox.0.path())
+            .current_dir(self.sandbox.folder())
             .env("ALSA_CONFIG_PATH", self.sandbox.path("asound.conf"))
             .stdin(Stdio::null())
             .stderr(File::create(self.sandbox.path("stderr")).unwrap())

@@ -1,6 +1,6 @@
 //! On a JACK server with the dummy driver: live MIDI in time and tune, and a server that goes away and comes back.
 
-use super::{Running, Sandbox, signal, sprung, text, wait_until};
+use super::sandbox::{Running, Sandbox, signal, song, sprung, text, wait_until};
 use jack::{AudioIn, Client, ClientOptions, Control, MidiOut, ProcessScope, RawMidi};
 use sprung::units::{frequency_from_key, semitones_from_ratio};
 use std::fs::File;
@@ -63,7 +63,7 @@ fn with_own_server(test: &str, body: impl FnOnce(&str)) {
 
 fn start(sandbox: &Sandbox, arguments: &str) -> Running {
     let stderr = File::create(sandbox.path("stderr")).unwrap();
-    Running(sprung(arguments).current_dir(sandbox.0.path()).stderr(stderr).spawn().unwrap())
+    Running(sprung(arguments).current_dir(sandbox.folder()).stderr(stderr).spawn().unwrap())
 }
 
 /// Sends messages at frames of the server's time, and hands on what it hears: the frame and the samples, left and
@@ -188,7 +188,7 @@ pub(crate) fn a_server_that_ends_is_waited_for() {
         let server = Server::start(name);
         let sandbox = Sandbox::new();
         let notes: Vec<_> = (0..200).map(|n| (n * 96, 50, 60)).collect();
-        sandbox.write("long.mid", super::song(&notes));
+        sandbox.write("long.mid", song(&notes));
         sandbox.succeeds("render long.mid --bits 32f -o expected.wav");
         let child = start(&sandbox, "play long.mid --host jack --headless --record take.wav");
         let said = |line: &str| text(&sandbox.path("stderr")).contains(line);

@@ -1,6 +1,6 @@
 //! The terminal view, driven by keys in tmux.
 
-use super::{Sandbox, wait_until};
+use super::sandbox::{Sandbox, text, wait_until};
 use std::process::Command;
 
 /// A tmux server of this test's own.
@@ -81,5 +81,5 @@ pub(crate) fn the_view_plays_loads_turns_and_resizes() {
     }
     terminal.keys(&["C-c"]);
     let stderr = terminal.sandbox.path("stderr");
-    wait_until("it ends cleanly", || super::text(&stderr).contains("played "));
+    wait_until("it ends cleanly", || text(&stderr).contains("played "));
 }

@@ -2,23 +2,12 @@
 
 use crate::case::{Case, without_limiter};
 use crate::check::check;
+use crate::events::{event, off, on};
 use sprung::engine::{Event, EventKind};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
 use sprung::units::key_from_frequency;
-
-fn event(frame: u32, kind: EventKind) -> Event {
-    Event { frame, channel: 0, kind }
-}
-
-fn on(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 })
-}
-
-fn off(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
-}
 
 /// A synth at 48 kHz.
 fn case(patch: Patch, events: Vec<Event>, frames: usize) -> Case {

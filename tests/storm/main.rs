@@ -10,6 +10,8 @@ mod bound;
 mod case;
 mod chance;
 mod check;
+#[path = "../events/mod.rs"]
+mod events;
 mod known;
 mod shrink;
 

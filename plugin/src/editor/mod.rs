@@ -11,10 +11,7 @@ use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint
 use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, RepaintNotifier, create_egui_editor};
 use std::error::Error;
 use std::sync::{Arc, Mutex, PoisonError};
-use window::Window;
-
-/// Smallest width and height that the window still works in.
-pub(crate) const LEAST_SIZE: [u32; 2] = [480, 320];
+use window::{LEAST_SIZE, Window};
 
 /// Opens windows, each in the size that the last one had.
 pub struct SprungEditor {

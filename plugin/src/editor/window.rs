@@ -1,6 +1,5 @@
 //! What is in the window.
 
-use super::LEAST_SIZE;
 use super::presets::Presets;
 use super::rows::Rows;
 use crate::params::SprungParams;
@@ -12,6 +11,9 @@ use nice_plug_egui::resizable_window::ResizableWindow;
 use nice_plug_egui::{Frame, KeyCapture, NiceEguiApp};
 use sprung::params::PARAMS;
 use std::sync::Arc;
+
+/// Smallest width and height that the window still works in.
+pub(super) const LEAST_SIZE: [u32; 2] = [480, 320];
 
 /// An open window.
 pub(super) struct Window {

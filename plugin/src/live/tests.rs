@@ -1,6 +1,7 @@
 //! The audio thread against the engine alone, with a host made up.
 
 use super::*;
+use crate::plugin::Sprung;
 use crate::state::State;
 use sprung::patch::Patch;
 use sprung::preset::Preset;

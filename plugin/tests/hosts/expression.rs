@@ -80,7 +80,7 @@ pub(crate) fn expressions_reach_their_notes() {
 /// MPE as MIDI: a channel a note, each with its own bend, pressure and timbre; the main channel moves all.
 pub(crate) fn mpe_is_heard_by_channel() {
     let midi = |frame: u64, data: [u8; 3]| {
-        let (channel, kind) = sprung::io::midi::parse_message(&data).unwrap();
+        let (channel, kind) = sprung::engine::midi::parse_message(&data).unwrap();
         (Sent::Midi(data).at(frame), At(frame, channel, kind))
     };
     // The configuration message: from now on, the first channel speaks for the other fifteen.

@@ -94,7 +94,8 @@ fn played_by_one_synth(messages: &[(u64, [u8; 3])], patch: &Patch, frames: usize
     let events: Vec<Event> = messages
         .iter()
         .map(|(frame, data)| {
-            let (channel, kind): (u8, EventKind) = sprung::io::midi::parse_message(data).expect("a channel message");
+            let (channel, kind): (u8, EventKind) =
+                sprung::engine::midi::parse_message(data).expect("a channel message");
             Event { frame: *frame as u32, channel, kind }
         })
         .collect();

@@ -5,6 +5,7 @@ mod panel;
 use crate::error::{Error, Result};
 use crate::figure::colour::{BLUE, VERMILLION};
 use crate::figure::{Area, Drawn, Picture, png, svg, text};
+use crate::units::mono_from_stereo;
 use panel::{Trace, spectrogram_panel, waveform};
 use plotters::prelude::*;
 use std::path::Path;
@@ -106,7 +107,7 @@ fn save(path: &Path, sheet: Sheet) -> Result<()> {
 
 /// The mean of two channels.
 fn mean(left: &[f32], right: &[f32]) -> Vec<f32> {
-    left.iter().zip(right).map(|(l, r)| 0.5 * (l + r)).collect()
+    left.iter().zip(right).map(|(left, right)| mono_from_stereo(*left, *right)).collect()
 }
 
 #[cfg(test)]

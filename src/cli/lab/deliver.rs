@@ -1,6 +1,7 @@
 //! What the lab's commands write: a figure, a table of numbers as CSV, and one as text.
 
-use super::super::{complain_lines, interrupt, print};
+use super::super::interrupt;
+use super::super::terminal::{complain_lines, print};
 use sprung::figure::{self, Picture};
 use sprung::io::{Inputs, Output, Target};
 use sprung::{Error, Result};

@@ -1,6 +1,7 @@
 //! The options that describe what is integrated, and how.
 
-use super::super::{complain, quantity};
+use super::super::quantity;
+use super::super::terminal::complain;
 use clap::ValueEnum;
 use clap_complete::{ArgValueCandidates, CompletionCandidate};
 use sprung::Result;

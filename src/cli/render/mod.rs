@@ -4,18 +4,15 @@ mod report;
 
 use super::progress::Bar;
 use super::song::SongArgs;
-use super::tuning::TuningArgs;
-use super::{completion, interrupt, presets, quantity};
+use super::sound::{SoundArgs, Sounds};
+use super::{completion, interrupt, quantity};
 use clap::ArgGroup;
-use clap_complete::ArgValueCompleter;
 use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
-use sprung::preset::Preset;
 use sprung::render::{BLOCKS, Delivery, Job, Level, Options, THREADS, Tail, on_threads, to_wav};
 use sprung::units::parse_key;
 use sprung::{Error, Result};
-use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
@@ -45,15 +42,8 @@ pub(super) struct Args {
     length: f64,
     #[command(flatten)]
     reading: SongArgs,
-    /// Factory preset or preset file (.toml) that plays what no program change says otherwise [default: init]
-    #[arg(long, value_name = "NAME|FILE.toml", add = ArgValueCompleter::new(completion::presets))]
-    preset: Option<OsString>,
-    /// Set a parameter of every preset used; may be repeated. See `sprung params`
-    #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
-        add = ArgValueCompleter::new(completion::settings))]
-    set: Vec<(Param, f32)>,
     #[command(flatten)]
-    tuning: TuningArgs,
+    sound: SoundArgs,
     /// Sample rate, 1000-768000 Hz (44100, 44.1k)
     #[arg(long, default_value_t = 48_000, value_name = "HZ", allow_hyphen_values = true, value_parser = quantity::rate)]
     rate: u32,
@@ -78,10 +68,6 @@ pub(super) struct Args {
     /// Gain, -120-120 dB
     #[arg(long, default_value_t = 0.0, value_name = "DB", value_parser = quantity::gain_db, allow_hyphen_values = true)]
     gain_db: f64,
-    /// Seed of all randomness, 0-18446744073709551615
-    #[arg(long, default_value_t = 0, value_name = "N", allow_hyphen_values = true,
-        value_parser = quantity::whole::<u64>(0..=u64::MAX))]
-    seed: u64,
     /// Frames processed at once, 1-65536; the samples do not depend on it
     #[arg(long, default_value_t = 4096, value_name = "N", allow_hyphen_values = true,
         value_parser = quantity::whole::<u32>(*BLOCKS.start() as u64..=*BLOCKS.end() as u64))]
@@ -111,17 +97,16 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     target.check_wav()?;
     let mut inputs = Inputs::default();
-    let preset = presets::load_or_init(args.preset.as_deref(), &mut inputs)?;
-    let patch = with_settings(preset.patch, &args.set);
-    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| with_settings(preset.patch, &args.set)).collect();
-    let tuning = args.tuning.read(&mut inputs)?;
+    let Sounds { preset, programs, tuning } = args.sound.load(&mut inputs)?;
+    let patch = preset.patch;
     let song = match &args.song {
         Some(path) => args.reading.read(path, &mut inputs)?,
         None => chord(args, &patch)?,
     };
-    args.reading.warn_of_programs(&song, args.preset.as_ref().map(|_| &patch), &programs);
+    args.reading.warn_of_programs(&song, args.sound.asked_for(&patch), &programs);
 
-    let options = Options { sample_rate: args.rate, seed: args.seed, block: args.block as usize, tail: args.tail };
+    let options =
+        Options { sample_rate: args.rate, seed: args.sound.seed, block: args.block as usize, tail: args.tail };
     let job = Job { song: &song, patch: &patch, programs: args.reading.programs(&programs), tuning: &tuning, options };
     let delivery = Delivery {
         samples: args.bits,
@@ -145,15 +130,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     report::tell(&report, &target, args.json)
 }
 
-pub(in crate::cli) fn with_settings(mut patch: Patch, settings: &[(Param, f32)]) -> Patch {
-    for (param, value) in settings {
-        patch.set(*param, *value);
-    }
-    patch
-}
-
 fn chord(args: &Args, patch: &Patch) -> Result<Song> {
-    args.tuning.check_notes(&args.note)?;
+    args.sound.tuning.check_notes(&args.note)?;
     // Frequencies are placed by the patch's own tuning, so that 440 Hz is 440 Hz in every patch.
     let a4_hz = f64::from(patch.get(Param::Tuning));
     let keys: std::result::Result<Vec<f64>, String> = args.note.iter().map(|note| parse_key(note, a4_hz)).collect();

@@ -1,6 +1,6 @@
 //! What `sprung render` says when it is done.
 
-use crate::cli::{complain, complain_lines, print};
+use crate::cli::terminal::{complain, complain_lines, print};
 use serde_json::json;
 use sprung::Result;
 use sprung::io::{SampleFormat, Target};

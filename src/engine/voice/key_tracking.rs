@@ -1,6 +1,6 @@
 //! How pitch and decay follow the key.
 
-use crate::engine::voice_manager::Note;
+use crate::engine::note::Note;
 use crate::params::Param;
 use crate::units::{frequency_from_key, ratio_from_semitones};
 

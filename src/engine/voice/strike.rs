@@ -8,7 +8,7 @@ use crate::dsp::random;
 use crate::engine::controls::Controls;
 use crate::engine::damping::Damping;
 use crate::engine::modulation::Struck;
-use crate::engine::voice_manager::Note;
+use crate::engine::note::Note;
 use crate::params::Param;
 use crate::units::gain_from_db;
 use libm::{fabs, pow, sin};

@@ -1,6 +1,6 @@
 //! The keys that are down in a monophonic mode, for the voice to return to.
 
-use super::Note;
+use crate::engine::note::Note;
 
 /// Most keys that are remembered.
 const MAX_HELD_KEYS: usize = 32;

@@ -2,56 +2,8 @@
 
 mod held_keys;
 
-use super::event::Notes;
-use crate::sound::tuning::Pitch;
+use super::note::{Note, Notes};
 use held_keys::HeldKeys;
-
-/// A note as the manager hands it to a voice.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Note {
-    /// MIDI channel, 0–15.
-    pub channel: u8,
-    /// MIDI key, 0–127.
-    pub key: u8,
-    /// Pitch that the tuning gives the key.
-    pub pitch: Pitch,
-    /// Offset from that pitch in semitones.
-    pub detune: f32,
-    /// 0–1.
-    pub velocity: f32,
-    /// Whether the soft pedal was down.
-    pub soft: bool,
-    /// Brightness of the channel, −0.5 to 0.5.
-    pub brightness: f32,
-    /// The host's identifier, or −1.
-    pub id: i32,
-    /// Counts the notes of a synth.
-    pub serial: u64,
-    /// Counts the patches of a synth.
-    pub patch: u32,
-    /// Counts the bodies of a synth; notes of different bodies never share a voice.
-    pub body: u32,
-    /// Choke group, 0 for none.
-    pub choke: u8,
-}
-
-impl Note {
-    /// None yet.
-    const NONE: Self = Self {
-        channel: 0,
-        key: 0,
-        pitch: Pitch::Semitones(0.0),
-        detune: 0.0,
-        velocity: 0.0,
-        soft: false,
-        brightness: 0.0,
-        id: -1,
-        serial: 0,
-        patch: 0,
-        body: 0,
-        choke: 0,
-    };
-}
 
 /// Something that sounds one note at a time. All methods are called on the audio thread.
 pub trait Voice {

@@ -1,6 +1,7 @@
 //! What the manager tells its voices, written down by a fake one.
 
 use super::*;
+use crate::sound::tuning::Pitch;
 use std::cell::RefCell;
 use std::rc::Rc;
 

@@ -2,11 +2,16 @@
 
 use super::container::Track;
 use super::fault::{Fault, Found};
-use super::{MAX_EVENTS, translate};
 use crate::engine::EventKind;
+use crate::engine::midi::parse_message;
 use crate::io::bars::Bars;
-use midly::{EventIter, MetaMessage, Timing, TrackEvent, TrackEventKind};
+use midly::live::LiveEvent;
+use midly::num::u4;
+use midly::{EventIter, MetaMessage, MidiMessage, Timing, TrackEvent, TrackEventKind};
 use std::fmt;
+
+/// Most events that a song can have: 32 bytes of memory each.
+pub const MAX_EVENTS: usize = 8_000_000;
 
 /// Kinds of faults that lenient reading repairs in a file, a track each; a file with more is not meant to be one.
 const MOST_REPAIRS: usize = 1000;
@@ -109,7 +114,9 @@ impl TrackReader {
     fn take(&mut self, event: TrackEvent, spot: Spot) -> Result<bool, String> {
         let tick = spot.tick;
         match event.kind {
-            TrackEventKind::Midi { channel, message } => self.events.push((tick, channel.as_int(), translate(message))),
+            TrackEventKind::Midi { channel, message } => {
+                self.events.extend(translate(channel, message).map(|(channel, kind)| (tick, channel, kind)));
+            }
             TrackEventKind::Meta(MetaMessage::Tempo(tempo)) if tempo == 0 => {
                 self.repair(spot, "the tempo is 0 µs per quarter note: expected at least 1", "left out")?;
             }
@@ -151,4 +158,11 @@ impl TrackReader {
     fn place(&self, Spot { track, tick, byte }: Spot) -> String {
         format!("track {track}, {} (tick {tick}, byte {byte})", self.bars.place(tick))
     }
+}
+
+/// The channel and event of a message: what its bytes mean, as they would come from a port.
+fn translate(channel: u4, message: MidiMessage) -> Option<(u8, EventKind)> {
+    let mut bytes = [0; 3];
+    LiveEvent::Midi { channel, message }.write_std(&mut bytes[..]).ok()?;
+    parse_message(&bytes)
 }

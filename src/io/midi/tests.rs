@@ -1,7 +1,7 @@
 //! Tests of the MIDI reader, on files that midly's writer and a few bytes by hand make.
 
 use super::*;
-use midly::{Format, Fps, Header, MetaMessage, Smf, Timing, TrackEvent, TrackEventKind};
+use midly::{Format, Fps, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, TrackEvent, TrackEventKind};
 use proptest::prelude::*;
 
 const BEATS: Timing = Timing::Metrical(midly::num::u15::new(480));
@@ -327,22 +327,5 @@ proptest! {
         let at = at.index(good.len());
         good[at] = byte;
         let _ = Song::parse(&good, "x");
-    }
-}
-
-#[test]
-fn messages_from_a_port_are_read_one_by_one() {
-    for (bytes, expected) in [
-        (&[0x91, 60, 127][..], Some((1, EventKind::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: -1 }))),
-        (&[0x9f, 60, 0], Some((15, EventKind::NoteOff { key: 60, velocity: 0.5, id: -1 }))),
-        (&[0xe0, 0, 64], Some((0, EventKind::PitchBend(0.0)))),
-        (&[0xc2, 7], Some((2, EventKind::Program(7)))),
-        (&[0xf8], None),
-        (&[0xf0, 1, 2, 0xf7], None),
-        (&[0x90, 60], None),
-        (&[60, 60], None),
-        (&[], None),
-    ] {
-        assert_eq!(parse_message(bytes), expected, "{bytes:?}");
     }
 }

@@ -3,7 +3,7 @@
 //! Source: A. Chou (2015), "Precise Control over Numeric Springing", as listed in "I turned jiggle physics code into a
 //! synthesizer". A force `f(t)` is a target that moves: `target + f/k`.
 
-use super::Integrator;
+use super::integrator::Integrator;
 use crate::error::Result;
 use crate::lab::system::{State, System};
 use libm::sqrt;

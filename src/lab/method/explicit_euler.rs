@@ -1,6 +1,6 @@
 //! Explicit (forward) Euler: position and velocity both from the old state. First order; grows without damping.
 
-use super::Integrator;
+use super::integrator::Integrator;
 use crate::error::Result;
 use crate::lab::system::{State, System};
 

@@ -2,7 +2,7 @@
 //!
 //! Exact but for rounding; a force is taken at the middle of the step, which makes that part second order.
 
-use super::Integrator;
+use super::integrator::Integrator;
 use crate::error::Result;
 use crate::lab::closed_form::{ClosedForm, Transition};
 use crate::lab::system::{Force, State, System};

@@ -1,6 +1,6 @@
 //! Heun's method: the mean of the slopes before and after an explicit Euler step. Second order; still grows, slowly.
 
-use super::Integrator;
+use super::integrator::Integrator;
 use crate::error::Result;
 use crate::lab::system::{State, System};
 

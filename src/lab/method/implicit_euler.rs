@@ -1,6 +1,6 @@
 //! Implicit (backward) Euler: position and velocity both from the new state. First order; shrinks at any step.
 
-use super::Integrator;
+use super::integrator::Integrator;
 use crate::error::{Error, Result};
 use crate::lab::system::{State, System};
 

@@ -5,19 +5,16 @@ mod explicit_euler;
 mod exponential;
 mod heun;
 mod implicit_euler;
+mod integrator;
 mod runge_kutta;
 mod symplectic_euler;
 mod synth_step;
 mod verlet;
 
-use super::system::{State, System};
+use super::system::System;
 use crate::error::{Error, Result, nearest};
 
-/// Advances a state by one step of fixed length.
-pub trait Integrator {
-    /// The state one step after `state`, which is that at time `t`. Fails only where an iteration does not converge.
-    fn step(&self, state: State, t: f64) -> Result<State>;
-}
+pub use integrator::Integrator;
 
 /// How fast a method's error falls as the step shrinks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,7 +185,7 @@ impl Method {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::system::Spring;
+    use crate::lab::system::{Spring, State};
 
     #[test]
     fn names_lead_back_to_their_methods() {

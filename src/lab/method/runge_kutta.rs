@@ -1,6 +1,6 @@
 //! The classical Runge–Kutta method. Fourth order; loses `(ωh)⁶/144` of the amplitude per step, up to ω·h = 2√2.
 
-use super::Integrator;
+use super::integrator::Integrator;
 use crate::error::Result;
 use crate::lab::system::{State, System};
 

@@ -2,7 +2,7 @@
 //!
 //! The two are adjoint: each is the other run backwards. They keep not `½ m v² + ½ k x²` but that `∓ ½ h k x v`.
 
-use super::Integrator;
+use super::integrator::Integrator;
 use crate::error::Result;
 use crate::lab::system::{State, System};
 

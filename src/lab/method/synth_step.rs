@@ -3,7 +3,7 @@
 //! The oscillator counts time in samples and its velocity is not the mass's: the state is taken over into its units
 //! before each step and back after it, so that it can be laid beside the other methods.
 
-use super::Integrator;
+use super::integrator::Integrator;
 use crate::dsp::{Coefficients, HarmonicOscillator};
 use crate::error::{Error, Result};
 use crate::lab::closed_form::Transition;

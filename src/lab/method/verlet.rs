@@ -3,7 +3,7 @@
 //! With damping this is the scheme of Brünger, Brooks & Karplus (1984): the first half kick takes the damper's force
 //! from the velocity before it, the second from that after it. It equals central differences; its limit stays ω·h = 2.
 
-use super::Integrator;
+use super::integrator::Integrator;
 use crate::error::Result;
 use crate::lab::system::{State, System};
 

@@ -1,12 +1,13 @@
 //! What the view shows, and what keys do to it.
 
-use super::Desk;
+use super::desk::Desk;
 use super::keyboard::Keyboard;
+use crate::engine::telemetry::Load;
 use crate::engine::{EventKind, Snapshot};
 use crate::params::{PARAMS, ParamInfo, Unit};
 use crate::patch::Patch;
 use crate::preset::Preset;
-use crate::realtime::{Load, PatchSender, Status};
+use crate::realtime::{PatchSender, Status};
 use crate::text::printable;
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::sync::Arc;
@@ -143,15 +144,16 @@ impl App {
     pub(super) fn tick(&mut self, now: Instant) {
         self.keyboard.tick(now);
         self.message.take_if(|(_, since)| since.elapsed() > MESSAGE);
-        self.load = self.status.load();
-        self.snapshot = self.status.snapshot();
+        let telemetry = self.status.telemetry();
+        self.load = telemetry.load();
+        self.snapshot = telemetry.snapshot();
         let fall = libm::powf(FALL, 10.0 * now.saturating_duration_since(self.ticked).as_secs_f32());
         self.ticked = now;
-        for (shown, peak) in self.peaks.iter_mut().zip(self.status.take_peaks()) {
+        for (shown, peak) in self.peaks.iter_mut().zip(telemetry.take_peaks()) {
             *shown = peak.max(*shown * fall);
         }
         for (channel, sound) in (0..).zip(&mut self.sounds) {
-            let program = self.status.program(channel);
+            let program = telemetry.program(channel);
             if let Some(number) = program.filter(|_| program != sound.program)
                 && let (Some(preset), Some(patch)) =
                     (Preset::factory().get(usize::from(number)), self.programs.get(usize::from(number)))

@@ -44,8 +44,8 @@ pub(super) fn draw(app: &App, frame: &mut Frame) {
 
 fn head(app: &App, frame: &mut Frame, area: Rect) {
     let [first, second] = Layout::vertical([Constraint::Length(1), Constraint::Length(1)]).areas(area);
-    let load = &app.load;
-    let xruns = Span::raw(format!("{} xruns", load.xruns));
+    let xruns = app.status.xruns();
+    let dry = Span::raw(format!("{xruns} xruns"));
     let title = Line::from(vec![
         Span::raw(" Sprung ").bold().reversed(),
         Span::raw(format!(" {} ", app.sound().name)).yellow().bold(),
@@ -53,11 +53,11 @@ fn head(app: &App, frame: &mut Frame, area: Rect) {
         Span::raw(&app.device).dark_gray(),
     ]);
     frame.render_widget(title, first);
-    let share = 100.0 * load.recent_share;
+    let share = 100.0 * app.load.recent_share;
     let numbers = Line::from(vec![
         Span::raw(format!("{:3} voices ", app.snapshot.voices)),
         if share > 70.0 { Span::raw(format!("{share:3.0} % ")).red() } else { Span::raw(format!("{share:3.0} % ")) },
-        if load.xruns > 0 { xruns.red() } else { xruns.dark_gray() },
+        if xruns > 0 { dry.red() } else { dry.dark_gray() },
     ]);
     let room = numbers.width() as u16;
     let columns = [Constraint::Fill(1), Constraint::Length(1), Constraint::Fill(1), Constraint::Length(room + 1)];
@@ -92,7 +92,7 @@ fn meter(name: &str, peak: f32, frame: &mut Frame, area: Rect) {
 /// A piano from the lowest key of the computer's keyboard on, as far as there is room.
 fn keys(app: &App, frame: &mut Frame, area: Rect) {
     let lowest = app.keyboard.lowest();
-    let down = app.status.keys(app.channel);
+    let down = app.status.telemetry().keys(app.channel);
     let black = |key: u8| matches!(key % 12, 1 | 3 | 6 | 8 | 10);
     let upper = area.height / 2;
     let mut x = area.x;

@@ -1,6 +1,7 @@
 //! A terminal to play from: what sounds, what can be chosen, and the computer's keyboard as a piano.
 
 mod app;
+mod desk;
 mod draw;
 mod keyboard;
 mod lists;
@@ -8,36 +9,17 @@ mod masses;
 #[cfg(test)]
 mod tests;
 
-use super::{LiveSender, PatchSender, Status};
 use crate::error::{Error, Result};
-use crate::patch::Patch;
 use app::App;
 use ratatui::crossterm::event::{self, Event, KeyboardEnhancementFlags, PopKeyboardEnhancementFlags};
 use ratatui::crossterm::{event::PushKeyboardEnhancementFlags, execute, terminal};
 use std::io::stdout;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
+
+pub use desk::Desk;
 
 /// Time between two pictures, and the longest that a key waits to be looked at by anything but its note.
 const FRAME: Duration = Duration::from_millis(33);
-
-/// What the view shows and what it plays on.
-pub struct Desk {
-    /// The device, as text.
-    pub device: String,
-    /// What the audio thread tells.
-    pub status: Arc<Status>,
-    /// Takes notes and parameters.
-    pub keys: LiveSender,
-    /// Takes presets.
-    pub patches: PatchSender,
-    /// Name of the sound that every channel starts with.
-    pub name: String,
-    /// That sound.
-    pub patch: Patch,
-    /// The sounds that program changes choose from, in the order of the factory presets.
-    pub programs: Vec<Patch>,
-}
 
 /// Shows the view until the user leaves it or `stop` says so. `poll` is called all the while and gives what there is
 /// to tell.

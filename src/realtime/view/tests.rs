@@ -85,13 +85,13 @@ fn keys_play_notes_that_end_by_themselves() {
     let mut stand = Stand::new();
     stand.type_text("zq");
     stand.play();
-    assert_eq!(stand.app.status.keys(0), 1 << 60 | 1 << 72);
+    assert_eq!(stand.app.status.telemetry().keys(0), 1 << 60 | 1 << 72);
     assert!(stand.app.snapshot.voices == 2 && stand.app.peaks[0] > 0.01);
     let screen = stand.screen(80, 24);
     assert!(screen.contains("2 voices") && screen.contains('●'), "{screen}");
     stand.app.tick(Instant::now() + Duration::from_secs(1));
     stand.play();
-    assert_eq!(stand.app.status.keys(0), 0);
+    assert_eq!(stand.app.status.telemetry().keys(0), 0);
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn octave_velocity_and_channel_move_within_their_bounds() {
     assert_eq!(stand.app.channel, 15);
     stand.type_text(".z");
     stand.play();
-    assert_eq!(stand.app.status.keys(0), 1 << 12, "a note beyond the keyboard is none");
+    assert_eq!(stand.app.status.telemetry().keys(0), 1 << 12, "a note beyond the keyboard is none");
 }
 
 #[test]
@@ -157,7 +157,7 @@ fn a_parameter_is_turned_typed_and_reset() {
     stand.play();
     stand.app.tick(Instant::now() + Duration::from_secs(1));
     stand.play();
-    assert!(stand.app.status.is_silent(), "the player has heard of it");
+    assert!(stand.app.status.telemetry().is_silent(), "the player has heard of it");
     stand.press(KeyCode::Backspace);
     assert_eq!(value(&stand), default);
 }
@@ -184,5 +184,5 @@ fn every_size_of_screen_can_be_drawn() {
 fn control_c_leaves() {
     let mut stand = Stand::new();
     stand.app.key(KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL), Instant::now());
-    assert!(stand.app.quit && stand.app.status.keys(0) == 0);
+    assert!(stand.app.quit && stand.app.status.telemetry().keys(0) == 0);
 }

@@ -1,7 +1,6 @@
 //! One instance of the plugin, on the thread that made it: parameters, state, activation.
 
 use super::calls::{Calls, Host, MainThreadCalls};
-use super::player::Player;
 use super::{Timed, bundle};
 use clack_extensions::params::{ParamInfoBuffer, ParamInfoFlags, PluginParams};
 use clack_extensions::state::PluginState;
@@ -22,7 +21,7 @@ pub(crate) struct Parameter {
     pub(crate) default: f64,
 }
 
-/// An instance that is not being played, or lends itself to a [`Player`].
+/// An instance that is not being played, or whose audio is elsewhere.
 pub(crate) struct Instance {
     pub(crate) clack: PluginInstance<Host>,
 }
@@ -53,11 +52,6 @@ impl Instance {
             &info,
         );
         Self { clack: clack.expect("the plugin can be instantiated") }
-    }
-
-    /// Activates the plugin and starts processing.
-    pub(crate) fn play(self, sample_rate: f64, max_block: u32) -> Player {
-        Player::new(self, sample_rate, max_block)
     }
 
     /// Runs what the plugin has asked to be run on the main thread; fails if it has asked for what it never needs.

@@ -1,8 +1,9 @@
 //! An instance that is processing: events in, audio and ended notes out, in blocks of any size.
 
+use super::Timed;
 use super::calls::Host;
 use super::event::Address;
-use super::{Instance, Timed};
+use super::instance::Instance;
 use clack_extensions::audio_ports::{AudioPortInfoBuffer, PluginAudioPorts};
 use clack_extensions::tail::{PluginTail, TailLength};
 use clack_host::events::event_types::NoteEndEvent;
@@ -58,6 +59,13 @@ impl OutputEventBuffer for Ends {
         }
         self.notes.push((event.header().time(), end.pckn().into()));
         Ok(())
+    }
+}
+
+impl Instance {
+    /// Activates the plugin and starts processing.
+    pub(crate) fn play(self, sample_rate: f64, max_block: u32) -> Player {
+        Player::new(self, sample_rate, max_block)
     }
 }
 

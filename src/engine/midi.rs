@@ -1,0 +1,103 @@
+//! MIDI 1.0: channel messages as events, and the numbers of controllers.
+
+use super::EventKind;
+
+/// Numbers of the controllers that are acted on.
+pub mod controller {
+    /// Modulation wheel.
+    pub const WHEEL: u8 = 1;
+    /// Breath.
+    pub const BREATH: u8 = 2;
+    /// Data entry of the registered parameter that was chosen, most significant seven bits.
+    pub const DATA: u8 = 6;
+    /// Channel volume.
+    pub const VOLUME: u8 = 7;
+    /// Pan.
+    pub const PAN: u8 = 10;
+    /// Expression.
+    pub const EXPRESSION: u8 = 11;
+    /// Data entry, least significant seven bits.
+    pub const DATA_FINE: u8 = 38;
+    /// Sustain pedal.
+    pub const SUSTAIN: u8 = 64;
+    /// Sostenuto pedal.
+    pub const SOSTENUTO: u8 = 66;
+    /// Soft pedal.
+    pub const SOFT: u8 = 67;
+    /// Brightness.
+    pub const BRIGHTNESS: u8 = 74;
+    /// Chooses a parameter that is not registered, least significant seven bits.
+    pub const NRPN_FINE: u8 = 98;
+    /// Chooses a parameter that is not registered, most significant seven bits.
+    pub const NRPN: u8 = 99;
+    /// Chooses a registered parameter, least significant seven bits.
+    pub const RPN_FINE: u8 = 100;
+    /// Chooses a registered parameter, most significant seven bits.
+    pub const RPN: u8 = 101;
+    /// All sound off.
+    pub const ALL_SOUND_OFF: u8 = 120;
+    /// Reset all controllers.
+    pub const RESET: u8 = 121;
+    /// All notes off; so are the mode messages above it, up to 127.
+    pub const ALL_NOTES_OFF: u8 = 123;
+}
+
+/// The channel and event of one complete MIDI message, as a port delivers it; none for what is not a channel message.
+/// Real-time safe.
+pub fn parse_message(bytes: &[u8]) -> Option<(u8, EventKind)> {
+    let (&status, data) = bytes.split_first()?;
+    let data = |index: usize| data.get(index).copied().filter(|byte| *byte < 128);
+    let unit = |byte: u8| f32::from(byte) / 127.0;
+    let first = data(0)?;
+    let kind = match status >> 4 {
+        0x8 => EventKind::NoteOff { key: first, velocity: unit(data(1)?), id: -1 },
+        0x9 => match data(1)? {
+            // A note-on of velocity 0 is a note-off whose velocity the controller does not tell.
+            0 => EventKind::NoteOff { key: first, velocity: 0.5, id: -1 },
+            velocity => EventKind::NoteOn { key: first, detune: 0.0, velocity: unit(velocity), id: -1 },
+        },
+        0xA => EventKind::PolyPressure { key: first, pressure: unit(data(1)?) },
+        0xB => EventKind::Control { controller: first, value: unit(data(1)?) },
+        0xC => EventKind::Program(first),
+        0xD => EventKind::ChannelPressure(unit(first)),
+        0xE => EventKind::PitchBend(bend_position(i16::from(data(1)?) << 7 | i16::from(first))),
+        _ => return None,
+    };
+    Some((status & 15, kind))
+}
+
+/// 0…16383 as −1…1: both ends and the centre are exact, so the upper half has steps of its own.
+fn bend_position(value: i16) -> f32 {
+    let steps = f32::from(value - 8192);
+    if steps < 0.0 { steps / 8192.0 } else { steps / 8191.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_are_read_one_by_one() {
+        use EventKind as E;
+        for (bytes, expected) in [
+            (&[0x91, 60, 127][..], Some((1, E::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: -1 }))),
+            (&[0x9f, 60, 0], Some((15, E::NoteOff { key: 60, velocity: 0.5, id: -1 }))),
+            (&[0x80, 60, 127], Some((0, E::NoteOff { key: 60, velocity: 1.0, id: -1 }))),
+            (&[0xa3, 1, 127], Some((3, E::PolyPressure { key: 1, pressure: 1.0 }))),
+            (&[0xb3, 64, 127], Some((3, E::Control { controller: 64, value: 1.0 }))),
+            (&[0xc2, 7], Some((2, E::Program(7)))),
+            (&[0xd2, 0], Some((2, E::ChannelPressure(0.0)))),
+            (&[0xe0, 0, 0], Some((0, E::PitchBend(-1.0)))),
+            (&[0xe0, 0, 64], Some((0, E::PitchBend(0.0)))),
+            (&[0xe0, 127, 127], Some((0, E::PitchBend(1.0)))),
+            (&[0xf8], None),
+            (&[0xf0, 1, 2, 0xf7], None),
+            (&[0x90, 60], None),
+            (&[0x90, 128, 1], None),
+            (&[60, 60], None),
+            (&[], None),
+        ] {
+            assert_eq!(parse_message(bytes), expected, "{bytes:?}");
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! What sounds, how loudly, and how the audio thread keeps up, for a display to read while it plays.
+
+use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF};
+use super::note::{nearest_channel, nearest_key};
+use super::{Event, EventKind, Snapshot};
+use crate::dsp::mode_bank::MAX_MODES;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, AtomicU16, AtomicU32, AtomicU64};
+use std::time::Duration;
+
+/// How often the masses are shown, in Hz.
+const SNAPSHOT_RATE: f64 = 40.0;
+
+/// Numbers that the audio thread keeps up to date through a [`TelemetryWriter`]. Any thread may read them at any time,
+/// without waiting; each number is whole, but two of them may be of different blocks.
+#[derive(Default)]
+pub struct Telemetry {
+    frames: AtomicU64,
+    blocks: AtomicU64,
+    late_blocks: AtomicU64,
+    busy_nanos: AtomicU64,
+    period_nanos: AtomicU64,
+    worst_share: AtomicF32,
+    recent_share: AtomicF32,
+    peaks: [AtomicF32; 2],
+    voices: AtomicU32,
+    masses: Masses,
+    keys: [[AtomicU64; 2]; 16],
+    /// One more than the number of the program that was chosen; 0 for none.
+    programs: [AtomicU16; 16],
+    sounding: AtomicBool,
+    watched: AtomicBool,
+}
+
+/// How the audio thread has kept up so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Load {
+    /// Frames played.
+    pub frames: u64,
+    /// Blocks that the host or device asked for.
+    pub blocks: u64,
+    /// Blocks that took longer than they last.
+    pub late_blocks: u64,
+    /// Share of the time that was spent on blocks.
+    pub mean_share: f64,
+    /// The largest share of its own time that one block took.
+    pub worst_share: f64,
+    /// The largest share since this was last asked.
+    pub recent_share: f64,
+}
+
+impl Telemetry {
+    /// How the audio thread has kept up. Meant for one reader: it starts the recent share anew.
+    pub fn load(&self) -> Load {
+        let (busy, period) = (self.busy_nanos.load(Relaxed), self.period_nanos.load(Relaxed));
+        Load {
+            frames: self.frames(),
+            blocks: self.blocks.load(Relaxed),
+            late_blocks: self.late_blocks.load(Relaxed),
+            mean_share: busy as f64 / period.max(1) as f64,
+            worst_share: self.worst_share.load().into(),
+            recent_share: self.recent_share.take().into(),
+        }
+    }
+
+    /// Frames played.
+    pub fn frames(&self) -> u64 {
+        self.frames.load(Relaxed)
+    }
+
+    /// The largest absolute samples, left and right, since this was last asked; 1 is full scale. Meant for one reader.
+    pub fn take_peaks(&self) -> [f32; 2] {
+        self.peaks.each_ref().map(AtomicF32::take)
+    }
+
+    /// The voices and masses that sound. From the first call on, the audio thread keeps them up to date.
+    pub fn snapshot(&self) -> Snapshot {
+        self.watched.store(true, Relaxed);
+        let mut snapshot = Snapshot { voices: self.voices.load(Relaxed), ..Snapshot::default() };
+        for (mass, [displacement, energy]) in snapshot.masses.iter_mut().zip(&self.masses.0) {
+            (mass.displacement, mass.energy) = (displacement.load(), energy.load());
+        }
+        snapshot
+    }
+
+    /// The keys that are down on a MIDI channel, a bit each.
+    pub fn keys(&self, channel: u8) -> u128 {
+        let [low, high] = &self.keys[usize::from(nearest_channel(channel))];
+        u128::from(low.load(Relaxed)) | u128::from(high.load(Relaxed)) << 64
+    }
+
+    /// The program that the last program change chose on a MIDI channel, once one has.
+    pub fn program(&self, channel: u8) -> Option<u8> {
+        let stored = self.programs[usize::from(nearest_channel(channel))].load(Relaxed);
+        stored.checked_sub(1).map(|program| program as u8)
+    }
+
+    /// Whether nothing sounds.
+    pub fn is_silent(&self) -> bool {
+        !self.sounding.load(Relaxed)
+    }
+}
+
+/// The audio thread's end of a [`Telemetry`]: there should be one. All but [`TelemetryWriter::new`] is real-time safe.
+pub struct TelemetryWriter {
+    telemetry: Arc<Telemetry>,
+    sample_rate: f64,
+    frames_to_snapshot: f64,
+}
+
+impl TelemetryWriter {
+    /// What writes to `telemetry` at a sample rate in Hz.
+    pub fn new(telemetry: Arc<Telemetry>, sample_rate: f64) -> Self {
+        Self { telemetry, sample_rate, frames_to_snapshot: 0.0 }
+    }
+
+    /// Notes an event that the engine is handed: keys that go down and up, and programs.
+    pub fn note_event(&self, event: &Event) {
+        let channel = usize::from(nearest_channel(event.channel));
+        let keys = &self.telemetry.keys[channel];
+        match event.kind {
+            EventKind::NoteOn { key, .. } => {
+                let key = nearest_key(key);
+                keys[usize::from(key >> 6)].fetch_or(1 << (key & 63), Relaxed);
+            }
+            EventKind::NoteOff { key, .. } => {
+                let key = nearest_key(key);
+                keys[usize::from(key >> 6)].fetch_and(!(1 << (key & 63)), Relaxed);
+            }
+            EventKind::Control { controller: ALL_SOUND_OFF | ALL_NOTES_OFF..=127, .. } => {
+                keys.iter().for_each(|half| half.store(0, Relaxed));
+            }
+            EventKind::Program(number) => self.telemetry.programs[channel].store(u16::from(number) + 1, Relaxed),
+            _ => {}
+        }
+    }
+
+    /// Notes frames that were rendered, and whether anything sounds after them. `snapshot` is asked 40 times a second
+    /// while somebody looks.
+    pub fn note_sound(&mut self, left: &[f32], right: &[f32], is_silent: bool, snapshot: impl FnOnce() -> Snapshot) {
+        let telemetry = &*self.telemetry;
+        for (kept, samples) in telemetry.peaks.iter().zip([left, right]) {
+            kept.raise_to(samples.iter().fold(0.0, |peak, sample| peak.max(sample.abs())));
+        }
+        telemetry.sounding.store(!is_silent, Relaxed);
+        self.frames_to_snapshot -= left.len() as f64;
+        if self.frames_to_snapshot > 0.0 || !telemetry.watched.load(Relaxed) {
+            return;
+        }
+        self.frames_to_snapshot = self.sample_rate / SNAPSHOT_RATE;
+        let snapshot = snapshot();
+        telemetry.voices.store(snapshot.voices, Relaxed);
+        for (mass, [displacement, energy]) in snapshot.masses.iter().zip(&telemetry.masses.0) {
+            displacement.store(mass.displacement);
+            energy.store(mass.energy);
+        }
+    }
+
+    /// Notes that a block of so many frames is done, and how long it took.
+    pub fn note_block(&self, frames: usize, busy: Duration) {
+        let telemetry = &*self.telemetry;
+        let period = Duration::from_secs_f64(frames as f64 / self.sample_rate);
+        telemetry.frames.fetch_add(frames as u64, Relaxed);
+        telemetry.blocks.fetch_add(1, Relaxed);
+        telemetry.busy_nanos.fetch_add(busy.as_nanos() as u64, Relaxed);
+        telemetry.period_nanos.fetch_add(period.as_nanos() as u64, Relaxed);
+        telemetry.late_blocks.fetch_add((busy > period).into(), Relaxed);
+        let share = (busy.as_secs_f64() / period.as_secs_f64().max(1e-9)) as f32;
+        telemetry.worst_share.raise_to(share);
+        telemetry.recent_share.raise_to(share);
+    }
+}
+
+/// Displacement and energy of each mass.
+struct Masses([[AtomicF32; 2]; MAX_MODES]);
+
+impl Default for Masses {
+    /// At rest.
+    fn default() -> Self {
+        Self(std::array::from_fn(|_| Default::default()))
+    }
+}
+
+/// A float that threads share, by its bits.
+#[derive(Default)]
+struct AtomicF32(AtomicU32);
+
+impl AtomicF32 {
+    fn load(&self) -> f32 {
+        f32::from_bits(self.0.load(Relaxed))
+    }
+
+    fn store(&self, value: f32) {
+        self.0.store(value.to_bits(), Relaxed);
+    }
+
+    /// Keeps the greater of two numbers that are not negative: their bits are in the order of the numbers.
+    fn raise_to(&self, value: f32) {
+        self.0.fetch_max(value.to_bits(), Relaxed);
+    }
+
+    /// The number, which becomes 0.
+    fn take(&self) -> f32 {
+        f32::from_bits(self.0.swap(0, Relaxed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn telemetry(sample_rate: f64) -> (Arc<Telemetry>, TelemetryWriter) {
+        let telemetry = Arc::new(Telemetry::default());
+        (telemetry.clone(), TelemetryWriter::new(telemetry, sample_rate))
+    }
+
+    #[test]
+    fn load_is_a_share_of_the_period() {
+        let (telemetry, writer) = telemetry(48_000.0);
+        let ms = Duration::from_millis;
+        [1, 12, 2].into_iter().for_each(|busy| writer.note_block(480, ms(busy)));
+        let load = telemetry.load();
+        assert_eq!((load.frames, load.blocks, load.late_blocks), (1440, 3, 1));
+        assert!((load.mean_share - 0.5).abs() < 1e-6 && (load.worst_share - 1.2).abs() < 1e-6, "{load:?}");
+        writer.note_block(480, ms(2));
+        assert!((telemetry.load().recent_share - 0.2).abs() < 1e-6, "the recent worst is forgotten once it was told");
+    }
+
+    #[test]
+    fn keys_and_programs_are_kept_by_channel() {
+        let (telemetry, writer) = telemetry(48_000.0);
+        let tell = |kind| writer.note_event(&Event { frame: 0, channel: 3, kind });
+        [0, 63, 64, 127]
+            .into_iter()
+            .for_each(|key| tell(EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 }));
+        tell(EventKind::NoteOff { key: 63, velocity: 0.5, id: -1 });
+        assert_eq!(telemetry.keys(3), 1 | 1 << 64 | 1 << 127);
+        assert_eq!((telemetry.keys(2), telemetry.program(3)), (0, None));
+        for number in [7, 0, 255] {
+            tell(EventKind::Program(number));
+            assert_eq!(telemetry.program(3), Some(number));
+        }
+        tell(EventKind::Control { controller: ALL_NOTES_OFF, value: 0.0 });
+        assert_eq!(telemetry.keys(3), 0);
+    }
+
+    #[test]
+    fn peaks_and_masses_are_those_of_the_sound_and_only_while_somebody_looks() {
+        let (telemetry, mut writer) = telemetry(4_000.0);
+        assert!(telemetry.is_silent());
+        let mut moved = Snapshot { voices: 2, ..Snapshot::default() };
+        moved.masses[63].displacement = -0.5;
+        moved.masses[63].energy = 0.25;
+        writer.note_sound(&[0.25, -0.5], &[0.0, 0.125], false, || unreachable!("nobody looks"));
+        assert_eq!((telemetry.take_peaks(), telemetry.take_peaks()), ([0.5, 0.125], [0.0, 0.0]));
+        assert_eq!((telemetry.snapshot(), telemetry.is_silent()), (Snapshot::default(), false));
+        writer.note_sound(&[0.0; 2], &[0.0; 2], false, || moved);
+        assert_eq!(telemetry.snapshot(), moved);
+        writer.note_sound(&[0.0; 99], &[0.0; 99], true, || unreachable!("within a fortieth of a second"));
+        assert!(telemetry.is_silent());
+        writer.note_sound(&[0.0; 1], &[0.0; 1], true, Snapshot::default);
+        assert_eq!(telemetry.snapshot(), Snapshot::default());
+    }
+}

@@ -1,0 +1,15 @@
+//! Events on the first channel, as tests write them.
+
+use sprung::engine::{Event, EventKind};
+
+pub(crate) fn event(frame: u32, kind: EventKind) -> Event {
+    Event { frame, channel: 0, kind }
+}
+
+pub(crate) fn on(frame: u32, key: u8) -> Event {
+    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 })
+}
+
+pub(crate) fn off(frame: u32, key: u8) -> Event {
+    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+}
