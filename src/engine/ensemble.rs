@@ -1,8 +1,10 @@
 //! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
 
+use super::midi::controller;
 use super::mix_limiter::MixLimiter;
 use super::note::{nearest_channel, nearest_key};
 use super::synth::allowed;
+use super::zones::Owners;
 use super::{Event, EventKind, Snapshot, Synth};
 use crate::dsp::limiter::Work;
 use crate::params::Param;
@@ -14,13 +16,15 @@ const CHUNK: usize = 1024;
 
 /// Sixteen synths behind one stream of events.
 ///
-/// Each channel has its own patch, controllers and polyphony. A note of a choke group silences that group on every
+/// Each channel has its own patch, controllers and polyphony. An MPE configuration message makes a zone, whose members
+/// play on the instrument of their master channel. A note of a choke group silences that group on every
 /// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a patch that asks
 /// for it. Gives the same bits however the frames are divided into blocks. Real-time safe after [`Ensemble::new`].
 pub struct Ensemble {
     parts: Vec<Part>,
     programs: Vec<Patch>,
     chunk: usize,
+    owners: Owners,
     limiter: MixLimiter,
 }
 
@@ -44,6 +48,8 @@ struct Chunk<'a> {
     programs: &'a [Patch],
     /// Choke groups of the channels before the events.
     groups: [f32; 16],
+    /// Who plays which channel before the events.
+    owners: Owners,
 }
 
 impl Ensemble {
@@ -56,7 +62,13 @@ impl Ensemble {
             Part { channel: channel as usize, synth, left: vec![0.0; CHUNK], right: vec![0.0; CHUNK], heard: false }
         };
         let limiter = MixLimiter::new(allowed(sample_rate), patch);
-        Self { parts: (0..16).map(part).collect(), programs: programs.to_vec(), chunk: CHUNK, limiter }
+        Self {
+            parts: (0..16).map(part).collect(),
+            programs: programs.to_vec(),
+            chunk: CHUNK,
+            owners: Owners::default(),
+            limiter,
+        }
     }
 
     /// The same ensemble, mixing up to `frames` frames (at least 1) at a time: more than it would of itself pay where
@@ -98,11 +110,13 @@ impl Ensemble {
                 *group = part.synth.patch().get(Param::Choke);
             }
             let programs = &self.programs;
-            let chunk = Chunk { events: &events[..now], start, frames: end - start, programs, groups };
+            let chunk =
+                Chunk { events: &events[..now], start, frames: end - start, programs, groups, owners: self.owners };
             each(&mut self.parts, &|part| part.play(chunk));
             let (left, right) = (&mut left[start..end], &mut right[start..end]);
             self.mix(left, right);
             let is_heard = self.parts.iter().any(|part| part.heard);
+            events[..now].iter().for_each(|event| _ = self.owners.hear(event));
             self.limiter.process(&events[..now], start, &self.programs, is_heard, [left, right]);
             if end == frames {
                 break;
@@ -160,17 +174,34 @@ impl Ensemble {
 impl Part {
     /// Renders a chunk into the part's own frames.
     fn play(&mut self, chunk: Chunk) {
-        let Chunk { events, start, frames, programs, mut groups } = chunk;
+        let Chunk { events, start, frames, programs, mut groups, mut owners } = chunk;
         let Self { channel, synth, heard, .. } = self;
         let (left, right) = (&mut self.left[..frames], &mut self.right[..frames]);
         let mut frame = 0;
         *heard = !synth.is_silent();
         for event in events {
-            let sender = usize::from(nearest_channel(event.channel));
+            let at = (event.frame as usize).saturating_sub(start).min(frames.saturating_sub(1)).max(frame);
+            let before = owners;
+            let zone = owners.hear(event);
+            if let Some((master, members)) = zone {
+                synth.play(&mut left[frame..at], &mut right[frame..at]);
+                frame = at;
+                // Every part knows the zones; keys that another part hears from now on are let go.
+                let leaves =
+                    |other: &u8| usize::from(before.of(*other)) == *channel && owners.of(*other) != before.of(*other);
+                for other in (0..16).filter(leaves) {
+                    let kind = EventKind::Control { controller: controller::ALL_NOTES_OFF, value: 1.0 };
+                    synth.handle(&Event { frame: 0, channel: other, kind });
+                }
+                synth.configure_zone(master, members);
+            }
+            let (sender, owner) = (nearest_channel(event.channel), before.of(nearest_channel(event.channel)));
             let program = match event.kind {
-                EventKind::Program(number) => programs.get(usize::from(number)),
+                // Members play what their master does.
+                EventKind::Program(number) if owner == sender => programs.get(usize::from(number)),
                 _ => None,
             };
+            let sender = usize::from(owner);
             let kind = match event.kind {
                 EventKind::NoteOn { key, .. } if sender != *channel => {
                     let is_mapped = synth.tuning().pitch(nearest_key(key)).is_some();
@@ -191,7 +222,6 @@ impl Part {
             if sender != *channel && !is_for_all {
                 continue;
             }
-            let at = (event.frame as usize).saturating_sub(start).min(frames.saturating_sub(1)).max(frame);
             synth.play(&mut left[frame..at], &mut right[frame..at]);
             frame = at;
             match program {
@@ -260,6 +290,40 @@ mod tests {
         let mut ensemble = Ensemble::new(48_000.0, 0, &Patch::default(), &[]);
         ensemble.set_patch(200, &Patch::default().with(Param::Gain, -3.0));
         assert_eq!(ensemble.parts[15].synth.patch().get(Param::Gain), -3.0);
+    }
+
+    #[test]
+    fn the_members_of_a_zone_play_on_their_master_s_instrument() {
+        let control = |channel, controller, value: u8| {
+            let kind = EventKind::Control { controller, value: f32::from(value) / 127.0 };
+            Event { frame: 0, channel, kind }
+        };
+        let bend = |channel, bend| Event { frame: 0, channel, kind: EventKind::PitchBend(bend) };
+        let pressure = |channel| Event { frame: 7, channel, kind: EventKind::ChannelPressure(0.7) };
+        for (master, first, second) in [(0, 1, 15), (15, 14, 3)] {
+            let zone = [control(master, 101, 0), control(master, 100, 6), control(master, 6, 15)];
+            let notes = [bend(first, 0.25), on(first, 57), on(second, 60), bend(second, -0.5), bend(master, 1.0)];
+            let rest = [pressure(first), off(first, 57), control(master, 64, 127), off(second, 60), on(second, 60)];
+            let events: Vec<Event> = zone.into_iter().chain(notes).chain(rest).collect();
+            let [alone, mixed] = both(&events);
+            // Seeds differ by channel, but nothing here is random.
+            assert!(alone == mixed, "{master}");
+            assert!(alone.iter().any(|sample| sample.abs() > 0.01), "it sounds");
+        }
+    }
+
+    #[test]
+    fn keys_that_are_held_while_a_zone_is_made_are_let_go() {
+        let data = |controller, value: u8| {
+            let kind = EventKind::Control { controller, value: f32::from(value) / 127.0 };
+            Event { frame: 0, channel: 0, kind }
+        };
+        let mut ensemble = Ensemble::new(48_000.0, 0, &Patch::default().with(Param::Release, 0.01), &[]);
+        let (mut left, mut right) = ([0.0; FRAMES], [0.0; FRAMES]);
+        ensemble.process(&[on(5, 60)], &mut left, &mut right);
+        ensemble.process(&[data(101, 0), data(100, 6), data(6, 15)], &mut left, &mut right);
+        (0..10).for_each(|_| ensemble.process(&[], &mut left, &mut right));
+        assert!(ensemble.is_silent());
     }
 
     #[test]

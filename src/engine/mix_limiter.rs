@@ -1,6 +1,7 @@
 //! The limiter at the end of an ensemble's mix, and the channels that ask for it.
 
 use super::note::nearest_channel;
+use super::zones::Owners;
 use super::{Event, EventKind};
 use crate::dsp::Limiter;
 use crate::dsp::limiter::Work;
@@ -21,6 +22,7 @@ struct Channels {
     asking: u16,
     /// Those that have had a note.
     played: u16,
+    owners: Owners,
 }
 
 impl Channels {
@@ -34,14 +36,17 @@ impl Channels {
     }
 
     fn handle(&mut self, event: &Event, programs: &[Patch]) {
+        let channel = nearest_channel(event.channel);
+        let owner = self.owners.of(channel);
+        self.owners.hear(event);
         match event.kind {
-            EventKind::NoteOn { .. } => self.played |= 1 << nearest_channel(event.channel),
+            EventKind::NoteOn { .. } => self.played |= 1 << owner,
             EventKind::Param { param: Param::Limiter, value } => {
-                self.set_asking(event.channel, Param::Limiter.info().clamp(value));
+                self.set_asking(owner, Param::Limiter.info().clamp(value));
             }
-            EventKind::Program(number) => {
+            EventKind::Program(number) if owner == channel => {
                 if let Some(patch) = programs.get(usize::from(number)) {
-                    self.set_asking(event.channel, patch.get(Param::Limiter));
+                    self.set_asking(channel, patch.get(Param::Limiter));
                 }
             }
             _ => {}
@@ -52,7 +57,7 @@ impl Channels {
 impl MixLimiter {
     /// For sixteen channels that start with `patch`.
     pub(super) fn new(sample_rate: f64, patch: &Patch) -> Self {
-        let mut channels = Channels { asking: 0, played: 0 };
+        let mut channels = Channels { asking: 0, played: 0, owners: Owners::default() };
         (0..16).for_each(|channel| channels.set_asking(channel, patch.get(Param::Limiter)));
         Self { limiter: Limiter::new(sample_rate), channels }
     }

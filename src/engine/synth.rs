@@ -361,15 +361,20 @@ impl Synth {
             let siblings = self.zones.siblings(index);
             siblings.for_each(|sibling| self.channels[usize::from(sibling)].bend_range = channel.bend_range);
         } else if channel.awaits_zone() && number == controller::DATA {
-            let before = self.zones;
-            self.zones.configure(index, (value * 127.0 + 0.5) as u8);
-            // Who changes masters starts anew: what the last one held is let go.
-            for channel in (0..16).filter(|channel| before.master_of(*channel) != self.zones.master_of(*channel)) {
-                self.manager.sustain(channel, false);
-                self.manager.sostenuto(channel, false);
-                let member = self.zones.master_of(channel).is_some();
-                self.channels[usize::from(channel)].bend_range = member.then_some(MEMBER_BEND_RANGE);
-            }
+            self.configure_zone(index, (value * 127.0 + 0.5) as u8);
+        }
+    }
+
+    /// Takes in an MPE configuration message: `members` channels are of the zone of a master.
+    pub(super) fn configure_zone(&mut self, master: u8, members: u8) {
+        let before = self.zones;
+        self.zones.configure(master, members);
+        // Who changes masters starts anew: what the last one held is let go.
+        for channel in (0..16).filter(|channel| before.master_of(*channel) != self.zones.master_of(*channel)) {
+            self.manager.sustain(channel, false);
+            self.manager.sostenuto(channel, false);
+            let member = self.zones.master_of(channel).is_some();
+            self.channels[usize::from(channel)].bend_range = member.then_some(MEMBER_BEND_RANGE);
         }
     }
 

@@ -3,6 +3,11 @@
 //! Source: MIDI Polyphonic Expression 1.0 (M1-100-UM): a configuration message is registered parameter 6 on channel
 //! 1 (the lower zone) or 16 (the upper zone), whose value is the number of member channels.
 
+use super::event::unit;
+use super::midi::controller;
+use super::note::nearest_channel;
+use super::{Event, EventKind};
+
 /// Bend range of member channels, in semitones.
 pub(crate) const MEMBER_BEND_RANGE: f32 = 48.0;
 
@@ -53,6 +58,60 @@ impl Zones {
         let (zones, master) = (*self, self.master_of(channel));
         (0..16).filter(move |other| *other == channel || (master.is_some() && zones.master_of(*other) == master))
     }
+}
+
+/// Whose instrument plays each channel of an ensemble: the master's those of its zone, and else its own. Real-time safe.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Owners {
+    zones: Zones,
+    /// Whether the next data entry on the lower or the upper master is the number of a zone's members: both bytes of the
+    /// registered parameter's number are as they must be.
+    chosen: [[bool; 2]; 2],
+}
+
+impl Owners {
+    /// The channel whose instrument plays a channel.
+    pub(crate) fn of(&self, channel: u8) -> u8 {
+        self.zones.master_of(channel).unwrap_or(channel)
+    }
+
+    /// Takes in an event. Gives the master channel and the number of members if it configures a zone.
+    pub(crate) fn hear(&mut self, event: &Event) -> Option<(u8, u8)> {
+        let EventKind::Control { controller: number, value } = event.kind else { return None };
+        let channel = nearest_channel(event.channel);
+        if number == controller::RESET {
+            for (master, chosen) in [LOWER_MASTER, UPPER_MASTER].into_iter().zip(&mut self.chosen) {
+                if master == channel || self.zones.master_of(master) == Some(channel) {
+                    *chosen = [false; 2];
+                }
+            }
+            return None;
+        }
+        let chosen = match channel {
+            LOWER_MASTER => &mut self.chosen[0],
+            UPPER_MASTER => &mut self.chosen[1],
+            _ => return None,
+        };
+        let data = seven_bits(value);
+        match number {
+            controller::RPN => chosen[0] = data == 0,
+            controller::RPN_FINE => chosen[1] = data == ZONE_PARAMETER,
+            controller::NRPN | controller::NRPN_FINE => *chosen = [false; 2],
+            controller::DATA if *chosen == [true; 2] => {
+                self.zones.configure(channel, data);
+                return Some((channel, data));
+            }
+            _ => {}
+        }
+        None
+    }
+}
+
+/// The number of the registered parameter, and a controller's value as MIDI counts it.
+const ZONE_PARAMETER: u8 = 6;
+
+fn seven_bits(value: f32) -> u8 {
+    (unit(value) * 127.0 + 0.5) as u8
 }
 
 #[cfg(test)]

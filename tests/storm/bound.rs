@@ -53,10 +53,50 @@ pub(crate) fn bound(case: &Case) -> Vec<Step> {
     all
 }
 
+/// Which events the synth of a channel hears: those of its channel, or of a zone's members if it is the master; and all
+/// if it is the only one.
+fn hears(case: &Case, index: u8) -> Vec<bool> {
+    let (mut lower, mut upper, mut chosen) = (0_u8, 0_u8, [[127_u8; 2]; 16]);
+    let mut is_heard = |event: &Event| {
+        let channel = event.channel & 15;
+        let master = |channel: u8| match channel {
+            1..=15 if channel <= lower => Some(0),
+            0..=14 if channel >= 15 - upper => Some(15),
+            _ => None,
+        };
+        let owner = master(channel).unwrap_or(channel);
+        if let EventKind::Control { controller, value } = event.kind {
+            let data = (unit(value) * 127.0 + 0.5) as u8;
+            match controller {
+                101 => chosen[usize::from(channel)][0] = data,
+                100 => chosen[usize::from(channel)][1] = data,
+                98 | 99 => chosen[usize::from(channel)] = [127; 2],
+                121 => {
+                    let reset = (0..16_u8).filter(|other| *other == channel || master(*other) == Some(channel));
+                    reset.for_each(|other| chosen[usize::from(other)] = [127; 2]);
+                }
+                6 if channel == 0 && chosen[0] == [0, 6] => {
+                    lower = data.min(15);
+                    upper = upper.min(14_u8.saturating_sub(lower));
+                }
+                6 if channel == 15 && chosen[15] == [0, 6] => {
+                    upper = data.min(15);
+                    lower = lower.min(14_u8.saturating_sub(upper));
+                }
+                _ => {}
+            }
+        }
+        // What a member's program change says is not for the master.
+        owner == index && (owner == channel || !matches!(event.kind, EventKind::Program(_)))
+    };
+    case.events.iter().map(|event| !case.ensemble || is_heard(event)).collect()
+}
+
 /// One synth: its patch as events move it.
 struct Part {
-    index: u8,
     ensemble: bool,
+    /// Whether it hears each event of the case.
+    hears: Vec<bool>,
     patch: Patch,
     offsets: [f32; PARAM_COUNT],
     soft: [bool; 16],
@@ -93,7 +133,7 @@ impl Part {
     fn new(case: &Case, index: u8) -> Self {
         let (ensemble, patch) = (case.ensemble, case.patch);
         let (offsets, soft) = ([0.0; PARAM_COUNT], [false; 16]);
-        let mut part = Self { index, ensemble, patch, offsets, soft, bright: false, reach: None };
+        let mut part = Self { ensemble, hears: hears(case, index), patch, offsets, soft, bright: false, reach: None };
         part.bright = part.events(case).any(|event| match event.kind {
             EventKind::Express { expression, .. } => expression == Expression::Brightness,
             EventKind::Control { controller, .. } => controller == 74,
@@ -104,8 +144,8 @@ impl Part {
 
     /// The events that this synth hears.
     fn events<'a>(&self, case: &'a Case) -> impl Iterator<Item = &'a Event> + use<'a> {
-        let (ensemble, index) = (self.ensemble, self.index);
-        case.events.iter().filter(move |event| !ensemble || event.channel & 15 == index)
+        let events = case.events.iter().zip(self.hears.clone());
+        events.filter(|(_, is_heard)| *is_heard).map(|(event, _)| event)
     }
 
     /// The rises of the bound.

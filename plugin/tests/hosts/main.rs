@@ -155,6 +155,7 @@ fn main() -> ExitCode {
         }
         Nothing: song {
             one_channel_has_the_bits_of_the_command
+            an_mpe_performance_has_the_bits_of_the_command
             sixteen_channels_have_the_bits_of_one_synth
         }
         Nothing: growth {

@@ -65,6 +65,30 @@ pub(crate) fn messages() -> Vec<(u64, [u8; 3])> {
     ]
 }
 
+/// An MPE performance: a zone of fifteen channels, a note on each, and bends over all of ±48 semitones, pressure and
+/// brightness that move while they sound.
+pub(crate) fn mpe_messages() -> Vec<(u64, [u8; 3])> {
+    let mut messages = vec![(0, [0xB0, 101, 0]), (0, [0xB0, 100, 6]), (0, [0xB0, 6, 15])];
+    for channel in 1..16_u8 {
+        let start = 600 * u64::from(channel);
+        let bend = |n: u64| (n * 1_237 + u64::from(channel) * 2_711) % 16_384;
+        let bent = |n: u64| [0xE0 | channel, (bend(n) & 127) as u8, (bend(n) >> 7) as u8];
+        messages.push((start, bent(0)));
+        messages.push((start, [0xB0 | channel, 74, 8 * channel]));
+        messages.push((start, [0x90 | channel, 40 + 2 * channel, 60 + 4 * channel]));
+        for n in 1..40 {
+            let frame = start + 911 * n;
+            messages.push((frame, bent(n)));
+            messages.push((frame + 13, [0xD0 | channel, (n * 3 % 128) as u8, 0]));
+            messages.push((frame + 29, [0xB0 | channel, 74, (n * 7 % 128) as u8]));
+        }
+        messages.push((start + 40_000, [0x80 | channel, 40 + 2 * channel, 50]));
+    }
+    messages.extend([(20_000, [0xE0, 0, 96]), (30_000, [0xB0, 64, 127]), (55_000, [0xB0, 64, 0])]);
+    messages.sort_by_key(|(frame, _)| *frame);
+    messages
+}
+
 /// The phrase with each controller, bend and pressure of the channel at the start of its block.
 pub(crate) fn with_controllers_by_block(block: u64) -> Vec<(u64, [u8; 3])> {
     let is_controller = |data: [u8; 3]| matches!(data[0] & 0xF0, 0xB0 | 0xD0 | 0xE0);

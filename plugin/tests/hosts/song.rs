@@ -6,6 +6,7 @@ use crate::patches::{load, patches};
 use crate::phrase::{self, Dialect, FRAMES, SAMPLE_RATE};
 use sprung::dsp::random::{key, uniform};
 use sprung::engine::{Event, EventKind, Synth};
+use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::render::{Job, Options, Tail};
 use sprung::sound::Tuning;
@@ -61,6 +62,24 @@ pub(crate) fn one_channel_has_the_bits_of_the_command() {
             for (division, block) in divisions() {
                 let found = player(&patch).render(&sent, FRAMES, block).channels;
                 assert_same_bits(&format!("{name}, {dialect:?}, {division}"), &found, &expected);
+            }
+        }
+    }
+}
+
+/// A file that configures a zone is played on one instrument, as the plugin plays it.
+pub(crate) fn an_mpe_performance_has_the_bits_of_the_command() {
+    let messages = phrase::mpe_messages();
+    let midi = phrase::file(&messages);
+    for (name, patch) in patches() {
+        let patch = patch.with(Param::PressureVibrato, 60.0).with(Param::Voices, 16.0);
+        let expected = rendered_by_the_command(&midi, &patch);
+        assert_sound(name, &expected);
+        for dialect in [Dialect::Clap, Dialect::Midi] {
+            for (division, block) in divisions().into_iter().skip(1) {
+                let sent = phrase::sent(&messages, dialect);
+                let found = player(&patch).render(&sent, FRAMES, block).channels;
+                assert_same_bits(&format!("MPE, {name}, {dialect:?}, {division}"), &found, &expected);
             }
         }
     }
