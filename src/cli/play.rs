@@ -7,6 +7,7 @@ use super::{completion, interrupt, quantity};
 use sprung::engine::telemetry::Load;
 use sprung::io::{Inputs, Output, Target};
 use sprung::patch::Patch;
+use sprung::preset::Preset;
 use sprung::realtime::{
     Choice, Found, JackMidi, LiveInputs, LiveSender, MidiPorts, PatchSender, Player, Recording, Session, Setup, Status,
     Wanted, device, midi_ports, view,
@@ -77,7 +78,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let record = args.record.as_ref().map(Target::new);
     record.as_ref().map_or(Ok(()), Target::check_wav)?;
     let mut inputs = Inputs::default();
-    let Sounds { name, patch, programs } = args.sound.load(&mut inputs)?;
+    let Sounds { preset: Preset { name, patch, .. }, programs } = args.sound.load(&mut inputs)?;
     let song = args.song.as_deref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
     if let Some(song) = &song {
         args.reading.warn_of_programs(song, args.sound.asked_for(&patch), &programs);

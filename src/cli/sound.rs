@@ -27,10 +27,8 @@ pub(super) struct SoundArgs {
 
 /// The sounds, as they were set.
 pub(super) struct Sounds {
-    /// Name of the preset that every channel starts with.
-    pub(super) name: String,
-    /// That preset's sound.
-    pub(super) patch: Patch,
+    /// What every channel starts with.
+    pub(super) preset: Preset,
     /// The factory's sounds, in the order of their program numbers.
     pub(super) programs: Vec<Patch>,
 }
@@ -38,9 +36,10 @@ pub(super) struct Sounds {
 impl SoundArgs {
     /// Loads the preset, and sets the parameters of all sounds.
     pub(super) fn load(&self, inputs: &mut Inputs) -> Result<Sounds> {
-        let preset = presets::load(self.preset.as_deref().unwrap_or(OsStr::new("init")), inputs)?;
+        let mut preset = presets::load(self.preset.as_deref().unwrap_or(OsStr::new("init")), inputs)?;
+        preset.patch = self.with_settings(preset.patch);
         let programs = Preset::factory().iter().map(|preset| self.with_settings(preset.patch)).collect();
-        Ok(Sounds { patch: self.with_settings(preset.patch), name: preset.name, programs })
+        Ok(Sounds { preset, programs })
     }
 
     /// `patch`, if a preset was asked for.

@@ -10,6 +10,7 @@ use clap::ArgGroup;
 use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
+use sprung::preset::Preset;
 use sprung::render::{BLOCKS, Delivery, Job, Level, Options, THREADS, Tail, on_threads, to_wav};
 use sprung::units::parse_key;
 use sprung::{Error, Result};
@@ -96,7 +97,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     target.check_wav()?;
     let mut inputs = Inputs::default();
-    let Sounds { patch, programs, .. } = args.sound.load(&mut inputs)?;
+    let Sounds { preset: Preset { patch, .. }, programs } = args.sound.load(&mut inputs)?;
     let song = match &args.song {
         Some(path) => args.reading.read(path, &mut inputs)?,
         None => chord(args, &patch)?,
