@@ -1,9 +1,9 @@
 //! What routes do to a note: every source and kind of destination, heard.
 
 use sprung::engine::{Event, EventKind, Expression, Notes, Synth};
-use sprung::params::{Param, Param::*};
-use sprung::patch::Patch;
+use sprung::params::{PARAMS, Param, Param::*};
 use sprung::patch::routes::{Response, Route, Source, amount_param};
+use sprung::patch::{Mode, ModeTable, Patch};
 
 const RATE: f64 = 48_000.0;
 
@@ -221,4 +221,123 @@ fn a_route_without_amount_changes_nothing() {
     let events = [on(0, 60, 0.8), on(2000, 64, 0.3), off(9000, 60)];
     let idle = patch(&[(Source::Lfo1, Tune, 0.0), (Source::Velocity, Decay, 0.0), (Source::Envelope1, Gain, 0.0)]);
     assert!(render(&idle, 0, &events, 24_000) == render(&patch(&[]), 0, &events, 24_000));
+}
+
+#[test]
+fn a_synchronised_oscillator_keeps_the_tempo_whatever_routes_lead_to_its_rate() {
+    let plain = patch(&[(Source::Lfo1, Tune, 2.0)]).with(Lfo1Sync, 4.0);
+    let routed = patch(&[(Source::Lfo1, Tune, 2.0), (Source::Velocity, Lfo1Rate, 20.0)]).with(Lfo1Sync, 4.0);
+    assert!(render(&plain, 0, &[on(0, 60, 1.0)], 24_000) == render(&routed, 0, &[on(0, 60, 1.0)], 24_000));
+    let (faster, plain) = (routed.with(Lfo1Sync, 0.0), plain.with(Lfo1Sync, 0.0));
+    assert!(render(&plain, 0, &[on(0, 60, 1.0)], 24_000) != render(&faster, 0, &[on(0, 60, 1.0)], 24_000));
+}
+
+#[test]
+fn a_macro_that_moves_while_the_last_note_ends_has_arrived_at_the_next() {
+    let routed = patch(&[(Source::Macro1, Tune, 12.5)]).with(Decay, 0.005);
+    let full = |frame| event(frame, EventKind::Param { param: Macro1, value: 100.0 });
+    let late = render(&routed, 0, &[on(0, 57, 1.0), full(1000), on(48_000, 57, 1.0)], 60_000);
+    let early = render(&routed, 0, &[full(0), on(48_000, 57, 1.0)], 60_000);
+    assert!(late[48_000..].iter().any(|sample| sample.abs() > 0.01) && late[48_000..] == early[48_000..]);
+}
+
+#[test]
+fn a_level_starts_where_its_modulation_starts() {
+    let swell = patch(&[(Source::Envelope1, Gain, 100.0)]).with(Gain, -60.0).with(Envelope1Attack, 0.5);
+    let sound = render(&swell, 0, &[on(0, 90, 1.0)], 24_000);
+    let largest =
+        |range: std::ops::Range<usize>| sound[range].iter().fold(0.0, |most: f32, sample| most.max(sample.abs()));
+    assert!(largest(0..32) < 2e-3 && largest(20_000..24_000) > 0.3, "{} {}", largest(0..32), largest(20_000..24_000));
+}
+
+#[test]
+fn a_brightness_does_not_read_a_strike_again() {
+    // The envelope is at 0 at the strike: nothing that the strike has read moves later.
+    let routed = patch(&[(Source::Envelope1, DecayTilt, 50.0)]).with(Envelope1Attack, 0.1);
+    let events = [on(0, 60, 1.0), control(12_000, 74, 0.2)];
+    assert!(render(&routed, 0, &events, 24_000) == render(&patch(&[]), 0, &events, 24_000));
+}
+
+#[test]
+fn a_host_modulates_macros_and_amounts_for_single_notes() {
+    let routed = patch(&[(Source::Macro1, Tune, 12.5)]);
+    let note = EventKind::NoteOn { key: 57, detune: 0.0, velocity: 1.0, id: 7 };
+    let modulated = |param, offset| event(0, EventKind::Modulate { id: Some(7), param, offset });
+    let pitch = |patch: &Patch, events: &[Event]| frequency(&render(patch, 0, events, 20_000), 0.2) / 220.0;
+    assert_near(pitch(&routed, &[event(0, note), modulated(Macro1, 1.0)]), 2.0, 1e-4);
+    let turned = routed.with(Macro1, 100.0).with(Route1, 0.0);
+    assert_near(pitch(&turned, &[event(0, note), modulated(Route1, 0.0625)]), 2.0, 1e-4);
+}
+
+/// A sound for which every quantity matters in one of four forms: all sources are routed somewhere.
+fn busy(exciter: f32) -> Patch {
+    let pitch = [
+        Source::Lfo1,
+        Source::Lfo2,
+        Source::Lfo3,
+        Source::Envelope1,
+        Source::Envelope2,
+        Source::Velocity,
+        Source::Macro2,
+        Source::Macro3,
+        Source::Macro4,
+        Source::Macro5,
+        Source::Macro6,
+        Source::Macro7,
+        Source::Macro8,
+        Source::Random,
+        Source::Wheel,
+    ];
+    let mut patch = patch(&pitch.map(|source| (source, Tune, 1.0)));
+    let modes = [1.0, 2.3, 3.9].map(|ratio| Mode { ratio, pan: ratio - 2.0, strike: 0.5, ..Mode::UNIT });
+    patch.modes = ModeTable::new(&modes);
+    for (param, value) in [
+        (Exciter, exciter),
+        (Velocity, 50.0),
+        (Sweep, 12.0),
+        (SweepTime, 0.2),
+        (Vibrato, 30.0),
+        (VibratoDelay, 0.1),
+        (Lfo1Fade, 0.2),
+        (Lfo2Fade, 0.2),
+        (Lfo3Fade, 0.2),
+        (Envelope1Delay, 0.05),
+        (Envelope2Delay, 0.05),
+        (Decay, 2.0),
+        (Release, 0.2),
+        (Gain, -12.0),
+        (HardnessVelocity, 30.0),
+        (SweepVelocity, 30.0),
+        (PressureDamping, 20.0),
+        (ReleaseVelocity, 30.0),
+    ] {
+        patch.set(param, value);
+    }
+    patch
+}
+
+#[test]
+fn every_quantity_can_be_moved_and_is_heard() {
+    let events = [
+        on(0, 64, 0.6),
+        control(4000, 1, 0.5),
+        event(4000, EventKind::ChannelPressure(0.4)),
+        event(4000, EventKind::PitchBend(0.5)),
+        event(28_000, EventKind::NoteOff { key: 64, velocity: 0.9, id: -1 }),
+    ];
+    let deaf = PARAMS.iter().filter(|info| info.is_modulatable() && info.param != Route16).filter(|info| {
+        (0..4).all(|exciter| {
+            let plain = busy(exciter as f32).with(Macro1, 100.0).with(Route16, -25.0);
+            let mut moved = plain;
+            let route =
+                Route { source: Source::Macro1, destination: info.param, response: Response::Linear, scale: None };
+            moved.routes.set(15, Some(route));
+            let frames = 40_000;
+            // Down, or up for what is at its least.
+            render(&plain, 0, &events, frames) == render(&moved, 0, &events, frames)
+                && render(&plain, 0, &events, frames) == render(&moved.with(Route16, 25.0), 0, &events, frames)
+        })
+    });
+    let deaf: Vec<_> = deaf.map(|info| info.id).collect();
+    assert!(deaf.is_empty(), "{deaf:?} make no difference");
 }

@@ -124,10 +124,11 @@ mod tests {
         for (seed, preset) in [0, 1 << 40, u64::MAX].into_iter().zip(Preset::factory()) {
             let mut loaded = Loaded::new(preset.patch, seed);
             loaded.positions[3] = 0.123;
-            for (place, source) in Source::ALL.iter().enumerate().take(seed as usize % 17) {
-                let (response, scale) = (Response::ALL[place % 4], Source::ALL.get(2 * place).copied());
-                let destination = Param::Route16;
-                loaded.patch.routes.set(place, Some(Route { source: *source, destination, response, scale }));
+            let movable = PARAMS.iter().filter(|info| info.is_modulatable());
+            for (place, info) in movable.rev().enumerate().take(MAX_ROUTES).skip(seed as usize % 2) {
+                let (source, scale) = (Source::ALL[place], Source::ALL.get(23 - 2 * place.min(11)).copied());
+                let (destination, response) = (info.param, Response::ALL[place % 4]);
+                loaded.patch.routes.set(place, Some(Route { source, destination, response, scale }));
             }
             slate.write(&loaded, || assert_eq!(slate.read(|_| ()), None, "nothing is read while it is written"));
             assert_eq!(slate.read(|_| slate.get()), Some(loaded));

@@ -41,9 +41,10 @@ fn text() -> String {
         |cell: &dyn Fn(&ParamInfo) -> String| PARAMS.iter().map(|info| cell(info).chars().count()).max().unwrap_or(0);
     let default = |info: &ParamInfo| info.format(info.default);
     let (id, ranges, defaults) = (width(&|info| info.id.to_owned()), width(&range), width(&default));
-    let mut out = format!("{:id$}  {:ranges$}  {:defaults$}  \n", "id", "range", "default");
+    let mut out = format!("{:id$}    {:ranges$}  {:defaults$}  * can be moved by routes\n", "id", "range", "default");
     for info in PARAMS {
-        let _ = writeln!(out, "{:id$}  {:ranges$}  {:defaults$}  {}", info.id, range(info), default(info), info.help);
+        let (mark, help) = (if info.is_modulatable() { '*' } else { ' ' }, info.help);
+        let _ = writeln!(out, "{:id$} {mark}  {:ranges$}  {:defaults$}  {help}", info.id, range(info), default(info));
     }
     out
 }
@@ -77,6 +78,7 @@ fn to_json(info: &ParamInfo) -> serde_json::Value {
             Change::AtOnce => json!("at once"),
             Change::Smoothed(ms) => json!({ "smoothed_ms": ms }),
         },
+        "modulatable": info.is_modulatable(),
         "help": info.help,
     })
 }

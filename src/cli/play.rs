@@ -83,6 +83,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let song = args.song.as_deref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
     if let Some(song) = &song {
         args.reading.warn_of_programs(song, args.sound.asked_for(&patch), &programs);
+        args.sound.tuning.warn_of_unmapped(song, &tuning);
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;

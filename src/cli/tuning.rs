@@ -1,6 +1,8 @@
 //! The tuning that a command plays in: Scala's files, named by `--scale` and `--keymap`.
 
-use sprung::io::Inputs;
+use super::terminal::complain;
+use sprung::engine::EventKind;
+use sprung::io::{Inputs, Song};
 use sprung::sound::Tuning;
 use sprung::sound::tuning::{Keymap, Scale};
 use sprung::units::key_from_note_name;
@@ -39,7 +41,7 @@ impl TuningArgs {
         for note in notes.iter().filter(|_| self.scale.is_some()) {
             let key = key_from_note_name(note).or(note.trim().parse().ok());
             let wrong = match key {
-                None => "lies between the keys that --scale tunes",
+                None => "is no key, and --scale tunes keys",
                 Some(key) if !keys.insert(key) => "is there twice",
                 Some(_) => continue,
             };
@@ -47,5 +49,19 @@ impl TuningArgs {
             return Err(Error::value("--note", format!("‘{note}’ {wrong}: {expected}")));
         }
         Ok(())
+    }
+
+    /// Warns of notes that a tuning keeps silent.
+    pub(super) fn warn_of_unmapped(&self, song: &Song, tuning: &Tuning) {
+        let keys = || {
+            song.events.iter().filter_map(|event| match event.kind {
+                EventKind::NoteOn { key, .. } => Some(key),
+                _ => None,
+            })
+        };
+        let (all, silent) = (keys().count(), keys().filter(|key| tuning.pitch(*key).is_none()).count());
+        if silent > 0 {
+            complain("warning", format_args!("{silent} of {all} notes are silent: the keymap leaves their keys out"));
+        }
     }
 }

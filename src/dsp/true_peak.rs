@@ -41,7 +41,8 @@ impl ByAge {
 pub struct Weights {
     /// Weight of the newest sample in each point that it contributes to.
     of_newest: ByAge,
-    /// 0 for points that were complete with the sample before, whose places the newest points take, and 1 for others.
+    /// No bits for points that were complete with the sample before, whose places the newest points take, and all bits
+    /// for others: unlike a factor, a mask forgets infinity too.
     kept: ByAge,
     /// The most that each point can be so far, if it and all before it never exceed 1 once complete.
     partial_bounds: ByAge,
@@ -64,7 +65,7 @@ impl Weights {
             let to_come = index - index % POINTS;
             of_point(to_come..WEIGHTS).min(1.0 + of_point(0..to_come))
         });
-        let kept = ByAge::new(|index| if index < WEIGHTS - POINTS { 1.0 } else { 0.0 });
+        let kept = ByAge::new(|index| f32::from_bits(if index < WEIGHTS - POINTS { u32::MAX } else { 0 }));
         Self { of_newest: ByAge::new(|index| of_newest[index]), kept, partial_bounds }
     }
 
@@ -97,7 +98,11 @@ impl Interpolator {
     /// What each point has before the next sample, and that sample's weight in it.
     #[inline(always)]
     fn points<'a>(&'a self, weights: &'a Weights) -> impl Iterator<Item = (f32, f32)> + 'a {
-        let kept = self.sums.iter().zip(weights.kept.from(self.next)).map(|(sum, kept)| sum * kept);
+        let kept = self
+            .sums
+            .iter()
+            .zip(weights.kept.from(self.next))
+            .map(|(sum, kept)| f32::from_bits(sum.to_bits() & kept.to_bits()));
         kept.zip(weights.of_newest.from(self.next).iter().copied())
     }
 
@@ -177,6 +182,21 @@ mod tests {
         (100 - TAPS as u32..100).for_each(|n| short.push(&weights, sample(n)));
         long.sums.rotate_left(long.next * POINTS);
         assert_eq!(long.sums, short.sums);
+    }
+
+    #[test]
+    fn an_overflow_is_forgotten() {
+        let weights = Weights::new();
+        let (mut one, mut other) = (Interpolator::SILENT, Interpolator::SILENT);
+        (0..3).for_each(|_| one.push(&weights, f32::MAX));
+        for n in 0..40_u32 {
+            let sample = sin(f64::from(n * n)) as f32;
+            one.push(&weights, sample);
+            other.push(&weights, sample);
+        }
+        one.sums.rotate_left(one.next * POINTS);
+        other.sums.rotate_left(other.next * POINTS);
+        assert_eq!(one.sums, other.sums);
     }
 
     #[test]

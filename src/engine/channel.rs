@@ -1,7 +1,7 @@
 //! What a MIDI channel remembers: its wheel, pressure, controllers and registered parameters.
 
 use super::gain::StereoGain;
-use super::midi::controller;
+use super::midi::{controller, seven_bits};
 use super::modulation::Positions;
 
 /// Channel controllers, in the units that voices use them in. Real-time safe.
@@ -86,7 +86,7 @@ impl Channel {
 
     /// Takes in a controller at a value 0–1. Pedals that hold notes and mode messages are the voice manager's.
     pub(crate) fn control(&mut self, controller: u8, value: f32) {
-        let data = (value * 127.0 + 0.5) as u8;
+        let data = seven_bits(value);
         match controller {
             controller::WHEEL => self.wheel = value,
             controller::BREATH => self.breath = value,

@@ -72,16 +72,20 @@ impl Smoother {
         Controls::new(|param| self.value_after(param, frames), self.beat_rate)
     }
 
-    /// What modulators follow next, `frames` frames from now; none if that is what they followed when there had been so
-    /// many changes.
-    pub(crate) fn settings_after(&self, frames: u32, before: &Settings, bus: &Bus, changes: u32) -> Option<Settings> {
-        let next = || before.next(bus, |param| self.value_after(param, frames), self.beat_rate);
-        (self.moving > 0 || changes != self.changes).then(next)
+    /// What modulators follow, `frames` frames from now, after what they followed `before`.
+    pub(crate) fn settings_after(&self, frames: u32, before: &Settings, bus: &Bus) -> Settings {
+        before.next(bus, |param| self.value_after(param, frames), self.beat_rate)
     }
 
-    /// Counts what has been set.
-    pub(crate) fn changes(&self) -> u32 {
-        self.changes
+    /// What the modulators of a note follow that has a modulation of its own.
+    pub(crate) fn own_settings(&self, own: &NoteModulation, frames: u32, before: &Settings, bus: &Bus) -> Settings {
+        let value = |param| own.after(param, frames).unwrap_or_else(|| self.value_after(param, frames));
+        before.own(bus, value, self.beat_rate)
+    }
+
+    /// Counts what has been set; a count of its own while the values of `frames` frames from now are not the last.
+    pub(crate) fn changes(&self, frames: u32) -> Option<u32> {
+        (frames >= self.moving).then_some(self.changes)
     }
 
     /// The value of a parameter, `frames` frames from now.

@@ -1,6 +1,5 @@
 //! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
 
-use super::midi::controller;
 use super::mix_limiter::MixLimiter;
 use super::note::{nearest_channel, nearest_key};
 use super::synth::allowed;
@@ -44,11 +43,13 @@ struct Chunk<'a> {
     events: &'a [Event],
     /// The frames of the events count from so many before the chunk.
     start: usize,
+    /// The last frame of the chunk that an event can be at.
+    last: usize,
     frames: usize,
     programs: &'a [Patch],
     /// Choke groups of the channels before the events.
     groups: [f32; 16],
-    /// Who plays which channel before the events.
+    /// Who plays which channel.
     owners: Owners,
 }
 
@@ -102,27 +103,64 @@ impl Ensemble {
         let (mut events, frames, mut start) = (events, left.len().min(right.len()), 0);
         // At least once: a block of no frames still brings its events.
         loop {
-            let end = frames.min(start + self.chunk);
-            let now =
+            let mut end = frames.min(start + self.chunk);
+            let mut now =
                 if end == frames { events.len() } else { events.partition_point(|event| (event.frame as usize) < end) };
+            // Events beyond the end of the block are taken as its last frame's.
+            let mut last = frames.saturating_sub(1).min(end).saturating_sub(start);
+            let mut owners = self.owners;
+            let zone = events[..now].iter().position(|event| owners.hear(event).is_some());
+            if let Some(zone) = zone {
+                // Channels change their owners between two chunks.
+                (now, end) = (zone, start + (events[zone].frame as usize).saturating_sub(start).min(last));
+                last = end - start;
+            }
             let mut groups = [0.0; 16];
             for (group, part) in groups.iter_mut().zip(&self.parts) {
                 *group = part.synth.patch().get(Param::Choke);
             }
             let programs = &self.programs;
-            let chunk =
-                Chunk { events: &events[..now], start, frames: end - start, programs, groups, owners: self.owners };
+            let owners = self.owners;
+            let chunk = Chunk { events: &events[..now], start, last, frames: end - start, programs, groups, owners };
             each(&mut self.parts, &|part| part.play(chunk));
             let (left, right) = (&mut left[start..end], &mut right[start..end]);
             self.mix(left, right);
             let is_heard = self.parts.iter().any(|part| part.heard);
+            let limited = |event: &Event| (owners.of(nearest_channel(event.channel)), *event);
+            self.limiter.process(
+                events[..now].iter().map(limited),
+                [start, last],
+                &self.programs,
+                is_heard,
+                [left, right],
+            );
             events[..now].iter().for_each(|event| _ = self.owners.hear(event));
-            self.limiter.process(&events[..now], start, &self.programs, is_heard, [left, right]);
+            if let Some(zone) = zone {
+                self.make_zone(&events[zone]);
+                (events, start) = (&events[zone + 1..], end);
+                continue;
+            }
             if end == frames {
                 break;
             }
             (events, start) = (&events[now..], end);
         }
+    }
+
+    /// Hands the channels that have another owner from this event on, an MPE configuration message, over to it.
+    fn make_zone(&mut self, event: &Event) {
+        let before = self.owners;
+        let Some((master, members)) = self.owners.hear(event) else { return };
+        for channel in 0..16 {
+            let [from, to] = [before, self.owners].map(|owners| usize::from(owners.of(channel)));
+            if from != to {
+                let held = self.parts[from].synth.channel(channel);
+                self.parts[to].synth.set_channel(channel, held);
+            }
+        }
+        // Every part knows the zones.
+        self.parts.iter_mut().for_each(|part| part.synth.configure_zone(master, members));
+        self.parts[usize::from(before.of(nearest_channel(event.channel)))].synth.handle(event);
     }
 
     /// Adds up the parts, in the order of their channels.
@@ -174,28 +212,14 @@ impl Ensemble {
 impl Part {
     /// Renders a chunk into the part's own frames.
     fn play(&mut self, chunk: Chunk) {
-        let Chunk { events, start, frames, programs, mut groups, mut owners } = chunk;
+        let Chunk { events, start, last, frames, programs, mut groups, owners } = chunk;
         let Self { channel, synth, heard, .. } = self;
         let (left, right) = (&mut self.left[..frames], &mut self.right[..frames]);
         let mut frame = 0;
         *heard = !synth.is_silent();
         for event in events {
-            let at = (event.frame as usize).saturating_sub(start).min(frames.saturating_sub(1)).max(frame);
-            let before = owners;
-            let zone = owners.hear(event);
-            if let Some((master, members)) = zone {
-                synth.play(&mut left[frame..at], &mut right[frame..at]);
-                frame = at;
-                // Every part knows the zones; keys that another part hears from now on are let go.
-                let leaves =
-                    |other: &u8| usize::from(before.of(*other)) == *channel && owners.of(*other) != before.of(*other);
-                for other in (0..16).filter(leaves) {
-                    let kind = EventKind::Control { controller: controller::ALL_NOTES_OFF, value: 1.0 };
-                    synth.handle(&Event { frame: 0, channel: other, kind });
-                }
-                synth.configure_zone(master, members);
-            }
-            let (sender, owner) = (nearest_channel(event.channel), before.of(nearest_channel(event.channel)));
+            let sender = nearest_channel(event.channel);
+            let owner = owners.of(sender);
             let program = match event.kind {
                 // Members play what their master does.
                 EventKind::Program(number) if owner == sender => programs.get(usize::from(number)),
@@ -222,6 +246,7 @@ impl Part {
             if sender != *channel && !is_for_all {
                 continue;
             }
+            let at = (event.frame as usize).saturating_sub(start).min(last).max(frame);
             synth.play(&mut left[frame..at], &mut right[frame..at]);
             frame = at;
             match program {
@@ -310,6 +335,52 @@ mod tests {
             assert!(alone == mixed, "{master}");
             assert!(alone.iter().any(|sample| sample.abs() > 0.01), "it sounds");
         }
+    }
+
+    #[test]
+    fn channels_keep_what_they_hold_when_a_zone_is_made_or_dissolved() {
+        let at = |frame, channel, kind| Event { frame, channel, kind };
+        let control = |frame, channel, controller, value: u8| {
+            at(frame, channel, EventKind::Control { controller, value: f32::from(value) / 127.0 })
+        };
+        let zone =
+            |frame, members| [control(frame, 0, 101, 0), control(frame, 0, 100, 6), control(frame, 0, 6, members)];
+        let note = |frame, channel, key| at(frame, channel, on(channel, key).kind);
+        let events: Vec<Event> = [control(5, 2, 7, 30), control(5, 2, 10, 100), at(6, 2, EventKind::PitchBend(0.5))]
+            .into_iter()
+            .chain([note(90, 2, 50), note(100, 5, 64)])
+            .chain(zone(100, 15))
+            .chain([note(100, 2, 57), note(101, 3, 60), control(1500, 2, 7, 90)])
+            .chain(zone(1600, 0))
+            .chain([note(1600, 2, 59), note(2000, 3, 62)])
+            .collect();
+        // Short, so that what was struck before a zone is over when its channel moves on.
+        let patch = Patch::default().with(Param::Release, 0.005).with(Param::Limiter, 0.0);
+        let mut synth = Synth::new(48_000.0, 0);
+        synth.set_patch(&patch);
+        let mut alone = ([0.0; 3000], [0.0; 3000]);
+        synth.process(&events, &mut alone.0, &mut alone.1);
+        for block in [3000, 7, 64] {
+            let mut ensemble = Ensemble::new(48_000.0, 0, &patch, &[]).with_chunk(50);
+            let mut mixed = (vec![], vec![]);
+            for start in (0..3000).step_by(block) {
+                let frames = block.min(3000 - start);
+                let here = events.iter().filter(|event| (start..start + frames).contains(&(event.frame as usize)));
+                let here: Vec<Event> =
+                    here.map(|event| Event { frame: event.frame - start as u32, ..*event }).collect();
+                let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
+                ensemble.process(&here, &mut left, &mut right);
+                mixed.0.extend(left);
+                mixed.1.extend(right);
+            }
+            // In one synth, an event on one channel makes the notes of others set out anew for the same place.
+            let worst = |one: &[f32], other: &[f32]| {
+                one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max)
+            };
+            let worst = [worst(&alone.0, &mixed.0), worst(&alone.1, &mixed.1)];
+            assert!(worst.iter().all(|worst| *worst < 0.01), "blocks of {block}: {worst:?}");
+        }
+        assert!(alone.0.iter().any(|sample| sample.abs() > 0.01), "it sounds");
     }
 
     #[test]

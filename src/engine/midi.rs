@@ -66,6 +66,11 @@ pub fn parse_message(bytes: &[u8]) -> Option<(u8, EventKind)> {
     Some((status & 15, kind))
 }
 
+/// A controller's value 0–1 as MIDI counts it.
+pub(super) fn seven_bits(value: f32) -> u8 {
+    (value * 127.0 + 0.5) as u8
+}
+
 /// 0…16383 as −1…1: both ends and the centre are exact, so the upper half has steps of its own.
 fn bend_position(value: i16) -> f32 {
     let steps = f32::from(value - 8192);

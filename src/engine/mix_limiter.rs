@@ -1,7 +1,6 @@
 //! The limiter at the end of an ensemble's mix, and the channels that ask for it.
 
 use super::note::nearest_channel;
-use super::zones::Owners;
 use super::{Event, EventKind};
 use crate::dsp::Limiter;
 use crate::dsp::limiter::Work;
@@ -22,7 +21,6 @@ struct Channels {
     asking: u16,
     /// Those that have had a note.
     played: u16,
-    owners: Owners,
 }
 
 impl Channels {
@@ -35,18 +33,16 @@ impl Channels {
         self.asking = if value == 0.0 { self.asking & !bit } else { self.asking | bit };
     }
 
-    fn handle(&mut self, event: &Event, programs: &[Patch]) {
-        let channel = nearest_channel(event.channel);
-        let owner = self.owners.of(channel);
-        self.owners.hear(event);
+    /// Takes in an event on a channel that the instrument of `owner` plays.
+    fn handle(&mut self, owner: u8, event: &Event, programs: &[Patch]) {
         match event.kind {
             EventKind::NoteOn { .. } => self.played |= 1 << owner,
             EventKind::Param { param: Param::Limiter, value } => {
                 self.set_asking(owner, Param::Limiter.info().clamp(value));
             }
-            EventKind::Program(number) if owner == channel => {
+            EventKind::Program(number) if owner == nearest_channel(event.channel) => {
                 if let Some(patch) = programs.get(usize::from(number)) {
-                    self.set_asking(channel, patch.get(Param::Limiter));
+                    self.set_asking(owner, patch.get(Param::Limiter));
                 }
             }
             _ => {}
@@ -57,7 +53,7 @@ impl Channels {
 impl MixLimiter {
     /// For sixteen channels that start with `patch`.
     pub(super) fn new(sample_rate: f64, patch: &Patch) -> Self {
-        let mut channels = Channels { asking: 0, played: 0, owners: Owners::default() };
+        let mut channels = Channels { asking: 0, played: 0 };
         (0..16).for_each(|channel| channels.set_asking(channel, patch.get(Param::Limiter)));
         Self { limiter: Limiter::new(sample_rate), channels }
     }
@@ -72,12 +68,13 @@ impl MixLimiter {
         self.limiter.work()
     }
 
-    /// Limits the next frames of the mix in place. Frames of `events` count from `start` frames before them, and
-    /// program changes choose from `programs`. Without `is_heard` the frames are silent.
+    /// Limits the next frames of the mix in place. Each of `events` comes with the channel whose instrument plays it; their
+    /// frames count from `start` frames before these, of which they can be at those up to `last`. Program changes choose
+    /// from `programs`. Without `is_heard` the frames are silent.
     pub(super) fn process(
         &mut self,
-        events: &[Event],
-        start: usize,
+        events: impl Iterator<Item = (u8, Event)>,
+        [start, last]: [usize; 2],
         programs: &[Patch],
         is_heard: bool,
         [left, right]: [&mut [f32]; 2],
@@ -88,11 +85,10 @@ impl MixLimiter {
             }
         };
         let mut frame = 0;
-        for event in events {
+        for (owner, event) in events {
             let before = self.channels;
-            self.channels.handle(event, programs);
+            self.channels.handle(owner, &event, programs);
             if before.is_on() != self.channels.is_on() {
-                let last = left.len().saturating_sub(1);
                 let at = (event.frame as usize).saturating_sub(start).min(last).max(frame);
                 limit(before.is_on(), &mut left[frame..at], &mut right[frame..at]);
                 frame = at;

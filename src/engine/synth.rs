@@ -3,7 +3,7 @@
 use super::channel::{Channel, Wheels};
 use super::controls::Smoother;
 use super::event::{Expression, finite, unit};
-use super::midi::controller;
+use super::midi::{controller, seven_bits};
 use super::modulation::{Bus, SharedLfos, modulated};
 use super::note::{Note, Notes, nearest_channel, nearest_key};
 use super::voice::{Instrument, SynthVoice};
@@ -38,8 +38,8 @@ pub struct Synth {
     gains_moving: u32,
     /// A patch since the start has had routes.
     has_routes: bool,
-    /// Changes of the smoother that the instrument's settings have seen.
-    settings_changes: u32,
+    /// Changes of the smoother that the instrument's settings have, if they have arrived.
+    settings_changes: Option<u32>,
     /// The frame at which the instrument's shared oscillators are.
     shared_clock: u64,
     /// Counts the notes started.
@@ -69,7 +69,7 @@ impl Synth {
             offsets: [0.0; PARAM_COUNT],
             gains_moving: 0,
             has_routes: false,
-            settings_changes: u32::MAX,
+            settings_changes: None,
             shared_clock: 0,
             note_serial: 0,
             clock: 0,
@@ -95,7 +95,7 @@ impl Synth {
         self.limiter.reset();
         self.instrument.modulated = self.instrument.patch;
         self.smoother = Smoother::new(sample_rate, &self.instrument.modulated, DEFAULT_BEAT_RATE);
-        self.settings_changes = u32::MAX;
+        self.settings_changes = None;
         self.instrument.controls = self.smoother.after(0);
         self.instrument.last_pitch = None;
         self.instrument.bus = Bus::new(&self.instrument.patch.routes);
@@ -109,7 +109,7 @@ impl Synth {
         self.configure();
     }
 
-    /// What is random starts from another seed with the next note. Real-time safe.
+    /// What is random of notes starts from another seed with the next one; shared oscillators go on. Real-time safe.
     pub fn set_seed(&mut self, seed: u64) {
         self.instrument.seed = seed;
     }
@@ -139,7 +139,7 @@ impl Synth {
         // Voices of the old patch keep its controls, so the new ones need no slope.
         let beat_rate = self.smoother.beat_rate();
         self.smoother = Smoother::new(self.instrument.sample_rate, &self.instrument.modulated, beat_rate);
-        self.settings_changes = u32::MAX;
+        self.settings_changes = None;
         self.configure();
     }
 
@@ -290,6 +290,9 @@ impl Synth {
                 }
             }
             EventKind::Tempo(beats_per_minute) => {
+                if self.has_routes {
+                    self.move_shared(0);
+                }
                 self.smoother.set_tempo(f64::from(finite(beats_per_minute).clamp(1.0, 10_000.0)) / 60.0);
             }
             EventKind::Choke { group } => self.manager.choke(group),
@@ -304,6 +307,10 @@ impl Synth {
         // Sounding voices cannot take these over without a click: notes from now on have their own.
         if matches!(param, Param::Coefficients | Param::Width) {
             self.instrument.body_serial += 1;
+        }
+        if self.has_routes {
+            // Until now, shared oscillators have had the rate before.
+            self.move_shared(0);
         }
         self.smoother.set(param, value);
         self.manager.active().for_each(|(_, voice)| voice.follow(&self.instrument));
@@ -361,16 +368,29 @@ impl Synth {
             let siblings = self.zones.siblings(index);
             siblings.for_each(|sibling| self.channels[usize::from(sibling)].bend_range = channel.bend_range);
         } else if channel.awaits_zone() && number == controller::DATA {
-            self.configure_zone(index, (value * 127.0 + 0.5) as u8);
+            self.configure_zone(index, seven_bits(value));
         }
+    }
+
+    /// What a channel holds, and for how many frames gains still slide.
+    pub(super) fn channel(&self, channel: u8) -> (Channel, u32) {
+        (self.channels[usize::from(channel)], self.gains_moving)
+    }
+
+    /// Takes over what another synth's channel held.
+    pub(super) fn set_channel(&mut self, channel: u8, (held, gains_moving): (Channel, u32)) {
+        self.channels[usize::from(channel)] = held;
+        self.gains_moving = self.gains_moving.max(gains_moving);
     }
 
     /// Takes in an MPE configuration message: `members` channels are of the zone of a master.
     pub(super) fn configure_zone(&mut self, master: u8, members: u8) {
         let before = self.zones;
         self.zones.configure(master, members);
+        self.needs_control = true;
         // Who changes masters starts anew: what the last one held is let go.
         for channel in (0..16).filter(|channel| before.master_of(*channel) != self.zones.master_of(*channel)) {
+            self.manager.all_notes_off(channel);
             self.manager.sustain(channel, false);
             self.manager.sostenuto(channel, false);
             let member = self.zones.master_of(channel).is_some();
@@ -420,11 +440,13 @@ impl Synth {
     fn move_shared(&mut self, ahead: u32) {
         let seconds = (self.clock - self.shared_clock) as f64 / self.instrument.sample_rate;
         self.shared_clock = self.clock;
-        let Instrument { bus, settings, .. } = &self.instrument;
-        if let Some(settings) = self.smoother.settings_after(ahead, settings, bus, self.settings_changes) {
-            self.instrument.settings = settings;
+        // Values that slide are read again, until those that they slide to have been read.
+        let changes = self.smoother.changes(ahead);
+        if changes.is_none() || changes != self.settings_changes {
+            let Instrument { bus, settings, .. } = &self.instrument;
+            self.instrument.settings = self.smoother.settings_after(ahead, settings, bus);
         }
-        self.settings_changes = self.smoother.changes();
+        self.settings_changes = changes;
         self.instrument.shared.advance(&self.instrument.settings, seconds);
     }
 

@@ -4,7 +4,7 @@
 //! 1 (the lower zone) or 16 (the upper zone), whose value is the number of member channels.
 
 use super::event::unit;
-use super::midi::controller;
+use super::midi::{controller, seven_bits};
 use super::note::nearest_channel;
 use super::{Event, EventKind};
 
@@ -92,7 +92,7 @@ impl Owners {
             UPPER_MASTER => &mut self.chosen[1],
             _ => return None,
         };
-        let data = seven_bits(value);
+        let data = seven_bits(unit(value));
         match number {
             controller::RPN => chosen[0] = data == 0,
             controller::RPN_FINE => chosen[1] = data == ZONE_PARAMETER,
@@ -107,12 +107,8 @@ impl Owners {
     }
 }
 
-/// The number of the registered parameter, and a controller's value as MIDI counts it.
+/// The number of the registered parameter.
 const ZONE_PARAMETER: u8 = 6;
-
-fn seven_bits(value: f32) -> u8 {
-    (unit(value) * 127.0 + 0.5) as u8
-}
 
 #[cfg(test)]
 mod tests {

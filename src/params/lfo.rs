@@ -29,12 +29,12 @@ macro_rules! lfo {
         $Shape $shape $shape_name, Choice 0.0..5.0 = 0.0, Linear, Smoothed(0),
             ["sine", "triangle", "ramp", "square", "steps", "drift"],
             "How it moves; steps are a new random number each round, drift slides from one to the next.";
-        $Phase $phase $phase_name, Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
+        $Phase $phase $phase_name, Percent 0.0..100.0 = 0.0, Linear, NextNote, fixed [],
             "Where in its round it starts.";
         $Fade $fade $fade_name, Seconds 0.0..10.0 = 0.0, Linear, NextNote, [],
             "Time from the strike in which it fades in.";
         $Scope $scope $scope_name, Choice 0.0..1.0 = 0.0, Linear, NextNote, ["voice", "shared"],
-            "Whether each note has one of its own, which starts with it, or all follow the same.";
+            "Whether each note has one of its own, which starts with it, or all follow the same, whose rate no route moves.";
     })*
         } $($rest)* }
     };

@@ -41,7 +41,7 @@ named! {
         Velocity "velocity",
         /// How quickly the key came up, 0–1; 0 until then.
         ReleaseVelocity "release_velocity",
-        /// The note's pitch: octaves from C4, a fifth of them: −1 is MIDI key 0, 1 is key 120.
+        /// Semitones above C4 divided by 60, −1 to 1.
         Key "key",
         /// A random number of the strike, −1 to 1.
         Random "random",

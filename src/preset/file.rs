@@ -202,7 +202,10 @@ fn mode_fields(mode: &Mode) -> String {
 mod tests {
     use super::*;
     use crate::params::PARAM_COUNT;
+    use crate::patch::routes::{MAX_ROUTES, Response, Route, Source};
+    use proptest::option;
     use proptest::prelude::*;
+    use proptest::sample::select;
 
     fn error(body: &str) -> String {
         parse(&format!("format = 1\nname = \"a\"\n{body}"), "x").unwrap_err().to_string()
@@ -298,6 +301,14 @@ mod tests {
             .prop_map(|(a, b, c, d, e)| Mode::from_fields([a, b, c, d, e]))
     }
 
+    fn any_route() -> impl Strategy<Value = Option<Route>> {
+        let source = || select(Source::ALL.to_vec());
+        let movable: Vec<Param> = PARAMS.iter().filter(|info| info.is_modulatable()).map(|info| info.param).collect();
+        let parts = (source(), select(movable), select(Response::ALL.to_vec()), option::of(source()));
+        let route = |(source, destination, response, scale)| Route { source, destination, response, scale };
+        option::of(parts.prop_map(route))
+    }
+
     proptest! {
         #[test]
         fn presets_survive_their_file_exactly(
@@ -305,12 +316,14 @@ mod tests {
             comment in ".*\n?.*",
             positions in proptest::collection::vec(0.0..=1.0f64, PARAM_COUNT),
             modes in proptest::collection::vec(any_mode(), 1..=MAX_MODES),
+            routes in proptest::collection::vec(any_route(), MAX_ROUTES),
         ) {
             let mut patch = Patch::default();
             patch.modes = ModeTable::new(&modes);
             for (info, position) in PARAMS.iter().zip(positions) {
                 patch.set(info.param, info.denormalise(position));
             }
+            routes.into_iter().enumerate().for_each(|(place, route)| patch.routes.set(place, route));
             let [name, author, tag] = <[String; 3]>::try_from(texts).unwrap();
             let preset = Preset { name, author, tags: vec![tag], comment, patch };
             let text = preset.to_toml();

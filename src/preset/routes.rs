@@ -13,6 +13,9 @@ const KEYS: [&str; 6] = ["source", "to", "amount", "response", "scale", "place"]
 pub(super) fn read(file: &Table, patch: &mut Patch) -> Result<(), String> {
     let routes = match file.get("routes") {
         None => return Ok(()),
+        Some(_) if file.get("format") == Some(&Value::Integer(1)) => {
+            return Err("routes: a preset of format 1 has none: expected format = 2".to_owned());
+        }
         Some(Value::Array(routes)) => routes,
         Some(other) => return Err(unexpected("routes", "a list of routes, [{ source = …, to = … }, …]", other)),
     };
@@ -28,7 +31,7 @@ pub(super) fn read(file: &Table, patch: &mut Patch) -> Result<(), String> {
             return Err(format!("{at}: there are places for {MAX_ROUTES} routes"));
         }
         if patch.routes.get(place).is_some() {
-            return Err(format!("{at}.place: {} has a route already", place + 1));
+            return Err(format!("{at}: place {} has a route already", place + 1));
         }
         patch.routes.set(place, Some(read_route(route, &at)?));
         let param = amount_param(place);
@@ -61,7 +64,7 @@ fn read_route(route: &Table, at: &str) -> Result<Route, String> {
     let source = |key: &str| named(route, at, key, Source::from_id, sources);
     let responses = || Response::ALL.iter().map(|response| response.id()).collect::<Vec<_>>().join(", ");
     let movable = |id: &str| Param::from_id(id).filter(|param| param.info().is_modulatable());
-    let all = || "a parameter that is a quantity; ‘sprung params’ shows them".to_owned();
+    let all = || "a parameter that routes can move; ‘sprung params’ marks them".to_owned();
     Ok(Route {
         source: source("source")?.ok_or_else(|| format!("{at}: there is no ‘source’: expected {}", sources()))?,
         destination: named(route, at, "to", movable, all)?
@@ -82,7 +85,9 @@ fn named<T>(
     let wrong = |found: &Value| unexpected(&format!("{at}.{key}"), &all(), found);
     match route.get(key) {
         None => Ok(None),
-        Some(Value::String(id)) => find(id).map(Some).ok_or_else(|| wrong(&Value::String(id.clone()))),
+        Some(Value::String(id)) => {
+            find(id).map(Some).ok_or_else(|| format!("{at}.{key}: ‘{id}’ is none: expected {}", all()))
+        }
         Some(other) => Err(wrong(other)),
     }
 }
@@ -149,11 +154,14 @@ mod tests {
             ("routes = 1", "routes: expected a list of routes, [{ source = …, to = … }, …], found integer ‘1’"),
             ("routes = [1]", "routes[0]: expected a route, { source = …, to = … }, found integer ‘1’"),
             ("routes = [{}]", "routes[0]: there is no ‘source’: expected velocity, release_velocity, key"),
-            ("routes = [{ source = \"lfo4\" }]", "routes[0].source: expected velocity, release_velocity, key"),
+            (
+                "routes = [{ source = \"lfo4\" }]",
+                "routes[0].source: ‘lfo4’ is none: expected velocity, release_velocity, key",
+            ),
             ("routes = [{ source = \"lfo1\" }]", "routes[0]: there is no ‘to’: expected a parameter"),
             (
                 "routes = [{ source = \"lfo1\", to = \"voices\" }]",
-                "routes[0].to: expected a parameter that is a quantity",
+                "routes[0].to: ‘voices’ is none: expected a parameter that routes can move",
             ),
             ("routes = [{ from = \"lfo1\" }]", "unknown key ‘routes[0].from’"),
             ("routes = [{ source = \"lfo1\", to = \"tune\", amount = 101 }]", "routes[0].amount: 101 is out of range"),
@@ -167,7 +175,7 @@ mod tests {
             ),
             (
                 "routes = [{ source = \"lfo1\", to = \"tune\" }, { source = \"lfo2\", to = \"tune\", place = 1 }]",
-                "routes[1].place: 1 has a route already",
+                "routes[1]: place 1 has a route already",
             ),
             (
                 "routes = [{ source = \"lfo1\", to = \"tune\", place = 16 }, { source = \"lfo2\", to = \"tune\" }]",

@@ -77,7 +77,7 @@ fn wrong_files_are_refused_by_name_and_line() {
 fn notes_between_the_keys_of_a_scale_are_refused() {
     let sandbox = sandbox();
     for (notes, message) in [
-        ("440Hz", "--note: ‘440Hz’ lies between the keys that --scale tunes: expected keys (C#4, 60), each once"),
+        ("440Hz", "--note: ‘440Hz’ is no key, and --scale tunes keys: expected keys (C#4, 60), each once"),
         ("C4,60.5", "--note: ‘60.5’ lies between the keys"),
         ("C4,E4,60", "--note: ‘60’ is there twice"),
     ] {

@@ -104,6 +104,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         None => chord(args, &patch)?,
     };
     args.reading.warn_of_programs(&song, args.sound.asked_for(&patch), &programs);
+    args.sound.tuning.warn_of_unmapped(&song, &tuning);
 
     let options =
         Options { sample_rate: args.rate, seed: args.sound.seed, block: args.block as usize, tail: args.tail };

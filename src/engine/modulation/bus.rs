@@ -10,8 +10,8 @@ pub(crate) const SOURCES: usize = Source::ALL.len();
 /// Values of all sources, by `Source as usize`.
 pub(crate) type Sources = [f32; SOURCES];
 
-/// What the routes lead to, and the routes to each: those that move amounts of others come first, and otherwise the
-/// order of their places counts. Plain data.
+/// What the routes lead to, and the routes to each: those that move macros and amounts of others come first, and otherwise
+/// the order of their places counts. Plain data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bus {
     links: [Link; MAX_ROUTES],
@@ -30,8 +30,23 @@ struct Link {
     scale: Option<Source>,
     response: Response,
     to: u8,
-    /// The place of the route whose amount is moved.
-    moves: Option<u8>,
+    /// What of the bus itself is moved.
+    moves: Option<Moved>,
+}
+
+/// What routes move of the bus itself, by index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Moved {
+    Amount(u8),
+    Macro(u8),
+}
+
+impl Moved {
+    fn of(param: Param) -> Option<Self> {
+        let index = (param as usize).checked_sub(Param::Macro1 as usize).filter(|index| *index < 8);
+        let amount = place_of_amount(param).map(|place| Self::Amount(place as u8));
+        amount.or(index.map(|index| Self::Macro(index as u8)))
+    }
 }
 
 /// A parameter that routes lead to.
@@ -46,7 +61,7 @@ pub(crate) struct Destination {
     is_logarithmic: bool,
 }
 
-/// Who heeds a destination.
+/// Which part of the engine uses a destination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
     /// The next strike.
@@ -70,7 +85,7 @@ impl Destination {
             (Param::Lfo1Rate, _) => Target::Lfo(0),
             (Param::Lfo2Rate, _) => Target::Lfo(1),
             (Param::Lfo3Rate, _) => Target::Lfo(2),
-            (_, Change::Smoothed(_)) if place_of_amount(param).is_none() => Target::Control,
+            (_, Change::Smoothed(_)) if Moved::of(param).is_none() => Target::Control,
             _ => Target::Strike,
         };
         Self { param, target, min, max, span: if is_logarithmic { octaves() } else { max - min }, is_logarithmic }
@@ -101,9 +116,9 @@ impl Bus {
     /// That of some routes. Real-time safe.
     pub(crate) fn new(routes: &Routes) -> Self {
         let mut bus = Self::EMPTY;
-        let to_amount = |param: Param| place_of_amount(param).is_some();
-        for moves_amounts in [true, false] {
-            for (place, route) in routes.iter().filter(|(_, route)| to_amount(route.destination) == moves_amounts) {
+        for moves_bus in [true, false] {
+            let is_now = |param: Param| Moved::of(param).is_some() == moves_bus;
+            for (place, route) in routes.iter().filter(|(_, route)| is_now(route.destination)) {
                 let param = route.destination;
                 let known = bus.destinations().iter().position(|destination| destination.param == param);
                 let to = known.unwrap_or_else(|| {
@@ -112,7 +127,7 @@ impl Bus {
                     bus.destinations_len - 1
                 });
                 let (source, scale, response) = (route.source, route.scale, route.response);
-                let moves = place_of_amount(param).map(|place| place as u8);
+                let moves = Moved::of(param);
                 bus.links[bus.links_len] = Link { place: place as u8, source, scale, response, to: to as u8, moves };
                 bus.links_len += 1;
                 bus.read |= 1 << source as u32 | scale.map_or(0, |scale| 1 << scale as u32);
@@ -136,17 +151,24 @@ impl Bus {
     }
 
     /// How far each destination is moved, in knob travel, by sources with these values through routes with these
-    /// amounts. Real-time safe.
-    pub(crate) fn offsets(&self, sources: &Sources, amounts: &[f32; MAX_ROUTES]) -> [f32; MAX_ROUTES] {
+    /// amounts; macros among the sources get the values that they are moved to. Real-time safe.
+    pub(crate) fn offsets(&self, sources: &mut Sources, amounts: &[f32; MAX_ROUTES]) -> [f32; MAX_ROUTES] {
         let (mut amounts, mut offsets) = (*amounts, [0.0; MAX_ROUTES]);
         for link in &self.links[..self.links_len] {
             let scale = link.scale.map_or(1.0, |scale| sources[scale as usize]);
             let way = amounts[usize::from(link.place)] * link.response.apply(sources[link.source as usize]) * scale;
             offsets[usize::from(link.to)] += way;
-            if let Some(place) = link.moves {
-                // Knob travel of an amount is half of its range, which is from −1 to 1.
-                let amount = &mut amounts[usize::from(place)];
-                *amount = (*amount + 2.0 * way).clamp(-1.0, 1.0);
+            match link.moves {
+                None => {}
+                Some(Moved::Amount(index)) => {
+                    // Knob travel of an amount is half of its range, which is from −1 to 1.
+                    let amount = &mut amounts[usize::from(index)];
+                    *amount = (*amount + 2.0 * way).clamp(-1.0, 1.0);
+                }
+                Some(Moved::Macro(index)) => {
+                    let position = &mut sources[Source::Macro1 as usize + usize::from(index)];
+                    *position = (*position + way).clamp(0.0, 1.0);
+                }
             }
         }
         offsets
@@ -181,7 +203,7 @@ mod tests {
         (amounts[3], amounts[5], amounts[7]) = (0.5, 1.0, -1.0);
         let params: Vec<_> = bus.destinations().iter().map(|destination| destination.param).collect();
         assert_eq!(params, [Param::Gain, Param::Decay]);
-        assert_eq!(bus.offsets(&sources, &amounts)[..2], [0.0, 0.25]);
+        assert_eq!(bus.offsets(&mut sources, &amounts)[..2], [0.0, 0.25]);
     }
 
     #[test]
@@ -195,7 +217,7 @@ mod tests {
             (sources[Source::Lfo1 as usize], sources[Source::Wheel as usize]) = (1.0, 0.5);
             let mut amounts = [0.0; MAX_ROUTES];
             amounts[mover] = 0.25;
-            let offsets = bus.offsets(&sources, &amounts);
+            let offsets = bus.offsets(&mut sources, &amounts);
             assert_eq!(bus.destinations()[1].param, Param::Tune);
             assert_eq!(offsets[1], 0.25, "half of a quarter, twice");
         }

@@ -56,7 +56,7 @@ enum Stage {
     Over,
 }
 
-/// An envelope on its way. Real-time safe.
+/// The present state of an envelope. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Envelope {
     times: Times,

@@ -41,10 +41,10 @@ pub(crate) struct Lfo {
 }
 
 impl Lfo {
-    /// At the start of a round that is not told from others.
+    /// What stands where there is none yet.
     pub(crate) const REST: Self = Self { phase: 0.0, round: 0, stream: 0 };
 
-    /// At the start of its first round, less the share `phase` of it that is left out.
+    /// Starts at the share `phase` of a round.
     pub(crate) fn new(phase: f64, stream: u64) -> Self {
         Self { phase: phase - libm::floor(phase), round: 0, stream }
     }
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_start_in_the_middle_and_rise() {
+    fn shapes_go_their_ways() {
         let phases = [0.0, 0.25, 0.5, 0.75];
         for (shape, expected) in [
             (Shape::Triangle, [0.0, 1.0, 0.0, -1.0]),

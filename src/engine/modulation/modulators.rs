@@ -28,6 +28,8 @@ pub(crate) struct Settings {
     serial: u32,
     /// Rounds a second.
     rates: [f64; LFOS],
+    /// Whether the rate is that of a note value, which nothing moves.
+    are_synchronised: [bool; LFOS],
     shapes: [Shape; LFOS],
     macros: [f32; 8],
     amounts: [f32; MAX_ROUTES],
@@ -40,6 +42,7 @@ impl Settings {
     pub(crate) const STILL: Self = Self {
         serial: 0,
         rates: [0.0; LFOS],
+        are_synchronised: [false; LFOS],
         shapes: [Shape::Sine; LFOS],
         macros: [0.0; 8],
         amounts: [0.0; MAX_ROUTES],
@@ -57,10 +60,16 @@ impl Settings {
                 let rate = f64::from(value(of_lfo(Param::Lfo1Rate, index)));
                 super::rate_at(value(of_lfo(Param::Lfo1Sync, index)), rate, beat_rate)
             }),
+            are_synchronised: std::array::from_fn(|index| value(of_lfo(Param::Lfo1Sync, index)) != 0.0),
             shapes: std::array::from_fn(|index| Shape::of(value(of_lfo(Param::Lfo1Shape, index)))),
             macros: std::array::from_fn(|index| value(PARAMS[Param::Macro1 as usize + index].param) * 0.01),
             amounts: std::array::from_fn(|place| value(amount_param(place)) * 0.01),
         }
+    }
+
+    /// Those of one note, told from all that the instrument will have next.
+    pub(crate) fn own(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
+        Self { serial: self.serial.wrapping_sub(1), ..self.next(bus, value, beat_rate) }
     }
 }
 
@@ -80,7 +89,7 @@ impl SharedLfos {
     }
 }
 
-/// Positions of what hands and breath hold.
+/// Positions of the controllers that routes can read.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Positions {
     pub(crate) pressure: f32,
@@ -108,10 +117,12 @@ pub(crate) struct Modulators {
     bus: Bus,
     settings: Settings,
     sources: Sources,
-    /// How far each destination of the bus is moved.
+    /// How far each destination of the bus is moved, and was at the strike.
     offsets: [f32; MAX_ROUTES],
-    /// Rounds a second as they are modulated.
+    struck_offsets: [f32; MAX_ROUTES],
+    /// Rounds a second as they are modulated: until the next control, and from then on.
     rates: [f64; LFOS],
+    next_rates: [f64; LFOS],
     moving: Moving,
     /// What moves, as it will be `ahead_seconds` later: at the next control tick, as a rule.
     ahead: Moving,
@@ -124,7 +135,7 @@ pub(crate) struct Modulators {
     are_shared: [bool; LFOS],
 }
 
-/// What goes on by itself.
+/// The sources that move by themselves.
 #[derive(Clone, Copy, Debug)]
 struct Moving {
     lfos: [Lfo; LFOS],
@@ -157,7 +168,9 @@ impl Modulators {
             settings: Settings::STILL,
             sources: [0.0; SOURCES],
             offsets: [0.0; MAX_ROUTES],
+            struck_offsets: [0.0; MAX_ROUTES],
             rates: [0.0; LFOS],
+            next_rates: [0.0; LFOS],
             moving: Moving::REST,
             ahead: Moving::REST,
             ahead_seconds: 0.0,
@@ -172,12 +185,18 @@ impl Modulators {
         self.bus.is_empty()
     }
 
+    /// Whether routes move what decides when a note is over.
+    pub(crate) fn move_the_end(&self) -> bool {
+        const DECIDING: [Param; 5] = [Param::Decay, Param::Release, Param::PressureDamping, Param::Gain, Param::Pan];
+        self.bus.destinations().iter().any(|destination| DECIDING.contains(&destination.param))
+    }
+
     /// Takes over the routes of an instrument. Those that a voice is started with are its own until it ends.
     pub(crate) fn load(&mut self, bus: &Bus) {
         self.bus = *bus;
     }
 
-    /// A note is struck, while hands and breath are where they are. `value` has the instrument's parameters. A
+    /// A note is struck while the controllers are at `positions`. `value` has the instrument's parameters. A
     /// `first` strike starts the oscillators.
     pub(crate) fn strike(
         &mut self,
@@ -203,7 +222,6 @@ impl Modulators {
         for index in 0..LFOS {
             let value = |param| f64::from(value(of_lfo(param, index)));
             self.phases[index] = value(Param::Lfo1Phase) * 0.01;
-            self.fades[index] = value(Param::Lfo1Fade);
             self.are_shared[index] = value(Param::Lfo1Scope) != 0.0;
             if first {
                 let stream = random::key(stream, LFO_STREAM + index as u64);
@@ -212,15 +230,17 @@ impl Modulators {
         }
         self.share(shared);
         if first {
-            self.rates = settings.rates;
+            (self.rates, self.next_rates) = (settings.rates, settings.rates);
             self.moving.envelopes = [Envelope::REST; ENVELOPES];
         }
-        // At the strike, oscillators and envelopes are at their start; the envelopes' own times follow from that.
+        // The envelopes' times and the fades follow from where the sources are before they start.
         self.look_ahead(0.0, positions);
+        self.struck_offsets = self.offsets;
         for index in 0..ENVELOPES {
             let times = Times::new(index, |param| f64::from(self.struck_value(param, &value)));
             self.moving.envelopes[index].strike(times);
         }
+        self.fades = std::array::from_fn(|index| self.struck_value(of_lfo(Param::Lfo1Fade, index), &value).into());
         self.ahead = self.moving;
     }
 
@@ -228,7 +248,7 @@ impl Modulators {
     pub(crate) fn struck_value(&self, param: Param, value: impl Fn(Param) -> f32) -> f32 {
         let place = self.bus.destinations().iter().position(|destination| destination.param == param);
         match place {
-            Some(place) => self.bus.destinations()[place].moved(value(param), self.offsets[place]),
+            Some(place) => self.bus.destinations()[place].moved(value(param), self.struck_offsets[place]),
             None => value(param),
         }
     }
@@ -246,6 +266,7 @@ impl Modulators {
         } else {
             self.moving.advance(&self.bus, &self.rates, seconds);
         }
+        self.rates = self.next_rates;
     }
 
     /// The note has slid to another pitch, in semitones on the MIDI scale.
@@ -261,24 +282,26 @@ impl Modulators {
         self.share(shared);
     }
 
-    /// Takes the values that destinations have for this note alone, where there are any.
-    pub(crate) fn take_own(&mut self, own: impl Fn(Param) -> Option<f32>) {
-        for (destination, base) in self.bus.destinations().iter().zip(&mut self.settings.bases) {
-            *base = own(destination.param).unwrap_or(*base);
-        }
+    /// The routes, for [`Settings`] of this note alone.
+    pub(crate) fn bus(&self) -> &Bus {
+        &self.bus
     }
 
     /// Finds where the destinations are to be in some seconds, and hands each with its value to `set`.
     pub(crate) fn control(&mut self, seconds: f64, positions: &Positions, mut set: impl FnMut(Param, f32)) {
         self.look_ahead(seconds, positions);
-        self.rates = self.settings.rates;
+        self.next_rates = self.settings.rates;
         for (place, destination) in self.bus.destinations().iter().enumerate() {
             let value = || destination.moved(self.settings.bases[place], self.offsets[place]);
             match destination.target {
                 Target::Strike => {}
                 Target::Control => set(destination.param, value()),
-                Target::Lfo(index) => self.rates[usize::from(index)] = f64::from(value()),
+                Target::Lfo(index) if self.settings.are_synchronised[usize::from(index)] => {}
+                Target::Lfo(index) => self.next_rates[usize::from(index)] = f64::from(value()),
             }
+        }
+        if seconds == 0.0 {
+            self.rates = self.next_rates;
         }
     }
 
@@ -317,7 +340,7 @@ impl Modulators {
         }
         let macros = &mut self.sources[Source::Macro1 as usize..];
         macros.iter_mut().zip(self.settings.macros).for_each(|(source, value)| *source = value);
-        self.offsets = self.bus.offsets(&self.sources, &self.settings.amounts);
+        self.offsets = self.bus.offsets(&mut self.sources, &self.settings.amounts);
     }
 }
 

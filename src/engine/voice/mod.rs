@@ -46,7 +46,7 @@ pub(crate) struct Instrument {
     pub(crate) settings: Settings,
     /// Oscillators that all voices can follow, at the last control tick.
     pub(crate) shared: SharedLfos,
-    /// Where hands and breath are on the channel of the next note.
+    /// Positions of the controllers on the channel of the next note.
     pub(crate) positions: Positions,
 }
 
@@ -262,10 +262,10 @@ impl SynthVoice {
                 self.modulators.release(velocity);
             }
             if controls.is_some() {
-                self.modulators.follow(&instrument.settings, &instrument.shared);
-                if !self.modulation.is_none() {
-                    self.modulators.take_own(|param| self.modulation.after(param, frames as u32));
-                }
+                let (settings, bus) = (&instrument.settings, self.modulators.bus());
+                let own = (!self.modulation.is_none())
+                    .then(|| smoother.own_settings(&self.modulation, frames as u32, settings, bus));
+                self.modulators.follow(own.as_ref().unwrap_or(settings), &instrument.shared);
             }
             // A note starts where its modulation starts: its pitch goes on from there below.
             self.move_controls(wheels, if self.fresh { 0 } else { frames });
@@ -284,10 +284,12 @@ impl SynthVoice {
                 self.bank.set_t60(m, damping.t60(self.t60_scale[m]));
             }
         }
+        let mut start = None;
         if self.fresh {
             let ratio = self.ratio(self.offset(wheels, 0));
             self.bank.jump_to(ratio);
             if !self.modulators.are_idle() {
+                start = Some([self.controls.gain_left, self.controls.gain_right]);
                 self.move_controls(wheels, frames);
             }
         }
@@ -300,7 +302,12 @@ impl SynthVoice {
         let [own_left, own_right] = self.expressions.gains_after(frames as u32);
         let target = [self.controls.gain_left * left * own_left, self.controls.gain_right * right * own_right];
         if self.fresh {
-            self.fader.jump(target);
+            self.fader.jump(start.map_or(target, |[start_left, start_right]: [f32; 2]| {
+                [start_left * left * own_left, start_right * right * own_right]
+            }));
+            if start.is_some() {
+                self.fader.aim(target, frames);
+            }
         } else if self.fader.aim(target, frames) {
             self.end = None;
         }

@@ -38,6 +38,11 @@ impl SynthVoice {
         self.modulators.struck_value(param, |param| instrument.modulated.get(param)).into()
     }
 
+    /// The value of a parameter that is in per cent, as a share of 1.
+    fn share(&self, instrument: &Instrument, param: Param) -> f64 {
+        self.value(instrument, param) * 0.01
+    }
+
     /// Tells the modulators of a strike, the `first` of the voice or a later one.
     pub(super) fn strike_modulators(&mut self, instrument: &Instrument, note: &Note, first: bool) {
         let (pitch, seed, serial) = (instrument.pitch(note), instrument.seed, note.serial);
@@ -78,35 +83,38 @@ impl SynthVoice {
 
     /// Reads what the patch says of a strike, and strikes.
     pub(super) fn excite(&mut self, instrument: &Instrument, note: &Note) {
-        let modulators = self.modulators;
-        let value = |param| f64::from(modulators.struck_value(param, |param| instrument.modulated.get(param)));
         let velocity = f64::from(note.velocity);
-        let percent = |param| value(param) * 0.01;
         let soft = if note.soft { SOFT_FORCE } else { 1.0 };
         // The strike before has brought its energy: this one's is counted below.
         self.squared_force = 0.0;
         let noisy = self.set_excitation_gains(instrument);
         let exciter = instrument.modulated.get(Param::Exciter) as u32;
 
-        let force = pow(velocity, 2.0 * percent(Param::Velocity)) * soft;
-        let hardness = percent(Param::Hardness) * (1.0 - percent(Param::HardnessVelocity) * (1.0 - velocity));
+        let force = pow(velocity, 2.0 * self.share(instrument, Param::Velocity)) * soft;
+        let hardness = self.share(instrument, Param::Hardness)
+            * (1.0 - self.share(instrument, Param::HardnessVelocity) * (1.0 - velocity));
         let hardness = if note.soft { hardness * (1.0 - SOFT_HARDNESS) } else { hardness };
         let contact = SOFTEST_CONTACT * pow(HARDEST_CONTACT / SOFTEST_CONTACT, hardness);
         let frames = |seconds: f64| (seconds * self.sample_rate + 0.5) as u32;
         let pulse_frames = if exciter == IMPULSE { 1 } else { frames(contact) };
         let noise_force = if noisy { force as f32 } else { 0.0 };
-        let noise_frames = frames(value(Param::NoiseTime));
+        let noise_frames = frames(self.value(instrument, Param::NoiseTime));
         let key = random::key(instrument.seed, note.serial);
         self.exciter.strike(force as f32, pulse_frames, noise_force, noise_frames, key);
         self.squared_force = force * force;
         self.pending_energy += self.squared_force * self.unit_energy;
         self.end = None;
 
-        let depth = value(Param::Sweep) * (1.0 - percent(Param::SweepVelocity) * (1.0 - velocity));
-        self.sweep = SweepEnvelope::new(depth, value(Param::SweepTime), percent(Param::SweepCurve));
-        self.vibrato_delay = value(Param::VibratoDelay);
+        let depth = self.value(instrument, Param::Sweep)
+            * (1.0 - self.share(instrument, Param::SweepVelocity) * (1.0 - velocity));
+        self.sweep = SweepEnvelope::new(
+            depth,
+            self.value(instrument, Param::SweepTime),
+            self.share(instrument, Param::SweepCurve),
+        );
+        self.vibrato_delay = self.value(instrument, Param::VibratoDelay);
         self.rings_on = instrument.modulated.get(Param::NoteOff) != 0.0;
-        self.release_velocity = percent(Param::ReleaseVelocity);
+        self.release_velocity = self.share(instrument, Param::ReleaseVelocity);
     }
 
     /// Reads what the patch says of the body: the ratios and T60s of its modes, and how they follow the key.

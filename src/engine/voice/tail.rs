@@ -9,12 +9,15 @@ const TICK: u64 = CONTROL_FRAMES as u64;
 impl SynthVoice {
     /// Frames until the voice is over if it is left alone, `to_tick` frames before the next control tick: exact to a
     /// tick once the strike has ended and neither decay nor gain slides to another value, no less than that during a
-    /// strike.
+    /// strike. Without end where routes move decay or gain: nobody knows where they will be.
     ///
     /// Real-time safe. Some microseconds after a strike, release or change of gain or decay, next to nothing otherwise.
     pub(crate) fn tail_frames(&mut self, to_tick: u64) -> u64 {
         if self.is_over() {
             return to_tick;
+        }
+        if self.modulators.move_the_end() {
+            return u64::MAX;
         }
         let end = match self.end {
             Some(end) => end,
