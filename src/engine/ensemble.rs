@@ -108,11 +108,12 @@ impl Ensemble {
                 if end == frames { events.len() } else { events.partition_point(|event| (event.frame as usize) < end) };
             // Events beyond the end of the block are taken as its last frame's.
             let mut last = frames.saturating_sub(1).min(end).saturating_sub(start);
-            let mut owners = self.owners;
-            let zone = events[..now].iter().position(|event| owners.hear(event).is_some());
-            if let Some(zone) = zone {
+            let owners = self.owners;
+            let mut zones = events[..now].iter().map(|event| self.owners.hear(event)).enumerate();
+            let zone = zones.find_map(|(index, zone)| Some((&events[index], index, zone?)));
+            if let Some((event, index, _)) = zone {
                 // Channels change their owners between two chunks.
-                (now, end) = (zone, start + (events[zone].frame as usize).saturating_sub(start).min(last));
+                (now, end) = (index, start + (event.frame as usize).saturating_sub(start).min(last));
                 last = end - start;
             }
             let mut groups = [0.0; 16];
@@ -120,7 +121,6 @@ impl Ensemble {
                 *group = part.synth.patch().get(Param::Choke);
             }
             let programs = &self.programs;
-            let owners = self.owners;
             let chunk = Chunk { events: &events[..now], start, last, frames: end - start, programs, groups, owners };
             each(&mut self.parts, &|part| part.play(chunk));
             let (left, right) = (&mut left[start..end], &mut right[start..end]);
@@ -134,10 +134,12 @@ impl Ensemble {
                 is_heard,
                 [left, right],
             );
-            events[..now].iter().for_each(|event| _ = self.owners.hear(event));
-            if let Some(zone) = zone {
-                self.make_zone(&events[zone]);
-                (events, start) = (&events[zone + 1..], end);
+            if let Some((event, index, (master, members))) = zone {
+                self.hand_over_from(owners);
+                // Every part knows the zones.
+                self.parts.iter_mut().for_each(|part| part.synth.configure_zone(master, members));
+                self.parts[usize::from(owners.of(master))].synth.handle(event);
+                (events, start) = (&events[index + 1..], end);
                 continue;
             }
             if end == frames {
@@ -147,10 +149,8 @@ impl Ensemble {
         }
     }
 
-    /// Hands the channels that have another owner from this event on, an MPE configuration message, over to it.
-    fn make_zone(&mut self, event: &Event) {
-        let before = self.owners;
-        let Some((master, members)) = self.owners.hear(event) else { return };
+    /// Hands what channels hold over to their owners where these are others than before.
+    fn hand_over_from(&mut self, before: Owners) {
         for channel in 0..16 {
             let [from, to] = [before, self.owners].map(|owners| usize::from(owners.of(channel)));
             if from != to {
@@ -158,9 +158,6 @@ impl Ensemble {
                 self.parts[to].synth.set_channel(channel, held);
             }
         }
-        // Every part knows the zones.
-        self.parts.iter_mut().for_each(|part| part.synth.configure_zone(master, members));
-        self.parts[usize::from(before.of(nearest_channel(event.channel)))].synth.handle(event);
     }
 
     /// Adds up the parts, in the order of their channels.

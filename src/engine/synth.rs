@@ -229,10 +229,11 @@ impl Synth {
         match event.kind {
             EventKind::NoteOn { key, detune, velocity, id } => {
                 self.instrument.controls = self.smoother.after(0);
+                let brightness = brightness(&self.channels, &self.zones, index);
+                self.move_shared(0);
                 if self.has_routes {
-                    self.move_shared(0);
-                    let brightness = brightness(&self.channels, &self.zones, index);
-                    self.instrument.positions = self.wheels(index).positions(brightness.into());
+                    let wheels = wheels(&self.channels, &self.zones, index);
+                    self.instrument.positions = wheels.positions(brightness.into());
                 }
                 let key = nearest_key(key);
                 let pitch = self.tuning.pitch(key);
@@ -244,7 +245,7 @@ impl Synth {
                     detune: finite(detune).clamp(-128.0, 128.0),
                     velocity: unit(velocity),
                     soft: soft(index) || self.zones.master_of(index).is_some_and(soft),
-                    brightness: brightness(&self.channels, &self.zones, index),
+                    brightness,
                     id,
                     serial: self.note_serial,
                     patch: self.instrument.patch_serial,
@@ -290,9 +291,7 @@ impl Synth {
                 }
             }
             EventKind::Tempo(beats_per_minute) => {
-                if self.has_routes {
-                    self.move_shared(0);
-                }
+                self.move_shared(0);
                 self.smoother.set_tempo(f64::from(finite(beats_per_minute).clamp(1.0, 10_000.0)) / 60.0);
             }
             EventKind::Choke { group } => self.manager.choke(group),
@@ -308,10 +307,8 @@ impl Synth {
         if matches!(param, Param::Coefficients | Param::Width) {
             self.instrument.body_serial += 1;
         }
-        if self.has_routes {
-            // Until now, shared oscillators have had the rate before.
-            self.move_shared(0);
-        }
+        // Until now, shared oscillators have had the rate before.
+        self.move_shared(0);
         self.smoother.set(param, value);
         self.manager.active().for_each(|(_, voice)| voice.follow(&self.instrument));
         self.configure();
@@ -414,13 +411,9 @@ impl Synth {
             }
             if into_tick == 0 || self.needs_control {
                 let controls = self.smoother.after(to_tick as u32);
-                if self.has_routes {
-                    self.move_shared(to_tick as u32);
-                }
+                self.move_shared(to_tick as u32);
                 for (note, voice) in self.manager.active() {
-                    let channel = |number: u8| &self.channels[usize::from(number)];
-                    let master = self.zones.master_of(note.channel).map(channel);
-                    let wheels = Wheels { channel: channel(note.channel), master };
+                    let wheels = wheels(&self.channels, &self.zones, note.channel);
                     let controls = (note.patch == self.instrument.patch_serial).then_some(&controls);
                     voice.control(&self.instrument, controls, &self.smoother, wheels, to_tick);
                 }
@@ -436,8 +429,12 @@ impl Synth {
         }
     }
 
-    /// Moves the shared oscillators to this frame, and reads what modulators are to follow `ahead` frames from now.
+    /// Moves the shared oscillators to this frame, and reads what modulators are to follow `ahead` frames from now: if
+    /// there are any routes to follow them.
     fn move_shared(&mut self, ahead: u32) {
+        if !self.has_routes {
+            return;
+        }
         let seconds = (self.clock - self.shared_clock) as f64 / self.instrument.sample_rate;
         self.shared_clock = self.clock;
         // Values that slide are read again, until those that they slide to have been read.
@@ -448,12 +445,6 @@ impl Synth {
         }
         self.settings_changes = changes;
         self.instrument.shared.advance(&self.instrument.settings, seconds);
-    }
-
-    /// What a note on a channel follows of it and of the master of its zone.
-    fn wheels(&self, channel: u8) -> Wheels<'_> {
-        let channels = |number: u8| &self.channels[usize::from(number)];
-        Wheels { channel: channels(channel), master: self.zones.master_of(channel).map(channels) }
     }
 
     /// Lets time pass for everything but the voices: all there is to do while none sounds.
@@ -476,6 +467,12 @@ impl Synth {
         };
         self.manager.configure(patch.get(Param::Voices) as usize, mode, self.instrument.patch_serial);
     }
+}
+
+/// What a note on a channel follows of it and of the master of its zone.
+fn wheels<'a>(channels: &'a [Channel; 16], zones: &Zones, channel: u8) -> Wheels<'a> {
+    let of = |channel: u8| &channels[usize::from(channel)];
+    Wheels { channel: of(channel), master: zones.master_of(channel).map(of) }
 }
 
 /// Brightness of a channel and the master of its zone, −0.5 to 0.5.

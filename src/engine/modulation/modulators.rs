@@ -8,7 +8,7 @@ use crate::params::{PARAMS, Param};
 use crate::patch::routes::{MAX_ROUTES, Source, amount_param};
 
 /// How many slow oscillators and envelopes there are.
-pub(crate) const LFOS: usize = 3;
+const LFOS: usize = 3;
 const ENVELOPES: usize = 2;
 
 /// Streams of random numbers beside those of a note's noise.
