@@ -285,7 +285,7 @@ fn frames_to_silence(synth: &mut Synth) -> u64 {
 fn tails_are_told_exactly() {
     let mut sounding = 0;
     for preset in Preset::factory() {
-        let patch = preset.patch.with(Param::Decay, preset.patch.get(Param::Decay).min(1.0));
+        let patch = preset.patch.clone().with(Param::Decay, preset.patch.get(Param::Decay).min(1.0));
         for off in [false, true] {
             let mut synth = synth(&patch);
             // Beyond the longest exciter.

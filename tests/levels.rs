@@ -50,7 +50,7 @@ impl Case {
         let preset = |(seed, preset): (u64, &Preset)| Case {
             name: format!("preset ‘{}’", preset.name),
             seed,
-            patch: preset.patch,
+            patch: preset.patch.clone(),
             events: events(&mut Stream::new(seed)),
         };
         let first_random = Preset::factory().len() as u64;

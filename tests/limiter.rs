@@ -198,7 +198,7 @@ fn a_chord_of_any_preset_stays_below_full_scale() {
             let peak = true_peak(rate, &play(rate, &preset.patch, &chord(1.0), 0.6));
             assert!(peak <= HIGHEST, "{} at {rate} Hz: {peak:.2} dBFS", preset.name);
         }
-        let off = preset.patch.with(Param::Limiter, 0.0);
+        let off = preset.patch.clone().with(Param::Limiter, 0.0);
         loud += usize::from(true_peak(48_000, &play(48_000, &off, &chord(1.0), 0.6)) > 0.0);
     }
     assert!(loud > 20, "of all presets, {loud} exceed full scale without the limiter");
@@ -222,7 +222,7 @@ fn a_rendered_chord_stays_below_full_scale_and_tells_how_much_was_lowered() {
         let (sound, work) = render(&preset.patch);
         let peak = true_peak(48_000, &sound);
         assert!(peak <= HIGHEST, "{}: {peak:.2} dBFS", preset.name);
-        let (off, none) = render(&preset.patch.with(Param::Limiter, 0.0));
+        let (off, none) = render(&preset.patch.clone().with(Param::Limiter, 0.0));
         assert_eq!((none.least_gain, none.frames), (1.0, 0));
         let unlimited = true_peak(48_000, &off);
         assert_eq!(work.least_gain < 1.0, sound != off, "{}", preset.name);
@@ -240,7 +240,7 @@ fn a_rendered_chord_stays_below_full_scale_and_tells_how_much_was_lowered() {
 #[test]
 fn sixty_four_voices_at_once_stay_below_full_scale() {
     for name in ["init", "Church Bell", "Snare", "Open Hat", "Triangle", "Sub Bass", "Gong"] {
-        let patch = Preset::find(name).unwrap().patch.with(Param::Voices, 64.0).with(Param::Gain, 12.0);
+        let patch = Preset::find(name).unwrap().patch.clone().with(Param::Voices, 64.0).with(Param::Gain, 12.0);
         let note = |key| EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 };
         for spread in [0, 37] {
             let events: Vec<Event> =

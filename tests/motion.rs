@@ -125,7 +125,7 @@ impl Note {
     fn measure(&self, motion: &Motion) -> Option<Measured> {
         let rest = self.rest();
         let mut synth = Synth::new(self.sample_rate, 0);
-        synth.set_patch(&motion.patch.with(Param::Decay, self.t60 as f32));
+        synth.set_patch(&motion.patch.clone().with(Param::Decay, self.t60 as f32));
         let mut events = vec![on(0, key_from_frequency(self.frequency, 440.0))];
         events.extend(motion.events.iter().map(|event| Event { frame: event.frame + rest as u32, ..*event }));
         // Lines end at the tick after next.

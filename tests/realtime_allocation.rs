@@ -26,7 +26,7 @@ fn play<T: DeviceSample>(frames: usize, channels: usize) {
         sample_rate: 48_000,
         seed: 0,
         patch: &patch,
-        programs: &[patch; 3],
+        programs: &[patch.clone(), patch.clone(), patch.clone()],
         tuning: &Tuning::EQUAL,
         song: Some(song),
     };

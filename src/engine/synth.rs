@@ -81,7 +81,7 @@ impl Synth {
 
     /// Changes the sample rate and starts anew, keeping the patch and the tuning.
     pub fn prepare(&mut self, sample_rate: f64) {
-        let (patch, tuning) = (self.instrument.patch, self.tuning);
+        let (patch, tuning) = (self.instrument.patch.clone(), self.tuning);
         *self = Self::new(sample_rate, self.instrument.seed);
         (self.instrument.patch, self.tuning) = (patch, tuning);
         self.reset();
@@ -93,7 +93,7 @@ impl Synth {
         let sample_rate = self.instrument.sample_rate;
         self.manager.reset();
         self.limiter.reset();
-        self.instrument.modulated = self.instrument.patch;
+        self.instrument.modulated = self.instrument.patch.clone();
         self.smoother = Smoother::new(sample_rate, &self.instrument.modulated, DEFAULT_BEAT_RATE);
         self.settings_changes = None;
         self.instrument.controls = self.smoother.after(0);
@@ -126,8 +126,8 @@ impl Synth {
 
     /// Plays another patch from the next note on. Notes that sound go on with the sound that they have.
     pub fn set_patch(&mut self, patch: &Patch) {
-        self.instrument.patch = *patch;
-        self.instrument.modulated = *patch;
+        self.instrument.patch = patch.clone();
+        self.instrument.modulated = patch.clone();
         for info in PARAMS {
             let offset = self.offsets[info.param as usize];
             self.instrument.modulated.set(info.param, modulated(patch, info.param, offset));

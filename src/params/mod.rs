@@ -91,7 +91,10 @@ mod output;
 mod pitch;
 mod routes;
 mod text;
+mod values;
 mod voices;
+
+pub use values::Values;
 
 /// Makes [`Param`] and [`PARAMS`] of the rows of all modules.
 macro_rules! table {

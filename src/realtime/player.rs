@@ -40,7 +40,7 @@ pub struct PatchSender(Producer<(u8, Patch)>);
 impl PatchSender {
     /// Plays `patch` on a channel from its next note on; false if too many patches wait already.
     pub fn send(&mut self, channel: u8, patch: &Patch) -> bool {
-        self.0.push((channel, *patch)).is_ok()
+        self.0.push((channel, patch.clone())).is_ok()
     }
 }
 

@@ -99,9 +99,9 @@ fn dense_song() -> Song {
 
 fn render_on(threads: u16, block: usize, tail: Tail) -> (Rendered, Vec<u32>) {
     let short = Patch::default().with(Param::Decay, 0.3).with(Param::Release, 0.1);
-    let mut rich = short.with(Param::Choke, 1.0);
+    let mut rich = short.clone().with(Param::Choke, 1.0);
     rich.modes = ModeTable::new(&[Mode { strike: 0.5, ..Mode::UNIT }; 5]);
-    let programs = [short.with(Param::Choke, 2.0), rich, short.with(Param::Vibrato, 1.0)];
+    let programs = [short.clone().with(Param::Choke, 2.0), rich, short.clone().with(Param::Vibrato, 1.0)];
     let (song, mut bits) = (dense_song(), Vec::new());
     let options = Options { sample_rate: 48_000, seed: 3, block, tail };
     let job = Job { song: &song, patch: &short, programs: &programs, tuning: &Tuning::EQUAL, options };

@@ -55,7 +55,7 @@ fn everything_that_follows_pitch_follows_the_tuned_pitch() {
     for mode in [0.0, 1.0, 2.0] {
         let bits = |tuning: &Tuning, step: i32| {
             let mut synth = Synth::new(SAMPLE_RATE.into(), 7);
-            synth.set_patch(&patch.with(Param::Mode, mode));
+            synth.set_patch(&patch.clone().with(Param::Mode, mode));
             synth.set_tuning(tuning);
             let key = |semitones: i32| (69 + step * semitones) as u8;
             let script = [on(0, key(-3), -1), on(0, key(4), -1), on(0, key(1), -1), off(0, key(1)), off(0, key(4))];

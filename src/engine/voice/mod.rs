@@ -55,8 +55,7 @@ impl Instrument {
     pub(crate) fn new(patch: Patch, sample_rate: f64, seed: u64, controls: Controls) -> Self {
         let (patch_serial, body_serial) = (0, 0);
         Self {
-            patch,
-            modulated: patch,
+            modulated: patch.clone(),
             patch_serial,
             body_serial,
             sample_rate,
@@ -64,6 +63,7 @@ impl Instrument {
             controls,
             last_pitch: None,
             bus: Bus::new(&patch.routes),
+            patch,
             settings: Settings::STILL,
             shared: SharedLfos::new(seed),
             positions: Positions::default(),

@@ -70,7 +70,7 @@ impl App {
         let Desk { device, status, keys, patches, name, patch, programs } = desk;
         // What comes from files and devices must not steer the terminal.
         let (device, name) = (printable(&device).into_owned(), printable(&name).into_owned());
-        let sound = |_| Sound { name: name.clone(), patch, program: None };
+        let sound = |_| Sound { name: name.clone(), patch: patch.clone(), program: None };
         Self {
             device,
             status,
@@ -158,7 +158,7 @@ impl App {
                 && let (Some(preset), Some(patch)) =
                     (Preset::factory().get(usize::from(number)), self.programs.get(usize::from(number)))
             {
-                *sound = Sound { name: preset.name.clone(), patch: *patch, program };
+                *sound = Sound { name: preset.name.clone(), patch: patch.clone(), program };
             }
         }
     }
@@ -248,7 +248,7 @@ impl App {
 
     fn load_preset(&mut self) {
         let Some((number, preset)) = self.selected().and_then(|row| self.presets().get(row).copied()) else { return };
-        let patch = self.programs.get(number).copied().unwrap_or(preset.patch);
+        let patch = self.programs.get(number).unwrap_or(&preset.patch).clone();
         if self.patches.send(self.channel, &patch) {
             let sound = &mut self.sounds[usize::from(self.channel)];
             (sound.name, sound.patch) = (preset.name.clone(), patch);

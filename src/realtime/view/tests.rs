@@ -29,8 +29,8 @@ impl Stand {
     fn named(device: &str, name: &str) -> Self {
         let ([keys], inputs) = LiveInputs::new();
         let status = Arc::new(Status::default());
-        let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch).collect();
-        let patch = programs[0];
+        let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch.clone()).collect();
+        let patch = programs[0].clone();
         let setup = Setup {
             sample_rate: 48_000,
             seed: 0,
