@@ -11,7 +11,7 @@ use std::time::Duration;
 fn render(criterion: &mut Criterion) {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/midi/suite.mid");
     let song = Song::read(std::fs::File::open(file).unwrap(), file).unwrap();
-    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch).collect();
+    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch.clone()).collect();
     let options = Options { sample_rate: 48_000, seed: 0, block: 4096, tail: Tail::None };
     let job = Job { song: &song, patch: &programs[0], programs: &programs, tuning: &Tuning::EQUAL, options };
     let mut group = criterion.benchmark_group("suite.mid");

@@ -24,7 +24,7 @@
 //! # fn main() -> sprung::Result<()> {
 //! let kick = Preset::find("kick")?;
 //! let mut synth = Synth::new(48_000.0, 0);
-//! synth.set_patch(&kick.patch.with(Param::Gain, -9.0));
+//! synth.set_patch(&kick.patch.clone().with(Param::Gain, -9.0));
 //!
 //! let on = EventKind::NoteOn { key: 36, detune: 0.0, velocity: 0.8, id: -1 };
 //! let (mut left, mut right) = ([0.0; 480], [0.0; 480]);

@@ -47,7 +47,7 @@ fn storm(block: u32) -> Vec<Event> {
 fn processing_does_not_allocate() {
     let mut patch = Patch::default();
     patch.modes = ModeTable::new(&[Mode { strike: 0.5, ..Mode::UNIT }; 64]);
-    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[patch, Patch::default(), patch]);
+    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[patch.clone(), Patch::default(), patch]);
     let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
     let blocks: Vec<_> = (0..40).map(storm).collect();
     let mut loudest = 0.0_f32;

@@ -39,10 +39,10 @@ fn jump(sound: &[Vec<f32>; 2]) -> f32 {
 fn patches() -> [(&'static str, Patch); 3] {
     // The limiter answers to what is loud, disturbed or not.
     let sine = Patch::default().with(Param::Decay, 3.0).with(Param::Gain, 0.0).with(Param::Limiter, 0.0);
-    let mut mallet = sine.with(Param::Exciter, 1.0).with(Param::Hardness, 60.0);
+    let mut mallet = sine.clone().with(Param::Exciter, 1.0).with(Param::Hardness, 60.0);
     let modes = [(1.0, 0.6, 0.7), (3.93, 0.25, -0.9), (9.6, 0.1, 0.4), (17.0, 0.05, -0.2)];
     mallet.modes = ModeTable::new(&modes.map(|(ratio, level, pan)| Mode { ratio, level, pan, ..Mode::UNIT }));
-    let kick = sine.with(Param::Sweep, 24.0).with(Param::SweepTime, 0.08).with(Param::Decay, 0.5);
+    let kick = sine.clone().with(Param::Sweep, 24.0).with(Param::SweepTime, 0.08).with(Param::Decay, 0.5);
     [("sine", sine), ("mallet", mallet), ("kick", kick)]
 }
 
@@ -75,13 +75,13 @@ fn check_against<const N: usize>(
     disturbed: impl Fn(u8, u32) -> Vec<Event>,
 ) {
     for (name, patch) in patches() {
-        let free = patch.with(Param::Voices, 16.0);
+        let free = patch.clone().with(Param::Voices, 16.0);
         let programs = [program()];
         for key in [28, 40, 60, 84] {
             for moment in [4800, 4811, 4907, 5003, 5151] {
                 let sounds = undisturbed(key, moment);
                 let before = sounds.iter().map(|events| largest_jump(&free, &programs, events)).fold(0.0, f32::max);
-                let after = largest_jump(&change(patch), &programs, &disturbed(key, moment));
+                let after = largest_jump(&change(patch.clone()), &programs, &disturbed(key, moment));
                 assert!(
                     after <= before + ALLOWANCE,
                     "{name}, key {key}, frame {moment}: a jump of {after} where {before} is the sound's own"
@@ -99,7 +99,7 @@ fn stealing_does_not_click() {
 
 #[test]
 fn stealing_every_voice_at_once_does_not_click() {
-    let patch = patches()[0].1.with(Param::Voices, 64.0).with(Param::Gain, -24.0);
+    let patch = patches()[0].1.clone().with(Param::Voices, 64.0).with(Param::Gain, -24.0);
     let chord = |frame, channel| (20..84).map(move |key| Event { channel, ..on(frame, key) });
     let events: Vec<Event> = chord(0, 0).chain(chord(4800, 1)).collect();
     // On an ensemble, each channel has 64 voices of its own; on a synth, the second chord steals all of the first.

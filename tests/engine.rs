@@ -222,12 +222,12 @@ fn a_sweep_from_beyond_the_spectrum_arrives() {
 #[test]
 fn a_voice_returns_to_a_held_key_in_its_own_patch() {
     let first = Patch::default().with(Param::Decay, 20.0).with(Param::Limiter, 0.0);
-    let second = first.with(Param::Decay, 0.05).with(Param::Stretch, 0.5).with(Param::KeyTrack, 0.0);
-    let mut other = second.with(Param::Tuning, 400.0);
+    let second = first.clone().with(Param::Decay, 0.05).with(Param::Stretch, 0.5).with(Param::KeyTrack, 0.0);
+    let mut other = second.clone().with(Param::Tuning, 400.0);
     other.modes = ModeTable::new(&[Mode { ratio: 0.25, ..Mode::UNIT }]);
     for mode in [1.0, 2.0] {
-        let patch = first.with(Param::Mode, mode);
-        let [kept, changed] = [None, Some(other.with(Param::Mode, mode))].map(|program| {
+        let patch = first.clone().with(Param::Mode, mode);
+        let [kept, changed] = [None, Some(other.clone().with(Param::Mode, mode))].map(|program| {
             let mut synth = Synth::new(48_000.0, 1);
             synth.set_patch(&patch);
             let (mut left, mut right) = (vec![0.0; 9_600], vec![0.0; 9_600]);

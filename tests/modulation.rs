@@ -194,8 +194,8 @@ fn routes_scale_each_other() {
 fn a_shared_oscillator_is_the_same_for_all_notes() {
     let one = patch(&[(Source::Lfo1, Tune, 5.0)]).with(Lfo1Rate, 1.0).with(Lfo1Shape, 2.0);
     for (scope, same) in [(1.0, true), (0.0, false)] {
-        let patch = one.with(Lfo1Scope, scope);
-        let late = render(&patch.with(Voices, 1.0), 0, &[on(0, 45, 1.0), on(14_400, 57, 1.0)], 48_000);
+        let patch = one.clone().with(Lfo1Scope, scope);
+        let late = render(&patch.clone().with(Voices, 1.0), 0, &[on(0, 45, 1.0), on(14_400, 57, 1.0)], 48_000);
         let early = render(&patch, 0, &[on(0, 57, 1.0)], 48_000);
         let ratio = frequency(&late, 0.6) / frequency(&early, 0.6);
         // Within 100 ms of a rise by 10 semitones a second, crossings are counted from one period or the next.
@@ -328,7 +328,7 @@ fn every_quantity_can_be_moved_and_is_heard() {
     let deaf = PARAMS.iter().filter(|info| info.is_modulatable() && info.param != Route16).filter(|info| {
         (0..4).all(|exciter| {
             let plain = busy(exciter as f32).with(Macro1, 100.0).with(Route16, -25.0);
-            let mut moved = plain;
+            let mut moved = plain.clone();
             let route =
                 Route { source: Source::Macro1, destination: info.param, response: Response::Linear, scale: None };
             moved.routes.set(15, Some(route));

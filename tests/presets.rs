@@ -234,7 +234,7 @@ fn every_preset_keeps_its_promises() {
 fn a_broken_preset_is_noticed() {
     use sprung::params::Param;
     let clave = PROMISES.iter().find(|promise| promise.preset == "Clave").unwrap();
-    let patch = Preset::find("Clave").unwrap().patch;
+    let patch = Preset::find("Clave").unwrap().patch.clone();
     for (param, factor, word) in [
         (Param::Tune, 1.01, "Hz is off"),
         (Param::Decay, 2.0, "T60"),
@@ -242,7 +242,7 @@ fn a_broken_preset_is_noticed() {
         (Param::Gain, -3.0, "peak"),
         (Param::Tune, 0.5, "centroid"),
     ] {
-        let changed = patch.with(param, patch.get(param) * factor);
+        let changed = patch.clone().with(param, patch.get(param) * factor);
         let breaches = breaches(clave, &changed);
         assert!(breaches.iter().any(|breach| breach.contains(word)), "{param:?} × {factor}: {breaches:?}");
     }
@@ -262,7 +262,7 @@ fn quiet_notes_are_quieter_and_chords_bearable() {
 
 #[test]
 fn a_closed_hat_chokes_an_open_one() {
-    let [open, closed] = ["Open Hat", "Closed Hat"].map(|name| Preset::find(name).unwrap().patch);
+    let [open, closed] = ["Open Hat", "Closed Hat"].map(|name| Preset::find(name).unwrap().patch.clone());
     let mut ensemble = Ensemble::new(RATE, 1, &open, &[closed]);
     let (mut left, mut right) = (vec![0.0; 9_600], vec![0.0; 9_600]);
     let mut energy = |events: &[Event]| {

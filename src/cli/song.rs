@@ -159,7 +159,7 @@ mod tests {
                 .collect(),
             seconds: 0.0,
         };
-        let count = Elsewhere::count(&song(&events), &preset, &[preset, other]);
+        let count = Elsewhere::count(&song(&events), &preset, &[preset.clone(), other]);
         assert_eq!(count, Elsewhere { channels: [1, 4].into(), notes: 4, all: 7 });
         assert_eq!(Elsewhere::count(&song(&events), &preset, &[]), Elsewhere { all: 7, ..Elsewhere::default() });
     }

@@ -43,7 +43,7 @@ impl SoundArgs {
     /// Loads the preset, sets the parameters of all sounds, and reads the tuning.
     pub(super) fn load(&self, inputs: &mut Inputs) -> Result<Sounds> {
         let mut preset = presets::load(self.preset.as_deref().unwrap_or(OsStr::new("init")), inputs)?;
-        let programs = Preset::factory().iter().map(|preset| self.with_settings(preset.patch)).collect();
+        let programs = Preset::factory().iter().map(|preset| self.with_settings(preset.patch.clone())).collect();
         let tuning = self.tuning.read(inputs)?;
         preset.patch = self.with_settings(preset.patch);
         Ok(Sounds { preset, programs, tuning })
