@@ -27,7 +27,7 @@ pub(crate) fn init() -> Score {
 fn preset(preset: &Preset) -> Score {
     let words = preset.name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let name = format!("preset-{}", words.collect::<Vec<_>>().join("-").to_ascii_lowercase());
-    let mut score = Score::new(&name, preset.patch, 2.0).on(0.001, 48, 100).on(0.4003, 48, 60).off(0.8, 48);
+    let mut score = Score::new(&name, preset.patch.clone(), 2.0).on(0.001, 48, 100).on(0.4003, 48, 60).off(0.8, 48);
     score = score.on(1.0, 67, 100);
     for step in 1..=20_u8 {
         let bend = libm::sinf(f32::from(step) * 0.314_159_27);
@@ -51,18 +51,18 @@ fn trio() -> Patch {
 fn engine() -> Vec<Score> {
     let patch = trio();
     vec![
-        pedals(patch),
-        stealing(patch.with(Param::Voices, 4.0)),
-        line("engine-mono", patch.with(Param::Mode, 1.0).with(Param::Glide, 0.05)),
-        line("engine-legato", patch.with(Param::Mode, 2.0).with(Param::Glide, 0.1)).keeping_audio(),
-        choking(patch.with(Param::Choke, 1.0)),
-        automation(patch.with(Param::Exciter, 1.0)).keeping_audio(),
-        controllers(patch.with(Param::Exciter, 2.0).with(Param::PressureDamping, 80.0)),
-        noise(patch.with(Param::Exciter, 3.0).with(Param::NoiseTime, 0.3)).keeping_audio(),
-        programs(patch),
+        pedals(patch.clone()),
+        stealing(patch.clone().with(Param::Voices, 4.0)),
+        line("engine-mono", patch.clone().with(Param::Mode, 1.0).with(Param::Glide, 0.05)),
+        line("engine-legato", patch.clone().with(Param::Mode, 2.0).with(Param::Glide, 0.1)).keeping_audio(),
+        choking(patch.clone().with(Param::Choke, 1.0)),
+        automation(patch.clone().with(Param::Exciter, 1.0)).keeping_audio(),
+        controllers(patch.clone().with(Param::Exciter, 2.0).with(Param::PressureDamping, 80.0)),
+        noise(patch.clone().with(Param::Exciter, 3.0).with(Param::NoiseTime, 0.3)).keeping_audio(),
+        programs(patch.clone()),
         rate("engine-22050-hz", 22_050.0),
         rate("engine-192-khz", 192_000.0),
-        line("engine-classic", patch.with(Param::Coefficients, 1.0)),
+        line("engine-classic", patch.clone().with(Param::Coefficients, 1.0)),
     ]
 }
 
@@ -173,7 +173,7 @@ fn noise(patch: Patch) -> Score {
 
 /// Program changes between and during notes; a number beyond the list is ignored.
 fn programs(patch: Patch) -> Score {
-    let programs = vec![Patch::default().with(Param::Sweep, 24.0), patch.with(Param::Exciter, 3.0)];
+    let programs = vec![Patch::default().with(Param::Sweep, 24.0), patch.clone().with(Param::Exciter, 3.0)];
     Score::new("engine-programs", patch, 1.2)
         .with_programs(programs)
         .on(0.0, 60, 100)

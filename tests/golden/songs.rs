@@ -24,7 +24,7 @@ fn song(path: &Path) -> Score {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).expect("songs have plain names");
     let bytes = std::fs::read(path).expect("a song can be read");
     let song = Song::parse(&bytes, stem).unwrap_or_else(|error| panic!("{error}"));
-    let programs = Preset::factory().iter().map(|preset| preset.patch).collect();
+    let programs = Preset::factory().iter().map(|preset| preset.patch.clone()).collect();
     let score = Score::new(format!("song-{stem}"), Patch::default(), song.seconds + TAIL).with_programs(programs);
     song.events.iter().fold(score, |score, event| score.then(event.seconds, event.channel, event.kind))
 }

@@ -131,7 +131,7 @@ impl Strike {
 
 impl Part {
     fn new(case: &Case, index: u8) -> Self {
-        let (ensemble, patch) = (case.ensemble, case.patch);
+        let (ensemble, patch) = (case.ensemble, case.patch.clone());
         let (offsets, soft) = ([0.0; PARAM_COUNT], [false; 16]);
         let mut part = Self { ensemble, hears: hears(case, index), patch, offsets, soft, bright: false, reach: None };
         part.bright = part.events(case).any(|event| match event.kind {
@@ -192,7 +192,7 @@ impl Part {
                 self.offsets[param as usize] = finite(offset).clamp(-1.0, 1.0);
             }
             EventKind::Program(number) if self.ensemble => {
-                self.patch = case.programs.get(usize::from(number)).copied().unwrap_or(self.patch);
+                self.patch = case.programs.get(usize::from(number)).unwrap_or(&self.patch).clone();
             }
             EventKind::Control { controller: 67, value } => {
                 self.soft[usize::from(event.channel & 15)] = unit(value) >= 0.5;

@@ -161,7 +161,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Case {
     let factory = Preset::factory();
     let base = match base.checked_sub(128) {
         None => Patch::default(),
-        Some(number) => factory[usize::from(number) % factory.len()].patch,
+        Some(number) => factory[usize::from(number) % factory.len()].patch.clone(),
     };
     let records = || {
         let rest = bytes.get(RECORD..).unwrap_or(&[]);
@@ -222,7 +222,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Case {
     }
     events.retain(|event| event.frame < MAX_FRAMES);
     let frames = now.saturating_add(1 + wait(tail)).min(MAX_FRAMES) as usize;
-    let programs = factory.iter().take(8).map(|preset| without_limiter(preset.patch)).collect();
+    let programs = factory.iter().take(8).map(|preset| without_limiter(preset.patch.clone())).collect();
     let (ensemble, block) = (form & 128 != 0, BLOCKS[usize::from(form & 7)]);
     let (sample_rate, seed, patch) = (sample_rate(rate), u64::from(seed), without_limiter(patch));
     Case { sample_rate, seed, ensemble, patch, programs, block, events, frames }

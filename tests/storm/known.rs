@@ -16,7 +16,7 @@ fn case(patch: Patch, events: Vec<Event>, frames: usize) -> Case {
 }
 
 fn preset(name: &str) -> Patch {
-    Preset::find(name).unwrap().patch
+    Preset::find(name).unwrap().patch.clone()
 }
 
 /// Plays a case, expects it to stay within its bound, and to reach at least `share` of it.
@@ -76,7 +76,7 @@ fn vibrato_of_an_octave_on_the_highest_key_of_a_piano() {
 fn quick_strikes_in_mono_that_are_never_let_go() {
     for preset in Preset::factory() {
         for interval in [80, 7] {
-            let patch = preset.patch.with(Param::Mode, 1.0).with(Param::Sweep, 16.7);
+            let patch = preset.patch.clone().with(Param::Mode, 1.0).with(Param::Sweep, 16.7);
             let events = (0..300).map(|n| on(n * interval, 48 + (n * 7 % 40) as u8)).collect();
             stays_bounded(&preset.name, &case(patch, events, 300 * interval as usize + 48_000), 0.0);
         }
@@ -88,7 +88,7 @@ fn quick_strikes_in_mono_that_are_never_let_go() {
 fn the_longest_decay_at_the_highest_rate() {
     for (sample_rate, key) in [(768_000.0, 60), (768_000.0, 127), (48_000.0, 127), (44_100.0, 21)] {
         let patch = Patch::default().with(Param::Decay, 60.0).with(Param::Vibrato, 30.0);
-        for patch in [patch, patch.with(Param::Vibrato, 0.0), patch.with(Param::DecayKey, -100.0)] {
+        for patch in [patch.clone(), patch.clone().with(Param::Vibrato, 0.0), patch.with(Param::DecayKey, -100.0)] {
             let storm = Case { sample_rate, ..case(patch, vec![on(0, key)], sample_rate as usize * 4) };
             stays_bounded("long", &storm, 0.9);
         }

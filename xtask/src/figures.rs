@@ -18,7 +18,7 @@ fn draw() -> sprung::Result<()> {
     let origin = "assets/midi/suite.mid";
     let file = File::open(root().join(origin)).map_err(|error| sprung::Error::io(origin, error))?;
     let song = Song::read(file, origin)?;
-    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch).collect();
+    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch.clone()).collect();
     let options = Options { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::Auto };
     let job = Job { song: &song, patch: &programs[0], programs: &programs, tuning: &Tuning::EQUAL, options };
     let (mut left, mut right) = (Vec::new(), Vec::new());
