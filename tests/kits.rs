@@ -1,8 +1,5 @@
 //! Kits: keys that play sounds of their own, choke each other, and are exchanged while they ring.
 
-mod events;
-
-use events::{event, off};
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::error::Error;
 use sprung::params::{PARAMS, Param};
@@ -15,6 +12,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 const RATE: f64 = 48_000.0;
+
+fn event(frame: u32, kind: EventKind) -> Event {
+    Event { frame, channel: 0, kind }
+}
+
+fn off(frame: u32, key: u8) -> Event {
+    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+}
 
 fn on(frame: u32, key: u8, velocity: f32) -> Event {
     event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 })

@@ -81,6 +81,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if let Some(song) = &song {
         args.reading.warn_of_programs(song, args.sound.asked_for(&sounds), &sounds.programs);
         args.sound.tuning.warn_of_unmapped(song, &sounds.tuning);
+        SoundArgs::warn_of_missing_pads(song, &sounds, args.reading.programs(&sounds.programs));
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;

@@ -1,9 +1,11 @@
 //! The sounds that a command plays with: presets and kits, settings on top of them, the tuning, and the seed.
 
+use super::terminal::complain;
 use super::tuning::TuningArgs;
 use super::{completion, presets, quantity};
 use clap_complete::ArgValueCompleter;
-use sprung::io::Inputs;
+use sprung::engine::EventKind;
+use sprung::io::{Inputs, Song};
 use sprung::params::Param;
 use sprung::preset::{Playable, Preset};
 use sprung::sound::{Kit, Tuning};
@@ -65,6 +67,30 @@ impl SoundArgs {
         let mut asked = [self.preset.is_some().then_some(&sounds.kit); 16];
         sounds.channels.iter().for_each(|(channel, kit)| asked[usize::from(*channel)] = Some(kit));
         asked
+    }
+
+    /// Warns of notes on keys that their kits have no pad for; `programs` are those that program changes choose from.
+    pub(super) fn warn_of_missing_pads(song: &Song, sounds: &Sounds, programs: &[Arc<Kit>]) {
+        let mut playing = [&sounds.kit; 16];
+        sounds.channels.iter().for_each(|(channel, kit)| playing[usize::from(*channel)] = kit);
+        let (mut all, mut silent) = (0, 0);
+        for event in &song.events {
+            let Some(playing) = playing.get_mut(usize::from(event.channel)) else { continue };
+            match event.kind {
+                EventKind::Program(number) => *playing = programs.get(usize::from(number)).unwrap_or(playing),
+                EventKind::NoteOn { key, .. } => {
+                    all += 1;
+                    silent += usize::from(playing.pad(key).is_none());
+                }
+                _ => {}
+            }
+        }
+        if silent > 0 {
+            complain(
+                "warning",
+                format_args!("{silent} of {all} notes are silent: their kits have no pad on their keys"),
+            );
+        }
     }
 
     fn kit(&self, mut playable: Playable) -> Arc<Kit> {

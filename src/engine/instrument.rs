@@ -47,15 +47,23 @@ pub(crate) struct Instrument {
 }
 
 impl Instrument {
-    /// An instrument at frame `clock`, with serial numbers to be given.
-    pub(crate) fn new(sound: Arc<Sound>, sample_rate: f64, seed: u64, beat_rate: f64, clock: u64) -> Self {
+    /// An instrument at frame `clock`, with its parameters moved by `offsets` in knob travel, and serial numbers to be
+    /// given.
+    pub(crate) fn new(
+        sound: Arc<Sound>,
+        [sample_rate, beat_rate]: [f64; 2],
+        seed: u64,
+        offsets: &[f32; PARAM_COUNT],
+        clock: u64,
+    ) -> Self {
         let values = sound.patch().values;
-        let smoother = Smoother::new(sample_rate, &values, beat_rate);
+        let modulated = all_modulated(&values, offsets);
+        let smoother = Smoother::new(sample_rate, &modulated, beat_rate);
         let controls = smoother.after(0);
         let bus = Bus::new(&sound.patch().routes);
         Self {
             values,
-            modulated: values,
+            modulated,
             patch_serial: 0,
             body_serial: 0,
             sample_rate,
@@ -80,10 +88,7 @@ impl Instrument {
     pub(crate) fn play(&mut self, sound: &Arc<Sound>, offsets: &[f32; PARAM_COUNT]) {
         self.sound = sound.clone();
         self.values = sound.patch().values;
-        self.modulated = self.values;
-        for info in PARAMS {
-            self.modulated.set(info.param, modulated(&self.values, info.param, offsets[info.param as usize]));
-        }
+        self.modulated = all_modulated(&self.values, offsets);
         self.bus = Bus::new(&sound.patch().routes);
         self.has_routes |= !self.bus.is_empty();
         // Voices of the sound before keep its controls, so the new ones need no slope.
@@ -142,4 +147,13 @@ impl Instrument {
     pub(crate) fn pitch(&self, note: &Note) -> f64 {
         KeyTracking::new(|param| self.value(param)).pitch(note)
     }
+}
+
+/// All values, moved by offsets in knob travel.
+fn all_modulated(values: &Values, offsets: &[f32; PARAM_COUNT]) -> Values {
+    let mut all = *values;
+    for info in PARAMS {
+        all.set(info.param, modulated(values, info.param, offsets[info.param as usize]));
+    }
+    all
 }

@@ -64,7 +64,8 @@ impl Synth {
     }
 
     fn with_kit(sample_rate: f64, seed: u64, kit: Arc<Kit>) -> Self {
-        let instrument = |sound: &Arc<Sound>| Instrument::new(sound.clone(), sample_rate, seed, DEFAULT_BEAT_RATE, 0);
+        let (rates, offsets) = ([sample_rate, DEFAULT_BEAT_RATE], [0.0; PARAM_COUNT]);
+        let instrument = |sound: &Arc<Sound>| Instrument::new(sound.clone(), rates, seed, &offsets, 0);
         let instruments: Vec<Instrument> = kit.sounds().iter().map(instrument).collect();
         let controls = instruments[0].controls;
         let mut synth = Self {
@@ -113,7 +114,7 @@ impl Synth {
         self.limiter.reset();
         self.offsets = [0.0; PARAM_COUNT];
         for (instrument, sound) in self.instruments.iter_mut().zip(self.kit.sounds()) {
-            *instrument = Instrument::new(sound.clone(), sample_rate, seed, DEFAULT_BEAT_RATE, 0);
+            *instrument = Instrument::new(sound.clone(), [sample_rate, DEFAULT_BEAT_RATE], seed, &self.offsets, 0);
             instrument.begin_at(moved_by(&self.kit, &self.values));
         }
         (self.first_patch, self.bodies) = (0, 0);
@@ -156,8 +157,8 @@ impl Synth {
             instrument.last_pitch.take_if(|_| !goes_on);
         }
         for sound in sounds.iter().skip(self.instruments.len()) {
-            let mut instrument = Instrument::new(sound.clone(), self.sample_rate, self.seed, beat_rate, self.clock);
-            instrument.play(sound, &self.offsets);
+            let rates = [self.sample_rate, beat_rate];
+            let instrument = Instrument::new(sound.clone(), rates, self.seed, &self.offsets, self.clock);
             self.instruments.push(instrument);
         }
         // Only now: until here, the kit before has kept the sounds that were let go of.

@@ -31,6 +31,23 @@ fn presets_are_listed_shown_and_checked() {
 }
 
 #[test]
+fn kits_are_shown_and_checked() {
+    let sandbox = Sandbox::new();
+    sandbox.write("kit.toml", "kit = 1\nname = \"K\"\nkeys = [{ key = 36, sound = \"Kick\", pitch = 60 }]");
+    assert_eq!(sandbox.succeeds("presets check kit.toml"), "kit.toml: ‘K’ is in order\n".as_bytes());
+    let shown = String::from_utf8(sandbox.succeeds("presets show kit.toml")).unwrap();
+    assert!(shown.ends_with("[[keys]]\nkey = \"C2\"\nsound = \"Kick\"\npitch = \"C4\"\n"), "{shown}");
+    sandbox.write("shown.toml", &shown);
+    assert_eq!(sandbox.succeeds("presets show shown.toml"), shown.as_bytes());
+    sandbox.write("bad.toml", "kit = 1\nname = \"K\"\nkeys = [{ key = 36, sound = \"../kick.toml\" }]");
+    sandbox.fails(
+        "presets check bad.toml",
+        1,
+        "bad.toml: keys[0].sound: ../kick.toml: it lies outside the kit’s folder",
+    );
+}
+
+#[test]
 fn parameters_are_listed_in_every_form() {
     let sandbox = Sandbox::new();
     let json: serde_json::Value = serde_json::from_slice(&sandbox.succeeds("params --json")).unwrap();

@@ -159,3 +159,54 @@ fn seeds_choose_the_noise() {
         assert!(render(&format!("{sound} --seed 1")) != render(&format!("{sound} --seed 2")), "{sound}");
     }
 }
+
+#[test]
+fn kits_play_on_all_channels_and_on_one() {
+    let sandbox = Sandbox::new();
+    let kick = sprung::preset::Preset::find("Kick").unwrap();
+    sandbox.write("mine.toml", kick.to_toml());
+    sandbox.write(
+        "kit.toml",
+        "kit = 1\nname = \"K\"\nkeys = [{ key = 40, sound = \"mine.toml\", pitch = 60 }, { key = 41, sound = \"Clave\" }]",
+    );
+    let base = "render --bits 32f --tail none --length 0.3 --force -o out.wav";
+    let bytes = |args: &str| {
+        sandbox.succeeds(&format!("{base} {args}"));
+        sandbox.read("out.wav")
+    };
+    let plain = bytes("--note 60 --preset Kick");
+    assert!(sandbox.wav("out.wav").peak() > 0.1);
+    assert!(bytes("--note 40 --preset kit.toml") == plain, "the pad has the pitch of its own");
+    assert!(bytes("--note 40 --channel 1=kit.toml") == plain);
+    assert!(bytes("--note 60 --channel 1=kick --channel 10=kit.toml --preset Gong") == plain);
+    let short = bytes("--note 60 --preset Kick --set decay=0.05");
+    assert!(short != plain && bytes("--note 40 --preset kit.toml --set decay=0.05") == short);
+    let told = sandbox.sprung(&format!("{base} --note 40,42 --preset kit.toml")).output().unwrap().stderr;
+    let expected = "warning: 1 of 2 notes are silent: their kits have no pad on their keys";
+    assert!(String::from_utf8_lossy(&told).contains(expected));
+    bytes("--note 42 --preset kit.toml");
+    assert_eq!(sandbox.wav("out.wav").peak(), 0.0, "a key without a pad is silent");
+
+    sandbox.write("song.mid", song(&[note_on(0, 9, 40), end(480)]));
+    let report = report(&sandbox, "render song.mid --channel 10=kit.toml -o song.wav");
+    assert_eq!(report["voices_used"], 1);
+}
+
+#[test]
+fn kits_that_do_not_fit_are_refused() {
+    let sandbox = Sandbox::new();
+    for (args, code, message) in [
+        ("--channel 17=Kick", 2, "channel 17 is out of range: expected 1 to 16"),
+        ("--channel Kick", 2, "expected CHANNEL=NAME, as in 10=drums.toml"),
+        ("--channel 1=Kick --channel 1=Snare", 1, "--channel: channel 1 is there twice: expected each channel once"),
+        ("--channel 1=kcik", 1, "the nearest is ‘Kick’"),
+        ("--channel 1=none.toml", 1, "none.toml: "),
+    ] {
+        sandbox.fails(&format!("render --note 60 {args} -o out.wav"), code, message);
+    }
+    // What a kit reads must not become its output.
+    let mine = sandbox.write("mine.toml", sprung::preset::Preset::find("Kick").unwrap().to_toml());
+    std::fs::hard_link(mine, sandbox.path("mine.wav")).unwrap();
+    sandbox.write("kit.toml", "kit = 1\nname = \"K\"\nkeys = [{ key = 40, sound = \"mine.toml\" }]");
+    sandbox.fails("render --note 40 --preset kit.toml --force -o mine.wav", 1, "expected another file to write to");
+}

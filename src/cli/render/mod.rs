@@ -105,6 +105,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     };
     args.reading.warn_of_programs(&song, args.sound.asked_for(&sounds), &sounds.programs);
     args.sound.tuning.warn_of_unmapped(&song, &sounds.tuning);
+    SoundArgs::warn_of_missing_pads(&song, &sounds, args.reading.programs(&sounds.programs));
 
     let options =
         Options { sample_rate: args.rate, seed: args.sound.seed, block: args.block as usize, tail: args.tail };
