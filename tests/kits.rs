@@ -178,7 +178,7 @@ fn a_key_without_a_pad_is_silent_and_its_note_ends_at_once() {
 
 #[test]
 fn a_sound_s_own_tuning_goes_before_that_of_the_instrument() {
-    let tuning = Tuning::from_scala("\n1\n3/2", Some("1\n0\n127\n60\n69\n500.0\n0\nx")).unwrap();
+    let tuning = Tuning::from_scala("\n2\n500.\n2/1", None).unwrap();
     let own = Tuning::from_scala("\n12\n50.\n100.\n200.\n300.\n400.\n500.\n600.\n700.\n800.\n900.\n1000.\n2/1", None)
         .unwrap();
     let patch = Patch::default();
