@@ -49,8 +49,7 @@ mod tests {
     #[test]
     fn struck_masses_are_seen_to_move_and_to_come_to_rest() {
         let quiet = Mode { level: 0.5, ratio: 2.0, ..Mode::UNIT };
-        let mut patch = Patch::default();
-        patch.modes = ModeTable::new(&[Mode::UNIT, quiet]);
+        let patch = Patch { modes: ModeTable::new(&[Mode::UNIT, quiet]), ..Patch::default() };
         let mut ensemble = Ensemble::new(48_000.0, 0, &patch, &[]);
         assert_eq!(ensemble.snapshot(), Snapshot::default());
         let strike = EventKind::NoteOn { key: 69, detune: 0.0, velocity: 1.0, id: -1 };

@@ -252,8 +252,7 @@ mod tests {
             modes in proptest::collection::vec(any_mode(), 1..=MAX_MODES),
             routes in proptest::collection::vec(any_route(), MAX_ROUTES),
         ) {
-            let mut patch = Patch::default();
-            patch.modes = ModeTable::new(&modes);
+            let mut patch = Patch { modes: ModeTable::new(&modes), ..Patch::default() };
             for (info, position) in PARAMS.iter().zip(positions) {
                 patch.set(info.param, info.denormalise(position));
             }

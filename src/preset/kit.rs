@@ -29,6 +29,7 @@ pub struct KitPreset {
 
 /// What a file holds that can be played.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "there is one for each file that is read")]
 pub enum Playable {
     /// One sound for all keys.
     Preset(Preset),

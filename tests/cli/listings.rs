@@ -41,7 +41,7 @@ fn kits_are_shown_and_checked() {
     assert_eq!(sandbox.succeeds("presets show shown.toml"), shown.as_bytes());
     sandbox.write("bad.toml", "kit = 1\nname = \"K\"\nkeys = [{ key = 36, sound = \"../kick.toml\" }]");
     sandbox.fails(
-        "presets check bad.toml",
+        "presets show bad.toml",
         1,
         "bad.toml: keys[0].sound: ../kick.toml: it lies outside the kit’s folder",
     );
