@@ -46,8 +46,7 @@ fn storm(block: u32) -> Vec<Event> {
 
 #[test]
 fn processing_does_not_allocate() {
-    let mut patch = Patch::default();
-    patch.modes = ModeTable::new(&[Mode { strike: 0.5, ..Mode::UNIT }; 64]);
+    let patch = Patch { modes: ModeTable::new(&[Mode { strike: 0.5, ..Mode::UNIT }; 64]), ..Patch::default() };
     let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[patch.clone(), Patch::default(), patch]);
     let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
     let blocks: Vec<_> = (0..40).map(storm).collect();
@@ -132,7 +131,6 @@ fn kits_come_and_go_without_allocating_or_freeing() {
 }
 
 fn modes(count: usize) -> Patch {
-    let mut patch = Patch::default();
-    patch.modes = ModeTable::new(&vec![Mode { level: 0.1, ..Mode::UNIT }; count + 1]);
-    patch
+    let modes = vec![Mode { level: 0.1, ..Mode::UNIT }; count + 1];
+    Patch { modes: ModeTable::new(&modes), ..Patch::default() }
 }

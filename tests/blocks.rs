@@ -49,8 +49,7 @@ fn any_patch() -> impl Strategy<Value = Patch> {
     let position = prop::option::of(0.0..1.0f64);
     (prop::collection::vec(mode, 1..20), prop::collection::vec(position, PARAMS.len()), routes).prop_map(
         |(modes, positions, routes)| {
-            let mut patch = Patch::default();
-            patch.modes = ModeTable::new(&modes);
+            let mut patch = Patch { modes: ModeTable::new(&modes), ..Patch::default() };
             for (info, position) in PARAMS.iter().zip(positions) {
                 if let Some(position) = position {
                     patch.set(info.param, info.denormalise(position));

@@ -75,9 +75,9 @@ fn each_of_128_keys_plays_its_own_sound_at_its_own_pitch_bit_for_bit() {
     let pads = (0..KEYS).map(|key| Some(Pad { pitch: Some(pitch(key)), ..Pad::of(key) })).collect();
     let kit = kit(&patches, pads);
     let mut silent = 0;
-    for key in 0..KEYS {
+    for (key, patch) in patches.iter().enumerate() {
         let strike = |key: u8| [on(7, key, 0.8), off(300, key), on(400, key, 0.5)];
-        let expected = play(&mut synth(&Kit::of_patch(&patches[key])), &strike(pitch(key) as u8), 960);
+        let expected = play(&mut synth(&Kit::of_patch(patch)), &strike(pitch(key) as u8), 960);
         assert!(play(&mut synth(&kit), &strike(key as u8), 960) == expected, "key {key}");
         silent += usize::from(!sounds(&expected));
     }
@@ -104,7 +104,7 @@ fn a_kit_of_one_is_its_patch_bit_for_bit() {
         let mut by_patch = Synth::new(RATE, 1);
         by_patch.set_patch(&patch);
         let expected = play(&mut by_patch, &events, 4800);
-        let single = kit(&[patch.clone()], vec![Some(Pad::of(0)); KEYS]);
+        let single = kit(std::slice::from_ref(&patch), vec![Some(Pad::of(0)); KEYS]);
         assert!(sounds(&expected) && play(&mut synth(&single), &events, 4800) == expected, "{name}");
         // A second sound changes nothing as long as parameters stay.
         let poly = patch.with(Param::Mode, 0.0).with(Param::Voices, 64.0);

@@ -39,13 +39,12 @@ fn preset(preset: &Preset) -> Score {
 
 /// Three masses that differ in everything a mode has.
 fn trio() -> Patch {
-    let mut patch = Patch::default();
-    patch.modes = ModeTable::new(&[
+    let modes = ModeTable::new(&[
         Mode { pan: -0.5, ..Mode::UNIT },
         Mode { ratio: 2.76, level: 0.5, decay: 0.6, strike: 0.5, pan: 0.5 },
         Mode { ratio: 5.4, level: -0.25, decay: 0.3, strike: 0.0, pan: 0.0 },
     ]);
-    patch
+    Patch { modes, ..Patch::default() }
 }
 
 fn engine() -> Vec<Score> {
