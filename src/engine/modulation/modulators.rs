@@ -232,6 +232,7 @@ impl Modulators {
         if first {
             (self.rates, self.next_rates) = (settings.rates, settings.rates);
             self.moving.envelopes = [Envelope::REST; ENVELOPES];
+            self.fades = [0.0; LFOS];
         }
         // The envelopes' times and the fades follow from where the sources are before they start.
         self.look_ahead(0.0, positions);
