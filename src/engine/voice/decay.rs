@@ -1,7 +1,7 @@
 //! How long the modes of a note ring: their decay, how it follows the key, and the damper.
 
 use super::instrument::StruckValues;
-use super::pitch::MIDDLE_C;
+use super::key_tracking::MIDDLE_C;
 use crate::dsp::bank::Bank;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::engine::controls::Controls;

@@ -1,5 +1,4 @@
-//! The energy of a voice, and when it will be over: known in closed form, because nothing but damping takes energy from
-//! its modes.
+//! The energy of a voice, and when it will be over: known, because nothing but damping takes energy from its modes.
 
 use super::strike::Strike;
 use crate::dsp::CONTROL_FRAMES;

@@ -1,6 +1,6 @@
 //! What voices read of the instrument.
 
-use super::pitch::KeyTracking;
+use super::key_tracking::KeyTracking;
 use crate::engine::controls::Controls;
 use crate::engine::modulation::{Bus, Modulators, Positions, Settings, SharedLfos, Struck};
 use crate::engine::note::Note;

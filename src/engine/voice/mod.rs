@@ -4,6 +4,7 @@ mod clock;
 mod decay;
 mod energy;
 mod instrument;
+mod key_tracking;
 mod notes;
 mod pitch;
 mod strike;

@@ -2,6 +2,7 @@
 
 use super::clock::Clock;
 use super::instrument::StruckValues;
+use super::key_tracking::KeyTracking;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::dsp::pitch::{Glide, SweepEnvelope};
 use crate::engine::channel::Wheels;
@@ -11,36 +12,6 @@ use crate::params::Param;
 use crate::units::{frequency_from_key, ratio_from_semitones};
 use libm::{floor, pow, sin};
 use std::f64::consts::TAU;
-
-/// The key that tracking turns about.
-pub(super) const MIDDLE_C: f64 = 60.0;
-
-/// How a patch says that pitch follows the key. A voice keeps it for as long as it sounds, since the instrument may have
-/// another patch by the time that a held key takes the voice back.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct KeyTracking {
-    /// Semitones per semitone of the tuned key.
-    amount: f64,
-    /// Frequency of A4 in Hz.
-    a4_hz: f64,
-    /// Time to slide from the note before.
-    glide_seconds: f64,
-}
-
-impl KeyTracking {
-    /// Every key has its own pitch, at 440 Hz.
-    const FULL: Self = Self { amount: 1.0, a4_hz: 440.0, glide_seconds: 0.0 };
-
-    /// That of a patch with these values.
-    pub(super) fn new(value: impl Fn(Param) -> f64) -> Self {
-        Self { amount: value(Param::KeyTrack) * 0.01, a4_hz: value(Param::Tuning), glide_seconds: value(Param::Glide) }
-    }
-
-    /// The pitch of a note in semitones on the MIDI scale.
-    pub(super) fn pitch(&self, note: &Note) -> f64 {
-        MIDDLE_C + (note.pitch.semitones(self.a4_hz) + f64::from(note.detune) - MIDDLE_C) * self.amount
-    }
-}
 
 /// The pitch of a voice. Real-time safe.
 pub(super) struct Pitch {
