@@ -68,7 +68,8 @@ pub(super) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Preset> {
 }
 
 fn read(path: &Path, inputs: &mut Inputs) -> Result<Preset> {
-    Preset::read(inputs.open(path)?, &path.display().to_string())
+    let origin = path.display().to_string();
+    Preset::read(inputs.open(path)?, &origin, |replaced| complain("warning", format_args!("{origin}: {replaced}")))
 }
 
 fn list(presets: &[Preset]) -> String {

@@ -1,6 +1,7 @@
 //! Values as options give them: ranges, units and pairs, with errors that say what would be right.
 
 use sprung::io::SampleFormat;
+use sprung::params::retired::Retired;
 use sprung::params::{PARAMS, Param};
 use sprung::render::{Level, SAMPLE_RATES, Tail};
 use sprung::units::{split_quantity, with_decimal_point};
@@ -117,7 +118,8 @@ pub(super) fn note(text: &str) -> Result<String, String> {
 pub(super) fn setting(text: &str) -> Result<(Param, f32), String> {
     let (id, value) = text.split_once('=').ok_or("expected ID=VALUE, as in decay=0.5")?;
     let id = id.trim();
-    let param = Param::from_id(id).ok_or_else(|| no_parameter(id))?;
+    let retired = || Retired::from_id(id).map(Retired::message);
+    let param = Param::from_id(id).ok_or_else(|| retired().unwrap_or_else(|| no_parameter(id)))?;
     if let Some((first, rest)) = value.split_once(',')
         && rest.contains('=')
     {

@@ -7,12 +7,12 @@ use super::midi::{controller, seven_bits};
 use super::modulation::{Bus, SharedLfos, modulated};
 use super::note::{Note, Notes, nearest_channel, nearest_key};
 use super::voice::{Instrument, SynthVoice};
-use super::voice_manager::{PlayMode, VoiceManager};
+use super::voice_manager::VoiceManager;
 use super::zones::{MEMBER_BEND_RANGE, Zones};
 use super::{Event, EventKind, Snapshot};
 use crate::dsp::limiter::Work;
 use crate::dsp::{CONTROL_FRAMES, Limiter};
-use crate::params::{Change, PARAM_COUNT, PARAMS, Param};
+use crate::params::{self, Change, PARAM_COUNT, PARAMS, Param};
 use crate::patch::Patch;
 use crate::sound::Tuning;
 use crate::sound::tuning::Pitch;
@@ -204,7 +204,8 @@ impl Synth {
     fn play_limited(&mut self, left: &mut [f32], right: &mut [f32]) {
         let is_heard = self.play(left, right);
         if is_heard || !self.limiter.is_idle() {
-            self.limiter.process(self.instrument.patch.get(Param::Limiter) != 0.0, left, right);
+            let limiter = self.instrument.patch.values.choice::<params::Limiter>(Param::Limiter);
+            self.limiter.process(limiter == params::Limiter::On, left, right);
         }
     }
 
@@ -460,11 +461,7 @@ impl Synth {
     /// Hands the manager the parameters that are its own.
     fn configure(&mut self) {
         let patch = &self.instrument.modulated;
-        let mode = match patch.get(Param::Mode) as u32 {
-            0 => PlayMode::Poly,
-            1 => PlayMode::Mono,
-            _ => PlayMode::Legato,
-        };
+        let mode = patch.values.choice(Param::Mode);
         self.manager.configure(patch.get(Param::Voices) as usize, mode, self.instrument.patch_serial);
     }
 }

@@ -1,9 +1,11 @@
 //! The TOML of a preset file, read key by key so that every error names its place and what would be right.
 
+use super::migration::{self, Replaced};
 use super::routes;
 use super::value::{check_keys, param_value, unexpected};
 use super::{FORMAT_VERSION, Preset};
 use crate::error::Error;
+use crate::params::retired::Retired;
 use crate::params::{PARAMS, Param, Unit};
 use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use crate::text::printable_lines;
@@ -16,9 +18,9 @@ const KEYS: [&str; 8] = ["format", "name", "author", "tags", "comment", "modes",
 /// Longest name, author or tag, in characters: what a list can still show.
 const MAX_LABEL: usize = 100;
 
-pub(super) fn parse(text: &str, origin: &str) -> crate::Result<Preset> {
+pub(super) fn parse(text: &str, origin: &str, replaced: impl FnMut(Replaced)) -> crate::Result<Preset> {
     let table: Table = toml::from_str(text).map_err(|error| syntax_error(text, origin, &error))?;
-    read(&table).map_err(|message| Error::format(origin, message))
+    read(&table, replaced).map_err(|message| Error::format(origin, message))
 }
 
 fn syntax_error(text: &str, origin: &str, error: &toml::de::Error) -> Error {
@@ -32,10 +34,10 @@ fn syntax_error(text: &str, origin: &str, error: &toml::de::Error) -> Error {
     Error::format(format!("{origin}{place}"), format!("not valid TOML: {}", message.join("; ")))
 }
 
-fn read(table: &Table) -> Result<Preset, String> {
+fn read(table: &Table, replaced: impl FnMut(Replaced)) -> Result<Preset, String> {
     // The version first: in another version's file, its other keys mean nothing to this one.
-    match table.get("format") {
-        Some(Value::Integer(1..=FORMAT_VERSION)) => {}
+    let format = match table.get("format") {
+        Some(Value::Integer(format @ 1..=FORMAT_VERSION)) => *format,
         Some(Value::Integer(newer)) if *newer > FORMAT_VERSION => {
             return Err(format!(
                 "format {newer} is of a newer version: this one reads up to format = {FORMAT_VERSION}"
@@ -45,20 +47,26 @@ fn read(table: &Table) -> Result<Preset, String> {
             return Err(format!("format {other} is unknown: this version reads format = 1 to {FORMAT_VERSION}"));
         }
         None => return Err(format!("there is no ‘format’: expected format = {FORMAT_VERSION}")),
-    }
+    };
     check_keys(table, "", &KEYS)?;
     let name = label(table, "name")?;
     if name.is_empty() {
         return Err("there is no ‘name’: expected name = \"…\"".to_owned());
     }
-    let mut patch = Patch::default();
-    match table.get("params") {
-        Some(Value::Table(params)) => read_params(params, &mut patch)?,
+    let mut params = match table.get("params") {
+        Some(Value::Table(params)) => params.clone(),
         Some(other) => return Err(unexpected("params", "a table [params]", other)),
-        None => {}
-    }
+        None => Table::new(),
+    };
+    let is_old = format < migration::FIRST_WITHOUT_RETIRED;
+    let mut patch = Patch::default();
+    let retired = if is_old { Some(migration::take(&mut params, &mut patch)?) } else { None };
+    read_params(&params, &mut patch)?;
     patch.modes = ModeTable::new(&read_modes(table.get("modes"))?);
     routes::read(table, &mut patch)?;
+    if let Some(retired) = retired {
+        migration::migrate(&retired, &params, &mut patch, replaced);
+    }
     Ok(Preset { name, author: label(table, "author")?, tags: tags(table)?, comment: text(table, "comment")?, patch })
 }
 
@@ -96,6 +104,9 @@ fn tags(table: &Table) -> Result<Vec<String>, String> {
 }
 
 fn read_params(params: &Table, patch: &mut Patch) -> Result<(), String> {
+    if let Some(retired) = params.keys().find_map(|id| Retired::from_id(id)) {
+        return Err(format!("params.{}: {}", retired.id(), retired.message()));
+    }
     check_keys(params, "params.", &PARAMS.iter().map(|info| info.id).collect::<Vec<_>>())?;
     for (id, value) in params {
         if let Some(param) = Param::from_id(id) {
@@ -207,15 +218,19 @@ mod tests {
     use proptest::prelude::*;
     use proptest::sample::select;
 
+    fn read_text(text: &str) -> crate::Result<Preset> {
+        parse(text, "x", |_| {})
+    }
+
     fn error(body: &str) -> String {
-        parse(&format!("format = 1\nname = \"a\"\n{body}"), "x").unwrap_err().to_string()
+        read_text(&format!("format = 1\nname = \"a\"\n{body}")).unwrap_err().to_string()
     }
 
     #[test]
     fn numbers_and_texts_are_read_in_the_unit_of_the_table() {
         let text = "format = 1\nname = \"a\"\ntags = [\"b\"]\nmodes = [{ ratio = 2, level = -0.5 }]\n\
                     [params]\ndecay = \"250 ms\"\ngain = -3\nexciter = \"pluck\"\nfine = 1.5";
-        let preset = parse(text, "x").unwrap();
+        let preset = read_text(text).unwrap();
         let mut expected = Patch::default()
             .with(Param::Decay, 0.25)
             .with(Param::Gain, -3.0)
@@ -264,13 +279,13 @@ mod tests {
     #[test]
     fn the_version_comes_before_all_else() {
         for (text, expected) in [
-            ("format = 3\nwarp = 1", "x: format 3 is of a newer version: this one reads up to format = 2"),
-            ("format = 0", "x: format 0 is unknown: this version reads format = 1 to 2"),
-            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1 to 2"),
-            ("name = \"a\"", "x: there is no ‘format’: expected format = 2"),
+            ("format = 4\nwarp = 1", "x: format 4 is of a newer version: this one reads up to format = 3"),
+            ("format = 0", "x: format 0 is unknown: this version reads format = 1 to 3"),
+            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1 to 3"),
+            ("name = \"a\"", "x: there is no ‘format’: expected format = 3"),
             ("format = 1", "x: there is no ‘name’: expected name = \"…\""),
         ] {
-            assert_eq!(parse(text, "x").unwrap_err().to_string(), expected);
+            assert_eq!(read_text(text).unwrap_err().to_string(), expected);
         }
     }
 
@@ -279,18 +294,18 @@ mod tests {
         for text in
             ["\u{1b}[2J", "\u{202e}\"gnp\"\\", "a\tb\n\u{9b}1m", "'\u{2066}'\n\"\"\"", "plain \"quotes\"\nand 'lines'"]
         {
-            let mut preset = parse("format = 1\nname = \"a\"", "x").unwrap();
+            let mut preset = read_text("format = 1\nname = \"a\"").unwrap();
             preset.comment = text.to_owned();
             preset.tags = vec!["\u{200f}b".to_owned()];
             let written = preset.to_toml();
             assert_eq!(printable_lines(&written), written);
-            assert_eq!(parse(&written, "x").unwrap(), preset, "{written}");
+            assert_eq!(read_text(&written).unwrap(), preset, "{written}");
         }
     }
 
     #[test]
     fn a_new_preset_names_no_parameter() {
-        let preset = parse("format = 1\nname = \"a\"", "x").unwrap();
+        let preset = read_text("format = 1\nname = \"a\"").unwrap();
         assert_eq!(preset.patch, Patch::default());
         assert!(preset.to_toml().ends_with("\n[params]\n"), "{}", preset.to_toml());
     }
@@ -327,13 +342,13 @@ mod tests {
             let [name, author, tag] = <[String; 3]>::try_from(texts).unwrap();
             let preset = Preset { name, author, tags: vec![tag], comment, patch };
             let text = preset.to_toml();
-            prop_assert_eq!(parse(&text, "x").map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?, preset);
+            prop_assert_eq!(read_text(&text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?, preset);
         }
 
         #[test]
         fn random_text_never_panics(text in "\\PC*", keyed in "(modes|params|tags|name) ?= ?[\\[\\{\\}\\]0-9a-z\",=. ]*") {
-            let _ = parse(&text, "x");
-            let _ = parse(&format!("format = 1\nname = \"a\"\n{keyed}"), "x");
+            let _ = read_text(&text);
+            let _ = read_text(&format!("format = 1\nname = \"a\"\n{keyed}"));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Presets from texts and files, and back.
 
-use super::{Preset, file};
+use super::{Preset, Replaced, file};
 use crate::error::{Error, Result};
 use std::io::Read;
 use std::path::Path;
@@ -15,7 +15,15 @@ impl Preset {
     /// [`Error::Format`] for anything but a preset of a format up to [`FORMAT_VERSION`](super::FORMAT_VERSION) whose every key is known and every value
     /// in range; it names the key and what would be right.
     pub fn parse(text: &str, origin: &str) -> Result<Self> {
-        file::parse(text, origin)
+        file::parse(text, origin, |_| {})
+    }
+
+    /// As [`Preset::parse`], telling `replaced` of each retired parameter in it.
+    ///
+    /// # Errors
+    /// As [`Preset::parse`].
+    pub fn parse_old(text: &str, origin: &str, replaced: impl FnMut(Replaced)) -> Result<Self> {
+        file::parse(text, origin, replaced)
     }
 
     /// Writes the preset so that [`Preset::parse`] gives it back exactly. Parameters at their defaults are left out.
@@ -30,14 +38,14 @@ impl Preset {
     /// as [`Preset::parse`] says.
     pub fn load(path: &Path) -> Result<Self> {
         let origin = path.display().to_string();
-        Self::read(std::fs::File::open(path).map_err(|source| Error::io(&origin, source))?, &origin)
+        Self::read(std::fs::File::open(path).map_err(|source| Error::io(&origin, source))?, &origin, |_| {})
     }
 
-    /// Reads a preset file from `reader`, which errors call `origin`.
+    /// Reads a preset file from `reader`, which errors call `origin`, telling `replaced` of each retired parameter in it.
     ///
     /// # Errors
     /// As [`Preset::load`].
-    pub fn read(reader: impl Read, origin: &str) -> Result<Self> {
+    pub fn read(reader: impl Read, origin: &str, replaced: impl FnMut(Replaced)) -> Result<Self> {
         let mut bytes = Vec::new();
         reader.take(MAX_FILE_SIZE + 1).read_to_end(&mut bytes).map_err(|source| Error::io(origin, source))?;
         if bytes.len() as u64 > MAX_FILE_SIZE {
@@ -47,7 +55,7 @@ impl Preset {
             let at = error.utf8_error().valid_up_to();
             Error::format(origin, format!("not a preset: expected UTF-8 text, but byte {at} is not"))
         })?;
-        Self::parse(&text, origin)
+        Self::parse_old(&text, origin, replaced)
     }
 }
 

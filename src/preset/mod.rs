@@ -3,15 +3,18 @@
 mod factory;
 mod file;
 mod load;
+mod migration;
 mod routes;
 mod value;
 
 use crate::patch::Patch;
 
 pub use load::MAX_FILE_SIZE;
+pub use migration::Replaced;
 
-/// The preset format that this version writes. It reads those before as well: 1 had no routes.
-pub const FORMAT_VERSION: i64 = 2;
+/// The preset format that this version writes. It reads those before as well: 1 had no routes, and both had parameters
+/// that are retired ([`crate::params::retired`]).
+pub const FORMAT_VERSION: i64 = 3;
 
 /// A patch and what a person calls it.
 #[derive(Clone, Debug, PartialEq)]

@@ -20,6 +20,16 @@ pub(crate) struct Bus {
     destinations_len: usize,
     /// A bit for each source that is read.
     read: u32,
+    /// Sources that move by themselves move what decides when a note is over, or may do so by other routes.
+    moves_the_end: bool,
+}
+
+/// What decides when a note is over.
+const DECIDING: [Param; 6] = [Param::Decay, Param::DecayTilt, Param::Release, Param::Damper, Param::Gain, Param::Pan];
+
+/// Whether a source moves while nothing happens.
+fn is_moving(source: Source) -> bool {
+    matches!(source, Source::Lfo1 | Source::Lfo2 | Source::Lfo3 | Source::Envelope1 | Source::Envelope2)
 }
 
 /// A route that leads to the destination at `to`.
@@ -110,6 +120,7 @@ impl Bus {
             destinations: [Destination::NONE; MAX_ROUTES],
             destinations_len: 0,
             read: 0,
+            moves_the_end: false,
         }
     };
 
@@ -131,6 +142,8 @@ impl Bus {
                 bus.links[bus.links_len] = Link { place: place as u8, source, scale, response, to: to as u8, moves };
                 bus.links_len += 1;
                 bus.read |= 1 << source as u32 | scale.map_or(0, |scale| 1 << scale as u32);
+                let moves_by_itself = is_moving(source) || scale.is_some_and(is_moving);
+                bus.moves_the_end |= moves_by_itself && (DECIDING.contains(&param) || moves.is_some());
             }
         }
         bus
@@ -138,6 +151,11 @@ impl Bus {
 
     pub(crate) fn is_empty(&self) -> bool {
         self.links_len == 0
+    }
+
+    /// Whether oscillators or envelopes move what decides when a note is over.
+    pub(crate) fn moves_the_end(&self) -> bool {
+        self.moves_the_end
     }
 
     /// Whether any route reads the source that is so many after `first`.

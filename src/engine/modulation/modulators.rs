@@ -2,9 +2,9 @@
 
 use super::bus::{Bus, SOURCES, Sources, Target};
 use super::envelope::{Envelope, Times};
-use super::lfo::{Lfo, Shape};
+use super::lfo::Lfo;
 use crate::dsp::random;
-use crate::params::{PARAMS, Param};
+use crate::params::{Choice, NoteValue, PARAMS, Param, Scope, Shape};
 use crate::patch::routes::{MAX_ROUTES, Source, amount_param};
 
 /// How many slow oscillators and envelopes there are.
@@ -53,15 +53,16 @@ impl Settings {
     pub(crate) fn next(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
         let mut bases = [0.0; MAX_ROUTES];
         bus.destinations().iter().zip(&mut bases).for_each(|(destination, base)| *base = value(destination.param));
+        let sync = |index| NoteValue::from_value(value(of_lfo(Param::Lfo1Sync, index)));
         Self {
             serial: self.serial.wrapping_add(1),
             bases,
             rates: std::array::from_fn(|index| {
                 let rate = f64::from(value(of_lfo(Param::Lfo1Rate, index)));
-                super::rate_at(value(of_lfo(Param::Lfo1Sync, index)), rate, beat_rate)
+                super::rate_at(sync(index), rate, beat_rate)
             }),
-            are_synchronised: std::array::from_fn(|index| value(of_lfo(Param::Lfo1Sync, index)) != 0.0),
-            shapes: std::array::from_fn(|index| Shape::of(value(of_lfo(Param::Lfo1Shape, index)))),
+            are_synchronised: std::array::from_fn(|index| sync(index) != NoteValue::Off),
+            shapes: std::array::from_fn(|index| Shape::from_value(value(of_lfo(Param::Lfo1Shape, index)))),
             macros: std::array::from_fn(|index| value(PARAMS[Param::Macro1 as usize + index].param) * 0.01),
             amounts: std::array::from_fn(|place| value(amount_param(place)) * 0.01),
         }
@@ -185,10 +186,9 @@ impl Modulators {
         self.bus.is_empty()
     }
 
-    /// Whether routes move what decides when a note is over.
+    /// Whether oscillators or envelopes move what decides when a note is over.
     pub(crate) fn move_the_end(&self) -> bool {
-        const DECIDING: [Param; 5] = [Param::Decay, Param::Release, Param::PressureDamping, Param::Gain, Param::Pan];
-        self.bus.destinations().iter().any(|destination| DECIDING.contains(&destination.param))
+        self.bus.moves_the_end()
     }
 
     /// Takes over the routes of an instrument. Those that a voice is started with are its own until it ends.
@@ -220,9 +220,8 @@ impl Modulators {
         strike.into_iter().for_each(|(source, value)| self.sources[source as usize] = value);
         self.moving.age = 0.0;
         for index in 0..LFOS {
-            let value = |param| f64::from(value(of_lfo(param, index)));
-            self.phases[index] = value(Param::Lfo1Phase) * 0.01;
-            self.are_shared[index] = value(Param::Lfo1Scope) != 0.0;
+            self.phases[index] = f64::from(value(of_lfo(Param::Lfo1Phase, index))) * 0.01;
+            self.are_shared[index] = Scope::from_value(value(of_lfo(Param::Lfo1Scope, index))) == Scope::Shared;
             if first {
                 let stream = random::key(stream, LFO_STREAM + index as u64);
                 self.moving.lfos[index] = Lfo::new(self.phases[index], stream);
@@ -252,6 +251,13 @@ impl Modulators {
             Some(place) => self.bus.destinations()[place].moved(value(param), self.struck_offsets[place]),
             None => value(param),
         }
+    }
+
+    /// The brightness of a note has changed before its strike has begun, and with it what the strike reads.
+    pub(crate) fn shade(&mut self, timbre: f32) {
+        self.sources[Source::Timbre as usize] = timbre;
+        self.read_macros();
+        self.struck_offsets = self.bus.offsets(&mut self.sources, &self.settings.amounts);
     }
 
     /// The key has come up.
@@ -339,9 +345,14 @@ impl Modulators {
                 self.sources[Source::Envelope1 as usize + index] = envelope.level();
             }
         }
+        self.read_macros();
+        self.offsets = self.bus.offsets(&mut self.sources, &self.settings.amounts);
+    }
+
+    /// Puts the macros where their knobs are, before routes move them.
+    fn read_macros(&mut self) {
         let macros = &mut self.sources[Source::Macro1 as usize..];
         macros.iter_mut().zip(self.settings.macros).for_each(|(source, value)| *source = value);
-        self.offsets = self.bus.offsets(&mut self.sources, &self.settings.amounts);
     }
 }
 

@@ -80,6 +80,11 @@ impl StruckValues<'_> {
         self.modulators.struck_value(param, |param| self.instrument.modulated.get(param)).into()
     }
 
+    /// The same where the instrument has a parameter at `value`, as while it slides.
+    pub(super) fn moved(&self, param: Param, value: f64) -> f64 {
+        self.modulators.struck_value(param, |_| value as f32).into()
+    }
+
     /// Of a parameter that is in per cent, as a share of 1.
     pub(super) fn share(&self, param: Param) -> f64 {
         self.get(param) * 0.01

@@ -83,16 +83,6 @@ impl SynthVoice {
         wheels.most(|channel| channel.pressure).max(self.expressions.pressure.into())
     }
 
-    /// What moves the pitch besides the patch.
-    fn bends<'a>(&self, wheels: Wheels<'a>) -> Bends<'a> {
-        Bends {
-            tuning: self.expressions.tuning.into(),
-            wheel: wheels.most(|channel| channel.wheel).max(self.expressions.vibrato.into()),
-            pressure: self.pressure(wheels),
-            wheels,
-        }
-    }
-
     /// Sets out for where pitch, decay and gain are to be in `frames` frames: at the next control tick.
     /// `controls` are what `smoother` has for the instrument at that time, or none for a voice of an earlier patch,
     /// which keeps the last it had.
@@ -126,10 +116,11 @@ impl SynthVoice {
             self.move_controls(wheels, if self.fresh { 0 } else { frames });
         }
 
-        if self.decay.control(&self.controls, self.pressure(wheels), &mut self.bank) {
+        let modes = controls.map(|_| instrument.modulated.modes.as_slice());
+        if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
-        let bends = self.bends(wheels);
+        let bends = Bends { wheels, tuning: self.expressions.tuning.into() };
         let mut start = None;
         if self.fresh {
             self.bank.jump_to(self.pitch.aim(&self.controls, &bends, &self.clock, 0));
@@ -231,17 +222,13 @@ impl SynthVoice {
         self.modulation.aim(&instrument.patch, &instrument.modulated, self.sample_rate, self.fresh);
     }
 
-    /// Takes over the brightness of the note and of its channel: into a strike that has yet to begin, and into the
-    /// decay of the modes.
+    /// Takes over the brightness of the note and of its channel: also into a strike that has yet to begin.
     pub(crate) fn shade(&mut self, instrument: &Instrument, channel: f32) {
-        if self.patch != instrument.patch_serial {
-            return;
+        self.brightness = (self.expressions.brightness + channel).clamp(-0.5, 0.5).into();
+        if self.clock.age == 0 && self.patch == instrument.patch_serial && !self.modulators.are_idle() {
+            self.modulators.shade((2.0 * self.brightness) as f32);
+            let values = StruckValues { instrument, modulators: &self.modulators };
+            self.energy.expect(self.strike.set_gains(&values, &mut self.bank));
         }
-        self.brightness = f64::from((self.expressions.brightness + channel).clamp(-0.5, 0.5));
-        let values = StruckValues { instrument, modulators: &self.modulators };
-        if self.clock.age == 0 {
-            self.energy.expect(self.strike.set_gains(&values, self.brightness, &mut self.bank));
-        }
-        self.decay.shade(&values, self.brightness);
     }
 }

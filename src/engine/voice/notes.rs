@@ -12,7 +12,7 @@ use crate::engine::gain::pan_gains;
 use crate::engine::modulation::NoteModulation;
 use crate::engine::note::Note;
 use crate::engine::voice_manager::Voice;
-use crate::params::Param;
+use crate::params::{Coefficients, Param};
 
 /// The time in which a stolen or choked voice is faded out.
 const FADE_SECONDS: f64 = 0.012;
@@ -21,9 +21,9 @@ impl SynthVoice {
     /// Strikes with what the patch says of it.
     fn excite(&mut self, instrument: &Instrument, note: &Note) {
         let values = StruckValues { instrument, modulators: &self.modulators };
-        self.energy.expect(self.strike.strike(&values, note, self.brightness, &mut self.bank));
+        self.energy.expect(self.strike.strike(&values, note, &mut self.bank));
         self.energy.forget_end();
-        self.pitch.strike(&values, note.velocity.into());
+        self.pitch.strike(&values);
         self.decay.strike(&values);
     }
 
@@ -63,11 +63,12 @@ impl Voice for SynthVoice {
         self.strike.start();
         self.pitch.read(&values);
         self.pitch.start(note, &self.controls, instrument.last_pitch);
-        self.decay.read(&values, self.brightness);
-        self.decay.place(self.pitch.note(), &self.controls);
-        self.decay.start();
+        self.decay.read(&values, &self.controls);
 
-        let law = if instrument.modulated.get(Param::Coefficients) == 0.0 { Law::Exact } else { Law::Classic };
+        let law = match instrument.modulated.values.choice::<Coefficients>(Param::Coefficients) {
+            Coefficients::Exact => Law::Exact,
+            Coefficients::Classic => Law::Classic,
+        };
         if !self.bank.is_of(law) {
             self.bank = Bank::of(law, self.sample_rate);
         }
@@ -103,8 +104,10 @@ impl Voice for SynthVoice {
         let values = instrument.map(|instrument| StruckValues { instrument, modulators });
         let controls = instrument.map_or(self.controls, |instrument| instrument.controls);
         self.pitch.slide(note, &controls, values.as_ref(), &self.clock);
-        values.iter().for_each(|values| self.decay.read(values, self.brightness));
-        self.decay.place(self.pitch.note(), &controls);
+        match &values {
+            Some(values) => self.decay.read(values, &controls),
+            None => self.decay.press(controls.decay),
+        }
         self.modulators.set_pitch(self.pitch.note());
         let frequency = self.pitch.frequency();
         self.bank.retune(self.pitch.ratios.iter().map(|ratio| frequency * ratio).zip(self.decay.t60s()));
@@ -112,7 +115,7 @@ impl Voice for SynthVoice {
 
     fn release(&mut self, velocity: f32) {
         self.let_go = Some(velocity);
-        self.decay.release(velocity);
+        self.decay.release();
     }
 
     fn fade(&mut self) {

@@ -38,9 +38,6 @@ pub(super) struct Bends<'a> {
     pub(super) wheels: Wheels<'a>,
     /// Semitones that the note alone has been told.
     pub(super) tuning: f64,
-    /// Position of the modulation wheel and pressure, 0–1.
-    pub(super) wheel: f64,
-    pub(super) pressure: f64,
 }
 
 impl Pitch {
@@ -93,9 +90,9 @@ impl Pitch {
     }
 
     /// Starts the sweep of a strike and the delay of the vibrato.
-    pub(super) fn strike(&mut self, values: &StruckValues, velocity: f64) {
-        let depth = values.get(Param::Sweep) * (1.0 - values.share(Param::SweepVelocity) * (1.0 - velocity));
-        self.sweep = SweepEnvelope::new(depth, values.get(Param::SweepTime), values.share(Param::SweepCurve));
+    pub(super) fn strike(&mut self, values: &StruckValues) {
+        let [depth, time] = [Param::Sweep, Param::SweepTime].map(|param| values.get(param));
+        self.sweep = SweepEnvelope::new(depth, time, values.share(Param::SweepCurve));
         self.vibrato_delay = values.get(Param::VibratoDelay);
     }
 
@@ -140,8 +137,7 @@ impl Pitch {
     fn offset_after(&self, controls: &Controls, bends: &Bends, clock: &Clock, ahead: usize) -> f64 {
         let age = clock.age + ahead as u64;
         let fade = if self.vibrato_delay > 0.0 { (clock.seconds(age) / self.vibrato_delay).min(1.0) } else { 1.0 };
-        let depth =
-            controls.vibrato * fade + controls.wheel_vibrato * bends.wheel + controls.pressure_vibrato * bends.pressure;
+        let depth = controls.vibrato * fade + controls.added_vibrato;
         let phase = self.vibrato_phase + controls.vibrato_rate * clock.seconds(ahead as u64);
         let vibrato = if depth > 0.0 { depth * sin(TAU * phase) } else { 0.0 };
         let (bend, tuning) = bends.wheels.semitones(controls.bend_range);

@@ -2,11 +2,11 @@
 
 use super::instrument::StruckValues;
 use crate::dsp::bank::Bank;
-use crate::dsp::exciter::{Drive, Exciter};
+use crate::dsp::exciter::{self, Drive};
 use crate::dsp::mode_bank::ExcitationGains;
 use crate::dsp::random;
 use crate::engine::note::Note;
-use crate::params::Param;
+use crate::params::{Exciter, Param};
 use crate::patch::Mode;
 use crate::units::gain_from_db;
 use libm::{fabs, pow, sin};
@@ -21,18 +21,9 @@ const SOFT_HARDNESS: f64 = 0.3;
 const SOFTEST_CONTACT: f64 = 0.01;
 const HARDEST_CONTACT: f64 = 0.000_05;
 
-/// The brightest notes are tilted by this much more than the patch says, in decibels per octave; the dullest by as
-/// much less, and their higher modes ring shorter by their ratio.
-const BRIGHTNESS_TILT: f64 = 12.0;
-
-/// Values of [`Param::Exciter`].
-const IMPULSE: u32 = 0;
-const PLUCK: u32 = 2;
-const NOISE: u32 = 3;
-
 /// What moves the modes of a voice. Real-time safe.
 pub(super) struct Strike {
-    exciter: Exciter,
+    exciter: exciter::Exciter,
     drive: Drive,
     /// Squared force of the last strike, and the energy that one of force 1 brings: the sum of the squared gains.
     squared_force: f64,
@@ -44,12 +35,18 @@ pub(super) struct Strike {
 impl Strike {
     /// None yet.
     pub(super) fn new() -> Self {
-        Self { exciter: Exciter::REST, drive: Drive::NONE, squared_force: 0.0, unit_energy: 0.0, is_noisy: false }
+        Self {
+            exciter: exciter::Exciter::REST,
+            drive: Drive::NONE,
+            squared_force: 0.0,
+            unit_energy: 0.0,
+            is_noisy: false,
+        }
     }
 
     /// Forgets the strikes of the note before.
     pub(super) fn start(&mut self) {
-        self.exciter = Exciter::REST;
+        self.exciter = exciter::Exciter::REST;
         (self.squared_force, self.unit_energy) = (0.0, 0.0);
     }
 
@@ -72,23 +69,24 @@ impl Strike {
     }
 
     /// Computes each mode's excitation gains. Returns how much more energy the last strike brings for that.
-    pub(super) fn set_gains(&mut self, values: &StruckValues, brightness: f64, bank: &mut Bank) -> f64 {
+    pub(super) fn set_gains(&mut self, values: &StruckValues, bank: &mut Bank) -> f64 {
         let modes = values.instrument.modulated.modes.as_slice();
-        let tilt = (values.get(Param::Tilt) + brightness * (2.0 * BRIGHTNESS_TILT)) / (20.0 / LOG2_10);
+        let tilt = values.get(Param::Tilt) / (20.0 / LOG2_10);
         let (noise_gain, position) = (gain_from_db(values.get(Param::NoiseLevel)), values.get(Param::Position));
         let tilted = |mode: &Mode| f64::from(mode.level) * pow(f64::from(mode.ratio), tilt);
         let plain: f64 = modes.iter().map(|mode| fabs(mode.level.into())).sum();
         let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
         let balance = if tilt != 0.0 && total > 0.0 { plain / total } else { 1.0 };
 
-        let exciter = values.instrument.modulated.get(Param::Exciter) as u32;
+        let exciter = values.instrument.modulated.values.choice::<Exciter>(Param::Exciter);
         let (mut noisy, mut energy) = (false, 0.0);
         for (m, mode) in modes.iter().enumerate() {
             let level = tilted(mode) * balance;
-            let struck = if exciter == NOISE { 0.0 } else { level * f64::from(mode.strike) };
-            let noise = if exciter == NOISE { level } else { level * (1.0 - f64::from(mode.strike)) } * noise_gain;
+            let struck = if exciter == Exciter::Noise { 0.0 } else { level * f64::from(mode.strike) };
+            let noise =
+                if exciter == Exciter::Noise { level } else { level * (1.0 - f64::from(mode.strike)) } * noise_gain;
             let plucked = struck * sin(PI * position * 0.01 * f64::from(mode.ratio));
-            let (push, pull) = if exciter == PLUCK { (0.0, plucked) } else { (struck, 0.0) };
+            let (push, pull) = if exciter == Exciter::Pluck { (0.0, plucked) } else { (struck, 0.0) };
             let gains = ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32 };
             bank.set_excitation_gains(m, gains);
             noisy |= noise != 0.0;
@@ -100,19 +98,19 @@ impl Strike {
     }
 
     /// Reads what the patch says of a strike, and strikes. Returns the energy that it brings.
-    pub(super) fn strike(&mut self, values: &StruckValues, note: &Note, brightness: f64, bank: &mut Bank) -> f64 {
+    pub(super) fn strike(&mut self, values: &StruckValues, note: &Note, bank: &mut Bank) -> f64 {
         // The strike before has brought its energy: this one's is counted below.
         self.squared_force = 0.0;
-        self.set_gains(values, brightness, bank);
+        self.set_gains(values, bank);
 
         let velocity = f64::from(note.velocity);
         let soft = if note.soft { SOFT_FORCE } else { 1.0 };
         let force = pow(velocity, 2.0 * values.share(Param::Velocity)) * soft;
-        let hardness = values.share(Param::Hardness) * (1.0 - values.share(Param::HardnessVelocity) * (1.0 - velocity));
+        let hardness = values.share(Param::Hardness);
         let hardness = if note.soft { hardness * (1.0 - SOFT_HARDNESS) } else { hardness };
         let contact = SOFTEST_CONTACT * pow(HARDEST_CONTACT / SOFTEST_CONTACT, hardness);
         let frames = |seconds: f64| (seconds * values.instrument.sample_rate + 0.5) as u32;
-        let is_impulse = values.instrument.modulated.get(Param::Exciter) as u32 == IMPULSE;
+        let is_impulse = values.instrument.modulated.values.choice::<Exciter>(Param::Exciter) == Exciter::Impulse;
         let pulse_frames = if is_impulse { 1 } else { frames(contact) };
         let noise_force = if self.is_noisy { force as f32 } else { 0.0 };
         let noise_frames = frames(values.get(Param::NoiseTime));
