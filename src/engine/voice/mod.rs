@@ -110,7 +110,7 @@ impl SynthVoice {
                 let (settings, bus) = (&instrument.settings, self.modulators.bus());
                 let own = (!self.modulation.is_none())
                     .then(|| smoother.own_settings(&self.modulation, frames as u32, settings, bus));
-                self.modulators.follow(own.as_ref().unwrap_or(settings), &instrument.shared);
+                self.modulators.follow(own.as_ref().unwrap_or(settings), own.is_some(), &instrument.shared);
             }
             // A note starts where its modulation starts: its pitch goes on from there below.
             self.move_controls(wheels, if self.fresh { 0 } else { frames });
