@@ -112,7 +112,7 @@ impl State {
             return Err(format!("window: {:?} is out of range: expected {least} to {most}", saved.window));
         }
         let mut rebased = vec![];
-        let note = |replaced: Replaced| rebased.extend(replaced.rebased);
+        let note = &mut |replaced: Replaced| rebased.extend(replaced.rebased);
         let preset = Preset::parse_old(&saved.preset, "the state's preset", note).map_err(|error| error.to_string())?;
         let mut state = Self::from_preset(preset, saved.seed, saved.window);
         for (id, position) in &saved.positions {

@@ -15,14 +15,14 @@ impl Preset {
     /// [`Error::Format`] for anything but a preset of a format up to [`FORMAT_VERSION`](super::FORMAT_VERSION) whose every key is known and every value
     /// in range; it names the key and what would be right.
     pub fn parse(text: &str, origin: &str) -> Result<Self> {
-        file::parse(text, origin, |_| {})
+        Self::parse_old(text, origin, &mut |_| {})
     }
 
     /// As [`Preset::parse`], telling `replaced` of each retired parameter in it.
     ///
     /// # Errors
     /// As [`Preset::parse`].
-    pub fn parse_old(text: &str, origin: &str, replaced: impl FnMut(Replaced)) -> Result<Self> {
+    pub fn parse_old(text: &str, origin: &str, replaced: &mut dyn FnMut(Replaced)) -> Result<Self> {
         file::parse(text, origin, replaced)
     }
 
@@ -38,25 +38,29 @@ impl Preset {
     /// as [`Preset::parse`] says.
     pub fn load(path: &Path) -> Result<Self> {
         let origin = path.display().to_string();
-        Self::read(std::fs::File::open(path).map_err(|source| Error::io(&origin, source))?, &origin, |_| {})
+        Self::read(std::fs::File::open(path).map_err(|source| Error::io(&origin, source))?, &origin)
     }
 
-    /// Reads a preset file from `reader`, which errors call `origin`, telling `replaced` of each retired parameter in it.
+    /// Reads a preset file from `reader`, which errors call `origin`.
     ///
     /// # Errors
     /// As [`Preset::load`].
-    pub fn read(reader: impl Read, origin: &str, replaced: impl FnMut(Replaced)) -> Result<Self> {
-        let mut bytes = Vec::new();
-        reader.take(MAX_FILE_SIZE + 1).read_to_end(&mut bytes).map_err(|source| Error::io(origin, source))?;
-        if bytes.len() as u64 > MAX_FILE_SIZE {
-            return Err(Error::format(origin, "too large for a preset: expected at most 1 MiB of TOML"));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let at = error.utf8_error().valid_up_to();
-            Error::format(origin, format!("not a preset: expected UTF-8 text, but byte {at} is not"))
-        })?;
-        Self::parse_old(&text, origin, replaced)
+    pub fn read(reader: impl Read, origin: &str) -> Result<Self> {
+        Self::parse(&text(reader, origin)?, origin)
     }
+}
+
+/// The text of a preset or kit file, which errors call `origin`.
+pub(super) fn text(reader: impl Read, origin: &str) -> Result<String> {
+    let mut bytes = Vec::new();
+    reader.take(MAX_FILE_SIZE + 1).read_to_end(&mut bytes).map_err(|source| Error::io(origin, source))?;
+    if bytes.len() as u64 > MAX_FILE_SIZE {
+        return Err(Error::format(origin, "too large for a preset: expected at most 1 MiB of TOML"));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Error::format(origin, format!("not a preset: expected UTF-8 text, but byte {at} is not"))
+    })
 }
 
 #[cfg(test)]

@@ -56,7 +56,7 @@ pub(super) fn take(params: &mut Table, patch: &mut Patch) -> Result<Vec<(f32, bo
 
 /// Gives a patch the routes that do what the values of retired parameters did, and what was built in. `params` are the
 /// others in the file.
-pub(super) fn migrate(retired: &[(f32, bool)], params: &Table, patch: &mut Patch, mut replaced: impl FnMut(Replaced)) {
+pub(super) fn migrate(retired: &[(f32, bool)], params: &Table, patch: &mut Patch, replaced: &mut dyn FnMut(Replaced)) {
     for (Retired { row, replacement }, (value, is_given)) in RETIRED.iter().zip(retired) {
         let work = work(row, f64::from(*value), patch);
         let rebased = work.base.filter(|base| *base as f32 != patch.get(row.param)).map(|_| row.param);
@@ -134,8 +134,8 @@ mod tests {
     fn load(text: &str) -> (Patch, Vec<String>) {
         let mut told = vec![];
         let text = format!("name = \"a\"\n{text}");
-        let preset = Preset::parse_old(&text, "x", |replaced| told.push(replaced.to_string())).unwrap();
-        let again = Preset::parse_old(&preset.to_toml(), "x", |replaced| panic!("{replaced}")).unwrap();
+        let preset = Preset::parse_old(&text, "x", &mut |replaced| told.push(replaced.to_string())).unwrap();
+        let again = Preset::parse_old(&preset.to_toml(), "x", &mut |replaced| panic!("{replaced}")).unwrap();
         assert_eq!(again, preset, "{}", preset.to_toml());
         (preset.patch, told)
     }

@@ -13,7 +13,7 @@ use crate::params::NoteValue;
 
 pub(crate) use bus::Bus;
 pub(crate) use modulators::{Modulators, Positions, Settings, SharedLfos, Struck};
-pub(crate) use note::{NoteModulation, modulated};
+pub(crate) use note::{NoteModulation, modulated, moved};
 
 /// Rounds a second of what lasts a note value, at a tempo in beats per second, or has its own `rate`.
 pub(crate) fn rate_at(value: NoteValue, rate: f64, beat_rate: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! How long the modes of a note ring: their decay and the damper.
 
-use super::instrument::StruckValues;
+use super::values::StruckValues;
 use crate::dsp::bank::Bank;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::engine::controls::Controls;
@@ -30,7 +30,7 @@ impl Decay {
     /// Reads how the patch's modes ring.
     pub(super) fn read(&mut self, values: &StruckValues, controls: &Controls) {
         let tilt = values.moved(Param::DecayTilt, controls.decay_tilt);
-        self.set_tilt(tilt, values.instrument.modulated.modes.as_slice());
+        self.set_tilt(tilt, values.instrument.sound.patch().modes.as_slice());
         self.press(values.moved(Param::Decay, controls.decay));
     }
 
@@ -50,7 +50,7 @@ impl Decay {
 
     /// Reads what a strike says of the release.
     pub(super) fn strike(&mut self, values: &StruckValues) {
-        self.rings_on = values.instrument.modulated.values.choice::<NoteOff>(Param::NoteOff) == NoteOff::Ring;
+        self.rings_on = values.instrument.modulated.choice::<NoteOff>(Param::NoteOff) == NoteOff::Ring;
     }
 
     /// The key comes up.

@@ -9,7 +9,7 @@ pub(super) const MIDDLE_C: f64 = 60.0;
 /// How a patch says that pitch follows the key. A voice keeps it for as long as it sounds, since the instrument may have
 /// another patch by the time that a held key takes the voice back.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct KeyTracking {
+pub(crate) struct KeyTracking {
     /// Semitones per semitone of the tuned key.
     amount: f64,
     /// Frequency of A4 in Hz.
@@ -23,12 +23,12 @@ impl KeyTracking {
     pub(super) const FULL: Self = Self { amount: 1.0, a4_hz: 440.0, glide_seconds: 0.0 };
 
     /// That of a patch with these values.
-    pub(super) fn new(value: impl Fn(Param) -> f64) -> Self {
+    pub(crate) fn new(value: impl Fn(Param) -> f64) -> Self {
         Self { amount: value(Param::KeyTrack) * 0.01, a4_hz: value(Param::Tuning), glide_seconds: value(Param::Glide) }
     }
 
     /// The pitch of a note in semitones on the MIDI scale.
-    pub(super) fn pitch(&self, note: &Note) -> f64 {
+    pub(crate) fn pitch(&self, note: &Note) -> f64 {
         MIDDLE_C + (note.pitch.semitones(self.a4_hz) + f64::from(note.detune) - MIDDLE_C) * self.amount
     }
 }

@@ -3,17 +3,18 @@
 mod clock;
 mod decay;
 mod energy;
-mod instrument;
-mod key_tracking;
+pub(super) mod key_tracking;
 mod notes;
 mod pitch;
 mod strike;
+mod values;
 
 use super::channel::Wheels;
-use super::controls::{Controls, Smoother};
+use super::controls::Controls;
 use super::event::Expression;
 use super::expression::Expressions;
 use super::fader::Fader;
+use super::instrument::Instrument;
 use super::modulation::{Modulators, NoteModulation};
 use super::voice_manager::Voice;
 use crate::dsp::bank::Bank;
@@ -21,10 +22,9 @@ use crate::params::Param;
 use clock::Clock;
 use decay::Decay;
 use energy::Energy;
-pub(crate) use instrument::Instrument;
-use instrument::StruckValues;
 use pitch::{Bends, Pitch};
 use strike::Strike;
+use values::StruckValues;
 
 /// A sounding note.
 pub(crate) struct SynthVoice {
@@ -38,7 +38,6 @@ pub(crate) struct SynthVoice {
     fader: Fader,
     /// The parameters that it follows, as they will be at the next control tick.
     controls: Controls,
-    patch: u32,
     key: u8,
     /// −0.5 to 0.5.
     brightness: f64,
@@ -67,7 +66,6 @@ impl SynthVoice {
             decay: Decay::new(),
             fader: Fader::CLOSED,
             controls,
-            patch: 0,
             key: 0,
             brightness: 0.0,
             expressions: Expressions::new(sample_rate),
@@ -84,29 +82,22 @@ impl SynthVoice {
     }
 
     /// Sets out for where pitch, decay and gain are to be in `frames` frames: at the next control tick.
-    /// `controls` are what `smoother` has for the instrument at that time, or none for a voice of an earlier patch,
-    /// which keeps the last it had.
-    pub(crate) fn control(
-        &mut self,
-        instrument: &Instrument,
-        controls: Option<&Controls>,
-        smoother: &Smoother,
-        wheels: Wheels,
-        frames: usize,
-    ) {
+    /// There is no instrument for a voice of an earlier patch, which keeps the last controls it had.
+    pub(crate) fn control(&mut self, instrument: Option<&Instrument>, wheels: Wheels, frames: usize) {
         let passed = self.clock.since_control();
         self.clock.control();
         self.pitch.advance(self.controls.vibrato_rate, passed);
-        if let Some(controls) = controls {
+        if let Some(Instrument { smoother, next_controls, .. }) = instrument {
             let own = !self.modulation.is_none();
-            self.controls = if own { smoother.modulated(&self.modulation, frames as u32) } else { *controls };
+            self.controls = if own { smoother.modulated(&self.modulation, frames as u32) } else { *next_controls };
         }
         if !self.modulators.are_idle() {
             self.modulators.advance(passed);
             if let Some(velocity) = self.let_go.take() {
                 self.modulators.release(velocity);
             }
-            if controls.is_some() {
+            if let Some(instrument) = instrument {
+                let smoother = &instrument.smoother;
                 let (settings, bus) = (&instrument.settings, self.modulators.bus());
                 let own = (!self.modulation.is_none())
                     .then(|| smoother.own_settings(&self.modulation, frames as u32, settings, bus));
@@ -116,7 +107,7 @@ impl SynthVoice {
             self.move_controls(wheels, if self.fresh { 0 } else { frames });
         }
 
-        let modes = controls.map(|_| instrument.modulated.modes.as_slice());
+        let modes = instrument.map(|instrument| instrument.sound.patch().modes.as_slice());
         if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
@@ -199,7 +190,13 @@ impl SynthVoice {
     }
 
     /// Takes in what the note is told; `brightness` is the channel's.
-    pub(crate) fn express(&mut self, instrument: &Instrument, expression: Expression, value: f32, brightness: f32) {
+    pub(crate) fn express(
+        &mut self,
+        instrument: Option<&Instrument>,
+        expression: Expression,
+        value: f32,
+        brightness: f32,
+    ) {
         self.expressions.set(expression, value);
         if expression == Expression::Brightness {
             self.shade(instrument, brightness);
@@ -219,13 +216,13 @@ impl SynthVoice {
 
     /// Takes the note's own offsets from the instrument's present values.
     pub(crate) fn follow(&mut self, instrument: &Instrument) {
-        self.modulation.aim(&instrument.patch, &instrument.modulated, self.sample_rate, self.fresh);
+        self.modulation.aim(&instrument.values, &instrument.modulated, self.sample_rate, self.fresh);
     }
 
     /// Takes over the brightness of the note and of its channel: also into a strike that has yet to begin.
-    pub(crate) fn shade(&mut self, instrument: &Instrument, channel: f32) {
+    pub(crate) fn shade(&mut self, instrument: Option<&Instrument>, channel: f32) {
         self.brightness = (self.expressions.brightness + channel).clamp(-0.5, 0.5).into();
-        if self.clock.age == 0 && self.patch == instrument.patch_serial && !self.modulators.are_idle() {
+        if let Some(instrument) = instrument.filter(|_| self.clock.age == 0 && !self.modulators.are_idle()) {
             self.modulators.shade((2.0 * self.brightness) as f32);
             let values = StruckValues { instrument, modulators: &self.modulators };
             self.energy.expect(self.strike.set_gains(&values, &mut self.bank));

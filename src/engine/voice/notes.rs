@@ -3,12 +3,13 @@
 use super::SynthVoice;
 use super::clock::Clock;
 use super::energy::Energy;
-use super::instrument::{Instrument, StruckValues};
+use super::values::{StruckValues, strike_modulators};
 use crate::dsp::bank::{Bank, Law};
 use crate::dsp::mode_bank::ModeSetup;
 use crate::engine::expression::Expressions;
 use crate::engine::fader::Fader;
 use crate::engine::gain::pan_gains;
+use crate::engine::instrument::Instrument;
 use crate::engine::modulation::NoteModulation;
 use crate::engine::note::Note;
 use crate::engine::voice_manager::Voice;
@@ -32,7 +33,7 @@ impl SynthVoice {
     fn take_over(&mut self, note: &Note) {
         // A MIDI controller that has not let go of the key still presses it.
         let pressure = if note.key == self.key && note.id == -1 { self.expressions.pressure } else { 0.0 };
-        self.expressions.clear();
+        self.expressions.begin(note.gain, note.pan);
         self.expressions.pressure = pressure;
         self.modulation.let_go();
         self.key = note.key;
@@ -49,15 +50,16 @@ impl Voice for SynthVoice {
         self.energy = Energy::NONE;
         self.fader = Fader::CLOSED;
         self.controls = instrument.controls;
-        (self.patch, self.key, self.brightness) = (note.patch, note.key, note.brightness.into());
+        (self.key, self.brightness) = (note.key, note.brightness.into());
         self.expressions = Expressions::new(self.sample_rate);
+        self.expressions.begin(note.gain, note.pan);
         if !self.modulation.is_none() {
             self.modulation = NoteModulation::NONE;
         }
         (self.let_go, self.fresh) = (None, true);
         self.modulators.load(&instrument.bus);
         if !self.modulators.are_idle() {
-            instrument.strike_modulators(&mut self.modulators, note, true);
+            strike_modulators(instrument, &mut self.modulators, note, true);
         }
         let values = StruckValues { instrument, modulators: &self.modulators };
         self.strike.start();
@@ -65,7 +67,7 @@ impl Voice for SynthVoice {
         self.pitch.start(note, &self.controls, instrument.last_pitch);
         self.decay.read(&values, &self.controls);
 
-        let law = match instrument.modulated.values.choice::<Coefficients>(Param::Coefficients) {
+        let law = match instrument.modulated.choice::<Coefficients>(Param::Coefficients) {
             Coefficients::Exact => Law::Exact,
             Coefficients::Classic => Law::Classic,
         };
@@ -74,7 +76,7 @@ impl Voice for SynthVoice {
         }
         let (width, frequency) = (values.share(Param::Width), self.pitch.frequency());
         let tuning = self.pitch.ratios.iter().zip(self.decay.t60s());
-        let setup = tuning.zip(instrument.modulated.modes.as_slice()).map(|((ratio, t60), mode)| {
+        let setup = tuning.zip(instrument.sound.patch().modes.as_slice()).map(|((ratio, t60), mode)| {
             let (left, right) = pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
             ModeSetup { frequency: frequency * ratio, t60, left, right }
         });
@@ -87,7 +89,7 @@ impl Voice for SynthVoice {
         if !self.modulators.are_idle() {
             self.modulators.advance(passed);
             self.let_go = None;
-            instrument.strike_modulators(&mut self.modulators, note, false);
+            strike_modulators(instrument, &mut self.modulators, note, false);
         }
         self.retune(Some(instrument), note);
         self.excite(instrument, note);

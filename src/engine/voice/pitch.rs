@@ -1,8 +1,8 @@
 //! Where the pitch of a note lies and how it moves: key, tuning, glide, sweep, bend and vibrato.
 
 use super::clock::Clock;
-use super::instrument::StruckValues;
 use super::key_tracking::KeyTracking;
+use super::values::StruckValues;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::dsp::pitch::{Glide, SweepEnvelope};
 use crate::engine::channel::Wheels;
@@ -62,7 +62,7 @@ impl Pitch {
     pub(super) fn read(&mut self, values: &StruckValues) {
         self.tracking = KeyTracking::new(|param| values.get(param));
         let stretch = values.get(Param::Stretch);
-        for (ratio, mode) in self.ratios.iter_mut().zip(values.instrument.modulated.modes.as_slice()) {
+        for (ratio, mode) in self.ratios.iter_mut().zip(values.instrument.sound.patch().modes.as_slice()) {
             *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
         }
     }

@@ -1,6 +1,6 @@
 //! The strikes of a voice: how hard they are, and how strongly each mode is moved by them.
 
-use super::instrument::StruckValues;
+use super::values::StruckValues;
 use crate::dsp::bank::Bank;
 use crate::dsp::exciter::{self, Drive};
 use crate::dsp::mode_bank::ExcitationGains;
@@ -70,7 +70,7 @@ impl Strike {
 
     /// Computes each mode's excitation gains. Returns how much more energy the last strike brings for that.
     pub(super) fn set_gains(&mut self, values: &StruckValues, bank: &mut Bank) -> f64 {
-        let modes = values.instrument.modulated.modes.as_slice();
+        let modes = values.instrument.sound.patch().modes.as_slice();
         let tilt = values.get(Param::Tilt) / (20.0 / LOG2_10);
         let (noise_gain, position) = (gain_from_db(values.get(Param::NoiseLevel)), values.get(Param::Position));
         let tilted = |mode: &Mode| f64::from(mode.level) * pow(f64::from(mode.ratio), tilt);
@@ -78,7 +78,7 @@ impl Strike {
         let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
         let balance = if tilt != 0.0 && total > 0.0 { plain / total } else { 1.0 };
 
-        let exciter = values.instrument.modulated.values.choice::<Exciter>(Param::Exciter);
+        let exciter = values.instrument.modulated.choice::<Exciter>(Param::Exciter);
         let (mut noisy, mut energy) = (false, 0.0);
         for (m, mode) in modes.iter().enumerate() {
             let level = tilted(mode) * balance;
@@ -110,7 +110,7 @@ impl Strike {
         let hardness = if note.soft { hardness * (1.0 - SOFT_HARDNESS) } else { hardness };
         let contact = SOFTEST_CONTACT * pow(HARDEST_CONTACT / SOFTEST_CONTACT, hardness);
         let frames = |seconds: f64| (seconds * values.instrument.sample_rate + 0.5) as u32;
-        let is_impulse = values.instrument.modulated.values.choice::<Exciter>(Param::Exciter) == Exciter::Impulse;
+        let is_impulse = values.instrument.modulated.choice::<Exciter>(Param::Exciter) == Exciter::Impulse;
         let pulse_frames = if is_impulse { 1 } else { frames(contact) };
         let noise_force = if self.is_noisy { force as f32 } else { 0.0 };
         let noise_frames = frames(values.get(Param::NoiseTime));
