@@ -180,6 +180,10 @@ mod tests {
     #[test]
     fn wrong_quantities_say_what_would_be_right() {
         for (result, expected) in [
+            (
+                setting("hardness_velocity=50").err(),
+                "‘hardness_velocity’ is retired: a route from velocity to hardness replaces it",
+            ),
             (seconds("-1").err(), "-1 is out of range: expected 0 to 86400 s"),
             (seconds("nan").err(), "‘nan’ is not a number: expected 0 to 86400 s"),
             (seconds("1 dB").err(), "‘1 dB’ is not a number: expected 0 to 86400 s"),

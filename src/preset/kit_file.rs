@@ -177,7 +177,7 @@ mod tests {
     use super::*;
 
     fn parse(text: &str) -> crate::Result<Playable> {
-        super::parse(text, "x", &mut |name| Preset::find(name).cloned())
+        super::parse(text, "x", &mut |name| Preset::find(name).cloned(), &mut |_| {})
     }
 
     #[test]
