@@ -2,6 +2,7 @@
 
 use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
 use sprung::params::{PARAMS, Param};
+use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
 
 fn event(frame: u32, kind: EventKind) -> Event {
@@ -200,7 +201,12 @@ fn a_touch_takes_nothing_from_the_stroke_before() {
 
 #[test]
 fn pressure_belongs_to_its_key() {
-    let legato = Patch::default().with(Param::Mode, 2.0).with(Param::PressureDamping, 100.0).with(Param::Decay, 10.0);
+    let legato = Patch::default().with(Param::Mode, 2.0).with(Param::Decay, 10.0).with_route(
+        0,
+        Source::Pressure,
+        Param::Damper,
+        100.0,
+    );
     let pressed = event(4800, EventKind::PolyPressure { key: 57, pressure: 1.0 });
     let (plain, _) = render(&legato, &[on(0, 57, 1.0), on(4900, 64, 1.0)], 48_000);
     let (left, _) = render(&legato, &[on(0, 57, 1.0), pressed, on(4900, 64, 1.0)], 48_000);

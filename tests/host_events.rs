@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use sprung::dsp::CONTROL_FRAMES;
 use sprung::engine::{Event, EventKind, Expression, Notes, Synth};
 use sprung::params::Param;
+use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 
@@ -306,7 +307,7 @@ fn tails_are_told_exactly() {
 #[test]
 fn a_tail_is_told_of_what_cannot_be_heard_yet_and_of_what_was_retuned() {
     let above = Patch::default().with(Param::Sweep, 60.0).with(Param::SweepTime, 2.0).with(Param::Decay, 4.0);
-    let legato = Patch::default().with(Param::Mode, 2.0).with(Param::DecayKey, 100.0);
+    let legato = Patch::default().with(Param::Mode, 2.0).with_route(0, Source::Key, Param::Decay, -37.0);
     for (patch, key, next) in [(above, 84, None), (legato, 84, Some(36))] {
         let mut synth = synth(&patch);
         let (mut left, mut right) = (vec![0.0; 9600], vec![0.0; 9600]);
@@ -340,11 +341,11 @@ fn a_tail_told_during_a_strike_is_never_too_short() {
 #[test]
 fn a_note_that_never_ends_has_an_endless_tail() {
     // The original formula rounds so little damping to none.
-    let endless = Mode { decay: 10.0, ..Mode::UNIT };
+    let endless = Mode { ratio: 0.25, decay: 10.0, ..Mode::UNIT };
     let short = Mode { ratio: 2.0, decay: 0.01, ..Mode::UNIT };
     for modes in [&[endless][..], &[endless, short]] {
         let mut patch = Patch::default().with(Param::Coefficients, 1.0).with(Param::Decay, 60.0);
-        patch = patch.with(Param::DecayKey, -100.0);
+        patch = patch.with(Param::DecayTilt, 2.0);
         patch.modes = ModeTable::new(modes);
         let mut synth = synth(&patch);
         let (mut left, mut right) = (vec![0.0; 4800], vec![0.0; 4800]);

@@ -179,11 +179,11 @@ fn routes_scale_each_other() {
         12.0 * libm::log2(frequency(&sound, 0.2) / 220.0)
     };
     // Vibrato by the wheel would blur what is measured.
-    by_wheel.set(WheelVibrato, 0.0);
+    by_wheel.set(Route14, 0.0);
     // Half of the travel of an amount is from 12.5 % to −87.5 %.
     assert!((pitch(&by_wheel, 0.0) - 12.0).abs() < 0.01);
     assert!((pitch(&by_wheel, 0.125) - 0.0).abs() < 0.01);
-    let mut scaled = patch(&[(Source::Macro1, Tune, 12.5)]).with(WheelVibrato, 0.0);
+    let mut scaled = patch(&[(Source::Macro1, Tune, 12.5)]).with(Route14, 0.0);
     let route = scaled.routes.get(0).unwrap();
     scaled.routes.set(0, Some(Route { scale: Some(Source::Wheel), response: Response::Squared, ..route }));
     assert!((pitch(&scaled, 0.25) - 3.0).abs() < 0.01);
@@ -253,7 +253,7 @@ fn a_level_starts_where_its_modulation_starts() {
 #[test]
 fn a_brightness_does_not_read_a_strike_again() {
     // The envelope is at 0 at the strike: nothing that the strike has read moves later.
-    let routed = patch(&[(Source::Envelope1, DecayTilt, 50.0)]).with(Envelope1Attack, 0.1);
+    let routed = patch(&[(Source::Envelope1, Tilt, 50.0)]).with(Envelope1Attack, 0.1);
     let events = [on(0, 60, 1.0), control(12_000, 74, 0.2)];
     assert!(render(&routed, 0, &events, 24_000) == render(&patch(&[]), 0, &events, 24_000));
 }
@@ -306,10 +306,7 @@ fn busy(exciter: f32) -> Patch {
         (Decay, 2.0),
         (Release, 0.2),
         (Gain, -12.0),
-        (HardnessVelocity, 30.0),
-        (SweepVelocity, 30.0),
-        (PressureDamping, 20.0),
-        (ReleaseVelocity, 30.0),
+        (Damper, 20.0),
     ] {
         patch.set(param, value);
     }

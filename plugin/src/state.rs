@@ -3,9 +3,10 @@
 use crate::slate::Loaded;
 use nice_plug::prelude::PluginState;
 use serde::{Deserialize, Serialize};
+use sprung::params::retired::Retired;
 use sprung::params::{PARAMS, Unit};
 use sprung::patch::Patch;
-use sprung::preset::Preset;
+use sprung::preset::{Preset, Replaced};
 use std::collections::BTreeMap;
 
 /// The wrapper's name for what is kept.
@@ -110,15 +111,24 @@ impl State {
         if saved.window.iter().any(|side| !(least..=most).contains(side)) {
             return Err(format!("window: {:?} is out of range: expected {least} to {most}", saved.window));
         }
-        let preset = Preset::parse(&saved.preset, "the state's preset").map_err(|error| error.to_string())?;
+        let mut rebased = vec![];
+        let note = &mut |replaced: Replaced| rebased.extend(replaced.rebased);
+        let preset = Preset::parse_old(&saved.preset, "the state's preset", note).map_err(|error| error.to_string())?;
         let mut state = Self::from_preset(preset, saved.seed, saved.window);
         for (id, position) in &saved.positions {
+            // The position of a knob that is gone; the preset's value has become a route.
+            if Retired::from_id(id).is_some() {
+                continue;
+            }
             let index = PARAMS.iter().position(|info| info.id == id);
             let index = index.ok_or_else(|| format!("positions: there is no parameter ‘{id}’"))?;
             if !(0.0..=1.0).contains(position) || matches!(PARAMS[index].unit, Unit::Count | Unit::Choice) {
                 return Err(format!("positions.{id}: {position} is not a position of that knob: expected 0 to 1"));
             }
-            state.loaded.positions[index] = *position;
+            // Where a route moves a parameter from another value now, the knob stands at that value.
+            if !rebased.contains(&PARAMS[index].param) {
+                state.loaded.positions[index] = *position;
+            }
         }
         Ok(state)
     }
@@ -196,7 +206,7 @@ mod tests {
             (change("\"gain\":0.12345678", "\"gain\":null"), "not a state of Sprung: invalid type: null"),
             (change("\"gain\":0.12345678", "\"mode\":0.5"), "positions.mode: 0.5 is not a position of that knob"),
             (change("\"gain\":0.12345678", "\"gian\":0.5"), "positions: there is no parameter ‘gian’"),
-            (change("format = 2", "format = 9"), "the state's preset: format 9 is of a newer version"),
+            (change("format = 3", "format = 9"), "the state's preset: format 9 is of a newer version"),
             (change("decay = 0.12345679", "decay = nan"), "the state's preset: params.decay: NaN is out of range"),
             (change("decay = 0.12345679", "decya = 1"), "the state's preset: unknown key ‘params.decya’"),
             (change("ratio = ", "ratio = -"), "the state's preset: modes[0].ratio: -"),

@@ -67,7 +67,8 @@ pub(super) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
 }
 
 fn read(path: &Path, inputs: &mut Inputs) -> Result<Playable> {
-    Playable::read(path, &mut |path| inputs.open(path))
+    let warn = &mut |origin: &str, replaced| complain("warning", format_args!("{origin}: {replaced}"));
+    Playable::read(path, &mut |path| inputs.open(path), warn)
 }
 
 fn list(presets: &[Preset]) -> String {

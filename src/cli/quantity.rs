@@ -1,6 +1,7 @@
 //! Values as options give them: ranges, units and pairs, with errors that say what would be right.
 
 use sprung::io::SampleFormat;
+use sprung::params::retired::Retired;
 use sprung::params::{PARAMS, Param};
 use sprung::render::{Level, SAMPLE_RATES, Tail};
 use sprung::units::{split_quantity, with_decimal_point};
@@ -125,7 +126,8 @@ pub(super) fn channel(text: &str) -> Result<(u8, String), String> {
 pub(super) fn setting(text: &str) -> Result<(Param, f32), String> {
     let (id, value) = text.split_once('=').ok_or("expected ID=VALUE, as in decay=0.5")?;
     let id = id.trim();
-    let param = Param::from_id(id).ok_or_else(|| no_parameter(id))?;
+    let retired = || Retired::from_id(id).map(Retired::message);
+    let param = Param::from_id(id).ok_or_else(|| retired().unwrap_or_else(|| no_parameter(id)))?;
     if let Some((first, rest)) = value.split_once(',')
         && rest.contains('=')
     {
@@ -178,6 +180,10 @@ mod tests {
     #[test]
     fn wrong_quantities_say_what_would_be_right() {
         for (result, expected) in [
+            (
+                setting("hardness_velocity=50").err(),
+                "‘hardness_velocity’ is retired: a route from velocity to hardness replaces it",
+            ),
             (seconds("-1").err(), "-1 is out of range: expected 0 to 86400 s"),
             (seconds("nan").err(), "‘nan’ is not a number: expected 0 to 86400 s"),
             (seconds("1 dB").err(), "‘1 dB’ is not a number: expected 0 to 86400 s"),

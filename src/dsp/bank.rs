@@ -47,6 +47,11 @@ impl Bank {
         }
     }
 
+    /// Whether it is of a law.
+    pub fn is_of(&self, law: Law) -> bool {
+        matches!((self, law), (Self::Exact(_), Law::Exact) | (Self::Classic(_), Law::Classic))
+    }
+
     /// See [`ModeBank::load`].
     pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
         either!(self, bank => bank.load(modes));

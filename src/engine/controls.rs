@@ -4,7 +4,7 @@ use super::gain::pan_gains;
 use super::modulation::{Bus, NoteModulation, Settings, rate_at};
 use crate::dsp::power_of_two;
 use crate::dsp::ramp::Ramp;
-use crate::params::{PARAM_COUNT, PARAMS, Param, Values};
+use crate::params::{Choice, NoteValue, PARAM_COUNT, PARAMS, Param, Values};
 use crate::units::gain_from_db;
 
 /// Every parameter on its way to the value it was last given. Real-time safe.
@@ -22,7 +22,7 @@ pub(crate) struct Smoother {
 }
 
 impl Smoother {
-    /// All at rest at their values.
+    /// All at rest at `values`.
     pub(crate) fn new(sample_rate: f64, values: &Values, beat_rate: f64) -> Self {
         let ramps = std::array::from_fn(|index| Ramp::at_rest(values.get(PARAMS[index].param)));
         let arrived = Controls::new(|param| values.get(param), beat_rate);
@@ -111,18 +111,17 @@ pub(crate) struct Controls {
     coarse: f32,
     /// Cents.
     fine: f32,
-    /// Semitones.
+    /// Semitones: the patch's own, and what routes add to it.
     pub(crate) vibrato: f64,
+    pub(crate) added_vibrato: f64,
     /// Hz.
     pub(crate) vibrato_rate: f64,
     /// The rate is that of a note value.
     is_synchronised: bool,
-    /// Semitones.
-    pub(crate) wheel_vibrato: f64,
-    /// Semitones.
-    pub(crate) pressure_vibrato: f64,
-    /// 0–1.
-    pub(crate) pressure_damping: f64,
+    /// How far the damper is on while the note is held, 0–1.
+    pub(crate) damper: f64,
+    /// How higher modes decay faster.
+    pub(crate) decay_tilt: f64,
     /// Semitones.
     pub(crate) bend_range: f32,
     /// Amplitude ratio.
@@ -139,7 +138,7 @@ impl Controls {
         let (coarse, fine) = (value(Param::Tune), value(Param::Fine));
         let (gain_db, pan) = (value(Param::Gain), value(Param::Pan));
         let (gain_left, gain_right) = gains(gain_db, pan);
-        let sync = value(Param::VibratoSync);
+        let sync = NoteValue::from_value(value(Param::VibratoSync));
         Self {
             decay: value(Param::Decay).into(),
             release: value(Param::Release).into(),
@@ -147,11 +146,11 @@ impl Controls {
             coarse,
             fine,
             vibrato: f64::from(value(Param::Vibrato)) * 0.01,
+            added_vibrato: 0.0,
             vibrato_rate: rate_at(sync, value(Param::VibratoRate).into(), beat_rate),
-            is_synchronised: sync != 0.0,
-            wheel_vibrato: f64::from(value(Param::WheelVibrato)) * 0.01,
-            pressure_vibrato: f64::from(value(Param::PressureVibrato)) * 0.01,
-            pressure_damping: f64::from(value(Param::PressureDamping)) * 0.01,
+            is_synchronised: sync != NoteValue::Off,
+            damper: f64::from(value(Param::Damper)) * 0.01,
+            decay_tilt: value(Param::DecayTilt).into(),
             bend_range: value(Param::BendRange),
             gain_left,
             gain_right,
@@ -171,11 +170,10 @@ impl Controls {
                 *(if param == Param::Tune { &mut self.coarse } else { &mut self.fine }) = value;
                 self.tune = semitones(self.coarse, self.fine);
             }
-            Param::Vibrato => self.vibrato = wide * 0.01,
+            Param::Vibrato => self.added_vibrato = wide * 0.01 - self.vibrato,
             Param::VibratoRate if !self.is_synchronised => self.vibrato_rate = wide,
-            Param::WheelVibrato => self.wheel_vibrato = wide * 0.01,
-            Param::PressureVibrato => self.pressure_vibrato = wide * 0.01,
-            Param::PressureDamping => self.pressure_damping = wide * 0.01,
+            Param::Damper => self.damper = wide * 0.01,
+            Param::DecayTilt => self.decay_tilt = wide,
             Param::BendRange => self.bend_range = value,
             Param::Gain => self.gain_db = value,
             Param::Pan => self.pan = value,

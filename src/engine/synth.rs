@@ -12,7 +12,7 @@ use super::zones::{MEMBER_BEND_RANGE, Zones};
 use super::{Event, EventKind, Snapshot};
 use crate::dsp::limiter::Work;
 use crate::dsp::{CONTROL_FRAMES, Limiter};
-use crate::params::{Change, PARAM_COUNT, Param, Values};
+use crate::params::{self, Change, Choice, PARAM_COUNT, Param, Values};
 use crate::patch::Patch;
 use crate::sound::kit::Pad;
 use crate::sound::tuning::Pitch;
@@ -248,7 +248,8 @@ impl Synth {
     fn play_limited(&mut self, left: &mut [f32], right: &mut [f32]) {
         let is_heard = self.play(left, right);
         if is_heard || !self.limiter.is_idle() {
-            self.limiter.process(self.values.get(Param::Limiter) != 0.0, left, right);
+            let limiter = self.values.choice::<params::Limiter>(Param::Limiter);
+            self.limiter.process(limiter == params::Limiter::On, left, right);
         }
     }
 
@@ -510,11 +511,8 @@ impl Synth {
     /// Hands the manager the parameters that are its own.
     fn configure(&mut self) {
         let value = |param| modulated(&self.values, param, self.offsets[param as usize]);
-        let mode = match value(Param::Mode) as u32 {
-            1 if self.kit.is_single() => PlayMode::Mono,
-            2 if self.kit.is_single() => PlayMode::Legato,
-            _ => PlayMode::Poly,
-        };
+        let own = PlayMode::from_value(value(Param::Mode));
+        let mode = if self.kit.is_single() { own } else { PlayMode::Poly };
         self.manager.configure(value(Param::Voices) as usize, mode, self.first_patch);
     }
 }

@@ -8,11 +8,11 @@ macro_rules! body {
             "Time in which a held note falls by 60 dB (T60).";
         Release "release" "Release", Seconds 0.005..60.0 = 0.3, Logarithmic, Smoothed(20), [],
             "Longest T60 once the note is released: the damper.";
-        NoteOff "note_off" "Note off", Choice 0.0..1.0 = 0.0, Linear, NextNote, ["damp", "ring"],
+        Damper "damper" "Damper", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
+            "How far the damper is on while the note is held: at 100 % it damps as a release does.";
+        NoteOff "note_off" "Note off", Choice 0.0..1.0 = 0.0, Linear, NextNote, [NoteOff],
             "Whether a released note is damped or rings on as a drum does.";
-        DecayKey "decay_key" "Decay by key", Percent -100.0..100.0 = 0.0, Linear, NextNote, [],
-            "How higher keys decay faster: at 100 % the T60 halves per octave above C4.";
-        DecayTilt "decay_tilt" "Decay by mode", Number 0.0..2.0 = 0.0, Linear, NextNote, [],
+        DecayTilt "decay_tilt" "Decay by mode", Number 0.0..2.0 = 0.0, Linear, Smoothed(20), [],
             "How higher modes decay faster: the T60 of a mode is divided by its ratio to this power.";
         Tilt "tilt" "Brightness", DecibelsPerOctave -24.0..24.0 = 0.0, Linear, NextNote, [],
             "Tilts the levels of the modes by their ratio.";
@@ -20,7 +20,7 @@ macro_rules! body {
             "Raises the ratios of the modes to this power: spreads or squeezes the spectrum.";
         Width "width" "Width", Percent 0.0..100.0 = 100.0, Linear, NextNote, [],
             "How far apart the modes are panned.";
-        Coefficients "coefficients" "Coefficients", Choice 0.0..1.0 = 0.0, Linear, NextNote, ["exact", "classic"],
+        Coefficients "coefficients" "Coefficients", Choice 0.0..1.0 = 0.0, Linear, NextNote, [Coefficients],
             "Exact tuning and decay, or the original formulas with their drift, clamped short of exploding.";
     }
         } $($rest)* }

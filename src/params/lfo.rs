@@ -24,16 +24,16 @@ macro_rules! lfo {
         $Rate $rate $rate_name, Hertz 0.01..40.0 = 5.0, Logarithmic, Smoothed(20), [],
             "How many times a second it goes round.";
         $Sync $sync $sync_name, Choice 0.0..9.0 = 0.0, Linear, Smoothed(0),
-            ["off", "1/1", "1/2", "1/4.", "1/4", "1/4T", "1/8.", "1/8", "1/8T", "1/16"],
+            [NoteValue],
             "Note value that one round lasts at the song's tempo, in place of the rate.";
         $Shape $shape $shape_name, Choice 0.0..5.0 = 0.0, Linear, Smoothed(0),
-            ["sine", "triangle", "ramp", "square", "steps", "drift"],
+            [Shape],
             "How it moves; steps are a new random number each round, drift slides from one to the next.";
         $Phase $phase $phase_name, Percent 0.0..100.0 = 0.0, Linear, NextNote, fixed [],
             "Where in its round it starts.";
         $Fade $fade $fade_name, Seconds 0.0..10.0 = 0.0, Linear, NextNote, [],
             "Time from the strike in which it fades in.";
-        $Scope $scope $scope_name, Choice 0.0..1.0 = 0.0, Linear, NextNote, ["voice", "shared"],
+        $Scope $scope $scope_name, Choice 0.0..1.0 = 0.0, Linear, NextNote, [Scope],
             "Whether each note has one of its own, which starts with it, or all follow the same, whose rate no route moves.";
     })*
         } $($rest)* }

@@ -1,7 +1,8 @@
 //! The parameter table: every parameter's id, name, unit, range, curve, default and smoothing, defined once.
 //!
 //! The engine, the command, preset files, the documentation and any plugin shell derive from [`PARAMS`].
-//! Ids are part of every saved preset and song: a test pins them, and an id that goes is never used again.
+//! Ids are part of every saved preset and song: a test pins them, and an id that goes is kept in [`retired`] and never
+//! used again.
 
 use libm::{exp10, floor, log, log10, pow, round};
 
@@ -82,6 +83,7 @@ pub struct ParamInfo {
 }
 
 mod body;
+mod choice;
 mod control;
 mod envelope;
 mod exciter;
@@ -89,18 +91,30 @@ mod lfo;
 mod macros;
 mod output;
 mod pitch;
+pub mod retired;
 mod routes;
 mod text;
 mod values;
 mod voices;
 
+pub use choice::{Choice, Coefficients, Exciter, Limiter, NoteOff, NoteValue, PlayMode, Scope, Shape};
 pub use values::Values;
+
+/// The names of the choices of a row.
+macro_rules! choice_names {
+    () => {
+        &[]
+    };
+    ($choices:ident) => {
+        $choices::NAMES
+    };
+}
 
 /// Makes [`Param`] and [`PARAMS`] of the rows of all modules.
 macro_rules! table {
     ({ $($section:literal {
         $($param:ident $id:literal $name:literal, $unit:ident $min:literal..$max:literal = $default:literal,
-          $curve:ident, $change:expr, $($fixed:ident)? [$($choice:literal),*], $help:literal;)*
+          $curve:ident, $change:expr, $($fixed:ident)? [$($choices:ident)?], $help:literal;)*
     })* }) => {
         /// A parameter, in table order.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -114,7 +128,7 @@ macro_rules! table {
                 param: Param::$param, id: $id, name: $name, section: $section, unit: Unit::$unit,
                 min: $min, max: $max, default: $default, curve: Curve::$curve, change: $change,
                 is_fixed: { const FIXED: &[&str] = &[$(stringify!($fixed))?]; !FIXED.is_empty() },
-                choices: &[$($choice),*], help: $help,
+                choices: choice_names!($($choices)?), help: $help,
             },)*)*
         ];
 
@@ -219,11 +233,11 @@ mod tests {
     #[test]
     fn ids_are_pinned() {
         let ids: Vec<_> = PARAMS.iter().map(|info| info.id).collect();
-        let pinned = "exciter hardness hardness_velocity position noise_level noise_time velocity \
-            decay release note_off decay_key decay_tilt tilt stretch width coefficients \
-            tune fine tuning key_track sweep sweep_time sweep_curve sweep_velocity \
+        let pinned = "exciter hardness position noise_level noise_time velocity \
+            decay release damper note_off decay_tilt tilt stretch width coefficients \
+            tune fine tuning key_track sweep sweep_time sweep_curve \
             vibrato vibrato_rate vibrato_delay vibrato_sync glide \
-            bend_range wheel_vibrato pressure_vibrato pressure_damping release_velocity \
+            bend_range \
             lfo1_rate lfo1_sync lfo1_shape lfo1_phase lfo1_fade lfo1_scope \
             lfo2_rate lfo2_sync lfo2_shape lfo2_phase lfo2_fade lfo2_scope \
             lfo3_rate lfo3_sync lfo3_shape lfo3_phase lfo3_fade lfo3_scope \
@@ -247,7 +261,7 @@ mod tests {
             assert!(info.curve == Curve::Linear || info.min > 0.0, "{}", info.id);
             assert_eq!(info.unit == Unit::Choice, !info.choices.is_empty(), "{}", info.id);
             if info.unit == Unit::Choice {
-                assert_eq!(info.max as usize + 1, info.choices.len(), "{}", info.id);
+                assert_eq!((info.min, info.max as usize + 1), (0.0, info.choices.len()), "{}", info.id);
             }
         }
         assert_eq!(PARAMS.len(), PARAM_COUNT);

@@ -8,7 +8,7 @@ macro_rules! output {
             "Output level.";
         Pan "pan" "Pan", Percent -100.0..100.0 = 0.0, Linear, Smoothed(20), [],
             "Output position, left to right.";
-        Limiter "limiter" "Limiter", Choice 0.0..1.0 = 1.0, Linear, AtOnce, ["off", "on"],
+        Limiter "limiter" "Limiter", Choice 0.0..1.0 = 1.0, Linear, AtOnce, [Limiter],
             "Brings loud chords below −0.3 dBFS true peak, without latency; what stays below −1 dBFS passes unchanged.";
     }
         } $($rest)* }

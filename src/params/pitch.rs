@@ -18,16 +18,14 @@ macro_rules! pitch {
             "Time until the sweep has arrived at the note.";
         SweepCurve "sweep_curve" "Sweep curve", Percent -100.0..100.0 = 50.0, Linear, NextNote, [],
             "0 % is a straight line; above, the sweep falls fast and settles slowly; below, the reverse.";
-        SweepVelocity "sweep_velocity" "Velocity to sweep", Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
-            "How much velocity scales the depth of the sweep.";
         Vibrato "vibrato" "Vibrato", Cents 0.0..1200.0 = 0.0, Linear, Smoothed(20), [],
             "Vibrato depth, each way.";
         VibratoRate "vibrato_rate" "Vibrato rate", Hertz 0.05..20.0 = 5.0, Logarithmic, Smoothed(20), [],
             "Vibrato frequency.";
         VibratoDelay "vibrato_delay" "Vibrato delay", Seconds 0.0..5.0 = 0.0, Linear, NextNote, [],
-            "Time over which the patch's own vibrato fades in; wheel and pressure act at once.";
+            "Time over which the patch's own vibrato fades in; what routes add acts at once.";
         VibratoSync "vibrato_sync" "Vibrato sync", Choice 0.0..9.0 = 0.0, Linear, Smoothed(0),
-            ["off", "1/1", "1/2", "1/4.", "1/4", "1/4T", "1/8.", "1/8", "1/8T", "1/16"],
+            [NoteValue],
             "Note value that one vibrato lasts at the song's tempo, in place of the vibrato rate.";
         Glide "glide" "Glide", Seconds 0.0..10.0 = 0.0, Linear, NextNote, fixed [],
             "Time to slide from the note before; 0 is off.";

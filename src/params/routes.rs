@@ -1,4 +1,4 @@
-//! Rows of the amounts of the modulation routes.
+//! Rows of the amounts of the modulation routes: the last three are those of the routes that a new patch has.
 
 macro_rules! routes {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {
@@ -30,11 +30,11 @@ macro_rules! routes {
             "How far the route moves its destination, in travel of that knob.";
         Route13 "route13" "Route 13 amount", Percent -100.0..100.0 = 0.0, Linear, Smoothed(20), [],
             "How far the route moves its destination, in travel of that knob.";
-        Route14 "route14" "Route 14 amount", Percent -100.0..100.0 = 0.0, Linear, Smoothed(20), [],
+        Route14 "route14" "Route 14 amount", Percent -100.0..100.0 = 4.166_666_5, Linear, Smoothed(20), [],
             "How far the route moves its destination, in travel of that knob.";
-        Route15 "route15" "Route 15 amount", Percent -100.0..100.0 = 0.0, Linear, Smoothed(20), [],
+        Route15 "route15" "Route 15 amount", Percent -100.0..100.0 = 25.0, Linear, Smoothed(20), [],
             "How far the route moves its destination, in travel of that knob.";
-        Route16 "route16" "Route 16 amount", Percent -100.0..100.0 = 0.0, Linear, Smoothed(20), [],
+        Route16 "route16" "Route 16 amount", Percent -100.0..100.0 = -50.0, Linear, Smoothed(20), [],
             "How far the route moves its destination, in travel of that knob.";
     }
         } $($rest)* }

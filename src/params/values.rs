@@ -1,6 +1,6 @@
 //! A value for each parameter.
 
-use super::{PARAM_COUNT, PARAMS, Param};
+use super::{Choice, PARAM_COUNT, PARAMS, Param};
 
 /// One value per parameter, each one that its parameter can take. Plain data of fixed size, so that the audio thread
 /// can copy it.
@@ -18,6 +18,12 @@ impl Values {
     /// The value of a parameter, in the table's unit. Real-time safe.
     pub fn get(&self, param: Param) -> f32 {
         self.0[param as usize]
+    }
+
+    /// The choice that a parameter is set to. Real-time safe.
+    pub fn choice<T: Choice>(&self, param: Param) -> T {
+        debug_assert!(param.info().choices == T::NAMES, "{param:?} has other choices");
+        T::from_value(self.get(param))
     }
 
     /// Sets a parameter to the nearest value that it can take. Real-time safe. Callers with a person behind them

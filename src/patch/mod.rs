@@ -4,7 +4,7 @@ pub mod routes;
 
 pub use crate::dsp::mode_bank::MAX_MODES;
 use crate::params::{Param, Values};
-use routes::Routes;
+use routes::{Route, Routes, Source, amount_param};
 use std::sync::Arc;
 
 /// One mode of the body: one mass on its spring.
@@ -76,9 +76,9 @@ pub struct Patch {
 }
 
 impl Default for Patch {
-    /// Every parameter at its default and one mass: the preset `init`. Allocates.
+    /// Every parameter at its default, one mass and [`Routes::INITIAL`]: the preset `init`. Allocates.
     fn default() -> Self {
-        Self { values: Values::default(), modes: ModeTable::new(&[Mode::UNIT]), routes: Routes::NONE }
+        Self { values: Values::default(), modes: ModeTable::new(&[Mode::UNIT]), routes: Routes::INITIAL }
     }
 }
 
@@ -98,6 +98,14 @@ impl Patch {
     pub fn with(mut self, param: Param, value: f32) -> Self {
         self.set(param, value);
         self
+    }
+
+    /// The patch with a route at a place, 0 to 15, as [`Patch::with`]: `source` moves `destination` in equal steps, by so
+    /// many per cent of its knob's travel where the source is 1.
+    #[must_use]
+    pub fn with_route(mut self, place: usize, source: Source, destination: Param, amount: f32) -> Self {
+        self.routes.set(place, Some(Route::linear(source, destination)));
+        self.with(amount_param(place), amount)
     }
 }
 

@@ -128,6 +128,13 @@ pub struct Route {
     pub scale: Option<Source>,
 }
 
+impl Route {
+    /// A source that moves a parameter in equal steps.
+    pub const fn linear(source: Source, destination: Param) -> Self {
+        Self { source, destination, response: Response::Linear, scale: None }
+    }
+}
+
 /// Up to [`MAX_ROUTES`] routes. Plain data of fixed size, so that the audio thread can copy it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Routes([Option<Route>; MAX_ROUTES]);
@@ -135,6 +142,16 @@ pub struct Routes([Option<Route>; MAX_ROUTES]);
 impl Routes {
     /// No route.
     pub const NONE: Routes = Routes([None; MAX_ROUTES]);
+
+    /// The routes of a new patch, in the last places: the modulation wheel makes vibrato, and brightness tilts the levels
+    /// and the decay of the modes. Their amounts are the defaults of the parameters.
+    pub const INITIAL: Routes = {
+        let mut routes = Routes::NONE;
+        routes.0[13] = Some(Route::linear(Source::Wheel, Param::Vibrato));
+        routes.0[14] = Some(Route::linear(Source::Timbre, Param::Tilt));
+        routes.0[15] = Some(Route::linear(Source::Timbre, Param::DecayTilt));
+        routes
+    };
 
     /// The route at a place, 0 to 15.
     pub fn get(&self, place: usize) -> Option<Route> {

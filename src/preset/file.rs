@@ -1,10 +1,12 @@
 //! The TOML of a preset file, read key by key so that every error names its place and what would be right.
 
 use super::about::{About, about_to_toml};
+use super::migration::{self, Replaced};
 use super::routes;
 use super::value::{check_keys, param_value, table, unexpected};
 use super::{FORMAT_VERSION, Preset};
 use crate::error::Error;
+use crate::params::retired::Retired;
 use crate::params::{PARAMS, Param, Unit};
 use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use std::fmt::Write;
@@ -12,17 +14,17 @@ use toml::{Table, Value};
 
 const KEYS: [&str; 8] = ["format", "name", "author", "tags", "comment", "modes", "routes", "params"];
 
-pub(super) fn parse(text: &str, origin: &str) -> crate::Result<Preset> {
-    read(&table(text, origin)?).map_err(|message| Error::format(origin, message))
+pub(super) fn parse(text: &str, origin: &str, replaced: &mut dyn FnMut(Replaced)) -> crate::Result<Preset> {
+    read(&table(text, origin)?, replaced).map_err(|message| Error::format(origin, message))
 }
 
-pub(super) fn read(table: &Table) -> Result<Preset, String> {
+pub(super) fn read(table: &Table, replaced: &mut dyn FnMut(Replaced)) -> Result<Preset, String> {
     if table.contains_key("kit") {
         return Err(format!("this is a kit: expected a preset, which begins with format = {FORMAT_VERSION}"));
     }
     // The version first: in another version's file, its other keys mean nothing to this one.
-    match table.get("format") {
-        Some(Value::Integer(1..=FORMAT_VERSION)) => {}
+    let format = match table.get("format") {
+        Some(Value::Integer(format @ 1..=FORMAT_VERSION)) => *format,
         Some(Value::Integer(newer)) if *newer > FORMAT_VERSION => {
             return Err(format!(
                 "format {newer} is of a newer version: this one reads up to format = {FORMAT_VERSION}"
@@ -32,21 +34,30 @@ pub(super) fn read(table: &Table) -> Result<Preset, String> {
             return Err(format!("format {other} is unknown: this version reads format = 1 to {FORMAT_VERSION}"));
         }
         None => return Err(format!("there is no ‘format’: expected format = {FORMAT_VERSION}")),
-    }
+    };
     check_keys(table, "", &KEYS)?;
     let About { name, author, tags, comment } = About::read(table)?;
-    let mut patch = Patch::default();
-    match table.get("params") {
-        Some(Value::Table(params)) => read_params(params, &mut patch)?,
+    let mut params = match table.get("params") {
+        Some(Value::Table(params)) => params.clone(),
         Some(other) => return Err(unexpected("params", "a table [params]", other)),
-        None => {}
-    }
+        None => Table::new(),
+    };
+    let is_old = format < migration::FIRST_WITHOUT_RETIRED;
+    let mut patch = Patch::default();
+    let retired = if is_old { Some(migration::take(&mut params, &mut patch)?) } else { None };
+    read_params(&params, &mut patch)?;
     patch.modes = ModeTable::new(&read_modes(table.get("modes"))?);
     routes::read(table, &mut patch)?;
+    if let Some(retired) = retired {
+        migration::migrate(&retired, &params, &mut patch, replaced);
+    }
     Ok(Preset { name, author, tags, comment, patch })
 }
 
 fn read_params(params: &Table, patch: &mut Patch) -> Result<(), String> {
+    if let Some(retired) = params.keys().find_map(|id| Retired::from_id(id)) {
+        return Err(format!("params.{}: {}", retired.id(), retired.message()));
+    }
     check_keys(params, "params.", &PARAMS.iter().map(|info| info.id).collect::<Vec<_>>())?;
     for (id, value) in params {
         if let Some(param) = Param::from_id(id) {
@@ -141,15 +152,19 @@ mod tests {
     use proptest::prelude::*;
     use proptest::sample::select;
 
+    fn read_text(text: &str) -> crate::Result<Preset> {
+        parse(text, "x", &mut |_| {})
+    }
+
     fn error(body: &str) -> String {
-        parse(&format!("format = 1\nname = \"a\"\n{body}"), "x").unwrap_err().to_string()
+        read_text(&format!("format = 1\nname = \"a\"\n{body}")).unwrap_err().to_string()
     }
 
     #[test]
     fn numbers_and_texts_are_read_in_the_unit_of_the_table() {
         let text = "format = 1\nname = \"a\"\ntags = [\"b\"]\nmodes = [{ ratio = 2, level = -0.5 }]\n\
                     [params]\ndecay = \"250 ms\"\ngain = -3\nexciter = \"pluck\"\nfine = 1.5";
-        let preset = parse(text, "x").unwrap();
+        let preset = read_text(text).unwrap();
         let mut expected = Patch::default()
             .with(Param::Decay, 0.25)
             .with(Param::Gain, -3.0)
@@ -198,13 +213,13 @@ mod tests {
     #[test]
     fn the_version_comes_before_all_else() {
         for (text, expected) in [
-            ("format = 3\nwarp = 1", "x: format 3 is of a newer version: this one reads up to format = 2"),
-            ("format = 0", "x: format 0 is unknown: this version reads format = 1 to 2"),
-            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1 to 2"),
-            ("name = \"a\"", "x: there is no ‘format’: expected format = 2"),
+            ("format = 4\nwarp = 1", "x: format 4 is of a newer version: this one reads up to format = 3"),
+            ("format = 0", "x: format 0 is unknown: this version reads format = 1 to 3"),
+            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1 to 3"),
+            ("name = \"a\"", "x: there is no ‘format’: expected format = 3"),
             ("format = 1", "x: there is no ‘name’: expected name = \"…\""),
         ] {
-            assert_eq!(parse(text, "x").unwrap_err().to_string(), expected);
+            assert_eq!(read_text(text).unwrap_err().to_string(), expected);
         }
     }
 
@@ -213,18 +228,18 @@ mod tests {
         for text in
             ["\u{1b}[2J", "\u{202e}\"gnp\"\\", "a\tb\n\u{9b}1m", "'\u{2066}'\n\"\"\"", "plain \"quotes\"\nand 'lines'"]
         {
-            let mut preset = parse("format = 1\nname = \"a\"", "x").unwrap();
+            let mut preset = read_text("format = 1\nname = \"a\"").unwrap();
             preset.comment = text.to_owned();
             preset.tags = vec!["\u{200f}b".to_owned()];
             let written = preset.to_toml();
             assert_eq!(printable_lines(&written), written);
-            assert_eq!(parse(&written, "x").unwrap(), preset, "{written}");
+            assert_eq!(read_text(&written).unwrap(), preset, "{written}");
         }
     }
 
     #[test]
     fn a_new_preset_names_no_parameter() {
-        let preset = parse("format = 1\nname = \"a\"", "x").unwrap();
+        let preset = read_text("format = 1\nname = \"a\"").unwrap();
         assert_eq!(preset.patch, Patch::default());
         assert!(preset.to_toml().ends_with("\n[params]\n"), "{}", preset.to_toml());
     }
@@ -260,13 +275,13 @@ mod tests {
             let [name, author, tag] = <[String; 3]>::try_from(texts).unwrap();
             let preset = Preset { name, author, tags: vec![tag], comment, patch };
             let text = preset.to_toml();
-            prop_assert_eq!(parse(&text, "x").map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?, preset);
+            prop_assert_eq!(read_text(&text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?, preset);
         }
 
         #[test]
         fn random_text_never_panics(text in "\\PC*", keyed in "(modes|params|tags|name) ?= ?[\\[\\{\\}\\]0-9a-z\",=. ]*") {
-            let _ = parse(&text, "x");
-            let _ = parse(&format!("format = 1\nname = \"a\"\n{keyed}"), "x");
+            let _ = read_text(&text);
+            let _ = read_text(&format!("format = 1\nname = \"a\"\n{keyed}"));
         }
     }
 }

@@ -4,7 +4,7 @@ use super::about::{About, about_to_toml, label, toml_string};
 use super::file;
 use super::kit::{KIT_VERSION, KitPreset, Playable};
 use super::value::{check_keys, param_value, table, unexpected};
-use super::{MAX_FILE_SIZE, Preset};
+use super::{MAX_FILE_SIZE, Preset, Replaced};
 use crate::error::Error;
 use crate::params::Param;
 use crate::sound::Pad;
@@ -18,13 +18,18 @@ const PAD_KEYS: [&str; 7] = ["key", "name", "sound", "pitch", "gain", "pan", "ch
 /// What finds the presets that a kit names.
 type Find<'a> = &'a mut dyn FnMut(&str) -> crate::Result<Preset>;
 
-pub(super) fn parse(text: &str, origin: &str, find: Find) -> crate::Result<Playable> {
+pub(super) fn parse(
+    text: &str,
+    origin: &str,
+    find: Find,
+    replaced: &mut dyn FnMut(Replaced),
+) -> crate::Result<Playable> {
     if text.len() as u64 > MAX_FILE_SIZE {
         return Err(Error::format(origin, "too large for a kit: expected at most 1 MiB of TOML"));
     }
     let table = table(text, origin)?;
     let read = match table.get("kit") {
-        None => file::read(&table).map(Playable::Preset),
+        None => file::read(&table, replaced).map(Playable::Preset),
         Some(version) => read(&table, version, find).map(Playable::Kit),
     };
     read.map_err(|message| Error::format(origin, message))
@@ -172,7 +177,7 @@ mod tests {
     use super::*;
 
     fn parse(text: &str) -> crate::Result<Playable> {
-        super::parse(text, "x", &mut |name| Preset::find(name).cloned())
+        super::parse(text, "x", &mut |name| Preset::find(name).cloned(), &mut |_| {})
     }
 
     #[test]

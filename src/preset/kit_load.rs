@@ -1,7 +1,7 @@
 //! Kits from texts and files, and back.
 
 use super::kit::{KitPreset, Playable};
-use super::{Preset, kit_file, load};
+use super::{Preset, Replaced, kit_file, load};
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::path::{Component, Path};
@@ -14,16 +14,25 @@ impl KitPreset {
 }
 
 impl Playable {
-    /// Reads the preset or kit file at `path`. It and the presets that a kit names are opened by `open`.
+    /// Reads the preset or kit file at `path`. It and the presets that a kit names are opened by `open`; `replaced` is told
+    /// of each retired parameter in any of them, and of the file that it is in.
     ///
     /// # Errors
     /// As [`Preset::load`]; for a kit, [`Error::Format`] names the place in it as well. A preset file of a kit has to lie in
     /// the kit's folder or below: other paths, and links that lead elsewhere, are refused before anything is opened.
-    pub fn read(path: &Path, open: &mut dyn FnMut(&Path) -> Result<File>) -> Result<Self> {
+    pub fn read(
+        path: &Path,
+        open: &mut dyn FnMut(&Path) -> Result<File>,
+        replaced: &mut dyn FnMut(&str, Replaced),
+    ) -> Result<Self> {
         let origin = path.display().to_string();
         let text = load::text(open(path)?, &origin)?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        Self::parse(&text, &origin, &mut |name| preset_of_kit(name, folder, open))
+        let mut told = vec![];
+        let mut find = |name: &str| preset_of_kit(name, folder, open, replaced);
+        let playable = kit_file::parse(&text, &origin, &mut find, &mut |one| told.push(one));
+        told.into_iter().for_each(|one| replaced(&origin, one));
+        playable
     }
 
     /// Reads a preset or kit from its text, which errors call `origin`; `preset` finds the presets that a kit names.
@@ -31,7 +40,7 @@ impl Playable {
     /// # Errors
     /// [`Error::Format`] as [`Preset::parse`], and where a kit names what is not there.
     pub fn parse(text: &str, origin: &str, preset: &mut dyn FnMut(&str) -> Result<Preset>) -> Result<Self> {
-        kit_file::parse(text, origin, preset)
+        kit_file::parse(text, origin, preset, &mut |_| {})
     }
 
     /// Its file.
@@ -49,7 +58,12 @@ pub fn is_file_name(name: &Path) -> bool {
 }
 
 /// The preset that a kit in `folder` names: a file there, or else one of the factory's.
-fn preset_of_kit(name: &str, folder: &Path, open: &mut dyn FnMut(&Path) -> Result<File>) -> Result<Preset> {
+fn preset_of_kit(
+    name: &str,
+    folder: &Path,
+    open: &mut dyn FnMut(&Path) -> Result<File>,
+    replaced: &mut dyn FnMut(&str, Replaced),
+) -> Result<Preset> {
     let relative = Path::new(name);
     if !is_file_name(relative) {
         return Preset::find(name).cloned();
@@ -67,7 +81,9 @@ fn preset_of_kit(name: &str, folder: &Path, open: &mut dyn FnMut(&Path) -> Resul
     if !path.is_file() {
         return Err(Error::value(name, "it is no regular file: expected a preset file"));
     }
-    Preset::read(open(&path)?, &folder.join(relative).display().to_string())
+    let origin = folder.join(relative).display().to_string();
+    let text = load::text(open(&path)?, &origin)?;
+    Preset::parse_old(&text, &origin, &mut |one| replaced(&origin, one))
 }
 
 #[cfg(test)]
@@ -76,9 +92,8 @@ mod tests {
     use std::fs;
 
     fn load(path: &Path) -> Result<Playable> {
-        Playable::read(path, &mut |path| {
-            File::open(path).map_err(|source| Error::io(path.display().to_string(), source))
-        })
+        let mut open = |path: &Path| File::open(path).map_err(|source| Error::io(path.display().to_string(), source));
+        Playable::read(path, &mut open, &mut |_, _| {})
     }
 
     #[test]

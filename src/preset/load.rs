@@ -1,6 +1,6 @@
 //! Presets from texts and files, and back.
 
-use super::{Preset, file};
+use super::{Preset, Replaced, file};
 use crate::error::{Error, Result};
 use std::io::Read;
 use std::path::Path;
@@ -15,7 +15,15 @@ impl Preset {
     /// [`Error::Format`] for anything but a preset of a format up to [`FORMAT_VERSION`](super::FORMAT_VERSION) whose every key is known and every value
     /// in range; it names the key and what would be right.
     pub fn parse(text: &str, origin: &str) -> Result<Self> {
-        file::parse(text, origin)
+        Self::parse_old(text, origin, &mut |_| {})
+    }
+
+    /// As [`Preset::parse`], telling `replaced` of each retired parameter in it.
+    ///
+    /// # Errors
+    /// As [`Preset::parse`].
+    pub fn parse_old(text: &str, origin: &str, replaced: &mut dyn FnMut(Replaced)) -> Result<Self> {
+        file::parse(text, origin, replaced)
     }
 
     /// Writes the preset so that [`Preset::parse`] gives it back exactly. Parameters at their defaults are left out.

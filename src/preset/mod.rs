@@ -7,6 +7,7 @@ mod kit;
 mod kit_file;
 mod kit_load;
 mod load;
+mod migration;
 mod routes;
 mod value;
 
@@ -18,9 +19,11 @@ use std::sync::Arc;
 pub use kit::{KIT_VERSION, KitPreset, Playable};
 pub use kit_load::is_file_name;
 pub use load::MAX_FILE_SIZE;
+pub use migration::Replaced;
 
-/// The preset format that this version writes. It reads those before as well: 1 had no routes.
-pub const FORMAT_VERSION: i64 = 2;
+/// The preset format that this version writes. It reads those before as well: 1 had no routes, and both had parameters
+/// that are retired ([`crate::params::retired`]).
+pub const FORMAT_VERSION: i64 = 3;
 
 /// A patch and what a person calls it.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::value::{check_keys, param_value, unexpected};
 use crate::params::Param;
 use crate::patch::Patch;
-use crate::patch::routes::{MAX_ROUTES, Response, Route, Source, amount_param, place_of_amount};
+use crate::patch::routes::{MAX_ROUTES, Response, Route, Routes, Source, amount_param, place_of_amount};
 use std::fmt::Write;
 use toml::{Table, Value};
 
@@ -14,11 +14,12 @@ pub(super) fn read(file: &Table, patch: &mut Patch) -> Result<(), String> {
     let routes = match file.get("routes") {
         None => return Ok(()),
         Some(_) if file.get("format") == Some(&Value::Integer(1)) => {
-            return Err("routes: a preset of format 1 has none: expected format = 2".to_owned());
+            return Err("routes: a preset of format 1 has none: expected format = 3".to_owned());
         }
         Some(Value::Array(routes)) => routes,
         Some(other) => return Err(unexpected("routes", "a list of routes, [{ source = …, to = … }, …]", other)),
     };
+    patch.routes = Routes::NONE;
     let mut place = 0;
     for (index, route) in routes.iter().enumerate() {
         let at = format!("routes[{index}]");
@@ -35,12 +36,15 @@ pub(super) fn read(file: &Table, patch: &mut Patch) -> Result<(), String> {
         }
         patch.routes.set(place, Some(read_route(route, &at)?));
         let param = amount_param(place);
+        let in_params = file.get("params").is_some_and(|params| params.get(param.info().id).is_some());
         if let Some(amount) = route.get("amount") {
-            if file.get("params").and_then(|params| params.get(param.info().id)).is_some() {
+            if in_params {
                 return Err(format!("{at}.amount: it is given twice, here and as params.{}", param.info().id));
             }
             let value = param_value(param.info(), amount).map_err(|message| format!("{at}.amount: {message}"))?;
             patch.set(param, value);
+        } else if !in_params {
+            patch.set(param, 0.0);
         }
         place += 1;
     }
@@ -94,11 +98,15 @@ fn named<T>(
 
 /// Whether a parameter is written among the routes: the amount of one that there is.
 pub(super) fn writes(patch: &Patch, param: Param) -> bool {
-    place_of_amount(param).is_some_and(|place| patch.routes.get(place).is_some())
+    let is_listed = |place| patch.routes != Routes::INITIAL && patch.routes.get(place).is_some();
+    place_of_amount(param).is_some_and(is_listed)
 }
 
-/// Writes the routes, if there are any.
+/// Writes the routes, if they are not those of a new patch.
 pub(super) fn to_toml(patch: &Patch) -> String {
+    if patch.routes == Routes::INITIAL {
+        return String::new();
+    }
     let (mut out, mut expected) = (String::new(), 0);
     for (place, route) in patch.routes.iter() {
         let _ = write!(out, "    {{ source = \"{}\", to = \"{}\"", route.source.id(), route.destination.info().id);
@@ -116,7 +124,7 @@ pub(super) fn to_toml(patch: &Patch) -> String {
         out.push_str(" },\n");
         expected = place + 1;
     }
-    if out.is_empty() { out } else { format!("routes = [\n{out}]\n") }
+    if out.is_empty() { "routes = []\n".to_owned() } else { format!("routes = [\n{out}]\n") }
 }
 
 #[cfg(test)]
@@ -146,6 +154,8 @@ mod tests {
         assert_eq!(parse(&text).as_ref(), Ok(&patch), "{text}");
         assert!(PARAMS.iter().filter(|info| writes(&patch, info.param)).count() == 4);
         assert_eq!(to_toml(&Patch::default()), "");
+        patch.routes = Routes::NONE;
+        assert_eq!(to_toml(&patch), "routes = []\n");
     }
 
     #[test]

@@ -18,12 +18,12 @@ fn presets_are_listed_shown_and_checked() {
     assert_eq!(sandbox.succeeds("presets show kick.toml"), kick.as_bytes());
 
     sandbox.write("bad.toml", "format = 1\nname = \"a\"\ncolour = 1");
-    sandbox.write("worse.toml", "format = 3");
+    sandbox.write("worse.toml", "format = 4");
     let stdout = sandbox.succeeds("presets check kick.toml");
     assert_eq!(String::from_utf8(stdout).unwrap(), "kick.toml: ‘Kick’ is in order\n");
     let output = sandbox.sprung("presets check bad.toml kick.toml worse.toml none.toml").assert().code(1);
     let stderr = String::from_utf8(output.get_output().stderr.clone()).unwrap();
-    for message in ["bad.toml: unknown key ‘colour’", "worse.toml: format 3", "none.toml: ", "3 of 4 cannot be used"]
+    for message in ["bad.toml: unknown key ‘colour’", "worse.toml: format 4", "none.toml: ", "3 of 4 cannot be used"]
     {
         assert!(stderr.contains(message), "{message}: {stderr}");
     }
@@ -45,6 +45,20 @@ fn kits_are_shown_and_checked() {
         1,
         "bad.toml: keys[0].sound: ../kick.toml: it lies outside the kit’s folder",
     );
+}
+
+#[test]
+fn retired_parameters_of_older_presets_are_warned_of() {
+    let sandbox = Sandbox::new();
+    sandbox.write("old.toml", "format = 2\nname = \"a\"\n[params]\ndecay_key = 30\n");
+    let output = sandbox.sprung("presets show old.toml").assert().success();
+    let stderr = String::from_utf8(output.get_output().stderr.clone()).unwrap();
+    assert!(
+        stderr.contains("warning: old.toml: ‘decay_key’ is retired: a route from key to decay replaces it"),
+        "{stderr}"
+    );
+    let shown = String::from_utf8(output.get_output().stdout.clone()).unwrap();
+    assert!(shown.contains("source = \"key\", to = \"decay\""), "{shown}");
 }
 
 #[test]

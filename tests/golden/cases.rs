@@ -3,6 +3,7 @@
 use crate::score::Score;
 use sprung::engine::EventKind;
 use sprung::params::Param;
+use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 
@@ -56,7 +57,7 @@ fn engine() -> Vec<Score> {
         line("engine-legato", patch.clone().with(Param::Mode, 2.0).with(Param::Glide, 0.1)).keeping_audio(),
         choking(patch.clone().with(Param::Choke, 1.0)),
         automation(patch.clone().with(Param::Exciter, 1.0)).keeping_audio(),
-        controllers(patch.clone().with(Param::Exciter, 2.0).with(Param::PressureDamping, 80.0)),
+        controllers(patch.clone().with(Param::Exciter, 2.0).with_route(0, Source::Pressure, Param::Damper, 80.0)),
         noise(patch.clone().with(Param::Exciter, 3.0).with(Param::NoiseTime, 0.3)).keeping_audio(),
         programs(patch.clone()),
         rate("engine-22050-hz", 22_050.0),
@@ -149,7 +150,7 @@ fn automation(patch: Patch) -> Score {
 /// Wheel, pressure and a bend range set by RPN 0.
 fn controllers(patch: Patch) -> Score {
     let press = |pressure: f32| EventKind::PolyPressure { key: 60, pressure };
-    Score::new("engine-controllers", patch.with(Param::PressureVibrato, 100.0), 1.5)
+    Score::new("engine-controllers", patch.with_route(1, Source::Pressure, Param::Vibrato, 100.0 / 12.0), 1.5)
         .control(0.0, 101, 0)
         .control(0.0, 100, 0)
         .control(0.0, 6, 12)

@@ -88,12 +88,13 @@ impl Kind {
     ];
 }
 
-/// The parameters by the numbers that kept cases have for them: new ones come last. The limiter is not among them,
+/// The parameters by the numbers that kept cases have for them: new ones come last, and a retired one
+/// has become the one that a route moves in its place. The limiter is not among them,
 /// because it would hide what the bound is to find.
-pub(crate) const PARAM_IDS: &str = "exciter hardness hardness_velocity position noise_level noise_time velocity decay \
-    release note_off decay_key decay_tilt tilt stretch width coefficients tune fine tuning key_track sweep sweep_time \
-    sweep_curve sweep_velocity vibrato vibrato_rate vibrato_delay vibrato_sync glide bend_range wheel_vibrato \
-    pressure_vibrato pressure_damping release_velocity voices mode choke gain pan \
+pub(crate) const PARAM_IDS: &str = "exciter hardness hardness position noise_level noise_time velocity decay \
+    release note_off decay decay_tilt tilt stretch width coefficients tune fine tuning key_track sweep sweep_time \
+    sweep_curve sweep vibrato vibrato_rate vibrato_delay vibrato_sync glide bend_range vibrato \
+    vibrato damper release voices mode choke gain pan \
     lfo1_rate lfo1_sync lfo1_shape lfo1_phase lfo1_fade lfo1_scope lfo2_rate lfo2_sync lfo2_shape lfo2_phase \
     lfo2_fade lfo2_scope lfo3_rate lfo3_sync lfo3_shape lfo3_phase lfo3_fade lfo3_scope \
     envelope1_delay envelope1_attack envelope1_hold envelope1_decay envelope1_sustain envelope1_release \
@@ -111,16 +112,16 @@ const DESTINATIONS: [Param; 22] = [
     Param::Release,
     Param::Vibrato,
     Param::VibratoRate,
-    Param::WheelVibrato,
-    Param::PressureVibrato,
-    Param::PressureDamping,
+    Param::Vibrato,
+    Param::Vibrato,
+    Param::Damper,
     Param::BendRange,
     Param::Sweep,
     Param::SweepTime,
     Param::SweepCurve,
     Param::Hardness,
     Param::DecayTilt,
-    Param::DecayKey,
+    Param::Decay,
     Param::Lfo1Rate,
     Param::Lfo2Rate,
     Param::Lfo3Rate,

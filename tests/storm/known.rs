@@ -5,7 +5,7 @@ use crate::check::check;
 use crate::events::{event, off, on};
 use sprung::engine::{Event, EventKind};
 use sprung::params::Param;
-use sprung::patch::Patch;
+use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 use sprung::units::key_from_frequency;
 
@@ -88,7 +88,9 @@ fn quick_strikes_in_mono_that_are_never_let_go() {
 fn the_longest_decay_at_the_highest_rate() {
     for (sample_rate, key) in [(768_000.0, 60), (768_000.0, 127), (48_000.0, 127), (44_100.0, 21)] {
         let patch = Patch::default().with(Param::Decay, 60.0).with(Param::Vibrato, 30.0);
-        for patch in [patch.clone(), patch.clone().with(Param::Vibrato, 0.0), patch.with(Param::DecayKey, -100.0)] {
+        let mut low = patch.clone().with(Param::DecayTilt, 2.0);
+        low.modes = ModeTable::new(&[Mode { ratio: 0.25, decay: 10.0, ..Mode::UNIT }]);
+        for patch in [patch.clone(), patch.with(Param::Vibrato, 0.0), low] {
             let storm = Case { sample_rate, ..case(patch, vec![on(0, key)], sample_rate as usize * 4) };
             stays_bounded("long", &storm, 0.9);
         }

@@ -5,6 +5,7 @@ use sprung::analysis::damped_sine::fit_unknown;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::params::Param;
 use sprung::patch::Patch;
+use sprung::patch::routes::Source;
 use sprung::sound::Tuning;
 
 const FRAMES: usize = 12_000;
@@ -49,7 +50,7 @@ fn everything_that_follows_pitch_follows_the_tuned_pitch() {
     let patch = Patch::default()
         .with(Param::Glide, 0.1)
         .with(Param::KeyTrack, 70.0)
-        .with(Param::DecayKey, 50.0)
+        .with_route(0, Source::Key, Param::Decay, -18.4)
         .with(Param::Vibrato, 0.3)
         .with(Param::Tuning, 443.0);
     for mode in [0.0, 1.0, 2.0] {

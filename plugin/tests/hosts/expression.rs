@@ -7,6 +7,7 @@ use crate::parameters::is_stepped;
 use clack_host::events::event_types::NoteExpressionType as Kind;
 use sprung::engine::{EventKind, Expression, Notes};
 use sprung::params::{Change, PARAMS, Param};
+use sprung::patch::routes::Source;
 
 pub(crate) fn modulation_moves_one_voice_or_all() {
     let mut instance = Instance::new();
@@ -72,7 +73,9 @@ pub(crate) fn expressions_reach_their_notes() {
             on(3_000, 0, 67, 3, 0.6),
             express(whole, 4_001, values[0]),
         ];
-        let patch = patch().with(Param::PressureVibrato, 80.0).with(Param::PressureDamping, 30.0);
+        let patch = patch()
+            .with_route(0, Source::Pressure, Param::Vibrato, 6.67)
+            .with_route(1, Source::Pressure, Param::Damper, 30.0);
         compare(&format!("{kind:?}"), &patch, &song);
     }
 }
@@ -99,7 +102,7 @@ pub(crate) fn mpe_is_heard_by_channel() {
             midi(at + 5_000, [0x80 | channel, key, 70]),
         ]);
     }
-    let patch = patch().with(Param::PressureVibrato, 90.0);
+    let patch = patch().with_route(0, Source::Pressure, Param::Vibrato, 7.5);
     let (bend, pedal) = (midi(3_333, [0xE0, 0, 70]), midi(4_444, [0xB0, 64, 127]));
     let [members, bent, held, both] = [vec![], vec![bend], vec![pedal], vec![bend, pedal]].map(|main| {
         let mut song = [&song[..], &main].concat();

@@ -2,6 +2,7 @@
 
 use crate::host::Instance;
 use sprung::params::Param;
+use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 
@@ -15,8 +16,8 @@ pub(crate) fn patches() -> Vec<(&'static str, Patch)> {
         .with(Param::Glide, 0.0503)
         .with(Param::Vibrato, 13.7)
         .with(Param::VibratoRate, 5.321)
-        .with(Param::PressureDamping, 33.3)
-        .with(Param::PressureVibrato, 71.0)
+        .with_route(0, Source::Pressure, Param::Damper, 33.3)
+        .with_route(1, Source::Pressure, Param::Vibrato, 5.9)
         .with(Param::Gain, -7.77);
     odd.modes = ModeTable::new(&[
         Mode::UNIT,

@@ -7,6 +7,7 @@ use crate::phrase::{self, Dialect, FRAMES, SAMPLE_RATE};
 use sprung::dsp::random::{key, uniform};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::Param;
+use sprung::patch::routes::Source;
 use sprung::patch::Patch;
 use sprung::render::{Job, Options, Tail};
 use sprung::sound::Tuning;
@@ -72,7 +73,7 @@ pub(crate) fn an_mpe_performance_has_the_bits_of_the_command() {
     let messages = phrase::mpe_messages();
     let midi = phrase::file(&messages);
     for (name, patch) in patches() {
-        let patch = patch.with(Param::PressureVibrato, 60.0).with(Param::Voices, 16.0);
+        let patch = patch.with_route(1, Source::Pressure, Param::Vibrato, 5.0).with(Param::Voices, 16.0);
         let expected = rendered_by_the_command(&midi, &patch);
         assert_sound(name, &expected);
         for dialect in [Dialect::Clap, Dialect::Midi] {

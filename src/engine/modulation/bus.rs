@@ -10,6 +10,9 @@ pub(crate) const SOURCES: usize = Source::ALL.len();
 /// Values of all sources, by `Source as usize`.
 pub(crate) type Sources = [f32; SOURCES];
 
+/// How far each destination is moved, in knob travel.
+pub(crate) type Sums = [f32; MAX_ROUTES];
+
 /// What the routes lead to, and the routes to each: those that move macros and amounts of others come first, and otherwise
 /// the order of their places counts. Plain data.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +23,21 @@ pub(crate) struct Bus {
     destinations_len: usize,
     /// A bit for each source that is read.
     read: u32,
+    /// Sources that move by themselves move what decides when a note is over, or may do so by other routes.
+    moves_the_end: bool,
 }
+
+/// What decides when a note is over.
+const DECIDING: [Param; 6] = [Param::Decay, Param::DecayTilt, Param::Release, Param::Damper, Param::Gain, Param::Pan];
+
+/// The bit of a source.
+pub(crate) const fn bit(source: Source) -> u32 {
+    1 << source as u32
+}
+
+/// The sources that move while nothing happens.
+const MOVING: u32 =
+    bit(Source::Lfo1) | bit(Source::Lfo2) | bit(Source::Lfo3) | bit(Source::Envelope1) | bit(Source::Envelope2);
 
 /// A route that leads to the destination at `to`.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +47,18 @@ struct Link {
     scale: Option<Source>,
     response: Response,
     to: u8,
+    /// A bit for each source that it reads.
+    reads: u32,
     /// What of the bus itself is moved.
     moves: Option<Moved>,
+}
+
+impl Link {
+    /// How far it moves its destination, in knob travel.
+    fn way(&self, sources: &Sources, amounts: &[f32; MAX_ROUTES]) -> f32 {
+        let scale = self.scale.map_or(1.0, |scale| sources[scale as usize]);
+        amounts[usize::from(self.place)] * self.response.apply(sources[self.source as usize]) * scale
+    }
 }
 
 /// What routes move of the bus itself, by index.
@@ -103,13 +130,14 @@ impl Bus {
     /// No routes.
     pub(crate) const EMPTY: Self = {
         let (source, response) = (Source::Velocity, Response::Linear);
-        let link = Link { place: 0, source, scale: None, response, to: 0, moves: None };
+        let link = Link { place: 0, source, scale: None, response, to: 0, reads: 0, moves: None };
         Self {
             links: [link; MAX_ROUTES],
             links_len: 0,
             destinations: [Destination::NONE; MAX_ROUTES],
             destinations_len: 0,
             read: 0,
+            moves_the_end: false,
         }
     };
 
@@ -128,9 +156,12 @@ impl Bus {
                 });
                 let (source, scale, response) = (route.source, route.scale, route.response);
                 let moves = Moved::of(param);
-                bus.links[bus.links_len] = Link { place: place as u8, source, scale, response, to: to as u8, moves };
+                let reads = bit(source) | scale.map_or(0, bit);
+                bus.links[bus.links_len] =
+                    Link { place: place as u8, source, scale, response, to: to as u8, reads, moves };
                 bus.links_len += 1;
-                bus.read |= 1 << source as u32 | scale.map_or(0, |scale| 1 << scale as u32);
+                bus.read |= reads;
+                bus.moves_the_end |= reads & MOVING != 0 && (DECIDING.contains(&param) || moves.is_some());
             }
         }
         bus
@@ -140,9 +171,24 @@ impl Bus {
         self.links_len == 0
     }
 
+    /// Whether oscillators or envelopes move what decides when a note is over.
+    pub(crate) fn moves_the_end(&self) -> bool {
+        self.moves_the_end
+    }
+
     /// Whether any route reads the source that is so many after `first`.
     pub(crate) fn reads_nth(&self, first: Source, nth: usize) -> bool {
         self.read & 1 << (first as usize + nth) != 0
+    }
+
+    /// A bit for each source that is read.
+    pub(crate) fn read(&self) -> u32 {
+        self.read
+    }
+
+    /// Whether a source that is read moves while nothing happens.
+    pub(crate) fn reads_moving(&self) -> bool {
+        self.read & MOVING != 0
     }
 
     /// What the routes lead to; offsets are in this order.
@@ -150,13 +196,41 @@ impl Bus {
         &self.destinations[..self.destinations_len]
     }
 
+    /// A bit for each destination whose offset depends on any of some sources, given as bits.
+    pub(crate) fn moved_by(&self, sources: u32) -> u32 {
+        let links = &self.links[..self.links_len];
+        let all = (1 << self.destinations_len) - 1;
+        let mut moved = 0;
+        for link in links.iter().filter(|link| link.reads & sources != 0) {
+            // What moves a macro or an amount may move all that follows.
+            moved |= if link.moves.is_some() { all } else { 1 << link.to };
+        }
+        moved
+    }
+
+    /// How far a destination is moved where no route moves macros or amounts: as [`Bus::offsets`].
+    fn offset(&self, to: usize, sources: &Sources, amounts: &[f32; MAX_ROUTES]) -> f32 {
+        let links = self.links[..self.links_len].iter().filter(|link| usize::from(link.to) == to);
+        links.fold(0.0, |offset, link| offset + link.way(sources, amounts))
+    }
+
+    /// Finds anew how far the destinations of some bits are moved. Real-time safe.
+    pub(crate) fn update(&self, offsets: &mut Sums, moved: u32, sources: &Sources, amounts: &[f32; MAX_ROUTES]) {
+        if self.links.first().is_some_and(|link| link.moves.is_some()) {
+            *offsets = self.offsets(sources, amounts);
+            return;
+        }
+        for to in (0..self.destinations_len).filter(|to| moved & 1 << to != 0) {
+            offsets[to] = self.offset(to, sources, amounts);
+        }
+    }
+
     /// How far each destination is moved, in knob travel, by sources with these values through routes with these
-    /// amounts; macros among the sources get the values that they are moved to. Real-time safe.
-    pub(crate) fn offsets(&self, sources: &mut Sources, amounts: &[f32; MAX_ROUTES]) -> [f32; MAX_ROUTES] {
-        let (mut amounts, mut offsets) = (*amounts, [0.0; MAX_ROUTES]);
+    /// amounts. Real-time safe.
+    pub(crate) fn offsets(&self, sources: &Sources, amounts: &[f32; MAX_ROUTES]) -> Sums {
+        let (mut sources, mut amounts, mut offsets) = (*sources, *amounts, [0.0; MAX_ROUTES]);
         for link in &self.links[..self.links_len] {
-            let scale = link.scale.map_or(1.0, |scale| sources[scale as usize]);
-            let way = amounts[usize::from(link.place)] * link.response.apply(sources[link.source as usize]) * scale;
+            let way = link.way(&sources, &amounts);
             offsets[usize::from(link.to)] += way;
             match link.moves {
                 None => {}
@@ -203,7 +277,7 @@ mod tests {
         (amounts[3], amounts[5], amounts[7]) = (0.5, 1.0, -1.0);
         let params: Vec<_> = bus.destinations().iter().map(|destination| destination.param).collect();
         assert_eq!(params, [Param::Gain, Param::Decay]);
-        assert_eq!(bus.offsets(&mut sources, &amounts)[..2], [0.0, 0.25]);
+        assert_eq!(bus.offsets(&sources, &amounts)[..2], [0.0, 0.25]);
     }
 
     #[test]
@@ -217,7 +291,7 @@ mod tests {
             (sources[Source::Lfo1 as usize], sources[Source::Wheel as usize]) = (1.0, 0.5);
             let mut amounts = [0.0; MAX_ROUTES];
             amounts[mover] = 0.25;
-            let offsets = bus.offsets(&mut sources, &amounts);
+            let offsets = bus.offsets(&sources, &amounts);
             assert_eq!(bus.destinations()[1].param, Param::Tune);
             assert_eq!(offsets[1], 0.25, "half of a quarter, twice");
         }

@@ -1,33 +1,7 @@
 //! A slow oscillator: where it is in its round, and its value there.
 
 use crate::dsp::random::uniform;
-
-/// How an oscillator moves, in the order of the choices of [`crate::params::Param::Lfo1Shape`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shape {
-    Sine,
-    Triangle,
-    Ramp,
-    Square,
-    /// A new random number each round.
-    Steps,
-    /// From one random number to the next.
-    Drift,
-}
-
-impl Shape {
-    /// That of a choice's value.
-    pub(crate) fn of(choice: f32) -> Self {
-        match choice as u32 {
-            0 => Self::Sine,
-            1 => Self::Triangle,
-            2 => Self::Ramp,
-            3 => Self::Square,
-            4 => Self::Steps,
-            _ => Self::Drift,
-        }
-    }
-}
+use crate::params::Shape;
 
 /// An oscillator on its way. Real-time safe.
 #[derive(Clone, Copy, Debug)]

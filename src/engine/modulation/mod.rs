@@ -9,33 +9,36 @@ mod lfo;
 mod modulators;
 mod note;
 
+use crate::params::NoteValue;
+
 pub(crate) use bus::Bus;
 pub(crate) use modulators::{Modulators, Positions, Settings, SharedLfos, Struck};
 pub(crate) use note::{NoteModulation, modulated, moved};
 
-/// Quarter notes that one round takes, in the order of the choices of the parameters that set a note value; 0 for one
-/// that keeps its own time.
-const BEATS: [f64; 10] = [0.0, 4.0, 2.0, 1.5, 1.0, 2.0 / 3.0, 0.75, 0.5, 1.0 / 3.0, 0.25];
-
-/// Rounds a second of what lasts the note value of a choice, at a tempo in beats per second, or has its own `rate`.
-pub(crate) fn rate_at(choice: f32, rate: f64, beat_rate: f64) -> f64 {
-    match BEATS.get(choice as usize) {
-        Some(beats) if *beats > 0.0 => beat_rate / beats,
-        _ => rate,
-    }
+/// Rounds a second of what lasts a note value, at a tempo in beats per second, or has its own `rate`.
+pub(crate) fn rate_at(value: NoteValue, rate: f64, beat_rate: f64) -> f64 {
+    let beats = match value {
+        NoteValue::Off => return rate,
+        NoteValue::Whole => 4.0,
+        NoteValue::Half => 2.0,
+        NoteValue::DottedQuarter => 1.5,
+        NoteValue::Quarter => 1.0,
+        NoteValue::QuarterTriplet => 2.0 / 3.0,
+        NoteValue::DottedEighth => 0.75,
+        NoteValue::Eighth => 0.5,
+        NoteValue::EighthTriplet => 1.0 / 3.0,
+        NoteValue::Sixteenth => 0.25,
+    };
+    beat_rate / beats
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::params::Param;
 
     #[test]
-    fn every_choice_of_a_note_value_has_its_beats() {
-        for param in [Param::VibratoSync, Param::Lfo1Sync, Param::Lfo2Sync, Param::Lfo3Sync] {
-            assert_eq!(BEATS.len(), param.info().choices.len());
-        }
-        assert_eq!(rate_at(0.0, 5.0, 2.0), 5.0);
-        assert_eq!(rate_at(4.0, 5.0, 2.0), 2.0);
+    fn a_note_value_lasts_its_beats() {
+        assert_eq!(rate_at(NoteValue::Off, 5.0, 2.0), 5.0);
+        assert_eq!(rate_at(NoteValue::Quarter, 5.0, 2.0), 2.0);
     }
 }

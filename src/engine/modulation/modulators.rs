@@ -1,10 +1,10 @@
 //! The modulation of one voice: its sources as they are now, and what the routes make of them at each control tick.
 
-use super::bus::{Bus, SOURCES, Sources, Target};
+use super::bus::{Bus, SOURCES, Sources, Sums, Target, bit};
 use super::envelope::{Envelope, Times};
-use super::lfo::{Lfo, Shape};
+use super::lfo::Lfo;
 use crate::dsp::random;
-use crate::params::{PARAMS, Param};
+use crate::params::{Choice, NoteValue, PARAMS, Param, Scope, Shape};
 use crate::patch::routes::{MAX_ROUTES, Source, amount_param};
 
 /// How many slow oscillators and envelopes there are.
@@ -53,15 +53,16 @@ impl Settings {
     pub(crate) fn next(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
         let mut bases = [0.0; MAX_ROUTES];
         bus.destinations().iter().zip(&mut bases).for_each(|(destination, base)| *base = value(destination.param));
+        let sync = |index| NoteValue::from_value(value(of_lfo(Param::Lfo1Sync, index)));
         Self {
             serial: self.serial.wrapping_add(1),
             bases,
             rates: std::array::from_fn(|index| {
                 let rate = f64::from(value(of_lfo(Param::Lfo1Rate, index)));
-                super::rate_at(value(of_lfo(Param::Lfo1Sync, index)), rate, beat_rate)
+                super::rate_at(sync(index), rate, beat_rate)
             }),
-            are_synchronised: std::array::from_fn(|index| value(of_lfo(Param::Lfo1Sync, index)) != 0.0),
-            shapes: std::array::from_fn(|index| Shape::of(value(of_lfo(Param::Lfo1Shape, index)))),
+            are_synchronised: std::array::from_fn(|index| sync(index) != NoteValue::Off),
+            shapes: std::array::from_fn(|index| Shape::from_value(value(of_lfo(Param::Lfo1Shape, index)))),
             macros: std::array::from_fn(|index| value(PARAMS[Param::Macro1 as usize + index].param) * 0.01),
             amounts: std::array::from_fn(|place| value(amount_param(place)) * 0.01),
         }
@@ -117,9 +118,14 @@ pub(crate) struct Modulators {
     bus: Bus,
     settings: Settings,
     sources: Sources,
-    /// How far each destination of the bus is moved, and was at the strike.
-    offsets: [f32; MAX_ROUTES],
-    struck_offsets: [f32; MAX_ROUTES],
+    /// Sources that have changed since they were last looked at, as bits.
+    changed: u32,
+    /// The settings have changed since then.
+    unsettled: bool,
+    /// How far each destination of the bus is moved, and was at the strike; and the value that it is moved to.
+    offsets: Sums,
+    struck_offsets: Sums,
+    values: [f32; MAX_ROUTES],
     /// Rounds a second as they are modulated: until the next control, and from then on.
     rates: [f64; LFOS],
     next_rates: [f64; LFOS],
@@ -167,8 +173,11 @@ impl Modulators {
             bus: Bus::EMPTY,
             settings: Settings::STILL,
             sources: [0.0; SOURCES],
+            changed: 0,
+            unsettled: true,
             offsets: [0.0; MAX_ROUTES],
             struck_offsets: [0.0; MAX_ROUTES],
+            values: [0.0; MAX_ROUTES],
             rates: [0.0; LFOS],
             next_rates: [0.0; LFOS],
             moving: Moving::REST,
@@ -185,10 +194,9 @@ impl Modulators {
         self.bus.is_empty()
     }
 
-    /// Whether routes move what decides when a note is over.
+    /// Whether oscillators or envelopes move what decides when a note is over.
     pub(crate) fn move_the_end(&self) -> bool {
-        const DECIDING: [Param; 5] = [Param::Decay, Param::Release, Param::PressureDamping, Param::Gain, Param::Pan];
-        self.bus.destinations().iter().any(|destination| DECIDING.contains(&destination.param))
+        self.bus.moves_the_end()
     }
 
     /// Takes over the routes of an instrument. Those that a voice is started with are its own until it ends.
@@ -208,7 +216,7 @@ impl Modulators {
         first: bool,
     ) {
         let stream = random::key(struck.seed ^ STRIKE_STREAM, struck.serial);
-        self.settings = *settings;
+        (self.settings, self.unsettled) = (*settings, true);
         self.ahead_seconds = 0.0;
         let strike = [
             (Source::Velocity, struck.velocity),
@@ -217,12 +225,11 @@ impl Modulators {
             (Source::Random, random::uniform(stream, 0)),
             (Source::Alternation, if struck.serial.is_multiple_of(2) { 1.0 } else { -1.0 }),
         ];
-        strike.into_iter().for_each(|(source, value)| self.sources[source as usize] = value);
+        strike.into_iter().for_each(|(source, value)| self.set_source(source, value));
         self.moving.age = 0.0;
         for index in 0..LFOS {
-            let value = |param| f64::from(value(of_lfo(param, index)));
-            self.phases[index] = value(Param::Lfo1Phase) * 0.01;
-            self.are_shared[index] = value(Param::Lfo1Scope) != 0.0;
+            self.phases[index] = f64::from(value(of_lfo(Param::Lfo1Phase, index))) * 0.01;
+            self.are_shared[index] = Scope::from_value(value(of_lfo(Param::Lfo1Scope, index))) == Scope::Shared;
             if first {
                 let stream = random::key(stream, LFO_STREAM + index as u64);
                 self.moving.lfos[index] = Lfo::new(self.phases[index], stream);
@@ -232,6 +239,7 @@ impl Modulators {
         if first {
             (self.rates, self.next_rates) = (settings.rates, settings.rates);
             self.moving.envelopes = [Envelope::REST; ENVELOPES];
+            self.fades = [0.0; LFOS];
         }
         // The envelopes' times and the fades follow from where the sources are before they start.
         self.look_ahead(0.0, positions);
@@ -242,6 +250,8 @@ impl Modulators {
         }
         self.fades = std::array::from_fn(|index| self.struck_value(of_lfo(Param::Lfo1Fade, index), &value).into());
         self.ahead = self.moving;
+        // The first control finds the values of all destinations.
+        self.unsettled = true;
     }
 
     /// The value that a parameter has for the strike.
@@ -253,14 +263,23 @@ impl Modulators {
         }
     }
 
+    /// The brightness of a note has changed before its strike has begun, and with it what the strike reads.
+    pub(crate) fn shade(&mut self, timbre: f32) {
+        self.set_source(Source::Timbre, timbre);
+        self.struck_offsets = self.bus.offsets(&self.sources, &self.settings.amounts);
+    }
+
     /// The key has come up.
     pub(crate) fn release(&mut self, velocity: f32) {
-        self.sources[Source::ReleaseVelocity as usize] = velocity;
+        self.set_source(Source::ReleaseVelocity, velocity);
         self.moving.envelopes.iter_mut().for_each(Envelope::release);
     }
 
     /// Lets time pass.
     pub(crate) fn advance(&mut self, seconds: f64) {
+        if !self.bus.reads_moving() {
+            return;
+        }
         if seconds == self.ahead_seconds {
             self.moving = self.ahead;
         } else {
@@ -271,13 +290,13 @@ impl Modulators {
 
     /// The note has slid to another pitch, in semitones on the MIDI scale.
     pub(crate) fn set_pitch(&mut self, pitch: f64) {
-        self.sources[Source::Key as usize] = key_position(pitch);
+        self.set_source(Source::Key, key_position(pitch));
     }
 
-    /// Takes over the instrument's present settings, and where its oscillators are.
-    pub(crate) fn follow(&mut self, settings: &Settings, shared: &SharedLfos) {
-        if settings.serial != self.settings.serial {
-            self.settings = *settings;
+    /// Takes over the instrument's present settings, or those of this note alone, and where its oscillators are.
+    pub(crate) fn follow(&mut self, settings: &Settings, are_own: bool, shared: &SharedLfos) {
+        if are_own || settings.serial != self.settings.serial {
+            (self.settings, self.unsettled) = (*settings, true);
         }
         self.share(shared);
     }
@@ -289,15 +308,18 @@ impl Modulators {
 
     /// Finds where the destinations are to be in some seconds, and hands each with its value to `set`.
     pub(crate) fn control(&mut self, seconds: f64, positions: &Positions, mut set: impl FnMut(Param, f32)) {
-        self.look_ahead(seconds, positions);
+        let moved = self.look_ahead(seconds, positions);
         self.next_rates = self.settings.rates;
         for (place, destination) in self.bus.destinations().iter().enumerate() {
-            let value = || destination.moved(self.settings.bases[place], self.offsets[place]);
+            if moved & 1 << place != 0 {
+                self.values[place] = destination.moved(self.settings.bases[place], self.offsets[place]);
+            }
+            let value = self.values[place];
             match destination.target {
                 Target::Strike => {}
-                Target::Control => set(destination.param, value()),
+                Target::Control => set(destination.param, value),
                 Target::Lfo(index) if self.settings.are_synchronised[usize::from(index)] => {}
-                Target::Lfo(index) => self.next_rates[usize::from(index)] = f64::from(value()),
+                Target::Lfo(index) => self.next_rates[usize::from(index)] = f64::from(value),
             }
         }
         if seconds == 0.0 {
@@ -306,41 +328,78 @@ impl Modulators {
     }
 
     fn share(&mut self, shared: &SharedLfos) {
+        if !self.bus.reads_moving() {
+            return;
+        }
         for (index, common) in shared.0.iter().enumerate().filter(|(index, _)| self.are_shared[*index]) {
             self.moving.lfos[index] = *common;
             self.moving.lfos[index].advance(self.phases[index]);
         }
     }
 
-    /// Reads the sources as they will be in some seconds, and finds how far they move what the routes lead to.
-    fn look_ahead(&mut self, seconds: f64, positions: &Positions) {
-        (self.ahead, self.ahead_seconds) = (self.moving, seconds);
-        self.ahead.advance(&self.bus, &self.rates, seconds);
-        let Moving { lfos, envelopes, age } = &self.ahead;
-        let held = [
+    /// Reads the sources as they will be in some seconds, and finds how far they move what the routes lead to. Returns a bit
+    /// for each destination of which that may have changed.
+    fn look_ahead(&mut self, seconds: f64, positions: &Positions) -> u32 {
+        for (source, value) in [
             (Source::Pressure, positions.pressure),
             (Source::Timbre, positions.timbre),
             (Source::Bend, positions.bend),
             (Source::Wheel, positions.wheel),
             (Source::Breath, positions.breath),
             (Source::Expression, positions.expression),
-        ];
-        held.into_iter().for_each(|(source, value)| self.sources[source as usize] = value);
+        ] {
+            self.set_source(source, value);
+        }
+        if self.bus.reads_moving() {
+            self.move_sources(seconds);
+        }
+        let moved = if std::mem::take(&mut self.unsettled) {
+            let macros = &mut self.sources[Source::Macro1 as usize..];
+            macros.iter_mut().zip(self.settings.macros).for_each(|(source, value)| *source = value);
+            u32::MAX
+        } else {
+            self.bus.moved_by(self.changed & self.bus.read())
+        };
+        self.changed = 0;
+        if moved != 0 {
+            self.bus.update(&mut self.offsets, moved, &self.sources, &self.settings.amounts);
+        }
+        debug_assert_eq!(
+            self.bus.offsets(&self.sources, &self.settings.amounts)[..self.bus.destinations().len()],
+            self.offsets[..self.bus.destinations().len()]
+        );
+        moved
+    }
+
+    /// Reads the sources that move by themselves as they will be in some seconds.
+    fn move_sources(&mut self, seconds: f64) {
+        (self.ahead, self.ahead_seconds) = (self.moving, seconds);
+        self.ahead.advance(&self.bus, &self.rates, seconds);
+        let Moving { lfos, envelopes, age } = self.ahead;
         for (index, lfo) in lfos.iter().enumerate() {
             if self.bus.reads_nth(Source::Lfo1, index) {
-                let fade = if *age < self.fades[index] { (age / self.fades[index]) as f32 } else { 1.0 };
-                let value = lfo.value(self.settings.shapes[index]);
-                self.sources[Source::Lfo1 as usize + index] = fade * value;
+                let fade = if age < self.fades[index] { (age / self.fades[index]) as f32 } else { 1.0 };
+                self.set_nth(Source::Lfo1, index, fade * lfo.value(self.settings.shapes[index]));
             }
         }
         for (index, envelope) in envelopes.iter().enumerate() {
             if self.bus.reads_nth(Source::Envelope1, index) {
-                self.sources[Source::Envelope1 as usize + index] = envelope.level();
+                self.set_nth(Source::Envelope1, index, envelope.level());
             }
         }
-        let macros = &mut self.sources[Source::Macro1 as usize..];
-        macros.iter_mut().zip(self.settings.macros).for_each(|(source, value)| *source = value);
-        self.offsets = self.bus.offsets(&mut self.sources, &self.settings.amounts);
+    }
+
+    fn set_source(&mut self, source: Source, value: f32) {
+        self.set_nth(source, 0, value);
+    }
+
+    /// Sets the source that is so many after `first`, and notes whether it has changed.
+    fn set_nth(&mut self, first: Source, nth: usize, value: f32) {
+        let source = &mut self.sources[first as usize + nth];
+        if *source != value {
+            *source = value;
+            self.changed |= bit(first) << nth;
+        }
     }
 }
 

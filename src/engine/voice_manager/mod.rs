@@ -3,6 +3,7 @@
 mod held_keys;
 
 use super::note::{Note, Notes};
+pub use crate::params::PlayMode;
 use held_keys::HeldKeys;
 
 /// Something that sounds one note at a time. All methods are called on the audio thread.
@@ -24,17 +25,6 @@ pub trait Voice {
     fn energy(&self) -> f64;
     /// Whether the voice will be silent until it is struck again.
     fn is_over(&self) -> bool;
-}
-
-/// How notes share voices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PlayMode {
-    /// A voice for every note.
-    Poly,
-    /// One voice, struck by every note.
-    Mono,
-    /// One voice, struck by the first note and retuned by those that overlap it.
-    Legato,
 }
 
 /// Most notes that sound at once.

@@ -1,0 +1,152 @@
+//! Where the pitch of a note lies and how it moves: key, tuning, glide, sweep, bend and vibrato.
+
+use super::clock::Clock;
+use super::key_tracking::KeyTracking;
+use super::values::StruckValues;
+use crate::dsp::mode_bank::MAX_MODES;
+use crate::dsp::pitch::{Glide, SweepEnvelope};
+use crate::engine::channel::Wheels;
+use crate::engine::controls::Controls;
+use crate::engine::note::Note;
+use crate::params::Param;
+use crate::units::{frequency_from_key, ratio_from_semitones};
+use libm::{floor, pow, sin};
+use std::f64::consts::TAU;
+
+/// The pitch of a voice. Real-time safe.
+pub(super) struct Pitch {
+    tracking: KeyTracking,
+    /// Pitch of the note and the patch's transposition that the bank is tuned to, in semitones.
+    note: f64,
+    tune: f64,
+    /// Frequency of each mode as a multiple of the note's.
+    pub(super) ratios: [f64; MAX_MODES],
+    /// The last offset from that pitch in semitones, and its ratio.
+    offset: f64,
+    ratio: f64,
+    glide: Glide,
+    /// Age of the voice at which the glide has started.
+    glide_start: u64,
+    sweep: SweepEnvelope,
+    /// Share of the vibrato's round that has passed, and seconds in which it fades in.
+    vibrato_phase: f64,
+    vibrato_delay: f64,
+}
+
+/// What moves the pitch of a note besides its patch.
+pub(super) struct Bends<'a> {
+    pub(super) wheels: Wheels<'a>,
+    /// Semitones that the note alone has been told.
+    pub(super) tuning: f64,
+}
+
+impl Pitch {
+    /// Of a voice that has had no note.
+    pub(super) fn new() -> Self {
+        Self {
+            tracking: KeyTracking::FULL,
+            note: 0.0,
+            tune: 0.0,
+            ratios: [1.0; MAX_MODES],
+            offset: 0.0,
+            ratio: 1.0,
+            glide: Glide::new(0.0, 0.0, 0.0),
+            glide_start: 0,
+            sweep: SweepEnvelope::new(0.0, 0.0, 0.0),
+            vibrato_phase: 0.0,
+            vibrato_delay: 0.0,
+        }
+    }
+
+    /// Reads how the patch's modes lie and follow the key.
+    pub(super) fn read(&mut self, values: &StruckValues) {
+        self.tracking = KeyTracking::new(|param| values.get(param));
+        let stretch = values.get(Param::Stretch);
+        for (ratio, mode) in self.ratios.iter_mut().zip(values.instrument.sound.patch().modes.as_slice()) {
+            *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
+        }
+    }
+
+    /// Takes the pitch of `note`.
+    fn place(&mut self, note: &Note, controls: &Controls) {
+        (self.note, self.tune) = (self.tracking.pitch(note), controls.tune);
+    }
+
+    /// Starts the first note of a voice, sliding from the pitch of the note before.
+    pub(super) fn start(&mut self, note: &Note, controls: &Controls, last_pitch: Option<f64>) {
+        self.place(note, controls);
+        let from = last_pitch.unwrap_or(self.note) - self.note;
+        self.glide = Glide::new(from, 0.0, self.tracking.glide_seconds);
+        (self.offset, self.ratio, self.glide_start, self.vibrato_phase) = (0.0, 1.0, 0, 0.0);
+    }
+
+    /// Slides from where the pitch is to that of `note`. `values` are read anew where the voice can read the instrument.
+    pub(super) fn slide(&mut self, note: &Note, controls: &Controls, values: Option<&StruckValues>, clock: &Clock) {
+        let from = self.note + self.glide.at(clock.seconds(clock.age - self.glide_start));
+        values.into_iter().for_each(|values| self.read(values));
+        self.place(note, controls);
+        self.glide = Glide::new(from - self.note, 0.0, self.tracking.glide_seconds);
+        self.glide_start = clock.age;
+    }
+
+    /// Starts the sweep of a strike and the delay of the vibrato.
+    pub(super) fn strike(&mut self, values: &StruckValues) {
+        let [depth, time] = [Param::Sweep, Param::SweepTime].map(|param| values.get(param));
+        self.sweep = SweepEnvelope::new(depth, time, values.share(Param::SweepCurve));
+        self.vibrato_delay = values.get(Param::VibratoDelay);
+    }
+
+    /// The age of the voice starts again, and with it the glide; the vibrato keeps its phase.
+    pub(super) fn restart(&mut self, vibrato_rate: f64, passed: f64) {
+        self.vibrato_phase += vibrato_rate * passed;
+        self.glide_start = 0;
+    }
+
+    /// Lets time pass for the vibrato.
+    pub(super) fn advance(&mut self, vibrato_rate: f64, passed: f64) {
+        self.vibrato_phase += vibrato_rate * passed;
+        self.vibrato_phase -= floor(self.vibrato_phase);
+    }
+
+    /// Pitch of the note in semitones on the MIDI scale.
+    pub(super) fn note(&self) -> f64 {
+        self.note
+    }
+
+    /// Frequency in Hz of a mode of ratio 1.
+    pub(super) fn frequency(&self) -> f64 {
+        frequency_from_key(self.note + self.tune, self.tracking.a4_hz)
+    }
+
+    /// The pitch ratio that was last aimed at.
+    pub(super) fn ratio(&self) -> f64 {
+        self.ratio
+    }
+
+    /// Finds the ratio by which the pitch will be away, `ahead` frames from now, from where the bank was tuned.
+    pub(super) fn aim(&mut self, controls: &Controls, bends: &Bends, clock: &Clock, ahead: usize) -> f64 {
+        let offset = self.offset_after(controls, bends, clock, ahead);
+        if offset != self.offset {
+            // It seldom changes.
+            (self.offset, self.ratio) = (offset, ratio_from_semitones(offset));
+        }
+        self.ratio
+    }
+
+    /// The same in semitones.
+    fn offset_after(&self, controls: &Controls, bends: &Bends, clock: &Clock, ahead: usize) -> f64 {
+        let age = clock.age + ahead as u64;
+        let fade = if self.vibrato_delay > 0.0 { (clock.seconds(age) / self.vibrato_delay).min(1.0) } else { 1.0 };
+        let depth = controls.vibrato * fade + controls.added_vibrato;
+        let phase = self.vibrato_phase + controls.vibrato_rate * clock.seconds(ahead as u64);
+        let vibrato = if depth > 0.0 { depth * sin(TAU * phase) } else { 0.0 };
+        let (bend, tuning) = bends.wheels.semitones(controls.bend_range);
+        self.glide.at(clock.seconds(age - self.glide_start))
+            + self.sweep.at(clock.seconds(age))
+            + (controls.tune - self.tune)
+            + bend
+            + tuning
+            + bends.tuning
+            + vibrato
+    }
+}

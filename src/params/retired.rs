@@ -1,0 +1,72 @@
+//! Parameters that there were: their ids are in old presets, and are never used again.
+
+use super::{Change, Curve, Param, ParamInfo, Unit};
+
+/// A parameter that a route does the work of now.
+#[derive(Debug)]
+pub struct Retired {
+    /// The row that it had; `param` is the one that the route moves.
+    pub(crate) row: ParamInfo,
+    /// What replaces it, for messages.
+    pub replacement: &'static str,
+}
+
+impl Retired {
+    /// The one with this id.
+    pub fn from_id(id: &str) -> Option<&'static Retired> {
+        RETIRED.iter().find(|retired| retired.row.id == id)
+    }
+
+    /// The id that it had.
+    pub fn id(&self) -> &'static str {
+        self.row.id
+    }
+
+    /// That it is retired, and what replaces it.
+    pub fn message(&self) -> String {
+        format!("‘{}’ is retired: {} replaces it", self.row.id, self.replacement)
+    }
+}
+
+macro_rules! retired {
+    ($($param:ident $id:literal, $unit:ident $min:literal..$max:literal = $default:literal, $replacement:literal;)*) => {
+        /// All retired parameters.
+        pub static RETIRED: &[Retired] = &[$(Retired {
+            row: ParamInfo {
+                param: Param::$param, id: $id, name: $id, section: "", unit: Unit::$unit, min: $min, max: $max,
+                default: $default, curve: Curve::Linear, change: Change::NextNote, is_fixed: true, choices: &[],
+                help: "",
+            },
+            replacement: $replacement,
+        },)*];
+    };
+}
+
+retired! {
+    Hardness "hardness_velocity", Percent 0.0..100.0 = 0.0, "a route from velocity to hardness";
+    Sweep "sweep_velocity", Percent 0.0..100.0 = 0.0, "a route from velocity to sweep";
+    Decay "decay_key", Percent -100.0..100.0 = 0.0, "a route from key to decay";
+    Release "release_velocity", Percent 0.0..100.0 = 0.0, "a route from release_velocity to release";
+    Vibrato "wheel_vibrato", Cents 0.0..1200.0 = 50.0, "a route from wheel to vibrato";
+    Vibrato "pressure_vibrato", Cents 0.0..1200.0 = 0.0, "a route from pressure to vibrato";
+    Damper "pressure_damping", Percent 0.0..100.0 = 0.0, "a route from pressure to damper";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// This list only grows.
+    #[test]
+    fn retired_ids_are_pinned_and_no_parameter_has_one() {
+        let ids: Vec<_> = RETIRED.iter().map(Retired::id).collect();
+        let pinned = "hardness_velocity sweep_velocity decay_key release_velocity wheel_vibrato pressure_vibrato \
+            pressure_damping";
+        assert_eq!(ids, pinned.split_whitespace().collect::<Vec<_>>());
+        assert!(ids.iter().all(|id| Param::from_id(id).is_none()));
+        assert_eq!(
+            Retired::from_id("decay_key").map(Retired::message).as_deref(),
+            Some("‘decay_key’ is retired: a route from key to decay replaces it")
+        );
+    }
+}
