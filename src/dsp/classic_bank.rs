@@ -2,7 +2,6 @@
 
 use super::coefficients::Coefficients;
 use super::exciter::Drive;
-use super::mode_bank::tail::Energies;
 use super::mode_bank::{ExcitationGains, MAX_MODES, ModeSetup};
 use super::simd::vector::{LANES, Partial, sum_frames};
 use super::{CONTROL_FRAMES, HarmonicOscillator};
@@ -304,17 +303,8 @@ impl ClassicBank {
         total
     }
 
-    fn energies(&self) -> Energies {
-        Energies::new(self.modes[..self.len].iter().map(|mode| (mode.energy(), mode.energy_rate())))
-    }
-
-    /// As [`super::ModeBank::frames_until`].
-    pub fn frames_until(&self, total: f64) -> u64 {
-        self.energies().frames_until(total, 0)
-    }
-
-    /// As [`super::ModeBank::frames_until_at_most`].
-    pub fn frames_until_at_most(&self, total: f64, more: f64) -> u64 {
-        self.energies().frames_until_at_most(total, more)
+    /// As [`super::ModeBank::tell_energies`].
+    pub(super) fn tell_energies(&self, mut each: impl FnMut(f64, f64)) {
+        self.modes[..self.len].iter().for_each(|mode| each(mode.energy(), mode.energy_rate()));
     }
 }

@@ -1,5 +1,6 @@
 //! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
 
+use super::lender::{Lender, Stretch};
 use super::mix_limiter::MixLimiter;
 use super::note::{nearest_channel, nearest_key};
 use super::synth::allowed;
@@ -24,6 +25,7 @@ pub struct Ensemble {
     programs: Vec<Patch>,
     chunk: usize,
     owners: Owners,
+    lender: Lender,
     limiter: MixLimiter,
 }
 
@@ -58,7 +60,7 @@ impl Ensemble {
     /// (a number beyond the list changes nothing). Allocates.
     pub fn new(sample_rate: f64, seed: u64, patch: &Patch, programs: &[Patch]) -> Self {
         let part = |channel: u64| {
-            let mut synth = Synth::new(sample_rate, seed.wrapping_add(channel << 32));
+            let mut synth = Synth::with_voices(sample_rate, seed.wrapping_add(channel << 32), Lender::for_part());
             synth.set_patch(patch);
             Part { channel: channel as usize, synth, left: vec![0.0; CHUNK], right: vec![0.0; CHUNK], heard: false }
         };
@@ -68,6 +70,7 @@ impl Ensemble {
             programs: programs.to_vec(),
             chunk: CHUNK,
             owners: Owners::default(),
+            lender: Lender::new(sample_rate),
             limiter,
         }
     }
@@ -110,11 +113,18 @@ impl Ensemble {
             let mut last = frames.saturating_sub(1).min(end).saturating_sub(start);
             let owners = self.owners;
             let mut zones = events[..now].iter().map(|event| self.owners.hear(event)).enumerate();
-            let zone = zones.find_map(|(index, zone)| Some((&events[index], index, zone?)));
+            let mut zone = zones.find_map(|(index, zone)| Some((&events[index], index, zone?)));
             if let Some((event, index, _)) = zone {
                 // Channels change their owners between two chunks.
                 (now, end) = (index, start + (event.frame as usize).saturating_sub(start).min(last));
                 last = end - start;
+            }
+            let stretch = Stretch { events: &events[..now], start, last, owners, programs: &self.programs };
+            let unserved = self.lender.lend(&mut self.parts, |part| &mut part.synth, &stretch);
+            if let Some((index, frame)) = unserved {
+                (now, end, last, zone) = (index, start + frame, frame, None);
+                self.owners = owners;
+                events[..now].iter().for_each(|event| _ = self.owners.hear(event));
             }
             let mut groups = [0.0; 16];
             for (group, part) in groups.iter_mut().zip(&self.parts) {
@@ -123,9 +133,12 @@ impl Ensemble {
             let programs = &self.programs;
             let chunk = Chunk { events: &events[..now], start, last, frames: end - start, programs, groups, owners };
             each(&mut self.parts, &|part| part.play(chunk));
+            let is_heard = self.parts.iter().any(|part| part.heard);
+            if is_heard || now > 0 {
+                self.lender.take_back(&mut self.parts, |part| &mut part.synth);
+            }
             let (left, right) = (&mut left[start..end], &mut right[start..end]);
             self.mix(left, right);
-            let is_heard = self.parts.iter().any(|part| part.heard);
             let limited = |event: &Event| (owners.of(nearest_channel(event.channel)), *event);
             self.limiter.process(
                 events[..now].iter().map(limited),
@@ -142,7 +155,7 @@ impl Ensemble {
                 (events, start) = (&events[index + 1..], end);
                 continue;
             }
-            if end == frames {
+            if end == frames && unserved.is_none() {
                 break;
             }
             (events, start) = (&events[now..], end);

@@ -7,11 +7,11 @@ use super::midi::{controller, seven_bits};
 use super::modulation::{Bus, SharedLfos, modulated};
 use super::note::{Note, Notes, nearest_channel, nearest_key};
 use super::voice::{Instrument, SynthVoice};
-use super::voice_manager::{PlayMode, VoiceManager};
+use super::voice_manager::{Footprint, PlayMode, VoiceManager, VoicePool, has_room, make_room};
 use super::zones::{MEMBER_BEND_RANGE, Zones};
 use super::{Event, EventKind, Snapshot};
 use crate::dsp::limiter::Work;
-use crate::dsp::{CONTROL_FRAMES, Limiter};
+use crate::dsp::{CONTROL_FRAMES, Cell, Limiter};
 use crate::params::{Change, PARAM_COUNT, PARAMS, Param};
 use crate::patch::Patch;
 use crate::sound::Tuning;
@@ -26,6 +26,8 @@ pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
 /// Only [`Synth::new`] and [`Synth::prepare`] allocate; everything else is real-time safe.
 pub struct Synth {
     manager: VoiceManager<SynthVoice>,
+    /// The size of its own pool of voices; none for a part of an ensemble, which makes room for its notes.
+    own_pool: Option<Footprint>,
     instrument: Instrument,
     tuning: Tuning,
     smoother: Smoother,
@@ -51,15 +53,22 @@ pub struct Synth {
 }
 
 impl Synth {
-    /// A synth with the default patch. The sample rate is brought into [`SAMPLE_RATES`].
+    /// A synth with the default patch and voices of its own. The sample rate is brought into [`SAMPLE_RATES`].
     pub fn new(sample_rate: f64, seed: u64) -> Self {
+        let pool = voices(sample_rate, POOL);
+        Self { own_pool: Some(POOL), ..Self::with_voices(sample_rate, seed, pool) }
+    }
+
+    /// A synth that plays on voices of this pool and has none other.
+    pub(super) fn with_voices(sample_rate: f64, seed: u64, pool: VoicePool<SynthVoice>) -> Self {
         let sample_rate = allowed(sample_rate);
         let patch = Patch::default();
         let smoother = Smoother::new(sample_rate, &patch, DEFAULT_BEAT_RATE);
         let controls = smoother.after(0);
         let instrument = Instrument::new(patch, sample_rate, seed, controls);
         let mut synth = Self {
-            manager: VoiceManager::new(|| SynthVoice::new(sample_rate, controls)),
+            manager: VoiceManager::new(pool),
+            own_pool: None,
             instrument,
             tuning: Tuning::EQUAL,
             smoother,
@@ -239,23 +248,19 @@ impl Synth {
                 let pitch = self.tuning.pitch(key);
                 let soft = |channel: u8| self.channels[usize::from(channel)].soft;
                 let note = Note {
-                    channel: index,
-                    key,
                     pitch: pitch.unwrap_or(Pitch::Semitones(key.into())),
                     detune: finite(detune).clamp(-128.0, 128.0),
                     velocity: unit(velocity),
                     soft: soft(index) || self.zones.master_of(index).is_some_and(soft),
                     brightness,
                     id,
-                    serial: self.note_serial,
-                    patch: self.instrument.patch_serial,
-                    body: self.instrument.body_serial,
-                    choke: self.instrument.modulated.get(Param::Choke) as u8,
+                    ..self.next_note(index, key)
                 };
                 self.note_serial += 1;
                 if pitch.is_none() {
                     return self.manager.turn_away(note);
                 }
+                self.make_room(&note);
                 self.manager.note_on(&self.instrument, note);
                 self.instrument.last_pitch = Some(self.instrument.pitch(&note));
             }
@@ -296,6 +301,48 @@ impl Synth {
             }
             EventKind::Choke { group } => self.manager.choke(group),
             EventKind::Program(_) => {}
+        }
+    }
+
+    /// What is known of the next note before it starts.
+    fn next_note(&self, channel: u8, key: u8) -> Note {
+        Note {
+            channel,
+            key,
+            serial: self.note_serial,
+            patch: self.instrument.patch_serial,
+            body: self.instrument.body_serial,
+            choke: self.instrument.modulated.get(Param::Choke) as u8,
+            ..Note::NONE
+        }
+    }
+
+    /// What a note on a channel takes from the pool if it starts now.
+    pub(super) fn need(&self, channel: u8, key: u8) -> Footprint {
+        let (channel, key) = (nearest_channel(channel), nearest_key(key));
+        match self.tuning.pitch(key) {
+            Some(_) => self.manager.need(&self.instrument, &self.next_note(channel, key)),
+            None => Footprint::NONE,
+        }
+    }
+
+    /// The most that a note of a patch takes from the pool; of the patch in use if none is given.
+    pub(super) fn footprint(&self, patch: Option<&Patch>) -> Footprint {
+        self.instrument.footprint(patch.unwrap_or(&self.instrument.modulated))
+    }
+
+    /// Its manager.
+    pub(super) fn manager(&mut self) -> &mut VoiceManager<SynthVoice> {
+        &mut self.manager
+    }
+
+    /// Makes room in its own pool for a note.
+    fn make_room(&mut self, note: &Note) {
+        if let Some(capacity) = self.own_pool {
+            let need = self.manager.need(&self.instrument, note);
+            if !has_room(capacity, self.manager.pool().free(), need) {
+                make_room(std::slice::from_mut(&mut self.manager), |manager| manager, capacity, need);
+            }
         }
     }
 
@@ -479,6 +526,16 @@ fn wheels<'a>(channels: &'a [Channel; 16], zones: &Zones, channel: u8) -> Wheels
 fn brightness(channels: &[Channel; 16], zones: &Zones, channel: u8) -> f32 {
     let of = |channel: u8| channels[usize::from(channel)].brightness;
     (of(channel) + zones.master_of(channel).map_or(0.0, of)).clamp(-0.5, 0.5)
+}
+
+/// What a synth of its own can sound: 64 notes of 64 modes with 64 more that fade, or 24 of 512.
+const POOL: Footprint = Footprint { voices: 256, cells: 256 };
+
+/// A pool of voices. Allocates.
+pub(super) fn voices(sample_rate: f64, capacity: Footprint) -> VoicePool<SynthVoice> {
+    let sample_rate = allowed(sample_rate);
+    let controls = Smoother::new(sample_rate, &Patch::default(), DEFAULT_BEAT_RATE).after(0);
+    VoicePool::full(capacity, || SynthVoice::new(sample_rate, controls), || Cell::new(sample_rate))
 }
 
 /// MIDI's tempo before it has been set: 120 beats a minute.

@@ -106,8 +106,10 @@ impl ModeBank {
         self.instructions.level()
     }
 
-    /// Fills the bank with modes at rest, at a pitch ratio of 1. Modes beyond [`MAX_MODES`] are left out.
+    /// Fills the bank with modes at rest, at a pitch ratio of 1. Modes beyond [`MAX_MODES`] are left out. What the bank
+    /// played before leaves no trace: it then gives the bits of a new one.
     pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
+        self.instructions = Instructions::current();
         (self.len, self.stereo, self.faded) = (0, false, false);
         // Both, since each becomes the other at the end of a tick that is rendered by tables.
         (self.states, self.motion) = ([State::REST; 2], Motion::Still { ticks: 0 });
@@ -119,6 +121,7 @@ impl ModeBank {
             self.set_t60(m, mode.t60);
         }
         [self.modes.left, self.modes.right] = self.gains;
+        [self.modes.left_step, self.modes.right_step] = [Row::ZERO; 2];
         for m in self.len..MAX_MODES {
             // What was loaded before must not be heard: lanes and tables are filled up with modes at rest.
             for row in [&mut self.modes.pulse_x, &mut self.modes.pulse_y, &mut self.modes.noise] {

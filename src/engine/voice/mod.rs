@@ -12,13 +12,14 @@ use super::expression::Expressions;
 use super::fader::Fader;
 use super::modulation::{Bus, Modulators, NoteModulation, Positions, Settings, SharedLfos};
 use super::note::Note;
-use super::voice_manager::Voice;
-use crate::dsp::bank::{Bank, Law};
+use super::voice_manager::{Footprint, Unison, Voice};
+use crate::dsp::bank::Law;
+use crate::dsp::cells::{Cell, Cells};
 use crate::dsp::exciter::{Drive, Exciter};
-use crate::dsp::mode_bank::{MAX_MODES, ModeSetup};
+use crate::dsp::mode_bank::ModeSetup;
 use crate::dsp::pitch::{Glide, SweepEnvelope};
 use crate::params::Param;
-use crate::patch::Patch;
+use crate::patch::{Mode, Patch};
 use crate::units::ratio_from_semitones;
 use key_tracking::KeyTracking;
 use libm::{pow, sin};
@@ -70,6 +71,11 @@ impl Instrument {
         }
     }
 
+    /// What a note of a patch takes.
+    pub(crate) fn footprint(&self, patch: &Patch) -> Footprint {
+        Footprint { voices: 1, cells: Cells::count_for(patch.modes.as_slice().len()) }
+    }
+
     /// The value of a parameter without the routes' part.
     fn value(&self, param: Param) -> f64 {
         self.modulated.get(param).into()
@@ -96,12 +102,9 @@ pub(crate) struct SynthVoice {
     sample_rate: f64,
     /// Seconds a frame.
     period: f64,
-    pub(super) bank: Bank,
+    pub(super) bank: Cells,
     exciter: Exciter,
     drive: Drive,
-    /// Frequency of each mode as a multiple of the note's, and T60 as a multiple of the decay.
-    ratios: [f64; MAX_MODES],
-    t60_scale: [f64; MAX_MODES],
     /// Energy that the exciter has still to bring, and that of the bank at the last tick.
     pending_energy: f64,
     energy: f64,
@@ -163,11 +166,9 @@ impl SynthVoice {
         Self {
             sample_rate,
             period: 1.0 / sample_rate,
-            bank: Bank::new(sample_rate),
+            bank: Cells::EMPTY,
             exciter: Exciter::REST,
             drive: Drive::NONE,
-            ratios: [1.0; MAX_MODES],
-            t60_scale: [1.0; MAX_MODES],
             pending_energy: 0.0,
             energy: 0.0,
             until_stock: 0,
@@ -280,9 +281,7 @@ impl SynthVoice {
         if damping != self.damping || std::mem::take(&mut self.decay_changed) {
             self.damping = damping;
             self.end = None;
-            for m in 0..self.bank.len() {
-                self.bank.set_t60(m, damping.t60(self.t60_scale[m]));
-            }
+            self.bank.damp(|scale| damping.t60(scale));
         }
         let mut start = None;
         if self.fresh {
@@ -414,9 +413,25 @@ impl SynthVoice {
 
 impl Voice for SynthVoice {
     type Context = Instrument;
+    type Cell = Cell;
 
-    fn start(&mut self, instrument: &Instrument, note: &Note) {
+    fn footprint(instrument: &Instrument) -> Footprint {
+        instrument.footprint(&instrument.modulated)
+    }
+
+    fn add_cell(&mut self, cell: Box<Cell>) {
+        // A note takes no more cells than its voices have room for.
+        let surplus = self.bank.add(cell);
+        debug_assert!(surplus.is_none());
+    }
+
+    fn take_cell(&mut self) -> Option<Box<Cell>> {
+        self.bank.take()
+    }
+
+    fn start(&mut self, instrument: &Instrument, note: &Note, _: Unison) {
         *self = Self {
+            bank: std::mem::replace(&mut self.bank, Cells::EMPTY),
             patch: note.patch,
             key: note.key,
             brightness: note.brightness.into(),
@@ -431,17 +446,13 @@ impl Voice for SynthVoice {
         let from = instrument.last_pitch.unwrap_or(self.pitch) - self.pitch;
         self.glide = Glide::new(from, 0.0, self.key_tracking.glide_seconds);
         let law = if instrument.modulated.get(Param::Coefficients) == 0.0 { Law::Exact } else { Law::Classic };
-        if law != Law::Exact {
-            // A new voice has a bank of the exact law already.
-            self.bank = Bank::of(law, instrument.sample_rate);
-        }
         let width = self.value(instrument, Param::Width) * 0.01;
-        let tuning = self.tuning(frequency);
-        let setup = tuning.zip(instrument.modulated.modes.as_slice()).map(|((frequency, t60), mode)| {
+        let damping = self.damping;
+        let setup = |mode: &Mode, ratio: f64, scale: f64| {
             let (left, right) = super::gain::pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
-            ModeSetup { frequency, t60, left, right }
-        });
-        self.bank.load(setup);
+            ModeSetup { frequency: frequency * ratio, t60: damping.t60(scale), left, right }
+        };
+        self.bank.load(law, instrument.sample_rate, instrument.modulated.modes.as_slice(), setup);
         self.excite(instrument, note);
     }
 

@@ -121,7 +121,7 @@ impl SynthVoice {
     pub(super) fn read_body(&mut self, instrument: &Instrument) {
         self.key_tracking = KeyTracking::new(|param| self.value(instrument, param));
         let stretch = self.value(instrument, Param::Stretch);
-        for (ratio, mode) in self.ratios.iter_mut().zip(instrument.modulated.modes.as_slice()) {
+        for (ratio, mode) in self.bank.ratios_mut().zip(instrument.modulated.modes.as_slice()) {
             *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
         }
         self.scale_decay(instrument);
@@ -140,19 +140,12 @@ impl SynthVoice {
     pub(super) fn scale_decay(&mut self, instrument: &Instrument) {
         let tilt = -self.value(instrument, Param::DecayTilt);
         let dullness = 2.0 * self.brightness.min(0.0);
-        for (scale, mode) in self.t60_scale.iter_mut().zip(instrument.modulated.modes.as_slice()) {
+        for (scale, mode) in self.bank.t60_scales_mut().zip(instrument.modulated.modes.as_slice()) {
             *scale = f64::from(mode.decay) * pow(mode.ratio.into(), tilt);
             if dullness < 0.0 && mode.ratio > 1.0 {
                 *scale *= pow(mode.ratio.into(), dullness);
             }
         }
-    }
-
-    /// Frequency and T60 of each mode, after [`SynthVoice::place`].
-    pub(super) fn tuning(&self, frequency: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
-        let damping = self.damping;
-        let modes = self.ratios.into_iter().zip(self.t60_scale);
-        modes.map(move |(ratio, scale)| (frequency * ratio, damping.t60(scale)))
     }
 
     /// The note that the voice had hands over to `note`, which is told what it is told anew. A gain that the last one
@@ -182,7 +175,7 @@ impl SynthVoice {
         self.modulators.set_pitch(self.pitch);
         self.glide = Glide::new(from - self.pitch, 0.0, self.key_tracking.glide_seconds);
         self.glide_start = self.age;
-        let tuning = self.tuning(frequency);
-        self.bank.retune(tuning);
+        let damping = self.damping;
+        self.bank.retune(|ratio, scale| (frequency * ratio, damping.t60(scale)));
     }
 }

@@ -15,6 +15,7 @@ struct FakeInstrument {
 /// A voice that writes down what it is told, and that refuses to read another patch than its own.
 struct FakeVoice {
     log: Log,
+    cells: usize,
     patch: u32,
     key: u8,
     energy: f64,
@@ -23,7 +24,19 @@ struct FakeVoice {
 
 impl Voice for FakeVoice {
     type Context = FakeInstrument;
-    fn start(&mut self, instrument: &FakeInstrument, note: &Note) {
+    type Cell = ();
+    fn footprint(_: &FakeInstrument) -> Footprint {
+        Footprint { voices: 1, cells: 2 }
+    }
+    fn add_cell(&mut self, _: Box<()>) {
+        self.cells += 1;
+    }
+    fn take_cell(&mut self) -> Option<Box<()>> {
+        self.cells = self.cells.checked_sub(1)?;
+        Some(Box::new(()))
+    }
+    fn start(&mut self, instrument: &FakeInstrument, note: &Note, _: Unison) {
+        assert_eq!(self.cells, 2);
         (self.key, self.over, self.energy) = (note.key, false, f64::from(note.velocity));
         self.patch = instrument.patch;
         self.log.borrow_mut().push(format!("start {}", note.key));
@@ -75,7 +88,9 @@ use Do::*;
 /// Plays a script and returns what the voices were told.
 fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
     let log = Log::default();
-    let mut manager = VoiceManager::new(|| FakeVoice { log: log.clone(), patch: 0, key: 0, energy: 0.0, over: false });
+    let voice = || FakeVoice { log: log.clone(), cells: 0, patch: 0, key: 0, energy: 0.0, over: false };
+    let capacity = Footprint { voices: 200, cells: 400 };
+    let mut manager = VoiceManager::new(VoicePool::full(capacity, voice, || ()));
     let mut instrument = FakeInstrument { patch: 0 };
     manager.configure(polyphony, mode, 0);
     for (serial, action) in script.iter().enumerate() {
