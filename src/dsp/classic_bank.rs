@@ -5,6 +5,7 @@ use super::exciter::Drive;
 use super::mode_bank::{ExcitationGains, MAX_MODES, ModeSetup};
 use super::simd::vector::{LANES, Partial, sum_frames};
 use super::{CONTROL_FRAMES, HarmonicOscillator};
+use libm::{cosf, sinf};
 use std::f64::consts::PI;
 
 /// How far below the angle at which it explodes the step is kept.
@@ -70,7 +71,7 @@ impl Mode {
         push: 0.0,
         pull: 0.0,
         noise: 0.0,
-        gains: ExcitationGains { push: 0.0, pull: 0.0, noise: 0.0 },
+        gains: ExcitationGains { push: 0.0, pull: 0.0, noise: 0.0, phase: 0.0 },
         unit_push: 0.0,
         asked: 0.0,
     };
@@ -143,7 +144,12 @@ impl Mode {
     /// Takes over what drives the mode.
     fn set_excitation_gains(&mut self, gains: ExcitationGains) {
         self.gains = gains;
-        (self.push, self.pull, self.noise) = (gains.push * self.unit_push, gains.pull, gains.noise * self.unit_push);
+        let (mut push, mut pull) = (gains.push, gains.pull);
+        if gains.phase != 0.0 {
+            let (sin, cos) = (sinf(gains.phase), cosf(gains.phase));
+            (push, pull) = (push * cos - pull * sin, pull * cos + push * sin);
+        }
+        (self.push, self.pull, self.noise) = (push * self.unit_push, pull, gains.noise * self.unit_push);
     }
 }
 
@@ -266,7 +272,7 @@ impl ClassicBank {
         let mut sums = [[Partial([0.0; LANES]); CONTROL_FRAMES]; 2];
         let [left, right] = &mut sums;
         for (m, mode) in self.modes[..self.len].iter_mut().enumerate() {
-            let ExcitationGains { push, pull, noise: by_noise } = mode.gains;
+            let ExcitationGains { push, pull, noise: by_noise, .. } = mode.gains;
             mode.asked += pulse * f64::from(push.abs() + pull.abs()) + noise * f64::from(by_noise.abs());
             for i in 0..frames {
                 mode.sweep += mode.sweep_step;

@@ -8,8 +8,9 @@ use super::event::{Event, EventKind};
 use super::note::nearest_channel;
 use super::synth::{Synth, voices};
 use super::voice::SynthVoice;
-use super::voice_manager::{Footprint, VoicePool, has_room, make_room};
+use super::voice_manager::{Footprint, MAX_UNISON, VoicePool, has_room, make_room};
 use super::zones::Owners;
+use crate::params::Param;
 use crate::patch::Patch;
 
 /// What an ensemble can sound: 384 notes of 64 modes or 48 of 512 on all channels together, and as many more as a third
@@ -39,6 +40,24 @@ pub(super) struct Lender {
     pool: VoicePool<SynthVoice>,
 }
 
+/// What the next notes of a part can take.
+struct Notes {
+    /// By the programs that have come up, if any.
+    most: Option<Footprint>,
+    /// The number of unison voices changes in the stretch.
+    any_unison: bool,
+}
+
+impl Notes {
+    fn most(&self, part: &Synth) -> Footprint {
+        let Footprint { voices, cells } = self.most.unwrap_or(part.footprint(None));
+        if !self.any_unison {
+            return Footprint { voices, cells };
+        }
+        Footprint { voices: MAX_UNISON, cells: cells.div_ceil(voices) * MAX_UNISON }
+    }
+}
+
 impl Lender {
     /// A full pool. Allocates.
     pub(super) fn new(sample_rate: f64) -> Self {
@@ -58,17 +77,17 @@ impl Lender {
         synth: impl Fn(&mut P) -> &mut Synth,
         stretch: &Stretch,
     ) -> Option<(usize, usize)> {
-        let mut most: [Option<Footprint>; 16] = [None; 16];
+        let mut notes = [const { Notes { most: None, any_unison: false } }; 16];
         for (index, event) in stretch.events.iter().enumerate() {
             let sender = nearest_channel(event.channel);
             let owner = usize::from(stretch.owners.of(sender));
-            let most = &mut most[owner];
+            let notes = &mut notes[owner];
             match event.kind {
                 EventKind::NoteOn { key, .. } => {
                     // What has happened before in the stretch may change what this note needs.
                     let is_next = index == 0 && stretch.frame(event) == 0;
                     let part = synth(&mut players[owner]);
-                    let need = if is_next { part.need(sender, key) } else { most.unwrap_or(part.footprint(None)) };
+                    let need = if is_next { part.need(sender, key) } else { notes.most(part) };
                     if !has_room(POOL, self.pool.free(), need) {
                         if !is_next {
                             return Some((index, stretch.frame(event)));
@@ -81,8 +100,11 @@ impl Lender {
                 EventKind::Program(number) if owner == usize::from(sender) => {
                     if let Some(patch) = stretch.programs.get(usize::from(number)) {
                         let part = synth(&mut players[owner]);
-                        *most = Some(most.unwrap_or(part.footprint(None)).max(part.footprint(Some(patch))));
+                        notes.most = Some(notes.most(part).max(part.footprint(Some(patch))));
                     }
+                }
+                EventKind::Param { param: Param::Unison, .. } | EventKind::Modulate { param: Param::Unison, .. } => {
+                    notes.any_unison = true;
                 }
                 _ => {}
             }

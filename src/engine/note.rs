@@ -29,6 +29,8 @@ pub struct Note {
     pub body: u32,
     /// Choke group, 0 for none.
     pub choke: u8,
+    /// Whether another key was down when it began.
+    pub is_legato: bool,
 }
 
 impl Note {
@@ -46,6 +48,7 @@ impl Note {
         patch: 0,
         body: 0,
         choke: 0,
+        is_legato: false,
     };
 }
 

@@ -6,8 +6,8 @@ use super::event::{Expression, finite, unit};
 use super::midi::{controller, seven_bits};
 use super::modulation::{Bus, SharedLfos, modulated};
 use super::note::{Note, Notes, nearest_channel, nearest_key};
-use super::voice::{Instrument, SynthVoice};
-use super::voice_manager::{Footprint, PlayMode, VoiceManager, VoicePool, has_room, make_room};
+use super::voice::{Instrument, SynthVoice, footprint};
+use super::voice_manager::{Footprint, PlayMode, Priority, VoiceManager, VoicePool, has_room, make_room};
 use super::zones::{MEMBER_BEND_RANGE, Zones};
 use super::{Event, EventKind, Snapshot};
 use crate::dsp::limiter::Work;
@@ -254,6 +254,7 @@ impl Synth {
                     soft: soft(index) || self.zones.master_of(index).is_some_and(soft),
                     brightness,
                     id,
+                    is_legato: self.manager.has_key_down(),
                     ..self.next_note(index, key)
                 };
                 self.note_serial += 1;
@@ -261,8 +262,9 @@ impl Synth {
                     return self.manager.turn_away(note);
                 }
                 self.make_room(&note);
-                self.manager.note_on(&self.instrument, note);
-                self.instrument.last_pitch = Some(self.instrument.pitch(&note));
+                if self.manager.note_on(&self.instrument, note) {
+                    self.instrument.last_pitch = Some(self.instrument.pitch(&note));
+                }
             }
             EventKind::NoteOff { key, velocity, id } => {
                 let notes = Notes { id: (id != -1).then_some(id), ..Notes::on(index, key) };
@@ -328,7 +330,8 @@ impl Synth {
 
     /// The most that a note of a patch takes from the pool; of the patch in use if none is given.
     pub(super) fn footprint(&self, patch: Option<&Patch>) -> Footprint {
-        self.instrument.footprint(patch.unwrap_or(&self.instrument.modulated))
+        let Some(patch) = patch else { return footprint(&self.instrument.modulated, 0.0) };
+        footprint(patch, self.offsets[Param::Unison as usize])
     }
 
     /// Its manager.
@@ -512,7 +515,12 @@ impl Synth {
             1 => PlayMode::Mono,
             _ => PlayMode::Legato,
         };
-        self.manager.configure(patch.get(Param::Voices) as usize, mode, self.instrument.patch_serial);
+        let priority = match patch.get(Param::Priority) as u32 {
+            0 => Priority::Last,
+            1 => Priority::Low,
+            _ => Priority::High,
+        };
+        self.manager.configure(patch.get(Param::Voices) as usize, mode, priority, self.instrument.patch_serial);
     }
 }
 

@@ -16,7 +16,7 @@ fn body(cells: &mut Cells, law: Law, modes: usize, seed: u64) {
         |pan: &f32, ratio: f64, scale: f64| ModeSetup { frequency: 200.0 * ratio, t60: scale, left: *pan, right: 1.0 };
     cells.load(law, RATE, &pans, setup);
     for m in 0..modes {
-        let gains = ExcitationGains { push: unit(m, 3) as f32, pull: 0.1, noise: 0.0 };
+        let gains = ExcitationGains { push: unit(m, 3) as f32, pull: 0.1, ..ExcitationGains::default() };
         cells.set_excitation_gains(m, gains);
     }
 }

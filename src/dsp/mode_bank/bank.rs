@@ -11,6 +11,7 @@ use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
 use crate::dsp::exciter::Drive;
 use crate::dsp::simd::vector::LANES;
 use crate::dsp::simd::{Instructions, Level};
+use libm::{cosf, sinf};
 
 /// A bank is worth making tables for once it has rung freely at one pitch for a control tick per so many modes: with
 /// few modes they are paid for in a tick, with 64 in about eight.
@@ -145,8 +146,13 @@ impl ModeBank {
     /// Sets how strongly mode `m` is moved by what drives the bank.
     pub fn set_excitation_gains(&mut self, m: usize, gains: ExcitationGains) {
         self.tune();
-        self.modes.pulse_x.0[m] = gains.pull * self.tuning.pull_x.0[m];
-        self.modes.pulse_y.0[m] = gains.push + gains.pull * self.tuning.pull_y.0[m];
+        let (x, y) = (gains.pull * self.tuning.pull_x.0[m], gains.push + gains.pull * self.tuning.pull_y.0[m]);
+        (self.modes.pulse_x.0[m], self.modes.pulse_y.0[m]) = if gains.phase == 0.0 {
+            (x, y)
+        } else {
+            let (sin, cos) = (sinf(gains.phase), cosf(gains.phase));
+            (x * cos + y * sin, y * cos - x * sin)
+        };
         self.modes.noise.0[m] = gains.noise;
     }
 

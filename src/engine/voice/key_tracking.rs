@@ -1,5 +1,6 @@
 //! How pitch and decay follow the key.
 
+use crate::dsp::pitch::Glide;
 use crate::engine::note::Note;
 use crate::params::Param;
 use crate::units::{frequency_from_key, ratio_from_semitones};
@@ -17,13 +18,17 @@ pub(super) struct KeyTracking {
     decay: f64,
     /// Frequency of A4 in Hz.
     a4_hz: f64,
-    /// Time to slide from the note before.
-    pub(super) glide_seconds: f64,
+    /// Time to slide from the note before, or that for each octave.
+    glide_seconds: f64,
+    glides_by_rate: bool,
+    /// Only notes slide that begin while another key is down.
+    glides_legato: bool,
 }
 
 impl KeyTracking {
     /// Every key has its own pitch, at 440 Hz, and one decay.
-    pub(super) const NONE: Self = Self { pitch: 1.0, decay: 0.0, a4_hz: 440.0, glide_seconds: 0.0 };
+    pub(super) const NONE: Self =
+        Self { pitch: 1.0, decay: 0.0, a4_hz: 440.0, glide_seconds: 0.0, glides_by_rate: false, glides_legato: false };
 
     /// That of a patch with these values.
     pub(super) fn new(value: impl Fn(Param) -> f64) -> Self {
@@ -32,6 +37,8 @@ impl KeyTracking {
             decay: value(Param::DecayKey) * 0.01,
             a4_hz: value(Param::Tuning),
             glide_seconds: value(Param::Glide),
+            glides_by_rate: value(Param::GlideBy) != 0.0,
+            glides_legato: value(Param::GlideWhen) != 0.0,
         }
     }
 
@@ -43,6 +50,13 @@ impl KeyTracking {
     /// What a pitch in semitones multiplies T60s by.
     pub(super) fn decay_scale(&self, pitch: f64) -> f64 {
         ratio_from_semitones(self.decay * (MIDDLE_C - pitch))
+    }
+
+    /// The slide of a note from some semitones away.
+    pub(super) fn glide(&self, from: f64, is_legato: bool) -> Glide {
+        let octaves = if self.glides_by_rate { libm::fabs(from) / 12.0 } else { 1.0 };
+        let slides = is_legato || !self.glides_legato;
+        Glide::new(from, 0.0, if slides { self.glide_seconds * octaves } else { 0.0 })
     }
 
     /// Frequency in Hz of a pitch in semitones.

@@ -10,7 +10,7 @@ use super::damping::Damping;
 use super::event::Expression;
 use super::expression::Expressions;
 use super::fader::Fader;
-use super::modulation::{Bus, Modulators, NoteModulation, Positions, Settings, SharedLfos};
+use super::modulation::{Bus, Modulators, NoteModulation, Positions, Settings, SharedLfos, modulated};
 use super::note::Note;
 use super::voice_manager::{Footprint, Unison, Voice};
 use crate::dsp::bank::Law;
@@ -71,11 +71,6 @@ impl Instrument {
         }
     }
 
-    /// What a note of a patch takes.
-    pub(crate) fn footprint(&self, patch: &Patch) -> Footprint {
-        Footprint { voices: 1, cells: Cells::count_for(patch.modes.as_slice().len()) }
-    }
-
     /// The value of a parameter without the routes' part.
     fn value(&self, param: Param) -> f64 {
         self.modulated.get(param).into()
@@ -85,6 +80,12 @@ impl Instrument {
     pub(crate) fn pitch(&self, note: &Note) -> f64 {
         KeyTracking::new(|param| self.value(param)).pitch(note)
     }
+}
+
+/// What a note of a patch takes, with an offset of the number of unison voices in knob travel.
+pub(crate) fn footprint(patch: &Patch, unison_offset: f32) -> Footprint {
+    let voices = modulated(patch, Param::Unison, unison_offset) as usize;
+    Footprint { voices, cells: voices * Cells::count_for(patch.modes.as_slice().len()) }
 }
 
 /// A voice is over when its modes could not add up to more than this: −120 dBFS.
@@ -151,6 +152,11 @@ pub(crate) struct SynthVoice {
     let_go: Option<f32>,
     /// −0.5 to 0.5.
     brightness: f64,
+    /// Which of the note's voices it is, how far it lies from the note in semitones, and by how many radians its strike is
+    /// turned ahead.
+    unison: Unison,
+    unison_detune: f64,
+    strike_phase: f32,
     damping: Damping,
     /// The T60s of the modes are to be set at the next control, whether or not `damping` changes.
     decay_changed: bool,
@@ -201,6 +207,9 @@ impl SynthVoice {
             modulators: Modulators::none(),
             let_go: None,
             brightness: 0.0,
+            unison: Unison::ONE,
+            unison_detune: 0.0,
+            strike_phase: 0.0,
             damping: Damping { decay: 1.0, release: 1.0, amount: 0.0 },
             decay_changed: false,
             fader: Fader::CLOSED,
@@ -416,7 +425,7 @@ impl Voice for SynthVoice {
     type Cell = Cell;
 
     fn footprint(instrument: &Instrument) -> Footprint {
-        instrument.footprint(&instrument.modulated)
+        footprint(&instrument.modulated, 0.0)
     }
 
     fn add_cell(&mut self, cell: Box<Cell>) {
@@ -429,8 +438,9 @@ impl Voice for SynthVoice {
         self.bank.take()
     }
 
-    fn start(&mut self, instrument: &Instrument, note: &Note, _: Unison) {
+    fn start(&mut self, instrument: &Instrument, note: &Note, unison: Unison) {
         *self = Self {
+            unison,
             bank: std::mem::replace(&mut self.bank, Cells::EMPTY),
             patch: note.patch,
             key: note.key,
@@ -444,12 +454,16 @@ impl Voice for SynthVoice {
         self.read_body(instrument);
         let frequency = self.place(note, instrument.controls);
         let from = instrument.last_pitch.unwrap_or(self.pitch) - self.pitch;
-        self.glide = Glide::new(from, 0.0, self.key_tracking.glide_seconds);
+        self.glide = self.key_tracking.glide(from, note.is_legato);
         let law = if instrument.modulated.get(Param::Coefficients) == 0.0 { Law::Exact } else { Law::Classic };
         let width = self.value(instrument, Param::Width) * 0.01;
-        let damping = self.damping;
+        let (damping, spread) =
+            (self.damping, self.unison.position() * self.value(instrument, Param::UnisonSpread) * 0.01);
         let setup = |mode: &Mode, ratio: f64, scale: f64| {
-            let (left, right) = super::gain::pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
+            let (left, right) = {
+                let pan = (f64::from(mode.pan) * width + spread).clamp(-1.0, 1.0);
+                super::gain::pan_gains((pan * 0.5 + 0.5) as f32)
+            };
             ModeSetup { frequency: frequency * ratio, t60: damping.t60(scale), left, right }
         };
         self.bank.load(law, instrument.sample_rate, instrument.modulated.modes.as_slice(), setup);
@@ -462,7 +476,7 @@ impl Voice for SynthVoice {
             self.let_go = None;
             self.strike_modulators(instrument, note, false);
         }
-        self.aim(Some(instrument), note);
+        self.aim(Some(instrument), note, note.is_legato);
         self.excite(instrument, note);
         // The age starts again with the sweep; the glide starts now anyway, and the vibrato keeps its phase.
         self.vibrato_phase += self.controls.vibrato_rate * self.seconds(self.age - self.controlled_age);
@@ -470,7 +484,7 @@ impl Voice for SynthVoice {
     }
 
     fn retune(&mut self, instrument: Option<&Instrument>, note: &Note) {
-        self.aim(instrument, note);
+        self.aim(instrument, note, true);
     }
 
     fn release(&mut self, velocity: f32) {

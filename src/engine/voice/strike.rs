@@ -3,15 +3,16 @@
 use super::key_tracking::KeyTracking;
 use super::{Instrument, SynthVoice};
 use crate::dsp::mode_bank::ExcitationGains;
-use crate::dsp::pitch::{Glide, SweepEnvelope};
+use crate::dsp::pitch::SweepEnvelope;
 use crate::dsp::random;
 use crate::engine::controls::Controls;
 use crate::engine::damping::Damping;
 use crate::engine::modulation::Struck;
 use crate::engine::note::Note;
+use crate::engine::voice_manager::Unison;
 use crate::params::Param;
 use crate::units::gain_from_db;
-use libm::{fabs, pow, sin};
+use libm::{fabs, pow, sin, sqrt};
 use std::f64::consts::{LOG2_10, PI};
 
 /// The soft pedal takes this share of the force …
@@ -22,6 +23,9 @@ const SOFT_HARDNESS: f64 = 0.3;
 /// Contact times of the softest and the hardest mallet, in seconds.
 const SOFTEST_CONTACT: f64 = 0.01;
 const HARDEST_CONTACT: f64 = 0.000_05;
+
+/// The stream of random phases, beside that of a voice's noise.
+const PHASE_STREAM: u64 = 0x0055_4e49_534f_4e;
 
 /// The brightest notes are tilted by this much more than the patch says, in decibels per octave; the dullest by as
 /// much less, and their higher modes ring shorter by their ratio.
@@ -62,7 +66,7 @@ impl SynthVoice {
         let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
         let balance = if tilt != 0.0 && total > 0.0 { plain / total } else { 1.0 };
 
-        let exciter = instrument.modulated.get(Param::Exciter) as u32;
+        let (exciter, phase) = (instrument.modulated.get(Param::Exciter) as u32, self.strike_phase);
         // Energy is what a strike of force 1 brings: the sum of the squared levels.
         let (mut noisy, mut energy) = (false, 0.0);
         for (m, mode) in modes.iter().enumerate() {
@@ -71,7 +75,7 @@ impl SynthVoice {
             let noise = if exciter == NOISE { level } else { level * (1.0 - f64::from(mode.strike)) } * noise_gain;
             let plucked = struck * sin(PI * position * 0.01 * f64::from(mode.ratio));
             let (push, pull) = if exciter == PLUCK { (0.0, plucked) } else { (struck, 0.0) };
-            let gains = ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32 };
+            let gains = ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32, phase };
             self.bank.set_excitation_gains(m, gains);
             noisy |= noise != 0.0;
             energy += push * push + pull * pull + noise * noise;
@@ -87,10 +91,17 @@ impl SynthVoice {
         let soft = if note.soft { SOFT_FORCE } else { 1.0 };
         // The strike before has brought its energy: this one's is counted below.
         self.squared_force = 0.0;
+        // Each unison voice has a phase and noise of its own; together they have the energy of one.
+        let (Unison { index, count }, key) = (self.unison, random::key(instrument.seed, note.serial));
+        let key = if index == 0 { key } else { random::key(key, index as u64) };
+        if count > 1 {
+            let phase = random::uniform(random::key(key, PHASE_STREAM), 0);
+            self.strike_phase = (PI * self.share(instrument, Param::UnisonPhase)) as f32 * phase;
+        }
         let noisy = self.set_excitation_gains(instrument);
         let exciter = instrument.modulated.get(Param::Exciter) as u32;
 
-        let force = pow(velocity, 2.0 * self.share(instrument, Param::Velocity)) * soft;
+        let force = pow(velocity, 2.0 * self.share(instrument, Param::Velocity)) * soft / sqrt(count as f64);
         let hardness = self.share(instrument, Param::Hardness)
             * (1.0 - self.share(instrument, Param::HardnessVelocity) * (1.0 - velocity));
         let hardness = if note.soft { hardness * (1.0 - SOFT_HARDNESS) } else { hardness };
@@ -99,7 +110,6 @@ impl SynthVoice {
         let pulse_frames = if exciter == IMPULSE { 1 } else { frames(contact) };
         let noise_force = if noisy { force as f32 } else { 0.0 };
         let noise_frames = frames(self.value(instrument, Param::NoiseTime));
-        let key = random::key(instrument.seed, note.serial);
         self.exciter.strike(force as f32, pulse_frames, noise_force, noise_frames, key);
         self.squared_force = force * force;
         self.pending_energy += self.squared_force * self.unit_energy;
@@ -120,6 +130,7 @@ impl SynthVoice {
     /// Reads what the patch says of the body: the ratios and T60s of its modes, and how they follow the key.
     pub(super) fn read_body(&mut self, instrument: &Instrument) {
         self.key_tracking = KeyTracking::new(|param| self.value(instrument, param));
+        self.unison_detune = self.unison.position() * self.value(instrument, Param::UnisonDetune) * 0.01;
         let stretch = self.value(instrument, Param::Stretch);
         for (ratio, mode) in self.bank.ratios_mut().zip(instrument.modulated.modes.as_slice()) {
             *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
@@ -133,7 +144,7 @@ impl SynthVoice {
         self.key_scale = self.key_tracking.decay_scale(self.pitch);
         self.damping = Damping { decay: controls.decay * self.key_scale, release: 0.0, amount: 0.0 };
         self.released = false;
-        self.key_tracking.frequency(self.pitch + self.tune)
+        self.key_tracking.frequency(self.pitch + self.tune + self.unison_detune)
     }
 
     /// Each mode's T60 as a multiple of the decay: the higher, the shorter; dull notes lose their high modes sooner.
@@ -162,7 +173,7 @@ impl SynthVoice {
 
     /// Makes the sounding voice that of `note`, sliding from where its pitch is. Without an instrument, the voice goes
     /// by what it has read of its own.
-    pub(super) fn aim(&mut self, instrument: Option<&Instrument>, note: &Note) {
+    pub(super) fn aim(&mut self, instrument: Option<&Instrument>, note: &Note, is_legato: bool) {
         let from = self.pitch + self.glide.at(self.seconds(self.age - self.glide_start));
         self.take_over(note);
         self.end = None;
@@ -173,7 +184,7 @@ impl SynthVoice {
         let controls = instrument.map_or(self.controls, |instrument| instrument.controls);
         let frequency = self.place(note, controls);
         self.modulators.set_pitch(self.pitch);
-        self.glide = Glide::new(from - self.pitch, 0.0, self.key_tracking.glide_seconds);
+        self.glide = self.key_tracking.glide(from - self.pitch, is_legato);
         self.glide_start = self.age;
         let damping = self.damping;
         self.bank.retune(|ratio, scale| (frequency * ratio, damping.t60(scale)));

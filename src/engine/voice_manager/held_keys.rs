@@ -2,6 +2,28 @@
 
 use crate::engine::note::Note;
 
+/// Which of several held keys a monophonic voice plays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Priority {
+    /// That of the newest note.
+    Last,
+    /// The lowest.
+    Low,
+    /// The highest.
+    High,
+}
+
+impl Priority {
+    /// Whether a note is played rather than an earlier one.
+    pub(super) fn prefers(self, note: &Note, earlier: &Note) -> bool {
+        match self {
+            Self::Last => true,
+            Self::Low => note.key <= earlier.key,
+            Self::High => note.key >= earlier.key,
+        }
+    }
+}
+
 /// Most keys that are remembered.
 const MAX_HELD_KEYS: usize = 32;
 
@@ -33,6 +55,11 @@ impl HeldKeys {
             *free = note;
             self.len += 1;
         }
+    }
+
+    /// The key that sounds.
+    pub(super) fn first(&self, priority: Priority) -> Option<Note> {
+        self.as_slice().iter().copied().reduce(|best, note| if priority.prefers(&note, &best) { note } else { best })
     }
 
     /// Takes out the oldest note that is meant.

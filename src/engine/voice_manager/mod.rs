@@ -8,6 +8,7 @@ mod voice;
 
 use super::note::{Note, Notes};
 use held_keys::HeldKeys;
+pub use held_keys::Priority;
 pub use pool::{Footprint, VoicePool};
 pub use room::{has_room, make_room};
 pub use slot::MAX_UNISON;
@@ -44,6 +45,7 @@ pub struct VoiceManager<V: Voice> {
     sostenuto: [bool; 16],
     polyphony: usize,
     mode: PlayMode,
+    priority: Priority,
     /// The patch of the context: see [`Note::patch`].
     patch: u32,
     held: HeldKeys,
@@ -63,6 +65,7 @@ impl<V: Voice> VoiceManager<V> {
             sostenuto: [false; 16],
             polyphony: MAX_VOICES,
             mode: PlayMode::Poly,
+            priority: Priority::Last,
             patch: 0,
             held: HeldKeys::NONE,
             ended: Vec::with_capacity(MAX_ENDED),
@@ -83,7 +86,8 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Sets how many notes sound at once (1 to [`MAX_VOICES`]) and how they share voices, from the next note on, and
     /// which patch the context has.
-    pub fn configure(&mut self, polyphony: usize, mode: PlayMode, patch: u32) {
+    pub fn configure(&mut self, polyphony: usize, mode: PlayMode, priority: Priority, patch: u32) {
+        self.priority = priority;
         self.patch = patch;
         self.polyphony = polyphony.clamp(1, MAX_VOICES);
         if mode != self.mode {
@@ -191,8 +195,20 @@ impl<V: Voice> VoiceManager<V> {
         slots.iter().position(|slot| slot.is_sounding() && slot.note.body == note.body)
     }
 
-    /// A key goes down.
-    pub fn note_on(&mut self, context: &V::Context, note: Note) {
+    /// Whether any key is down.
+    pub fn has_key_down(&self) -> bool {
+        !self.held.as_slice().is_empty() || self.slots[..self.used].iter().any(|slot| slot.key_down)
+    }
+
+    /// A key goes down. Returns whether its note sounds: if not, another key has priority, and this one waits.
+    pub fn note_on(&mut self, context: &V::Context, note: Note) -> bool {
+        if self.mode != PlayMode::Poly {
+            self.remember(note);
+            let playing = self.playing(&note).map(|index| &self.slots[index]);
+            if playing.is_some_and(|slot| slot.key_down && !self.priority.prefers(&note, &slot.note)) {
+                return false;
+            }
+        }
         for slot in self.slots[..self.used].iter_mut().filter(|slot| slot.is_sounding()) {
             // What the note is about to strike again or to retune is not choked.
             let reused =
@@ -206,6 +222,16 @@ impl<V: Voice> VoiceManager<V> {
             PlayMode::Mono | PlayMode::Legato => self.note_on_mono(context, note),
         }
         self.peak = self.peak.max(self.sounding());
+        true
+    }
+
+    /// Keeps a key that is down for a monophonic voice to return to.
+    fn remember(&mut self, note: Note) {
+        self.forget(|held| (held.channel, held.key) == (note.channel, note.key));
+        if let Some(surplus) = self.held.surplus() {
+            self.forget(|held| held.serial == surplus.serial);
+        }
+        self.held.push(note);
     }
 
     fn note_on_poly(&mut self, context: &V::Context, note: Note) {
@@ -221,12 +247,6 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     fn note_on_mono(&mut self, context: &V::Context, note: Note) {
-        self.forget(|held| (held.channel, held.key) == (note.channel, note.key));
-        if let Some(surplus) = self.held.surplus() {
-            self.forget(|held| held.serial == surplus.serial);
-        }
-        self.held.push(note);
-
         let playing = self.playing(&note);
         for (index, slot) in self.slots[..self.used].iter_mut().enumerate() {
             if slot.is_sounding() && Some(index) != playing {
@@ -249,7 +269,7 @@ impl<V: Voice> VoiceManager<V> {
         if self.mode != PlayMode::Poly {
             self.forget(|held| notes.include(held));
             // The key before is still down: a release never strikes, it returns.
-            if let Some(note) = self.held.as_slice().last().copied()
+            if let Some(note) = self.held.first(self.priority)
                 && let Some(slot) =
                     self.slots[..self.used].iter_mut().find(|slot| slot.key_down && slot.is_one_of(&notes))
             {
