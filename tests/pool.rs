@@ -4,6 +4,7 @@ use sprung::engine::ensemble::Part;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::params::Param;
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
+use sprung::sound::Kit;
 
 const RATE: f64 = 48_000.0;
 const FRAMES: usize = 14_400;
@@ -127,8 +128,8 @@ fn a_used_ensemble_plays_as_a_new_one() {
     assert!(used.is_silent());
     let mut fresh = Ensemble::new(RATE, 5, &patch(100), &[]);
     // The clocks of both stand at a tick, and the sound has nothing random.
-    (0..16).for_each(|channel| used.set_patch(channel, &patch(300)));
-    (0..16).for_each(|channel| fresh.set_patch(channel, &patch(300)));
+    (0..16).for_each(|channel| used.set_kit(channel, &Kit::of_patch(&patch(300))));
+    (0..16).for_each(|channel| fresh.set_kit(channel, &Kit::of_patch(&patch(300))));
     let notes: Vec<_> = (0..30).map(|n| on(u32::from(n) * 333, n % 16, 40 + n, 0.7)).collect();
     assert!(render(&mut used, &notes, 480, one_by_one) == render(&mut fresh, &notes, 480, one_by_one));
 }

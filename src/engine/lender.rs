@@ -10,8 +10,10 @@ use super::synth::{Synth, voices};
 use super::voice::SynthVoice;
 use super::voice_manager::{Footprint, MAX_UNISON, VoicePool, has_room, make_room};
 use super::zones::Owners;
+use crate::dsp::cells::MAX_CELLS;
 use crate::params::Param;
-use crate::patch::Patch;
+use crate::sound::Kit;
+use std::sync::Arc;
 
 /// What an ensemble can sound: 384 notes of 64 modes or 48 of 512 on all channels together, and as many more as a third
 /// of them that fade.
@@ -25,7 +27,7 @@ pub(super) struct Stretch<'a> {
     pub(super) start: usize,
     pub(super) last: usize,
     pub(super) owners: Owners,
-    pub(super) programs: &'a [Patch],
+    pub(super) programs: &'a [Arc<Kit>],
 }
 
 impl Stretch<'_> {
@@ -49,12 +51,12 @@ struct Notes {
 }
 
 impl Notes {
-    fn most(&self, part: &Synth) -> Footprint {
-        let Footprint { voices, cells } = self.most.unwrap_or(part.footprint(None));
+    fn most(&mut self, part: &Synth) -> Footprint {
+        let most = *self.most.get_or_insert_with(|| part.footprint(None));
         if !self.any_unison {
-            return Footprint { voices, cells };
+            return most;
         }
-        Footprint { voices: MAX_UNISON, cells: cells.div_ceil(voices) * MAX_UNISON }
+        Footprint { voices: MAX_UNISON, cells: (most.cells * MAX_UNISON).min(MAX_CELLS * MAX_UNISON) }
     }
 }
 
@@ -98,9 +100,9 @@ impl Lender {
                     self.pool.lend(synth(&mut players[owner]).manager().pool(), need);
                 }
                 EventKind::Program(number) if owner == usize::from(sender) => {
-                    if let Some(patch) = stretch.programs.get(usize::from(number)) {
+                    if let Some(kit) = stretch.programs.get(usize::from(number)) {
                         let part = synth(&mut players[owner]);
-                        notes.most = Some(notes.most(part).max(part.footprint(Some(patch))));
+                        notes.most = Some(notes.most(part).max(part.footprint(Some(kit))));
                     }
                 }
                 EventKind::Param { param: Param::Unison, .. } | EventKind::Modulate { param: Param::Unison, .. } => {

@@ -106,6 +106,7 @@ fn play_with(
     let mut instrument = FakeInstrument { patch: 0, unison };
     manager.configure(polyphony, mode, priority, 0);
     for (serial, action) in script.iter().enumerate() {
+        let is_legato = manager.has_key_down();
         let on = |key, velocity, choke, patch| Note {
             channel: 0,
             key,
@@ -119,7 +120,9 @@ fn play_with(
             patch,
             body: patch,
             choke,
-            is_legato: manager.has_key_down(),
+            gain: 1.0,
+            pan: 0.0,
+            is_legato,
         };
         if let OnPatch(_, patch) | OnChokePatch(_, _, patch) | Patch(patch) = *action {
             instrument.patch = patch;
