@@ -2,8 +2,8 @@
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
-use sprung::params::PARAMS;
-use sprung::patch::{Mode, ModeTable, Patch};
+use sprung::params::{PARAMS, Param};
+use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use sprung::render::Meter;
 use sprung::sound::{Kit, Pad, Shelf, Sound, Tuning};
 use std::sync::Arc;
@@ -66,6 +66,13 @@ fn processing_does_not_allocate() {
             std::hint::black_box((synth.tail_frames(), synth.ended()));
         });
     }
+    // More than the pool has, so that notes of all channels give way.
+    let mut large = Patch::default().with(Param::Decay, 10.0);
+    large.modes = ModeTable::new(&[Mode::UNIT; MAX_MODES]);
+    let mut ensemble = Ensemble::new(48_000.0, 1, &large, &[]);
+    let kind = |n: u32| EventKind::NoteOn { key: (n % 90) as u8, detune: 0.0, velocity: 0.5, id: -1 };
+    let notes: Vec<_> = (0..200).map(|n| Event { frame: n * 2, channel: (n % 16) as u8, kind: kind(n) }).collect();
+    assert_no_alloc(|| (0..4).for_each(|_| ensemble.process(&notes, &mut left, &mut right)));
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
 }
 

@@ -1,8 +1,9 @@
 //! Chords on a synth: what the benches of whole instruments time.
 
+use sprung::dsp::mode_bank::MAX_MODES;
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::Param;
-use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
+use sprung::patch::{Mode, ModeTable, Patch};
 
 /// Frames of a block, as a host with little latency has them.
 pub(crate) const FRAMES: usize = 64;

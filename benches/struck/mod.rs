@@ -41,7 +41,9 @@ impl StruckBank {
         let mut bank = ModeBank::new(48_000.0);
         let mode = |m: usize| ModeSetup { frequency: 100.0 + 310.0 * m as f64, t60: 10_000.0, left: 1.0, right: 1.0 };
         bank.load((0..modes).map(mode));
-        (0..modes).for_each(|m| bank.set_excitation_gains(m, ExcitationGains { push: 1.0, pull: 0.0, noise: 1.0 }));
+        (0..modes).for_each(|m| {
+            bank.set_excitation_gains(m, ExcitationGains { push: 1.0, noise: 1.0, ..ExcitationGains::default() })
+        });
         let mut strike = Drive::NONE;
         strike.pulse[0] = 1.0;
         bank.sweep_to(1.0, CONTROL_FRAMES);

@@ -40,16 +40,19 @@ impl Bank {
     }
 
     /// An empty bank.
-    pub fn of(law: Law, sample_rate: f64) -> Self {
+    fn of(law: Law, sample_rate: f64) -> Self {
         match law {
             Law::Exact => Self::new(sample_rate),
             Law::Classic => Self::Classic(ClassicBank::new(sample_rate)),
         }
     }
 
-    /// Whether it is of a law.
-    pub fn is_of(&self, law: Law) -> bool {
-        matches!((self, law), (Self::Exact(_), Law::Exact) | (Self::Classic(_), Law::Classic))
+    /// Turns the bank into an empty one of another law; leaves it as it is if it has that law.
+    pub fn set_law(&mut self, law: Law, sample_rate: f64) {
+        match (law, &*self) {
+            (Law::Exact, Self::Exact(_)) | (Law::Classic, Self::Classic(_)) => {}
+            _ => *self = Self::of(law, sample_rate),
+        }
     }
 
     /// See [`ModeBank::load`].
@@ -107,13 +110,8 @@ impl Bank {
         either!(self, bank => bank.settle())
     }
 
-    /// See [`ModeBank::frames_until`].
-    pub fn frames_until(&self, total: f64) -> u64 {
-        either!(self, bank => bank.frames_until(total))
-    }
-
-    /// See [`ModeBank::frames_until_at_most`].
-    pub fn frames_until_at_most(&self, total: f64, more: f64) -> u64 {
-        either!(self, bank => bank.frames_until_at_most(total, more))
+    /// See [`ModeBank::tell_energies`].
+    pub(super) fn tell_energies(&self, each: impl FnMut(f64, f64)) {
+        either!(self, bank => bank.tell_energies(each));
     }
 }

@@ -2,10 +2,10 @@
 
 use super::coefficients::Coefficients;
 use super::exciter::Drive;
-use super::mode_bank::tail::Energies;
 use super::mode_bank::{ExcitationGains, MAX_MODES, ModeSetup};
 use super::simd::vector::{LANES, Partial, sum_frames};
 use super::{CONTROL_FRAMES, HarmonicOscillator};
+use libm::{cosf, sinf};
 use std::f64::consts::PI;
 
 /// How far below the angle at which it explodes the step is kept.
@@ -71,7 +71,7 @@ impl Mode {
         push: 0.0,
         pull: 0.0,
         noise: 0.0,
-        gains: ExcitationGains { push: 0.0, pull: 0.0, noise: 0.0 },
+        gains: ExcitationGains { push: 0.0, pull: 0.0, noise: 0.0, phase: 0.0 },
         unit_push: 0.0,
         asked: 0.0,
     };
@@ -144,7 +144,12 @@ impl Mode {
     /// Takes over what drives the mode.
     fn set_excitation_gains(&mut self, gains: ExcitationGains) {
         self.gains = gains;
-        (self.push, self.pull, self.noise) = (gains.push * self.unit_push, gains.pull, gains.noise * self.unit_push);
+        let (mut push, mut pull) = (gains.push, gains.pull);
+        if gains.phase != 0.0 {
+            let (sin, cos) = (sinf(gains.phase), cosf(gains.phase));
+            (push, pull) = (push * cos - pull * sin, pull * cos + push * sin);
+        }
+        (self.push, self.pull, self.noise) = (push * self.unit_push, pull, gains.noise * self.unit_push);
     }
 }
 
@@ -267,7 +272,7 @@ impl ClassicBank {
         let mut sums = [[Partial([0.0; LANES]); CONTROL_FRAMES]; 2];
         let [left, right] = &mut sums;
         for (m, mode) in self.modes[..self.len].iter_mut().enumerate() {
-            let ExcitationGains { push, pull, noise: by_noise } = mode.gains;
+            let ExcitationGains { push, pull, noise: by_noise, .. } = mode.gains;
             mode.asked += pulse * f64::from(push.abs() + pull.abs()) + noise * f64::from(by_noise.abs());
             for i in 0..frames {
                 mode.sweep += mode.sweep_step;
@@ -304,17 +309,8 @@ impl ClassicBank {
         total
     }
 
-    fn energies(&self) -> Energies {
-        Energies::new(self.modes[..self.len].iter().map(|mode| (mode.energy(), mode.energy_rate())))
-    }
-
-    /// As [`super::ModeBank::frames_until`].
-    pub fn frames_until(&self, total: f64) -> u64 {
-        self.energies().frames_until(total, 0)
-    }
-
-    /// As [`super::ModeBank::frames_until_at_most`].
-    pub fn frames_until_at_most(&self, total: f64, more: f64) -> u64 {
-        self.energies().frames_until_at_most(total, more)
+    /// As [`super::ModeBank::tell_energies`].
+    pub(super) fn tell_energies(&self, mut each: impl FnMut(f64, f64)) {
+        self.modes[..self.len].iter().for_each(|mode| each(mode.energy(), mode.energy_rate()));
     }
 }

@@ -1,6 +1,7 @@
 //! Pure numerics: no events, no files, no threads. Everything in it is real-time safe.
 
 pub mod bank;
+pub mod cells;
 pub mod classic_bank;
 pub mod coefficients;
 pub mod exciter;
@@ -17,6 +18,7 @@ pub mod simd;
 pub mod true_peak;
 
 pub use bank::Bank;
+pub use cells::{Cell, Cells};
 pub use classic_bank::ClassicBank;
 pub use coefficients::Coefficients;
 pub use limiter::Limiter;

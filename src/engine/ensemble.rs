@@ -1,5 +1,6 @@
 //! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
 
+use super::lender::{Lender, Stretch};
 use super::mix_limiter::MixLimiter;
 use super::note::{nearest_channel, nearest_key};
 use super::synth::{allowed, place};
@@ -29,6 +30,7 @@ pub struct Ensemble {
     playing: [Playing; 16],
     chunk: usize,
     owners: Owners,
+    lender: Lender,
     limiter: MixLimiter,
 }
 
@@ -90,7 +92,7 @@ impl Ensemble {
     /// As [`Ensemble::new`], with kits. Allocates.
     pub fn of_kits(sample_rate: f64, seed: u64, kit: &Arc<Kit>, programs: Vec<Arc<Kit>>) -> Self {
         let part = |channel: u64| {
-            let synth = Synth::new(sample_rate, seed.wrapping_add(channel << 32));
+            let synth = Synth::with_voices(sample_rate, seed.wrapping_add(channel << 32), Lender::for_part());
             Part { channel: channel as usize, synth, left: vec![0.0; CHUNK], right: vec![0.0; CHUNK], heard: false }
         };
         let largest = programs.iter().map(|kit| kit.sounds().len()).max().unwrap_or(1);
@@ -101,6 +103,7 @@ impl Ensemble {
             playing: std::array::from_fn(|_| Playing { kit: kit.clone(), choke: 0.0 }),
             chunk: CHUNK,
             owners: Owners::default(),
+            lender: Lender::new(sample_rate),
             limiter: MixLimiter::new(allowed(sample_rate)),
         };
         ensemble.reserve(largest);
@@ -159,11 +162,18 @@ impl Ensemble {
             let mut last = frames.saturating_sub(1).min(end).saturating_sub(start);
             let owners = self.owners;
             let mut zones = events[..now].iter().map(|event| self.owners.hear(event)).enumerate();
-            let zone = zones.find_map(|(index, zone)| Some((&events[index], index, zone?)));
+            let mut zone = zones.find_map(|(index, zone)| Some((&events[index], index, zone?)));
             if let Some((event, index, _)) = zone {
                 // Channels change their owners between two chunks.
                 (now, end) = (index, start + (event.frame as usize).saturating_sub(start).min(last));
                 last = end - start;
+            }
+            let stretch = Stretch { events: &events[..now], start, last, owners, programs: &self.programs };
+            let unserved = self.lender.lend(&mut self.parts, |part| &mut part.synth, &stretch);
+            if let Some((index, frame)) = unserved {
+                (now, end, last, zone) = (index, start + frame, frame, None);
+                self.owners = owners;
+                events[..now].iter().for_each(|event| _ = self.owners.hear(event));
             }
             let groups = self.playing.each_ref().map(|playing| Groups { kit: &playing.kit, choke: playing.choke });
             let programs = &self.programs;
@@ -172,9 +182,12 @@ impl Ensemble {
             for (playing, part) in self.playing.iter_mut().zip(&self.parts) {
                 playing.note(&part.synth);
             }
+            let is_heard = self.parts.iter().any(|part| part.heard);
+            if is_heard || now > 0 {
+                self.lender.take_back(&mut self.parts, |part| &mut part.synth);
+            }
             let (left, right) = (&mut left[start..end], &mut right[start..end]);
             self.mix(left, right);
-            let is_heard = self.parts.iter().any(|part| part.heard);
             let limited = |event: &Event| (owners.of(nearest_channel(event.channel)), *event);
             self.limiter.process(
                 events[..now].iter().map(limited),
@@ -191,7 +204,7 @@ impl Ensemble {
                 (events, start) = (&events[index + 1..], end);
                 continue;
             }
-            if end == frames {
+            if end == frames && unserved.is_none() {
                 break;
             }
             (events, start) = (&events[now..], end);

@@ -11,6 +11,7 @@ mod expression;
 mod fader;
 mod gain;
 mod instrument;
+mod lender;
 pub mod midi;
 mod mix_limiter;
 mod modulation;

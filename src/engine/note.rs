@@ -33,6 +33,8 @@ pub struct Note {
     pub gain: f32,
     /// Position of its pad, −1 to 1.
     pub pan: f32,
+    /// Whether another key was down when it began.
+    pub is_legato: bool,
 }
 
 impl Note {
@@ -52,6 +54,7 @@ impl Note {
         choke: 0,
         gain: 1.0,
         pan: 0.0,
+        is_legato: false,
     };
 }
 

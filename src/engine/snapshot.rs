@@ -17,7 +17,7 @@ pub struct Mass {
 pub struct Snapshot {
     /// Voices that are not free, fading ones included.
     pub voices: u32,
-    /// The masses by mode number, added up over all voices.
+    /// The masses by mode number, added up over all voices: the first [`MAX_MODES`] of those that have more.
     pub masses: [Mass; MAX_MODES],
 }
 
@@ -32,8 +32,7 @@ impl Snapshot {
     /// Adds a voice.
     pub(super) fn add(&mut self, voice: &SynthVoice) {
         self.voices += 1;
-        for (m, mass) in self.masses.iter_mut().enumerate().take(voice.bank.len()) {
-            let (displacement, energy) = voice.bank.mass(m);
+        for (mass, (displacement, energy)) in self.masses.iter_mut().zip(voice.bank.masses()) {
             mass.displacement += displacement;
             mass.energy += energy;
         }

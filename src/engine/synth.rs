@@ -1,17 +1,18 @@
 //! A kit, its voices, and a stream of events in; stereo samples out.
 
 use super::channel::{Channel, Wheels};
+use super::controls::Smoother;
 use super::event::{Expression, finite, unit};
 use super::instrument::Instrument;
 use super::midi::{controller, seven_bits};
 use super::modulation::{modulated, moved};
 use super::note::{Note, Notes, nearest_channel, nearest_key};
-use super::voice::SynthVoice;
-use super::voice_manager::{PlayMode, VoiceManager};
+use super::voice::{SynthVoice, footprint};
+use super::voice_manager::{Footprint, PlayMode, Priority, Voice, VoiceManager, VoicePool, has_room, make_room};
 use super::zones::{MEMBER_BEND_RANGE, Zones};
 use super::{Event, EventKind, Snapshot};
 use crate::dsp::limiter::Work;
-use crate::dsp::{CONTROL_FRAMES, Limiter};
+use crate::dsp::{CONTROL_FRAMES, Cell, Limiter};
 use crate::params::{self, Change, Choice, PARAM_COUNT, Param, Values};
 use crate::patch::Patch;
 use crate::sound::kit::Pad;
@@ -30,6 +31,8 @@ pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
 /// safe.
 pub struct Synth {
     manager: VoiceManager<SynthVoice>,
+    /// The size of its own pool of voices; none for a part of an ensemble, which makes room for its notes.
+    own_pool: Option<Footprint>,
     /// One for each sound of the kit: dropped before the kit, which has a handle of each sound.
     instruments: Vec<Instrument>,
     kit: Arc<Kit>,
@@ -58,18 +61,27 @@ pub struct Synth {
 }
 
 impl Synth {
-    /// A synth with the default patch. The sample rate is brought into [`SAMPLE_RATES`].
+    /// A synth with the default patch and voices of its own. The sample rate is brought into [`SAMPLE_RATES`].
     pub fn new(sample_rate: f64, seed: u64) -> Self {
         Self::with_kit(allowed(sample_rate), seed, Kit::of_patch(&Patch::default()))
     }
 
+    /// A synth that plays on voices of this pool and has no other.
+    pub(super) fn with_voices(sample_rate: f64, seed: u64, pool: VoicePool<SynthVoice>) -> Self {
+        Self::with_pool(allowed(sample_rate), seed, Kit::of_patch(&Patch::default()), pool)
+    }
+
     fn with_kit(sample_rate: f64, seed: u64, kit: Arc<Kit>) -> Self {
+        Self { own_pool: Some(POOL), ..Self::with_pool(sample_rate, seed, kit, voices(sample_rate, POOL)) }
+    }
+
+    fn with_pool(sample_rate: f64, seed: u64, kit: Arc<Kit>, pool: VoicePool<SynthVoice>) -> Self {
         let (rates, offsets) = ([sample_rate, DEFAULT_BEAT_RATE], [0.0; PARAM_COUNT]);
         let instrument = |sound: &Arc<Sound>| Instrument::new(sound.clone(), rates, seed, &offsets, 0);
         let instruments: Vec<Instrument> = kit.sounds().iter().map(instrument).collect();
-        let controls = instruments[0].controls;
         let mut synth = Self {
-            manager: VoiceManager::new(|| SynthVoice::new(sample_rate, controls)),
+            manager: VoiceManager::new(pool),
+            own_pool: None,
             instruments,
             values: *kit.values(),
             kit,
@@ -282,6 +294,7 @@ impl Synth {
                     velocity: unit(velocity),
                     brightness: brightness(&self.channels, &self.zones, index),
                     id,
+                    is_legato: self.manager.has_key_down(),
                     serial: self.note_serial,
                     ..Note::NONE
                 });
@@ -334,6 +347,31 @@ impl Synth {
         }
     }
 
+    /// What a note on a channel takes from the pool if it starts now.
+    pub(super) fn need(&self, channel: u8, key: u8) -> Footprint {
+        let (channel, key) = (nearest_channel(channel), nearest_key(key));
+        let Some((pad, ..)) = place(&self.kit, &self.tuning, key) else { return Footprint::NONE };
+        let instrument = &self.instruments[pad.sound];
+        let (patch, body) = (instrument.patch_serial, instrument.body_serial);
+        self.manager.need(instrument, &Note { channel, key, patch, body, ..Note::NONE })
+    }
+
+    /// The most that a note of a kit takes from the pool; of the kit in use if none is given.
+    pub(super) fn footprint(&self, kit: Option<&Kit>) -> Footprint {
+        let most = |footprints: &mut dyn Iterator<Item = Footprint>| footprints.fold(Footprint::NONE, Footprint::max);
+        let Some(kit) = kit else { return most(&mut self.instruments.iter().map(SynthVoice::footprint)) };
+        let offset = self.offsets[Param::Unison as usize];
+        most(&mut kit.sounds().iter().map(|sound| {
+            let patch = sound.patch();
+            footprint(&patch.modes, modulated(&patch.values, Param::Unison, offset))
+        }))
+    }
+
+    /// Its manager.
+    pub(super) fn manager(&mut self) -> &mut VoiceManager<SynthVoice> {
+        &mut self.manager
+    }
+
     /// A key goes down: the note, without what its pad, its sound and the pedals make of it.
     fn note_on(&mut self, mut note: Note) {
         let Some((pad, pitch, detune)) = place(&self.kit, &self.tuning, note.key) else {
@@ -359,8 +397,15 @@ impl Synth {
             pan: pad.pan,
             ..note
         };
-        self.manager.note_on(instrument, note);
-        instrument.last_pitch = Some(instrument.pitch(&note));
+        if let Some(capacity) = self.own_pool {
+            let need = self.manager.need(instrument, &note);
+            if !has_room(capacity, self.manager.pool().free(), need) {
+                make_room(std::slice::from_mut(&mut self.manager), |manager| manager, capacity, need);
+            }
+        }
+        if self.manager.note_on(instrument, note) {
+            instrument.last_pitch = Some(instrument.pitch(&note));
+        }
     }
 
     /// A parameter of the kit has a new value or offset.
@@ -513,7 +558,8 @@ impl Synth {
         let value = |param| modulated(&self.values, param, self.offsets[param as usize]);
         let own = PlayMode::from_value(value(Param::Mode));
         let mode = if self.kit.is_single() { own } else { PlayMode::Poly };
-        self.manager.configure(value(Param::Voices) as usize, mode, self.first_patch);
+        let priority = Priority::from_value(value(Param::Priority));
+        self.manager.configure(value(Param::Voices) as usize, mode, priority, self.first_patch);
     }
 }
 
@@ -543,7 +589,7 @@ pub(super) fn place<'a>(kit: &'a Kit, tuning: &Tuning, key: u8) -> Option<(&'a P
 fn moved_by<'a>(kit: &'a Kit, values: &'a Values) -> impl Fn(Param, f32) -> f32 + 'a {
     move |param, own| {
         let (info, value) = (param.info(), values.get(param));
-        let is_of_kit = matches!(param, Param::Voices | Param::Mode | Param::Choke | Param::Limiter);
+        let is_of_kit = matches!(param, Param::Voices | Param::Mode | Param::Priority | Param::Choke | Param::Limiter);
         match kit.is_single() {
             true => value,
             false if is_of_kit => own,
@@ -562,6 +608,16 @@ fn wheels<'a>(channels: &'a [Channel; 16], zones: &Zones, channel: u8) -> Wheels
 fn brightness(channels: &[Channel; 16], zones: &Zones, channel: u8) -> f32 {
     let of = |channel: u8| channels[usize::from(channel)].brightness;
     (of(channel) + zones.master_of(channel).map_or(0.0, of)).clamp(-0.5, 0.5)
+}
+
+/// What a synth of its own can sound: 64 notes of 64 modes with 64 more that fade, or 24 of 512.
+const POOL: Footprint = Footprint { voices: 256, cells: 256 };
+
+/// A pool of voices. Allocates.
+pub(super) fn voices(sample_rate: f64, capacity: Footprint) -> VoicePool<SynthVoice> {
+    let sample_rate = allowed(sample_rate);
+    let controls = Smoother::new(sample_rate, &Values::default(), DEFAULT_BEAT_RATE).after(0);
+    VoicePool::full(capacity, || SynthVoice::new(sample_rate, controls), || Cell::new(sample_rate))
 }
 
 /// MIDI's tempo before it has been set: 120 beats a minute.

@@ -82,6 +82,32 @@ choices! {
         Legato "legato",
     }
 
+    /// Which of the held keys sounds where notes share one voice.
+    Priority {
+        /// The one that went down last.
+        Last "last",
+        /// The lowest.
+        Low "low",
+        /// The highest.
+        High "high",
+    }
+
+    /// Which notes slide from the one before.
+    GlideWhen {
+        /// All.
+        Always "always",
+        /// Those that start while another key is down.
+        Legato "legato",
+    }
+
+    /// What the time of a glide counts for.
+    GlideBy {
+        /// Every slide.
+        Time "time",
+        /// Each octave of it.
+        Rate "rate",
+    }
+
     /// Whether the limiter works.
     Limiter {
         /// What is loud stays loud.

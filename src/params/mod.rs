@@ -97,7 +97,9 @@ mod text;
 mod values;
 mod voices;
 
-pub use choice::{Choice, Coefficients, Exciter, Limiter, NoteOff, NoteValue, PlayMode, Scope, Shape};
+pub use choice::{
+    Choice, Coefficients, Exciter, GlideBy, GlideWhen, Limiter, NoteOff, NoteValue, PlayMode, Priority, Scope, Shape,
+};
 pub use values::Values;
 
 /// The names of the choices of a row.
@@ -236,7 +238,7 @@ mod tests {
         let pinned = "exciter hardness position noise_level noise_time velocity \
             decay release damper note_off decay_tilt tilt stretch width coefficients \
             tune fine tuning key_track sweep sweep_time sweep_curve \
-            vibrato vibrato_rate vibrato_delay vibrato_sync glide \
+            vibrato vibrato_rate vibrato_delay vibrato_sync glide glide_when glide_by \
             bend_range \
             lfo1_rate lfo1_sync lfo1_shape lfo1_phase lfo1_fade lfo1_scope \
             lfo2_rate lfo2_sync lfo2_shape lfo2_phase lfo2_fade lfo2_scope \
@@ -248,7 +250,7 @@ mod tests {
             macro1 macro2 macro3 macro4 macro5 macro6 macro7 macro8 \
             route1 route2 route3 route4 route5 route6 route7 route8 \
             route9 route10 route11 route12 route13 route14 route15 route16 \
-            voices mode choke gain pan limiter";
+            voices mode priority unison unison_detune unison_spread unison_phase choke gain pan limiter";
         assert_eq!(ids, pinned.split_whitespace().collect::<Vec<_>>());
     }
 

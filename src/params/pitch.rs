@@ -28,7 +28,11 @@ macro_rules! pitch {
             [NoteValue],
             "Note value that one vibrato lasts at the song's tempo, in place of the vibrato rate.";
         Glide "glide" "Glide", Seconds 0.0..10.0 = 0.0, Linear, NextNote, fixed [],
-            "Time to slide from the note before; 0 is off.";
+            "Time to slide from the note before, or that for each octave; 0 is off.";
+        GlideWhen "glide_when" "Glide when", Choice 0.0..1.0 = 0.0, Linear, NextNote, [GlideWhen],
+            "Slide to every note, or only to those that start while another key is down.";
+        GlideBy "glide_by" "Glide by", Choice 0.0..1.0 = 0.0, Linear, NextNote, [GlideBy],
+            "Every slide takes the glide's time, or each octave of it does.";
     }
         } $($rest)* }
     };

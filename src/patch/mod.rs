@@ -2,10 +2,14 @@
 
 pub mod routes;
 
-pub use crate::dsp::mode_bank::MAX_MODES;
+use crate::dsp::cells::MAX_CELLS;
+use crate::dsp::mode_bank;
 use crate::params::{Param, Values};
 use routes::{Route, Routes, Source, amount_param};
 use std::sync::Arc;
+
+/// Most modes of a body.
+pub const MAX_MODES: usize = MAX_CELLS * mode_bank::MAX_MODES;
 
 /// One mode of the body: one mass on its spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_table_has_between_one_and_64_modes() {
+    fn a_table_has_between_one_and_512_modes() {
         assert_eq!(ModeTable::new(&[]).as_slice(), &[Mode::UNIT]);
         assert_eq!(ModeTable::new(&[Mode::UNIT; 1000]).as_slice().len(), MAX_MODES);
     }

@@ -190,7 +190,7 @@ mod tests {
             ("[params]\nmode = \"solo\"", "x: params.mode: ‘solo’ is not one of poly, mono, legato"),
             ("[params]\nvoices = 2.5", "x: params.voices: 2.5 is out of range: expected a whole number from 1 to 64"),
             ("params = 3", "x: params: expected a table [params], found integer ‘3’"),
-            ("modes = []", "x: modes: 0 of them is out of range: expected 1 to 64"),
+            ("modes = []", "x: modes: 0 of them is out of range: expected 1 to 512"),
             ("modes = [{ level = 1 }]", "x: modes[0]: there is no ‘ratio’"),
             ("modes = [{ ratio = 1 }, { ratio = 0 }]", "x: modes[1].ratio: 0 is out of range: expected 0.01 to 1000"),
             ("modes = [{ ratio = nan }]", "x: modes[0].ratio: NaN is out of range: expected 0.01 to 1000"),
@@ -206,8 +206,8 @@ mod tests {
             assert!(error.starts_with(expected), "{body}: {error}");
             assert_eq!(error.lines().count(), 1, "{error}");
         }
-        let many = format!("modes = [{}]", "{ ratio = 1 },".repeat(65));
-        assert_eq!(error(&many), "x: modes: 65 of them is out of range: expected 1 to 64");
+        let many = format!("modes = [{}]", "{ ratio = 1 },".repeat(513));
+        assert_eq!(error(&many), "x: modes: 513 of them is out of range: expected 1 to 512");
     }
 
     #[test]

@@ -100,6 +100,8 @@ struct Part {
     patch: Patch,
     offsets: [f32; PARAM_COUNT],
     soft: [bool; 16],
+    /// The most unison voices that a note has.
+    unison: f64,
     /// Brightness moves: the strike's tilt is not known.
     bright: bool,
     /// What a strike reaches, until the patch changes.
@@ -133,13 +135,27 @@ impl Part {
     fn new(case: &Case, index: u8) -> Self {
         let (ensemble, patch) = (case.ensemble, case.patch.clone());
         let (offsets, soft) = ([0.0; PARAM_COUNT], [false; 16]);
-        let mut part = Self { ensemble, hears: hears(case, index), patch, offsets, soft, bright: false, reach: None };
+        let mut part =
+            Self { ensemble, hears: hears(case, index), patch, offsets, soft, unison: 1.0, bright: false, reach: None };
+        part.unison = part.most_unison(case);
         part.bright = part.events(case).any(|event| match event.kind {
             EventKind::Express { expression, .. } => expression == Expression::Brightness,
             EventKind::Control { controller, .. } => controller == 74,
             _ => false,
         });
         part
+    }
+
+    /// As a voice struck again keeps the number that its note began with, the most that there ever is.
+    fn most_unison(&self, case: &Case) -> f64 {
+        let programs = case.programs.iter().filter(|_| self.ensemble);
+        let set = programs.chain([&self.patch]).map(|patch| patch.get(Param::Unison));
+        let moved = self.events(case).filter_map(|event| match event.kind {
+            EventKind::Param { param: Param::Unison, value } => Some(Param::Unison.info().clamp(value)),
+            EventKind::Modulate { param: Param::Unison, .. } => Some(Param::Unison.info().max),
+            _ => None,
+        });
+        set.chain(moved).fold(1.0, f32::max).into()
     }
 
     /// The events that this synth hears.
@@ -210,7 +226,8 @@ impl Part {
     fn strike(&mut self, event: &Event, sample_rate: f64) -> Option<Strike> {
         let EventKind::NoteOn { velocity, .. } = event.kind else { return None };
         let soft = if self.soft[usize::from(event.channel & 15)] { SOFT } else { 1.0 };
-        let force = pow(unit(velocity).into(), 0.02 * self.value(Param::Velocity)) * soft;
+        // Of n unison voices each has the force divided by √n, and they may meet in phase.
+        let force = pow(unit(velocity).into(), 0.02 * self.value(Param::Velocity)) * soft * sqrt(self.unison);
         let noise_frames = libm::floor(self.value(Param::NoiseTime) * sample_rate + 0.5);
         // The longest pulse lasts 10 ms.
         let end = u64::from(event.frame) + noise_frames.max(0.01 * sample_rate) as u64 + 2;
@@ -234,7 +251,7 @@ impl Part {
         let mut reach = Reach::default();
         let mut widest = [0.0_f64, 0.0, 1.0];
         for mode in modes {
-            let gains = heard(mode, self.value(Param::Width));
+            let gains = if self.unison > 1.0 { [SQRT_2, SQRT_2, 1.0] } else { heard(mode, self.value(Param::Width)) };
             widest = [0, 1, 2].map(|i| widest[i].max(gains[i]));
             let level = tilted(mode) * balance;
             let struck = if exciter == 3 { 0.0 } else { level * f64::from(mode.strike) };

@@ -11,6 +11,7 @@ use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
 use crate::dsp::exciter::Drive;
 use crate::dsp::simd::vector::LANES;
 use crate::dsp::simd::{Instructions, Level};
+use libm::{cosf, sinf};
 
 /// A bank is worth making tables for once it has rung freely at one pitch for a control tick per so many modes: with
 /// few modes they are paid for in a tick, with 64 in about eight.
@@ -106,8 +107,10 @@ impl ModeBank {
         self.instructions.level()
     }
 
-    /// Fills the bank with modes at rest, at a pitch ratio of 1. Modes beyond [`MAX_MODES`] are left out.
+    /// Fills the bank with modes at rest, at a pitch ratio of 1. Modes beyond [`MAX_MODES`] are left out. What the bank
+    /// played before leaves no trace: it then gives the bits of a new one.
     pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
+        self.instructions = Instructions::current();
         (self.len, self.stereo, self.faded) = (0, false, false);
         // Both, since each becomes the other at the end of a tick that is rendered by tables.
         (self.states, self.motion) = ([State::REST; 2], Motion::Still { ticks: 0 });
@@ -119,6 +122,7 @@ impl ModeBank {
             self.set_t60(m, mode.t60);
         }
         [self.modes.left, self.modes.right] = self.gains;
+        [self.modes.left_step, self.modes.right_step] = [Row::ZERO; 2];
         for m in self.len..MAX_MODES {
             // What was loaded before must not be heard: lanes and tables are filled up with modes at rest.
             for row in [&mut self.modes.pulse_x, &mut self.modes.pulse_y, &mut self.modes.noise] {
@@ -142,8 +146,13 @@ impl ModeBank {
     /// Sets how strongly mode `m` is moved by what drives the bank.
     pub fn set_excitation_gains(&mut self, m: usize, gains: ExcitationGains) {
         self.tune();
-        self.modes.pulse_x.0[m] = gains.pull * self.tuning.pull_x.0[m];
-        self.modes.pulse_y.0[m] = gains.push + gains.pull * self.tuning.pull_y.0[m];
+        let (x, y) = (gains.pull * self.tuning.pull_x.0[m], gains.push + gains.pull * self.tuning.pull_y.0[m]);
+        (self.modes.pulse_x.0[m], self.modes.pulse_y.0[m]) = if gains.phase == 0.0 {
+            (x, y)
+        } else {
+            let (sin, cos) = (sinf(gains.phase), cosf(gains.phase));
+            (x * cos + y * sin, y * cos - x * sin)
+        };
         self.modes.noise.0[m] = gains.noise;
     }
 

@@ -51,4 +51,6 @@ pub struct ExcitationGains {
     pub pull: f32,
     /// Expected amplitude that a noise burst of unit force gives.
     pub noise: f32,
+    /// By how many radians what a pulse brings is turned ahead; its amplitude stays.
+    pub phase: f32,
 }

@@ -1,6 +1,6 @@
 //! How long a bank rings: the sum of decaying exponentials, solved for the time.
 
-use super::{MAX_MODES, ModeBank};
+use super::ModeBank;
 use libm::{ceil, exp, log};
 
 /// Newton's method starts at most this many times over; it needs about five.
@@ -9,29 +9,29 @@ const MOST_STEPS: usize = 50;
 /// No answer is longer than this: 40 years at 768 kHz.
 const LONGEST_FRAMES: f64 = 1e15;
 
-/// Squared amplitudes, and the logarithms of what a frame leaves of them. Real-time safe.
-pub(in crate::dsp) struct Energies {
-    energy: [f64; MAX_MODES],
-    rate: [f64; MAX_MODES],
+/// Squared amplitudes of up to `N` modes, and the logarithms of what a frame leaves of them. Real-time safe.
+pub(in crate::dsp) struct Energies<const N: usize> {
+    energy: [f64; N],
+    rate: [f64; N],
     len: usize,
 }
 
-impl Energies {
-    /// Of at most [`MAX_MODES`] modes.
-    pub(in crate::dsp) fn new(modes: impl Iterator<Item = (f64, f64)>) -> Self {
-        let mut energies = Self { energy: [0.0; MAX_MODES], rate: [0.0; MAX_MODES], len: 0 };
-        for (m, mode) in modes.take(MAX_MODES).enumerate() {
-            (energies.energy[m], energies.rate[m]) = mode;
-            energies.len = m + 1;
+impl<const N: usize> Energies<N> {
+    /// Of no mode yet.
+    pub(in crate::dsp) const NONE: Self = Self { energy: [0.0; N], rate: [0.0; N], len: 0 };
+
+    /// Adds a mode, if there is room.
+    pub(in crate::dsp) fn add(&mut self, energy: f64, rate: f64) {
+        if self.len < N {
+            (self.energy[self.len], self.rate[self.len]) = (energy, rate);
+            self.len += 1;
         }
-        energies
     }
 
-    /// Frames until they add up to less than `total`, `passed` of which have gone. Takes an exponential a mode for each
-    /// of about five steps.
+    /// Frames until they add up to less than `total`. Takes an exponential a mode for each of about five steps.
     ///
     /// The logarithm of a sum of exponentials is convex, so Newton's method from now never oversteps.
-    pub(in crate::dsp) fn frames_until(&self, total: f64, passed: usize) -> u64 {
+    pub(in crate::dsp) fn frames_until(&self, total: f64) -> u64 {
         let target = log(total);
         let mut time = 0.0;
         for _ in 0..MOST_STEPS {
@@ -53,7 +53,7 @@ impl Energies {
                 break;
             }
         }
-        whole_frames(time - passed as f64)
+        whole_frames(time)
     }
 
     /// At most how many frames that takes once `more` energy, wherever it goes, has been added.
@@ -69,18 +69,13 @@ fn whole_frames(time: f64) -> u64 {
 }
 
 impl ModeBank {
-    fn energies(&self, modes: usize) -> Energies {
-        Energies::new((0..modes).map(|m| (f64::from(self.mass(m).1), 2.0 * self.ln_radius[m])))
-    }
-
-    /// Frames until the squared amplitudes of the modes add up to less than `total`, if nothing damps them anew.
-    /// Real-time safe; takes some microseconds.
-    pub fn frames_until(&self, total: f64) -> u64 {
-        self.energies(self.live).frames_until(total, self.frames_since())
-    }
-
-    /// At most how many frames that takes once `more` energy, wherever it goes, has been added.
-    pub fn frames_until_at_most(&self, total: f64, more: f64) -> u64 {
-        self.energies(self.len).frames_until_at_most(total, more)
+    /// Hands the squared amplitude of each mode, and the logarithm of what a frame leaves of it, to `each`.
+    pub(in crate::dsp) fn tell_energies(&self, mut each: impl FnMut(f64, f64)) {
+        // In a tick that is rendered by tables the state is that of its start.
+        let passed = self.frames_since() as f64;
+        for m in 0..self.len {
+            let (energy, rate) = (f64::from(self.mass(m).1), 2.0 * self.ln_radius[m]);
+            each(if passed > 0.0 { energy * exp(rate * passed) } else { energy }, rate);
+        }
     }
 }

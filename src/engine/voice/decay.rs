@@ -1,8 +1,7 @@
 //! How long the modes of a note ring: their decay and the damper.
 
 use super::values::StruckValues;
-use crate::dsp::bank::Bank;
-use crate::dsp::mode_bank::MAX_MODES;
+use crate::dsp::cells::Cells;
 use crate::engine::controls::Controls;
 use crate::engine::damping::Damping;
 use crate::params::{NoteOff, Param};
@@ -11,10 +10,9 @@ use libm::pow;
 
 /// The decay of a voice. Real-time safe.
 pub(super) struct Decay {
-    /// How higher modes decay faster, and what that makes of each mode's T60: a multiple of the decay.
+    /// How higher modes decay faster.
     tilt: f64,
-    t60_scale: [f64; MAX_MODES],
-    damping: Damping,
+    pub(super) damping: Damping,
     /// A release changes nothing.
     rings_on: bool,
     released: bool,
@@ -24,20 +22,20 @@ impl Decay {
     /// Of a voice that has had no note.
     pub(super) fn new() -> Self {
         let damping = Damping { decay: 1.0, release: 1.0, amount: 0.0 };
-        Self { tilt: 0.0, t60_scale: [1.0; MAX_MODES], damping, rings_on: false, released: false }
+        Self { tilt: 0.0, damping, rings_on: false, released: false }
     }
 
     /// Reads how the patch's modes ring.
-    pub(super) fn read(&mut self, values: &StruckValues, controls: &Controls) {
+    pub(super) fn read(&mut self, values: &StruckValues, controls: &Controls, bank: &mut Cells) {
         let tilt = values.moved(Param::DecayTilt, controls.decay_tilt);
-        self.set_tilt(tilt, values.instrument.sound.patch().modes.as_slice());
+        self.set_tilt(tilt, values.instrument.sound.patch().modes.as_slice(), bank);
         self.press(values.moved(Param::Decay, controls.decay));
     }
 
     /// Each mode's T60 as a multiple of the decay: the higher, the shorter.
-    fn set_tilt(&mut self, tilt: f64, modes: &[Mode]) {
+    fn set_tilt(&mut self, tilt: f64, modes: &[Mode], bank: &mut Cells) {
         self.tilt = tilt;
-        for (scale, mode) in self.t60_scale.iter_mut().zip(modes) {
+        for (scale, mode) in bank.t60_scales_mut().zip(modes) {
             *scale = f64::from(mode.decay) * pow(mode.ratio.into(), -tilt);
         }
     }
@@ -58,23 +56,18 @@ impl Decay {
         self.released = !self.rings_on;
     }
 
-    /// T60 in seconds of each mode.
-    pub(super) fn t60s(&self) -> impl Iterator<Item = f64> + '_ {
-        self.t60_scale.iter().map(|scale| self.damping.t60(*scale))
-    }
-
     /// Sets the T60s of the bank if they have changed. A voice of the present patch has its `modes` to tilt anew.
     /// Returns whether anything has changed.
-    pub(super) fn control(&mut self, controls: &Controls, modes: Option<&[Mode]>, bank: &mut Bank) -> bool {
+    pub(super) fn control(&mut self, controls: &Controls, modes: Option<&[Mode]>, bank: &mut Cells) -> bool {
         let tilted = modes.filter(|_| controls.decay_tilt != self.tilt);
-        tilted.into_iter().for_each(|modes| self.set_tilt(controls.decay_tilt, modes));
+        tilted.into_iter().for_each(|modes| self.set_tilt(controls.decay_tilt, modes, bank));
         let amount = if self.released { 1.0 } else { controls.damper };
         let release = if amount == 0.0 { 0.0 } else { controls.release };
         let damping = Damping { decay: controls.decay, release, amount };
         let changes = tilted.is_some() || damping != self.damping;
         if changes {
             self.damping = damping;
-            self.t60s().take(bank.len()).enumerate().for_each(|(m, t60)| bank.set_t60(m, t60));
+            bank.damp(|scale| damping.t60(scale));
         }
         changes
     }

@@ -2,7 +2,7 @@
 
 use super::strike::Strike;
 use crate::dsp::CONTROL_FRAMES;
-use crate::dsp::bank::Bank;
+use crate::dsp::cells::Cells;
 use crate::engine::fader::Fader;
 
 /// A voice is over when its modes could not add up to more than this: −120 dBFS.
@@ -43,7 +43,7 @@ impl Energy {
 
     /// Measures the remaining energy and puts silent modes to rest, at control ticks. Every few ticks are enough, until
     /// the voice is nearly silent or its strike has just ended.
-    pub(super) fn settle(&mut self, bank: &mut Bank, strike: &Strike, fader: &Fader) {
+    pub(super) fn settle(&mut self, bank: &mut Cells, strike: &Strike, fader: &Fader) {
         let strike_over = self.pending > 0.0 && !strike.is_active();
         if self.until_measured == 0 || strike_over || self.is_below(NEARLY_SILENT, bank, fader) {
             self.measured = bank.settle();
@@ -57,7 +57,7 @@ impl Energy {
 
     /// Whether the modes could not add up to an amplitude, were they all in phase: n amplitudes whose squares sum to E
     /// add up to √(n E) at most.
-    fn is_below(&self, amplitude: f64, bank: &Bank, fader: &Fader) -> bool {
+    fn is_below(&self, amplitude: f64, bank: &Cells, fader: &Fader) -> bool {
         let gain = f64::from(fader.loudest()).max(1.0);
         self.measured * bank.len() as f64 * gain * gain < amplitude * amplitude
     }
@@ -68,14 +68,14 @@ impl Energy {
     }
 
     /// Whether the voice will be silent until it is struck again.
-    pub(super) fn is_over(&self, bank: &Bank, fader: &Fader) -> bool {
+    pub(super) fn is_over(&self, bank: &Cells, fader: &Fader) -> bool {
         fader.is_closed() || (self.pending == 0.0 && self.is_below(SILENCE, bank, fader))
     }
 
     /// Frames until the voice is over if it is left alone, `now` frames after its start and `to_tick` frames before the
     /// next control tick: exact to a tick once the strike has ended and neither decay nor gain slides to another value,
     /// no less than that during a strike.
-    pub(super) fn tail_frames(&mut self, bank: &Bank, strike: &Strike, fader: &Fader, now: u64, to_tick: u64) -> u64 {
+    pub(super) fn tail_frames(&mut self, bank: &Cells, strike: &Strike, fader: &Fader, now: u64, to_tick: u64) -> u64 {
         let end = match self.end {
             Some(end) => end,
             None => {
@@ -91,7 +91,7 @@ impl Energy {
 
     /// The energy is measured every [`MEASURING_TICKS`], and at every tick once it has been found low: the end is the
     /// first time that it is then below the limit.
-    fn find_end(&self, bank: &Bank, strike: &Strike, fader: &Fader, to_tick: u64) -> u64 {
+    fn find_end(&self, bank: &Cells, strike: &Strike, fader: &Fader, to_tick: u64) -> u64 {
         let gain = f64::from(fader.loudest()).max(1.0);
         let share = 1.0 / (bank.len().max(1) as f64 * gain * gain);
         let below = |amplitude: f64| amplitude * amplitude * share;

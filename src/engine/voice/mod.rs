@@ -16,9 +16,10 @@ use super::expression::Expressions;
 use super::fader::Fader;
 use super::instrument::Instrument;
 use super::modulation::{Modulators, NoteModulation};
-use super::voice_manager::Voice;
-use crate::dsp::bank::Bank;
+use super::voice_manager::{Footprint, Unison, Voice};
+use crate::dsp::cells::Cells;
 use crate::params::Param;
+use crate::patch::ModeTable;
 use clock::Clock;
 use decay::Decay;
 use energy::Energy;
@@ -26,10 +27,18 @@ use pitch::{Bends, Pitch};
 use strike::Strike;
 use values::StruckValues;
 
-/// A sounding note.
+/// What a note takes of a patch's modes and of so many unison voices.
+pub(crate) fn footprint(modes: &ModeTable, unison: f32) -> Footprint {
+    let voices = unison as usize;
+    Footprint { voices, cells: voices * Cells::count_for(modes.as_slice().len()) }
+}
+
+/// A sounding note, or one of its unison voices.
 pub(crate) struct SynthVoice {
     sample_rate: f64,
-    pub(super) bank: Bank,
+    pub(super) bank: Cells,
+    /// Which of the note's voices it is.
+    unison: Unison,
     clock: Clock,
     strike: Strike,
     energy: Energy,
@@ -58,7 +67,8 @@ impl SynthVoice {
     pub(crate) fn new(sample_rate: f64, controls: Controls) -> Self {
         Self {
             sample_rate,
-            bank: Bank::new(sample_rate),
+            bank: Cells::EMPTY,
+            unison: Unison::ONE,
             clock: Clock::new(sample_rate),
             strike: Strike::new(),
             energy: Energy::NONE,

@@ -4,7 +4,8 @@ use super::SynthVoice;
 use super::clock::Clock;
 use super::energy::Energy;
 use super::values::{StruckValues, strike_modulators};
-use crate::dsp::bank::{Bank, Law};
+use crate::dsp::bank::Law;
+use crate::dsp::cells::Cell;
 use crate::dsp::mode_bank::ModeSetup;
 use crate::engine::expression::Expressions;
 use crate::engine::fader::Fader;
@@ -12,8 +13,9 @@ use crate::engine::gain::pan_gains;
 use crate::engine::instrument::Instrument;
 use crate::engine::modulation::NoteModulation;
 use crate::engine::note::Note;
-use crate::engine::voice_manager::Voice;
+use crate::engine::voice_manager::{Footprint, Unison, Voice};
 use crate::params::{Coefficients, Param};
+use crate::patch::Mode;
 
 /// The time in which a stolen or choked voice is faded out.
 const FADE_SECONDS: f64 = 0.012;
@@ -22,7 +24,7 @@ impl SynthVoice {
     /// Strikes with what the patch says of it.
     fn excite(&mut self, instrument: &Instrument, note: &Note) {
         let values = StruckValues { instrument, modulators: &self.modulators };
-        self.energy.expect(self.strike.strike(&values, note, &mut self.bank));
+        self.energy.expect(self.strike.strike(&values, note, self.unison, &mut self.bank));
         self.energy.forget_end();
         self.pitch.strike(&values);
         self.decay.strike(&values);
@@ -39,13 +41,50 @@ impl SynthVoice {
         self.key = note.key;
         self.brightness = note.brightness.into();
     }
+
+    /// Makes the sounding voice that of `note`, sliding from where its pitch is; `is_legato` if another key is down.
+    /// Without an instrument, the voice goes by what it has read of its own.
+    fn slide(&mut self, instrument: Option<&Instrument>, note: &Note, is_legato: bool) {
+        self.take_over(note);
+        self.energy.forget_end();
+        instrument.into_iter().for_each(|instrument| self.follow(instrument));
+        let from = self.pitch.now(&self.clock);
+        let controls = instrument.map_or(self.controls, |instrument| instrument.controls);
+        match instrument.map(|instrument| StruckValues { instrument, modulators: &self.modulators }) {
+            Some(values) => {
+                self.pitch.read(&values, self.unison, &mut self.bank);
+                self.decay.read(&values, &controls, &mut self.bank);
+            }
+            None => self.decay.press(controls.decay),
+        }
+        self.pitch.slide(from, note, &controls, is_legato, &self.clock);
+        self.modulators.set_pitch(self.pitch.note());
+        let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
+        self.bank.retune(|ratio, scale| (frequency * ratio, damping.t60(scale)));
+    }
 }
 
 impl Voice for SynthVoice {
     type Context = Instrument;
+    type Cell = Cell;
+
+    fn footprint(instrument: &Instrument) -> Footprint {
+        super::footprint(&instrument.sound.patch().modes, instrument.modulated.get(Param::Unison))
+    }
+
+    fn add_cell(&mut self, cell: Box<Cell>) {
+        // A note takes no more cells than its voices have room for.
+        let surplus = self.bank.add(cell);
+        debug_assert!(surplus.is_none());
+    }
+
+    fn take_cell(&mut self) -> Option<Box<Cell>> {
+        self.bank.take()
+    }
 
     /// Only what the note before may have left is reset: a voice is too large to be made anew.
-    fn start(&mut self, instrument: &Instrument, note: &Note) {
+    fn start(&mut self, instrument: &Instrument, note: &Note, unison: Unison) {
+        self.unison = unison;
         self.clock = Clock::new(self.sample_rate);
         self.energy = Energy::NONE;
         self.fader = Fader::CLOSED;
@@ -63,24 +102,22 @@ impl Voice for SynthVoice {
         }
         let values = StruckValues { instrument, modulators: &self.modulators };
         self.strike.start();
-        self.pitch.read(&values);
+        self.pitch.read(&values, unison, &mut self.bank);
         self.pitch.start(note, &self.controls, instrument.last_pitch);
-        self.decay.read(&values, &self.controls);
+        self.decay.read(&values, &self.controls, &mut self.bank);
 
         let law = match instrument.modulated.choice::<Coefficients>(Param::Coefficients) {
             Coefficients::Exact => Law::Exact,
             Coefficients::Classic => Law::Classic,
         };
-        if !self.bank.is_of(law) {
-            self.bank = Bank::of(law, self.sample_rate);
-        }
-        let (width, frequency) = (values.share(Param::Width), self.pitch.frequency());
-        let tuning = self.pitch.ratios.iter().zip(self.decay.t60s());
-        let setup = tuning.zip(instrument.sound.patch().modes.as_slice()).map(|((ratio, t60), mode)| {
-            let (left, right) = pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
-            ModeSetup { frequency: frequency * ratio, t60, left, right }
-        });
-        self.bank.load(setup);
+        let (width, spread) = (values.share(Param::Width), unison.position() * values.share(Param::UnisonSpread));
+        let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
+        let setup = |mode: &Mode, ratio: f64, scale: f64| {
+            let pan = (f64::from(mode.pan) * width + spread).clamp(-1.0, 1.0);
+            let (left, right) = pan_gains((pan * 0.5 + 0.5) as f32);
+            ModeSetup { frequency: frequency * ratio, t60: damping.t60(scale), left, right }
+        };
+        self.bank.load(law, self.sample_rate, instrument.sound.patch().modes.as_slice(), setup);
         self.excite(instrument, note);
     }
 
@@ -91,28 +128,14 @@ impl Voice for SynthVoice {
             self.let_go = None;
             strike_modulators(instrument, &mut self.modulators, note, false);
         }
-        self.retune(Some(instrument), note);
+        self.slide(Some(instrument), note, note.is_legato);
         self.excite(instrument, note);
         self.pitch.restart(self.controls.vibrato_rate, passed);
         self.clock.strike();
     }
 
-    /// Slides from where the pitch is. Without an instrument, the voice goes by what it has read of its own.
     fn retune(&mut self, instrument: Option<&Instrument>, note: &Note) {
-        self.take_over(note);
-        self.energy.forget_end();
-        instrument.into_iter().for_each(|instrument| self.follow(instrument));
-        let modulators = &self.modulators;
-        let values = instrument.map(|instrument| StruckValues { instrument, modulators });
-        let controls = instrument.map_or(self.controls, |instrument| instrument.controls);
-        self.pitch.slide(note, &controls, values.as_ref(), &self.clock);
-        match &values {
-            Some(values) => self.decay.read(values, &controls),
-            None => self.decay.press(controls.decay),
-        }
-        self.modulators.set_pitch(self.pitch.note());
-        let frequency = self.pitch.frequency();
-        self.bank.retune(self.pitch.ratios.iter().map(|ratio| frequency * ratio).zip(self.decay.t60s()));
+        self.slide(instrument, note, true);
     }
 
     fn release(&mut self, velocity: f32) {

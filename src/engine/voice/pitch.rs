@@ -3,11 +3,12 @@
 use super::clock::Clock;
 use super::key_tracking::KeyTracking;
 use super::values::StruckValues;
-use crate::dsp::mode_bank::MAX_MODES;
+use crate::dsp::cells::Cells;
 use crate::dsp::pitch::{Glide, SweepEnvelope};
 use crate::engine::channel::Wheels;
 use crate::engine::controls::Controls;
 use crate::engine::note::Note;
+use crate::engine::voice_manager::Unison;
 use crate::params::Param;
 use crate::units::{frequency_from_key, ratio_from_semitones};
 use libm::{floor, pow, sin};
@@ -19,8 +20,8 @@ pub(super) struct Pitch {
     /// Pitch of the note and the patch's transposition that the bank is tuned to, in semitones.
     note: f64,
     tune: f64,
-    /// Frequency of each mode as a multiple of the note's.
-    pub(super) ratios: [f64; MAX_MODES],
+    /// How far a unison voice lies from that, in semitones.
+    detune: f64,
     /// The last offset from that pitch in semitones, and its ratio.
     offset: f64,
     ratio: f64,
@@ -47,7 +48,7 @@ impl Pitch {
             tracking: KeyTracking::FULL,
             note: 0.0,
             tune: 0.0,
-            ratios: [1.0; MAX_MODES],
+            detune: 0.0,
             offset: 0.0,
             ratio: 1.0,
             glide: Glide::new(0.0, 0.0, 0.0),
@@ -59,10 +60,11 @@ impl Pitch {
     }
 
     /// Reads how the patch's modes lie and follow the key.
-    pub(super) fn read(&mut self, values: &StruckValues) {
+    pub(super) fn read(&mut self, values: &StruckValues, unison: Unison, bank: &mut Cells) {
         self.tracking = KeyTracking::new(|param| values.get(param));
+        self.detune = unison.position() * values.get(Param::UnisonDetune) * 0.01;
         let stretch = values.get(Param::Stretch);
-        for (ratio, mode) in self.ratios.iter_mut().zip(values.instrument.sound.patch().modes.as_slice()) {
+        for (ratio, mode) in bank.ratios_mut().zip(values.instrument.sound.patch().modes.as_slice()) {
             *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
         }
     }
@@ -76,16 +78,19 @@ impl Pitch {
     pub(super) fn start(&mut self, note: &Note, controls: &Controls, last_pitch: Option<f64>) {
         self.place(note, controls);
         let from = last_pitch.unwrap_or(self.note) - self.note;
-        self.glide = Glide::new(from, 0.0, self.tracking.glide_seconds);
+        self.glide = self.tracking.glide(from, note.is_legato);
         (self.offset, self.ratio, self.glide_start, self.vibrato_phase) = (0.0, 1.0, 0, 0.0);
     }
 
-    /// Slides from where the pitch is to that of `note`. `values` are read anew where the voice can read the instrument.
-    pub(super) fn slide(&mut self, note: &Note, controls: &Controls, values: Option<&StruckValues>, clock: &Clock) {
-        let from = self.note + self.glide.at(clock.seconds(clock.age - self.glide_start));
-        values.into_iter().for_each(|values| self.read(values));
+    /// The pitch where it is in its slide, in semitones on the MIDI scale.
+    pub(super) fn now(&self, clock: &Clock) -> f64 {
+        self.note + self.glide.at(clock.seconds(clock.age - self.glide_start))
+    }
+
+    /// Slides from a pitch, in semitones on the MIDI scale, to that of `note`; `is_legato` if another key is down.
+    pub(super) fn slide(&mut self, from: f64, note: &Note, controls: &Controls, is_legato: bool, clock: &Clock) {
         self.place(note, controls);
-        self.glide = Glide::new(from - self.note, 0.0, self.tracking.glide_seconds);
+        self.glide = self.tracking.glide(from - self.note, is_legato);
         self.glide_start = clock.age;
     }
 
@@ -115,7 +120,7 @@ impl Pitch {
 
     /// Frequency in Hz of a mode of ratio 1.
     pub(super) fn frequency(&self) -> f64 {
-        frequency_from_key(self.note + self.tune, self.tracking.a4_hz)
+        frequency_from_key(self.note + self.tune + self.detune, self.tracking.a4_hz)
     }
 
     /// The pitch ratio that was last aimed at.

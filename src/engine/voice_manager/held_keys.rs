@@ -1,6 +1,18 @@
 //! The keys that are down in a monophonic mode, for the voice to return to.
 
 use crate::engine::note::Note;
+use crate::params::Priority;
+
+impl Priority {
+    /// Whether a note is played rather than an earlier one.
+    pub(super) fn prefers(self, note: &Note, earlier: &Note) -> bool {
+        match self {
+            Self::Last => true,
+            Self::Low => note.key <= earlier.key,
+            Self::High => note.key >= earlier.key,
+        }
+    }
+}
 
 /// Most keys that are remembered.
 const MAX_HELD_KEYS: usize = 32;
@@ -33,6 +45,11 @@ impl HeldKeys {
             *free = note;
             self.len += 1;
         }
+    }
+
+    /// The key that sounds.
+    pub(super) fn first(&self, priority: Priority) -> Option<Note> {
+        self.as_slice().iter().copied().reduce(|best, note| if priority.prefers(&note, &best) { note } else { best })
     }
 
     /// Takes out the oldest note that is meant.

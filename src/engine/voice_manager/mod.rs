@@ -1,81 +1,40 @@
 //! Who plays what: polyphony, stealing, re-striking, pedals, choke groups, and which notes have ended. Knows no DSP.
 
 mod held_keys;
+mod pool;
+mod room;
+mod slot;
+mod voice;
 
 use super::note::{Note, Notes};
-pub use crate::params::PlayMode;
+pub use crate::params::{PlayMode, Priority};
 use held_keys::HeldKeys;
-
-/// Something that sounds one note at a time. All methods are called on the audio thread.
-pub trait Voice {
-    /// What a voice needs to know of the instrument when a note starts.
-    type Context;
-    /// Starts a note from rest.
-    fn start(&mut self, context: &Self::Context, note: &Note);
-    /// Strikes the sounding voice again, perhaps at another pitch.
-    fn restrike(&mut self, context: &Self::Context, note: &Note);
-    /// Moves the sounding voice to another pitch without striking it. There is no context where the instrument has
-    /// another patch than the voice was started with: then the voice goes by what it knows.
-    fn retune(&mut self, context: Option<&Self::Context>, note: &Note);
-    /// Lets go of the note, with a release velocity 0–1.
-    fn release(&mut self, velocity: f32);
-    /// Silences the voice within a few milliseconds, without a click.
-    fn fade(&mut self);
-    /// How loud the voice is, in any unit that orders voices.
-    fn energy(&self) -> f64;
-    /// Whether the voice will be silent until it is struck again.
-    fn is_over(&self) -> bool;
-}
+pub use pool::{Footprint, VoicePool};
+pub use room::{has_room, make_room};
+pub use slot::MAX_UNISON;
+use slot::{Slot, State};
+pub use voice::{Unison, Voice};
 
 /// Most notes that sound at once.
 pub const MAX_VOICES: usize = 64;
 
-/// Voices beyond those, for stolen notes to fade out in: enough for all of them to be stolen at once.
-const FADING_VOICES: usize = MAX_VOICES;
+/// Notes beyond those that are stolen and still fade: enough for all of them to be stolen at once.
+const FADING_NOTES: usize = MAX_VOICES;
 
 /// Ended notes that are kept until somebody asks.
 pub const MAX_ENDED: usize = 1024;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
-    Free,
-    /// The key is down, or a pedal holds the note.
-    Held,
-    Released,
-    Fading,
-}
-
-struct Slot<V> {
-    voice: V,
-    note: Note,
-    state: State,
-    key_down: bool,
-    sostenuto: bool,
-}
-
-impl<V> Slot<V> {
-    fn is_sounding(&self) -> bool {
-        matches!(self.state, State::Held | State::Released)
-    }
-
-    fn is_on(&self, channel: u8, key: u8) -> bool {
-        self.is_one_of(&Notes::on(channel, key))
-    }
-
-    fn is_one_of(&self, notes: &Notes) -> bool {
-        self.is_sounding() && notes.include(&self.note)
-    }
-}
-
-/// Deals notes to a fixed set of voices. Real-time safe after [`VoiceManager::new`].
-pub struct VoiceManager<V> {
+/// Deals notes to voices from a pool. Real-time safe after [`VoiceManager::new`].
+pub struct VoiceManager<V: Voice> {
     slots: Vec<Slot<V>>,
-    /// Slots from here on are free. Voices are large: looking at all of them costs more than a short one sounds.
+    /// Slots from here on are free.
     used: usize,
+    pool: VoicePool<V>,
     sustain: [bool; 16],
     sostenuto: [bool; 16],
     polyphony: usize,
     mode: PlayMode,
+    priority: Priority,
     /// The patch of the context: see [`Note::patch`].
     patch: u32,
     held: HeldKeys,
@@ -85,16 +44,17 @@ pub struct VoiceManager<V> {
 }
 
 impl<V: Voice> VoiceManager<V> {
-    /// A manager of voices made by `voice`. Allocates.
-    pub fn new(mut voice: impl FnMut() -> V) -> Self {
-        let slot = || Slot { voice: voice(), note: Note::NONE, state: State::Free, key_down: false, sostenuto: false };
+    /// A manager of the voices of a pool. Allocates.
+    pub fn new(pool: VoicePool<V>) -> Self {
         Self {
-            slots: std::iter::repeat_with(slot).take(MAX_VOICES + FADING_VOICES).collect(),
+            slots: std::iter::repeat_with(Slot::new).take(MAX_VOICES + FADING_NOTES).collect(),
             used: 0,
+            pool,
             sustain: [false; 16],
             sostenuto: [false; 16],
             polyphony: MAX_VOICES,
             mode: PlayMode::Poly,
+            priority: Priority::Last,
             patch: 0,
             held: HeldKeys::NONE,
             ended: Vec::with_capacity(MAX_ENDED),
@@ -104,7 +64,7 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Stops everything at once, pedals included.
     pub fn reset(&mut self) {
-        self.slots.iter_mut().for_each(|slot| slot.state = State::Free);
+        self.slots[..self.used].iter_mut().for_each(|slot| slot.free(&mut self.pool));
         self.used = 0;
         self.sustain = [false; 16];
         self.sostenuto = [false; 16];
@@ -115,7 +75,8 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Sets how many notes sound at once (1 to [`MAX_VOICES`]) and how they share voices, from the next note on, and
     /// which patch the context has.
-    pub fn configure(&mut self, polyphony: usize, mode: PlayMode, patch: u32) {
+    pub fn configure(&mut self, polyphony: usize, mode: PlayMode, priority: Priority, patch: u32) {
+        self.priority = priority;
         self.patch = patch;
         self.polyphony = polyphony.clamp(1, MAX_VOICES);
         if mode != self.mode {
@@ -142,22 +103,29 @@ impl<V: Voice> VoiceManager<V> {
 
     /// A voice or a held key has let go of a note: it has ended, unless another has it still.
     fn retire(&mut self, note: Note) {
-        let sounds = |slot: &Slot<V>| slot.state != State::Free && slot.note.serial == note.serial;
+        let sounds = |slot: &Slot<V>| !slot.is_free() && slot.note.serial == note.serial;
         let is_held = self.held.as_slice().iter().any(|held| held.serial == note.serial);
         if !is_held && !self.slots[..self.used].iter().any(sounds) && self.ended.len() < MAX_ENDED {
             self.ended.push(note);
         }
     }
 
-    /// The voices that are not free, in their fixed order.
+    /// The voices that are not free, in their fixed order, and the note that each plays.
     pub fn active(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
-        let used = self.slots[..self.used].iter_mut();
-        used.filter(|slot| slot.state != State::Free).map(|slot| (&slot.note, &mut slot.voice))
+        self.slots[..self.used].iter_mut().flat_map(|slot| {
+            let (note, voices) = slot.voices_mut();
+            voices.map(move |voice| (note, voice))
+        })
     }
 
     /// The voices that are not free, to look at.
     pub fn sounding_voices(&self) -> impl Iterator<Item = &V> {
-        self.slots[..self.used].iter().filter(|slot| slot.state != State::Free).map(|slot| &slot.voice)
+        self.slots[..self.used].iter().flat_map(Slot::voices)
+    }
+
+    /// The voices and cells that no note has.
+    pub fn pool(&mut self) -> &mut VoicePool<V> {
+        &mut self.pool
     }
 
     /// Whether every voice is free.
@@ -170,29 +138,72 @@ impl<V: Voice> VoiceManager<V> {
         self.peak
     }
 
-    /// Frees the voices that are over.
+    /// Frees the voices of notes that are over.
     pub fn free_finished(&mut self) {
         for index in 0..self.used {
-            let slot = &mut self.slots[index];
-            if slot.state != State::Free && slot.voice.is_over() {
-                slot.state = State::Free;
-                let note = slot.note;
-                self.retire(note);
+            let slot = &self.slots[index];
+            if !slot.is_free() && slot.is_over() {
+                self.free(index);
             }
         }
-        while self.used > 0 && self.slots[self.used - 1].state == State::Free {
+        self.shrink();
+    }
+
+    fn free(&mut self, index: usize) {
+        let slot = &mut self.slots[index];
+        slot.free(&mut self.pool);
+        let note = slot.note;
+        self.retire(note);
+    }
+
+    fn shrink(&mut self) {
+        while self.used > 0 && self.slots[self.used - 1].is_free() {
             self.used -= 1;
         }
     }
 
-    /// A key goes down.
-    pub fn note_on(&mut self, context: &V::Context, note: Note) {
+    /// What a note would take from the pool: nothing if it takes over the voices of another.
+    pub fn need(&self, context: &V::Context, note: &Note) -> Footprint {
+        let taken_over = match self.mode {
+            PlayMode::Poly => self.same(note).is_some(),
+            PlayMode::Mono | PlayMode::Legato => self.playing(note).is_some(),
+        };
+        if taken_over { Footprint::NONE } else { V::footprint(context) }
+    }
+
+    /// The slot of the note that a polyphonic one strikes again.
+    fn same(&self, note: &Note) -> Option<usize> {
+        let same = |slot: &Slot<V>| slot.is_on(note.channel, note.key) && slot.note.body == note.body;
+        self.slots[..self.used].iter().position(same)
+    }
+
+    /// The slot of the note whose voices a monophonic one takes over.
+    fn playing(&self, note: &Note) -> Option<usize> {
+        let slots = &self.slots[..self.used];
+        // Others than the first are left over from polyphony, and those of another body from another patch.
+        slots.iter().position(|slot| slot.is_sounding() && slot.note.body == note.body)
+    }
+
+    /// Whether any key is down.
+    pub fn has_key_down(&self) -> bool {
+        !self.held.as_slice().is_empty() || self.slots[..self.used].iter().any(|slot| slot.key_down)
+    }
+
+    /// A key goes down. Returns whether its note sounds: if not, another key has priority, and this one waits.
+    pub fn note_on(&mut self, context: &V::Context, note: Note) -> bool {
+        if self.mode != PlayMode::Poly {
+            self.remember(note);
+            let playing = self.playing(&note).map(|index| &self.slots[index]);
+            if playing.is_some_and(|slot| slot.key_down && !self.priority.prefers(&note, &slot.note)) {
+                return false;
+            }
+        }
         for slot in self.slots[..self.used].iter_mut().filter(|slot| slot.is_sounding()) {
             // What the note is about to strike again or to retune is not choked.
             let reused =
                 slot.note.body == note.body && (self.mode != PlayMode::Poly || slot.is_on(note.channel, note.key));
             if note.choke != 0 && slot.note.choke == note.choke && !reused {
-                fade(slot);
+                slot.fade();
             }
         }
         match self.mode {
@@ -200,13 +211,21 @@ impl<V: Voice> VoiceManager<V> {
             PlayMode::Mono | PlayMode::Legato => self.note_on_mono(context, note),
         }
         self.peak = self.peak.max(self.sounding());
+        true
+    }
+
+    /// Keeps a key that is down for a monophonic voice to return to.
+    fn remember(&mut self, note: Note) {
+        self.forget(|held| (held.channel, held.key) == (note.channel, note.key));
+        if let Some(surplus) = self.held.surplus() {
+            self.forget(|held| held.serial == surplus.serial);
+        }
+        self.held.push(note);
     }
 
     fn note_on_poly(&mut self, context: &V::Context, note: Note) {
-        let same = |slot: &&mut Slot<V>| slot.is_on(note.channel, note.key) && slot.note.body == note.body;
-        if let Some(slot) = self.slots[..self.used].iter_mut().find(same) {
-            slot.voice.restrike(context, &note);
-            let before = hold(slot, note);
+        if let Some(index) = self.same(&note) {
+            let before = self.slots[index].restrike(context, note);
             self.retire(before);
         } else {
             while self.sounding() >= self.polyphony {
@@ -217,29 +236,20 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     fn note_on_mono(&mut self, context: &V::Context, note: Note) {
-        self.forget(|held| (held.channel, held.key) == (note.channel, note.key));
-        if let Some(surplus) = self.held.surplus() {
-            self.forget(|held| held.serial == surplus.serial);
-        }
-        self.held.push(note);
-
-        let mut playing = None;
-        for (index, slot) in self.slots[..self.used].iter_mut().enumerate().filter(|(_, slot)| slot.is_sounding()) {
-            // Left over from another patch or from polyphony: make room.
-            if playing.is_some() || slot.note.body != note.body {
-                fade(slot);
-            } else {
-                playing = Some(index);
+        let playing = self.playing(&note);
+        for (index, slot) in self.slots[..self.used].iter_mut().enumerate() {
+            if slot.is_sounding() && Some(index) != playing {
+                slot.fade();
             }
         }
         let Some(index) = playing else { return self.start(context, note) };
         let slot = &mut self.slots[index];
-        if self.mode == PlayMode::Legato && slot.state == State::Held {
-            slot.voice.retune(Some(context), &note);
+        let before = if self.mode == PlayMode::Legato && slot.state == State::Held {
+            slot.retune(Some(context), &note);
+            slot.hold(note)
         } else {
-            slot.voice.restrike(context, &note);
-        }
-        let before = hold(slot, note);
+            slot.restrike(context, note)
+        };
         self.retire(before);
     }
 
@@ -248,11 +258,11 @@ impl<V: Voice> VoiceManager<V> {
         if self.mode != PlayMode::Poly {
             self.forget(|held| notes.include(held));
             // The key before is still down: a release never strikes, it returns.
-            if let Some(note) = self.held.as_slice().last().copied()
+            if let Some(note) = self.held.first(self.priority)
                 && let Some(slot) =
                     self.slots[..self.used].iter_mut().find(|slot| slot.key_down && slot.is_one_of(&notes))
             {
-                slot.voice.retune((slot.note.patch == self.patch).then_some(context), &note);
+                slot.retune((slot.note.patch == self.patch).then_some(context), &note);
                 // The voice keeps the sound that it has.
                 let Note { patch, body, choke, .. } = slot.note;
                 let note = Note { patch, body, choke, ..note };
@@ -262,7 +272,7 @@ impl<V: Voice> VoiceManager<V> {
         }
         for slot in self.slots[..self.used].iter_mut().filter(|slot| slot.is_one_of(&notes)) {
             slot.key_down = false;
-            release_unless_held(slot, &self.sustain, velocity);
+            slot.release_unless_held(&self.sustain, velocity);
         }
     }
 
@@ -275,7 +285,7 @@ impl<V: Voice> VoiceManager<V> {
     /// Silences these notes.
     pub fn silence(&mut self, notes: Notes) {
         self.forget(|held| notes.include(held));
-        self.slots[..self.used].iter_mut().filter(|slot| slot.is_one_of(&notes)).for_each(fade);
+        self.slots[..self.used].iter_mut().filter(|slot| slot.is_one_of(&notes)).for_each(Slot::fade);
     }
 
     /// The sustain pedal (controller 64).
@@ -312,7 +322,7 @@ impl<V: Voice> VoiceManager<V> {
         self.slots[..self.used]
             .iter_mut()
             .filter(|slot| slot.is_sounding() && slot.note.channel == channel)
-            .for_each(fade);
+            .for_each(Slot::fade);
     }
 
     /// Silences the notes of a choke group (0 is none).
@@ -320,13 +330,13 @@ impl<V: Voice> VoiceManager<V> {
         self.slots[..self.used]
             .iter_mut()
             .filter(|slot| group != 0 && slot.is_sounding() && slot.note.choke == group)
-            .for_each(fade);
+            .for_each(Slot::fade);
     }
 
     /// Notes whose keys are up and that no pedal holds any more are released.
     fn release_let_go(&mut self, channel: u8) {
         for slot in self.slots[..self.used].iter_mut().filter(|slot| slot.note.channel == channel && !slot.key_down) {
-            release_unless_held(slot, &self.sustain, MIDDLE_VELOCITY);
+            slot.release_unless_held(&self.sustain, MIDDLE_VELOCITY);
         }
     }
 
@@ -336,36 +346,60 @@ impl<V: Voice> VoiceManager<V> {
 
     /// Fades the note that will be missed least: one on the same key, else the quietest, of equals the oldest.
     fn steal(&mut self, note: &Note) {
-        let rank = |slot: &Slot<V>| (!slot.is_on(note.channel, note.key), slot.voice.energy(), slot.note.serial);
+        let rank = |slot: &Slot<V>| (!slot.is_on(note.channel, note.key), slot.energy(), slot.note.serial);
         let victim = self.slots[..self.used].iter_mut().filter(|slot| slot.is_sounding()).min_by(|a, b| {
             let (a, b) = (rank(a), rank(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))
         });
         if let Some(slot) = victim {
-            fade(slot);
+            slot.fade();
         }
     }
 
-    /// Starts a note in a free voice. If so many notes were stolen within a few milliseconds that all the spare ones
+    /// Starts a note in a free slot. If so many notes were stolen within a few milliseconds that all the spare ones
     /// still fade, the one that is nearly silent is cut off.
     fn start(&mut self, context: &V::Context, note: Note) {
-        let slot = match self.slots.iter().position(|slot| slot.state == State::Free) {
-            Some(free) => {
-                self.used = self.used.max(free + 1);
-                Some(&mut self.slots[free])
+        let index = self.slots.iter().position(Slot::is_free).or_else(|| {
+            let (index, _) = self.quietest(false)?;
+            self.free(index);
+            Some(index)
+        });
+        let need = V::footprint(context);
+        match index {
+            Some(index) if self.slots[index].start(&mut self.pool, need, context, note) => {
+                self.used = self.used.max(index + 1);
             }
-            None => {
-                let fading = self.slots.iter_mut().filter(|slot| slot.state == State::Fading);
-                fading.min_by(|a, b| a.voice.energy().total_cmp(&b.voice.energy()))
-            }
-        };
-        if let Some(slot) = slot {
-            slot.voice.start(context, &note);
-            slot.sostenuto = false;
-            let before = (slot.state != State::Free).then_some(slot.note);
-            hold(slot, note);
-            before.into_iter().for_each(|before| self.retire(before));
+            // Whoever owns the pool has made room before: never.
+            _ => self.retire(note),
         }
+    }
+
+    /// The quietest note of those that sound or of those that fade, and how loud it is; of equals the oldest.
+    fn quietest(&self, sounding: bool) -> Option<(usize, f64)> {
+        let slots = self.slots[..self.used].iter().enumerate();
+        let meant = slots.filter(|(_, slot)| !slot.is_free() && slot.is_sounding() == sounding);
+        let ranked = meant.map(|(index, slot)| (index, slot.energy(), slot.note.serial));
+        let least = ranked.min_by(|a, b| a.1.total_cmp(&b.1).then(a.2.cmp(&b.2)));
+        least.map(|(index, energy, _)| (index, energy))
+    }
+
+    /// What the notes take that sound, or those that fade.
+    fn footprint(&self, sounding: bool) -> Footprint {
+        let slots = self.slots[..self.used].iter().filter(|slot| slot.is_sounding() == sounding);
+        slots.map(Slot::footprint).fold(Footprint::NONE, |sum, one| sum + one)
+    }
+
+    fn slot_footprint(&self, index: usize) -> Footprint {
+        self.slots[index].footprint()
+    }
+
+    fn fade_slot(&mut self, index: usize) {
+        self.slots[index].fade();
+    }
+
+    fn cut_slot(&mut self, index: usize) {
+        self.free(index);
+        self.shrink();
     }
 
     /// Stops waiting for keys.
@@ -378,26 +412,6 @@ impl<V: Voice> VoiceManager<V> {
 
 /// Release velocity where nobody gave one.
 const MIDDLE_VELOCITY: f32 = 0.5;
-
-/// Gives the slot a note whose key is down; returns the one that it had.
-fn hold<V>(slot: &mut Slot<V>, note: Note) -> Note {
-    slot.state = State::Held;
-    slot.key_down = true;
-    std::mem::replace(&mut slot.note, note)
-}
-
-fn fade<V: Voice>(slot: &mut Slot<V>) {
-    slot.voice.fade();
-    slot.state = State::Fading;
-    slot.key_down = false;
-}
-
-fn release_unless_held<V: Voice>(slot: &mut Slot<V>, sustain: &[bool; 16], velocity: f32) {
-    if slot.state == State::Held && !slot.key_down && !slot.sostenuto && !sustain[usize::from(slot.note.channel)] {
-        slot.voice.release(velocity);
-        slot.state = State::Released;
-    }
-}
 
 #[cfg(test)]
 mod tests;

@@ -10,11 +10,13 @@ type Log = Rc<RefCell<Vec<String>>>;
 /// What the instrument plays now: the number of its patch.
 struct FakeInstrument {
     patch: u32,
+    unison: usize,
 }
 
 /// A voice that writes down what it is told, and that refuses to read another patch than its own.
 struct FakeVoice {
     log: Log,
+    cells: usize,
     patch: u32,
     key: u8,
     energy: f64,
@@ -23,7 +25,19 @@ struct FakeVoice {
 
 impl Voice for FakeVoice {
     type Context = FakeInstrument;
-    fn start(&mut self, instrument: &FakeInstrument, note: &Note) {
+    type Cell = ();
+    fn footprint(instrument: &FakeInstrument) -> Footprint {
+        Footprint { voices: instrument.unison, cells: 2 * instrument.unison }
+    }
+    fn add_cell(&mut self, _: Box<()>) {
+        self.cells += 1;
+    }
+    fn take_cell(&mut self) -> Option<Box<()>> {
+        self.cells = self.cells.checked_sub(1)?;
+        Some(Box::new(()))
+    }
+    fn start(&mut self, instrument: &FakeInstrument, note: &Note, unison: Unison) {
+        assert_eq!((self.cells, unison.count), (2, instrument.unison));
         (self.key, self.over, self.energy) = (note.key, false, f64::from(note.velocity));
         self.patch = instrument.patch;
         self.log.borrow_mut().push(format!("start {}", note.key));
@@ -74,11 +88,25 @@ use Do::*;
 
 /// Plays a script and returns what the voices were told.
 fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
+    play_with(polyphony, mode, Priority::Last, 1, script).0
+}
+
+/// As [`play`]; also the keys of the notes that have ended, in that order.
+fn play_with(
+    polyphony: usize,
+    mode: PlayMode,
+    priority: Priority,
+    unison: usize,
+    script: &[Do],
+) -> (Vec<String>, Vec<u8>) {
     let log = Log::default();
-    let mut manager = VoiceManager::new(|| FakeVoice { log: log.clone(), patch: 0, key: 0, energy: 0.0, over: false });
-    let mut instrument = FakeInstrument { patch: 0 };
-    manager.configure(polyphony, mode, 0);
+    let voice = || FakeVoice { log: log.clone(), cells: 0, patch: 0, key: 0, energy: 0.0, over: false };
+    let capacity = Footprint { voices: 200, cells: 400 };
+    let mut manager = VoiceManager::new(VoicePool::full(capacity, voice, || ()));
+    let mut instrument = FakeInstrument { patch: 0, unison };
+    manager.configure(polyphony, mode, priority, 0);
     for (serial, action) in script.iter().enumerate() {
+        let is_legato = manager.has_key_down();
         let on = |key, velocity, choke, patch| Note {
             channel: 0,
             key,
@@ -94,18 +122,19 @@ fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
             choke,
             gain: 1.0,
             pan: 0.0,
+            is_legato,
         };
         if let OnPatch(_, patch) | OnChokePatch(_, _, patch) | Patch(patch) = *action {
             instrument.patch = patch;
-            manager.configure(polyphony, mode, patch);
+            manager.configure(polyphony, mode, priority, patch);
         }
         let patch = instrument.patch;
         match *action {
             Patch(_) => {}
-            On(key, velocity) => manager.note_on(&instrument, on(key, velocity, 0, patch)),
-            OnChoke(key, group) => manager.note_on(&instrument, on(key, 1.0, group, patch)),
-            OnChokePatch(key, group, _) => manager.note_on(&instrument, on(key, 1.0, group, patch)),
-            OnPatch(key, _) => manager.note_on(&instrument, on(key, 1.0, 0, patch)),
+            On(key, velocity) => _ = manager.note_on(&instrument, on(key, velocity, 0, patch)),
+            OnChoke(key, group) => _ = manager.note_on(&instrument, on(key, 1.0, group, patch)),
+            OnChokePatch(key, group, _) => _ = manager.note_on(&instrument, on(key, 1.0, group, patch)),
+            OnPatch(key, _) => _ = manager.note_on(&instrument, on(key, 1.0, 0, patch)),
             Off(key) => manager.note_off(&instrument, Notes::on(0, key), 0.25),
             OffId(key, id) => manager.note_off(&instrument, Notes { id: Some(id), ..Notes::on(0, key) }, 0.25),
             Sustain(down) => manager.sustain(0, down),
@@ -119,7 +148,7 @@ fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
             }
         }
     }
-    log.take()
+    (log.take(), manager.ended().iter().map(|note| note.key).collect())
 }
 
 #[track_caller]
@@ -250,4 +279,63 @@ fn all_notes_off_respects_the_pedal_and_all_sound_off_does_not() {
     check(16, PlayMode::Poly, &script, &["start 60", "release 60 at 0.5"]);
     let script = [On(60, 1.0), Sustain(true), Off(60), SoundOff, Sustain(false)];
     check(16, PlayMode::Poly, &script, &["start 60", "fade 60"]);
+}
+
+#[test]
+fn unison_voices_are_one_note() {
+    let script = [On(60, 0.5), On(60, 0.5), On(62, 0.9), On(64, 0.9), Over(60), Off(62), Over(62), OnChoke(64, 0)];
+    let (told, ended) = play_with(2, PlayMode::Poly, Priority::Last, 3, &script);
+    let expected = ["start 60", "restrike 60 as 60", "start 62", "fade 60", "start 64", "release 62 at 0.25"];
+    let expected: Vec<_> = expected.iter().chain(&["restrike 64 as 64"]).flat_map(|line| [*line; 3]).collect();
+    assert_eq!(told, expected);
+    assert_eq!(ended, [60, 60, 62, 64], "a strike on a sounding key ends the note before; every note ends once");
+}
+
+#[test]
+fn a_key_without_priority_waits_its_turn() {
+    let script = [On(60, 1.0), On(64, 1.0), On(57, 1.0), Off(57), Off(60), Off(64)];
+    let (told, ended) = play_with(16, PlayMode::Mono, Priority::Low, 1, &script);
+    assert_eq!(told, ["start 60", "restrike 60 as 57", "retune 57 to 60", "retune 60 to 64", "release 64 at 0.25"]);
+    assert_eq!(ended, [57, 60]);
+    let (told, ended) = play_with(16, PlayMode::Legato, Priority::High, 1, &script);
+    assert_eq!(told, ["start 60", "retune 60 to 64", "release 64 at 0.25"]);
+    assert_eq!(ended, [57, 60], "keys that came up while they waited");
+}
+
+#[test]
+fn a_key_without_priority_sounds_once_the_other_has_died_away() {
+    let script = [On(60, 1.0), Over(60), On(64, 1.0), Sustain(true), Off(64), Off(60), On(65, 1.0)];
+    let (told, _) = play_with(16, PlayMode::Mono, Priority::Low, 1, &script);
+    assert_eq!(told, ["start 60", "start 64", "retune 64 to 60", "restrike 60 as 65"]);
+}
+
+/// Managers that share a pool of 16 voices, 12 of them for notes that do not fade.
+#[test]
+fn what_gives_way_is_the_quietest_of_all_managers() {
+    let (log, capacity) = (Log::default(), Footprint { voices: 16, cells: 32 });
+    let voice = || FakeVoice { log: log.clone(), cells: 0, patch: 0, key: 0, energy: 0.0, over: false };
+    let instrument = FakeInstrument { patch: 0, unison: 2 };
+    let mut managers = [(); 2].map(|()| VoiceManager::new(VoicePool::empty(capacity)));
+    let mut shared = VoicePool::full(capacity, voice, || ());
+    let need = FakeVoice::footprint(&instrument);
+    let mut strike = |index: usize, key: u8, velocity: f32| {
+        if !has_room(capacity, shared.free(), need) {
+            make_room(&mut managers, |manager| manager, capacity, need);
+            managers.iter_mut().for_each(|manager| {
+                let free = manager.pool().free();
+                manager.pool().lend(&mut shared, free);
+            });
+        }
+        shared.lend(managers[index].pool(), need);
+        managers[index].note_on(&instrument, Note { key, velocity, serial: u64::from(key), ..Note::NONE });
+        log.take()
+    };
+    for key in 0..6 {
+        assert_eq!(strike(usize::from(key % 2), key, 1.0 - 0.1 * f32::from(key)).len(), 2, "room for six notes");
+    }
+    assert_eq!(strike(0, 6, 1.0), ["fade 5", "fade 5", "start 6", "start 6"]);
+    assert_eq!(strike(0, 7, 1.0), ["fade 4", "fade 4", "start 7", "start 7"]);
+    assert_eq!(strike(1, 8, 1.0), ["fade 3", "fade 3", "start 8", "start 8"], "and the quietest that fades is cut off");
+    assert_eq!(managers.iter_mut().map(|manager| manager.active().count()).sum::<usize>(), 16);
+    assert_eq!(managers[1].ended().iter().map(|note| note.key).collect::<Vec<_>>(), [5]);
 }

@@ -1,0 +1,103 @@
+//! Cells side by side against single banks, and cells that have been used against new ones.
+
+use super::*;
+use crate::dsp::random::{key, uniform};
+
+const RATE: f64 = 48_000.0;
+
+/// A body of so many modes, at rest, with its excitation gains set.
+fn body(cells: &mut Cells, law: Law, modes: usize, seed: u64) {
+    let unit = |m: usize, n: u64| f64::from(uniform(key(seed, n), m as u64)) * 0.5 + 0.5;
+    let ratios: Vec<f64> = (0..modes).map(|m| 0.5 + 40.0 * unit(m, 0)).collect();
+    cells.ratios_mut().zip(&ratios).for_each(|(to, ratio)| *to = *ratio);
+    cells.t60_scales_mut().take(modes).enumerate().for_each(|(m, to)| *to = 0.05 + unit(m, 1));
+    let pans: Vec<f32> = (0..modes).map(|m| unit(m, 2) as f32).collect();
+    let setup =
+        |pan: &f32, ratio: f64, scale: f64| ModeSetup { frequency: 200.0 * ratio, t60: scale, left: *pan, right: 1.0 };
+    cells.load(law, RATE, &pans, setup);
+    for m in 0..modes {
+        let gains = ExcitationGains { push: unit(m, 3) as f32, pull: 0.1, ..ExcitationGains::default() };
+        cells.set_excitation_gains(m, gains);
+    }
+}
+
+fn cells(count: usize) -> Cells {
+    let mut cells = Cells::EMPTY;
+    (0..count).for_each(|_| assert!(cells.add(Box::new(Cell::new(RATE))).is_none()));
+    cells
+}
+
+/// A strike, a sweep, a change of damping and ringing until tables are in use: all samples, and what is left.
+fn play(cells: &mut Cells, ticks: usize) -> (Vec<u32>, f64, u64) {
+    let mut drive = Drive::NONE;
+    drive.pulse[3] = 0.7;
+    let mut samples = vec![];
+    for tick in 0..ticks {
+        if tick == 5 {
+            cells.damp(|scale| 0.5 * scale);
+        }
+        cells.sweep_to(if tick < 8 { 1.0 + 0.01 * tick as f64 } else { 1.08 }, CONTROL_FRAMES);
+        for sides in cells.render((tick == 0).then_some(&drive), CONTROL_FRAMES) {
+            samples.extend(sides.iter().map(|sample| sample.to_bits()));
+        }
+    }
+    (samples, cells.settle(), cells.frames_until(1e-9))
+}
+
+#[test]
+fn cells_that_were_used_give_the_bits_of_new_ones() {
+    for law in [Law::Exact, Law::Classic] {
+        for (count, modes) in [(1, 1), (1, 37), (1, 64), (3, 130), (8, 512)] {
+            let mut fresh = cells(count);
+            body(&mut fresh, law, modes, 1);
+            let expected = play(&mut fresh, 40);
+            assert!(expected.0.iter().any(|bits| f32::from_bits(*bits).abs() > 0.1));
+            let mut used = cells(count);
+            for (other, seed) in [(Law::Exact, 2), (Law::Classic, 3), (law, 4), (law, 5)] {
+                body(&mut used, other, 64 * count - seed as usize, seed);
+                // To the midst of a sweep, and to where tables are in use.
+                play(&mut used, if seed == 5 { 3 } else { 30 });
+            }
+            body(&mut used, law, modes, 1);
+            assert!(play(&mut used, 40) == expected, "{law:?} {modes}");
+        }
+    }
+}
+
+#[test]
+fn many_cells_are_the_sum_of_each_by_itself() {
+    let mut whole = cells(8);
+    body(&mut whole, Law::Exact, 500, 7);
+    let (samples, energy, _) = play(&mut whole, 40);
+    let mut sum = vec![0.0_f64; samples.len()];
+    let mut energies = 0.0;
+    for cell in 0..8 {
+        // The same modes, and all others unmoved.
+        let mut part = cells(8);
+        body(&mut part, Law::Exact, 500, 7);
+        let others = (0..500).filter(|m| m / MAX_MODES != cell);
+        others.for_each(|m| part.set_excitation_gains(m, ExcitationGains::default()));
+        let (samples, energy, _) = play(&mut part, 40);
+        sum.iter_mut().zip(samples).for_each(|(sum, bits)| *sum += f64::from(f32::from_bits(bits)));
+        energies += energy;
+    }
+    let pairs = samples.iter().zip(&sum);
+    let worst = pairs.map(|(bits, sum)| (f64::from(f32::from_bits(*bits)) - sum).abs()).fold(0.0, f64::max);
+    assert!(worst < 2e-5, "{worst}");
+    assert!((energies / energy - 1.0).abs() < 1e-6, "{energies} {energy}");
+}
+
+#[test]
+fn the_end_of_many_cells_is_when_their_energies_add_up_to_it() {
+    let mut whole = cells(4);
+    body(&mut whole, Law::Exact, 256, 9);
+    let (_, _, told) = play(&mut whole, 60);
+    let mut frames = 0;
+    while whole.settle() >= 1e-9 {
+        whole.sweep_to(1.08, CONTROL_FRAMES);
+        whole.render(None, CONTROL_FRAMES);
+        frames += CONTROL_FRAMES as u64;
+    }
+    assert!(told <= frames && frames < told + CONTROL_FRAMES as u64 + 1, "{told} {frames}");
+    assert_eq!(whole.take().map(|_| Cells::count_for(193)), Some(4));
+}

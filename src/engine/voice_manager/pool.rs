@@ -1,0 +1,119 @@
+//! Voices and cells that nobody plays: taken by notes that start, given back when they are over.
+
+use super::voice::Voice;
+use std::ops::{Add, AddAssign, Sub, SubAssign};
+
+/// How many voices and cells something takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Footprint {
+    /// Voices.
+    pub voices: usize,
+    /// Cells of all of them together.
+    pub cells: usize,
+}
+
+impl Footprint {
+    /// Nothing.
+    pub const NONE: Self = Self { voices: 0, cells: 0 };
+
+    /// Whether there is enough of both in `room`.
+    pub fn fits(self, room: Self) -> bool {
+        self.voices <= room.voices && self.cells <= room.cells
+    }
+
+    /// The greater number of each.
+    #[must_use]
+    pub fn max(self, other: Self) -> Self {
+        Self { voices: self.voices.max(other.voices), cells: self.cells.max(other.cells) }
+    }
+
+    /// How much of a pool of this size may be taken by notes that are not fading. The rest, a quarter, is for those that
+    /// make room for others.
+    #[must_use]
+    pub fn for_sounding(self) -> Self {
+        Self { voices: self.voices - self.voices / 4, cells: self.cells - self.cells / 4 }
+    }
+}
+
+impl Add for Footprint {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { voices: self.voices + other.voices, cells: self.cells + other.cells }
+    }
+}
+
+impl AddAssign for Footprint {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Sub for Footprint {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { voices: self.voices.saturating_sub(other.voices), cells: self.cells.saturating_sub(other.cells) }
+    }
+}
+
+impl SubAssign for Footprint {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+/// Free voices and cells. Which of them a note gets makes no difference to its sound. Real-time safe once made.
+pub struct VoicePool<V: Voice> {
+    voices: Vec<Box<V>>,
+    cells: Vec<Box<V::Cell>>,
+}
+
+impl<V: Voice> VoicePool<V> {
+    /// An empty pool with places for `capacity`. Allocates.
+    pub fn empty(capacity: Footprint) -> Self {
+        Self { voices: Vec::with_capacity(capacity.voices), cells: Vec::with_capacity(capacity.cells) }
+    }
+
+    /// A pool of so many voices and cells, made by `voice` and `cell`. Allocates.
+    pub fn full(capacity: Footprint, voice: impl Fn() -> V, cell: impl Fn() -> V::Cell) -> Self {
+        let mut pool = Self::empty(capacity);
+        pool.voices.extend((0..capacity.voices).map(|_| Box::new(voice())));
+        pool.cells.extend((0..capacity.cells).map(|_| Box::new(cell())));
+        pool
+    }
+
+    /// What is free.
+    pub fn free(&self) -> Footprint {
+        Footprint { voices: self.voices.len(), cells: self.cells.len() }
+    }
+
+    /// Moves up to `some` to another pool, which must have places for them.
+    pub fn lend(&mut self, other: &mut Self, some: Footprint) {
+        move_last(&mut self.voices, &mut other.voices, some.voices);
+        move_last(&mut self.cells, &mut other.cells, some.cells);
+    }
+
+    /// A voice with so many cells, if there are enough.
+    pub(super) fn take(&mut self, cells: usize) -> Option<Box<V>> {
+        if self.cells.len() < cells {
+            return None;
+        }
+        let mut voice = self.voices.pop()?;
+        self.cells.drain(self.cells.len() - cells..).for_each(|cell| voice.add_cell(cell));
+        Some(voice)
+    }
+
+    /// Takes a voice back that is silent, and its cells.
+    pub(super) fn give_back(&mut self, mut voice: Box<V>) {
+        while let Some(cell) = voice.take_cell() {
+            self.cells.push(cell);
+        }
+        self.voices.push(voice);
+    }
+}
+
+fn move_last<T>(from: &mut Vec<T>, to: &mut Vec<T>, count: usize) {
+    let kept = from.len().saturating_sub(count);
+    to.extend(from.drain(kept..));
+}

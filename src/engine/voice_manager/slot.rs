@@ -1,0 +1,133 @@
+//! A note that sounds, with its voices; or the place for one.
+
+use super::pool::{Footprint, VoicePool};
+use super::voice::{Unison, Voice};
+use crate::engine::note::{Note, Notes};
+
+/// Most voices that play one note.
+pub const MAX_UNISON: usize = 8;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum State {
+    Free,
+    /// The key is down, or a pedal holds the note.
+    Held,
+    Released,
+    Fading,
+}
+
+pub(super) struct Slot<V> {
+    voices: Vec<Box<V>>,
+    /// Of all voices.
+    cells: usize,
+    pub(super) note: Note,
+    pub(super) state: State,
+    pub(super) key_down: bool,
+    pub(super) sostenuto: bool,
+}
+
+impl<V: Voice> Slot<V> {
+    /// A place for a note. Allocates.
+    pub(super) fn new() -> Self {
+        let (voices, note, state) = (Vec::with_capacity(MAX_UNISON), Note::NONE, State::Free);
+        Self { voices, cells: 0, note, state, key_down: false, sostenuto: false }
+    }
+
+    pub(super) fn is_free(&self) -> bool {
+        self.state == State::Free
+    }
+
+    pub(super) fn is_sounding(&self) -> bool {
+        matches!(self.state, State::Held | State::Released)
+    }
+
+    pub(super) fn is_on(&self, channel: u8, key: u8) -> bool {
+        self.is_one_of(&Notes::on(channel, key))
+    }
+
+    pub(super) fn is_one_of(&self, notes: &Notes) -> bool {
+        self.is_sounding() && notes.include(&self.note)
+    }
+
+    /// What the note takes; nothing if there is none.
+    pub(super) fn footprint(&self) -> Footprint {
+        Footprint { voices: self.voices.len(), cells: self.cells }
+    }
+
+    pub(super) fn voices(&self) -> impl Iterator<Item = &V> {
+        self.voices.iter().map(|voice| &**voice)
+    }
+
+    pub(super) fn voices_mut(&mut self) -> (&Note, impl Iterator<Item = &mut V>) {
+        (&self.note, self.voices.iter_mut().map(|voice| &mut **voice))
+    }
+
+    /// Starts a note in a free slot with voices from the pool. Returns whether there were enough.
+    pub(super) fn start(
+        &mut self,
+        pool: &mut VoicePool<V>,
+        footprint: Footprint,
+        context: &V::Context,
+        note: Note,
+    ) -> bool {
+        let count = footprint.voices.clamp(1, MAX_UNISON);
+        if !footprint.fits(pool.free()) {
+            return false;
+        }
+        for index in 0..count {
+            let Some(mut voice) = pool.take(footprint.cells / count) else { break };
+            voice.start(context, &note, Unison { index, count });
+            self.voices.push(voice);
+        }
+        (self.cells, self.sostenuto) = (footprint.cells, false);
+        self.hold(note);
+        true
+    }
+
+    /// Strikes the note's voices again for another note; returns the one that it had.
+    pub(super) fn restrike(&mut self, context: &V::Context, note: Note) -> Note {
+        self.voices.iter_mut().for_each(|voice| voice.restrike(context, &note));
+        self.hold(note)
+    }
+
+    /// Moves the note's voices to another note.
+    pub(super) fn retune(&mut self, context: Option<&V::Context>, note: &Note) {
+        self.voices.iter_mut().for_each(|voice| voice.retune(context, note));
+    }
+
+    /// Gives the slot a note whose key is down; returns the one that it had.
+    pub(super) fn hold(&mut self, note: Note) -> Note {
+        self.state = State::Held;
+        self.key_down = true;
+        std::mem::replace(&mut self.note, note)
+    }
+
+    pub(super) fn fade(&mut self) {
+        self.voices.iter_mut().for_each(|voice| voice.fade());
+        self.state = State::Fading;
+        self.key_down = false;
+    }
+
+    pub(super) fn release_unless_held(&mut self, sustain: &[bool; 16], velocity: f32) {
+        if self.state == State::Held && !self.key_down && !self.sostenuto && !sustain[usize::from(self.note.channel)] {
+            self.voices.iter_mut().for_each(|voice| voice.release(velocity));
+            self.state = State::Released;
+        }
+    }
+
+    /// How loud the note is.
+    pub(super) fn energy(&self) -> f64 {
+        self.voices().map(V::energy).sum()
+    }
+
+    /// Whether all voices are silent.
+    pub(super) fn is_over(&self) -> bool {
+        self.voices().all(V::is_over)
+    }
+
+    /// Silences the note at once, and gives its voices back.
+    pub(super) fn free(&mut self, pool: &mut VoicePool<V>) {
+        self.voices.drain(..).for_each(|voice| pool.give_back(voice));
+        (self.cells, self.state, self.key_down) = (0, State::Free, false);
+    }
+}
