@@ -252,7 +252,7 @@ mod tests {
             ("kit = 2", "x: kit 2 is of a newer version: this one reads kit = 1"),
             ("kit = \"a\"", "x: kit \"a\" is unknown: this version reads kit = 1"),
             ("kit = 1\nname = ", "x:2:8: not valid TOML: "),
-            ("name = \"a\"", "x: there is no ‘format’: expected format = 2"),
+            ("name = \"a\"", "x: there is no ‘format’: expected format = 3"),
         ] {
             let error = parse(text).unwrap_err().to_string();
             assert!(error.starts_with(expected), "{error}");

@@ -152,7 +152,7 @@ mod tests {
         }
         let text = to_toml(&patch);
         assert_eq!(parse(&text).as_ref(), Ok(&patch), "{text}");
-        assert!(PARAMS.iter().filter(|info| writes(&patch, info.param)).count() == 4);
+        assert!(PARAMS.iter().filter(|info| writes(&patch, info.param)).count() == 4 + 3, "and those of a new patch");
         assert_eq!(to_toml(&Patch::default()), "");
         patch.routes = Routes::NONE;
         assert_eq!(to_toml(&patch), "routes = []\n");
