@@ -1,0 +1,141 @@
+//! Two bodies joined at a point by a spring and a damper, solved exactly: together they are one set of modes again.
+//!
+//! A string on a soundboard, a bar over a tube, a head on a shell. Each body is given by its modes when it is free. The
+//! joint pulls both towards each other with `K` times the distance of the two points plus `R` times its rate. The pair
+//! then has as many modes as both bodies had, each heard on both of them, and a bank of modes plays it at no extra
+//! cost: beating pairs, a long and a short decay, and bodies that damp strings at their own resonances come by themselves.
+//!
+//! Seen as functions of frequency, the joined bodies are those of Woodhouse, "On the synthesis of guitar plucks"
+//! (Acta Acustica united with Acustica 90, 2004), sections 2 and 3; here their poles and residues are found, without
+//! approximating the damping. The joint changes the diagonal system of all free modes by a matrix of rank one, so the
+//! poles are the roots of a secular equation (Golub, "Some modified matrix eigenvalue problems", SIAM Review 15, 1973),
+//! with a complex frequency where Golub has a real one. `system` has the equation, `start` the guesses, `poles` the
+//! iteration, and a mode's shapes are the residues by the formula of Sherman and Morrison (1950).
+//!
+//! All of it is made off the audio thread, and allocates. Additions, multiplications, divisions and square roots in
+//! a fixed order: the bits are the same on every machine. The time grows with the square of the number of modes.
+
+mod complex;
+mod mode;
+mod poles;
+mod series;
+mod start;
+mod system;
+#[cfg(test)]
+mod tests;
+
+pub use complex::Complex;
+pub use mode::{BodyMode, CoupledMode, Partial};
+
+use crate::error::{Error, Result};
+use poles::Pair;
+use system::{Law, System};
+
+/// What joins two bodies at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Joint {
+    /// A spring of `stiffness` in N/m and, beside it, a damper of `damping` in N s/m. Both zero: no joint.
+    Spring {
+        /// Zero or more.
+        stiffness: f64,
+        /// Zero or more.
+        damping: f64,
+    },
+    /// The two points move as one. There is one mode less.
+    Rigid,
+}
+
+/// Beyond this many times what the bodies themselves oppose to it, a joint cannot be told from a rigid one.
+const RIGID: f64 = 1e40;
+
+/// The modes of two bodies, joined where [`BodyMode::joint`] tells. In the order of their frequencies.
+///
+/// No mode grows, and none that rings decays more slowly than the slowest of the free ones.
+///
+/// # Errors
+///
+/// [`Error::Value`] for a number that is out of range, and if the poles could not be found.
+pub fn joined(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<Vec<CoupledMode>> {
+    first.iter().chain(second).try_for_each(BodyMode::check)?;
+    let law = law(first, second, joint)?;
+    if !law.rigid && law.stiffness == 0.0 && law.damping == 0.0 {
+        return apart(first, second);
+    }
+    let (system, mut modes) = System::new(first, second, law);
+    let guesses = start::guesses(&system);
+    let (pairs, _) = poles::find(&system, guesses)
+        .ok_or_else(|| Error::value("joint", "the poles of the joined bodies were not found: change it a little"))?;
+    let slowest = system.rate.iter().copied().fold(f64::INFINITY, f64::min);
+    for pair in pairs {
+        match pair {
+            Pair::Ringing(place) => {
+                let rate = system.rate[place.origin] - place.offset.re;
+                modes.push(system.mode(place, true, rate.max(slowest)));
+            }
+            Pair::Creeping(found) => {
+                modes.extend(found.map(|s| system.mode(poles::on_axis(&system, s), false, (-s).max(0.0))));
+            }
+        }
+    }
+    sort(&mut modes);
+    Ok(modes)
+}
+
+/// The modes of two bodies that do not act on each other. In the order of their frequencies.
+///
+/// # Errors
+///
+/// [`Error::Value`] for a number that is out of range.
+pub fn apart(first: &[BodyMode], second: &[BodyMode]) -> Result<Vec<CoupledMode>> {
+    first.iter().chain(second).try_for_each(BodyMode::check)?;
+    let free = |mode: &BodyMode, on: [f64; 2]| {
+        let shapes = |shape: f64| on.map(|on| on * shape);
+        CoupledMode::free(mode.angular_frequency, mode.decay_rate, shapes(mode.strike), shapes(mode.pickup))
+    };
+    let mut modes: Vec<CoupledMode> =
+        first.iter().map(|mode| free(mode, [1.0, 0.0])).chain(second.iter().map(|mode| free(mode, [0.0, 1.0]))).collect();
+    sort(&mut modes);
+    Ok(modes)
+}
+
+/// The modes of two bodies of which the first drives the second one way: the force on the second is `stiffness` in N/m
+/// times the displacement of the first at the joint. In the order of their frequencies.
+///
+/// A chain of two sets of modes is one set of modes too, by partial fractions. Where the bodies have the same pole, the
+/// two partials differ in sign and nearly cancel at first: then the second body's mode is moved up by a thousandth of
+/// the faster decay rate (0.4 cents at 440 Hz and a T60 of 20 ms), so that amplitudes stay within single precision.
+///
+/// # Errors
+///
+/// [`Error::Value`] for a number that is out of range.
+pub fn series(first: &[BodyMode], second: &[BodyMode], stiffness: f64) -> Result<Vec<CoupledMode>> {
+    first.iter().chain(second).try_for_each(BodyMode::check)?;
+    let Law { stiffness, .. } = law(&[], &[], Joint::Spring { stiffness, damping: 0.0 })?;
+    let mut modes = series::modes(first, second, stiffness);
+    sort(&mut modes);
+    Ok(modes)
+}
+
+fn sort(modes: &mut [CoupledMode]) {
+    modes.sort_by(|a, b| {
+        let frequencies = a.angular_frequency.total_cmp(&b.angular_frequency);
+        frequencies.then(a.decay_rate.total_cmp(&b.decay_rate))
+    });
+}
+
+fn law(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<Law> {
+    let rigid = Law { rigid: true, stiffness: 0.0, damping: 0.0 };
+    let Joint::Spring { stiffness, damping } = joint else { return Ok(rigid) };
+    for (name, value) in [("stiffness", stiffness), ("damping", damping)] {
+        if !(value >= 0.0) {
+            return Err(Error::value(name, format!("{value} is not 0 or more")));
+        }
+    }
+    let (mut weight, mut highest) = (0.0, 0.0_f64);
+    for mode in first.iter().chain(second) {
+        weight += mode.joint * mode.joint;
+        highest = highest.max(mode.angular_frequency).max(mode.decay_rate);
+    }
+    let is_rigid = stiffness * weight > RIGID * highest * highest || damping * weight > RIGID * highest;
+    Ok(if is_rigid { rigid } else { Law { rigid: false, stiffness, damping } })
+}
