@@ -13,39 +13,67 @@ use super::system::{Place, System};
 pub(super) enum Pair {
     /// A pole above the real axis, and its conjugate.
     Ringing(Place),
-    /// Two real poles, the smaller first.
-    Creeping([f64; 2]),
+    /// Two real poles, and by which share of themselves the last step has moved them.
+    Creeping([f64; 2], [f64; 2]),
 }
 
-/// Sweeps after which poles that still move are taken as they are. A few are enough unless poles almost coincide.
-const MOST_SWEEPS: usize = 100;
+/// Sweeps after which other guesses are better: four to seven are usual.
+const MOST_SWEEPS: usize = 60;
 
 /// Differences of this size are rounding errors.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// All poles of a system, and in how many sweeps they were found; `None` if they were not.
-pub(super) fn find(system: &System, guesses: Vec<Place>) -> Option<(Vec<Pair>, usize)> {
+/// Real poles are as good as found when they move by less than this share: each step squares it.
+const SETTLED: f64 = 1e-13;
+
+/// Real poles that move by less than this share will stay real.
+const NEARLY_SETTLED: f64 = 1e-9;
+
+/// All poles of a system, from a guess of each pair; `None` if they were not found.
+pub(super) fn find(system: &System, guesses: Vec<Place>) -> Option<Vec<Pair>> {
     let mut pairs: Vec<Pair> = guesses.into_iter().map(Pair::Ringing).collect();
     let mut found = vec![false; pairs.len()];
-    for sweep in 0..MOST_SWEEPS {
+    for _ in 0..MOST_SWEEPS {
         if found.iter().all(|found| *found) {
-            return Some((pairs, sweep));
+            return Some(pairs);
         }
         for j in 0..pairs.len() {
             if !found[j] {
                 (pairs[j], found[j]) = match pairs[j] {
                     Pair::Ringing(place) => ringing(system, &pairs, j, system.nearest(place)),
-                    Pair::Creeping(poles) => creeping(system, &pairs, j, poles),
+                    Pair::Creeping(poles, _) => creeping(system, &pairs, j, poles),
                 };
             }
         }
+        exchange(&mut pairs, &found);
     }
     None
 }
 
+/// Two real poles that are to become conjugates cannot if they belong to different pairs, each with a pole that has
+/// settled. So the settled ones become a pair, and the others another.
+fn exchange(pairs: &mut [Pair], found: &[bool]) {
+    let mut open: Option<(usize, usize)> = None;
+    for j in (0..pairs.len()).filter(|j| !found[*j]) {
+        let Pair::Creeping(poles, moves) = pairs[j] else { continue };
+        let restless = match moves.map(|moved| moved < NEARLY_SETTLED) {
+            [true, false] => 1,
+            [false, true] => 0,
+            _ => continue,
+        };
+        let Some((first, its_restless)) = open.take() else {
+            open = Some((j, restless));
+            continue;
+        };
+        let Pair::Creeping(others, _) = pairs[first] else { continue };
+        pairs[first] = Pair::Creeping([others[1 - its_restless], poles[1 - restless]], [1.0; 2]);
+        pairs[j] = Pair::Creeping([others[its_restless], poles[restless]], [1.0; 2]);
+    }
+}
+
 /// One step of a pole above the real axis, and whether it was the last.
 fn ringing(system: &System, pairs: &[Pair], j: usize, place: Place) -> (Pair, bool) {
-    let (value, s) = (system.value(place), system.at(place));
+    let (value, s) = (system.value(place), place.s);
     if value.h.norm() <= ROUNDING * value.size {
         return (Pair::Ringing(place), true);
     }
@@ -61,11 +89,7 @@ fn ringing(system: &System, pairs: &[Pair], j: usize, place: Place) -> (Pair, bo
     let step = slope.reciprocal();
     if s.im - step.im > 0.25 * s.im {
         let offset = place.offset - step;
-        return (Pair::Ringing(Place { offset, ..place }), step.norm2() <= ROUNDING * ROUNDING * offset.norm2());
-    }
-    if system.law.rigid || system.law.damping == 0.0 {
-        // No pole is real.
-        return (lowered(place, 0.5 * s.im), false);
+        return (Pair::Ringing(system.place(place.origin, offset)), step.norm2() <= ROUNDING * ROUNDING * offset.norm2());
     }
     // The quadratic s² + b s + c that has the value of N over all other factors.
     let value = over_others(system, pairs, j, place, value.h);
@@ -73,7 +97,7 @@ fn ringing(system: &System, pairs: &[Pair], j: usize, place: Place) -> (Pair, bo
     let c = value.re - (s.re * s.re - s.im * s.im) - b * s.re;
     let discriminant = b * b - 4.0 * c;
     if discriminant >= 0.0 {
-        return (creep(b, c, discriminant), false);
+        return (Pair::Creeping(roots(b, c, discriminant), [1.0; 2]), false);
     }
     // The root nearest to s, as a difference from it.
     let slope = Complex::new(2.0 * s.re + b, 2.0 * s.im);
@@ -81,15 +105,14 @@ fn ringing(system: &System, pairs: &[Pair], j: usize, place: Place) -> (Pair, bo
     let (plus, minus) = (slope + root, slope - root);
     let larger = if plus.norm2() >= minus.norm2() { plus } else { minus };
     let offset = place.offset - value.scale(2.0) * larger.reciprocal();
-    if system.pole(place.origin).im + offset.im > 0.0 {
-        return (Pair::Ringing(Place { offset, ..place }), false);
-    }
-    (lowered(place, 0.5 * s.im), false)
+    let near = system.place(place.origin, offset);
+    (if near.s.im > 0.0 { Pair::Ringing(near) } else { ring(system, b, discriminant) }, false)
 }
 
-/// The pole moved towards the real axis.
-fn lowered(place: Place, by: f64) -> Pair {
-    Pair::Ringing(Place { offset: Complex::new(place.offset.re, place.offset.im - by), ..place })
+/// The two conjugate roots of a quadratic.
+fn ring(system: &System, b: f64, discriminant: f64) -> Pair {
+    let s = Complex::new(-0.5 * b, 0.5 * (-discriminant).sqrt());
+    Pair::Ringing(system.nearest(system.place(0, s - system.pole(0))))
 }
 
 /// One step of two real poles, and whether it was the last.
@@ -107,35 +130,30 @@ fn creeping(system: &System, pairs: &[Pair], j: usize, poles: [f64; 2]) -> (Pair
     let c = values[0].0 - near * near - b * near;
     let discriminant = b * b - 4.0 * c;
     if discriminant < 0.0 {
-        let s = Complex::new(-0.5 * b, 0.5 * (-discriminant).sqrt());
-        let place = Place { origin: 0, offset: s - system.pole(0) };
-        return (Pair::Ringing(system.nearest(place)), false);
+        return (ring(system, b, discriminant), false);
     }
     if values[0].1 && values[1].1 {
-        return (Pair::Creeping(poles), true);
+        return (Pair::Creeping(poles, [0.0; 2]), true);
     }
-    let moved = creep(b, c, discriminant);
-    let last = match moved {
-        Pair::Creeping(to) => (0..2).all(|k| (to[k] - poles[k]).abs() <= ROUNDING * to[k].abs()),
-        Pair::Ringing(_) => false,
-    };
-    (moved, last)
+    let to = roots(b, c, discriminant);
+    // Each beside the one that it comes from.
+    let to = if (poles[0] < poles[1]) == (to[0] < to[1]) { to } else { [to[1], to[0]] };
+    let moves = [0, 1].map(|k| (to[k] - poles[k]).abs() / to[k].abs());
+    (Pair::Creeping(to, moves), moves.iter().all(|moved| *moved <= SETTLED))
 }
 
 /// The two real roots of a quadratic, neither by a difference of nearly equal numbers.
-fn creep(b: f64, c: f64, discriminant: f64) -> Pair {
+fn roots(b: f64, c: f64, discriminant: f64) -> [f64; 2] {
     let root = discriminant.sqrt();
     let far = -0.5 * (b + if b < 0.0 { -root } else { root });
-    Pair::Creeping([if far == 0.0 { 0.0 } else { c / far }, far])
+    [if far == 0.0 { 0.0 } else { c / far }, far]
 }
 
 /// The place of a real pole.
 pub(super) fn on_axis(system: &System, s: f64) -> Place {
-    let place = Place { origin: 0, offset: Complex::new(s, 0.0) - system.pole(0) };
-    // Exactly on the axis, whichever pole it is told from.
-    let mut place = system.nearest(place);
-    place.offset = Complex::new(s + system.rate[place.origin], -system.frequency[place.origin]);
-    place
+    let s = Complex::new(s, 0.0);
+    let Place { origin, .. } = system.nearest(system.place(0, s - system.pole(0)));
+    Place { origin, offset: s - system.pole(origin), s }
 }
 
 /// `(s − a)(s − b)` of a pair of poles, and its derivative.
@@ -145,8 +163,8 @@ fn factor(system: &System, place: Place, pair: &Pair) -> (Complex, Complex) {
             let from = system.between(place.origin, pole.origin) + (place.offset - pole.offset);
             (from, Complex::new(from.re, from.im + 2.0 * (system.frequency[pole.origin] + pole.offset.im)))
         }
-        Pair::Creeping(poles) => {
-            let s = system.at(place);
+        Pair::Creeping(poles, _) => {
+            let s = place.s;
             (Complex::new(s.re - poles[0], s.im), Complex::new(s.re - poles[1], s.im))
         }
     };
@@ -157,12 +175,12 @@ fn factor(system: &System, place: Place, pair: &Pair) -> (Complex, Complex) {
 
 /// `N` over the factors of all other pairs, from `H`.
 fn over_others(system: &System, pairs: &[Pair], j: usize, place: Place, h: Complex) -> Complex {
-    let mut product = h;
-    for (k, pair) in pairs.iter().enumerate() {
+    let mut product = h.scale(1.0 / system.leading());
+    for k in 0..system.len() {
         if k != place.origin {
             product = product * system.q(place, k).0;
         }
-        if k != j {
+        if let Some(pair) = pairs.get(k).filter(|_| k != j) {
             product = product * factor(system, place, pair).0.reciprocal();
         }
     }

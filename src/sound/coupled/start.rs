@@ -3,16 +3,17 @@
 use super::complex::Complex;
 use super::system::{Place, System};
 
-/// A guess for each pair of poles. They interlace with the undamped frequencies, so no two are the same.
-pub(super) fn guesses(system: &System) -> Vec<Place> {
+/// A guess for each pair of poles. They interlace with the undamped frequencies, so no two are the same. `ease` makes the
+/// joint softer for the guess.
+pub(super) fn guesses(system: &System, ease: f64) -> Vec<Place> {
     let gaps = system.len().saturating_sub(1);
     let within = (0..gaps).map(|j| {
         let gap = square_gap(system, j + 1, j);
-        guess(system, j, root_in_gap(system, j, gap), gap)
+        guess(system, j, root_in_gap(system, ease, j, gap), gap)
     });
     // A rigid joint takes one degree of freedom away.
     let last = (!system.law.rigid && !system.frequency.is_empty())
-        .then(|| guess(system, gaps, root_above(system), f64::INFINITY));
+        .then(|| guess(system, gaps, root_above(system, ease), f64::INFINITY));
     within.chain(last).collect()
 }
 
@@ -34,9 +35,9 @@ fn compliance(system: &System, square: f64) -> f64 {
 
 /// The root between two neighbouring frequencies, above the lower one, taking all other modes as they are in the middle
 /// (Li 1994, section 3).
-fn root_in_gap(system: &System, j: usize, gap: f64) -> f64 {
+fn root_in_gap(system: &System, ease: f64, j: usize, gap: f64) -> f64 {
     let middle = 0.5 * gap;
-    let mut rest = compliance(system, square(system, j) + middle);
+    let mut rest = ease * compliance(system, square(system, j) + middle);
     for k in (0..j).chain(j + 2..system.len()) {
         rest += system.weight[k] / (square_gap(system, k, j) - middle);
     }
@@ -49,16 +50,17 @@ fn root_in_gap(system: &System, j: usize, gap: f64) -> f64 {
 }
 
 /// The root above all frequencies, from the highest, by bisection.
-fn root_above(system: &System) -> f64 {
+fn root_above(system: &System, ease: f64) -> f64 {
     let top = system.len() - 1;
     let is_below = |above: f64| {
-        let mut sum = compliance(system, square(system, top) + above);
+        let mut sum = ease * compliance(system, square(system, top) + above);
         for k in 0..system.len() {
             sum -= system.weight[k] / (above - square_gap(system, k, top));
         }
         sum < 0.0
     };
-    let (mut low, mut high) = (0.0, system.weight.iter().sum::<f64>() / compliance(system, square(system, top)));
+    let stiffness = 1.0 / (ease * compliance(system, square(system, top)));
+    let (mut low, mut high) = (0.0, system.weight.iter().sum::<f64>() * stiffness);
     while is_below(high) && high < 1e280 {
         (low, high) = (high, 4.0 * high);
     }
@@ -78,7 +80,7 @@ fn guess(system: &System, j: usize, above: f64, gap: f64) -> Place {
     let (origin, shift) = if above <= 0.5 * gap { (j, above) } else { (j + 1, above - gap) };
     let frequency = system.frequency[origin];
     let square = frequency * frequency + shift;
-    let raised = if square > 0.01 * frequency * frequency { square.sqrt() } else { 0.1 * frequency };
+    let rise = if square > 0.01 * frequency * frequency { shift / (square.sqrt() + frequency) } else { -0.9 * frequency };
     // The damping of each mode, weighted by its share in the joint motion, and the joint's own.
     let (mut mass, mut damping) = (0.0, 0.0);
     for k in 0..system.len() {
@@ -93,5 +95,5 @@ fn guess(system: &System, j: usize, above: f64, gap: f64) -> Place {
     let compliance = compliance(system, self::square(system, origin) + shift);
     damping += 0.5 * system.law.damping * compliance * compliance;
     let more = if mass > 0.0 { damping / mass } else { 0.0 };
-    Place { origin, offset: Complex::new(-more, shift / (raised + frequency)) }
+    system.place(origin, Complex::new(-more, rise))
 }

@@ -34,7 +34,10 @@ impl Law {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) origin: usize,
+    /// From the origin's pole.
     pub(super) offset: Complex,
+    /// From zero.
+    pub(super) s: Complex,
 }
 
 /// The modes that act on each other, in the order of their undamped frequencies.
@@ -132,14 +135,19 @@ impl System {
         Complex::new(self.rate[k] - self.rate[j], self.frequency[j] - self.frequency[k])
     }
 
-    /// `s`.
-    pub(super) fn at(&self, place: Place) -> Complex {
-        self.pole(place.origin) + place.offset
+    /// The place that is so far from a pole.
+    pub(super) fn place(&self, origin: usize, offset: Complex) -> Place {
+        Place { origin, offset, s: self.pole(origin) + offset }
     }
 
     /// `s − p_k`.
     fn from(&self, place: Place, k: usize) -> Complex {
         self.between(place.origin, k) + place.offset
+    }
+
+    /// The leading coefficient of `F Π q_k`.
+    pub(super) fn leading(&self) -> f64 {
+        if self.law.rigid { self.weight.iter().sum() } else { 1.0 }
     }
 
     /// The same place, told from the nearest pole.
@@ -150,7 +158,7 @@ impl System {
             let offset = self.from(place, k);
             let distance = offset.norm2();
             if distance < least {
-                (best, least) = (Place { origin: k, offset }, distance);
+                (best, least) = (Place { origin: k, offset, ..place }, distance);
             }
         }
         best
@@ -177,7 +185,7 @@ impl System {
             size += term.re.abs() + term.im.abs();
         }
         let (q, derivative) = self.q(place, place.origin);
-        let (beta, beta_slope) = self.law.beta(self.at(place));
+        let (beta, beta_slope) = self.law.beta(place.s);
         let (alpha, weight) = (self.law.alpha(), self.weight[place.origin]);
         let pull = q * beta;
         let pull_slope = derivative * beta + q.scale(beta_slope);
@@ -206,10 +214,9 @@ impl System {
                 pickup[body] = pickup[body] + inverse.scale(self.pickup[k][body]);
             }
         }
-        let s = self.at(place);
         let twice = if rings { -2.0 } else { -1.0 };
-        let scale = (self.law.beta(s).0 * (q * self.value(place).derivative).reciprocal()).scale(twice);
-        let frequency = if rings { s.im } else { 0.0 };
+        let scale = (self.law.beta(place.s).0 * (q * self.value(place).derivative).reciprocal()).scale(twice);
+        let frequency = if rings { place.s.im } else { 0.0 };
         let pickup = pickup.map(|shape| shape * scale);
         CoupledMode { angular_frequency: frequency, decay_rate: rate, strike, pickup }
     }
