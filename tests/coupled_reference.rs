@@ -111,6 +111,8 @@ fn poles_and_residues_agree_with_scipy() {
         }
     }
     let [(pole, of_pole), (residue, of_residue)] = worst;
-    println!("at worst {pole:.1e} of a pole (case {of_pole}), {residue:.1e} of the largest residue (case {of_residue})");
+    println!(
+        "at worst {pole:.1e} of a pole (case {of_pole}), {residue:.1e} of the largest residue (case {of_residue})"
+    );
     assert!(pole < 1e-12 && residue < 1e-12);
 }

@@ -6,14 +6,19 @@
 //! cost: beating pairs, a long and a short decay, and bodies that damp strings at their own resonances come by themselves.
 //!
 //! Seen as functions of frequency, the joined bodies are those of Woodhouse, "On the synthesis of guitar plucks"
-//! (Acta Acustica united with Acustica 90, 2004), sections 2 and 3; here their poles and residues are found, without
+//! (Acta Acustica united with Acustica 90, 2004); here their poles and residues are found, without
 //! approximating the damping. The joint changes the diagonal system of all free modes by a matrix of rank one, so the
 //! poles are the roots of a secular equation (Golub, "Some modified matrix eigenvalue problems", SIAM Review 15, 1973),
 //! with a complex frequency where Golub has a real one. `system` has the equation, `start` the guesses, `poles` the
 //! iteration, and a mode's shapes are the residues by the formula of Sherman and Morrison (1950).
 //!
-//! All of it is made off the audio thread, and allocates. Additions, multiplications, divisions and square roots in
-//! a fixed order: the bits are the same on every machine. The time grows with the square of the number of modes.
+//! Poles and residues are within 1e−14 of a computation in 50 digits (*`tests/coupled_reference.rs`*), however close two
+//! poles are, for every place is kept as its distance from the nearest free pole (Gu & Eisenstat, "A stable and efficient
+//! algorithm for the rank-one modification of the symmetric eigenproblem", SIAM J. Matrix Anal. Appl. 15, 1994).
+//!
+//! All of it runs off the audio thread, and allocates. It needs additions, multiplications, divisions and square roots
+//! only, in a fixed order: the bits are the same on every machine. The time grows with the square of the number of
+//! modes: about 1.5 ms for 64 + 64, 5 ms for 128 + 128 and 0.1 s for 512 + 512.
 
 mod complex;
 mod mode;
@@ -50,7 +55,9 @@ const RIGID: f64 = 1e40;
 
 /// The modes of two bodies, joined where [`BodyMode::joint`] tells. In the order of their frequencies.
 ///
-/// No mode grows, and none that rings decays more slowly than the slowest of the free ones.
+/// No mode grows, and none that rings decays more slowly than the slowest of the free ones. With `Σ` over all modes, a blow
+/// starts with no displacement (`Σ cosine = 0`) and with the velocity that the free bodies would have. If the damper makes
+/// two poles almost the same, their amplitudes are large and nearly cancel at first.
 ///
 /// # Errors
 ///
@@ -70,11 +77,11 @@ pub fn joined(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<V
     let slowest = system.rate.iter().copied().fold(f64::INFINITY, f64::min);
     for pair in pairs {
         match pair {
-            Pair::Ringing(place) => {
+            Pair::Conjugate(place) => {
                 let rate = system.rate[place.origin] - place.offset.re;
                 modes.push(system.mode(place, true, rate.max(slowest)));
             }
-            Pair::Creeping(found, _) => {
+            Pair::Real(found, _) => {
                 modes.extend(found.map(|s| system.mode(poles::on_axis(&system, s), false, (-s).max(0.0))));
             }
         }
@@ -94,8 +101,11 @@ pub fn apart(first: &[BodyMode], second: &[BodyMode]) -> Result<Vec<CoupledMode>
         let shapes = |shape: f64| on.map(|on| on * shape);
         CoupledMode::free(mode.angular_frequency, mode.decay_rate, shapes(mode.strike), shapes(mode.pickup))
     };
-    let mut modes: Vec<CoupledMode> =
-        first.iter().map(|mode| free(mode, [1.0, 0.0])).chain(second.iter().map(|mode| free(mode, [0.0, 1.0]))).collect();
+    let mut modes: Vec<CoupledMode> = first
+        .iter()
+        .map(|mode| free(mode, [1.0, 0.0]))
+        .chain(second.iter().map(|mode| free(mode, [0.0, 1.0])))
+        .collect();
     sort(&mut modes);
     Ok(modes)
 }
@@ -104,8 +114,8 @@ pub fn apart(first: &[BodyMode], second: &[BodyMode]) -> Result<Vec<CoupledMode>
 /// times the displacement of the first at the joint. In the order of their frequencies.
 ///
 /// A chain of two sets of modes is one set of modes too, by partial fractions. Where the bodies have the same pole, the
-/// two partials differ in sign and nearly cancel at first: then the second body's mode is moved up by a thousandth of
-/// the faster decay rate (0.4 cents at 440 Hz and a T60 of 20 ms), so that amplitudes stay within single precision.
+/// two partials differ in sign and nearly cancel at first: then the second body's mode is moved up by 0.0015 times
+/// the faster decay rate (0.3 cents at 440 Hz and a T60 of 20 ms), so that amplitudes stay within single precision.
 ///
 /// # Errors
 ///

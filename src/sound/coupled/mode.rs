@@ -37,10 +37,7 @@ impl BodyMode {
         }
         for (name, shape) in [("joint", self.joint), ("strike", self.strike), ("pick-up", self.pickup)] {
             if shape.is_nan() || shape.abs() > 1e9 {
-                return Err(Error::value(
-                    "mode shape",
-                    format!("{shape} at the {name} is not between −1e9 and 1e9"),
-                ));
+                return Err(Error::value("mode shape", format!("{shape} at the {name} is not between −1e9 and 1e9")));
             }
         }
         Ok(())
@@ -50,8 +47,8 @@ impl BodyMode {
 /// One mode of two bodies that act on each other: a damped sinusoid, with complex mode shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoupledMode {
-    /// Frequency at which it rings, in radians per second. Zero if it does not ring but creeps back, which only a joint
-    /// with strong damping brings about.
+    /// Frequency at which it rings, in radians per second. Zero for an overdamped motion, a plain exponential, which only
+    /// a joint with strong damping brings about.
     pub angular_frequency: f64,
     /// How fast it decays, in nepers per second: never negative.
     pub decay_rate: f64,

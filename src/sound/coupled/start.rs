@@ -34,7 +34,7 @@ fn compliance(system: &System, square: f64) -> f64 {
 }
 
 /// The root between two neighbouring frequencies, above the lower one, taking all other modes as they are in the middle
-/// (Li 1994, section 3).
+/// (Li, "Solving secular equations stably and efficiently", LAPACK Working Note 89, 1994).
 fn root_in_gap(system: &System, ease: f64, j: usize, gap: f64) -> f64 {
     let middle = 0.5 * gap;
     let mut rest = ease * compliance(system, square(system, j) + middle);
@@ -80,7 +80,8 @@ fn guess(system: &System, j: usize, above: f64, gap: f64) -> Place {
     let (origin, shift) = if above <= 0.5 * gap { (j, above) } else { (j + 1, above - gap) };
     let frequency = system.frequency[origin];
     let square = frequency * frequency + shift;
-    let rise = if square > 0.01 * frequency * frequency { shift / (square.sqrt() + frequency) } else { -0.9 * frequency };
+    let rise =
+        if square > 0.01 * frequency * frequency { shift / (square.sqrt() + frequency) } else { -0.9 * frequency };
     // The damping of each mode, weighted by its share in the joint motion, and the joint's own.
     let (mut mass, mut damping) = (0.0, 0.0);
     for k in 0..system.len() {

@@ -222,8 +222,8 @@ impl System {
     }
 }
 
-/// Turns modes with the same pole among themselves until the joint moves but one of them (Bunch, Nielsen & Sorensen
-/// 1978, section 4).
+/// Rotates modes with the same pole until the joint moves only one of them (Bunch, Nielsen & Sorensen, "Rank-one
+/// modification of the symmetric eigenproblem", Numer. Math. 31, 1978).
 fn deflate(modes: &mut [Loose]) {
     for k in 1..modes.len() {
         let (one, other) = (modes[k - 1], modes[k]);
