@@ -45,12 +45,13 @@ fn pair(case: u64) -> ([Vec<BodyMode>; 2], Joint) {
         (0..size).map(mode).collect::<Vec<_>>()
     });
     let kind = case as usize % 5;
-    for k in 0..bodies[0].len().min(bodies[1].len()) {
+    let [first, second] = &mut bodies;
+    for (first, second) in first.iter().zip(second) {
         if kind != 0 && chance.below(2) == 0 {
             let near = [0.0, 1e-2, 1e-4, 1e-6, 0.0][kind] * chance.real();
-            bodies[1][k].angular_frequency = bodies[0][k].angular_frequency * (1.0 + near);
+            second.angular_frequency = first.angular_frequency * (1.0 + near);
             if kind == 4 {
-                bodies[1][k].decay_rate = bodies[0][k].decay_rate;
+                second.decay_rate = first.decay_rate;
             }
         }
     }
@@ -103,9 +104,9 @@ fn poles_and_residues_agree_with_scipy() {
                 distance(got, &expected) / distance(&expected, &[0.0; 2]),
                 distance(&got[2..], &expected[2..]) / largest,
             ];
-            for k in 0..2 {
-                if off[k] > worst[k].0 {
-                    worst[k] = (off[k], case);
+            for (worst, off) in worst.iter_mut().zip(off) {
+                if off > worst.0 {
+                    *worst = (off, case);
                 }
             }
         }

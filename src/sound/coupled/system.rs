@@ -16,6 +16,11 @@ pub(super) struct Law {
 }
 
 impl Law {
+    /// The joint with both its numbers multiplied.
+    pub(super) fn scaled(self, by: f64) -> Self {
+        Self { stiffness: self.stiffness * by, damping: self.damping * by, ..self }
+    }
+
     fn alpha(&self) -> f64 {
         if self.rigid { 0.0 } else { 1.0 }
     }

@@ -49,13 +49,12 @@ impl Chance {
             1 + (self.bits() % most) as usize
         });
         let mut bodies = [self.body(one, rate), self.body(other, rate)];
-        for k in 0..one.min(other) {
-            let of_the_first = bodies[0][k];
-            let second = &mut bodies[1][k];
+        let [first, second] = &mut bodies;
+        for (of_the_first, second) in first.iter().zip(second) {
             match self.bits() % 8 {
                 0 => second.angular_frequency = of_the_first.angular_frequency * (1.0 + 1e-10 * self.real()),
                 1 => second.angular_frequency = of_the_first.angular_frequency,
-                2 => *second = BodyMode { joint: second.joint, strike: second.strike, ..of_the_first },
+                2 => *second = BodyMode { joint: second.joint, strike: second.strike, ..*of_the_first },
                 3 => second.joint = 0.0,
                 _ => {}
             }
@@ -232,6 +231,16 @@ fn two_equal_oscillators_split_into_sum_and_difference() {
     let root = (1e8_f64 - 9e6).sqrt();
     assert!(overdamped[..2].iter().all(|mode| mode.angular_frequency == 0.0), "{overdamped:?}");
     assert!((rates[0] / (1e4 - root) - 1.0).abs() < 1e-12 && (rates[1] / (1e4 + root) - 1.0).abs() < 1e-12);
+    // Critically damped: the double pole is given as two that nearly cancel, x = t e^(−3000 t) / 2 of the difference.
+    let critical = joined(&[mode], &[mode], Joint::Spring { stiffness: 0.0, damping: 3e3 }).unwrap();
+    let t = 1e-3;
+    let heard = critical.iter().map(|mode| {
+        let Partial { cosine, sine } = mode.displacement([1.0, 0.0], [1.0, 0.0]);
+        let (sin, cos) = libm::sincos(mode.angular_frequency * t);
+        libm::exp(-mode.decay_rate * t) * (cosine * cos + sine * sin)
+    });
+    let expected = 0.5 * t * libm::exp(-3.0) + 0.5 * libm::sin(3.0) / 3000.0;
+    assert!((heard.sum::<f64>() / expected - 1.0).abs() < 1e-5);
 }
 
 #[test]
