@@ -46,10 +46,12 @@ pub(super) fn fused(a: [f32; 4], b: [f32; 4], c: [f32; 4]) -> [f32; 4] {
 /// Whether a sum may be a midpoint.
 #[inline(always)]
 fn may_be_midpoint(sum: f64) -> bool {
-    let bits = sum.to_bits();
-    // Zero becomes the largest of all.
-    let magnitude_less_one = (bits << 1).wrapping_sub(1);
-    (bits & LOST == HALF) | (magnitude_less_one < (LEAST_NORMAL << 1) - 1)
+    // Halves of 32 bits, which every CPU compares.
+    let (low, high) = (sum.to_bits() as u32, (sum.to_bits() >> 32) as u32);
+    let shift = LOST.count_ones();
+    let (half, magnitude) = (low << (32 - shift), high << 1);
+    // Less one, zero is the greatest of all.
+    (half == (HALF as u32) << (32 - shift)) | (magnitude.wrapping_sub(1) < ((LEAST_NORMAL >> 32) as u32 * 2) - 1)
 }
 
 /// `a · b + c` rounded once, number by number, whatever the sums are.
