@@ -71,7 +71,7 @@ fn rounded_to_odd(a: f32, b: f32, c: f32) -> f64 {
     let part = sum - product;
     let error = (product - (sum - part)) + (c - part);
     let bits = sum.to_bits();
-    let inexact = error > 0.0 || error < 0.0;
+    let inexact = error.abs() > 0.0;
     let away_from_zero = (error > 0.0) == (sum > 0.0);
     let odd = match (inexact && bits & 1 == 0, away_from_zero) {
         (false, _) => bits,
@@ -179,7 +179,7 @@ mod tests {
             let half = c.map(|c| 0.5 * (f64::from(c.abs()) - f64::from(c.abs().next_down())));
             let root = half.map(|half| libm::exp2((libm::log2(half) * 0.5).floor()));
             // Products of 1, 1 + 2⁻³³ and 1 − 2⁻³³.
-            let (small, smaller) = (2.0_f32.powi(-11), 2.0_f32.powi(-22));
+            let (small, smaller) = (libm::exp2f(-11.0), libm::exp2f(-22.0));
             for (a, b) in [(1.0, 1.0), (1.0 + small, 1.0 - small + smaller), (1.0 - small, 1.0 + small + smaller)] {
                 let a = root.map(|root| root as f32 * a);
                 check(a, std::array::from_fn(|l| (half[l] / root[l]) as f32 * b), c);
@@ -201,8 +201,8 @@ mod tests {
     fn sums_of_extremes_round_once() {
         let least = f32::from_bits(1);
         let positive =
-            [0.0, least, f32::MIN_POSITIVE, 1.0, 2.0_f32.powi(-75), 2.0_f32.powi(-63), 2.0_f32.powi(64), 4_097.0];
-        let large = [f32::MAX, 2.0_f32.powi(127), 2.0_f32.powi(103), 2.0_f32.powi(-24), f32::INFINITY, f32::NAN];
+            [0.0, least, f32::MIN_POSITIVE, 1.0, libm::exp2f(-75.0), libm::exp2f(-63.0), libm::exp2f(64.0), 4_097.0];
+        let large = [f32::MAX, libm::exp2f(127.0), libm::exp2f(103.0), libm::exp2f(-24.0), f32::INFINITY, f32::NAN];
         let near = |number: f32| [number, number.next_up(), number.next_down()];
         let all: Vec<f32> =
             positive.into_iter().chain(large).flat_map(near).flat_map(|number| [number, -number]).collect();
