@@ -1,6 +1,6 @@
 //! The TOML of a preset file, read key by key so that every error names its place and what would be right.
 
-use super::routes;
+use super::{body, routes};
 use super::value::{check_keys, param_value, unexpected};
 use super::{FORMAT_VERSION, Preset};
 use crate::error::Error;
@@ -11,7 +11,7 @@ use std::fmt::Write;
 use toml::{Table, Value};
 use toml_writer::{ToTomlValue, TomlStringBuilder};
 
-const KEYS: [&str; 8] = ["format", "name", "author", "tags", "comment", "modes", "routes", "params"];
+const KEYS: [&str; 9] = ["format", "name", "author", "tags", "comment", "modes", "body", "routes", "params"];
 
 /// Longest name, author or tag, in characters: what a list can still show.
 const MAX_LABEL: usize = 100;
@@ -58,6 +58,7 @@ fn read(table: &Table) -> Result<Preset, String> {
         None => {}
     }
     patch.modes = ModeTable::new(&read_modes(table.get("modes"))?);
+    body::read(table, &mut patch)?;
     routes::read(table, &mut patch)?;
     Ok(Preset { name, author: label(table, "author")?, tags: tags(table)?, comment: text(table, "comment")?, patch })
 }
@@ -154,7 +155,7 @@ pub(super) fn to_toml(preset: &Preset) -> String {
         let _ = writeln!(out, "{key} = {value}");
     }
     let modes = preset.patch.modes.as_slice();
-    if modes != [Mode::UNIT] {
+    if modes != [Mode::UNIT] && preset.patch.modes.origin().is_none() {
         out.push_str("modes = [\n");
         for mode in modes {
             let _ = writeln!(out, "    {{ {} }},", mode_fields(mode));
@@ -162,10 +163,12 @@ pub(super) fn to_toml(preset: &Preset) -> String {
         out.push_str("]\n");
     }
     out.push_str(&routes::to_toml(&preset.patch));
+    out.push_str(&body::to_toml(&preset.patch));
     out.push_str("\n[params]\n");
     for info in PARAMS {
         let value = preset.patch.get(info.param);
-        if value != info.default && !routes::writes(&preset.patch, info.param) {
+        let is_news = value != info.default || body::writes(&preset.patch, info.param);
+        if is_news && !routes::writes(&preset.patch, info.param) {
             let _ = match info.unit {
                 Unit::Choice => writeln!(out, "{} = \"{}\"", info.id, info.choices[value as usize]),
                 Unit::Count => writeln!(out, "{} = {value}", info.id),

@@ -1,5 +1,6 @@
 //! Presets: a patch with its name, author, tags and comment, as a TOML file or built in.
 
+mod body;
 mod factory;
 mod file;
 mod load;
@@ -8,6 +9,7 @@ mod value;
 
 use crate::patch::Patch;
 
+pub use body::{body_of_modes, modes_of_body};
 pub use load::MAX_FILE_SIZE;
 
 /// The preset format that this version writes. It reads those before as well: 1 had no routes.

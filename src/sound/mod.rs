@@ -1,5 +1,6 @@
 //! What notes are made from: sounds, kits that put sounds on keys, and how the keys are tuned.
 
+pub mod bodies;
 pub mod kit;
 pub mod tuning;
 

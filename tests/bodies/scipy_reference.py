@@ -247,7 +247,8 @@ def bowl(s):
 
 
 bowls = [bowl(s) for s in range(2, 14)]
-case("bowl", {}, "bronze", [(omega / bowls[0][0], shape, 0) for omega, shape, _ in bowls], tolerance=1e-5)
+AT = {"strike": STRUCK, "pickup": HEARD}
+case("bowl", AT, "bronze", [(omega / bowls[0][0], shape, 0) for omega, shape, _ in bowls], tolerance=1e-5)
 
 SLENDER = 1.7
 glass = []
@@ -257,7 +258,7 @@ for n in range(2, 30):
         # The wall moves out, and round by 1/n of that.
         glass.append((omega, 2 / (1 + 1 / n**2) * product(tine_shape(b)) * turned(n), 0))
 glass = sorted(glass)[:20]
-case("glass", {"slenderness": SLENDER}, "glass", [(omega / glass[0][0], shape, 0) for omega, shape, _ in glass])
+case("glass", {"slenderness": SLENDER, **AT}, "glass", [(omega / glass[0][0], shape, 0) for omega, shape, _ in glass])
 
 # Tubes
 case("open_tube", {}, "air", [(n, 2 * half_waves(n), 0) for n in range(1, 10)])

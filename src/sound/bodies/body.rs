@@ -103,16 +103,23 @@ impl Body {
     /// A body of this model with its own material, at C4, struck and heard where most modes sound. Allocates nothing.
     pub fn new(model: Model) -> Self {
         let material = *model.material();
-        // A plate's `y` runs along its other side, where an edge may be a node; a round body's says how far round it is.
-        let (struck, heard) = if matches!(model, Model::Plate { .. }) { (0.4, 0.45) } else { (0.0, 0.05) };
+        let [strike, pickup, joint] = match model {
+            // Along both sides, and not at an edge, which may be a node.
+            Model::Plate { .. } => [(0.7, 0.4), (0.9, 0.45), (0.95, 0.4)],
+            // At the rim, where high modes are.
+            Model::Bowl | Model::Glass { .. } => [(0.98, 0.0), (0.98, 0.05), (0.98, 0.0)],
+            // Not at the end of a string, which is still.
+            _ => [(0.7, 0.0), (0.9, 0.05), (0.95, 0.0)],
+        };
+        let point = |(x, y)| Point { x, y };
         Self {
             model,
             pitch: Pitch::Frequency(DEFAULT_FREQUENCY),
             material,
             damping: 1.0,
-            strike: Point { x: 0.7, y: struck },
-            pickup: Point { x: 0.9, y: heard },
-            joint: Point { x: 0.95, y: struck },
+            strike: point(strike),
+            pickup: point(pickup),
+            joint: point(joint),
             inharmonicity: 0.0,
             split: 0.0,
             spread: 0.0,
@@ -134,6 +141,14 @@ impl Body {
         Some(body)
     }
 
+    /// Its size, if its frequency follows from that.
+    pub fn size(&self) -> Option<Size> {
+        match self.pitch {
+            Pitch::Size(size) => Some(size),
+            Pitch::Frequency(_) => None,
+        }
+    }
+
     /// Its frequency in Hz.
     pub fn frequency(&self) -> f64 {
         let frequency = match &self.pitch {
@@ -152,8 +167,8 @@ impl Body {
         let body = fields::in_range(self);
         let frequency = body.frequency();
         let mut stiffness = body.inharmonicity;
-        if let Pitch::Size(size) = &body.pitch {
-            stiffness = (stiffness + body.model.inharmonicity(size, &body.material)).min(1.0);
+        if let Some(size) = body.size() {
+            stiffness = (stiffness + body.model.inharmonicity(&size, &body.material)).min(1.0);
         }
         let mut modes = Vec::with_capacity(2 * body.modes);
         let partials = body.model.partials(frequency, &body.material, body.seed, body.modes);

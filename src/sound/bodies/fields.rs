@@ -43,8 +43,8 @@ macro_rules! field {
     };
     // One of a size.
     ($name:literal, $unit:literal, $min:literal, $max:literal, size $place:ident) => {
-        field!($name, $unit, $min, $max, |body| size(body).map(|size| size.$place), |body, value| {
-            let size = size(body).unwrap_or(Size::DEFAULT);
+        field!($name, $unit, $min, $max, |body| body.size().map(|size| size.$place), |body, value| {
+            let size = body.size().unwrap_or(Size::DEFAULT);
             body.pitch = Pitch::Size(Size { $place: value, ..size });
         })
     };
@@ -68,13 +68,6 @@ macro_rules! field {
     };
 }
 
-fn size(body: &Body) -> Option<Size> {
-    match body.pitch {
-        Pitch::Size(size) => Some(size),
-        Pitch::Frequency(_) => None,
-    }
-}
-
 pub(super) const FREQUENCY: Field = field!(
     "frequency",
     "Hz",
@@ -92,7 +85,7 @@ pub const FIELDS: &[Field] = &[
     FREQUENCY,
     field!("length", "m", 0.001, 100.0, size length),
     field!("thickness", "m", 0.000_001, 1.0, size thickness),
-    field!("tension", "", 0.001, 1e6, size tension),
+    field!("tension", "N", 0.001, 1e6, size tension),
     field!("material_density", "kg/m³", 1.0, 30_000.0, material.density),
     field!("young", "Pa", 1e4, 1e12, material.young),
     field!("poisson", "", 0.0, 0.49, material.poisson),

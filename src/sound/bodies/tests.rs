@@ -50,7 +50,7 @@ fn check(body: &Body) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 192, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 96, ..ProptestConfig::default() })]
     #[test]
     fn any_numbers_make_a_body_that_can_be_played(body in bodies()) {
         check(&body)?;
