@@ -2,7 +2,6 @@
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use sprung::io::Song;
-use sprung::patch::Patch;
 use sprung::preset::Preset;
 use sprung::render::{Job, Options, Tail, on_threads};
 use sprung::sound::Tuning;
@@ -11,9 +10,10 @@ use std::time::Duration;
 fn render(criterion: &mut Criterion) {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/midi/suite.mid");
     let song = Song::read(std::fs::File::open(file).unwrap(), file).unwrap();
-    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch.clone()).collect();
+    let programs: Vec<_> = Preset::factory().iter().map(Preset::kit).collect();
     let options = Options { sample_rate: 48_000, seed: 0, block: 4096, tail: Tail::None };
-    let job = Job { song: &song, patch: &programs[0], programs: &programs, tuning: &Tuning::EQUAL, options };
+    let job =
+        Job { song: &song, kit: &programs[0], channels: &[], programs: &programs, tuning: &Tuning::EQUAL, options };
     let mut group = criterion.benchmark_group("suite.mid");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(job.song_frames()));
     for threads in [1, 2] {

@@ -5,7 +5,7 @@ use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::render::{Delivery, Job, Level, Options, Tail, to_wav};
-use sprung::sound::Tuning;
+use sprung::sound::{Kit, Tuning};
 use sprung::units::key_from_frequency;
 use std::path::Path;
 
@@ -22,7 +22,8 @@ fn measure(folder: &Path, sample_rate: u32, frequency: f64, t60: f64) -> Option<
     let patch = Patch::default().with(Param::Decay, t60 as f32);
     let song = Song::chord(&[key_from_frequency(frequency, 440.0)], 1.0, t60.min(LONGEST));
     let options = Options { sample_rate, seed: 0, block: 4096, tail: Tail::None };
-    let job = Job { song: &song, patch: &patch, programs: &[], tuning: &Tuning::EQUAL, options };
+    let job =
+        Job { song: &song, kit: &Kit::of_patch(&patch), channels: &[], programs: &[], tuning: &Tuning::EQUAL, options };
     let delivery = Delivery { samples: SampleFormat::Float32, dither: false, mono: true, level: Level::Gain(0.0) };
     let path = folder.join("note.wav");
     let mut output = Output::create(&Target::new(&path), true, &Inputs::default()).unwrap();

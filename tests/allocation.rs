@@ -5,7 +5,8 @@ use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
 use sprung::params::PARAMS;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::render::Meter;
-use sprung::sound::Tuning;
+use sprung::sound::{Kit, Pad, Shelf, Sound, Tuning};
+use std::sync::Arc;
 
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
@@ -85,4 +86,53 @@ fn measuring_keeps_nothing_that_grows() {
 fn the_ban_bites() {
     assert_no_alloc(|| drop(std::hint::black_box(vec![0_u8; 10])));
     assert_ne!(violation_count(), 0);
+}
+
+/// A thousand kits a second of audio, each made while it plays and thrown away when another has taken its place.
+#[test]
+fn kits_come_and_go_without_allocating_or_freeing() {
+    let shelf = Shelf::default();
+    let sounds: Vec<Arc<Sound>> = (1..=128).map(|n| Arc::new(Sound::new(modes(n % 64)))).collect();
+    let pads = |sounds: usize| (0..128).map(|key| Some(Pad::of(key % sounds))).collect();
+    let kit = |n: usize| {
+        let sounds = match n % 4 {
+            0 => vec![Arc::new(Sound::new(modes(n % 64)))],
+            1 => sounds.clone(),
+            _ => sounds[..n % 7 + 1].to_vec(),
+        };
+        Arc::new(Kit::new(String::new(), sounds.clone(), pads(sounds.len())))
+    };
+    let mut ensemble = Ensemble::of_kits(48_000.0, 1, &kit(0), (0..4).map(kit).collect());
+    ensemble.reserve(128);
+    let (mut left, mut right) = ([0.0; 48], [0.0; 48]);
+    let (mut most, mut loudest) = (0, 0.0_f32);
+    for n in 0..1000_u32 {
+        let kit = kit(n as usize);
+        shelf.keep(&kit);
+        most = shelf.collect().max(most);
+        let sent = [kit];
+        let channel = (n % 16) as u8;
+        let strike = EventKind::NoteOn { key: (20 + n * 7 % 90) as u8, detune: 0.0, velocity: 0.8, id: -1 };
+        let events = [
+            Event { frame: 3, channel, kind: strike },
+            Event { frame: 20, channel: (n / 3 % 16) as u8, kind: EventKind::Program((n % 4) as u8) },
+        ];
+        let [kit] = &sent;
+        assert_no_alloc(|| {
+            ensemble.set_kit(channel, kit);
+            ensemble.process(&events, &mut left, &mut right);
+        });
+        loudest = left.iter().fold(loudest, |peak, sample| peak.max(sample.abs()));
+    }
+    assert!(loudest > 0.1, "something sounded");
+    assert!(most <= 18, "{most} kits are kept for 16 channels");
+    drop(ensemble);
+    assert_eq!(shelf.collect(), 0);
+    assert_eq!(violation_count(), 0, "allocations on the audio thread");
+}
+
+fn modes(count: usize) -> Patch {
+    let mut patch = Patch::default();
+    patch.modes = ModeTable::new(&vec![Mode { level: 0.1, ..Mode::UNIT }; count + 1]);
+    patch
 }

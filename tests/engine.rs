@@ -97,7 +97,7 @@ fn reset_and_prepare_bring_back_the_beginning() {
     synth.prepare(48_000.0);
     run(&mut synth, &mut again);
     assert_eq!(first, again);
-    assert_eq!(synth.patch(), &patch);
+    assert_eq!(synth.values(), &patch.values);
 }
 
 #[test]

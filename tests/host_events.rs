@@ -170,7 +170,7 @@ fn a_note_with_an_offset_of_its_own_heeds_no_other() {
     }
     let mut synth = synth(&sine());
     synth.handle(&modulate(0, None, Param::Gain, -0.5));
-    assert_eq!(synth.patch(), &sine(), "what is modulated is not the patch");
+    assert_eq!(synth.values(), &sine().values, "what is modulated is not the patch");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
 use sprung::render::{Job, Options, Tail};
-use sprung::sound::Tuning;
+use sprung::sound::{Kit, Tuning};
 use sprung::units::{db_from_gain, gain_from_db};
 use std::f64::consts::TAU;
 
@@ -209,8 +209,17 @@ fn a_rendered_chord_stays_below_full_scale_and_tells_how_much_was_lowered() {
     let song = Song::chord(&[60.0, 64.0, 67.0, 72.0], 1.0, 0.5);
     let render = |patch: &Patch| {
         let options = Options { sample_rate: 48_000, seed: 0, block: 512, tail: Tail::None };
-        let (mut sound, job) =
-            ([vec![], vec![]], Job { song: &song, patch, programs: &[], tuning: &Tuning::EQUAL, options });
+        let (mut sound, job) = (
+            [vec![], vec![]],
+            Job {
+                song: &song,
+                kit: &Kit::of_patch(patch),
+                channels: &[],
+                programs: &[],
+                tuning: &Tuning::EQUAL,
+                options,
+            },
+        );
         let rendered = job.render(|left, right| {
             sound[0].extend(left);
             sound[1].extend(right);

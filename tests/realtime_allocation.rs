@@ -6,7 +6,7 @@ use sprung::io::{Inputs, Output, Song, Target};
 use sprung::patch::Patch;
 use sprung::realtime::convert::DeviceSample;
 use sprung::realtime::{LiveInputs, Moment, Player, Recording, Setup, Status};
-use sprung::sound::Tuning;
+use sprung::sound::{Kit, Tuning};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -21,16 +21,17 @@ fn play<T: DeviceSample>(frames: usize, channels: usize) {
     let ([mut keys], inputs) = LiveInputs::new();
     let status = Arc::new(Status::default());
     let song = Song::chord(&[40.0, 50.5, 60.0, 70.0], 1.0, 0.2);
-    let patch = Patch::default();
+    let kit = Kit::of_patch(&Patch::default());
     let setup = Setup {
         sample_rate: 48_000,
         seed: 0,
-        patch: &patch,
-        programs: &[patch.clone(), patch.clone(), patch.clone()],
+        kit: &kit,
+        channels: &[],
+        programs: &[kit.clone(), kit.clone(), kit.clone()],
         tuning: &Tuning::EQUAL,
         song: Some(song),
     };
-    let (mut player, mut patches) = Player::new(setup, inputs, Some(tap), status.clone());
+    let (mut player, mut kits) = Player::new(setup, inputs, Some(tap), status.clone());
     let start = Instant::now();
     let mut out = vec![T::SILENCE; frames * channels];
     let mut blocks_with_sound = 0;
@@ -41,7 +42,7 @@ fn play<T: DeviceSample>(frames: usize, channels: usize) {
             keys.send_now(n, EventKind::Program(n % 4));
             keys.send_now(n, EventKind::PitchBend(0.1));
         }
-        patches.send((block % 16) as u8, &patch);
+        kits.send((block % 16) as u8, &Kit::of_patch(&Patch::default()));
         let _ = (status.telemetry().snapshot(), status.telemetry().load());
         let since = Duration::from_secs_f64(f64::from(block) * frames as f64 / 48_000.0);
         let moment = Moment { now: start + since, called: since, heard: since };

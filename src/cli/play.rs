@@ -6,10 +6,8 @@ use super::terminal::{complain, complain_lines, print};
 use super::{completion, interrupt, quantity};
 use sprung::engine::telemetry::Load;
 use sprung::io::{Inputs, Output, Target};
-use sprung::patch::Patch;
-use sprung::preset::Preset;
 use sprung::realtime::{
-    Choice, Found, JackMidi, LiveInputs, LiveSender, MidiPorts, PatchSender, Player, Recording, Session, Setup, Status,
+    Choice, Found, JackMidi, KitSender, LiveInputs, LiveSender, MidiPorts, Player, Recording, Session, Setup, Status,
     Wanted, device, midi_ports, view,
 };
 use sprung::render::BLOCKS;
@@ -78,12 +76,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let record = args.record.as_ref().map(Target::new);
     record.as_ref().map_or(Ok(()), Target::check_wav)?;
     let mut inputs = Inputs::default();
-    let Sounds { preset, programs, tuning } = args.sound.load(&mut inputs)?;
-    let Preset { name, patch, .. } = preset;
+    let sounds = args.sound.load(&mut inputs)?;
     let song = args.song.as_deref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
     if let Some(song) = &song {
-        args.reading.warn_of_programs(song, args.sound.asked_for(&patch), &programs);
-        args.sound.tuning.warn_of_unmapped(song, &tuning);
+        args.reading.warn_of_programs(song, args.sound.asked_for(&sounds), &sounds.programs);
+        args.sound.tuning.warn_of_unmapped(song, &sounds.tuning);
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;
@@ -100,10 +97,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let status = Arc::new(Status::default());
     let ([keys, midi, closing], inputs) = LiveInputs::new();
     let has_song = song.is_some();
-    let heard = args.reading.programs(&programs);
+    let Sounds { kit, channels, programs, tuning } = &sounds;
+    let programs = args.reading.programs(programs);
     let (sample_rate, seed) = (found.sample_rate(), args.sound.seed);
-    let setup = Setup { sample_rate, seed, patch: &patch, programs: heard, tuning: &tuning, song };
-    let (player, patches) = Player::new(setup, inputs, tap, status.clone());
+    let setup = Setup { sample_rate, seed, kit, channels, programs, tuning, song };
+    let (player, kits) = Player::new(setup, inputs, tap, status.clone());
     let session = match Session::start(&found, choice, player, status.clone()) {
         Ok(session) => session,
         Err(error) => {
@@ -120,7 +118,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         status,
         has_song,
     };
-    if headless { stage.headless(closing) } else { stage.on_terminal(keys, patches, closing, name, patch, programs) }
+    if headless { stage.headless(closing) } else { stage.on_terminal(keys, kits, closing, sounds) }
 }
 
 fn list() -> Result<()> {
@@ -205,17 +203,10 @@ impl Stage {
         self.finish(closing)
     }
 
-    fn on_terminal(
-        mut self,
-        keys: LiveSender,
-        patches: PatchSender,
-        closing: LiveSender,
-        name: String,
-        patch: Patch,
-        programs: Vec<Patch>,
-    ) -> Result<()> {
+    fn on_terminal(mut self, keys: LiveSender, kits: KitSender, closing: LiveSender, sounds: Sounds) -> Result<()> {
         let (device, status) = (self.session.description().to_owned(), self.status.clone());
-        let desk = view::Desk { device, status, keys, patches, name, patch, programs };
+        let Sounds { kit, channels, programs, .. } = sounds;
+        let desk = view::Desk { device, status, keys, kits, kit, channels, programs };
         let news = view::run(desk, || interrupt::check().is_err(), || self.poll());
         let ended = self.finish(closing);
         news.and(ended)

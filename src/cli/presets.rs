@@ -1,11 +1,11 @@
-//! `sprung presets`: the factory's, and checks of one's own.
+//! `sprung presets`: the factory's, and checks of one's own, kits among them.
 
 use super::completion;
 use super::terminal::{complain, print};
 use clap::Subcommand;
 use clap_complete::ArgValueCompleter;
 use sprung::io::Inputs;
-use sprung::preset::Preset;
+use sprung::preset::{Playable, Preset, is_file_name};
 use sprung::text::printable;
 use sprung::{Error, Result};
 use std::ffi::{OsStr, OsString};
@@ -31,13 +31,13 @@ enum Action {
     List,
     /// Print a preset's file, to start one's own from
     Show {
-        /// Name of a factory preset, or a file ending in .toml
+        /// Name of a factory preset, or a preset or kit file ending in .toml
         #[arg(add = ArgValueCompleter::new(completion::presets))]
         name: OsString,
     },
-    /// Check preset files and report what is wrong with each
+    /// Check preset and kit files and report what is wrong with each
     Check {
-        /// Preset files
+        /// Preset and kit files
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
@@ -48,27 +48,26 @@ pub(super) fn run(args: &Args) -> Result<()> {
         Action::List => print(&list(Preset::factory())),
         Action::Show { name } => {
             let mut inputs = Inputs::default();
-            let preset = load(name, &mut inputs)?;
+            let playable = load(name, &mut inputs)?;
             inputs.check_stdout()?;
-            print(&preset.to_toml())
+            print(&playable.to_toml())
         }
         Action::Check { files } => check(files),
     }
 }
 
-/// The preset that a user names: a file if it looks like one, else the factory's.
-pub(super) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Preset> {
+/// The preset or kit that a user names: a file if it looks like one, else the factory's.
+pub(super) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
     let path = Path::new(name);
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) || path.components().count() > 1
-    {
+    if is_file_name(path) {
         read(path, inputs)
     } else {
-        Preset::find(&name.to_string_lossy()).cloned()
+        Preset::find(&name.to_string_lossy()).cloned().map(Playable::Preset)
     }
 }
 
-fn read(path: &Path, inputs: &mut Inputs) -> Result<Preset> {
-    Preset::read(inputs.open(path)?, &path.display().to_string())
+fn read(path: &Path, inputs: &mut Inputs) -> Result<Playable> {
+    Playable::read(path, &mut |path| inputs.open(path))
 }
 
 fn list(presets: &[Preset]) -> String {
@@ -89,8 +88,8 @@ fn check(files: &[PathBuf]) -> Result<()> {
         let read = read(path, &mut inputs);
         inputs.check_stdout()?;
         match read {
-            Ok(preset) => {
-                let line = format!("{}: ‘{}’ is in order", path.display(), preset.name);
+            Ok(playable) => {
+                let line = format!("{}: ‘{}’ is in order", path.display(), playable.name());
                 print(&format!("{}\n", printable(&line)))?;
             }
             Err(error) => {

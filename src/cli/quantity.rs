@@ -113,6 +113,14 @@ pub(super) fn note(text: &str) -> Result<String, String> {
     sprung::units::parse_key(text, f64::from(Param::Tuning.info().default)).map(|_| text.to_owned())
 }
 
+/// `channel=name`: a channel from 1 to 16, given from 0, and a preset or kit.
+pub(super) fn channel(text: &str) -> Result<(u8, String), String> {
+    let expected = "expected CHANNEL=NAME, as in 10=drums.toml";
+    let (channel, name) = text.split_once('=').filter(|(_, name)| !name.trim().is_empty()).ok_or(expected)?;
+    let number: u8 = whole(1..=16)(channel).map_err(|message| format!("channel {message}"))?;
+    Ok((number - 1, name.to_owned()))
+}
+
 /// `id=value`, the value as the parameter table reads it.
 pub(super) fn setting(text: &str) -> Result<(Param, f32), String> {
     let (id, value) = text.split_once('=').ok_or("expected ID=VALUE, as in decay=0.5")?;
@@ -164,6 +172,7 @@ mod tests {
         assert_eq!(level("lufs=-14 LUFS"), Ok(Level::Loudness(-14.0)));
         assert_eq!(setting("exciter=pluck"), Ok((Param::Exciter, 2.0)));
         assert_eq!(setting("decay = 250 ms"), Ok((Param::Decay, 0.25)));
+        assert_eq!(channel("10=a=b.toml"), Ok((9, "a=b.toml".to_owned())));
     }
 
     #[test]
@@ -197,6 +206,11 @@ mod tests {
             (setting("decay=2s,gain=-3").err(), "expected one parameter, as in --set decay=2s --set gain=-3"),
             (setting("brightness=3").err(), "there is no parameter ‘brightness’; the nearest is ‘tilt’"),
             (setting("gain").err(), "expected ID=VALUE, as in decay=0.5"),
+            (channel("drums.toml").err(), "expected CHANNEL=NAME, as in 10=drums.toml"),
+            (channel("10=").err(), "expected CHANNEL=NAME, as in 10=drums.toml"),
+            (channel("0=Kick").err(), "channel 0 is out of range: expected 1 to 16"),
+            (channel("17=Kick").err(), "channel 17 is out of range: expected 1 to 16"),
+            (channel("x=Kick").err(), "channel ‘x’ is not a whole number: expected 1 to 16"),
             (setting("deacy=1").err(), "there is no parameter ‘deacy’; the nearest is ‘decay’"),
             (setting("gain=99").err(), "gain: 99 is out of range: expected from -60 dB to 12 dB"),
         ]

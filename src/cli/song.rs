@@ -1,12 +1,13 @@
-//! The song that a command plays, and what its program changes mean for `--preset`.
+//! The song that a command plays, and what its program changes mean for `--preset` and `--channel`.
 
 use super::terminal::complain;
 use sprung::Result;
 use sprung::engine::EventKind;
 use sprung::io::{Inputs, Song};
-use sprung::patch::Patch;
+use sprung::sound::Kit;
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Repairs that are told one by one.
 const MOST_REPAIRS: usize = 10;
@@ -17,7 +18,7 @@ pub(super) struct SongArgs {
     /// Repair a MIDI file that strays from the standard, and say how
     #[arg(long, requires = "song")]
     lenient: bool,
-    /// Leave program changes out: everything plays on --preset
+    /// Leave program changes out: everything plays on --preset and --channel
     #[arg(long)]
     ignore_programs: bool,
 }
@@ -46,33 +47,34 @@ impl SongArgs {
     }
 
     /// The sounds that program changes choose from.
-    pub(super) fn programs<'a>(&self, programs: &'a [Patch]) -> &'a [Patch] {
+    pub(super) fn programs<'a>(&self, programs: &'a [Arc<Kit>]) -> &'a [Arc<Kit>] {
         if self.ignore_programs { &[] } else { programs }
     }
 
-    /// Warns of program changes that choose nothing, and, if `preset` was asked for, of notes that do not play on it.
-    pub(super) fn warn_of_programs(&self, song: &Song, preset: Option<&Patch>, programs: &[Patch]) {
+    /// Warns of program changes that choose nothing, and of notes that do not play on what their channels were `asked` to.
+    pub(super) fn warn_of_programs(&self, song: &Song, asked: [Option<&Arc<Kit>>; 16], programs: &[Arc<Kit>]) {
         if self.ignore_programs {
             return;
         }
         warn_of_missing_programs(song, programs.len());
-        let Some(preset) = preset else { return };
-        let Elsewhere { channels, notes, all } = Elsewhere::count(song, preset, programs);
+        let Elsewhere { channels, notes, all } = Elsewhere::count(song, asked, programs);
         if notes > 0 {
             let (them, one) = (channels.len(), channels.len() == 1);
+            let all_alike = asked.iter().all(|kit| *kit == asked[0]);
+            let given = if all_alike { "--preset" } else { "--preset or --channel" };
+            let s = if one { "" } else { "s" };
             complain(
                 "warning",
                 format_args!(
-                    "{notes} of {all} notes, on {them} channel{}, do not play on --preset because of program changes; \
-                     --ignore-programs plays them on it",
-                    if one { "" } else { "s" }
+                    "{notes} of {all} notes, on {them} channel{s}, do not play on {given} because of program changes; \
+                     --ignore-programs plays them on it"
                 ),
             );
         }
     }
 }
 
-/// Notes that do not play on the preset that was asked for.
+/// Notes that do not play on what their channels were asked to.
 #[derive(Debug, Default, PartialEq)]
 struct Elsewhere {
     channels: BTreeSet<u8>,
@@ -82,13 +84,14 @@ struct Elsewhere {
 }
 
 impl Elsewhere {
-    fn count(song: &Song, preset: &Patch, programs: &[Patch]) -> Self {
+    fn count(song: &Song, asked: [Option<&Arc<Kit>>; 16], programs: &[Arc<Kit>]) -> Self {
         let mut count = Self::default();
         let mut changed = BTreeSet::new();
         for event in &song.events {
+            let asked = asked.get(usize::from(event.channel)).copied().flatten();
             match event.kind {
                 EventKind::Program(number) => match programs.get(usize::from(number)) {
-                    Some(patch) if patch != preset => drop(changed.insert(event.channel)),
+                    Some(kit) if asked.is_some_and(|asked| asked != kit) => drop(changed.insert(event.channel)),
                     Some(_) => drop(changed.remove(&event.channel)),
                     None => {}
                 },
@@ -132,10 +135,11 @@ mod tests {
     use super::*;
     use sprung::io::SongEvent;
     use sprung::params::Param;
+    use sprung::patch::Patch;
 
     #[test]
     fn notes_are_counted_from_the_program_change_on_that_leaves_the_preset() {
-        let (preset, other) = (Patch::default(), Patch::default().with(Param::Gain, -3.0));
+        let [preset, other] = [0.0, -3.0].map(|gain| Kit::of_patch(&Patch::default().with(Param::Gain, gain)));
         let note = EventKind::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: -1 };
         let program = EventKind::Program;
         let events = [
@@ -159,8 +163,13 @@ mod tests {
                 .collect(),
             seconds: 0.0,
         };
-        let count = Elsewhere::count(&song(&events), &preset, &[preset.clone(), other]);
+        let mut asked = [Some(&preset); 16];
+        let programs = [preset.clone(), other.clone()];
+        let count = Elsewhere::count(&song(&events), asked, &programs);
         assert_eq!(count, Elsewhere { channels: [1, 4].into(), notes: 4, all: 7 });
-        assert_eq!(Elsewhere::count(&song(&events), &preset, &[]), Elsewhere { all: 7, ..Elsewhere::default() });
+        assert_eq!(Elsewhere::count(&song(&events), asked, &[]), Elsewhere { all: 7, ..Elsewhere::default() });
+        asked[1] = None;
+        asked[4] = Some(&other);
+        assert_eq!(Elsewhere::count(&song(&events), asked, &programs), Elsewhere { all: 7, ..Elsewhere::default() });
     }
 }

@@ -4,8 +4,7 @@ use super::gain::pan_gains;
 use super::modulation::{Bus, NoteModulation, Settings, rate_at};
 use crate::dsp::power_of_two;
 use crate::dsp::ramp::Ramp;
-use crate::params::{PARAM_COUNT, PARAMS, Param};
-use crate::patch::Patch;
+use crate::params::{PARAM_COUNT, PARAMS, Param, Values};
 use crate::units::gain_from_db;
 
 /// Every parameter on its way to the value it was last given. Real-time safe.
@@ -23,10 +22,10 @@ pub(crate) struct Smoother {
 }
 
 impl Smoother {
-    /// All at rest at the values of `patch`.
-    pub(crate) fn new(sample_rate: f64, patch: &Patch, beat_rate: f64) -> Self {
-        let ramps = std::array::from_fn(|index| Ramp::at_rest(patch.get(PARAMS[index].param)));
-        let arrived = Controls::new(|param| patch.get(param), beat_rate);
+    /// All at rest at their values.
+    pub(crate) fn new(sample_rate: f64, values: &Values, beat_rate: f64) -> Self {
+        let ramps = std::array::from_fn(|index| Ramp::at_rest(values.get(PARAMS[index].param)));
+        let arrived = Controls::new(|param| values.get(param), beat_rate);
         Self { sample_rate, beat_rate, ramps, moving: 0, changes: 0, arrived }
     }
 
@@ -218,8 +217,7 @@ mod tests {
 
     #[test]
     fn a_changed_parameter_arrives_after_its_time_and_no_sooner() {
-        let patch = Patch::default();
-        let mut smoother = Smoother::new(48_000.0, &patch, 2.0);
+        let mut smoother = Smoother::new(48_000.0, &Values::default(), 2.0);
         smoother.set(Param::Decay, 2.0);
         assert_eq!(smoother.after(0).decay, 1.0);
         assert!((smoother.after(480).decay - 1.5).abs() < 1e-6);
@@ -229,14 +227,16 @@ mod tests {
     }
 
     #[test]
-    fn the_default_patch_is_centred_and_untuned() {
-        let controls = Smoother::new(48_000.0, &Patch::default().with(Param::Gain, 0.0), 2.0).after(0);
+    fn the_default_sound_is_centred_and_untuned() {
+        let mut values = Values::default();
+        values.set(Param::Gain, 0.0);
+        let controls = Smoother::new(48_000.0, &values, 2.0).after(0);
         assert_eq!((controls.gain_left, controls.gain_right, controls.tune), (1.0, 1.0, 0.0));
     }
 
     #[test]
     fn a_synchronised_vibrato_follows_the_tempo() {
-        let mut smoother = Smoother::new(48_000.0, &Patch::default(), 2.0);
+        let mut smoother = Smoother::new(48_000.0, &Values::default(), 2.0);
         for (choice, rate) in [("off", 5.0), ("1/1", 0.5), ("1/4", 2.0), ("1/8T", 6.0), ("1/4.", 4.0 / 3.0)] {
             smoother.set(Param::VibratoSync, Param::VibratoSync.info().parse(choice).unwrap());
             assert!((smoother.after(0).vibrato_rate - rate).abs() < 1e-12, "{choice}");

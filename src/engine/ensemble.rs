@@ -2,26 +2,31 @@
 
 use super::mix_limiter::MixLimiter;
 use super::note::{nearest_channel, nearest_key};
-use super::synth::allowed;
+use super::synth::{allowed, place};
 use super::zones::Owners;
 use super::{Event, EventKind, Snapshot, Synth};
 use crate::dsp::limiter::Work;
 use crate::params::Param;
 use crate::patch::Patch;
-use crate::sound::Tuning;
+use crate::sound::{Kit, Tuning};
+use std::sync::Arc;
 
 /// Frames that are mixed at a time, unless [`Ensemble::with_chunk`] says otherwise.
 const CHUNK: usize = 1024;
 
 /// Sixteen synths behind one stream of events.
 ///
-/// Each channel has its own patch, controllers and polyphony. An MPE configuration message makes a zone, whose members
+/// Each channel has its own kit, controllers and polyphony. An MPE configuration message makes a zone, whose members
 /// play on the instrument of their master channel. A note of a choke group silences that group on every
-/// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a patch that asks
-/// for it. Gives the same bits however the frames are divided into blocks. Real-time safe after [`Ensemble::new`].
+/// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a kit that asks
+/// for it. Gives the same bits however the frames are divided into blocks. Real-time safe once built.
 pub struct Ensemble {
     parts: Vec<Part>,
-    programs: Vec<Patch>,
+    programs: Vec<Arc<Kit>>,
+    /// The kits that channels have been built with, kept so that none is freed in a program change.
+    starts: Vec<Arc<Kit>>,
+    /// What each part plays, for the others to know.
+    playing: [Playing; 16],
     chunk: usize,
     owners: Owners,
     limiter: MixLimiter,
@@ -37,6 +42,28 @@ pub struct Part {
     heard: bool,
 }
 
+/// What a part plays, as far as other parts need to know: which of them its notes choke.
+#[derive(Clone)]
+struct Playing {
+    kit: Arc<Kit>,
+    /// The choke group of the kit's parameters.
+    choke: f32,
+}
+
+/// As [`Playing`], while a chunk is played.
+#[derive(Clone, Copy)]
+struct Groups<'a> {
+    kit: &'a Kit,
+    choke: f32,
+}
+
+impl Groups<'_> {
+    /// The choke group of a key; 0 for one that is silent.
+    fn of(&self, key: u8, tuning: &Tuning) -> u8 {
+        place(self.kit, tuning, nearest_key(key)).map_or(0, |(pad, ..)| self.kit.choke(pad, self.choke))
+    }
+}
+
 /// The events and frames that every part plays in one go.
 #[derive(Clone, Copy)]
 struct Chunk<'a> {
@@ -46,9 +73,9 @@ struct Chunk<'a> {
     /// The last frame of the chunk that an event can be at.
     last: usize,
     frames: usize,
-    programs: &'a [Patch],
+    programs: &'a [Arc<Kit>],
     /// Choke groups of the channels before the events.
-    groups: [f32; 16],
+    groups: [Groups<'a>; 16],
     /// Who plays which channel.
     owners: Owners,
 }
@@ -57,19 +84,41 @@ impl Ensemble {
     /// An ensemble in which every channel starts with `patch` and program changes choose from `programs`
     /// (a number beyond the list changes nothing). Allocates.
     pub fn new(sample_rate: f64, seed: u64, patch: &Patch, programs: &[Patch]) -> Self {
+        Self::of_kits(sample_rate, seed, &Kit::of_patch(patch), programs.iter().map(Kit::of_patch).collect())
+    }
+
+    /// As [`Ensemble::new`], with kits. Allocates.
+    pub fn of_kits(sample_rate: f64, seed: u64, kit: &Arc<Kit>, programs: Vec<Arc<Kit>>) -> Self {
         let part = |channel: u64| {
-            let mut synth = Synth::new(sample_rate, seed.wrapping_add(channel << 32));
-            synth.set_patch(patch);
+            let synth = Synth::new(sample_rate, seed.wrapping_add(channel << 32));
             Part { channel: channel as usize, synth, left: vec![0.0; CHUNK], right: vec![0.0; CHUNK], heard: false }
         };
-        let limiter = MixLimiter::new(allowed(sample_rate), patch);
-        Self {
+        let largest = programs.iter().map(|kit| kit.sounds().len()).max().unwrap_or(1);
+        let mut ensemble = Self {
             parts: (0..16).map(part).collect(),
-            programs: programs.to_vec(),
+            programs,
+            starts: Vec::new(),
+            playing: std::array::from_fn(|_| Playing { kit: kit.clone(), choke: 0.0 }),
             chunk: CHUNK,
             owners: Owners::default(),
-            limiter,
-        }
+            limiter: MixLimiter::new(allowed(sample_rate)),
+        };
+        ensemble.reserve(largest);
+        (0..16).fold(ensemble, |ensemble, channel| ensemble.with_kit(channel, kit))
+    }
+
+    /// The same ensemble with another kit on a channel (one above 15 is taken as 15) from the start. Allocates.
+    #[must_use]
+    pub fn with_kit(mut self, channel: u8, kit: &Arc<Kit>) -> Self {
+        self.starts.push(kit.clone());
+        self.reserve(kit.sounds().len());
+        self.set_kit(channel, kit);
+        self
+    }
+
+    /// Makes room for kits of up to so many sounds on every channel, so that [`Ensemble::set_kit`] need not. Allocates.
+    pub fn reserve(&mut self, sounds: usize) {
+        self.parts.iter_mut().for_each(|part| part.synth.reserve(sounds));
     }
 
     /// The same ensemble, mixing up to `frames` frames (at least 1) at a time: more than it would of itself pay where
@@ -116,13 +165,13 @@ impl Ensemble {
                 (now, end) = (index, start + (event.frame as usize).saturating_sub(start).min(last));
                 last = end - start;
             }
-            let mut groups = [0.0; 16];
-            for (group, part) in groups.iter_mut().zip(&self.parts) {
-                *group = part.synth.patch().get(Param::Choke);
-            }
+            let groups = self.playing.each_ref().map(|playing| Groups { kit: &playing.kit, choke: playing.choke });
             let programs = &self.programs;
             let chunk = Chunk { events: &events[..now], start, last, frames: end - start, programs, groups, owners };
             each(&mut self.parts, &|part| part.play(chunk));
+            for (playing, part) in self.playing.iter_mut().zip(&self.parts) {
+                playing.note(&part.synth);
+            }
             let (left, right) = (&mut left[start..end], &mut right[start..end]);
             self.mix(left, right);
             let is_heard = self.parts.iter().any(|part| part.heard);
@@ -170,11 +219,14 @@ impl Ensemble {
         }
     }
 
-    /// Plays another patch on a channel (one above 15 is taken as 15) from its next note on. Real-time safe.
-    pub fn set_patch(&mut self, channel: u8, patch: &Patch) {
+    /// Plays another kit on a channel (one above 15 is taken as 15) from its next note on. As real-time safe as
+    /// [`Synth::set_kit`]: the ensemble itself keeps its programs and the kits that it was built with.
+    pub fn set_kit(&mut self, channel: u8, kit: &Arc<Kit>) {
         let channel = nearest_channel(channel);
-        self.parts[usize::from(channel)].synth.set_patch(patch);
-        self.limiter.set_patch(channel, patch);
+        let synth = &mut self.parts[usize::from(channel)].synth;
+        synth.set_kit(kit);
+        self.playing[usize::from(channel)].note(synth);
+        self.limiter.set_kit(channel, kit);
     }
 
     /// Tunes the keys of all channels in another way from the next note on. Notes that sound keep their pitch.
@@ -206,6 +258,16 @@ impl Ensemble {
     }
 }
 
+impl Playing {
+    /// Takes over what a synth plays.
+    fn note(&mut self, synth: &Synth) {
+        if !Arc::ptr_eq(&self.kit, synth.kit()) {
+            self.kit = synth.kit().clone();
+        }
+        self.choke = synth.values().get(Param::Choke);
+    }
+}
+
 impl Part {
     /// Renders a chunk into the part's own frames.
     fn play(&mut self, chunk: Chunk) {
@@ -225,15 +287,14 @@ impl Part {
             let sender = usize::from(owner);
             let kind = match event.kind {
                 EventKind::NoteOn { key, .. } if sender != *channel => {
-                    let is_mapped = synth.tuning().pitch(nearest_key(key)).is_some();
-                    EventKind::Choke { group: if is_mapped { groups[sender] as u8 } else { 0 } }
+                    EventKind::Choke { group: groups[sender].of(key, synth.tuning()) }
                 }
                 kind => kind,
             };
-            if let Some(patch) = program {
-                groups[sender] = patch.get(Param::Choke);
+            if let Some(kit) = program {
+                groups[sender] = Groups { kit, choke: kit.values().get(Param::Choke) };
             } else if let EventKind::Param { param: Param::Choke, value } = kind {
-                groups[sender] = Param::Choke.info().clamp(value);
+                groups[sender].choke = Param::Choke.info().clamp(value);
             }
             let is_for_all = match kind {
                 EventKind::Choke { group } => group != 0,
@@ -247,7 +308,7 @@ impl Part {
             synth.play(&mut left[frame..at], &mut right[frame..at]);
             frame = at;
             match program {
-                Some(patch) => synth.set_patch(patch),
+                Some(kit) => synth.set_kit(kit),
                 None => synth.handle(&Event { kind, ..*event }),
             }
             *heard |= !synth.is_silent();
@@ -310,8 +371,8 @@ mod tests {
             assert!(both(&[on(15, 127), release]) == expected, "{channel} {key}");
         }
         let mut ensemble = Ensemble::new(48_000.0, 0, &Patch::default(), &[]);
-        ensemble.set_patch(200, &Patch::default().with(Param::Gain, -3.0));
-        assert_eq!(ensemble.parts[15].synth.patch().get(Param::Gain), -3.0);
+        ensemble.set_kit(200, &Kit::of_patch(&Patch::default().with(Param::Gain, -3.0)));
+        assert_eq!(ensemble.parts[15].synth.values().get(Param::Gain), -3.0);
     }
 
     #[test]

@@ -17,6 +17,8 @@ pub(crate) struct Expressions {
     volume: f32,
     swell: f32,
     pan: f32,
+    /// Level and position of the note's pad.
+    pad: (f32, f32),
     gain: StereoGain,
 }
 
@@ -27,7 +29,13 @@ impl Expressions {
     }
 
     fn neutral(gain: StereoGain) -> Self {
-        Self { tuning: 0.0, pressure: 0.0, vibrato: 0.0, brightness: 0.0, volume: 1.0, swell: 1.0, pan: 0.5, gain }
+        let (volume, swell, pan, pad) = (1.0, 1.0, 0.5, (1.0, 0.0));
+        Self { tuning: 0.0, pressure: 0.0, vibrato: 0.0, brightness: 0.0, volume, swell, pan, pad, gain }
+    }
+
+    fn aim(&mut self) {
+        let (gain, pan) = self.pad;
+        self.gain.aim(self.volume * self.swell * self.swell * gain, (self.pan + 0.5 * pan).clamp(0.0, 1.0));
     }
 
     /// Takes in one expression; numbers out of range become the nearest within, NaN becomes zero.
@@ -43,14 +51,14 @@ impl Expressions {
             Expression::Pan => self.pan = value.clamp(-1.0, 1.0) * 0.5 + 0.5,
         }
         if matches!(expression, Expression::Volume | Expression::Swell | Expression::Pan) {
-            self.gain.aim(self.volume * self.swell * self.swell, self.pan);
+            self.aim();
         }
     }
 
-    /// Forgets everything; gains slide back.
-    pub(crate) fn clear(&mut self) {
-        *self = Self::neutral(self.gain);
-        self.gain.aim(self.volume, self.pan);
+    /// Forgets everything for a note whose pad has an amplitude ratio and a position from −1 to 1; gains slide there.
+    pub(crate) fn begin(&mut self, gain: f32, pan: f32) {
+        *self = Self { pad: (gain, pan), ..Self::neutral(self.gain) };
+        self.aim();
     }
 
     /// Puts the gains where they are going: for a note that has not sounded yet.

@@ -5,9 +5,10 @@ use super::{Event, EventKind};
 use crate::dsp::Limiter;
 use crate::dsp::limiter::Work;
 use crate::params::Param;
-use crate::patch::Patch;
+use crate::sound::Kit;
+use std::sync::Arc;
 
-/// One limiter for the mix of sixteen channels. It is on while any channel that has had a note has a patch that asks
+/// One limiter for the mix of sixteen channels. It is on while any channel that has had a note has a kit that asks
 /// for it. Real-time safe once built.
 pub(super) struct MixLimiter {
     limiter: Limiter,
@@ -17,7 +18,7 @@ pub(super) struct MixLimiter {
 /// Sets of channels, a bit each.
 #[derive(Clone, Copy)]
 struct Channels {
-    /// Those with a patch that asks for the limiter.
+    /// Those with a kit that asks for the limiter.
     asking: u16,
     /// Those that have had a note.
     played: u16,
@@ -34,15 +35,15 @@ impl Channels {
     }
 
     /// Takes in an event on a channel that the instrument of `owner` plays.
-    fn handle(&mut self, owner: u8, event: &Event, programs: &[Patch]) {
+    fn handle(&mut self, owner: u8, event: &Event, programs: &[Arc<Kit>]) {
         match event.kind {
             EventKind::NoteOn { .. } => self.played |= 1 << owner,
             EventKind::Param { param: Param::Limiter, value } => {
                 self.set_asking(owner, Param::Limiter.info().clamp(value));
             }
             EventKind::Program(number) if owner == nearest_channel(event.channel) => {
-                if let Some(patch) = programs.get(usize::from(number)) {
-                    self.set_asking(owner, patch.get(Param::Limiter));
+                if let Some(kit) = programs.get(usize::from(number)) {
+                    self.set_asking(owner, kit.values().get(Param::Limiter));
                 }
             }
             _ => {}
@@ -51,16 +52,14 @@ impl Channels {
 }
 
 impl MixLimiter {
-    /// For sixteen channels that start with `patch`.
-    pub(super) fn new(sample_rate: f64, patch: &Patch) -> Self {
-        let mut channels = Channels { asking: 0, played: 0 };
-        (0..16).for_each(|channel| channels.set_asking(channel, patch.get(Param::Limiter)));
-        Self { limiter: Limiter::new(sample_rate), channels }
+    /// For sixteen channels, each of which is to be given a kit.
+    pub(super) fn new(sample_rate: f64) -> Self {
+        Self { limiter: Limiter::new(sample_rate), channels: Channels { asking: 0, played: 0 } }
     }
 
-    /// A channel has another patch.
-    pub(super) fn set_patch(&mut self, channel: u8, patch: &Patch) {
-        self.channels.set_asking(channel, patch.get(Param::Limiter));
+    /// A channel has another kit.
+    pub(super) fn set_kit(&mut self, channel: u8, kit: &Kit) {
+        self.channels.set_asking(channel, kit.values().get(Param::Limiter));
     }
 
     /// What it has done so far.
@@ -75,7 +74,7 @@ impl MixLimiter {
         &mut self,
         events: impl Iterator<Item = (u8, Event)>,
         [start, last]: [usize; 2],
-        programs: &[Patch],
+        programs: &[Arc<Kit>],
         is_heard: bool,
         [left, right]: [&mut [f32]; 2],
     ) {

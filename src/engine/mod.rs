@@ -10,6 +10,7 @@ pub mod event;
 mod expression;
 mod fader;
 mod gain;
+mod instrument;
 pub mod midi;
 mod mix_limiter;
 mod modulation;

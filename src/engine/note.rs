@@ -23,12 +23,16 @@ pub struct Note {
     pub id: i32,
     /// Counts the notes of a synth.
     pub serial: u64,
-    /// Counts the patches of a synth.
+    /// Counts the sounds that a synth has been given.
     pub patch: u32,
     /// Counts the bodies of a synth; notes of different bodies never share a voice.
     pub body: u32,
     /// Choke group, 0 for none.
     pub choke: u8,
+    /// Amplitude ratio of its pad.
+    pub gain: f32,
+    /// Position of its pad, −1 to 1.
+    pub pan: f32,
 }
 
 impl Note {
@@ -46,6 +50,8 @@ impl Note {
         patch: 0,
         body: 0,
         choke: 0,
+        gain: 1.0,
+        pan: 0.0,
     };
 }
 

@@ -1,34 +1,47 @@
-//! The instrument: one patch, its voices, and a stream of events in; stereo samples out.
+//! A kit, its voices, and a stream of events in; stereo samples out.
 
 use super::channel::{Channel, Wheels};
-use super::controls::Smoother;
 use super::event::{Expression, finite, unit};
+use super::instrument::Instrument;
 use super::midi::{controller, seven_bits};
-use super::modulation::{Bus, SharedLfos, modulated};
+use super::modulation::{modulated, moved};
 use super::note::{Note, Notes, nearest_channel, nearest_key};
-use super::voice::{Instrument, SynthVoice};
+use super::voice::SynthVoice;
 use super::voice_manager::{PlayMode, VoiceManager};
 use super::zones::{MEMBER_BEND_RANGE, Zones};
 use super::{Event, EventKind, Snapshot};
 use crate::dsp::limiter::Work;
 use crate::dsp::{CONTROL_FRAMES, Limiter};
-use crate::params::{Change, PARAM_COUNT, PARAMS, Param};
+use crate::params::{Change, PARAM_COUNT, Param, Values};
 use crate::patch::Patch;
-use crate::sound::Tuning;
+use crate::sound::kit::Pad;
 use crate::sound::tuning::Pitch;
+use crate::sound::{Kit, Sound, Tuning};
+use crate::units::gain_from_db;
+use std::sync::Arc;
 
 /// Sample rates that the engine runs at, in Hz.
 pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
 
-/// A synthesizer that plays one patch on sixteen channels (as MPE uses them).
+/// A synthesizer that plays one kit on sixteen channels (as MPE uses them).
 ///
-/// The same seed, patch, events and sample rate give the same bits, however the frames are divided into blocks.
-/// Only [`Synth::new`] and [`Synth::prepare`] allocate; everything else is real-time safe.
+/// The same seed, kit, events and sample rate give the same bits, however the frames are divided into blocks.
+/// [`Synth::new`], [`Synth::prepare`], [`Synth::reserve`] and [`Synth::set_patch`] allocate; everything else is real-time
+/// safe.
 pub struct Synth {
     manager: VoiceManager<SynthVoice>,
-    instrument: Instrument,
+    /// One for each sound of the kit: dropped before the kit, which has a handle of each sound.
+    instruments: Vec<Instrument>,
+    kit: Arc<Kit>,
+    /// The parameters of the whole kit as they were set.
+    values: Values,
+    /// Serial number of the first instrument; the others follow it.
+    first_patch: u32,
+    /// Counts the bodies.
+    bodies: u32,
+    sample_rate: f64,
+    seed: u64,
     tuning: Tuning,
-    smoother: Smoother,
     limiter: Limiter,
     channels: [Channel; 16],
     zones: Zones,
@@ -36,12 +49,6 @@ pub struct Synth {
     offsets: [f32; PARAM_COUNT],
     /// Frames until the gains of all channels have arrived.
     gains_moving: u32,
-    /// A patch since the start has had routes.
-    has_routes: bool,
-    /// Changes of the smoother that the instrument's settings have, if they have arrived.
-    settings_changes: Option<u32>,
-    /// The frame at which the instrument's shared oscillators are.
-    shared_clock: u64,
     /// Counts the notes started.
     note_serial: u64,
     /// Frames since the start: control ticks fall on its multiples of [`CONTROL_FRAMES`].
@@ -53,68 +60,78 @@ pub struct Synth {
 impl Synth {
     /// A synth with the default patch. The sample rate is brought into [`SAMPLE_RATES`].
     pub fn new(sample_rate: f64, seed: u64) -> Self {
-        let sample_rate = allowed(sample_rate);
-        let patch = Patch::default();
-        let smoother = Smoother::new(sample_rate, &patch, DEFAULT_BEAT_RATE);
-        let controls = smoother.after(0);
-        let instrument = Instrument::new(patch, sample_rate, seed, controls);
+        Self::with_kit(allowed(sample_rate), seed, Kit::of_patch(&Patch::default()))
+    }
+
+    fn with_kit(sample_rate: f64, seed: u64, kit: Arc<Kit>) -> Self {
+        let instrument = |sound: &Arc<Sound>| Instrument::new(sound.clone(), sample_rate, seed, DEFAULT_BEAT_RATE, 0);
+        let instruments: Vec<Instrument> = kit.sounds().iter().map(instrument).collect();
+        let controls = instruments[0].controls;
         let mut synth = Self {
             manager: VoiceManager::new(|| SynthVoice::new(sample_rate, controls)),
-            instrument,
+            instruments,
+            values: *kit.values(),
+            kit,
+            first_patch: 0,
+            bodies: 0,
+            sample_rate,
+            seed,
             tuning: Tuning::EQUAL,
-            smoother,
             limiter: Limiter::new(sample_rate),
             channels: [Channel::new(sample_rate); 16],
             zones: Zones::default(),
             offsets: [0.0; PARAM_COUNT],
             gains_moving: 0,
-            has_routes: false,
-            settings_changes: None,
-            shared_clock: 0,
             note_serial: 0,
             clock: 0,
             needs_control: false,
         };
+        synth.number();
         synth.configure();
         synth
     }
 
-    /// Changes the sample rate and starts anew, keeping the patch and the tuning.
+    /// Changes the sample rate and starts anew, keeping the kit, its parameters, the tuning and the room for other kits.
     pub fn prepare(&mut self, sample_rate: f64) {
-        let (patch, tuning) = (self.instrument.patch.clone(), self.tuning);
-        *self = Self::new(sample_rate, self.instrument.seed);
-        (self.instrument.patch, self.tuning) = (patch, tuning);
-        self.reset();
+        let mut synth = Self::with_kit(allowed(sample_rate), self.seed, self.kit.clone());
+        (synth.values, synth.tuning) = (self.values, self.tuning);
+        synth.reserve(self.instruments.capacity());
+        synth.reset();
+        *self = synth;
     }
 
-    /// Silences everything and forgets all controllers, modulation and tempo; the patch and the tuning stay. What
-    /// follows is what a new synth would play.
+    /// Makes room for kits of up to so many sounds, so that [`Synth::set_kit`] need not. Allocates.
+    pub fn reserve(&mut self, sounds: usize) {
+        self.instruments.reserve(sounds.saturating_sub(self.instruments.len()));
+    }
+
+    /// Silences everything and forgets all controllers, modulation and tempo; the kit, its parameters and the tuning
+    /// stay. What follows is what a new synth would play.
     pub fn reset(&mut self) {
-        let sample_rate = self.instrument.sample_rate;
+        let (sample_rate, seed) = (self.sample_rate, self.seed);
         self.manager.reset();
         self.limiter.reset();
-        self.instrument.modulated = self.instrument.patch.clone();
-        self.smoother = Smoother::new(sample_rate, &self.instrument.modulated, DEFAULT_BEAT_RATE);
-        self.settings_changes = None;
-        self.instrument.controls = self.smoother.after(0);
-        self.instrument.last_pitch = None;
-        self.instrument.bus = Bus::new(&self.instrument.patch.routes);
-        (self.instrument.shared, self.shared_clock) = (SharedLfos::new(self.instrument.seed), 0);
-        self.has_routes = !self.instrument.bus.is_empty();
-        (self.instrument.patch_serial, self.instrument.body_serial) = (0, 0);
+        self.offsets = [0.0; PARAM_COUNT];
+        for (instrument, sound) in self.instruments.iter_mut().zip(self.kit.sounds()) {
+            *instrument = Instrument::new(sound.clone(), sample_rate, seed, DEFAULT_BEAT_RATE, 0);
+            instrument.begin_at(moved_by(&self.kit, &self.values));
+        }
+        (self.first_patch, self.bodies) = (0, 0);
+        self.number();
         self.channels = [Channel::new(sample_rate); 16];
         self.zones = Zones::default();
-        self.offsets = [0.0; PARAM_COUNT];
         (self.gains_moving, self.note_serial, self.clock, self.needs_control) = (0, 0, 0, false);
         self.configure();
     }
 
     /// What is random of notes starts from another seed with the next one; shared oscillators go on. Real-time safe.
     pub fn set_seed(&mut self, seed: u64) {
-        self.instrument.seed = seed;
+        self.seed = seed;
+        self.instruments.iter_mut().for_each(|instrument| instrument.seed = seed);
     }
 
-    /// Tunes the keys in another way from the next note on. Notes that sound keep their pitch. Real-time safe.
+    /// Tunes the keys in another way from the next note on: those of sounds without a tuning of their own. Notes that
+    /// sound keep their pitch. Real-time safe.
     pub fn set_tuning(&mut self, tuning: &Tuning) {
         self.tuning = *tuning;
     }
@@ -124,28 +141,54 @@ impl Synth {
         &self.tuning
     }
 
-    /// Plays another patch from the next note on. Notes that sound go on with the sound that they have.
-    pub fn set_patch(&mut self, patch: &Patch) {
-        self.instrument.patch = patch.clone();
-        self.instrument.modulated = patch.clone();
-        for info in PARAMS {
-            let offset = self.offsets[info.param as usize];
-            self.instrument.modulated.set(info.param, modulated(patch, info.param, offset));
+    /// Plays another kit from the next note on. Notes that sound go on with the sound that they have. Parameters start
+    /// again from [`Kit::values`].
+    ///
+    /// Real-time safe if there is room for its sounds ([`Synth::reserve`]) and somebody keeps the kit before
+    /// ([`Shelf`](crate::sound::Shelf)).
+    pub fn set_kit(&mut self, kit: &Arc<Kit>) {
+        let (sounds, before) = (kit.sounds(), self.instruments.len());
+        let goes_on = kit.is_single() && self.kit.is_single();
+        let beat_rate = self.instruments[0].smoother.beat_rate();
+        self.instruments.truncate(sounds.len());
+        for (instrument, sound) in self.instruments.iter_mut().zip(sounds) {
+            instrument.play(sound, &self.offsets);
+            instrument.last_pitch.take_if(|_| !goes_on);
         }
-        self.instrument.patch_serial += 1;
-        self.instrument.body_serial += 1;
-        self.instrument.bus = Bus::new(&patch.routes);
-        self.has_routes |= !self.instrument.bus.is_empty();
-        // Voices of the old patch keep its controls, so the new ones need no slope.
-        let beat_rate = self.smoother.beat_rate();
-        self.smoother = Smoother::new(self.instrument.sample_rate, &self.instrument.modulated, beat_rate);
-        self.settings_changes = None;
+        for sound in sounds.iter().skip(self.instruments.len()) {
+            let mut instrument = Instrument::new(sound.clone(), self.sample_rate, self.seed, beat_rate, self.clock);
+            instrument.play(sound, &self.offsets);
+            self.instruments.push(instrument);
+        }
+        // Only now: until here, the kit before has kept the sounds that were let go of.
+        self.kit = kit.clone();
+        self.values = *kit.values();
+        self.first_patch = self.first_patch.wrapping_add(before as u32);
+        self.number();
         self.configure();
     }
 
-    /// The patch in use, with the parameters as last set, modulation left out.
-    pub fn patch(&self) -> &Patch {
-        &self.instrument.patch
+    /// As [`Synth::set_kit`], with a kit of one sound that is made of a patch. Allocates and frees.
+    pub fn set_patch(&mut self, patch: &Patch) {
+        self.set_kit(&Kit::of_patch(patch));
+    }
+
+    /// The kit in use. Real-time safe.
+    pub fn kit(&self) -> &Arc<Kit> {
+        &self.kit
+    }
+
+    /// The parameters of the kit as last set, modulation left out. Real-time safe.
+    pub fn values(&self) -> &Values {
+        &self.values
+    }
+
+    /// Gives each instrument the serial numbers that the notes of its sound have.
+    fn number(&mut self) {
+        for (instrument, patch) in self.instruments.iter_mut().zip(0_u32..) {
+            self.bodies = self.bodies.wrapping_add(1);
+            (instrument.patch_serial, instrument.body_serial) = (self.first_patch.wrapping_add(patch), self.bodies);
+        }
     }
 
     /// Finished notes, kept until the next [`Synth::process`]. Each is reported once: when its voice is silent or plays
@@ -204,7 +247,7 @@ impl Synth {
     fn play_limited(&mut self, left: &mut [f32], right: &mut [f32]) {
         let is_heard = self.play(left, right);
         if is_heard || !self.limiter.is_idle() {
-            self.limiter.process(self.instrument.patch.get(Param::Limiter) != 0.0, left, right);
+            self.limiter.process(self.values.get(Param::Limiter) != 0.0, left, right);
         }
     }
 
@@ -228,43 +271,27 @@ impl Synth {
         self.needs_control |= !matches!(event.kind, EventKind::Tempo(_));
         match event.kind {
             EventKind::NoteOn { key, detune, velocity, id } => {
-                self.instrument.controls = self.smoother.after(0);
-                let brightness = brightness(&self.channels, &self.zones, index);
-                self.move_shared(0);
-                if self.has_routes {
-                    let wheels = wheels(&self.channels, &self.zones, index);
-                    self.instrument.positions = wheels.positions(brightness.into());
-                }
                 let key = nearest_key(key);
-                let pitch = self.tuning.pitch(key);
-                let soft = |channel: u8| self.channels[usize::from(channel)].soft;
-                let note = Note {
+                self.note_on(Note {
                     channel: index,
                     key,
-                    pitch: pitch.unwrap_or(Pitch::Semitones(key.into())),
+                    pitch: Pitch::Semitones(key.into()),
                     detune: finite(detune).clamp(-128.0, 128.0),
                     velocity: unit(velocity),
-                    soft: soft(index) || self.zones.master_of(index).is_some_and(soft),
-                    brightness,
+                    brightness: brightness(&self.channels, &self.zones, index),
                     id,
                     serial: self.note_serial,
-                    patch: self.instrument.patch_serial,
-                    body: self.instrument.body_serial,
-                    choke: self.instrument.modulated.get(Param::Choke) as u8,
-                };
+                    ..Note::NONE
+                });
                 self.note_serial += 1;
-                if pitch.is_none() {
-                    return self.manager.turn_away(note);
-                }
-                self.manager.note_on(&self.instrument, note);
-                self.instrument.last_pitch = Some(self.instrument.pitch(&note));
             }
             EventKind::NoteOff { key, velocity, id } => {
                 let notes = Notes { id: (id != -1).then_some(id), ..Notes::on(index, key) };
-                self.manager.note_off(&self.instrument, notes, unit(velocity));
+                self.manager.note_off(&self.instruments[0], notes, unit(velocity));
             }
+            // A kit of several sounds is polyphonic, in which no note returns to another.
             EventKind::Release { notes, velocity } => {
-                self.manager.note_off(&self.instrument, notes, unit(velocity));
+                self.manager.note_off(&self.instruments[0], notes, unit(velocity));
             }
             EventKind::Silence { notes } => self.manager.silence(notes),
             EventKind::PolyPressure { key, pressure } => {
@@ -275,7 +302,7 @@ impl Synth {
             EventKind::PitchBend(bend) => self.channels[usize::from(index)].bend = finite(bend).clamp(-1.0, 1.0),
             EventKind::Control { controller, value } => self.control(index, controller, unit(value)),
             EventKind::Param { param, value } => {
-                self.instrument.patch.set(param, value);
+                self.values.set(param, value);
                 self.take_over(param);
             }
             EventKind::Modulate { id: None, param, offset } => {
@@ -285,39 +312,77 @@ impl Synth {
             EventKind::Modulate { id: Some(id), param, offset } => {
                 // Notes that were given no identifier cannot be meant.
                 if id >= 0 && matches!(param.info().change, Change::Smoothed(_)) {
-                    let (now, offset) = (self.smoother.value_after(param, 0), finite(offset).clamp(-1.0, 1.0));
-                    let meant = self.manager.active().filter(|(note, _)| note.id == id);
-                    meant.for_each(|(_, voice)| voice.modulate(&self.instrument, param, offset, now));
+                    let offset = finite(offset).clamp(-1.0, 1.0);
+                    for (note, voice) in self.manager.active().filter(|(note, _)| note.id == id) {
+                        if let Some(instrument) = playing(&self.instruments, note) {
+                            voice.modulate(instrument, param, offset, instrument.smoother.value_after(param, 0));
+                        }
+                    }
                 }
             }
             EventKind::Tempo(beats_per_minute) => {
-                self.move_shared(0);
-                self.smoother.set_tempo(f64::from(finite(beats_per_minute).clamp(1.0, 10_000.0)) / 60.0);
+                let beat_rate = f64::from(finite(beats_per_minute).clamp(1.0, 10_000.0)) / 60.0;
+                for instrument in &mut self.instruments {
+                    instrument.move_shared(self.clock, 0);
+                    instrument.smoother.set_tempo(beat_rate);
+                }
             }
             EventKind::Choke { group } => self.manager.choke(group),
             EventKind::Program(_) => {}
         }
     }
 
-    /// A parameter has a new value or offset.
-    fn take_over(&mut self, param: Param) {
-        let value = modulated(&self.instrument.patch, param, self.offsets[param as usize]);
-        self.instrument.modulated.set(param, value);
-        // Sounding voices cannot take these over without a click: notes from now on have their own.
-        if matches!(param, Param::Coefficients | Param::Width) {
-            self.instrument.body_serial += 1;
+    /// A key goes down: the note, without what its pad, its sound and the pedals make of it.
+    fn note_on(&mut self, mut note: Note) {
+        let Some((pad, pitch, detune)) = place(&self.kit, &self.tuning, note.key) else {
+            return self.manager.turn_away(note);
+        };
+        let soft = |channel: u8| self.channels[usize::from(channel)].soft;
+        let choke = modulated(&self.values, Param::Choke, self.offsets[Param::Choke as usize]);
+        let instrument = &mut self.instruments[pad.sound];
+        instrument.controls = instrument.smoother.after(0);
+        instrument.move_shared(self.clock, 0);
+        if instrument.has_routes() {
+            let wheels = wheels(&self.channels, &self.zones, note.channel);
+            instrument.positions = wheels.positions(note.brightness.into());
         }
-        // Until now, shared oscillators have had the rate before.
-        self.move_shared(0);
-        self.smoother.set(param, value);
-        self.manager.active().for_each(|(_, voice)| voice.follow(&self.instrument));
+        note = Note {
+            pitch,
+            detune: note.detune + detune,
+            soft: soft(note.channel) || self.zones.master_of(note.channel).is_some_and(soft),
+            patch: instrument.patch_serial,
+            body: instrument.body_serial,
+            choke: self.kit.choke(pad, choke),
+            gain: gain_from_db(pad.gain_db.into()) as f32,
+            pan: pad.pan,
+            ..note
+        };
+        self.manager.note_on(instrument, note);
+        instrument.last_pitch = Some(instrument.pitch(&note));
+    }
+
+    /// A parameter of the kit has a new value or offset.
+    fn take_over(&mut self, param: Param) {
+        for instrument in &mut self.instruments {
+            let (travel, offset) = (moved_by(&self.kit, &self.values), self.offsets[param as usize]);
+            let value = travel(param, instrument.sound.patch().get(param));
+            instrument.set(param, value, offset, self.clock);
+            // Sounding voices cannot take these over without a click: notes from now on have their own.
+            if matches!(param, Param::Coefficients | Param::Width) {
+                self.bodies = self.bodies.wrapping_add(1);
+                instrument.body_serial = self.bodies;
+            }
+        }
+        for (note, voice) in self.manager.active() {
+            playing(&self.instruments, note).into_iter().for_each(|instrument| voice.follow(instrument));
+        }
         self.configure();
     }
 
     fn express(&mut self, notes: Notes, expression: Expression, value: f32) {
         for (note, voice) in self.manager.active().filter(|(note, _)| notes.include(note)) {
             let brightness = brightness(&self.channels, &self.zones, note.channel);
-            voice.express(&self.instrument, expression, value, brightness);
+            voice.express(playing(&self.instruments, note), expression, value, brightness);
         }
     }
 
@@ -350,8 +415,9 @@ impl Synth {
                 for channel in self.zones.reach(index) {
                     let brightness = brightness(&self.channels, &self.zones, channel);
                     self.manager.brighten(channel, brightness);
-                    let on_channel = self.manager.active().filter(|(note, _)| note.channel == channel);
-                    on_channel.for_each(|(_, voice)| voice.shade(&self.instrument, brightness));
+                    for (note, voice) in self.manager.active().filter(|(note, _)| note.channel == channel) {
+                        voice.shade(playing(&self.instruments, note), brightness);
+                    }
                 }
             }
             _ => {}
@@ -410,12 +476,13 @@ impl Synth {
                 self.manager.free_finished();
             }
             if into_tick == 0 || self.needs_control {
-                let controls = self.smoother.after(to_tick as u32);
-                self.move_shared(to_tick as u32);
+                for instrument in &mut self.instruments {
+                    instrument.next_controls = instrument.smoother.after(to_tick as u32);
+                    instrument.move_shared(self.clock, to_tick as u32);
+                }
                 for (note, voice) in self.manager.active() {
                     let wheels = wheels(&self.channels, &self.zones, note.channel);
-                    let controls = (note.patch == self.instrument.patch_serial).then_some(&controls);
-                    voice.control(&self.instrument, controls, &self.smoother, wheels, to_tick);
+                    voice.control(playing(&self.instruments, note), wheels, to_tick);
                 }
                 self.manager.active().for_each(|(_, voice)| voice.sweep(to_tick));
                 self.needs_control = false;
@@ -429,28 +496,10 @@ impl Synth {
         }
     }
 
-    /// Moves the shared oscillators to this frame, and reads what modulators are to follow `ahead` frames from now: if
-    /// there are any routes to follow them.
-    fn move_shared(&mut self, ahead: u32) {
-        if !self.has_routes {
-            return;
-        }
-        let seconds = (self.clock - self.shared_clock) as f64 / self.instrument.sample_rate;
-        self.shared_clock = self.clock;
-        // Values that slide are read again, until those that they slide to have been read.
-        let changes = self.smoother.changes(ahead);
-        if changes.is_none() || changes != self.settings_changes {
-            let Instrument { bus, settings, .. } = &self.instrument;
-            self.instrument.settings = self.smoother.settings_after(ahead, settings, bus);
-        }
-        self.settings_changes = changes;
-        self.instrument.shared.advance(&self.instrument.settings, seconds);
-    }
-
     /// Lets time pass for everything but the voices: all there is to do while none sounds.
     pub(super) fn pass(&mut self, frames: usize) {
         self.clock += frames as u64;
-        self.smoother.advance(frames as u32);
+        self.instruments.iter_mut().for_each(|instrument| instrument.smoother.advance(frames as u32));
         if self.gains_moving > 0 {
             self.channels.iter_mut().for_each(|channel| channel.advance(frames as u32));
             self.gains_moving = self.gains_moving.saturating_sub(frames as u32);
@@ -459,13 +508,48 @@ impl Synth {
 
     /// Hands the manager the parameters that are its own.
     fn configure(&mut self) {
-        let patch = &self.instrument.modulated;
-        let mode = match patch.get(Param::Mode) as u32 {
-            0 => PlayMode::Poly,
-            1 => PlayMode::Mono,
-            _ => PlayMode::Legato,
+        let value = |param| modulated(&self.values, param, self.offsets[param as usize]);
+        let mode = match value(Param::Mode) as u32 {
+            1 if self.kit.is_single() => PlayMode::Mono,
+            2 if self.kit.is_single() => PlayMode::Legato,
+            _ => PlayMode::Poly,
         };
-        self.manager.configure(patch.get(Param::Voices) as usize, mode, self.instrument.patch_serial);
+        self.manager.configure(value(Param::Voices) as usize, mode, self.first_patch);
+    }
+}
+
+/// The instrument that a note was started with, if its sound is still played.
+fn playing<'a>(instruments: &'a [Instrument], note: &Note) -> Option<&'a Instrument> {
+    let first = instruments.first()?.patch_serial;
+    instruments.get(note.patch.wrapping_sub(first) as usize)
+}
+
+/// Where a key is played: its pad, and the pitch there with a rest in semitones. None for a key that is silent, because
+/// it has no pad or its pitch no frequency.
+pub(super) fn place<'a>(kit: &'a Kit, tuning: &Tuning, key: u8) -> Option<(&'a Pad, Pitch, f32)> {
+    let pad = kit.pad(key)?;
+    let tuning = kit.sounds().get(pad.sound)?.tuning().unwrap_or(tuning);
+    let (key, rest) = match pad.pitch {
+        None => (key, 0.0),
+        Some(pitch) => {
+            let nearest = libm::round(pitch).clamp(0.0, 127.0);
+            (nearest as u8, (pitch - nearest) as f32)
+        }
+    };
+    Some((pad, tuning.pitch(key)?, rest))
+}
+
+/// What a sound's own value of a parameter becomes while those of its kit have `values`. A single sound has the kit's
+/// value; each of several is as many knob travels away from its own as the kit's value is from the default.
+fn moved_by<'a>(kit: &'a Kit, values: &'a Values) -> impl Fn(Param, f32) -> f32 + 'a {
+    move |param, own| {
+        let (info, value) = (param.info(), values.get(param));
+        let is_of_kit = matches!(param, Param::Voices | Param::Mode | Param::Choke | Param::Limiter);
+        match kit.is_single() {
+            true => value,
+            false if is_of_kit => own,
+            false => moved(param, own, (info.normalise(value) - info.normalise(info.default)) as f32),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The body of a preset file, from which its modes are made: `[body]` with `model = "marimba"`.
 
-use super::value::{check_keys, unexpected};
+use super::value::unexpected;
 use crate::error::nearest;
 use crate::params::Param;
 use crate::patch::{ModeTable, Patch};
@@ -49,8 +49,13 @@ pub(super) fn to_toml(patch: &Patch) -> String {
 }
 
 fn read_body(table: &Table) -> Result<Body, String> {
-    let names: Vec<&str> = ["model", "material"].into_iter().chain(FIELDS.iter().map(|field| field.name)).collect();
-    check_keys(table, "body.", &names)?;
+    let names = || ["model", "material"].into_iter().chain(FIELDS.iter().map(|field| field.name));
+    if let Some(unknown) = table.keys().find(|key| !names().any(|name| name == *key)) {
+        return Err(match nearest(unknown, names()) {
+            Some(near) => format!("unknown key ‘body.{unknown}’; the nearest is {near}"),
+            None => format!("unknown key ‘body.{unknown}’: expected one of {}", names().collect::<Vec<_>>().join(", ")),
+        });
+    }
     let models = || Model::ALL.iter().map(|(id, _)| *id);
     let model = named(table, "model", Model::find, models)?
         .ok_or_else(|| format!("body: there is no ‘model’: expected one of {}", models().collect::<Vec<_>>().join(", ")))?;

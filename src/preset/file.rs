@@ -1,38 +1,25 @@
 //! The TOML of a preset file, read key by key so that every error names its place and what would be right.
 
+use super::about::{About, about_to_toml};
+use super::value::{check_keys, param_value, table, unexpected};
 use super::{body, routes};
-use super::value::{check_keys, param_value, unexpected};
 use super::{FORMAT_VERSION, Preset};
 use crate::error::Error;
 use crate::params::{PARAMS, Param, Unit};
 use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
-use crate::text::printable_lines;
 use std::fmt::Write;
 use toml::{Table, Value};
-use toml_writer::{ToTomlValue, TomlStringBuilder};
 
 const KEYS: [&str; 9] = ["format", "name", "author", "tags", "comment", "modes", "body", "routes", "params"];
 
-/// Longest name, author or tag, in characters: what a list can still show.
-const MAX_LABEL: usize = 100;
-
 pub(super) fn parse(text: &str, origin: &str) -> crate::Result<Preset> {
-    let table: Table = toml::from_str(text).map_err(|error| syntax_error(text, origin, &error))?;
-    read(&table).map_err(|message| Error::format(origin, message))
+    read(&table(text, origin)?).map_err(|message| Error::format(origin, message))
 }
 
-fn syntax_error(text: &str, origin: &str, error: &toml::de::Error) -> Error {
-    let place = error.span().and_then(|span| text.get(..span.start)).map_or(String::new(), |before| {
-        let line = before.matches('\n').count() + 1;
-        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-        format!(":{line}:{column}")
-    });
-    // The TOML reader puts what it expected on a second line.
-    let message: Vec<&str> = error.message().lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-    Error::format(format!("{origin}{place}"), format!("not valid TOML: {}", message.join("; ")))
-}
-
-fn read(table: &Table) -> Result<Preset, String> {
+pub(super) fn read(table: &Table) -> Result<Preset, String> {
+    if table.contains_key("kit") {
+        return Err(format!("this is a kit: expected a preset, which begins with format = {FORMAT_VERSION}"));
+    }
     // The version first: in another version's file, its other keys mean nothing to this one.
     match table.get("format") {
         Some(Value::Integer(1..=FORMAT_VERSION)) => {}
@@ -47,10 +34,7 @@ fn read(table: &Table) -> Result<Preset, String> {
         None => return Err(format!("there is no ‘format’: expected format = {FORMAT_VERSION}")),
     }
     check_keys(table, "", &KEYS)?;
-    let name = label(table, "name")?;
-    if name.is_empty() {
-        return Err("there is no ‘name’: expected name = \"…\"".to_owned());
-    }
+    let About { name, author, tags, comment } = About::read(table)?;
     let mut patch = Patch::default();
     match table.get("params") {
         Some(Value::Table(params)) => read_params(params, &mut patch)?,
@@ -60,40 +44,7 @@ fn read(table: &Table) -> Result<Preset, String> {
     patch.modes = ModeTable::new(&read_modes(table.get("modes"))?);
     body::read(table, &mut patch)?;
     routes::read(table, &mut patch)?;
-    Ok(Preset { name, author: label(table, "author")?, tags: tags(table)?, comment: text(table, "comment")?, patch })
-}
-
-fn text(table: &Table, key: &str) -> Result<String, String> {
-    match table.get(key) {
-        None => Ok(String::new()),
-        Some(Value::String(text)) => Ok(text.clone()),
-        Some(other) => Err(unexpected(key, "a text", other)),
-    }
-}
-
-fn label(table: &Table, key: &str) -> Result<String, String> {
-    text(table, key).and_then(|label| check_label(key, label))
-}
-
-fn check_label(key: &str, label: String) -> Result<String, String> {
-    if label.trim() == label && label.chars().count() <= MAX_LABEL && !label.chars().any(char::is_control) {
-        Ok(label)
-    } else {
-        Err(format!("{key}: expected one line of at most {MAX_LABEL} characters without space around it"))
-    }
-}
-
-fn tags(table: &Table) -> Result<Vec<String>, String> {
-    let tags = match table.get("tags") {
-        None => return Ok(Vec::new()),
-        Some(Value::Array(tags)) => tags,
-        Some(other) => return Err(unexpected("tags", "a list of texts", other)),
-    };
-    let tag = |(index, tag): (usize, &Value)| match tag {
-        Value::String(tag) => check_label(&format!("tags[{index}]"), tag.clone()),
-        other => Err(unexpected(&format!("tags[{index}]"), "a text", other)),
-    };
-    tags.iter().enumerate().map(tag).collect()
+    Ok(Preset { name, author, tags, comment, patch })
 }
 
 fn read_params(params: &Table, patch: &mut Patch) -> Result<(), String> {
@@ -145,15 +96,8 @@ fn read_mode(place: &str, mode: &Value) -> Result<Mode, String> {
 
 pub(super) fn to_toml(preset: &Preset) -> String {
     let mut out = format!("format = {FORMAT_VERSION}\n");
-    let tags: Vec<String> = preset.tags.iter().map(|tag| toml_string(tag)).collect();
-    for (key, value) in [
-        ("name", toml_string(&preset.name)),
-        ("author", toml_string(&preset.author)),
-        ("tags", format!("[{}]", tags.join(", "))),
-        ("comment", toml_string(&preset.comment)),
-    ] {
-        let _ = writeln!(out, "{key} = {value}");
-    }
+    let Preset { name, author, tags, comment, .. } = preset;
+    out.push_str(&about_to_toml([name, author, comment], tags));
     let modes = preset.patch.modes.as_slice();
     if modes != [Mode::UNIT] && preset.patch.modes.origin().is_none() {
         out.push_str("modes = [\n");
@@ -179,17 +123,6 @@ pub(super) fn to_toml(preset: &Preset) -> String {
     out
 }
 
-/// A text between quotes, so that whoever prints the file has nothing in it that steers the terminal: where the text has
-/// such characters, they are escapes between double quotes, which read back as they were.
-fn toml_string(text: &str) -> String {
-    let builder = TomlStringBuilder::new(text);
-    let plain = builder.as_default().to_toml_value();
-    if printable_lines(&plain) == plain {
-        return plain;
-    }
-    printable_lines(&builder.as_basic().to_toml_value()).into_owned()
-}
-
 /// The fields that differ from [`Mode::UNIT`]'s, and the ratio. `{:?}` of an `f32` is the shortest text that reads
 /// back as the same number, and valid TOML.
 fn mode_fields(mode: &Mode) -> String {
@@ -206,6 +139,7 @@ mod tests {
     use super::*;
     use crate::params::PARAM_COUNT;
     use crate::patch::routes::{MAX_ROUTES, Response, Route, Source};
+    use crate::text::printable_lines;
     use proptest::option;
     use proptest::prelude::*;
     use proptest::sample::select;

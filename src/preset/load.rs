@@ -38,17 +38,21 @@ impl Preset {
     /// # Errors
     /// As [`Preset::load`].
     pub fn read(reader: impl Read, origin: &str) -> Result<Self> {
-        let mut bytes = Vec::new();
-        reader.take(MAX_FILE_SIZE + 1).read_to_end(&mut bytes).map_err(|source| Error::io(origin, source))?;
-        if bytes.len() as u64 > MAX_FILE_SIZE {
-            return Err(Error::format(origin, "too large for a preset: expected at most 1 MiB of TOML"));
-        }
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let at = error.utf8_error().valid_up_to();
-            Error::format(origin, format!("not a preset: expected UTF-8 text, but byte {at} is not"))
-        })?;
-        Self::parse(&text, origin)
+        Self::parse(&text(reader, origin)?, origin)
     }
+}
+
+/// The text of a preset or kit file, which errors call `origin`.
+pub(super) fn text(reader: impl Read, origin: &str) -> Result<String> {
+    let mut bytes = Vec::new();
+    reader.take(MAX_FILE_SIZE + 1).read_to_end(&mut bytes).map_err(|source| Error::io(origin, source))?;
+    if bytes.len() as u64 > MAX_FILE_SIZE {
+        return Err(Error::format(origin, "too large for a preset: expected at most 1 MiB of TOML"));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Error::format(origin, format!("not a preset: expected UTF-8 text, but byte {at} is not"))
+    })
 }
 
 #[cfg(test)]

@@ -1,15 +1,24 @@
-//! Presets: a patch with its name, author, tags and comment, as a TOML file or built in.
+//! Presets: a patch with its name, author, tags and comment, as a TOML file or built in; and kits, which put them on keys.
 
+mod about;
 mod body;
 mod factory;
 mod file;
+mod kit;
+mod kit_file;
+mod kit_load;
 mod load;
 mod routes;
 mod value;
 
 use crate::patch::Patch;
+use crate::sound::kit::{KEYS, Pad};
+use crate::sound::{Kit, Sound};
+use std::sync::Arc;
 
 pub use body::{body_of_modes, modes_of_body};
+pub use kit::{KIT_VERSION, KitPreset, Playable};
+pub use kit_load::is_file_name;
 pub use load::MAX_FILE_SIZE;
 
 /// The preset format that this version writes. It reads those before as well: 1 had no routes.
@@ -28,4 +37,12 @@ pub struct Preset {
     pub comment: String,
     /// The sound.
     pub patch: Patch,
+}
+
+impl Preset {
+    /// The kit of this sound alone, under the preset's name. Allocates.
+    pub fn kit(&self) -> Arc<Kit> {
+        let sound = Arc::new(Sound::new(self.patch.clone()));
+        Arc::new(Kit::new(self.name.clone(), vec![sound], vec![Some(Pad::of(0)); KEYS]))
+    }
 }

@@ -1,6 +1,6 @@
 //! TOML values as the parts of a preset file read them, with errors that say what would be right.
 
-use crate::error::nearest;
+use crate::error::{Error, nearest};
 use crate::params::{ParamInfo, Unit};
 use toml::{Table, Value};
 
@@ -30,4 +30,20 @@ pub(super) fn param_value(info: &ParamInfo, value: &Value) -> Result<f32, String
         (Value::Float(number), _) => info.check(*number as f32),
         (other, _) => Err(format!("expected a number or a text with a unit, found {}", other.type_str())),
     }
+}
+
+/// The TOML of a file that errors call `origin`.
+pub(super) fn table(text: &str, origin: &str) -> crate::Result<Table> {
+    toml::from_str(text).map_err(|error| syntax_error(text, origin, &error))
+}
+
+fn syntax_error(text: &str, origin: &str, error: &toml::de::Error) -> Error {
+    let place = error.span().and_then(|span| text.get(..span.start)).map_or(String::new(), |before| {
+        let line = before.matches('\n').count() + 1;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+        format!(":{line}:{column}")
+    });
+    // The TOML reader puts what it expected on a second line.
+    let message: Vec<&str> = error.message().lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    Error::format(format!("{origin}{place}"), format!("not valid TOML: {}", message.join("; ")))
 }

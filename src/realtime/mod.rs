@@ -21,7 +21,7 @@ pub use device::{Choice, Found};
 pub use jack_midi::JackMidi;
 pub use live::{LiveEvent, LiveInputs, LiveSender};
 pub use midi_ports::{MidiPorts, Wanted};
-pub use player::{PatchSender, Player, Setup};
+pub use player::{KitSender, Player, Setup};
 pub use recorder::{Recorded, Recording, Tap};
 pub use session::Session;
 pub use status::Status;

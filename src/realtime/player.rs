@@ -1,4 +1,4 @@
-//! The audio thread: song, live events and patches in, blocks for the device and the recorder out.
+//! The audio thread: song, live events and kits in, blocks for the device and the recorder out.
 
 use super::block_clock::{BlockClock, Moment};
 use super::convert::{DeviceSample, interleave};
@@ -7,16 +7,16 @@ use super::recorder::Tap;
 use super::status::Status;
 use crate::engine::{Ensemble, Event, EventKind, TelemetryWriter};
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
-use crate::patch::Patch;
-use crate::sound::Tuning;
+use crate::sound::kit::KEYS;
+use crate::sound::{Kit, Shelf, Tuning};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::Arc;
 
 /// Frames that are rendered at a time; a longer block of the device is rendered in pieces.
 pub const MAX_BLOCK: usize = 4096;
 
-/// Patches that wait for the audio thread to take them.
-const PATCH_CAPACITY: usize = 32;
+/// Kits that wait for the audio thread to take them.
+const KIT_CAPACITY: usize = 32;
 
 /// What a player plays, and how.
 pub struct Setup<'a> {
@@ -24,23 +24,29 @@ pub struct Setup<'a> {
     pub sample_rate: u32,
     /// Seed of all randomness.
     pub seed: u64,
-    /// The sound that every channel starts with.
-    pub patch: &'a Patch,
-    /// The sounds that program changes choose from.
-    pub programs: &'a [Patch],
+    /// What every channel starts with that is not among `channels`.
+    pub kit: &'a Arc<Kit>,
+    /// What single channels, 0–15, start with; the last of several for one channel counts.
+    pub channels: &'a [(u8, Arc<Kit>)],
+    /// What program changes choose from.
+    pub programs: &'a [Arc<Kit>],
     /// The pitches of the keys, on all channels.
     pub tuning: &'a Tuning,
     /// Played from the first frame on.
     pub song: Option<Song>,
 }
 
-/// Sends patches to a player.
-pub struct PatchSender(Producer<(u8, Patch)>);
+/// Sends kits to a player, and frees them when it has let go of them.
+pub struct KitSender {
+    queue: Producer<(u8, Arc<Kit>)>,
+    shelf: Shelf,
+}
 
-impl PatchSender {
-    /// Plays `patch` on a channel from its next note on; false if too many patches wait already.
-    pub fn send(&mut self, channel: u8, patch: &Patch) -> bool {
-        self.0.push((channel, patch.clone())).is_ok()
+impl KitSender {
+    /// Plays `kit` on a channel from its next note on; false if too many kits wait already.
+    pub fn send(&mut self, channel: u8, kit: &Arc<Kit>) -> bool {
+        self.shelf.keep(kit);
+        self.queue.push((channel, kit.clone())).is_ok()
     }
 }
 
@@ -51,7 +57,7 @@ pub struct Player {
     programs: usize,
     song: Option<SongCursor<Song>>,
     inputs: LiveInputs,
-    patches: Consumer<(u8, Patch)>,
+    kits: Consumer<(u8, Arc<Kit>)>,
     clock: BlockClock,
     events: Vec<Event>,
     left: Vec<f32>,
@@ -62,16 +68,22 @@ pub struct Player {
     /// Frames since the song was over.
     tail: u64,
     ended: bool,
+    /// Keeps the kits that have been sent until the ensemble is gone: fields are dropped in their order.
+    _shelf: Shelf,
 }
 
 impl Player {
-    /// A player and what sends it patches. Allocates.
-    pub fn new(setup: Setup, inputs: LiveInputs, tap: Option<Tap>, status: Arc<Status>) -> (Self, PatchSender) {
+    /// A player and what sends it kits. Allocates.
+    pub fn new(setup: Setup, inputs: LiveInputs, tap: Option<Tap>, status: Arc<Status>) -> (Self, KitSender) {
         let sample_rate = f64::from(setup.sample_rate);
         let song = setup.song.map(|song| SongCursor::new(song, sample_rate));
         let densest = song.as_ref().map_or(0, |song| song.densest_block(MAX_BLOCK));
-        let (sender, patches) = RingBuffer::new(PATCH_CAPACITY);
-        let mut ensemble = Ensemble::new(sample_rate, setup.seed, setup.patch, setup.programs);
+        let (queue, kits) = RingBuffer::new(KIT_CAPACITY);
+        let shelf = Shelf::default();
+        let ensemble = Ensemble::of_kits(sample_rate, setup.seed, setup.kit, setup.programs.to_vec());
+        let channels = setup.channels.iter();
+        let mut ensemble = channels.fold(ensemble, |ensemble, (channel, kit)| ensemble.with_kit(*channel, kit));
+        ensemble.reserve(KEYS);
         ensemble.set_tuning(setup.tuning);
         let player = Self {
             ensemble,
@@ -80,7 +92,7 @@ impl Player {
             song,
             events: Vec::with_capacity(densest + inputs.capacity()),
             inputs,
-            patches,
+            kits,
             clock: BlockClock::new(sample_rate),
             left: vec![0.0; MAX_BLOCK],
             right: vec![0.0; MAX_BLOCK],
@@ -89,8 +101,9 @@ impl Player {
             status,
             tail: 0,
             ended: false,
+            _shelf: shelf.clone(),
         };
-        (player, PatchSender(sender))
+        (player, KitSender { queue, shelf })
     }
 
     /// Frames per second.
@@ -103,8 +116,8 @@ impl Player {
         let channels = channels.max(1);
         let frames = out.len() / channels;
         self.clock.begin(moment, frames as u32);
-        while let Ok((channel, patch)) = self.patches.pop() {
-            self.ensemble.set_patch(channel, &patch);
+        while let Ok((channel, kit)) = self.kits.pop() {
+            self.ensemble.set_kit(channel, &kit);
         }
         if self.status.is_song_halted()
             && let Some(song) = &mut self.song
@@ -153,19 +166,27 @@ mod tests {
     use super::*;
     use crate::engine::EventKind;
     use crate::params::Param;
+    use crate::patch::Patch;
     use crate::realtime::live::LiveSender;
     use crate::render::{Job, Options, Tail};
     use std::time::{Duration, Instant};
 
     const SETTINGS: (u32, u64) = (44_100, 7);
 
-    fn player(song: Option<Song>, patch: &Patch) -> (Player, [LiveSender; 1], PatchSender, Arc<Status>) {
+    fn player(song: Option<Song>, patch: &Patch) -> (Player, [LiveSender; 1], KitSender, Arc<Status>) {
         let (senders, inputs) = LiveInputs::new();
         let status = Arc::new(Status::default());
-        let setup =
-            Setup { sample_rate: SETTINGS.0, seed: SETTINGS.1, patch, programs: &[], tuning: &Tuning::EQUAL, song };
-        let (player, patches) = Player::new(setup, inputs, None, status.clone());
-        (player, senders, patches, status)
+        let setup = Setup {
+            sample_rate: SETTINGS.0,
+            seed: SETTINGS.1,
+            kit: &Kit::of_patch(patch),
+            channels: &[],
+            programs: &[],
+            tuning: &Tuning::EQUAL,
+            song,
+        };
+        let (player, kits) = Player::new(setup, inputs, None, status.clone());
+        (player, senders, kits, status)
     }
 
     fn now() -> Moment {
@@ -181,12 +202,19 @@ mod tests {
         let song = Song::chord(&[60.0, 64.25, 67.0], 0.8, 0.3);
         let options = Options { sample_rate: SETTINGS.0, seed: SETTINGS.1, block: 512, tail: Tail::Auto };
         let mut expected = Vec::new();
-        Job { song: &song, patch: &short(), programs: &[], tuning: &Tuning::EQUAL, options }
-            .render(|left, right| {
-                expected.extend(left.iter().zip(right).flat_map(|(left, right)| [*left, *right]));
-                Ok(())
-            })
-            .unwrap();
+        Job {
+            song: &song,
+            kit: &Kit::of_patch(&short()),
+            channels: &[],
+            programs: &[],
+            tuning: &Tuning::EQUAL,
+            options,
+        }
+        .render(|left, right| {
+            expected.extend(left.iter().zip(right).flat_map(|(left, right)| [*left, *right]));
+            Ok(())
+        })
+        .unwrap();
         for block in [1, 64, 480, 10_000] {
             let (mut player, _, _, status) = player(Some(song.clone()), &short());
             let mut played = Vec::new();
@@ -222,9 +250,9 @@ mod tests {
     }
 
     #[test]
-    fn patches_are_taken_at_the_next_block_and_a_halted_song_ends() {
-        let (mut player, _, mut patches, status) = player(Some(Song::chord(&[60.0], 1.0, 100.0)), &short());
-        assert!(patches.send(0, &Patch::default().with(Param::Gain, -60.0)));
+    fn kits_are_taken_at_the_next_block_and_a_halted_song_ends() {
+        let (mut player, _, mut kits, status) = player(Some(Song::chord(&[60.0], 1.0, 100.0)), &short());
+        assert!(kits.send(0, &Kit::of_patch(&Patch::default().with(Param::Gain, -60.0))));
         let mut out = vec![0_i16; 512];
         player.fill(&mut out, 2, now());
         assert!(out.iter().all(|sample| sample.abs() < 40), "the patch is a quiet one");

@@ -5,9 +5,9 @@ use crate::engine::synth::SAMPLE_RATES;
 use crate::error::{Error, Result};
 use crate::io::Song;
 use crate::io::song;
-use crate::patch::Patch;
-use crate::sound::Tuning;
+use crate::sound::{Kit, Tuning};
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 /// Lengths that a block can have, in frames.
 pub const BLOCKS: RangeInclusive<usize> = 1..=65_536;
@@ -36,15 +36,17 @@ pub struct Options {
     pub tail: Tail,
 }
 
-/// What to render: a song, the sounds that play it, and how.
+/// What to render: a song, the kits that play it, and how.
 #[derive(Clone, Copy, Debug)]
 pub struct Job<'a> {
     /// The events, in order of their times.
     pub song: &'a Song,
-    /// The sound that every channel starts with.
-    pub patch: &'a Patch,
-    /// The sounds that program changes choose from.
-    pub programs: &'a [Patch],
+    /// What every channel starts with that is not among `channels`.
+    pub kit: &'a Arc<Kit>,
+    /// What single channels, 0–15, start with; the last of several for one channel counts.
+    pub channels: &'a [(u8, Arc<Kit>)],
+    /// What program changes choose from.
+    pub programs: &'a [Arc<Kit>],
     /// The pitches of the keys, on all channels.
     pub tuning: &'a Tuning,
     /// How.

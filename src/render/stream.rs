@@ -54,7 +54,11 @@ impl<'a> Stream<'a> {
     fn new(job: &Job<'a>) -> Self {
         let options = &job.options;
         let sample_rate = f64::from(options.sample_rate);
-        let mut ensemble = Ensemble::new(sample_rate, options.seed, job.patch, job.programs).with_chunk(options.block);
+        let ensemble = Ensemble::of_kits(sample_rate, options.seed, job.kit, job.programs.to_vec());
+        let channels = job.channels.iter();
+        let mut ensemble = channels
+            .fold(ensemble, |ensemble, (channel, kit)| ensemble.with_kit(*channel, kit))
+            .with_chunk(options.block);
         ensemble.set_tuning(job.tuning);
         Self {
             ensemble,

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::io::{Song, SongEvent};
 use crate::params::Param;
 use crate::patch::{Mode, ModeTable, Patch};
-use crate::sound::Tuning;
+use crate::sound::{Kit, Tuning};
 
 fn options(sample_rate: u32, block: usize, tail: Tail) -> Options {
     Options { sample_rate, seed: 0, block, tail }
@@ -15,7 +15,7 @@ fn options(sample_rate: u32, block: usize, tail: Tail) -> Options {
 fn render(song: &Song, options: Options) -> (Rendered, Vec<f32>) {
     let patch = Patch::default().with(Param::Decay, 0.2).with(Param::Release, 0.05);
     let mut samples = Vec::new();
-    let job = Job { song, patch: &patch, programs: &[], tuning: &Tuning::EQUAL, options };
+    let job = Job { song, kit: &Kit::of_patch(&patch), channels: &[], programs: &[], tuning: &Tuning::EQUAL, options };
     let rendered = job
         .render(|left, right| {
             assert!(left.len() <= options.block && left.len() == right.len());
@@ -64,12 +64,20 @@ fn options_out_of_range_and_errors_of_the_sink_end_it() {
     let song = Song::chord(&[60.0], 1.0, 0.125);
     let patch = Patch::default();
     for options in [options(0, 64, Tail::None), options(48_000, 0, Tail::None), options(48_000, 65_537, Tail::None)] {
-        let job = Job { song: &song, patch: &patch, programs: &[], tuning: &Tuning::EQUAL, options };
+        let job = Job {
+            song: &song,
+            kit: &Kit::of_patch(&patch),
+            channels: &[],
+            programs: &[],
+            tuning: &Tuning::EQUAL,
+            options,
+        };
         assert!(matches!(job.render(|_, _| Ok(())), Err(Error::Value { .. })));
     }
     let job = Job {
         song: &song,
-        patch: &patch,
+        kit: &Kit::of_patch(&patch),
+        channels: &[],
         programs: &[],
         tuning: &Tuning::EQUAL,
         options: options(48_000, 64, Tail::None),
@@ -102,9 +110,17 @@ fn render_on(threads: u16, block: usize, tail: Tail) -> (Rendered, Vec<u32>) {
     let mut rich = short.clone().with(Param::Choke, 1.0);
     rich.modes = ModeTable::new(&[Mode { strike: 0.5, ..Mode::UNIT }; 5]);
     let programs = [short.clone().with(Param::Choke, 2.0), rich, short.clone().with(Param::Vibrato, 1.0)];
+    let programs = programs.each_ref().map(Kit::of_patch);
     let (song, mut bits) = (dense_song(), Vec::new());
     let options = Options { sample_rate: 48_000, seed: 3, block, tail };
-    let job = Job { song: &song, patch: &short, programs: &programs, tuning: &Tuning::EQUAL, options };
+    let job = Job {
+        song: &song,
+        kit: &Kit::of_patch(&short),
+        channels: &[],
+        programs: &programs,
+        tuning: &Tuning::EQUAL,
+        options,
+    };
     let sink = |left: &[f32], right: &[f32]| {
         bits.extend(left.iter().zip(right).flat_map(|(left, right)| [left.to_bits(), right.to_bits()]));
         Ok(())

@@ -2,18 +2,20 @@
 
 pub mod bodies;
 pub mod kit;
+mod shelf;
 pub mod tuning;
 
-pub use kit::Kit;
+pub use kit::{Kit, Pad};
+pub use shelf::Shelf;
 pub use tuning::Tuning;
 
 use crate::patch::Patch;
 
 /// A patch made ready to play: never changed afterwards, and shared by counted handles (`Arc<Sound>`).
 ///
-/// A voice keeps the handle of the sound that it was started with, so that nothing that happens to the instrument later
-/// changes its modes or routes. Made and freed off the audio thread: whoever makes a sound keeps a handle for as long as
-/// an engine may have one.
+/// An engine plays sounds as parts of a [`Kit`]. What changes modes, routes, tuning or pads is another sound or kit: notes
+/// that ring keep the ones that they were struck with. Values alone move within the engine, by events. Made and freed off
+/// the audio thread: see [`Shelf`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sound {
     patch: Patch,

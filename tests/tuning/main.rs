@@ -10,7 +10,7 @@ use sprung::io::{Song, SongEvent};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::render::{Job, Options, Tail};
-use sprung::sound::Tuning;
+use sprung::sound::{Kit, Tuning};
 use std::fs;
 use std::path::Path;
 
@@ -35,7 +35,7 @@ fn render(tuning: &Tuning, patch: &Patch, keys: &[u8], seconds: f64) -> Vec<f32>
     let song = Song { events, seconds };
     let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 4096, tail: Tail::None };
     let mut samples = Vec::new();
-    let job = Job { song: &song, patch, programs: &[], tuning, options };
+    let job = Job { song: &song, kit: &Kit::of_patch(patch), channels: &[], programs: &[], tuning, options };
     job.render(|left, _| {
         samples.extend(left);
         Ok(())

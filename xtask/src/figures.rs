@@ -3,7 +3,6 @@
 use crate::shell::root;
 use sprung::analysis::figure::{Render, waveform_and_spectrogram};
 use sprung::io::Song;
-use sprung::patch::Patch;
 use sprung::preset::Preset;
 use sprung::render::{Job, Options, Tail};
 use sprung::sound::Tuning;
@@ -18,9 +17,10 @@ fn draw() -> sprung::Result<()> {
     let origin = "assets/midi/suite.mid";
     let file = File::open(root().join(origin)).map_err(|error| sprung::Error::io(origin, error))?;
     let song = Song::read(file, origin)?;
-    let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch.clone()).collect();
+    let programs: Vec<_> = Preset::factory().iter().map(Preset::kit).collect();
     let options = Options { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::Auto };
-    let job = Job { song: &song, patch: &programs[0], programs: &programs, tuning: &Tuning::EQUAL, options };
+    let job =
+        Job { song: &song, kit: &programs[0], channels: &[], programs: &programs, tuning: &Tuning::EQUAL, options };
     let (mut left, mut right) = (Vec::new(), Vec::new());
     job.render(|block_left, block_right| {
         left.extend(block_left);

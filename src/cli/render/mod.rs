@@ -9,8 +9,8 @@ use super::{completion, interrupt, quantity};
 use clap::ArgGroup;
 use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
 use sprung::params::Param;
-use sprung::patch::Patch;
 use sprung::render::{BLOCKS, Delivery, Job, Level, Options, THREADS, Tail, on_threads, to_wav};
+use sprung::sound::Kit;
 use sprung::units::parse_key;
 use sprung::{Error, Result};
 use std::io::IsTerminal;
@@ -22,6 +22,7 @@ Examples:
   sprung render song.mid --preset mine.toml --normalize lufs=-14 --bits 16 --dither -o song.wav
   sprung render --note C2 --preset Kick --tail none --length 0.5 -o kick.wav
   sprung render --note C4,E4,67.5,440Hz --set decay=\"3 s\" --set exciter=pluck -o chord.wav
+  sprung render song.mid --preset Marimba --channel 10=drums.toml --ignore-programs -o song.wav
   sprung render song.mid --scale mine.scl --keymap mine.kbm -o song.wav
   sprung render song.mid -o - | flac - -o song.flac";
 
@@ -97,18 +98,18 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     target.check_wav()?;
     let mut inputs = Inputs::default();
-    let Sounds { preset, programs, tuning } = args.sound.load(&mut inputs)?;
-    let patch = preset.patch;
+    let sounds = args.sound.load(&mut inputs)?;
     let song = match &args.song {
         Some(path) => args.reading.read(path, &mut inputs)?,
-        None => chord(args, &patch)?,
+        None => chord(args, &sounds.kit)?,
     };
-    args.reading.warn_of_programs(&song, args.sound.asked_for(&patch), &programs);
-    args.sound.tuning.warn_of_unmapped(&song, &tuning);
+    args.reading.warn_of_programs(&song, args.sound.asked_for(&sounds), &sounds.programs);
+    args.sound.tuning.warn_of_unmapped(&song, &sounds.tuning);
 
     let options =
         Options { sample_rate: args.rate, seed: args.sound.seed, block: args.block as usize, tail: args.tail };
-    let job = Job { song: &song, patch: &patch, programs: args.reading.programs(&programs), tuning: &tuning, options };
+    let Sounds { kit, channels, programs, tuning } = &sounds;
+    let job = Job { song: &song, kit, channels, programs: args.reading.programs(programs), tuning, options };
     let delivery = Delivery {
         samples: args.bits,
         dither: args.dither,
@@ -131,10 +132,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
     report::tell(&report, &target, args.json)
 }
 
-fn chord(args: &Args, patch: &Patch) -> Result<Song> {
+fn chord(args: &Args, kit: &Kit) -> Result<Song> {
     args.sound.tuning.check_notes(&args.note)?;
-    // Frequencies are placed by the patch's own tuning, so that 440 Hz is 440 Hz in every patch.
-    let a4_hz = f64::from(patch.get(Param::Tuning));
+    // Frequencies are placed by the sound's own tuning, so that 440 Hz is 440 Hz in every sound.
+    let a4_hz = f64::from(kit.values().get(Param::Tuning));
     let keys: std::result::Result<Vec<f64>, String> = args.note.iter().map(|note| parse_key(note, a4_hz)).collect();
     let keys = keys.map_err(|message| Error::value("--note", message))?;
     Ok(Song::chord(&keys, f32::from(args.velocity) / 127.0, args.length))

@@ -11,7 +11,7 @@ mod note;
 
 pub(crate) use bus::Bus;
 pub(crate) use modulators::{Modulators, Positions, Settings, SharedLfos, Struck};
-pub(crate) use note::{NoteModulation, modulated};
+pub(crate) use note::{NoteModulation, modulated, moved};
 
 /// Quarter notes that one round takes, in the order of the choices of the parameters that set a note value; 0 for one
 /// that keeps its own time.

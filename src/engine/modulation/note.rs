@@ -1,12 +1,15 @@
 //! Parameters that a host moves away from their values: for the whole instrument, and for single notes.
 
 use crate::dsp::ramp::Ramp;
-use crate::params::{Change, PARAM_COUNT, PARAMS, Param};
-use crate::patch::Patch;
+use crate::params::{Change, PARAM_COUNT, PARAMS, Param, Values};
 
 /// The value of a parameter, moved by an offset in knob travel.
-pub(crate) fn modulated(patch: &Patch, param: Param, offset: f32) -> f32 {
-    let value = patch.get(param);
+pub(crate) fn modulated(values: &Values, param: Param, offset: f32) -> f32 {
+    moved(param, values.get(param), offset)
+}
+
+/// A value of a parameter, moved by an offset in knob travel.
+pub(crate) fn moved(param: Param, value: f32, offset: f32) -> f32 {
     if offset == 0.0 {
         return value;
     }
@@ -61,13 +64,13 @@ impl NoteModulation {
         self.moved.iter_mut().flatten().for_each(|moved| moved.offset = None);
     }
 
-    /// Heads for what the offsets make of the values of `base`, or for those of `patch`, the instrument as it is
+    /// Heads for what the offsets make of the values of `base`, or for those of `played`, the instrument as it is
     /// modulated; at once if the note has not sounded yet.
-    pub(crate) fn aim(&mut self, base: &Patch, patch: &Patch, sample_rate: f64, at_once: bool) {
+    pub(crate) fn aim(&mut self, base: &Values, played: &Values, sample_rate: f64, at_once: bool) {
         for moved in self.moved.iter_mut().flatten() {
             let target = match moved.offset {
                 Some(offset) => modulated(base, moved.param, offset),
-                None => patch.get(moved.param),
+                None => played.get(moved.param),
             };
             if at_once {
                 moved.value = Ramp::at_rest(target);
@@ -91,6 +94,7 @@ impl NoteModulation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::patch::Patch;
 
     #[test]
     fn an_offset_is_knob_travel_from_the_value_and_ends_at_the_range() {
@@ -102,7 +106,7 @@ mod tests {
             (Param::Decay, -1.0, 0.005),
             (Param::Mode, 0.5, 1.0),
         ] {
-            assert_eq!(modulated(&patch, param, offset), expected, "{param:?} {offset}");
+            assert_eq!(modulated(&patch.values, param, offset), expected, "{param:?} {offset}");
         }
     }
 
@@ -112,15 +116,15 @@ mod tests {
         let mut note = NoteModulation::NONE;
         assert!(note.is_none());
         note.set(Param::Gain, 0.25, -24.0);
-        note.aim(&patch, &patch, 48_000.0, false);
+        note.aim(&patch.values, &patch.values, 48_000.0, false);
         assert_eq!((note.after(Param::Gain, 480), note.after(Param::Pan, 480)), (Some(-15.0), None));
         note.advance(960);
         assert_eq!(note.after(Param::Gain, 0), Some(-6.0));
         patch.set(Param::Gain, -42.0);
-        note.aim(&patch, &patch, 48_000.0, true);
+        note.aim(&patch.values, &patch.values, 48_000.0, true);
         assert_eq!(note.after(Param::Gain, 0), Some(-24.0));
         note.let_go();
-        note.aim(&patch, &Patch::default(), 48_000.0, true);
+        note.aim(&patch.values, &Values::default(), 48_000.0, true);
         assert_eq!(note.after(Param::Gain, 0), Some(Param::Gain.info().default));
     }
 

@@ -10,7 +10,7 @@ const MIDDLE_C: f64 = 60.0;
 /// What a patch says of it. A voice keeps it for as long as it sounds, since the instrument may have another patch by
 /// the time that a held key takes the voice back.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct KeyTracking {
+pub(crate) struct KeyTracking {
     /// Semitones per semitone of the tuned key.
     pitch: f64,
     /// Octaves of T60 per octave of pitch.
@@ -26,7 +26,7 @@ impl KeyTracking {
     pub(super) const NONE: Self = Self { pitch: 1.0, decay: 0.0, a4_hz: 440.0, glide_seconds: 0.0 };
 
     /// That of a patch with these values.
-    pub(super) fn new(value: impl Fn(Param) -> f64) -> Self {
+    pub(crate) fn new(value: impl Fn(Param) -> f64) -> Self {
         Self {
             pitch: value(Param::KeyTrack) * 0.01,
             decay: value(Param::DecayKey) * 0.01,
@@ -36,7 +36,7 @@ impl KeyTracking {
     }
 
     /// The pitch of a note in semitones on the MIDI scale.
-    pub(super) fn pitch(&self, note: &Note) -> f64 {
+    pub(crate) fn pitch(&self, note: &Note) -> f64 {
         MIDDLE_C + (note.pitch.semitones(self.a4_hz) + f64::from(note.detune) - MIDDLE_C) * self.pitch
     }
 

@@ -1,16 +1,17 @@
 //! One note: an exciter, a bank of modes, and what moves their pitch, decay and gain.
 
-mod key_tracking;
+pub(super) mod key_tracking;
 mod strike;
 mod tail;
 
 use super::channel::Wheels;
-use super::controls::{Controls, Smoother};
+use super::controls::Controls;
 use super::damping::Damping;
 use super::event::Expression;
 use super::expression::Expressions;
 use super::fader::Fader;
-use super::modulation::{Bus, Modulators, NoteModulation, Positions, Settings, SharedLfos};
+use super::instrument::Instrument;
+use super::modulation::{Modulators, NoteModulation};
 use super::note::Note;
 use super::voice_manager::Voice;
 use crate::dsp::bank::{Bank, Law};
@@ -18,68 +19,10 @@ use crate::dsp::exciter::{Drive, Exciter};
 use crate::dsp::mode_bank::{MAX_MODES, ModeSetup};
 use crate::dsp::pitch::{Glide, SweepEnvelope};
 use crate::params::Param;
-use crate::patch::Patch;
 use crate::units::ratio_from_semitones;
 use key_tracking::KeyTracking;
 use libm::{pow, sin};
 use std::f64::consts::TAU;
-
-/// What a voice reads of the instrument when a note starts.
-pub(crate) struct Instrument {
-    /// The patch as it was set.
-    pub(crate) patch: Patch,
-    /// With its parameters where modulation has moved them: what is played.
-    pub(crate) modulated: Patch,
-    /// Counts the patches: a voice that was started by another cannot read this one.
-    pub(crate) patch_serial: u32,
-    /// Counts the bodies: a voice keeps the one that it was started with.
-    pub(crate) body_serial: u32,
-    pub(crate) sample_rate: f64,
-    pub(crate) seed: u64,
-    /// Live parameters at this frame.
-    pub(crate) controls: Controls,
-    /// Pitch of the note before, in semitones, to glide from.
-    pub(crate) last_pitch: Option<f64>,
-    /// The routes of the patch.
-    pub(crate) bus: Bus,
-    /// What modulators follow.
-    pub(crate) settings: Settings,
-    /// Oscillators that all voices can follow, at the last control tick.
-    pub(crate) shared: SharedLfos,
-    /// Positions of the controllers on the channel of the next note.
-    pub(crate) positions: Positions,
-}
-
-impl Instrument {
-    /// An instrument with its first patch.
-    pub(crate) fn new(patch: Patch, sample_rate: f64, seed: u64, controls: Controls) -> Self {
-        let (patch_serial, body_serial) = (0, 0);
-        Self {
-            modulated: patch.clone(),
-            patch_serial,
-            body_serial,
-            sample_rate,
-            seed,
-            controls,
-            last_pitch: None,
-            bus: Bus::new(&patch.routes),
-            patch,
-            settings: Settings::STILL,
-            shared: SharedLfos::new(seed),
-            positions: Positions::default(),
-        }
-    }
-
-    /// The value of a parameter without the routes' part.
-    fn value(&self, param: Param) -> f64 {
-        self.modulated.get(param).into()
-    }
-
-    /// The pitch of a note in semitones on the MIDI scale, tracking included.
-    pub(crate) fn pitch(&self, note: &Note) -> f64 {
-        KeyTracking::new(|param| self.value(param)).pitch(note)
-    }
-}
 
 /// A voice is over when its modes could not add up to more than this: −120 dBFS.
 const SILENCE: f64 = 1e-6;
@@ -130,7 +73,6 @@ pub(crate) struct SynthVoice {
     vibrato_delay: f64,
 
     controls: Controls,
-    patch: u32,
     key: u8,
     key_tracking: KeyTracking,
     key_scale: f64,
@@ -187,7 +129,6 @@ impl SynthVoice {
             vibrato_phase: 0.0,
             vibrato_delay: 0.0,
             controls,
-            patch: 0,
             key: 0,
             key_tracking: KeyTracking::NONE,
             key_scale: 1.0,
@@ -238,30 +179,23 @@ impl SynthVoice {
     }
 
     /// Sets out for where pitch, decay and gain are to be in `frames` frames: at the next control tick.
-    /// `controls` are what `smoother` has for the instrument at that time, or none for a voice of an earlier patch,
-    /// which keeps the last it had.
-    pub(crate) fn control(
-        &mut self,
-        instrument: &Instrument,
-        controls: Option<&Controls>,
-        smoother: &Smoother,
-        wheels: Wheels,
-        frames: usize,
-    ) {
+    /// There is no instrument for a voice of an earlier patch, which keeps the last controls it had.
+    pub(crate) fn control(&mut self, instrument: Option<&Instrument>, wheels: Wheels, frames: usize) {
         let passed = self.seconds(self.age - self.controlled_age);
         self.vibrato_phase += self.controls.vibrato_rate * passed;
         self.vibrato_phase -= libm::floor(self.vibrato_phase);
         self.controlled_age = self.age;
-        if let Some(controls) = controls {
+        if let Some(Instrument { smoother, next_controls, .. }) = instrument {
             let own = !self.modulation.is_none();
-            self.controls = if own { smoother.modulated(&self.modulation, frames as u32) } else { *controls };
+            self.controls = if own { smoother.modulated(&self.modulation, frames as u32) } else { *next_controls };
         }
         if !self.modulators.are_idle() {
             self.modulators.advance(passed);
             if let Some(velocity) = self.let_go.take() {
                 self.modulators.release(velocity);
             }
-            if controls.is_some() {
+            if let Some(instrument) = instrument {
+                let smoother = &instrument.smoother;
                 let (settings, bus) = (&instrument.settings, self.modulators.bus());
                 let own = (!self.modulation.is_none())
                     .then(|| smoother.own_settings(&self.modulation, frames as u32, settings, bus));
@@ -374,7 +308,13 @@ impl SynthVoice {
     }
 
     /// Takes in what the note is told; `brightness` is the channel's.
-    pub(crate) fn express(&mut self, instrument: &Instrument, expression: Expression, value: f32, brightness: f32) {
+    pub(crate) fn express(
+        &mut self,
+        instrument: Option<&Instrument>,
+        expression: Expression,
+        value: f32,
+        brightness: f32,
+    ) {
         self.expressions.set(expression, value);
         if expression == Expression::Brightness {
             self.shade(instrument, brightness);
@@ -394,15 +334,13 @@ impl SynthVoice {
 
     /// Takes the note's own offsets from the instrument's present values.
     pub(crate) fn follow(&mut self, instrument: &Instrument) {
-        self.modulation.aim(&instrument.patch, &instrument.modulated, self.sample_rate, self.fresh);
+        self.modulation.aim(&instrument.values, &instrument.modulated, self.sample_rate, self.fresh);
     }
 
     /// Takes over the brightness of the note and of its channel: into a strike that has yet to begin, and into the
     /// decay of the modes.
-    pub(crate) fn shade(&mut self, instrument: &Instrument, channel: f32) {
-        if self.patch != instrument.patch_serial {
-            return;
-        }
+    pub(crate) fn shade(&mut self, instrument: Option<&Instrument>, channel: f32) {
+        let Some(instrument) = instrument else { return };
         self.brightness = f64::from((self.expressions.brightness + channel).clamp(-0.5, 0.5));
         if self.age == 0 {
             self.set_excitation_gains(instrument);
@@ -417,11 +355,11 @@ impl Voice for SynthVoice {
 
     fn start(&mut self, instrument: &Instrument, note: &Note) {
         *self = Self {
-            patch: note.patch,
             key: note.key,
             brightness: note.brightness.into(),
             ..Self::new(instrument.sample_rate, instrument.controls)
         };
+        self.expressions.begin(note.gain, note.pan);
         if !instrument.bus.is_empty() {
             self.modulators.load(&instrument.bus);
             self.strike_modulators(instrument, note, true);
@@ -437,7 +375,7 @@ impl Voice for SynthVoice {
         }
         let width = self.value(instrument, Param::Width) * 0.01;
         let tuning = self.tuning(frequency);
-        let setup = tuning.zip(instrument.modulated.modes.as_slice()).map(|((frequency, t60), mode)| {
+        let setup = tuning.zip(instrument.sound.patch().modes.as_slice()).map(|((frequency, t60), mode)| {
             let (left, right) = super::gain::pan_gains((f64::from(mode.pan) * width * 0.5 + 0.5) as f32);
             ModeSetup { frequency, t60, left, right }
         });

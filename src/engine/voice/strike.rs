@@ -1,12 +1,13 @@
 //! What a note makes of its patch: how its modes are tuned, damped and moved.
 
+use super::SynthVoice;
 use super::key_tracking::KeyTracking;
-use super::{Instrument, SynthVoice};
 use crate::dsp::mode_bank::ExcitationGains;
 use crate::dsp::pitch::{Glide, SweepEnvelope};
 use crate::dsp::random;
 use crate::engine::controls::Controls;
 use crate::engine::damping::Damping;
+use crate::engine::instrument::Instrument;
 use crate::engine::modulation::Struck;
 use crate::engine::note::Note;
 use crate::params::Param;
@@ -54,7 +55,7 @@ impl SynthVoice {
     /// Computes each mode's excitation gains. Returns whether noise is among them.
     pub(super) fn set_excitation_gains(&mut self, instrument: &Instrument) -> bool {
         let value = |param| self.value(instrument, param);
-        let modes = instrument.modulated.modes.as_slice();
+        let modes = instrument.sound.patch().modes.as_slice();
         let tilt = (value(Param::Tilt) + self.brightness * (2.0 * BRIGHTNESS_TILT)) / (20.0 / LOG2_10);
         let (noise_gain, position) = (gain_from_db(value(Param::NoiseLevel)), value(Param::Position));
         let tilted = |mode: &crate::patch::Mode| f64::from(mode.level) * pow(f64::from(mode.ratio), tilt);
@@ -121,7 +122,7 @@ impl SynthVoice {
     pub(super) fn read_body(&mut self, instrument: &Instrument) {
         self.key_tracking = KeyTracking::new(|param| self.value(instrument, param));
         let stretch = self.value(instrument, Param::Stretch);
-        for (ratio, mode) in self.ratios.iter_mut().zip(instrument.modulated.modes.as_slice()) {
+        for (ratio, mode) in self.ratios.iter_mut().zip(instrument.sound.patch().modes.as_slice()) {
             *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
         }
         self.scale_decay(instrument);
@@ -140,7 +141,7 @@ impl SynthVoice {
     pub(super) fn scale_decay(&mut self, instrument: &Instrument) {
         let tilt = -self.value(instrument, Param::DecayTilt);
         let dullness = 2.0 * self.brightness.min(0.0);
-        for (scale, mode) in self.t60_scale.iter_mut().zip(instrument.modulated.modes.as_slice()) {
+        for (scale, mode) in self.t60_scale.iter_mut().zip(instrument.sound.patch().modes.as_slice()) {
             *scale = f64::from(mode.decay) * pow(mode.ratio.into(), tilt);
             if dullness < 0.0 && mode.ratio > 1.0 {
                 *scale *= pow(mode.ratio.into(), dullness);
@@ -160,7 +161,7 @@ impl SynthVoice {
     fn take_over(&mut self, note: &Note) {
         // A MIDI controller that has not let go of the key still presses it.
         let pressure = if note.key == self.key && note.id == -1 { self.expressions.pressure } else { 0.0 };
-        self.expressions.clear();
+        self.expressions.begin(note.gain, note.pan);
         self.expressions.pressure = pressure;
         self.modulation.let_go();
         self.key = note.key;

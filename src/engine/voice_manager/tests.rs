@@ -92,6 +92,8 @@ fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
             patch,
             body: patch,
             choke,
+            gain: 1.0,
+            pan: 0.0,
         };
         if let OnPatch(_, patch) | OnChokePatch(_, _, patch) | Patch(patch) = *action {
             instrument.patch = patch;

@@ -4,10 +4,10 @@ use super::desk::Desk;
 use super::keyboard::Keyboard;
 use crate::engine::telemetry::Load;
 use crate::engine::{EventKind, Snapshot};
-use crate::params::{PARAMS, ParamInfo, Unit};
-use crate::patch::Patch;
+use crate::params::{PARAMS, ParamInfo, Unit, Values};
 use crate::preset::Preset;
-use crate::realtime::{PatchSender, Status};
+use crate::realtime::{KitSender, Status};
+use crate::sound::Kit;
 use crate::text::printable;
 use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::sync::Arc;
@@ -36,21 +36,29 @@ pub(super) enum Typing {
     Value(String),
 }
 
-/// The sound of a channel.
-pub(super) struct Sound {
+/// What a channel plays, and its parameters.
+pub(super) struct Playing {
     pub(super) name: String,
-    pub(super) patch: Patch,
+    pub(super) kit: Arc<Kit>,
+    pub(super) values: Values,
     program: Option<u8>,
+}
+
+impl Playing {
+    fn new(kit: &Arc<Kit>, program: Option<u8>) -> Self {
+        // What comes from files must not steer the terminal.
+        Self { name: printable(kit.name()).into_owned(), kit: kit.clone(), values: *kit.values(), program }
+    }
 }
 
 pub(super) struct App {
     pub(super) device: String,
     pub(super) status: Arc<Status>,
     pub(super) keyboard: Keyboard,
-    patches: PatchSender,
+    kits: KitSender,
     /// Those of the factory, as they were set on the command line.
-    programs: Vec<Patch>,
-    pub(super) sounds: Vec<Sound>,
+    programs: Vec<Arc<Kit>>,
+    playing: Vec<Playing>,
     pub(super) channel: u8,
     pub(super) list: List,
     pub(super) typing: Typing,
@@ -67,17 +75,18 @@ pub(super) struct App {
 
 impl App {
     pub(super) fn new(desk: Desk) -> Self {
-        let Desk { device, status, keys, patches, name, patch, programs } = desk;
-        // What comes from files and devices must not steer the terminal.
-        let (device, name) = (printable(&device).into_owned(), printable(&name).into_owned());
-        let sound = |_| Sound { name: name.clone(), patch: patch.clone(), program: None };
+        let Desk { device, status, keys, kits, kit, channels, programs } = desk;
+        // Nor must what comes from devices.
+        let device = printable(&device).into_owned();
+        let mut playing: Vec<Playing> = (0..16).map(|_| Playing::new(&kit, None)).collect();
+        channels.iter().for_each(|(channel, kit)| playing[usize::from(*channel)] = Playing::new(kit, None));
         Self {
             device,
             status,
             keyboard: Keyboard::new(keys),
-            patches,
+            kits,
             programs,
-            sounds: (0..16).map(sound).collect(),
+            playing,
             channel: 0,
             list: List::Presets,
             typing: Typing::Nothing,
@@ -102,8 +111,8 @@ impl App {
         self.message.as_ref().map(|(message, _)| message.as_str())
     }
 
-    pub(super) fn sound(&self) -> &Sound {
-        &self.sounds[usize::from(self.channel)]
+    pub(super) fn playing(&self) -> &Playing {
+        &self.playing[usize::from(self.channel)]
     }
 
     pub(super) fn search(&self) -> &str {
@@ -152,13 +161,12 @@ impl App {
         for (shown, peak) in self.peaks.iter_mut().zip(telemetry.take_peaks()) {
             *shown = peak.max(*shown * fall);
         }
-        for (channel, sound) in (0..).zip(&mut self.sounds) {
+        for (channel, playing) in (0..).zip(&mut self.playing) {
             let program = telemetry.program(channel);
-            if let Some(number) = program.filter(|_| program != sound.program)
-                && let (Some(preset), Some(patch)) =
-                    (Preset::factory().get(usize::from(number)), self.programs.get(usize::from(number)))
+            if let Some(number) = program.filter(|_| program != playing.program)
+                && let Some(kit) = self.programs.get(usize::from(number))
             {
-                *sound = Sound { name: preset.name.clone(), patch: patch.clone(), program };
+                *playing = Playing::new(kit, program);
             }
         }
     }
@@ -247,12 +255,13 @@ impl App {
     }
 
     fn load_preset(&mut self) {
-        let Some((number, preset)) = self.selected().and_then(|row| self.presets().get(row).copied()) else { return };
-        let patch = self.programs.get(number).unwrap_or(&preset.patch).clone();
-        if self.patches.send(self.channel, &patch) {
-            let sound = &mut self.sounds[usize::from(self.channel)];
-            (sound.name, sound.patch) = (preset.name.clone(), patch);
-            self.tell(format!("channel {} plays ‘{}’", self.channel + 1, preset.name));
+        let Some((number, _)) = self.selected().and_then(|row| self.presets().get(row).copied()) else { return };
+        let Some(kit) = self.programs.get(number) else { return };
+        if self.kits.send(self.channel, kit) {
+            let playing = &mut self.playing[usize::from(self.channel)];
+            *playing = Playing::new(kit, playing.program);
+            let told = format!("channel {} plays ‘{}’", self.channel + 1, playing.name);
+            self.tell(told);
         }
     }
 
@@ -264,7 +273,7 @@ impl App {
     /// Turns the knob of the chosen parameter: by a step, or a fiftieth or five-hundredth of its way.
     fn nudge(&mut self, direction: f64, fine: bool) {
         let Some(info) = self.parameter() else { return };
-        let value = self.sound().patch.get(info.param);
+        let value = self.playing().values.get(info.param);
         let turned = match info.unit {
             Unit::Choice | Unit::Count => value + direction as f32,
             _ => info.denormalise(info.normalise(value) + direction * if fine { 0.002 } else { 0.02 }),
@@ -288,7 +297,7 @@ impl App {
 
     fn set(&mut self, info: &ParamInfo, value: f32) {
         let value = info.clamp(value);
-        self.sounds[usize::from(self.channel)].patch.set(info.param, value);
+        self.playing[usize::from(self.channel)].values.set(info.param, value);
         self.keyboard.send(self.channel, EventKind::Param { param: info.param, value });
     }
 }

@@ -1,7 +1,7 @@
 //! What the view shows and what it plays on.
 
-use crate::patch::Patch;
-use crate::realtime::{LiveSender, PatchSender, Status};
+use crate::realtime::{KitSender, LiveSender, Status};
+use crate::sound::Kit;
 use std::sync::Arc;
 
 /// What the view shows and what it plays on.
@@ -13,11 +13,11 @@ pub struct Desk {
     /// Takes notes and parameters.
     pub keys: LiveSender,
     /// Takes presets.
-    pub patches: PatchSender,
-    /// Name of the sound that every channel starts with.
-    pub name: String,
-    /// That sound.
-    pub patch: Patch,
-    /// The sounds that program changes choose from, in the order of the factory presets.
-    pub programs: Vec<Patch>,
+    pub kits: KitSender,
+    /// What every channel starts with that is not among `channels`.
+    pub kit: Arc<Kit>,
+    /// What single channels, 0–15, start with.
+    pub channels: Vec<(u8, Arc<Kit>)>,
+    /// What program changes choose from, in the order of the factory presets.
+    pub programs: Vec<Arc<Kit>>,
 }

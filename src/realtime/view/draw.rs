@@ -33,7 +33,8 @@ pub(super) fn draw(app: &App, frame: &mut Frame) {
     let block = Block::bordered().title(" Masses ").border_style(Style::new().dark_gray());
     let inside = block.inner(left);
     frame.render_widget(block, left);
-    masses::draw(&app.snapshot, app.sound().patch.modes.as_slice().len(), frame, inside);
+    let modes = app.playing().kit.sounds().iter().map(|sound| sound.patch().modes.as_slice().len()).max();
+    masses::draw(&app.snapshot, modes.unwrap_or(0), frame, inside);
     lists::draw(app, frame, right);
     self::keys(app, frame, keys);
     self::foot(app, frame, foot);
@@ -48,7 +49,7 @@ fn head(app: &App, frame: &mut Frame, area: Rect) {
     let dry = Span::raw(format!("{xruns} xruns"));
     let title = Line::from(vec![
         Span::raw(" Sprung ").bold().reversed(),
-        Span::raw(format!(" {} ", app.sound().name)).yellow().bold(),
+        Span::raw(format!(" {} ", app.playing().name)).yellow().bold(),
         Span::raw(format!("ch {} ", app.channel + 1)),
         Span::raw(&app.device).dark_gray(),
     ]);

@@ -28,7 +28,7 @@ pub(super) fn draw(app: &App, frame: &mut Frame, area: Rect) {
 
 fn presets(app: &App) -> Vec<Line<'static>> {
     let row = |(number, preset): (usize, &'static crate::preset::Preset)| {
-        let mark = if preset.name == app.sound().name { "▸" } else { " " };
+        let mark = if preset.name == app.playing().name { "▸" } else { " " };
         Line::from(vec![
             Span::raw(format!("{mark}{number:3} {}", preset.name)),
             Span::raw(format!("  {}", preset.tags.join(" "))).dark_gray(),
@@ -39,7 +39,7 @@ fn presets(app: &App) -> Vec<Line<'static>> {
 
 fn parameters(app: &App, width: usize) -> Vec<Line<'static>> {
     let row = |(index, info): (usize, &'static crate::params::ParamInfo)| {
-        let current = app.sound().patch.get(info.param);
+        let current = app.playing().values.get(info.param);
         let value = match &app.typing {
             Typing::Value(text) if app.selected() == Some(index) => format!("{text}▏"),
             _ => info.format(current),

@@ -3,7 +3,6 @@
 use super::app::{App, List, Typing};
 use super::{Desk, draw};
 use crate::params::Param;
-use crate::patch::Patch;
 use crate::preset::Preset;
 use crate::realtime::{LiveInputs, Moment, Player, Setup, Status};
 use crate::sound::Tuning;
@@ -29,18 +28,20 @@ impl Stand {
     fn named(device: &str, name: &str) -> Self {
         let ([keys], inputs) = LiveInputs::new();
         let status = Arc::new(Status::default());
-        let programs: Vec<Patch> = Preset::factory().iter().map(|preset| preset.patch.clone()).collect();
-        let patch = programs[0].clone();
+        let programs: Vec<_> = Preset::factory().iter().map(Preset::kit).collect();
+        let kit = Preset { name: name.into(), ..Preset::factory()[0].clone() }.kit();
+        let channels = vec![];
         let setup = Setup {
             sample_rate: 48_000,
             seed: 0,
-            patch: &patch,
+            kit: &kit,
+            channels: &channels,
             programs: &programs,
             tuning: &Tuning::EQUAL,
             song: None,
         };
-        let (player, patches) = Player::new(setup, inputs, None, status.clone());
-        let desk = Desk { device: device.into(), status, keys, patches, name: name.into(), patch, programs };
+        let (player, kits) = Player::new(setup, inputs, None, status.clone());
+        let desk = Desk { device: device.into(), status, keys, kits, kit, channels, programs };
         Self { app: App::new(desk), player, epoch: Instant::now(), played: Duration::ZERO }
     }
 
@@ -120,15 +121,15 @@ fn a_preset_is_found_and_loaded() {
     assert_eq!(stand.app.presets()[0].1.name, "Kick");
     stand.press(KeyCode::Enter);
     stand.press(KeyCode::Enter);
-    assert_eq!(stand.app.sound().name, "Kick");
-    assert_eq!(stand.app.sound().patch, Preset::find("Kick").unwrap().patch);
+    assert_eq!(stand.app.playing().name, "Kick");
+    assert_eq!(stand.app.playing().kit, Preset::find("Kick").unwrap().kit());
     assert!(stand.screen(80, 24).contains("channel 1 plays ‘Kick’"));
     stand.press(KeyCode::Esc);
     assert_eq!(stand.app.presets().len(), Preset::factory().len());
     stand.type_text("/no such preset");
     stand.press(KeyCode::Enter);
     stand.press(KeyCode::Enter);
-    assert_eq!((stand.app.selected(), stand.app.sound().name.as_str()), (None, "Kick"));
+    assert_eq!((stand.app.selected(), stand.app.playing().name.as_str()), (None, "Kick"));
 }
 
 #[test]
@@ -138,7 +139,7 @@ fn a_parameter_is_turned_typed_and_reset() {
     assert_eq!(stand.app.list, List::Parameters);
     stand.type_text("/release");
     stand.press(KeyCode::Enter);
-    let value = |stand: &Stand| stand.app.sound().patch.get(Param::Release);
+    let value = |stand: &Stand| stand.app.playing().values.get(Param::Release);
     let default = value(&stand);
     stand.press(KeyCode::Right);
     assert!(value(&stand) > default);

@@ -1,0 +1,256 @@
+//! The TOML of a kit file, read key by key so that every error names its place and what would be right.
+
+use super::about::{About, about_to_toml, label, toml_string};
+use super::file;
+use super::kit::{KIT_VERSION, KitPreset, Playable};
+use super::value::{check_keys, param_value, table, unexpected};
+use super::{MAX_FILE_SIZE, Preset};
+use crate::error::Error;
+use crate::params::Param;
+use crate::sound::Pad;
+use crate::units::{key_from_note_name, note_name, parse_key};
+use std::fmt::Write;
+use toml::{Table, Value};
+
+const KEYS: [&str; 7] = ["kit", "name", "author", "tags", "comment", "voices", "keys"];
+const PAD_KEYS: [&str; 7] = ["key", "name", "sound", "pitch", "gain", "pan", "choke"];
+
+/// What finds the presets that a kit names.
+type Find<'a> = &'a mut dyn FnMut(&str) -> crate::Result<Preset>;
+
+pub(super) fn parse(text: &str, origin: &str, find: Find) -> crate::Result<Playable> {
+    if text.len() as u64 > MAX_FILE_SIZE {
+        return Err(Error::format(origin, "too large for a kit: expected at most 1 MiB of TOML"));
+    }
+    let table = table(text, origin)?;
+    let read = match table.get("kit") {
+        None => file::read(&table).map(Playable::Preset),
+        Some(version) => read(&table, version, find).map(Playable::Kit),
+    };
+    read.map_err(|message| Error::format(origin, message))
+}
+
+fn read(table: &Table, version: &Value, find: Find) -> Result<KitPreset, String> {
+    match version {
+        Value::Integer(KIT_VERSION) => {}
+        Value::Integer(newer) if *newer > KIT_VERSION => {
+            return Err(format!("kit {newer} is of a newer version: this one reads kit = {KIT_VERSION}"));
+        }
+        other => return Err(format!("kit {other} is unknown: this version reads kit = {KIT_VERSION}")),
+    }
+    check_keys(table, "", &KEYS)?;
+    let About { name, author, tags, comment } = About::read(table)?;
+    let voices = Param::Voices.info();
+    let voices = match table.get("voices") {
+        None => voices.max,
+        Some(value) => param_value(voices, value).map_err(|message| format!("voices: {message}"))?,
+    };
+    let mut kit = KitPreset { name, author, tags, comment, voices: voices as u8, sounds: vec![], pads: vec![] };
+    let pads = match table.get("keys") {
+        Some(Value::Array(pads)) if !pads.is_empty() => pads,
+        Some(Value::Array(_)) | None => {
+            return Err("there are no ‘keys’: expected [[keys]] with key and sound".to_owned());
+        }
+        Some(other) => return Err(unexpected("keys", "a list of tables, [[keys]]", other)),
+    };
+    for (index, pad) in pads.iter().enumerate() {
+        let place = format!("keys[{index}]");
+        let Value::Table(pad) = pad else { return Err(unexpected(&place, "a table, [[keys]]", pad)) };
+        read_pad(&place, pad, &mut kit, find)?;
+    }
+    Ok(kit)
+}
+
+fn read_pad(place: &str, table: &Table, kit: &mut KitPreset, find: Find) -> Result<(), String> {
+    let dotted = format!("{place}.");
+    check_keys(table, &dotted, &PAD_KEYS)?;
+    let key = read_key(table.get("key")).map_err(|message| format!("{dotted}key: {message}"))?;
+    if let Some(other) = kit.pads.iter().position(|(taken, _)| *taken == key) {
+        return Err(format!(
+            "{dotted}key: {} ({key}) is that of keys[{other}] already: expected another",
+            note_name(key)
+        ));
+    }
+    let name = match table.get("sound") {
+        Some(Value::String(name)) => name,
+        Some(other) => return Err(unexpected(&format!("{dotted}sound"), "a factory preset or a preset file", other)),
+        None => return Err(format!("{place}: there is no ‘sound’: expected a factory preset or a preset file")),
+    };
+    let known = kit.sounds.iter().position(|(known, _)| known == name);
+    let sound = match known {
+        Some(known) => known,
+        None => {
+            let preset = find(name).map_err(|error| format!("{dotted}sound: {error}"))?;
+            kit.sounds.push((name.clone(), preset));
+            kit.sounds.len() - 1
+        }
+    };
+    let a4_hz = f64::from(kit.sounds[sound].1.patch.get(Param::Tuning));
+    let pitch = table.get("pitch").map(|value| read_pitch(value, a4_hz)).transpose();
+    let number = |name: &str, param: Param| {
+        let value = table.get(name).map(|value| param_value(param.info(), value)).transpose();
+        value.map_err(|message| format!("{dotted}{name}: {message}"))
+    };
+    let pad = Pad {
+        name: label(table, "name", &dotted)?,
+        sound,
+        pitch: pitch.map_err(|message| format!("{dotted}pitch: {message}"))?,
+        gain_db: number("gain", Param::Gain)?.unwrap_or(0.0),
+        pan: read_pan(table.get("pan")).map_err(|message| format!("{dotted}pan: {message}"))?,
+        choke: number("choke", Param::Choke)?.map(|choke| choke as u8),
+    };
+    kit.pads.push((key, pad));
+    Ok(())
+}
+
+/// A key as the command reads it: a name or a number.
+fn read_key(value: Option<&Value>) -> Result<u8, String> {
+    let expected = "expected a note name (\"C2\") or a key from 0 to 127 (36)";
+    let key = match value {
+        Some(Value::String(text)) => key_from_note_name(text).or_else(|| text.trim().parse().ok()),
+        Some(Value::Integer(key)) => u8::try_from(*key).ok(),
+        Some(_) => None,
+        None => return Err(format!("there is none: {expected}")),
+    };
+    let found = || value.map_or(String::new(), |value| value.to_string().trim().to_owned());
+    key.filter(|key| *key < 128).ok_or_else(|| format!("‘{}’ is no key: {expected}", found()))
+}
+
+/// A pitch as the command reads a note: a key, one between two, or a frequency.
+fn read_pitch(value: &Value, a4_hz: f64) -> Result<f64, String> {
+    match value {
+        Value::String(text) => parse_key(text, a4_hz),
+        Value::Integer(_) | Value::Float(_) => parse_key(&value.to_string(), a4_hz),
+        other => Err(format!("expected a note name, a key or a frequency, found {}", other.type_str())),
+    }
+}
+
+fn read_pan(value: Option<&Value>) -> Result<f32, String> {
+    let pan = match value {
+        None => return Ok(0.0),
+        Some(Value::Integer(number)) => *number as f32,
+        Some(Value::Float(number)) => *number as f32,
+        Some(other) => return Err(format!("expected a number from -1 to 1, found {}", other.type_str())),
+    };
+    if (-1.0..=1.0).contains(&pan) { Ok(pan) } else { Err(format!("{pan} is out of range: expected -1 to 1")) }
+}
+
+/// `{:?}` of a float is the shortest text that reads back as the same number, and valid TOML.
+pub(super) fn to_toml(kit: &KitPreset) -> String {
+    let KitPreset { name, author, tags, comment, voices, sounds, pads } = kit;
+    let mut out = format!("kit = {KIT_VERSION}\n{}", about_to_toml([name, author, comment], tags));
+    if f32::from(*voices) != Param::Voices.info().max {
+        let _ = writeln!(out, "voices = {voices}");
+    }
+    for (key, pad) in pads {
+        let Some((sound, _)) = sounds.get(pad.sound) else { continue };
+        let _ = writeln!(out, "\n[[keys]]\nkey = \"{}\"", note_name(*key));
+        if !pad.name.is_empty() {
+            let _ = writeln!(out, "name = {}", toml_string(&pad.name));
+        }
+        let _ = writeln!(out, "sound = {}", toml_string(sound));
+        let named = |pitch: f64| (0..128).find(|key| f64::from(*key) == pitch).map(note_name);
+        match pad.pitch.map(|pitch| (pitch, named(pitch))) {
+            Some((_, Some(name))) => drop(writeln!(out, "pitch = \"{name}\"")),
+            Some((pitch, None)) => drop(writeln!(out, "pitch = {pitch:?}")),
+            None => {}
+        }
+        for (name, value) in [("gain", pad.gain_db), ("pan", pad.pan)] {
+            if value != 0.0 {
+                let _ = writeln!(out, "{name} = {value:?}");
+            }
+        }
+        if let Some(choke) = pad.choke {
+            let _ = writeln!(out, "choke = {choke}");
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> crate::Result<Playable> {
+        super::parse(text, "x", &mut |name| Preset::find(name).cloned())
+    }
+
+    #[test]
+    fn a_kit_is_read_in_every_notation_and_written_back() {
+        let text = "kit = 1\nname = \"k\"\nauthor = \"a\"\ntags = [\"t\"]\ncomment = \"c\\n\"\nvoices = 7\n\
+                    keys = [{ key = \"C2\", sound = \"Kick\" }, { key = 38, sound = \"snare\", pitch = \"60.5\", gain = \"-3 dB\" },\
+                    { key = \"39\", sound = \"Kick\", pitch = \"F#3\", pan = -0.3, choke = 0, name = \"K\" },\
+                    { key = \"G9\", sound = \"Clap\", pitch = 41, gain = 2, choke = 16 }]";
+        let Ok(Playable::Kit(kit)) = parse(text) else { panic!("{:?}", parse(text)) };
+        let pad = |sound| Pad::of(sound);
+        assert_eq!(
+            kit.pads,
+            [
+                (36, pad(0)),
+                (38, Pad { pitch: Some(60.5), gain_db: -3.0, ..pad(1) }),
+                (39, Pad { name: "K".to_owned(), pitch: Some(54.0), pan: -0.3, choke: Some(0), ..pad(0) }),
+                (127, Pad { pitch: Some(41.0), gain_db: 2.0, choke: Some(16), ..pad(2) }),
+            ]
+        );
+        assert_eq!((kit.voices, kit.sounds.len()), (7, 3));
+        assert_eq!(parse(&kit.to_toml()).unwrap(), Playable::Kit(kit.clone()));
+        let playing = kit.kit();
+        assert_eq!((playing.name(), playing.sounds().len(), playing.pad(37)), ("k", 3, None));
+        assert_eq!(playing.pad(127), Some(&kit.pads[3].1));
+    }
+
+    #[test]
+    fn every_error_says_what_would_be_right() {
+        let key = |fields: &str| format!("name = \"k\"\n[[keys]]\n{fields}");
+        let pad = |fields: &str| key(&format!("key = 36\nsound = \"Kick\"\n{fields}"));
+        for (body, expected) in [
+            ("".to_owned(), "x: there is no ‘name’"),
+            ("name = \"k\"".to_owned(), "x: there are no ‘keys’: expected [[keys]] with key and sound"),
+            ("name = \"k\"\nkeys = []".to_owned(), "x: there are no ‘keys’"),
+            ("name = \"k\"\nkeys = 3".to_owned(), "x: keys: expected a list of tables, [[keys]], found integer ‘3’"),
+            ("name = \"k\"\nkeys = [3]".to_owned(), "x: keys[0]: expected a table, [[keys]], found integer ‘3’"),
+            ("format = 2".to_owned(), "x: unknown key ‘format’"),
+            (
+                "voices = 65\nname = \"k\"".to_owned(),
+                "x: voices: 65 is out of range: expected a whole number from 1 to 64",
+            ),
+            (
+                key("sound = \"Kick\""),
+                "x: keys[0].key: there is none: expected a note name (\"C2\") or a key from 0 to 127",
+            ),
+            (key("key = 128\nsound = \"Kick\""), "x: keys[0].key: ‘128’ is no key: expected a note name"),
+            (key("key = \"60.5\"\nsound = \"Kick\""), "x: keys[0].key: ‘\"60.5\"’ is no key"),
+            (key("key = 36"), "x: keys[0]: there is no ‘sound’: expected a factory preset or a preset file"),
+            (key("key = 36\nsound = 3"), "x: keys[0].sound: expected a factory preset or a preset file, found integer"),
+            (
+                key("key = 36\nsound = \"Kcik\""),
+                "x: keys[0].sound: preset: there is no factory preset ‘Kcik’; the nearest is",
+            ),
+            (pad("pitch = \"H2\""), "x: keys[0].pitch: ‘H2’ is not a note: expected a note name (C#4)"),
+            (pad("pitch = 128"), "x: keys[0].pitch: note ‘128’ is out of range"),
+            (pad("pitch = nan"), "x: keys[0].pitch: ‘nan’ is not a note"),
+            (pad("pitch = true"), "x: keys[0].pitch: expected a note name, a key or a frequency, found boolean"),
+            (pad("gain = 99"), "x: keys[0].gain: 99 is out of range: expected from -60 dB to 12 dB"),
+            (pad("pan = 2"), "x: keys[0].pan: 2 is out of range: expected -1 to 1"),
+            (pad("pan = nan"), "x: keys[0].pan: NaN is out of range"),
+            (pad("pan = \"left\""), "x: keys[0].pan: expected a number from -1 to 1, found string"),
+            (pad("choke = 17"), "x: keys[0].choke: 17 is out of range: expected a whole number from 0 to 16"),
+            (pad("name = 1"), "x: keys[0].name: expected a text, found integer ‘1’"),
+            (pad("name = \" a\""), "x: keys[0].name: expected one line of at most 100 characters"),
+            (pad("velocity = 1"), "x: unknown key ‘keys[0].velocity’: expected one of key, name, sound, "),
+            (pad("[[keys]]\nkey = \"C2\"\nsound = \"Kick\""), "x: keys[1].key: C2 (36) is that of keys[0] already"),
+        ] {
+            let error = parse(&format!("kit = 1\n{body}")).unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{error}\nexpected: {expected}");
+        }
+        for (text, expected) in [
+            ("kit = 2", "x: kit 2 is of a newer version: this one reads kit = 1"),
+            ("kit = \"a\"", "x: kit \"a\" is unknown: this version reads kit = 1"),
+            ("kit = 1\nname = ", "x:2:8: not valid TOML: "),
+            ("name = \"a\"", "x: there is no ‘format’: expected format = 2"),
+        ] {
+            let error = parse(text).unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{error}");
+        }
+    }
+}
