@@ -57,8 +57,9 @@ fn read_body(table: &Table) -> Result<Body, String> {
         });
     }
     let models = || Model::ALL.iter().map(|(id, _)| *id);
-    let model = named(table, "model", Model::find, models)?
-        .ok_or_else(|| format!("body: there is no ‘model’: expected one of {}", models().collect::<Vec<_>>().join(", ")))?;
+    let model = named(table, "model", Model::find, models)?.ok_or_else(|| {
+        format!("body: there is no ‘model’: expected one of {}", models().collect::<Vec<_>>().join(", "))
+    })?;
     let mut body = Body::new(model.clone());
     if let Some(material) = named(table, "material", Material::find, || MATERIALS.iter().map(|material| material.id))? {
         body.material = *material;
@@ -177,7 +178,8 @@ mod tests {
 
     #[test]
     fn numbers_are_read_in_their_unit() {
-        let text = "[body]\nmodel = \"string\"\nlength = \"62 cm\"\nthickness = \"1 mm\"\ntension = 670\nstrike = \"12 %\"";
+        let text =
+            "[body]\nmodel = \"string\"\nlength = \"62 cm\"\nthickness = \"1 mm\"\ntension = 670\nstrike = \"12 %\"";
         let preset = parse(text).unwrap();
         let body = body_of_modes(&preset.patch.modes).unwrap();
         assert_eq!((body.frequency() * 10.0) as i32, 2657);

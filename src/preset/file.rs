@@ -2,8 +2,8 @@
 
 use super::about::{About, about_to_toml};
 use super::value::{check_keys, param_value, table, unexpected};
-use super::{body, routes};
 use super::{FORMAT_VERSION, Preset};
+use super::{body, routes};
 use crate::error::Error;
 use crate::params::{PARAMS, Param, Unit};
 use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};

@@ -45,7 +45,9 @@ pub(super) fn shape(ends: Ends, beta: f64, x: f64) -> f64 {
     };
     let rising = numerator / denominator;
     let sigma = 1.0 - 2.0 * e * rising;
-    rising * exp(beta * (x - 1.0)) + 0.5 * (1.0 + sigma) * exp(-beta * x) + sign * (cos(beta * x) - sigma * sin(beta * x))
+    rising * exp(beta * (x - 1.0))
+        + 0.5 * (1.0 + sigma) * exp(-beta * x)
+        + sign * (cos(beta * x) - sigma * sin(beta * x))
 }
 
 /// A uniform bar: frequencies as `β²`.

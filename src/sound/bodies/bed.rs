@@ -2,7 +2,7 @@
 
 use super::partial::{Pair, Partial};
 use crate::dsp::random::{key, uniform};
-use libm::{cos, log, exp, pow, sin};
+use libm::{cos, exp, log, pow, sin};
 use std::f64::consts::{PI, SQRT_2};
 
 /// Which bed it is: its name, its starting values and its material.

@@ -107,7 +107,8 @@ pub const FIELDS: &[Field] = &[
     field!("strike_share", "", 0.0, 1.0, strike_share),
     field!("count", "", 1.0, 512.0, |body| Some(body.modes as f64), |body, value| body.modes = value as usize),
     // Whole numbers up to 2⁵³ have the same value as text, float and integer.
-    field!("seed", "", 0.0, 9_007_199_254_740_992.0, |body| Some(body.seed as f64), |body, value| body.seed = value as u64),
+    field!("seed", "", 0.0, 9_007_199_254_740_992.0, |body| Some(body.seed as f64), |body, value| body.seed =
+        value as u64),
     field!("aspect", "", 0.1, 10.0, model Model::Plate { aspect, .. } => aspect),
     field!("truncation", "", 0.0, 100.0, model Model::Cone { truncation } => truncation),
     field!("slenderness", "", 0.2, 10.0, model Model::Glass { slenderness } => slenderness),

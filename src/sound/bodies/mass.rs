@@ -29,7 +29,9 @@ mod tests {
         assert!((frequency - (1e5_f64 - 1.0).sqrt() / (2.0 * PI)).abs() < 1e-9);
         assert!((t60 - LN_1000).abs() < 1e-12);
         assert_eq!(ringing(1.0, 0.0, 1.0).unwrap().1, f64::INFINITY);
-        for (mass, damping, stiffness) in [(1.0, 2.0, 1.0), (1.0, 5.0, 1.0), (0.0, 0.0, 1.0), (1.0, -1.0, 1.0), (f64::NAN, 0.0, 1.0)] {
+        for (mass, damping, stiffness) in
+            [(1.0, 2.0, 1.0), (1.0, 5.0, 1.0), (0.0, 0.0, 1.0), (1.0, -1.0, 1.0), (f64::NAN, 0.0, 1.0)]
+        {
             assert_eq!(ringing(mass, damping, stiffness), None);
         }
     }

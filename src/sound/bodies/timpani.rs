@@ -147,7 +147,11 @@ fn on_a_spring(modes: Vec<Loaded>, stiffness: f64) -> Vec<Loaded> {
                 }
             }
             let (above, below) = (omega2 - low, omega2 - high);
-            if i + 1 < joined.len() { others * above * below - own * below - next * above } else { others * above - own }
+            if i + 1 < joined.len() {
+                others * above * below - own * below - next * above
+            } else {
+                others * above - own
+            }
         };
         let omega2 = roots::between(equation, low, high);
         let weights: Vec<f64> = joined.iter().zip(&b).map(|(mode, b)| b / (omega2 - mode.omega2)).collect();
