@@ -16,7 +16,7 @@ pub(super) enum Ends {
 }
 
 /// The `k`-th wave number times length of a uniform bar, `k` from 1: the roots of `cos β cosh β = ±1`, plus for a free bar and
-/// minus for a clamped one (Euler 1744; Fletcher and Rossing, "The Physics of Musical Instruments", eq. 2.60 to 2.64).
+/// minus for a clamped one (Euler 1744; Fletcher and Rossing, "The Physics of Musical Instruments", chapter 2).
 pub(super) fn wave_number(ends: Ends, k: usize) -> f64 {
     let (sign, start) = match ends {
         Ends::Free => (1.0, (k as f64 + 0.5) * PI),
@@ -63,8 +63,7 @@ fn partial(ends: Ends, beta: f64, ratio: f64) -> Partial {
 /// A free bar undercut so that its first modes have the ratios `tuned`; those above go on from the last as a uniform bar's.
 ///
 /// Marimba 1 : 4 : 10, vibraphone 1 : 4 : 10 and xylophone 1 : 3 : 6 are what makers tune to (Fletcher and Rossing, chapter
-/// 19; Bork 1995). The rest of the law meets the 16.3 : 24.2 : 33.5 measured on a marimba within 3 % (there, from
-/// Rossing 1976). Shapes are the uniform bar's: undercutting moves nodes by a few hundredths of the length.
+/// 19; Bork 1995). The rest of the law meets the 16.3 : 24.2 : 33.5 measured on a marimba (in the same chapter) within 3 %. Shapes are the uniform bar's: undercutting moves their nodes a little.
 pub(super) fn tuned(tuned: &[f64], count: usize) -> Vec<Partial> {
     let (last, last_beta) = (tuned[tuned.len() - 1], wave_number(Ends::Free, tuned.len()));
     let ratio = |k: usize, beta: f64| tuned.get(k - 1).copied().unwrap_or(last * beta * beta / (last_beta * last_beta));
@@ -74,7 +73,7 @@ pub(super) fn tuned(tuned: &[f64], count: usize) -> Vec<Partial> {
         .collect()
 }
 
-/// Of a flat bar: `f₁ = β₁² / (2π L²) · √(E/ρ) · h/√12` (Fletcher and Rossing, eq. 2.59).
+/// Of a flat bar: `f₁ = β₁² / (2π L²) · √(E/ρ) · h/√12` (Fletcher and Rossing, chapter 2).
 pub(super) fn frequency(ends: Ends, size: &Size, material: &Material) -> f64 {
     bending(wave_number(ends, 1), size, material, size.thickness / 12.0_f64.sqrt())
 }

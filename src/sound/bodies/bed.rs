@@ -30,7 +30,7 @@ pub struct Bed {
     /// See `low`.
     pub high: f64,
     /// Modes per hertz grow as frequency to this power: −1 as many in each octave, −½ a bar, 0 a plate or a string, 1 a membrane
-    /// or a shallow space, 2 a room (Weyl 1912; Fletcher and Rossing, section 3.11; Kuttruff, "Room Acoustics", eq. 3.21).
+    /// or a shallow space, 2 a room (Weyl 1912; Kuttruff, "Room Acoustics", chapter 3).
     pub density: f64,
 }
 

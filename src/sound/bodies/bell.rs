@@ -43,7 +43,7 @@ pub(super) fn church(count: usize) -> Vec<Partial> {
 }
 
 /// A hand bell: the ring's law from its second mode on, which founders tune to the twelfth, 1 : 3 (Rossing and Sathoff
-/// 1980; Fletcher and Rossing, section 21.12).
+/// 1980; Fletcher and Rossing, chapter 21).
 pub(super) fn hand(count: usize) -> Vec<Partial> {
     let above = 3.0 / bowl::ring_ratio(3);
     let ratio = |m: u32| if m == 2 { 1.0 } else { above * bowl::ring_ratio(m) };
@@ -51,7 +51,7 @@ pub(super) fn hand(count: usize) -> Vec<Partial> {
 }
 
 /// A tubular bell: a free bar whose fourth, fifth and sixth modes, near 2 : 3 : 4, are heard as a tone an octave below the
-/// fourth (Rossing 1976; Fletcher and Rossing, section 19.8), which is the pitch here.
+/// fourth (Rossing 1976; Fletcher and Rossing, chapter 19), which is the pitch here.
 pub(super) fn tubular(count: usize) -> Vec<Partial> {
     let fourth = bar::wave_number(Ends::Free, 4);
     (1..=count)

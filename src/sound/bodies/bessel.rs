@@ -25,7 +25,7 @@ pub(super) fn i_relative(n: u32, x: f64, r: f64) -> f64 {
     i_scaled(n, x * r) * exp(x * r - x) / i_scaled(n, x)
 }
 
-/// `e^−x I_n(x)`: Miller's backward recurrence, scaled by `I_0 + 2 (I_1 + I_2 + …) = e^x` (Abramowitz and Stegun 9.6.36).
+/// `e^−x I_n(x)`: Miller's backward recurrence, scaled by `I_0 + 2 (I_1 + I_2 + …) = e^x` (Abramowitz and Stegun 9.6.37).
 fn i_scaled(n: u32, x: f64) -> f64 {
     if x <= 0.0 {
         return if n == 0 { 1.0 } else { 0.0 };

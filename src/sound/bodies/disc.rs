@@ -45,8 +45,8 @@ impl Values {
     }
 }
 
-/// Zero at the frequencies. Supported: `J_{n+1}/J_n + I_{n+1}/I_n = 2λ/(1−ν)` (Leissa, "Vibration of Plates" (1969), eq.
-/// 2.5). Free: moments and shears vanish together (Leissa, eq. 2.12; Itao and Crandall 1979).
+/// Zero at the frequencies. Supported: `J_{n+1}/J_n + I_{n+1}/I_n = 2λ/(1−ν)` (Leissa, "Vibration of Plates" (1969),
+/// chapter 2). Free: moments and shears vanish together (the same chapter; Itao and Crandall 1979).
 fn characteristic(edge: Edge, n: u32, lambda: f64, poisson: f64) -> f64 {
     let values = Values::new(n, lambda);
     match edge {
@@ -88,7 +88,7 @@ fn partial(edge: Edge, poisson: f64, Mode { n, lambda }: Mode, first: f64) -> Pa
             of_j / of_i
         }
     };
-    // ∫ J² r dr, ∫ I² r dr and ∫ J I r dr from 0 to 1 (Abramowitz and Stegun 11.3.29 to 11.3.31).
+    // ∫ J² r dr, ∫ I² r dr and ∫ J I r dr from 0 to 1 (Abramowitz and Stegun, section 11.3).
     let slope2 = f64::from(n * n) / (lambda * lambda);
     let jj = 0.5 * (values.dj * values.dj + (1.0 - slope2) * values.j * values.j);
     let ii = 0.5 * (1.0 + slope2 - values.di * values.di);

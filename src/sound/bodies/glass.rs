@@ -15,7 +15,7 @@ struct Mode {
 
 /// The glass of French, "In Vino Veritas: a study of wineglass acoustics" (1983): a thin wall that bends round the glass
 /// as a ring, `n² − 1`, and up it as a bar that stands on the foot, `(β R/H)²`, while it moves round by `1/n` of what it moves
-/// out: `ω² ∝ ((n² − 1)² + (β R/H)⁴) / (1 + 1/n²)`. His eq. 9 is that of `n = 2` with β⁴ as 12; here it is that of each
+/// out: `ω² ∝ ((n² − 1)² + (β R/H)⁴) / (1 + 1/n²)`. His law is that of `n = 2` with β⁴ as 12; here it is that of each
 /// of the bar's shapes, so that places up the wall count. `slenderness` is the height of the bowl over its radius.
 pub(super) fn partials(slenderness: f64, count: usize) -> Vec<Partial> {
     let modes = modes(slenderness, count);
@@ -53,7 +53,7 @@ fn omega(n: u32, along: f64) -> f64 {
     ((round * round + along2 * along2) / (1.0 + 1.0 / n2)).sqrt()
 }
 
-/// `f = h / (2π R²) · √(E / 12ρ) · ω`, h being the wall's thickness (French 1983, eq. 9).
+/// `f = h / (2π R²) · √(E / 12ρ) · ω`, h being the wall's thickness (French 1983).
 pub(super) fn frequency(slenderness: f64, size: &Size, material: &Material) -> f64 {
     let radius = 0.5 * size.length;
     let ring = size.thickness * material.bar_speed() / 12.0_f64.sqrt() / (radius * radius);

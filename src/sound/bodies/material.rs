@@ -19,7 +19,7 @@ pub struct Loss {
 
 impl Loss {
     /// That of a material's loss factor η, besides `b0`: the amplitude of a mode falls at `π η f`
-    /// (Cremer, Heckl and Petersson, "Structure-Borne Sound", section 3.3: T60 = 2.2 / (η f)).
+    /// (Cremer, Heckl and Petersson, "Structure-Borne Sound": T60 = 2.2 / (η f)).
     pub const fn factor(eta: f64, b0: f64) -> Self {
         Self { b0, b1: PI * eta, power: 1.0 }
     }
@@ -79,7 +79,7 @@ pub const MATERIALS: &[Material] = &[
     // Smith 2003, table I).
     solid("wire", 7850.0, 2.0e11, 0.28, Loss { b0: 1.1, b1: 9.811_9e-8, power: 2.0 }),
     // Friction and heat at the wall of a pipe of 1 cm radius: the wave falls by 1.2e-5 √ω / a per metre (Fletcher and
-    // Rossing, eq. 8.14), which is 1.2e-5 · √(2π f) / 0.01 · 343 per second. The rest is the open end's sound.
+    // Rossing, chapter 8), which is 1.2e-5 · √(2π f) / 0.01 · 343 per second. The rest is the open end's sound.
     solid("air", 1.2, 1.42e5, 0.0, Loss { b0: 2.0, b1: 1.031_7, power: 0.5 }),
 ];
 

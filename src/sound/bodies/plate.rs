@@ -63,11 +63,12 @@ fn modes(edge: Edge, aspect: f64, poisson: f64, count: usize) -> Vec<Mode> {
     lowest_below(count, 2.0 + 1.3 * aspect * count as f64, |mode: &Mode| mode.k2, below)
 }
 
-/// Supported: `m² + (n·aspect)²` (Navier 1823; Leissa, "Vibration of Plates" (1969), eq. 4.20).
+/// Supported: `m² + (n·aspect)²` (Navier 1823; Leissa, "Vibration of Plates" (1969), chapter 4).
 ///
-/// Free: Rayleigh's method with the shapes of free bars (Warburton 1954, table 1; Leissa, eq. 4.24 and table 4.2):
-/// `G_m⁴ + (aspect·G_n)⁴ + 2 aspect² (ν H_m H_n + (1−ν) J_m J_n)`, squared. A square plate comes out 5 % too high in its
-/// first mode, since its true shapes mix (2,0) with (0,2); most others lie within 2 %.
+/// Free: Rayleigh's method with the shapes of free bars (Warburton 1954; Leissa, chapter 4):
+/// `G_m⁴ + (aspect·G_n)⁴ + 2 aspect² (ν H_m H_n + (1−ν) J_m J_n)`, squared. A square plate's first
+/// modes come out 5 % and 13 % high, 8 % low and 4 % high against Leissa's 13.49, 19.79, 24.43 and 35.02, since true shapes
+/// mix (2,0) with (0,2); away from the square they mix less.
 fn frequency_number(edge: Edge, m: usize, n: usize, aspect: f64, poisson: f64) -> f64 {
     if edge == Edge::Supported {
         let (x, y) = (m as f64, aspect * n as f64);

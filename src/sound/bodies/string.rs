@@ -25,7 +25,7 @@ fn mass_per_length(size: &Size, material: &Material) -> f64 {
     material.density * 0.25 * PI * size.thickness * size.thickness
 }
 
-/// `B = π³ E d⁴ / (64 T L²)` (Fletcher 1964, eq. 4).
+/// `B = π³ E d⁴ / (64 T L²)` (Fletcher 1964, "Normal vibration frequencies of a stiff piano string").
 pub(super) fn inharmonicity(size: &Size, material: &Material) -> f64 {
     let d2 = size.thickness * size.thickness;
     PI * PI * PI * material.young * d2 * d2 / (64.0 * size.tension * size.length * size.length)

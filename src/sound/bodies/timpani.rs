@@ -38,8 +38,8 @@ struct Loaded {
 /// The drum whose mode (1,1), which is heard as its pitch, has this frequency in Hz.
 ///
 /// Air that moves with a mode is mass: with `Φ(κ)` the mode's spectrum over wave numbers κ, each side adds `ρ ∫|Φ|² dκ` to
-/// the head's `σ ∫|Φ|² κ dκ` (a baffled head that is slow against sound; Morse and Ingard, "Theoretical Acoustics" (1968),
-/// section 7.4, Parseval's theorem). Of a mode `(m,n)`, `Φ` is `k J_{m+1}(k) J_m(κ)/(k² − κ²)`.
+/// the head's `σ ∫|Φ|² κ dκ` (a baffled head that is slow against sound; Morse and Ingard, "Theoretical Acoustics" (1968), by
+/// Parseval's theorem). Of a mode `(m,n)`, `Φ` is `k J_{m+1}(k) J_m(κ)/(k² − κ²)`.
 /// The kettle's air is a spring `ρ c²/V` against volume, which joins all modes without nodal diameter: an equation of
 /// rank one, solved exactly. Inside, their even part is that spring, so they carry the mass of one side only.
 /// Sound that leaves is the part of `Φ` below `ω/c`: it damps (0,1) in a tenth of a second and leaves (3,1) ringing.

@@ -32,8 +32,8 @@ pub(super) fn stopped(count: usize) -> Vec<Partial> {
 
 /// A cone, stopped at its narrow end `x = 0` and open at its mouth, of which `truncation` of its length is cut off at the apex.
 ///
-/// Spherical waves `sin k(L−x) / (x₀+x)`, which stop at `x = 0` where `tan kL = −k x₀` (Fletcher and Rossing, eq. 8.41 and
-/// 8.45): whole multiples for a whole cone (0), and towards the stopped tube's odd ones as it grows.
+/// Spherical waves `sin k(L−x) / (x₀+x)`, which stop at `x = 0` where `tan kL = −k x₀` (Fletcher and Rossing,
+/// chapter 8): whole multiples for a whole cone (0), and towards the stopped tube's odd ones as it grows.
 pub(super) fn cone(truncation: f64, count: usize) -> Vec<Partial> {
     let first = cone_root(truncation, 1);
     (1..=count)
