@@ -166,8 +166,7 @@ mod tests {
                 (field.set)(&mut body, if ["count", "seed"].contains(&field.name) { value.floor() } else { value });
             }
             body.material = MATERIALS[index % MATERIALS.len()];
-            let mut patch = Patch::default();
-            patch.modes = modes_of_body(&body);
+            let patch = Patch { modes: modes_of_body(&body), ..Patch::default() };
             assert_eq!(body_of_modes(&patch.modes).as_ref(), Some(&body), "{id}");
             let preset = Preset { patch, ..parse("").unwrap() };
             let text = preset.to_toml();
