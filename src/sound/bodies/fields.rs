@@ -1,7 +1,7 @@
 //! The numbers of a body in one table: what files and knobs are made from, and what keeps a body within its ranges.
 
 use super::bed::Bed;
-use super::body::{Body, Pitch};
+use super::body::{Body, FREQUENCY_RANGE, Pitch};
 use super::model::Model;
 use super::size::Size;
 use super::timpani::Drum;
@@ -34,22 +34,22 @@ impl Field {
 }
 
 macro_rules! field {
-    ($name:literal, $unit:literal, $min:literal, $max:literal, $get:expr, $set:expr) => {
+    ($name:literal, $unit:literal, $min:expr, $max:expr, $get:expr, $set:expr) => {
         Field { name: $name, unit: $unit, min: $min, max: $max, get: $get, set: $set }
     };
     // A plain number of the body.
-    ($name:literal, $unit:literal, $min:literal, $max:literal, $($place:ident).+) => {
+    ($name:literal, $unit:literal, $min:expr, $max:expr, $($place:ident).+) => {
         field!($name, $unit, $min, $max, |body| Some(body.$($place).+), |body, value| body.$($place).+ = value)
     };
     // One of a size.
-    ($name:literal, $unit:literal, $min:literal, $max:literal, size $place:ident) => {
+    ($name:literal, $unit:literal, $min:expr, $max:expr, size $place:ident) => {
         field!($name, $unit, $min, $max, |body| body.size().map(|size| size.$place), |body, value| {
             let size = body.size().unwrap_or(Size::DEFAULT);
             body.pitch = Pitch::Size(Size { $place: value, ..size });
         })
     };
     // One that only some models have.
-    ($name:literal, $unit:literal, $min:literal, $max:literal, model $model:pat => $place:expr) => {
+    ($name:literal, $unit:literal, $min:expr, $max:expr, model $model:pat => $place:expr) => {
         field!(
             $name,
             $unit,
@@ -68,21 +68,19 @@ macro_rules! field {
     };
 }
 
-pub(super) const FREQUENCY: Field = field!(
-    "frequency",
-    "Hz",
-    1.0,
-    20_000.0,
-    |body| match body.pitch {
-        Pitch::Frequency(frequency) => Some(frequency),
-        Pitch::Size(_) => None,
-    },
-    |body, value| body.pitch = Pitch::Frequency(value)
-);
-
 /// All numbers of a body. [`Body::model`], [`Body::follows_key`] and the name of the material are no numbers.
 pub const FIELDS: &[Field] = &[
-    FREQUENCY,
+    field!(
+        "frequency",
+        "Hz",
+        FREQUENCY_RANGE.0,
+        FREQUENCY_RANGE.1,
+        |body| match body.pitch {
+            Pitch::Frequency(frequency) => Some(frequency),
+            Pitch::Size(_) => None,
+        },
+        |body, value| body.pitch = Pitch::Frequency(value)
+    ),
     field!("length", "m", 0.001, 100.0, size length),
     field!("thickness", "m", 0.000_001, 1.0, size thickness),
     field!("tension", "N", 0.001, 1e6, size tension),

@@ -7,7 +7,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `body`, `fields`, `table` | the body, its numbers with their ranges, and its table of modes |
+//! | `body`, `fields`, `modes`, `table` | the body, its numbers with their ranges, its modes, and a patch's table of them |
 //! | `model`, `size`, `material` | the models by name, what they measure and what they are made of |
 //! | `mass`, `string`, `bar`, `membrane`, `timpani`, `plate`, `disc`, `bell`, `tube`, `glass`, `bowl`, `bed` | a model each |
 //! | `partial`, `roots`, `bessel` | what they share |
@@ -25,6 +25,7 @@ mod mass;
 mod material;
 mod membrane;
 mod model;
+mod modes;
 mod partial;
 mod plate;
 mod roots;
@@ -37,11 +38,12 @@ mod timpani;
 mod tube;
 
 pub use bed::{Bed, BedKind};
-pub use body::{Body, BodyMode, DEFAULT_FREQUENCY, Pitch, RATIO_RANGE, T60_RANGE};
+pub use body::{Body, DEFAULT_FREQUENCY, Pitch, RATIO_RANGE, T60_RANGE};
 pub use fields::{FIELDS, Field, MAX_MODES};
 pub use mass::ringing;
 pub use material::{LN_1000, Loss, MATERIALS, Material};
 pub use model::{CustomMode, Model};
+pub use modes::BodyMode;
 pub use partial::Point;
 pub use plate::Edge;
 pub use size::Size;

@@ -1,6 +1,7 @@
 //! Bodies as the mode tables that patches have.
 
-use super::body::{Body, BodyMode, pitch_mode};
+use super::body::Body;
+use super::modes::{BodyMode, pitch_mode};
 use crate::patch::{MAX_MODES, Mode, ModeTable};
 
 /// Modes this much weaker than all together (−120 dB) are left out: no place in the sum of a sound would hear them.
