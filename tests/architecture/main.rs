@@ -18,7 +18,7 @@ const ALLOWED: &[Row] = &[
     ("dsp", &[]),
     ("params", &["units"]),
     ("patch", &["params", "dsp"]),
-    ("sound", &["error", "params", "patch", "units"]),
+    ("sound", &["dsp", "error", "params", "patch", "units"]),
     ("preset", &["error", "params", "patch", "sound", "text", "units"]),
     ("engine", &["dsp", "params", "patch", "sound", "units"]),
     ("io", &["dsp", "engine", "error", "units"]),
