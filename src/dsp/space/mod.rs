@@ -1,0 +1,34 @@
+//! The space behind the voices: stereo processors that know neither voices nor events nor parameters.
+//!
+//! | processor | what it does |
+//! |---|---|
+//! | [`ModalReverb`] | a resonant body, all of whose modes are masses that every sample drives: a [`Plate`], a [`Spring`] tank, a [`Room`], sympathetic [`Strings`] |
+//!
+//! A body is made in three steps, off the audio thread: its shape gives a [`ModeSet`], which with a [`Decay`] and a sample
+//! rate gives a [`Resonator`]. All processors change `left` and `right` in place, give the same bits for any division into
+//! blocks and on any CPU, and never allocate, lock or panic. Setters move smoothly.
+
+mod bands;
+mod decay;
+#[allow(clippy::needless_range_loop, reason = "kernels index several arrays in step")]
+mod kernel;
+mod material;
+mod modes;
+mod plate;
+mod pre_delay;
+mod resonator;
+mod reverb;
+mod room;
+mod spring;
+mod strings;
+mod ticks;
+
+pub use decay::Decay;
+pub use material::Material;
+pub use modes::{BodyMode, MAX_MODES, ModeSet};
+pub use plate::Plate;
+pub use resonator::Resonator;
+pub use reverb::{LONGEST_PRE_DELAY, ModalReverb};
+pub use room::Room;
+pub use spring::Spring;
+pub use strings::Strings;
