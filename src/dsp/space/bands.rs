@@ -14,10 +14,10 @@ pub(super) struct Band {
     blocks: Range<usize>,
     /// Least and greatest height of its modes, by which their decay goes.
     heights: [f64; 2],
-    /// Root of the sum of the squared drive gains, and of the squared gains of the louder pick-up.
+    /// Root of the number of its modes, and of the summed squared gains of the louder pick-up.
     drive: f64,
     pick_up: f64,
-    /// Sum over its modes of the squared drive gain and the mean squared pick-up gain.
+    /// Sum of the squared gains, the mean of both sides.
     power: f64,
     /// Logarithm of what a frame leaves of the slowest mode's amplitude.
     ln_radius: f64,
@@ -29,15 +29,19 @@ pub(super) struct Band {
 
 impl Band {
     /// A band at rest. Follow with [`Bands::damp`].
-    pub(super) fn new(blocks: Range<usize>, heights: [f64; 2], drive: f64, pick_up: f64, power: f64) -> Self {
+    ///
+    /// `heights`: of its lowest and highest mode; `gains`: the sum of the squared gains to the left and to the right.
+    pub(super) fn new(blocks: Range<usize>, heights: [f64; 2], modes: usize, gains: [f64; 2]) -> Self {
+        let [left, right] = gains;
+        let (drive, pick_up, power) = (sqrt(modes as f64), sqrt(left.max(right)), 0.5 * (left + right));
         Self { blocks, heights, drive, pick_up, power, ln_radius: 0.0, per_tick: 1.0, amplitude: 0.0 }
     }
 }
 
 /// All bands of a body.
 ///
-/// A frame turns and shrinks each mass, and adds `input · drive` to it. So by the triangle inequality the root of a band's
-/// energy after a frame is at most `r` times what it was, and `|input| · ‖drive‖`. By that of Cauchy and Schwarz a pick-up
+/// A frame turns and shrinks each mass, and adds the input to it. So by the triangle inequality the root of a band's energy
+/// after a frame is at most `r` times what it was, and `|input| √modes`. By that of Cauchy and Schwarz a pick-up
 /// hears at most `‖pick-up‖` times that root.
 #[derive(Clone, Debug)]
 pub(super) struct Bands {
@@ -54,11 +58,6 @@ impl Bands {
 
     pub(super) fn len(&self) -> usize {
         self.bands.len()
-    }
-
-    /// Root of the sum of the squared drive gains.
-    pub(super) fn drive_norm(&self) -> f64 {
-        sqrt(self.bands.iter().map(|band| band.drive * band.drive).sum())
     }
 
     /// The blocks of a band.
@@ -80,7 +79,7 @@ impl Bands {
     }
 
     /// Gain by which white noise comes out as loud as it went in, at a decay: a mode's impulse response has the energy
-    /// `(drive · pick-up)² / 4λ`. Real-time safe.
+    /// `gain² / 4λ`. Real-time safe.
     pub(super) fn noise_gain(&self, [low, span]: [f64; 2]) -> f64 {
         let energy = |band: &Band| {
             let height = 0.5 * (band.heights[0] + band.heights[1]);

@@ -7,20 +7,20 @@ use super::modes::{BodyMode, ModeSet};
 use crate::dsp::coefficients::angle_from_frequency;
 use crate::dsp::simd::vector::LANES;
 use crate::dsp::simd::{Instructions, Level};
-use libm::{cos, floor, log2, sin, sqrt};
+use libm::{cos, floor, log2, sin};
 
 /// Modes nearer to half the sample rate than this share of it are left out.
 const TOP: f64 = 0.98;
 
-/// Blocks that a control tick gives another decay: 512 masses, in about a microsecond.
-const DAMPED_PER_TICK: usize = 32;
+/// Blocks that a control tick gives another decay: 1,024 masses, in about a microsecond.
+const DAMPED_PER_TICK: usize = 64;
 
 /// A body whose every mode is a mass on a spring. Making and dropping one (de)allocates: not for the audio thread, but for
 /// all else it is made to be used there. See [`super::ModalReverb`], which plays it.
 ///
-/// **Passive.** A frame turns each mass and shrinks it; only input adds to it. So without input the energy, the sum of the
-/// squared amplitudes, falls with every frame whatever happens to the decay; and its root never rises by more than the
-/// magnitude of the input times the root of the summed squared drive gains.
+/// **Passive.** A frame turns each mass and shrinks it; only input adds to it. So without input the energy falls with every
+/// frame whatever happens to the decay; and its root never rises by more than the input's magnitude times the root of the
+/// number of masses. (A mass's amplitude counts in units of what a sample of 1 gives it.)
 #[derive(Clone, Debug)]
 pub struct Resonator {
     instructions: Instructions,
@@ -51,9 +51,8 @@ impl Resonator {
             let (block, turn, lane) = (&mut blocks[m / LANES], &mut turns[m / LANES], m % LANES);
             let angle = angle_from_frequency(mode.frequency, sample_rate);
             let half_chord = sin(0.5 * angle);
-            block.drive[lane] = gain(mode.drive);
-            block.left[lane] = gain(mode.left);
-            block.right[lane] = gain(mode.right);
+            block.left[lane] = gain(mode.drive * mode.left);
+            block.right[lane] = gain(mode.drive * mode.right);
             turn.versine[lane] = (2.0 * half_chord * half_chord) as f32;
             turn.cosine[lane] = cos(angle) as f32;
             turn.sine[lane] = sin(angle) as f32;
@@ -108,11 +107,6 @@ impl Resonator {
     pub fn energy(&self) -> f64 {
         let lanes = self.blocks.iter().flat_map(|block| block.x.iter().zip(&block.y));
         lanes.map(|(x, y)| f64::from(*x) * f64::from(*x) + f64::from(*y) * f64::from(*y)).sum()
-    }
-
-    /// Root of the sum of the squared drive gains: the root of the energy that a sample of 1 gives a body at rest.
-    pub fn drive_norm(&self) -> f64 {
-        self.bands.drive_norm()
     }
 
     /// Sends all masses to another decay: some at each of the next control ticks, within 25 ms at 48 kHz. Real-time safe.
@@ -244,15 +238,11 @@ fn bands(modes: &[BodyMode], blocks: &[Block]) -> Bands {
             all.map(|(block, lane)| norm(block, lane)).sum()
         };
         let square = |value: f32| f64::from(value) * f64::from(value);
-        let drive = of_rows(&|block, lane| square(block.drive[lane]));
         let left = of_rows(&|block, lane| square(block.left[lane]));
         let right = of_rows(&|block, lane| square(block.right[lane]));
-        let power = of_rows(&|block, lane| {
-            0.5 * square(block.drive[lane]) * (square(block.left[lane]) + square(block.right[lane]))
-        });
         let edge = |mode: Option<&BodyMode>| mode.map_or(0.0, |mode| height(mode.frequency));
         let heights = [edge(members.first()), edge(members.last())];
-        bands.push(Band::new(start..end, heights, sqrt(drive), sqrt(left.max(right)), power));
+        bands.push(Band::new(start..end, heights, members.len(), [left, right]));
         start = end;
     }
     Bands::new(bands)

@@ -4,6 +4,7 @@ use super::decay::Decay;
 use super::kernel::FRAMES;
 use super::pre_delay::PreDelay;
 use super::resonator::Resonator;
+use super::smoothed::{Smoothed, held};
 use super::ticks::Ticks;
 use crate::dsp::ramp::Ramp;
 use libm::{cos, sin};
@@ -16,14 +17,12 @@ pub const LONGEST_PRE_DELAY: f64 = 0.25;
 const SILENCE: f64 = 1e-6;
 
 /// Ticks between two measurements of the energy.
-const MEASURE_TICKS: u64 = 64;
+const MEASURE_TICKS: u64 = 32;
 
-/// Seconds in which a level comes to be what it was set to, and in which a body that is replaced fades out.
-const LEVEL_SECONDS: f64 = 0.02;
+/// Seconds in which a body that is replaced fades out.
 const LEAVE_SECONDS: f64 = 0.1;
 
-/// Input beyond is held here; fainter input is silence to the body, since masses that it moves would be slow to compute.
-const LOUDEST_INPUT: f32 = 1e6;
+/// Fainter input is silence to the body: masses that it moves would be slow to compute.
 const FAINTEST_INPUT: f32 = 1e-15;
 
 /// A stereo processor: the sum of both sides drives a [`Resonator`], whose pick-ups are added to what came in.
@@ -41,11 +40,9 @@ pub struct ModalReverb {
     leaving: Option<(Resonator, Ramp)>,
     left: Option<Resonator>,
     line: PreDelay,
-    ticks: Ticks,
-    dry: Ramp,
-    wet: Ramp,
-    /// Frames until both levels are where they are to be.
-    levels_move: u32,
+    ticks: Ticks<{ FRAMES as u64 }>,
+    dry: Smoothed,
+    wet: Smoothed,
     /// What the levels are set to.
     levels: [f32; 2],
     state: State,
@@ -77,9 +74,8 @@ impl ModalReverb {
             silent_frames: line.longest(),
             line,
             ticks: Ticks::default(),
-            dry: Ramp::at_rest(1.0),
-            wet: Ramp::at_rest(0.0),
-            levels_move: 0,
+            dry: Smoothed::new(1.0, sample_rate),
+            wet: Smoothed::new(0.0, sample_rate),
             levels: [1.0, 0.0],
             state: State::Off,
             input: 0.0,
@@ -153,8 +149,7 @@ impl ModalReverb {
             fade.set(0.0, (LEAVE_SECONDS * self.sample_rate) as u32);
             self.leaving = Some((before, fade));
             // The new body is at rest: it may start at its own level.
-            self.wet = Ramp::at_rest(self.levels[1] * self.body.noise_gain());
-            self.move_levels();
+            self.wet.jump(self.levels[1] * self.body.noise_gain());
         } else {
             self.left = Some(before);
             self.jump_to_levels();
@@ -181,7 +176,7 @@ impl ModalReverb {
             return 0;
         }
         let held = self.line.longest().saturating_sub(self.silent_frames) as u64;
-        let moving = u64::from(self.levels_move);
+        let moving = u64::from(self.wet.frames_left().max(self.dry.frames_left()));
         let leaving = if self.leaving.is_some() { (LEAVE_SECONDS * self.sample_rate) as u64 } else { 0 };
         let wet = self.loudest_wet();
         let rings = if wet > 0.0 { self.body.frames_until(SILENCE / wet, self.input) } else { 0 };
@@ -236,12 +231,11 @@ impl ModalReverb {
         if self.state == State::Asleep {
             return is_silent(left, right);
         }
-        if self.levels_move > 0 || self.levels[0] != 1.0 {
+        if !self.dry.rests_at(1.0) {
             for (left, right) in left.iter_mut().zip(right) {
                 let dry = self.dry.after(0);
                 (*left, *right) = (*left * dry, *right * dry);
                 self.dry.advance(1);
-                self.levels_move = self.levels_move.saturating_sub(1);
             }
         }
         true
@@ -250,8 +244,7 @@ impl ModalReverb {
     fn render(&mut self, left: &mut [f32], right: &mut [f32]) {
         let mut input = [0.0; FRAMES];
         for ((left, right), input) in left.iter().zip(&*right).zip(&mut input) {
-            let sum = (0.5 * (left + right)).clamp(-LOUDEST_INPUT, LOUDEST_INPUT);
-            // Neither what is faint nor what is no number.
+            let sum = held(0.5 * (left + right));
             let heard = if sum.abs() >= FAINTEST_INPUT { sum } else { 0.0 };
             self.silent_frames = if heard == 0.0 { self.silent_frames.saturating_add(1) } else { 0 };
             self.input += f64::from(heard.abs());
@@ -259,22 +252,17 @@ impl ModalReverb {
         }
         let frames = left.len().min(FRAMES);
         let [wet_left, wet_right] = self.body.render(&input[..frames]);
-        if self.levels_move > 0 {
-            for i in 0..frames {
-                let (dry, wet) = (self.dry.after(i as u32), self.wet.after(i as u32));
-                left[i] = left[i] * dry + wet_left[i] * wet;
-                right[i] = right[i] * dry + wet_right[i] * wet;
+        let moving = self.dry.is_moving() || self.wet.is_moving();
+        let (mut dry, mut wet) = (self.dry.after(0), self.wet.after(0));
+        for i in 0..frames {
+            if moving {
+                (dry, wet) = (self.dry.after(i), self.wet.after(i));
             }
-            self.dry.advance(frames as u32);
-            self.wet.advance(frames as u32);
-            self.levels_move = self.levels_move.saturating_sub(frames as u32);
-        } else {
-            let (dry, wet) = (self.dry.after(0), self.wet.after(0));
-            for i in 0..frames {
-                left[i] = left[i] * dry + wet_left[i] * wet;
-                right[i] = right[i] * dry + wet_right[i] * wet;
-            }
+            left[i] = left[i] * dry + wet_left[i] * wet;
+            right[i] = right[i] * dry + wet_right[i] * wet;
         }
+        self.dry.advance(frames);
+        self.wet.advance(frames);
         if let Some((body, fade)) = &mut self.leaving {
             let [out_left, out_right] = body.render(&[0.0; FRAMES][..frames]);
             for i in 0..frames {
@@ -303,7 +291,7 @@ impl ModalReverb {
         if let Some((body, _)) = &mut self.leaving {
             body.measure(false);
         }
-        let still = self.levels_move == 0 && self.leaving.is_none();
+        let still = !self.dry.is_moving() && !self.wet.is_moving() && self.leaving.is_none();
         let off = self.levels[1] == 0.0;
         if still && (off || is_empty && self.body.peak(0.0) * self.loudest_wet() <= SILENCE) {
             self.body.reset();
@@ -316,20 +304,17 @@ impl ModalReverb {
 
     /// The greatest wet gain from now on.
     fn loudest_wet(&self) -> f64 {
-        f64::from(self.wet.after(0).max(self.wet.after(self.levels_move)))
+        f64::from(self.wet.after(0).max(self.wet.target()))
     }
 
     fn move_levels(&mut self) {
-        let frames = (LEVEL_SECONDS * self.sample_rate) as u32;
-        self.dry.set(self.levels[0], frames);
-        self.wet.set(self.levels[1] * self.body.noise_gain(), frames);
-        self.levels_move = frames;
+        self.dry.set(self.levels[0]);
+        self.wet.set(self.levels[1] * self.body.noise_gain());
     }
 
     fn jump_to_levels(&mut self) {
-        self.dry = Ramp::at_rest(self.levels[0]);
-        self.wet = Ramp::at_rest(self.levels[1] * self.body.noise_gain());
-        self.levels_move = 0;
+        self.dry.jump(self.levels[0]);
+        self.wet.jump(self.levels[1] * self.body.noise_gain());
     }
 }
 

@@ -1,17 +1,13 @@
-//! A processor's own clock: blocks of any size, divided at control ticks.
-
-use crate::dsp::CONTROL_FRAMES;
+//! A processor's own clock: blocks of any size, divided at control ticks of `TICK` frames.
 
 /// Counts frames since a processor was made or reset, so that what happens now and then falls on the same frames however
 /// frames are asked for. Real-time safe.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Ticks {
+pub(super) struct Ticks<const TICK: u64> {
     frame: u64,
 }
 
-const TICK: u64 = CONTROL_FRAMES as u64;
-
-impl Ticks {
+impl<const TICK: u64> Ticks<TICK> {
     /// Whether a control tick is due before the next frame.
     pub(super) fn is_due(self) -> bool {
         self.frame.is_multiple_of(TICK)
