@@ -135,14 +135,19 @@ impl ModalReverb {
         self.line.set(frames, self.state != State::Awake);
     }
 
-    /// Goes on with another body of the same sample rate, made elsewhere; the one that plays fades out in 100 ms, and is
-    /// then handed out by [`ModalReverb::take_replaced`]. While that has not been taken, `body` comes back as an error: try
-    /// again later.
+    /// Goes on with another body, made elsewhere, from rest; the one that plays fades out in 100 ms, and is then handed out
+    /// by [`ModalReverb::take_replaced`].
+    ///
+    /// # Errors
+    ///
+    /// `body` itself, if its sample rate is another, or if the one before has not been taken yet: try again later.
     #[allow(clippy::result_large_err, reason = "moved, so that nothing is allocated or freed")]
-    pub fn replace_body(&mut self, body: Resonator) -> Result<(), Resonator> {
-        if self.leaving.is_some() || self.left.is_some() {
+    pub fn replace_body(&mut self, mut body: Resonator) -> Result<(), Resonator> {
+        if self.leaving.is_some() || self.left.is_some() || body.sample_rate() != self.sample_rate {
             return Err(body);
         }
+        body.reset();
+        body.finish_damping();
         let before = std::mem::replace(&mut self.body, body);
         if self.state == State::Awake {
             let mut fade = Ramp::at_rest(self.wet.after(0));
@@ -180,10 +185,11 @@ impl ModalReverb {
         let leaving = if self.leaving.is_some() { (LEAVE_SECONDS * self.sample_rate) as u64 } else { 0 };
         let wet = self.loudest_wet();
         let rings = if wet > 0.0 { self.body.frames_until(SILENCE / wet, self.input) } else { 0 };
-        let end = held.saturating_add(rings).max(moving).max(leaving);
+        let end = held.saturating_add(rings).max(moving).max(leaving).saturating_add(1);
         let mut ticks = self.ticks;
         ticks.advance(end as usize);
-        end.saturating_add(ticks.frames_until_every(MEASURE_TICKS))
+        // It falls asleep before the frame after.
+        end.saturating_add(ticks.frames_until_every(MEASURE_TICKS)).saturating_add(1)
     }
 
     /// Silence, and all that moves where it is to be.
