@@ -15,9 +15,8 @@ fn all_levels_have_the_bits_of_scalar_code() {
             assert_eq!(body.instructions(), level);
             let mut reverb = ModalReverb::new(body);
             reverb.set_mix(0.5);
-            let mut left: Vec<f32> = (0..30_000)
-                .map(|n| if n % 12_000 < 2000 { uniform(key(1, 2), n) } else { 0.0 })
-                .collect();
+            let mut left: Vec<f32> =
+                (0..8000).map(|n| if n % 3000 < 1000 { uniform(key(1, 2), n) } else { 0.0 }).collect();
             let mut right = left.clone();
             for (block, (left, right)) in left.chunks_mut(500).zip(right.chunks_mut(500)).enumerate() {
                 reverb.set_decay(Decay { low: 0.1 + 0.01 * block as f64, high: 0.1 });

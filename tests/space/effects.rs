@@ -34,7 +34,10 @@ fn overdrive_has_no_false_tones() {
         let aliases = (1..24).filter(|kilohertz| ![5, 15].contains(kilohertz));
         let worst = aliases.map(|kilohertz| decibels(amplitude(steady, f64::from(kilohertz) * 1000.0) / own));
         let worst = worst.fold(f64::MIN, f64::max);
-        println!("+{drive} dB: aliases below {worst:.1} dB; third harmonic {:.1} dB", decibels(amplitude(steady, 15e3) / own));
+        println!(
+            "+{drive} dB: aliases below {worst:.1} dB; third harmonic {:.1} dB",
+            decibels(amplitude(steady, 15e3) / own)
+        );
         assert!(worst < -80.0, "+{drive} dB: {worst} dB");
     }
 }

@@ -62,7 +62,8 @@ fn energy_never_exceeds_what_came_in() {
 
 #[test]
 fn it_sleeps_when_the_tail_is_over_and_says_when() {
-    for (name, modes) in [("small plate", small()), ("springs", Spring::default().modes()), ("none", ModeSet::new([]))] {
+    for (name, modes) in [("small plate", small()), ("springs", Spring::default().modes()), ("none", ModeSet::new([]))]
+    {
         let mut reverb = reverb(&modes, DECAY, 1.0);
         assert!(reverb.is_silent() && reverb.tail_frames() == 0);
         let [mut left, mut right] = impulse(64);
@@ -75,7 +76,7 @@ fn it_sleeps_when_the_tail_is_over_and_says_when() {
             reverb.process(&mut left, &mut right);
             loudest = peak(&left).max(peak(&right));
             frames += 32;
-            assert!(frames <= told, "{name}: longer than {told} frames");
+            assert!(frames < told + 32, "{name}: longer than {told} frames");
         }
         println!("{name}: {told} frames told, {frames} were");
         // What goes with the sleep is below −120 dBFS; and the bound is no wild one.

@@ -52,16 +52,23 @@ pub(crate) fn octave(samples: &[f32], centre: f64) -> Vec<f64> {
     band
 }
 
-/// T60 in seconds by Schroeder's backward integration, from a straight line through −5 to −25 dB.
-pub(crate) fn t60(band: &[f64]) -> f64 {
-    let mut left: Vec<f64> = band.iter().rev().scan(0.0, |sum, x| { *sum += x * x; Some(*sum) }).collect();
+/// T60 in seconds by Schroeder's backward integration of what both pick-ups hear, from a straight line through −5 to −35 dB
+/// (ISO 3382: T30, over several positions).
+pub(crate) fn t60(bands: &[Vec<f64>; 2]) -> f64 {
+    let energies = bands[0].iter().zip(&bands[1]).map(|(left, right)| left * left + right * right);
+    let mut sum = 0.0;
+    let mut left: Vec<f64> = Vec::new();
+    for energy in energies.rev() {
+        sum += energy;
+        left.push(sum);
+    }
     left.reverse();
     let level = |energy: f64| 10.0 * libm::log(energy / left[0]) / LN_10;
     let points: Vec<(f64, f64)> = left
         .iter()
         .enumerate()
         .map(|(n, energy)| (n as f64 / RATE, level(*energy)))
-        .filter(|(_, level)| (-25.0..=-5.0).contains(level))
+        .filter(|(_, level)| (-35.0..=-5.0).contains(level))
         .collect();
     let count = points.len() as f64;
     let (time, mean) = points.iter().fold((0.0, 0.0), |(t, l), point| (t + point.0 / count, l + point.1 / count));
@@ -111,7 +118,11 @@ pub(crate) fn blocks_are_equal<P: Clone>(
     process: impl Fn(&mut P, &mut [f32], &mut [f32]),
 ) {
     let bits = |block: usize| {
-        let turned = |processor: &mut P, frame: usize| if stops.contains(&frame) { at(processor, frame) };
+        let turned = |processor: &mut P, frame: usize| {
+            if stops.contains(&frame) {
+                at(processor, frame)
+            }
+        };
         let out = run(&mut processor.clone(), signal, block, stops, turned, &process);
         out.map(|side| side.into_iter().map(f32::to_bits).collect::<Vec<_>>())
     };

@@ -31,9 +31,10 @@ impl PreDelay {
         Self { line, next: 0, delay: 0, before: 0, wanted: 0, fade: Ramp::at_rest(1.0), left: 0, fade_frames }
     }
 
-    /// After so many frames of silence nothing is left of what came before.
-    pub(super) fn longest(&self) -> usize {
-        self.line.len()
+    /// After so many frames of silence, and until another delay is wanted, only silence comes out.
+    pub(super) fn reach(&self) -> usize {
+        let fades = if self.wanted == self.delay { 0 } else { self.fade_frames };
+        self.delay.max(self.before).max(self.wanted) + (self.left + fades) as usize
     }
 
     /// Wants another delay in frames; at once if nothing sounds.
@@ -56,6 +57,9 @@ impl PreDelay {
             out = read(self.before) * (1.0 - share) + out * share;
             self.fade.advance(1);
             self.left -= 1;
+            if self.left == 0 {
+                self.before = self.delay;
+            }
         } else if self.wanted != self.delay {
             (self.before, self.delay, self.left) = (self.delay, self.wanted, self.fade_frames);
             self.fade = Ramp::at_rest(0.0);

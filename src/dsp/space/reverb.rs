@@ -46,7 +46,7 @@ pub struct ModalReverb {
     /// What the levels are set to.
     levels: [f32; 2],
     state: State,
-    /// Frames of silence at the input.
+    /// Frames of silence at the input; very many if none came before.
     silent_frames: usize,
     /// Sum of the magnitudes of the input since the last control tick.
     input: f64,
@@ -71,7 +71,7 @@ impl ModalReverb {
             body,
             leaving: None,
             left: None,
-            silent_frames: line.longest(),
+            silent_frames: usize::MAX,
             line,
             ticks: Ticks::default(),
             dry: Smoothed::new(1.0, sample_rate),
@@ -180,7 +180,7 @@ impl ModalReverb {
         if self.state != State::Awake {
             return 0;
         }
-        let held = self.line.longest().saturating_sub(self.silent_frames) as u64;
+        let held = self.line.reach().saturating_sub(self.silent_frames) as u64;
         let moving = u64::from(self.wet.frames_left().max(self.dry.frames_left()));
         let leaving = if self.leaving.is_some() { (LEAVE_SECONDS * self.sample_rate) as u64 } else { 0 };
         let wet = self.loudest_wet();
@@ -199,7 +199,7 @@ impl ModalReverb {
             self.left = Some(body);
         }
         self.line.clear();
-        (self.ticks, self.input, self.silent_frames) = (Ticks::default(), 0.0, self.line.longest());
+        (self.ticks, self.input, self.silent_frames) = (Ticks::default(), 0.0, usize::MAX);
         self.jump_to_levels();
         self.state = if self.levels[1] > 0.0 { State::Asleep } else { State::Off };
     }
@@ -292,7 +292,7 @@ impl ModalReverb {
         if !self.ticks.is_due_every(MEASURE_TICKS) {
             return;
         }
-        let is_empty = self.silent_frames >= self.line.longest();
+        let is_empty = self.silent_frames >= self.line.reach();
         self.body.measure(is_empty);
         if let Some((body, _)) = &mut self.leaving {
             body.measure(false);
@@ -302,7 +302,7 @@ impl ModalReverb {
         if still && (off || is_empty && self.body.peak(0.0) * self.loudest_wet() <= SILENCE) {
             self.body.reset();
             self.line.clear();
-            self.silent_frames = self.line.longest();
+            self.silent_frames = usize::MAX;
             self.jump_to_levels();
             self.state = if off { State::Off } else { State::Asleep };
         }

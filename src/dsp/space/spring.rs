@@ -2,7 +2,7 @@
 
 use super::material::Material;
 use super::modes::{BodyMode, ModeSet};
-use libm::{cos, floor, sin, sqrt};
+use libm::{cos, sin, sqrt};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Helical springs of one wire and coil, driven at one end and heard at the other.
@@ -11,8 +11,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// `ω = κ β |β² − q²| / √(β² + q²)` with the wavenumber `β`, the curvature `q = 1/R` and `κ = (r/2) √(E/ρ)` for a wire of
 /// radius `r` (A. E. H. Love, *Mathematical Theory of Elasticity*, §293, for rings; W. H. Wittrick 1966 and S. Bilbao and
 /// J. Parker, "A virtual model of spring reverberation", IEEE TASLP 18 (2010), for springs). Between free ends
-/// `β = nπ/L`. Waves longer than a turn travel slower the nearer they are to the transition frequency
-/// `0.337 κ q² / 2π`: the echoes that chirp.
+/// `β = nπ/L`. Long waves travel slower the nearer they are to the transition frequency `0.337 κ q² / 2π`: the echoes that
+/// chirp. Short ones above it come sooner and are fainter. What spectrograms of springs do not show is left out: waves of
+/// about a turn's length, which move whole turns and hardly the magnets at the ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
     /// Lengths of the springs' wires, uncoiled, in m. The first is heard to the left, the last to the right.
@@ -40,8 +41,15 @@ impl Default for Spring {
     }
 }
 
-/// Modes below are not heard; those whose waves are as long as a turn come down to 0 Hz.
+/// Modes below are not heard.
 const LOWEST: f64 = 20.0;
+
+/// `(√17 − 3)/4`: the squared number of radians of a wave along a coil's radius at which `√(z (1−z)²/(1+z))`, and so the
+/// frequency of waves longer than a turn, is greatest.
+const LONG: f64 = 0.280_776_406_404_415_1;
+
+/// How much a magnet moves waves shorter than a turn, against longer ones.
+const SHORT_WAVES: f64 = 0.5;
 
 /// More half waves than any spring has whose modes are kept.
 const MOST_HALF_WAVES: usize = 65_536;
@@ -53,9 +61,7 @@ impl Spring {
 
     /// Frequency in Hz above which no wave is longer than a turn.
     pub fn transition_frequency(&self) -> f64 {
-        // The greatest value of √(z (1−z)²/(1+z)), at z = (√17 − 3)/4.
-        let z = 0.25 * (sqrt(17.0) - 3.0);
-        sqrt(z / (1.0 + z)) * (1.0 - z) * self.stiffness() / (self.coil_radius * self.coil_radius * TAU)
+        sqrt(LONG / (1.0 + LONG)) * (1.0 - LONG) * self.stiffness() / (self.coil_radius * self.coil_radius * TAU)
     }
 
     fn frequency(&self, wavenumber: f64) -> f64 {
@@ -65,21 +71,24 @@ impl Spring {
 
     /// The modes. Not for the audio thread.
     pub fn modes(&self) -> ModeSet {
-        let mut modes = Vec::new();
+        let (mut modes, transition) = (Vec::new(), self.transition_frequency());
         for (spring, wire) in self.wires.into_iter().enumerate() {
             let angle = FRAC_PI_2 * spring as f64 / (self.wires.len() - 1) as f64;
-            let turn = floor(wire / (PI * self.coil_radius));
             for n in 1..MOST_HALF_WAVES {
-                let frequency = self.frequency(n as f64 * PI / wire);
-                if n as f64 > turn && frequency > self.top || !frequency.is_finite() {
+                let wavenumber = n as f64 * PI / wire;
+                let (frequency, turns) = (self.frequency(wavenumber), wavenumber * self.coil_radius);
+                if turns > 1.0 && frequency > self.top || !frequency.is_finite() {
                     break;
                 }
-                if !(LOWEST..=self.top).contains(&frequency) {
+                let long = turns < sqrt(LONG);
+                let heard = long || turns > 1.0 && frequency > transition;
+                if !heard || !(LOWEST..=self.top).contains(&frequency) {
                     continue;
                 }
                 // A free end moves by cos 0 here and by cos nπ there.
                 let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
-                modes.push(BodyMode { frequency, drive: 1.0, left: sign * cos(angle), right: sign * sin(angle) });
+                let drive = if long { 1.0 } else { SHORT_WAVES };
+                modes.push(BodyMode { frequency, drive, left: sign * cos(angle), right: sign * sin(angle) });
             }
         }
         ModeSet::new(modes)

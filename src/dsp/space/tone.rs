@@ -56,7 +56,8 @@ impl Tone {
             coefficient: [0.0; 2],
             state: [0.0; 2],
         };
-        let mut tone = Self { sample_rate, ticks: Ticks::default(), shelves: [shelf.clone(), shelf], passed: 0, silent_frames: 0 };
+        let mut tone =
+            Self { sample_rate, ticks: Ticks::default(), shelves: [shelf.clone(), shelf], passed: 0, silent_frames: 0 };
         tone.aim(0);
         tone.aim(0);
         tone
@@ -87,7 +88,11 @@ impl Tone {
 
     /// At most how many frames of silence it takes until that is so.
     pub fn tail_frames(&self) -> u64 {
-        if self.is_silent() { 0 } else { self.forget_frames().saturating_sub(self.silent_frames) + CONTROL_FRAMES as u64 }
+        if self.is_silent() {
+            0
+        } else {
+            self.forget_frames().saturating_sub(self.silent_frames) + CONTROL_FRAMES as u64
+        }
     }
 
     /// In so many frames what a filter holds falls by 160 dB: the lowest pole is at the low shelf's corner over the root of
