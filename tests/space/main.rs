@@ -84,7 +84,7 @@ fn springs_chirp() {
     let arrival = |centre: f64| {
         let band = octave(&left, centre);
         let loudest = band.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
-        band.iter().position(|x| x.abs() > 0.3 * loudest).unwrap() as f64 / RATE
+        band.iter().position(|x| x.abs() > 0.9 * loudest).unwrap() as f64 / RATE
     };
     let (low, high) = (arrival(700.0), arrival(2900.0));
     println!("700 Hz after {low:.4} s, 2.9 kHz after {high:.4} s");

@@ -168,7 +168,8 @@ fn nothing_clicks() {
     let silence = || [vec![0.0; 2400], vec![0.0; 2400]];
     let [mut plain, mut plain_right] = silence();
     rings.clone().process(&mut plain, &mut plain_right);
-    let turns: [(&str, fn(&mut ModalReverb)); 4] = [
+    type Turn = fn(&mut ModalReverb);
+    let turns: [(&str, Turn); 4] = [
         ("decay", |reverb| reverb.set_decay(Decay { low: 0.1, high: 0.1 })),
         ("mix", |reverb| reverb.set_mix(0.0)),
         ("delay", |reverb| reverb.set_pre_delay(0.1)),

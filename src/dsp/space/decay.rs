@@ -30,7 +30,7 @@ impl Decay {
     /// Within what a body can do; what is not a number is short.
     fn clamped(&self) -> Self {
         let [shortest, longest] = Self::RANGE;
-        let clamp = |t60: f64| t60.max(shortest).min(longest);
+        let clamp = |t60: f64| if t60.is_nan() { shortest } else { t60.clamp(shortest, longest) };
         Self { low: clamp(self.low), high: clamp(self.high) }
     }
 

@@ -101,8 +101,8 @@ impl Overdrive {
 
     /// Moves to a drive in dB, from 0 (off) to 36, in 20 ms.
     pub fn set(&mut self, decibels: f32) {
-        let decibels = decibels.max(0.0).min(Self::MOST);
-        if decibels == self.decibels {
+        let decibels = decibels.clamp(0.0, Self::MOST);
+        if decibels.is_nan() || decibels == self.decibels {
             return;
         }
         self.decibels = decibels;

@@ -131,7 +131,8 @@ impl ModalReverb {
 
     /// Time in seconds before the body hears what comes in, up to [`LONGEST_PRE_DELAY`]. Changes by a crossfade of 20 ms.
     pub fn set_pre_delay(&mut self, seconds: f64) {
-        let frames = (seconds.max(0.0).min(LONGEST_PRE_DELAY) * self.sample_rate) as usize;
+        // What is no number is 0 as a whole one.
+        let frames = (seconds.clamp(0.0, LONGEST_PRE_DELAY) * self.sample_rate) as usize;
         self.line.set(frames, self.state != State::Awake);
     }
 

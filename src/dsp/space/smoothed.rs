@@ -26,9 +26,9 @@ impl Smoothed {
         self.target
     }
 
-    /// Starts for `value`, unless it is there or on the way.
+    /// Starts for `value`, unless it is there or on the way. What is no number changes nothing.
     pub(super) fn set(&mut self, value: f32) {
-        if value != self.target {
+        if value != self.target && !value.is_nan() {
             self.target = value;
             self.ramp.set(value, self.frames);
             self.left = self.frames;

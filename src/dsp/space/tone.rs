@@ -66,7 +66,7 @@ impl Tone {
     /// Moves to these gains of lows and highs in dB, from −18 to 18, in 20 ms.
     pub fn set(&mut self, low: f32, high: f32) {
         for (shelf, decibels) in self.shelves.iter_mut().zip([low, high]) {
-            shelf.decibels.set(decibels.max(-Self::MOST).min(Self::MOST));
+            shelf.decibels.set(decibels.clamp(-Self::MOST, Self::MOST));
         }
     }
 

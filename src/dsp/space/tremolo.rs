@@ -52,17 +52,19 @@ impl Tremolo {
 
     /// Turns a second, from 0 to 20, from the next control tick on.
     pub fn set_rate(&mut self, rate: f64) {
-        self.rate = rate.max(0.0).min(20.0);
+        if !rate.is_nan() {
+            self.rate = rate.clamp(0.0, 20.0);
+        }
     }
 
     /// From nothing (0) to down to silence (1), in 20 ms.
     pub fn set_depth(&mut self, depth: f32) {
-        self.depth.set(depth.max(0.0).min(1.0));
+        self.depth.set(depth.clamp(0.0, 1.0));
     }
 
     /// How far the right side is ahead, in degrees from 0 to 180, in 20 ms.
     pub fn set_stereo_phase(&mut self, degrees: f32) {
-        self.stereo_phase.set(degrees.max(0.0).min(180.0) / 360.0);
+        self.stereo_phase.set(degrees.clamp(0.0, 180.0) / 360.0);
     }
 
     /// The motor is where it starts from, and what moves where it is to be.

@@ -27,7 +27,7 @@ impl Width {
 
     /// Moves to a width from 0 to 2 in 20 ms.
     pub fn set(&mut self, width: f32) {
-        self.width.set(width.max(0.0).min(2.0));
+        self.width.set(width.clamp(0.0, 2.0));
     }
 
     /// Ends what moves.
