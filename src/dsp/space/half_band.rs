@@ -114,7 +114,8 @@ mod tests {
     #[test]
     fn half_of_the_band_passes() {
         let filter = HalfBand::<6, 6>::new(0.02);
-        for frequency in [0.01, 0.1, 0.2, 0.239] {
+        // None of a short period, whose peaks samples would miss.
+        for frequency in [0.0103, 0.1007, 0.2013, 0.2391] {
             assert!((gain(&filter, frequency) - 1.0).abs() < 0.01, "{} at {frequency}", gain(&filter, frequency));
         }
         for frequency in [0.2605, 0.3, 0.4, 0.49] {

@@ -1,7 +1,7 @@
 //! A plate reverb's sheet: every mode of a thin rectangular plate.
 
 use super::material::Material;
-use super::modes::{BodyMode, ModeSet};
+use super::modes::{BodyMode, MAX_MODES, ModeSet};
 use libm::{ceil, sin, sqrt};
 use std::f64::consts::{PI, TAU};
 
@@ -66,8 +66,11 @@ impl Plate {
         let scale = 0.5 * PI * stiffness;
         let along = 1.0 / (self.length * self.length);
         let across = 1.0 / (self.width * self.width);
+        // Of a body with far too many modes, those that would be dropped are not made: `N ≈ Lx Ly k²/4π`.
+        let area = self.length * self.width;
+        let top = self.top.min(stiffness * 4.0 * MAX_MODES as f64 / area);
         let most = |step: f64| {
-            let count = ceil(sqrt(self.top / (scale * step)));
+            let count = ceil(sqrt(top / (scale * step)));
             if count.is_finite() { (count.max(0.0) as usize).min(MOST_HALF_WAVES) } else { 0 }
         };
         let shapes = |count: usize, axis: usize| -> Vec<[f64; 3]> {
@@ -79,7 +82,7 @@ impl Plate {
         for (m, column) in (1..).map(f64::from).zip(&columns) {
             for (n, row) in (1..).map(f64::from).zip(&rows) {
                 let frequency = scale * (m * m * along + n * n * across);
-                if frequency > self.top {
+                if frequency > top {
                     break;
                 }
                 let [drive, left, right] = std::array::from_fn(|place| column[place] * row[place]);
@@ -124,7 +127,7 @@ mod tests {
     fn plates_of_any_size_are_made() {
         for (length, width, thickness) in [(30.0, 30.0, 1e-4), (0.01, 0.01, 0.01), (0.0, 1.0, 0.001), (1.0, 1.0, 0.0)] {
             let plate = Plate { length, width, thickness, ..Plate::default() };
-            assert!(plate.modes().len() <= super::super::MAX_MODES);
+            assert!(plate.modes().len() <= MAX_MODES);
         }
     }
 }
