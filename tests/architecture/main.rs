@@ -66,6 +66,7 @@ const CRATES: &[&str] = &[
     "tests/cli/main.rs",
     "tests/golden/main.rs",
     "tests/realtime/main.rs",
+    "tests/space/main.rs",
     "tests/storm/main.rs",
 ];
 
