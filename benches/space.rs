@@ -1,7 +1,6 @@
-//! A plate reverb with every one of its modes beside the mode bank under a drive, in one run, on every level of vector
-//! instructions.
+//! A plate reverb with every one of its modes beside the driven mode bank, in one run.
 //!
-//! Elements are modes × frames of the plate and of the bank alike; `silence` is a whole block of a reverb that sleeps.
+//! On every level of vector instructions. Elements are modes × frames of the plate and of the bank alike; `silence` is a whole block of a reverb that sleeps.
 
 #[allow(dead_code, reason = "shared with other benches")]
 mod struck;

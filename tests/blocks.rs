@@ -9,8 +9,11 @@ use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::routes::{Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
+use sprung::sound::kit::{KEYS, Pad};
+use sprung::sound::{Kit, Sound};
 use std::cell::Cell;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 const FRAMES: usize = 9_600;
 const CASES: u32 = 64;
@@ -21,8 +24,8 @@ const RATES: [f64; 8] = [1_000.0, 8_000.0, 22_050.0, 44_100.0, 48_000.0, 96_000.
 struct Case {
     sample_rate: f64,
     seed: u64,
-    patch: Patch,
-    programs: Vec<Patch>,
+    kit: Arc<Kit>,
+    programs: Vec<Arc<Kit>>,
     /// In the order of their frames.
     events: Vec<Event>,
     /// Lengths of blocks, over and over.
@@ -47,8 +50,12 @@ fn any_patch() -> impl Strategy<Value = Patch> {
     let routes = prop::collection::vec((route, -60.0..60.0f32), 0..6);
     // Half of the parameters keep their defaults: all of them at random are seldom loud for long.
     let position = prop::option::of(0.0..1.0f64);
-    (prop::collection::vec(mode, 1..20), prop::collection::vec(position, PARAMS.len()), routes).prop_map(
-        |(modes, positions, routes)| {
+    (
+        prop_oneof![9 => prop::collection::vec(mode.clone(), 1..20), 1 => prop::collection::vec(mode, 65..150)],
+        prop::collection::vec(position, PARAMS.len()),
+        routes,
+    )
+        .prop_map(|(modes, positions, routes)| {
             let mut patch = Patch { modes: ModeTable::new(&modes), ..Patch::default() };
             for (info, position) in PARAMS.iter().zip(positions) {
                 if let Some(position) = position {
@@ -60,8 +67,19 @@ fn any_patch() -> impl Strategy<Value = Patch> {
                 patch.set(amount_param(place), amount);
             }
             patch
-        },
-    )
+        })
+}
+
+/// One sound on all keys, or several on some of them.
+fn any_kit() -> impl Strategy<Value = Arc<Kit>> {
+    let pad = (0..4usize, prop::option::of(30.0..90.0f64), -20.0..6.0f32, -1.0..1.0f32, prop::option::of(0..3u8))
+        .prop_map(|(sound, pitch, gain_db, pan, choke)| Pad { pitch, gain_db, pan, choke, ..Pad::of(sound) });
+    let pads = prop::collection::vec(prop::option::weighted(0.8, pad), KEYS);
+    let several = (prop::collection::vec(any_patch(), 2..4), pads).prop_map(|(patches, pads)| {
+        let sounds = patches.into_iter().map(|patch| Arc::new(Sound::new(patch))).collect();
+        Arc::new(Kit::new(String::new(), sounds, pads))
+    });
+    prop_oneof![2 => any_patch().prop_map(|patch| Kit::of_patch(&patch)), 1 => several]
 }
 
 fn any_channel() -> impl Strategy<Value = u8> + Clone {
@@ -146,13 +164,13 @@ fn any_case() -> impl Strategy<Value = Case> {
     let block = prop_oneof![Just(0_usize), Just(1), 2..32_usize, Just(32), 33..700_usize];
     let blocks =
         (prop::collection::vec(block, 0..20), 1..1_000_usize).prop_map(|(blocks, last)| [blocks, vec![last]].concat());
-    let programs = prop::collection::vec(any_patch(), 0..4);
+    let programs = prop::collection::vec(any_kit(), 0..4);
     let chunk = select(vec![1, 31, 64, 1_000, 20_000]);
-    (select(RATES.to_vec()), any::<u64>(), any_patch(), programs, any_events(), blocks, chunk).prop_map(
-        |(sample_rate, seed, patch, programs, events, blocks, chunk)| Case {
+    (select(RATES.to_vec()), any::<u64>(), any_kit(), programs, any_events(), blocks, chunk).prop_map(
+        |(sample_rate, seed, kit, programs, events, blocks, chunk)| Case {
             sample_rate,
             seed,
-            patch,
+            kit,
             programs,
             events,
             blocks,
@@ -234,10 +252,10 @@ fn first_difference(whole: &[Vec<u32>; 2], parts: &[Vec<u32>; 2]) -> Option<usiz
 fn check(case: &Case) -> Result<bool, TestCaseError> {
     let synth = || {
         let mut synth = Synth::new(case.sample_rate, case.seed);
-        synth.set_patch(&case.patch);
+        synth.set_kit(&case.kit);
         synth
     };
-    let ensemble = || Ensemble::new(case.sample_rate, case.seed, &case.patch, &case.programs);
+    let ensemble = || Ensemble::of_kits(case.sample_rate, case.seed, &case.kit, case.programs.clone());
     let mut sounds = false;
     for (what, whole, parts) in [
         ("synth", render(&mut synth(), &case.events, &[FRAMES]), render(&mut synth(), &case.events, &case.blocks)),
