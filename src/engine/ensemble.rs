@@ -3,7 +3,7 @@
 use super::lender::{Lender, Stretch};
 use super::mix_limiter::MixLimiter;
 use super::note::{nearest_channel, nearest_key};
-use super::synth::{allowed, place};
+use super::synth::allowed;
 use super::zones::Owners;
 use super::{Event, EventKind, Snapshot, Synth};
 use crate::dsp::limiter::Work;
@@ -62,7 +62,7 @@ struct Groups<'a> {
 impl Groups<'_> {
     /// The choke group of a key; 0 for one that is silent.
     fn of(&self, key: u8, tuning: &Tuning) -> u8 {
-        place(self.kit, tuning, nearest_key(key)).map_or(0, |(pad, ..)| self.kit.choke(pad, self.choke))
+        self.kit.tuned_pad(nearest_key(key), tuning).map_or(0, |(pad, ..)| self.kit.choke(pad, self.choke))
     }
 }
 

@@ -52,7 +52,7 @@ struct Notes {
 
 impl Notes {
     fn most(&mut self, part: &Synth) -> Footprint {
-        let most = *self.most.get_or_insert_with(|| part.footprint(None));
+        let most = *self.most.get_or_insert_with(|| part.footprint());
         if !self.any_unison {
             return most;
         }
@@ -102,7 +102,7 @@ impl Lender {
                 EventKind::Program(number) if owner == usize::from(sender) => {
                     if let Some(kit) = stretch.programs.get(usize::from(number)) {
                         let part = synth(&mut players[owner]);
-                        notes.most = Some(notes.most(part).max(part.footprint(Some(kit))));
+                        notes.most = Some(notes.most(part).max(part.footprint_of(kit)));
                     }
                 }
                 EventKind::Param { param: Param::Unison, .. } | EventKind::Modulate { param: Param::Unison, .. } => {
