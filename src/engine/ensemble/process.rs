@@ -92,10 +92,11 @@ impl Ensemble {
     fn cut(&mut self, events: &[Event], start: usize, frames: usize) -> Cut {
         let before = self.owners;
         let end = frames.min(start + self.chunk_frames);
-        let all = || events.partition_point(|event| (event.frame as usize) < end);
+        // Events beyond the end of the block are taken as its last frame's.
+        let is_last = end == frames;
+        let count = if is_last { events.len() } else { events.partition_point(|event| (event.frame as usize) < end) };
         let mut cut = Cut {
-            // Events beyond the end of the block are taken as its last frame's.
-            events: if end == frames { events.len() } else { all() },
+            events: count,
             end,
             last: frames.saturating_sub(1).min(end).saturating_sub(start),
             cause: Cause::Length,

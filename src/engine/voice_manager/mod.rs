@@ -1,4 +1,4 @@
-//! Who plays what: polyphony, stealing, re-striking, pedals, choke groups, and which notes have ended. Knows no DSP.
+//! Voice allocation: polyphony, stealing, re-striking, pedals, choke groups, and finished notes. Knows no DSP.
 
 mod footprint;
 mod held_keys;
@@ -28,7 +28,7 @@ pub use voice::{Unison, Voice};
 /// Ended notes that are kept until somebody asks.
 pub const MAX_ENDED: usize = 1024;
 
-/// Deals notes to voices from a pool. Real-time safe after [`VoiceManager::new`].
+/// Gives notes voices from a pool. Real-time safe after [`VoiceManager::new`].
 pub struct VoiceManager<V: Voice> {
     slots: Slots<V>,
     pedals: Pedals,
@@ -158,7 +158,7 @@ impl<V: Voice> VoiceManager<V> {
         self.retire(note);
     }
 
-    /// A voice or a held key has let go of a note: it has ended, unless another has it still.
+    /// A voice or a held key has let go of a note: it has ended, unless another voice or key still has it.
     fn retire(&mut self, note: Note) {
         let has_note = |slot: &Slot<V>| !slot.is_free() && slot.note.serial == note.serial;
         let is_held = self.held.as_slice().iter().any(|held| held.serial == note.serial);

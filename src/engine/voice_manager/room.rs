@@ -41,7 +41,7 @@ pub fn make_room<P, V: Voice>(
     }
 }
 
-/// Whose note, and where it has it.
+/// A note that gives way: its player, and its slot there.
 struct Victim {
     player: usize,
     slot: usize,
