@@ -4,8 +4,6 @@
 //! Ids are part of every saved preset and song: a test pins them, and an id that goes is kept in [`retired`] and never
 //! used again.
 
-use libm::{exp10, floor, log, log10, pow, round};
-
 /// What a parameter's number counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
@@ -87,6 +85,7 @@ mod choice;
 mod control;
 mod envelope;
 mod exciter;
+mod knob;
 mod lfo;
 mod macros;
 mod output;
@@ -197,89 +196,7 @@ impl ParamInfo {
             Change::Smoothed(milliseconds) => Some((f64::from(milliseconds) * 1e-3 * sample_rate) as u32),
         }
     }
-
-    /// Knob position 0–1 of a value.
-    pub fn normalise(&self, value: f32) -> f64 {
-        let (value, min, max) = (f64::from(self.clamp(value)), f64::from(self.min), f64::from(self.max));
-        match self.curve {
-            Curve::Linear => (value - min) / (max - min),
-            Curve::Logarithmic => log(value / min) / log(max / min),
-        }
-    }
-
-    /// Value of a knob position 0–1, out of a grid of short decimal numbers: five significant digits of the value where
-    /// steps are of equal ratio, of the range where they are equal. So a number that a person has set comes back as
-    /// that very number from a position in single precision, which is what plugin hosts keep.
-    pub fn denormalise(&self, position: f64) -> f32 {
-        let (min, max) = (f64::from(self.min), f64::from(self.max));
-        let position = position.clamp(0.0, 1.0);
-        let (value, size) = match self.curve {
-            Curve::Linear => (min + position * (max - min), max - min),
-            Curve::Logarithmic => {
-                let value = min * pow(max / min, position);
-                (value, value)
-            }
-        };
-        // 10^(4 − ⌊log₁₀ size⌋): steps of 1/10,000 to 1/100,000.
-        let steps_per_unit = exp10(4.0 - floor(log10(size)));
-        self.clamp((round(value * steps_per_unit) / steps_per_unit) as f32)
-    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    /// Ids are in people's presets: this list only grows.
-    #[test]
-    fn ids_are_pinned() {
-        let ids: Vec<_> = PARAMS.iter().map(|info| info.id).collect();
-        let pinned = "exciter hardness position noise_level noise_time velocity \
-            decay release damper note_off decay_tilt tilt stretch width coefficients \
-            tune fine tuning key_track sweep sweep_time sweep_curve \
-            vibrato vibrato_rate vibrato_delay vibrato_sync glide glide_when glide_by \
-            bend_range \
-            lfo1_rate lfo1_sync lfo1_shape lfo1_phase lfo1_fade lfo1_scope \
-            lfo2_rate lfo2_sync lfo2_shape lfo2_phase lfo2_fade lfo2_scope \
-            lfo3_rate lfo3_sync lfo3_shape lfo3_phase lfo3_fade lfo3_scope \
-            envelope1_delay envelope1_attack envelope1_hold envelope1_decay envelope1_sustain envelope1_release \
-            envelope1_curve \
-            envelope2_delay envelope2_attack envelope2_hold envelope2_decay envelope2_sustain envelope2_release \
-            envelope2_curve \
-            macro1 macro2 macro3 macro4 macro5 macro6 macro7 macro8 \
-            route1 route2 route3 route4 route5 route6 route7 route8 \
-            route9 route10 route11 route12 route13 route14 route15 route16 \
-            voices mode priority unison unison_detune unison_spread unison_phase choke gain pan limiter";
-        assert_eq!(ids, pinned.split_whitespace().collect::<Vec<_>>());
-    }
-
-    #[test]
-    fn the_table_is_consistent() {
-        for (index, info) in PARAMS.iter().enumerate() {
-            assert_eq!(info.param as usize, index, "{}", info.id);
-            assert_eq!(Param::from_id(info.id), Some(info.param));
-            assert!(info.min < info.max && (info.min..=info.max).contains(&info.default), "{}", info.id);
-            assert!(info.curve == Curve::Linear || info.min > 0.0, "{}", info.id);
-            assert_eq!(info.unit == Unit::Choice, !info.choices.is_empty(), "{}", info.id);
-            if info.unit == Unit::Choice {
-                assert_eq!((info.min, info.max as usize + 1), (0.0, info.choices.len()), "{}", info.id);
-            }
-        }
-        assert_eq!(PARAMS.len(), PARAM_COUNT);
-    }
-
-    proptest! {
-        #[test]
-        fn text_and_knob_go_both_ways(index in 0..PARAM_COUNT, position in 0.0..=1.0f64) {
-            let info = &PARAMS[index];
-            let value = info.denormalise(position);
-            prop_assert!(info.check(value).is_ok());
-            let text = info.format(value);
-            let read = info.parse(&text).map_err(TestCaseError::fail)?;
-            prop_assert_eq!(info.format(read), text);
-            let single = info.normalise(value) as f32;
-            prop_assert_eq!(info.denormalise(single.into()), value, "{} through {}", info.id, single);
-        }
-    }
-}
+mod tests;

@@ -1,6 +1,7 @@
 //! A kit: sounds on keys.
 
-use super::Sound;
+use super::tuning::Pitch;
+use super::{Sound, Tuning};
 use crate::params::{Param, Values};
 use crate::patch::Patch;
 use std::ops::RangeInclusive;
@@ -124,6 +125,21 @@ impl Kit {
     /// What a key plays; nothing if it is silent. Real-time safe.
     pub fn pad(&self, key: u8) -> Option<&Pad> {
         self.pads.get(usize::from(key))?.as_ref()
+    }
+
+    /// The pad that a key plays, its pitch, and an offset from that pitch in semitones; `tuning` is for sounds without one
+    /// of their own. None for a key that is silent, because it has no pad or its pitch no frequency. Real-time safe.
+    pub(crate) fn tuned_pad(&self, key: u8, tuning: &Tuning) -> Option<(&Pad, Pitch, f32)> {
+        let pad = self.pad(key)?;
+        let tuning = self.sounds.get(pad.sound)?.tuning().unwrap_or(tuning);
+        let (key, offset) = match pad.pitch {
+            None => (key, 0.0),
+            Some(pitch) => {
+                let nearest = libm::round(pitch).clamp(0.0, 127.0);
+                (nearest as u8, (pitch - nearest) as f32)
+            }
+        };
+        Some((pad, tuning.pitch(key)?, offset))
     }
 
     /// Whether it has one sound only. Real-time safe.

@@ -2,6 +2,7 @@
 
 use super::VoiceManager;
 use super::footprint::Footprint;
+use super::slot::Slot;
 use super::voice::Voice;
 
 /// Whether a note that takes `need` can start in a pool of size `capacity`, of which `free` is free, without any other
@@ -22,43 +23,38 @@ pub fn make_room<P, V: Voice>(
 ) {
     let (mut sounding, mut used) = (Footprint::NONE, Footprint::NONE);
     for manager in players.iter_mut().map(&manager) {
-        sounding += manager.footprint(true);
-        used += sounding_and_fading(manager);
+        sounding += manager.slots.footprint(Slot::is_sounding);
+        used += manager.slots.footprint(|_| true);
     }
     while !(sounding + need).fits(capacity.for_sounding()) {
-        let Some(victim) = quietest(players, &manager, true) else { break };
-        let manager = manager(&mut players[victim.player]);
-        sounding -= manager.slot_footprint(victim.slot);
-        manager.fade_slot(victim.slot);
+        let Some(victim) = quietest(players, &manager, Slot::is_sounding) else { break };
+        let slot = &mut manager(&mut players[victim.player]).slots.in_use_mut()[victim.slot];
+        sounding -= slot.footprint();
+        slot.fade();
     }
     while !(used + need).fits(capacity) {
-        let Some(victim) = quietest(players, &manager, false).or_else(|| quietest(players, &manager, true)) else {
-            break;
-        };
+        let fading = quietest(players, &manager, Slot::is_fading);
+        let Some(victim) = fading.or_else(|| quietest(players, &manager, Slot::is_sounding)) else { break };
         let manager = manager(&mut players[victim.player]);
-        used -= manager.slot_footprint(victim.slot);
-        manager.cut_slot(victim.slot);
+        used -= manager.slots.in_use()[victim.slot].footprint();
+        manager.cut_off(victim.slot);
     }
 }
 
-fn sounding_and_fading<V: Voice>(manager: &VoiceManager<V>) -> Footprint {
-    manager.footprint(true) + manager.footprint(false)
-}
-
-/// Whose note, and where it has it.
+/// A note that gives way: its player, and its slot there.
 struct Victim {
     player: usize,
     slot: usize,
 }
 
-/// The quietest note of those that sound or of those that fade. Of equals, the first player's and its oldest.
+/// The quietest note of those that `includes` chooses. Of equals, the first player's and its oldest.
 fn quietest<P, V: Voice>(
     players: &mut [P],
     manager: impl Fn(&mut P) -> &mut VoiceManager<V>,
-    sounding: bool,
+    includes: fn(&Slot<V>) -> bool,
 ) -> Option<Victim> {
     let quietest = players.iter_mut().enumerate().filter_map(|(player, of)| {
-        let (slot, energy) = manager(of).quietest(sounding)?;
+        let (slot, energy) = manager(of).slots.quietest(includes)?;
         Some((Victim { player, slot }, energy))
     });
     quietest.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(victim, _)| victim)

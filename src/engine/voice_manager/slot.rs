@@ -42,6 +42,10 @@ impl<V: Voice> Slot<V> {
         matches!(self.state, State::Held | State::Released)
     }
 
+    pub(super) fn is_fading(&self) -> bool {
+        self.state == State::Fading
+    }
+
     pub(super) fn is_on(&self, channel: u8, key: u8) -> bool {
         self.is_one_of(&Notes::on(channel, key))
     }
@@ -109,8 +113,9 @@ impl<V: Voice> Slot<V> {
         self.key_down = false;
     }
 
-    pub(super) fn release_unless_held(&mut self, sustain: &[bool; 16], velocity: f32) {
-        if self.state == State::Held && !self.key_down && !self.sostenuto && !sustain[usize::from(self.note.channel)] {
+    /// Releases the note unless its key is down or a pedal holds it.
+    pub(super) fn release_unless_held(&mut self, is_sustained: bool, velocity: f32) {
+        if self.state == State::Held && !self.key_down && !self.sostenuto && !is_sustained {
             self.voices.iter_mut().for_each(|voice| voice.release(velocity));
             self.state = State::Released;
         }

@@ -1,12 +1,12 @@
 //! The limiter at the end of an ensemble's mix, and the channels that ask for it.
 
-use super::note::nearest_channel;
-use super::{Event, EventKind};
+use super::chunk::Chunk;
 use crate::dsp::Limiter;
 use crate::dsp::limiter::Work;
+use crate::engine::note::nearest_channel;
+use crate::engine::{Event, EventKind};
 use crate::params::Param;
 use crate::sound::Kit;
-use std::sync::Arc;
 
 /// One limiter for the mix of sixteen channels. It is on while any channel that has had a note has a kit that asks
 /// for it. Real-time safe once built.
@@ -34,15 +34,16 @@ impl Channels {
         self.asking = if value == 0.0 { self.asking & !bit } else { self.asking | bit };
     }
 
-    /// Takes in an event on a channel that the instrument of `owner` plays.
-    fn handle(&mut self, owner: u8, event: &Event, programs: &[Arc<Kit>]) {
+    /// Takes in an event of a chunk.
+    fn handle(&mut self, event: &Event, chunk: &Chunk) {
+        let owner = chunk.owner(event);
         match event.kind {
             EventKind::NoteOn { .. } => self.played |= 1 << owner,
             EventKind::Param { param: Param::Limiter, value } => {
                 self.set_asking(owner, Param::Limiter.info().clamp(value));
             }
-            EventKind::Program(number) if owner == nearest_channel(event.channel) => {
-                if let Some(kit) = programs.get(usize::from(number)) {
+            EventKind::Program(number) => {
+                if let Some(kit) = chunk.program(event, number) {
                     self.set_asking(owner, kit.values().get(Param::Limiter));
                 }
             }
@@ -67,29 +68,20 @@ impl MixLimiter {
         self.limiter.work()
     }
 
-    /// Limits the next frames of the mix in place. Each of `events` comes with the channel whose instrument plays it; their
-    /// frames count from `start` frames before these, of which they can be at those up to `last`. Program changes choose
-    /// from `programs`. Without `is_heard` the frames are silent.
-    pub(super) fn process(
-        &mut self,
-        events: impl Iterator<Item = (u8, Event)>,
-        [start, last]: [usize; 2],
-        programs: &[Arc<Kit>],
-        is_heard: bool,
-        [left, right]: [&mut [f32]; 2],
-    ) {
+    /// Limits the frames of a chunk in place. Without `is_heard` they are silent.
+    pub(super) fn process(&mut self, chunk: &Chunk, is_heard: bool, [left, right]: [&mut [f32]; 2]) {
         let mut limit = |is_on: bool, left: &mut [f32], right: &mut [f32]| {
             if is_heard || !self.limiter.is_idle() {
                 self.limiter.process(is_on, left, right);
             }
         };
         let mut frame = 0;
-        for (owner, event) in events {
-            let before = self.channels;
-            self.channels.handle(owner, &event, programs);
-            if before.is_on() != self.channels.is_on() {
-                let at = (event.frame as usize).saturating_sub(start).min(last).max(frame);
-                limit(before.is_on(), &mut left[frame..at], &mut right[frame..at]);
+        for event in chunk.events {
+            let was_on = self.channels.is_on();
+            self.channels.handle(event, chunk);
+            if was_on != self.channels.is_on() {
+                let at = chunk.frame(event).max(frame);
+                limit(was_on, &mut left[frame..at], &mut right[frame..at]);
                 frame = at;
             }
         }

@@ -1,71 +1,11 @@
 //! What the manager tells its voices, written down by a fake one.
 
+mod fake;
+
 use super::*;
+use crate::engine::note::Notes;
 use crate::sound::tuning::Pitch;
-use std::cell::RefCell;
-use std::rc::Rc;
-
-type Log = Rc<RefCell<Vec<String>>>;
-
-/// What the instrument plays now: the number of its patch.
-struct FakeInstrument {
-    patch: u32,
-    unison: usize,
-}
-
-/// A voice that writes down what it is told, and that refuses to read another patch than its own.
-struct FakeVoice {
-    log: Log,
-    cells: usize,
-    patch: u32,
-    key: u8,
-    energy: f64,
-    over: bool,
-}
-
-impl Voice for FakeVoice {
-    type Context = FakeInstrument;
-    type Cell = ();
-    fn footprint(instrument: &FakeInstrument) -> Footprint {
-        Footprint { voices: instrument.unison, cells: 2 * instrument.unison }
-    }
-    fn add_cell(&mut self, _: Box<()>) {
-        self.cells += 1;
-    }
-    fn take_cell(&mut self) -> Option<Box<()>> {
-        self.cells = self.cells.checked_sub(1)?;
-        Some(Box::new(()))
-    }
-    fn start(&mut self, instrument: &FakeInstrument, note: &Note, unison: Unison) {
-        assert_eq!((self.cells, unison.count), (2, instrument.unison));
-        (self.key, self.over, self.energy) = (note.key, false, f64::from(note.velocity));
-        self.patch = instrument.patch;
-        self.log.borrow_mut().push(format!("start {}", note.key));
-    }
-    fn restrike(&mut self, instrument: &FakeInstrument, note: &Note) {
-        assert_eq!(instrument.patch, self.patch, "restrike reads another patch");
-        self.log.borrow_mut().push(format!("restrike {} as {}", self.key, note.key));
-        self.key = note.key;
-    }
-    fn retune(&mut self, instrument: Option<&FakeInstrument>, note: &Note) {
-        assert!(instrument.is_none_or(|instrument| instrument.patch == self.patch), "retune reads another patch");
-        let by = if instrument.is_some() { "" } else { " by itself" };
-        self.log.borrow_mut().push(format!("retune {} to {}{by}", self.key, note.key));
-        self.key = note.key;
-    }
-    fn release(&mut self, velocity: f32) {
-        self.log.borrow_mut().push(format!("release {} at {velocity}", self.key));
-    }
-    fn fade(&mut self) {
-        self.log.borrow_mut().push(format!("fade {}", self.key));
-    }
-    fn energy(&self) -> f64 {
-        self.energy
-    }
-    fn is_over(&self) -> bool {
-        self.over
-    }
-}
+use fake::{FakeInstrument, FakeVoice, Log};
 
 enum Do {
     On(u8, f32),
@@ -100,7 +40,7 @@ fn play_with(
     script: &[Do],
 ) -> (Vec<String>, Vec<u8>) {
     let log = Log::default();
-    let voice = || FakeVoice { log: log.clone(), cells: 0, patch: 0, key: 0, energy: 0.0, over: false };
+    let voice = || FakeVoice::new(&log);
     let capacity = Footprint { voices: 200, cells: 400 };
     let mut manager = VoiceManager::new(VoicePool::full(capacity, voice, || ()));
     let mut instrument = FakeInstrument { patch: 0, unison };
@@ -313,7 +253,7 @@ fn a_key_without_priority_sounds_once_the_other_has_died_away() {
 #[test]
 fn what_gives_way_is_the_quietest_of_all_managers() {
     let (log, capacity) = (Log::default(), Footprint { voices: 16, cells: 32 });
-    let voice = || FakeVoice { log: log.clone(), cells: 0, patch: 0, key: 0, energy: 0.0, over: false };
+    let voice = || FakeVoice::new(&log);
     let instrument = FakeInstrument { patch: 0, unison: 2 };
     let mut managers = [(); 2].map(|()| VoiceManager::new(VoicePool::empty(capacity)));
     let mut shared = VoicePool::full(capacity, voice, || ());

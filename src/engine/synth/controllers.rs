@@ -1,0 +1,72 @@
+//! What a synth does at MIDI controllers and MPE configuration messages.
+
+use super::Synth;
+use crate::engine::channel::Channel;
+use crate::engine::midi::controller;
+
+impl Synth {
+    /// Takes in a controller at a value 0–1.
+    pub(super) fn control(&mut self, channel: u8, number: u8, value: f32) {
+        for reached in self.channels.reach(channel) {
+            self.control_voices(reached, number, value >= 0.5);
+        }
+        let members = self.channels.control(channel, number, value);
+        if number == controller::BRIGHTNESS {
+            self.channels.reach(channel).for_each(|reached| self.brighten(reached));
+        }
+        if let Some(members) = members {
+            self.configure_zone(channel, members);
+        }
+    }
+
+    /// Pedals and mode messages, which are for the notes of a channel.
+    fn control_voices(&mut self, channel: u8, number: u8, down: bool) {
+        match number {
+            controller::SUSTAIN => self.manager.sustain(channel, down),
+            controller::SOSTENUTO => self.manager.sostenuto(channel, down),
+            controller::ALL_SOUND_OFF => self.manager.all_sound_off(channel),
+            // The mode messages 124–127 imply all notes off.
+            controller::ALL_NOTES_OFF..=127 => self.manager.all_notes_off(channel),
+            controller::RESET => {
+                self.lift_pedals(channel);
+                let on_channel = self.manager.active().filter(|(note, _)| note.channel == channel);
+                on_channel.for_each(|(_, voice)| voice.relax());
+            }
+            _ => {}
+        }
+    }
+
+    fn lift_pedals(&mut self, channel: u8) {
+        self.manager.sustain(channel, false);
+        self.manager.sostenuto(channel, false);
+    }
+
+    /// Hands the notes of a channel its brightness.
+    fn brighten(&mut self, channel: u8) {
+        let brightness = self.channels.brightness(channel);
+        self.manager.brighten(channel, brightness);
+        for (note, voice) in self.manager.active().filter(|(note, _)| note.channel == channel) {
+            voice.shade(self.instruments.of_note(note), brightness);
+        }
+    }
+
+    /// Takes in an MPE configuration message: `members` channels are of the zone of a master.
+    pub(in crate::engine) fn configure_zone(&mut self, master: u8, members: u8) {
+        self.needs_control = true;
+        // A channel that changes masters starts anew: what the last one held is let go.
+        for channel in self.channels.configure_zone(master, members) {
+            self.manager.all_notes_off(channel);
+            self.lift_pedals(channel);
+        }
+    }
+
+    /// What a channel holds, and for how many frames gains still slide.
+    pub(in crate::engine) fn channel(&self, channel: u8) -> (Channel, u32) {
+        self.channels.channel(channel)
+    }
+
+    /// Takes over what a channel of another synth held.
+    pub(in crate::engine) fn set_channel(&mut self, channel: u8, held: (Channel, u32)) {
+        self.channels.set_channel(channel, held);
+    }
+}

@@ -1,0 +1,118 @@
+//! What a synth does at an event: notes, note expressions, parameters and their modulation.
+
+use super::Synth;
+use crate::engine::event::{Event, EventKind, Expression, finite, unit};
+use crate::engine::note::{Note, Notes, nearest_channel, nearest_key};
+use crate::engine::voice_manager::{has_room, make_room};
+use crate::params::{Change, Param};
+use crate::sound::tuning::Pitch;
+
+impl Synth {
+    /// Takes in one event, at the frame that is rendered next.
+    pub fn handle(&mut self, event: &Event) {
+        let channel = nearest_channel(event.channel);
+        // A tempo can wait for the next control tick.
+        self.needs_control |= !matches!(event.kind, EventKind::Tempo(_));
+        match event.kind {
+            EventKind::NoteOn { key, detune, velocity, id } => {
+                let key = nearest_key(key);
+                self.note_on(Note {
+                    channel,
+                    key,
+                    pitch: Pitch::Semitones(key.into()),
+                    detune: finite(detune).clamp(-128.0, 128.0),
+                    velocity: unit(velocity),
+                    brightness: self.channels.brightness(channel),
+                    id,
+                    is_legato: self.manager.has_key_down(),
+                    serial: self.note_serial,
+                    ..Note::NONE
+                });
+                self.note_serial += 1;
+            }
+            EventKind::NoteOff { key, velocity, id } => {
+                self.note_off(Notes { id: (id != -1).then_some(id), ..Notes::on(channel, key) }, velocity);
+            }
+            EventKind::Release { notes, velocity } => self.note_off(notes, velocity),
+            EventKind::Silence { notes } => self.manager.silence(notes),
+            EventKind::PolyPressure { key, pressure } => {
+                self.express(Notes::on(channel, key), Expression::Pressure, pressure);
+            }
+            EventKind::Express { notes, expression, value } => self.express(notes, expression, value),
+            EventKind::ChannelPressure(pressure) => self.channels.press(channel, unit(pressure)),
+            EventKind::PitchBend(bend) => self.channels.bend(channel, finite(bend).clamp(-1.0, 1.0)),
+            EventKind::Control { controller, value } => self.control(channel, controller, unit(value)),
+            EventKind::Param { param, value } => {
+                self.instruments.set(param, value, self.clock);
+                self.follow_param();
+            }
+            EventKind::Modulate { id: None, param, offset } => {
+                self.instruments.modulate(param, finite(offset).clamp(-1.0, 1.0), self.clock);
+                self.follow_param();
+            }
+            EventKind::Modulate { id: Some(id), param, offset } => {
+                self.modulate_note(id, param, finite(offset).clamp(-1.0, 1.0));
+            }
+            EventKind::Tempo(beats_per_minute) => {
+                let beat_rate = f64::from(finite(beats_per_minute).clamp(1.0, 10_000.0)) / 60.0;
+                self.instruments.set_tempo(beat_rate, self.clock);
+            }
+            EventKind::Choke { group } => self.manager.choke(group),
+            EventKind::Program(_) => {}
+        }
+    }
+
+    /// A key goes down: the note, without what its pad, its sound and the pedals make of it.
+    fn note_on(&mut self, mut note: Note) {
+        let Some(instrument) = self.instruments.start(&mut note, self.clock) else {
+            return self.manager.turn_away(note);
+        };
+        note.soft = self.channels.is_soft(note.channel);
+        if instrument.has_routes() {
+            instrument.positions = self.channels.wheels(note.channel).positions(note.brightness.into());
+        }
+        if let Some(capacity) = self.own_pool {
+            let need = self.manager.need(instrument, &note);
+            if !has_room(capacity, self.manager.pool().free(), need) {
+                make_room(std::slice::from_mut(&mut self.manager), |manager| manager, capacity, need);
+            }
+        }
+        if self.manager.note_on(instrument, note) {
+            instrument.last_pitch = Some(instrument.pitch(&note));
+        }
+    }
+
+    /// Keys come up.
+    fn note_off(&mut self, notes: Notes, velocity: f32) {
+        // The instrument is for a voice that returns to a held key: in a kit of several sounds, none does.
+        self.manager.note_off(self.instruments.first(), notes, unit(velocity));
+    }
+
+    fn express(&mut self, notes: Notes, expression: Expression, value: f32) {
+        for (note, voice) in self.manager.active().filter(|(note, _)| notes.include(note)) {
+            let brightness = self.channels.brightness(note.channel);
+            voice.express(self.instruments.of_note(note), expression, value, brightness);
+        }
+    }
+
+    /// Moves a parameter of one note by an offset in knob travel.
+    fn modulate_note(&mut self, id: i32, param: Param, offset: f32) {
+        // Notes without an identifier (−1) cannot be modulated one by one.
+        if id < 0 || !matches!(param.info().change, Change::Smoothed(_)) {
+            return;
+        }
+        for (note, voice) in self.manager.active().filter(|(note, _)| note.id == id) {
+            if let Some(instrument) = self.instruments.of_note(note) {
+                voice.modulate(instrument, param, offset, instrument.smoother.value_after(param, 0));
+            }
+        }
+    }
+
+    /// Has voices and their manager follow a parameter of the kit that has a new value or offset.
+    fn follow_param(&mut self) {
+        for (note, voice) in self.manager.active() {
+            self.instruments.of_note(note).into_iter().for_each(|instrument| voice.follow(instrument));
+        }
+        self.configure_manager();
+    }
+}

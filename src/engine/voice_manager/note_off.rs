@@ -1,0 +1,54 @@
+//! What ends notes: keys that come up, pedals, mode messages, choke groups and hosts.
+
+use super::VoiceManager;
+use super::slot::Slot;
+use super::voice::Voice;
+use crate::engine::note::Notes;
+use crate::params::PlayMode;
+
+impl<V: Voice> VoiceManager<V> {
+    /// The keys of these notes come up.
+    pub fn note_off(&mut self, context: &V::Context, notes: Notes, velocity: f32) {
+        if self.mode != PlayMode::Poly && self.return_to_held(context, &notes) {
+            return;
+        }
+        for slot in self.slots.in_use_mut().iter_mut().filter(|slot| slot.is_one_of(&notes)) {
+            slot.key_down = false;
+            slot.release_unless_held(self.pedals.sustains(slot.note.channel), velocity);
+        }
+    }
+
+    /// The sustain pedal (controller 64).
+    pub fn sustain(&mut self, channel: u8, down: bool) {
+        self.pedals.sustain(channel, down, self.slots.in_use_mut());
+    }
+
+    /// The sostenuto pedal (controller 66): holds the notes whose keys are down when it goes down.
+    pub fn sostenuto(&mut self, channel: u8, down: bool) {
+        self.pedals.sostenuto(channel, down, self.slots.in_use_mut());
+    }
+
+    /// Controller 123: every key of the channel comes up.
+    pub fn all_notes_off(&mut self, channel: u8) {
+        self.forget(|held| held.channel == channel);
+        self.slots.on_channel(channel).for_each(|slot| slot.key_down = false);
+        self.pedals.release_unheld(channel, self.slots.in_use_mut());
+    }
+
+    /// Controller 120: the channel is silenced.
+    pub fn all_sound_off(&mut self, channel: u8) {
+        self.forget(|held| held.channel == channel);
+        self.slots.on_channel(channel).filter(|slot| slot.is_sounding()).for_each(Slot::fade);
+    }
+
+    /// Silences these notes.
+    pub fn silence(&mut self, notes: Notes) {
+        self.forget(|held| notes.include(held));
+        self.slots.in_use_mut().iter_mut().filter(|slot| slot.is_one_of(&notes)).for_each(Slot::fade);
+    }
+
+    /// Silences the notes of a choke group (0 is none).
+    pub fn choke(&mut self, group: u8) {
+        self.slots.sounding().filter(|slot| group != 0 && slot.note.choke == group).for_each(Slot::fade);
+    }
+}

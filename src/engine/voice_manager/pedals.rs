@@ -1,0 +1,48 @@
+//! The pedals that hold notes: sustain and sostenuto, for each channel.
+
+use super::slot::{Slot, State};
+use super::voice::Voice;
+
+/// Release velocity of notes that a pedal or a mode message lets go of.
+const MIDDLE_VELOCITY: f32 = 0.5;
+
+/// Which pedals are down. Real-time safe.
+pub(super) struct Pedals {
+    sustain: [bool; 16],
+    sostenuto: [bool; 16],
+}
+
+impl Pedals {
+    /// No pedal is down.
+    pub(super) const UP: Self = Self { sustain: [false; 16], sostenuto: [false; 16] };
+
+    /// Whether the sustain pedal holds the notes of a channel.
+    pub(super) fn sustains(&self, channel: u8) -> bool {
+        self.sustain[usize::from(channel)]
+    }
+
+    /// The sustain pedal moves.
+    pub(super) fn sustain<V: Voice>(&mut self, channel: u8, down: bool, slots: &mut [Slot<V>]) {
+        self.sustain[usize::from(channel)] = down;
+        self.release_unheld(channel, slots);
+    }
+
+    /// The sostenuto pedal moves: going down, it catches the notes whose keys are down.
+    pub(super) fn sostenuto<V: Voice>(&mut self, channel: u8, down: bool, slots: &mut [Slot<V>]) {
+        // Pedals that send positions repeat themselves; only going down catches notes.
+        if std::mem::replace(&mut self.sostenuto[usize::from(channel)], down) == down {
+            return;
+        }
+        for slot in slots.iter_mut().filter(|slot| slot.note.channel == channel) {
+            slot.sostenuto = down && slot.state == State::Held && slot.key_down;
+        }
+        self.release_unheld(channel, slots);
+    }
+
+    /// Releases the notes of a channel whose keys are up and that no pedal holds.
+    pub(super) fn release_unheld<V: Voice>(&self, channel: u8, slots: &mut [Slot<V>]) {
+        for slot in slots.iter_mut().filter(|slot| slot.note.channel == channel && !slot.key_down) {
+            slot.release_unless_held(self.sustains(channel), MIDDLE_VELOCITY);
+        }
+    }
+}

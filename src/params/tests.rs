@@ -1,0 +1,56 @@
+//! The table as a whole: its ids, its rows, and values through texts and knobs.
+
+use super::*;
+use proptest::prelude::*;
+
+/// Ids are in people's presets: this list only grows.
+#[test]
+fn ids_are_pinned() {
+    let ids: Vec<_> = PARAMS.iter().map(|info| info.id).collect();
+    let pinned = "exciter hardness position noise_level noise_time velocity \
+        decay release damper note_off decay_tilt tilt stretch width coefficients \
+        tune fine tuning key_track sweep sweep_time sweep_curve \
+        vibrato vibrato_rate vibrato_delay vibrato_sync glide glide_when glide_by \
+        bend_range \
+        lfo1_rate lfo1_sync lfo1_shape lfo1_phase lfo1_fade lfo1_scope \
+        lfo2_rate lfo2_sync lfo2_shape lfo2_phase lfo2_fade lfo2_scope \
+        lfo3_rate lfo3_sync lfo3_shape lfo3_phase lfo3_fade lfo3_scope \
+        envelope1_delay envelope1_attack envelope1_hold envelope1_decay envelope1_sustain envelope1_release \
+        envelope1_curve \
+        envelope2_delay envelope2_attack envelope2_hold envelope2_decay envelope2_sustain envelope2_release \
+        envelope2_curve \
+        macro1 macro2 macro3 macro4 macro5 macro6 macro7 macro8 \
+        route1 route2 route3 route4 route5 route6 route7 route8 \
+        route9 route10 route11 route12 route13 route14 route15 route16 \
+        voices mode priority unison unison_detune unison_spread unison_phase choke gain pan limiter";
+    assert_eq!(ids, pinned.split_whitespace().collect::<Vec<_>>());
+}
+
+#[test]
+fn the_table_is_consistent() {
+    for (index, info) in PARAMS.iter().enumerate() {
+        assert_eq!(info.param as usize, index, "{}", info.id);
+        assert_eq!(Param::from_id(info.id), Some(info.param));
+        assert!(info.min < info.max && (info.min..=info.max).contains(&info.default), "{}", info.id);
+        assert!(info.curve == Curve::Linear || info.min > 0.0, "{}", info.id);
+        assert_eq!(info.unit == Unit::Choice, !info.choices.is_empty(), "{}", info.id);
+        if info.unit == Unit::Choice {
+            assert_eq!((info.min, info.max as usize + 1), (0.0, info.choices.len()), "{}", info.id);
+        }
+    }
+    assert_eq!(PARAMS.len(), PARAM_COUNT);
+}
+
+proptest! {
+    #[test]
+    fn text_and_knob_go_both_ways(index in 0..PARAM_COUNT, position in 0.0..=1.0f64) {
+        let info = &PARAMS[index];
+        let value = info.denormalise(position);
+        prop_assert!(info.check(value).is_ok());
+        let text = info.format(value);
+        let read = info.parse(&text).map_err(TestCaseError::fail)?;
+        prop_assert_eq!(info.format(read), text);
+        let single = info.normalise(value) as f32;
+        prop_assert_eq!(info.denormalise(single.into()), value, "{} through {}", info.id, single);
+    }
+}
