@@ -127,7 +127,7 @@ impl Synth {
         self.offsets = [0.0; PARAM_COUNT];
         for (instrument, sound) in self.instruments.iter_mut().zip(self.kit.sounds()) {
             *instrument = Instrument::new(sound.clone(), [sample_rate, DEFAULT_BEAT_RATE], seed, &self.offsets, 0);
-            instrument.begin_at(moved_by(&self.kit, &self.values));
+            instrument.begin_at(moved_by(&self.kit, &self.values), &self.offsets);
         }
         (self.first_patch, self.bodies) = (0, 0);
         self.number();
@@ -184,6 +184,23 @@ impl Synth {
     /// As [`Synth::set_kit`], with a kit of one sound that is made of a patch. Allocates and frees.
     pub fn set_patch(&mut self, patch: &Patch) {
         self.set_kit(&Kit::of_patch(patch));
+    }
+
+    /// Sets all parameters of the kit at once, without slopes: what was set before has no part in the notes from now on.
+    /// Notes that sound jump, so this is for times when nothing does. Modulation stays. Real-time safe.
+    pub fn set_values(&mut self, values: &Values) {
+        self.values = *values;
+        for instrument in &mut self.instruments {
+            // Until now, shared oscillators have had the rate before.
+            instrument.move_shared(self.clock, 0);
+            instrument.begin_at(moved_by(&self.kit, values), &self.offsets);
+        }
+        self.number();
+        for (note, voice) in self.manager.active() {
+            playing(&self.instruments, note).into_iter().for_each(|instrument| voice.follow(instrument));
+        }
+        self.needs_control = true;
+        self.configure();
     }
 
     /// The kit in use. Real-time safe.

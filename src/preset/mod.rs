@@ -1,6 +1,7 @@
 //! Presets: a patch with its name, author, tags and comment, as a TOML file or built in; and kits, which put them on keys.
 
 mod about;
+mod complaints;
 mod factory;
 mod file;
 mod kit;
