@@ -1,14 +1,14 @@
-//! State: all of it comes back, the same bytes when nothing has changed, nothing when it cannot be read.
+//! State: all of it comes back, the same bytes when nothing has changed, what can be read of it, nothing if it is none.
 
 use crate::host::reference::{At, assert_same_bits, render};
 use crate::host::{Address, Instance, Player, Sent, Timed};
-use crate::patches::{enclosed, load, own_part, patch_in, patches, state, state_of_text};
+use crate::patches::{drums, enclosed, load, own_part, patch_in, patches, state, state_of_kit, state_of_text};
 use crate::process::{Stops, wait_until};
 use clack_host::prelude::EventBuffer;
 use sprung::dsp::random::{key, uniform};
 use sprung::engine::EventKind;
-use sprung::params::PARAMS;
-use sprung::patch::Patch;
+use sprung::params::{PARAMS, Param};
+use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -161,9 +161,6 @@ fn broken_states(saved: &[u8]) -> Vec<(&'static str, Vec<u8>)> {
         change(&mut own);
         enclosed(&own.to_string())
     };
-    let preset = |modes: &str, params: &str| {
-        state_of_text(&format!("format = 1\nname = \"Broken\"\nmodes = [{modes}]\n\n[params]\n{params}\n"))
-    };
     let stream = key(5, 5);
     vec![
         ("nothing", Vec::new()),
@@ -176,24 +173,73 @@ fn broken_states(saved: &[u8]) -> Vec<(&'static str, Vec<u8>)> {
         ("another program's JSON", [&7_u64.to_le_bytes()[..], b"{\"a\":1}"].concat()),
         ("its own part is no JSON", enclosed("sprung")),
         ("its own part is a list", enclosed("[]")),
-        ("a format of the future", changed(|own| own["format"] = 99.into())),
-        ("no format", changed(|own| drop(own.as_object_mut().unwrap().remove("format")))),
         ("no preset", changed(|own| drop(own.as_object_mut().unwrap().remove("preset")))),
-        ("a seed that is a text", changed(|own| own["seed"] = "zero".into())),
-        ("a window without a width", changed(|own| own["window"] = serde_json::json!([0, 640]))),
         ("a preset that is no TOML", state_of_text("= = =")),
-        ("a value out of range", preset("", "gain = 999.0")),
-        ("a value that is no number", preset("", "gain = nan")),
-        ("an unknown parameter", preset("", "gian = 1.0")),
-        ("a mode out of range", preset("{ ratio = -1.0 }", "")),
-        ("a mode that is no number", preset("{ ratio = 1.0, level = nan }", "")),
-        ("too many modes", preset(&"{ ratio = 1.0 }, ".repeat(65), "")),
+        ("a preset without a format", state_of_text("name = \"Broken\"\n")),
     ]
 }
 
-pub(crate) fn what_cannot_be_read_changes_nothing() {
+/// States of which a part cannot be read, with the patch that the rest makes of the one that was saved.
+fn states_in_part(saved: &[u8], patch: &Patch) -> Vec<(&'static str, Vec<u8>, Patch)> {
+    let own = own_part(saved);
+    let changed = |change: fn(&mut serde_json::Value)| {
+        let mut own = own.clone();
+        change(&mut own);
+        (enclosed(&own.to_string()), patch.clone())
+    };
+    let preset = |modes: &str, params: &str| {
+        let text = format!("format = 3\nname = \"Broken\"\nmodes = [{modes}]\n\n[params]\ndecay = 2.5\n{params}\n");
+        let mut rest = Patch::default().with(Param::Decay, 2.5);
+        if modes.matches("ratio = 2").count() > 0 {
+            rest.modes = ModeTable::new(&vec![Mode { ratio: 2.0, ..Mode::UNIT }; modes.matches("ratio = 2").count()]);
+        }
+        (state_of_text(&text), rest)
+    };
+    let all = [
+        ("a format of the future", changed(|own| own["format"] = 99.into())),
+        ("no format", changed(|own| drop(own.as_object_mut().unwrap().remove("format")))),
+        ("a seed that is a text", changed(|own| own["seed"] = "zero".into())),
+        ("a window without a width", changed(|own| own["window"] = serde_json::json!([0, 640]))),
+        ("something of the future", changed(|own| own["scenes"] = serde_json::json!([0, 640]))),
+        ("a value out of range", preset("", "gain = 999.0")),
+        ("a value that is no number", preset("", "gain = nan")),
+        ("an unknown parameter", preset("", "gian = 1.0")),
+        ("a mode out of range", preset("{ ratio = -1.0 }, { ratio = 2.0 }", "")),
+        ("a mode that is no number", preset("{ ratio = 2.0, level = nan }", "")),
+        ("too many modes", preset(&"{ ratio = 2.0 }, ".repeat(MAX_MODES + 1), "")),
+    ];
+    all.into_iter().map(|(what, (state, rest))| (what, state, rest)).collect()
+}
+
+pub(crate) fn what_can_be_read_of_a_state_is_taken_over() {
     let mut source = Instance::new();
-    let patch = patches()[4].1;
+    let patch = patches().swap_remove(4).1;
+    load(&mut source, &patch);
+    let saved = source.save();
+    for (what, bytes, expected) in states_in_part(&saved, &patch) {
+        let mut instance = Instance::new();
+        assert!(instance.load(&bytes), "{what}");
+        assert_eq!(patch_in(&instance.save()), expected, "{what}");
+    }
+}
+
+/// A project with a kit comes back to the byte, also with a knob turned.
+pub(crate) fn a_kit_comes_back_with_its_presets() {
+    let mut first = Instance::new();
+    assert!(first.load(&state_of_kit(&drums())));
+    let saved = first.save();
+    assert_eq!(own_part(&saved)["kit"].as_str(), Some(drums().to_toml().as_str()));
+    scramble(&mut first, 7);
+    for saved in [saved, first.save()] {
+        let mut second = Instance::new();
+        assert!(second.load(&saved));
+        assert_eq!(second.save(), saved);
+    }
+}
+
+pub(crate) fn what_is_no_state_changes_nothing() {
+    let mut source = Instance::new();
+    let patch = patches().swap_remove(4).1;
     load(&mut source, &patch);
     let saved = source.save();
     let set = values(&mut source);
