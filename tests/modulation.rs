@@ -277,7 +277,7 @@ fn busy(exciter: f32) -> Patch {
         Source::Lfo3,
         Source::Envelope1,
         Source::Envelope2,
-        Source::Velocity,
+        Source::Macro1,
         Source::Macro2,
         Source::Macro3,
         Source::Macro4,
@@ -307,8 +307,12 @@ fn busy(exciter: f32) -> Patch {
         (Release, 0.2),
         (Gain, -12.0),
         (Damper, 20.0),
+        (Unison, 3.0),
     ] {
         patch.set(param, value);
+    }
+    for param in [Macro2, Macro3, Macro4, Macro5, Macro6, Macro7, Macro8] {
+        patch.set(param, 40.0);
     }
     patch
 }

@@ -15,6 +15,7 @@ pub mod random;
 pub mod real;
 #[allow(unsafe_code)]
 pub mod simd;
+pub mod space;
 pub mod true_peak;
 
 pub use bank::Bank;

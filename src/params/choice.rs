@@ -188,6 +188,9 @@ mod tests {
         check::<NoteOff>();
         check::<Coefficients>();
         check::<PlayMode>();
+        check::<Priority>();
+        check::<GlideWhen>();
+        check::<GlideBy>();
         check::<Limiter>();
         check::<Shape>();
         check::<Scope>();
@@ -197,6 +200,9 @@ mod tests {
             NoteOff::NAMES,
             Coefficients::NAMES,
             PlayMode::NAMES,
+            Priority::NAMES,
+            GlideWhen::NAMES,
+            GlideBy::NAMES,
             Limiter::NAMES,
             Shape::NAMES,
             Scope::NAMES,

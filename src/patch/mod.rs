@@ -52,19 +52,33 @@ impl Mode {
 
 /// A body: one to [`MAX_MODES`] modes. Copies share them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ModeTable(Arc<[Mode]>);
+pub struct ModeTable {
+    modes: Arc<[Mode]>,
+    origin: Option<Arc<str>>,
+}
 
 impl ModeTable {
     /// The first [`MAX_MODES`] of `modes`, or the unit mode if there are none. Ranges are the caller's to check.
     /// Allocates.
     pub fn new(modes: &[Mode]) -> Self {
         let modes = if modes.is_empty() { &[Mode::UNIT] } else { modes };
-        Self(modes[..modes.len().min(MAX_MODES)].into())
+        Self { modes: modes[..modes.len().min(MAX_MODES)].into(), origin: None }
     }
 
     /// The modes in use.
     pub fn as_slice(&self) -> &[Mode] {
-        &self.0
+        &self.modes
+    }
+
+    /// The table with a text of what its modes were made from, which is for files to write instead of the modes. Allocates.
+    #[must_use]
+    pub fn with_origin(self, origin: &str) -> Self {
+        Self { origin: Some(origin.into()), ..self }
+    }
+
+    /// What its modes were made from, if they were not typed.
+    pub fn origin(&self) -> Option<&str> {
+        self.origin.as_deref()
     }
 }
 

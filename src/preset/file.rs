@@ -3,9 +3,9 @@
 use super::about::{About, about_to_toml};
 use super::complaints::Complaints;
 use super::migration::{self, Replaced};
-use super::routes;
 use super::value::{check_keys, param_value, table, unexpected};
 use super::{FORMAT_VERSION, Preset};
+use super::{body, routes};
 use crate::error::Error;
 use crate::params::retired::RETIRED;
 use crate::params::{PARAMS, Param, Unit};
@@ -13,7 +13,7 @@ use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use std::fmt::Write;
 use toml::{Table, Value};
 
-const KEYS: [&str; 8] = ["format", "name", "author", "tags", "comment", "modes", "routes", "params"];
+const KEYS: [&str; 9] = ["format", "name", "author", "tags", "comment", "modes", "body", "routes", "params"];
 
 /// Reads as much of a preset as can be; the error is that it is none at all.
 pub(super) fn parse(
@@ -61,6 +61,7 @@ pub(super) fn read(
     let retired = if is_old { Some(migration::take(&mut params, &mut patch, complaints)) } else { None };
     read_params(&params, &mut patch, complaints);
     patch.modes = ModeTable::new(&read_modes(table.get("modes"), complaints));
+    body::read(table, &mut patch, complaints);
     routes::read(table, &mut patch, complaints);
     if let Some(retired) = retired {
         migration::migrate(&retired, &params, &mut patch, replaced);
@@ -135,7 +136,7 @@ pub(super) fn to_toml(preset: &Preset) -> String {
     let Preset { name, author, tags, comment, .. } = preset;
     out.push_str(&about_to_toml([name, author, comment], tags));
     let modes = preset.patch.modes.as_slice();
-    if modes != [Mode::UNIT] {
+    if modes != [Mode::UNIT] && preset.patch.modes.origin().is_none() {
         out.push_str("modes = [\n");
         for mode in modes {
             let _ = writeln!(out, "    {{ {} }},", mode_fields(mode));
@@ -143,10 +144,12 @@ pub(super) fn to_toml(preset: &Preset) -> String {
         out.push_str("]\n");
     }
     out.push_str(&routes::to_toml(&preset.patch));
+    out.push_str(&body::to_toml(&preset.patch));
     out.push_str("\n[params]\n");
     for info in PARAMS {
         let value = preset.patch.get(info.param);
-        if value != info.default && !routes::writes(&preset.patch, info.param) {
+        let is_news = value != info.default || body::writes(&preset.patch, info.param);
+        if is_news && !routes::writes(&preset.patch, info.param) {
             let _ = match info.unit {
                 Unit::Choice => writeln!(out, "{} = \"{}\"", info.id, info.choices[value as usize]),
                 Unit::Count => writeln!(out, "{} = {value}", info.id),

@@ -34,11 +34,7 @@ impl Preset {
     ///
     /// # Errors
     /// [`Error::Format`] for a text that is no TOML or no preset.
-    pub fn parse_lenient(
-        text: &str,
-        origin: &str,
-        replaced: &mut dyn FnMut(Replaced),
-    ) -> Result<(Self, Vec<String>)> {
+    pub fn parse_lenient(text: &str, origin: &str, replaced: &mut dyn FnMut(Replaced)) -> Result<(Self, Vec<String>)> {
         let mut complaints = Complaints::default();
         let preset = file::parse(text, origin, &mut complaints, replaced)?;
         Ok((preset, complaints.into_lines()))

@@ -1,6 +1,7 @@
 //! Presets: a patch with its name, author, tags and comment, as a TOML file or built in; and kits, which put them on keys.
 
 mod about;
+mod body;
 mod complaints;
 mod factory;
 mod file;
@@ -17,6 +18,7 @@ use crate::sound::kit::{KEYS, Pad};
 use crate::sound::{Kit, Sound};
 use std::sync::Arc;
 
+pub use body::{body_of_modes, modes_of_body};
 pub use kit::{KIT_VERSION, KitPreset, Playable};
 pub use kit_load::is_file_name;
 pub use load::MAX_FILE_SIZE;

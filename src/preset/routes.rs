@@ -49,14 +49,7 @@ pub(super) fn read(file: &Table, patch: &mut Patch, complaints: &mut Complaints)
 }
 
 /// Reads the amount of the route at a place: in itself or among the parameters, or else it is 0.
-fn read_amount(
-    file: &Table,
-    route: &Table,
-    at: &str,
-    place: usize,
-    patch: &mut Patch,
-    complaints: &mut Complaints,
-) {
+fn read_amount(file: &Table, route: &Table, at: &str, place: usize, patch: &mut Patch, complaints: &mut Complaints) {
     let info = amount_param(place).info();
     let in_params = file.get("params").is_some_and(|params| params.get(info.id).is_some());
     match route.get("amount") {

@@ -1,5 +1,7 @@
-//! What notes are made from: sounds, kits that put sounds on keys, and how the keys are tuned.
+//! What notes are made from: sounds, bodies that are joined, kits that put sounds on keys, and how the keys are tuned.
 
+pub mod bodies;
+pub mod coupled;
 pub mod kit;
 mod shelf;
 pub mod tuning;

@@ -18,7 +18,7 @@ const ALLOWED: &[Row] = &[
     ("dsp", &[]),
     ("params", &["units"]),
     ("patch", &["params", "dsp"]),
-    ("sound", &["error", "params", "patch", "units"]),
+    ("sound", &["dsp", "error", "params", "patch", "units"]),
     ("preset", &["error", "params", "patch", "sound", "text", "units"]),
     ("engine", &["dsp", "params", "patch", "sound", "units"]),
     ("io", &["dsp", "engine", "error", "units"]),
@@ -66,6 +66,7 @@ const CRATES: &[&str] = &[
     "tests/cli/main.rs",
     "tests/golden/main.rs",
     "tests/realtime/main.rs",
+    "tests/space/main.rs",
     "tests/storm/main.rs",
 ];
 

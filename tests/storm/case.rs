@@ -101,7 +101,7 @@ pub(crate) const PARAM_IDS: &str = "exciter hardness hardness position noise_lev
     envelope1_curve envelope2_delay envelope2_attack envelope2_hold envelope2_decay envelope2_sustain \
     envelope2_release envelope2_curve macro1 macro2 macro3 macro4 macro5 macro6 macro7 macro8 \
     route1 route2 route3 route4 route5 route6 route7 route8 route9 route10 route11 route12 route13 route14 route15 \
-    route16";
+    route16 glide_when glide_by priority unison unison_detune unison_spread unison_phase";
 
 /// What routes lead to here: all that moves pitch and damping, but nothing that the bound is made of, and the
 /// modulation's own parameters. New ones come last.

@@ -5,7 +5,7 @@ use super::rows::{Form, Modes, Moving, Output, Row, State, Wide};
 use super::step::Step;
 use super::table::{Build, Table};
 use super::tuning::{Aim, ChordLoss, Settle, Tune, Tuning, UNIT};
-use super::{ExcitationGains, LEAST_LN_RADIUS, MAX_MODES, ModeSetup};
+use super::{ExcitationGains, LEAST_LN_RADIUS, MAX_MODES, MOST_LN_RADIUS, ModeSetup};
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
 use crate::dsp::exciter::Drive;
@@ -159,7 +159,7 @@ impl ModeBank {
     /// Changes the T60 of mode `m` to `t60` seconds, at once. Follow with [`ModeBank::sweep_to`].
     pub fn set_t60(&mut self, m: usize, t60: f64) {
         self.leave_tables();
-        self.ln_radius[m] = (LN_MINUS_60_DB / (t60 * self.sample_rate)).clamp(LEAST_LN_RADIUS, 0.0);
+        self.ln_radius[m] = (LN_MINUS_60_DB / (t60 * self.sample_rate)).clamp(LEAST_LN_RADIUS, MOST_LN_RADIUS);
         self.retuned = true;
     }
 

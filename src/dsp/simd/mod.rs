@@ -1,11 +1,15 @@
 //! Vector instructions: which levels of them the CPU has, and work that is written once and run with the best.
 //!
-//! `vector` says what work may ask of a CPU; `x86` and `neon` have the instructions. They are the only unsafe code of
-//! the crate.
+//! `vector` says what work may ask of a CPU; `sse2`, `x86` and `neon` have the instructions. They are the only unsafe
+//! code of the crate. `fused` is fused multiplication for CPUs without an instruction for it.
 
+mod fused;
 #[cfg(target_arch = "aarch64")]
 #[allow(unsafe_code)]
 mod neon;
+#[cfg(target_arch = "x86_64")]
+#[allow(unsafe_code)]
+mod sse2;
 #[allow(clippy::needless_range_loop, reason = "several arrays are indexed in step")]
 pub(super) mod vector;
 #[cfg(target_arch = "x86_64")]
@@ -19,7 +23,9 @@ use vector::{Scalar, Vector};
 #[cfg(target_arch = "aarch64")]
 use neon::Neon;
 #[cfg(target_arch = "x86_64")]
-use x86::{Avx2, Avx512, HasAvx2, HasAvx512, Sse2};
+use sse2::Sse2;
+#[cfg(target_arch = "x86_64")]
+use x86::{Avx2, Avx512, HasAvx2, HasAvx512};
 
 /// A level of vector instructions. All give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,7 @@
 //! What the kernels ask of a CPU: a few operations on a vector of single-precision numbers, each rounded exactly.
 
+use super::fused::fused;
+
 /// Modes whose partial sums are kept side by side. Frozen, like everything that an order of summation depends on.
 pub(in crate::dsp) const LANES: usize = 16;
 
@@ -148,70 +150,17 @@ impl Vector for Scalar {
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
-        let mut result = self.0;
-        for l in 0..4 {
-            result[l] = fused(self.0[l], factor.0[l], term.0[l]);
-        }
-        Self(result)
+        Self(fused(self.0, factor.0, term.0))
     }
     #[inline(always)]
     fn neg_mul_add(self, factor: Self, term: Self) -> Self {
-        let mut result = self.0;
-        for l in 0..4 {
-            result[l] = fused(-self.0[l], factor.0[l], term.0[l]);
-        }
-        Self(result)
+        Self(fused(self.0.map(|number| -number), factor.0, term.0))
     }
-}
-
-/// `a · b + c` rounded once, without an instruction for it.
-///
-/// The product is exact in double precision. Its sum with `c`, rounded to odd, still tells on which side of a
-/// midpoint the exact sum lies, so rounding that to single precision is right (Boldo and Melquiond 2008, "Emulation
-/// of a FMA and correctly rounded sums"). The system's `fmaf` may be a call a hundred times as slow.
-#[inline(always)]
-pub(super) fn fused(a: f32, b: f32, c: f32) -> f32 {
-    let (product, c) = (f64::from(a) * f64::from(b), f64::from(c));
-    let sum = product + c;
-    // Knuth's TwoSum: what rounding took away.
-    let part = sum - product;
-    let error = (product - (sum - part)) + (c - part);
-    let bits = sum.to_bits();
-    let towards = if (error.to_bits() ^ bits) >> 63 == 0 { bits.wrapping_add(1) } else { bits.wrapping_sub(1) };
-    let odd = if error != 0.0 && bits & 1 == 0 { towards } else { bits };
-    f64::from_bits(odd) as f32
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dsp::random::{key, uniform};
-
-    /// Cases that rounding twice gets wrong, and a million random ones of every magnitude.
-    #[test]
-    fn emulated_fusing_rounds_once() {
-        let check = |a: f32, b: f32, c: f32| {
-            let (expected, found) = (a.mul_add(b, c), fused(a, b, c));
-            assert!(expected.to_bits() == found.to_bits(), "{a:e} · {b:e} + {c:e}: {expected:e}, not {found:e}");
-        };
-        let tie = 1.0 + f32::EPSILON;
-        for tiny in [1e-30_f32, -1e-30, f32::MIN_POSITIVE, 1e-44] {
-            check(tie, tie, tiny);
-            check(tiny, tiny, tie);
-            check(16_777_217.0, 1.0, tiny);
-            check(1.0 + 4_096.0 * f32::EPSILON, 1.0 - 4_096.0 * f32::EPSILON, tiny);
-        }
-        let stream = key(11, 0);
-        for n in 0..1_000_000_u64 {
-            let number = |k: u64| {
-                let exponent = (uniform(stream, 6 * n + 2 * k + 1) * 40.0) as f64;
-                uniform(stream, 6 * n + 2 * k) * libm::exp2(exponent) as f32
-            };
-            let (a, b) = (number(0), number(1));
-            check(a, b, number(2));
-            check(a, b, -(a * b));
-        }
-    }
 
     #[test]
     fn lanes_are_summed_by_halves() {

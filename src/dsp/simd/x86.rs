@@ -1,7 +1,7 @@
-//! Vectors of x86-64: SSE2, AVX2 with FMA, AVX-512.
+//! Vectors of x86-64 with fused multiplication: AVX2 with FMA, AVX-512.
 //!
-//! SAFETY, throughout: SSE2 belongs to x86-64. A vector of another level is made only with a proof, and a proof only
-//! where the CPU was found to have the instructions; so an operation on a vector, or with a proof, may execute them.
+//! SAFETY, throughout: a vector is made only with a proof, and a proof only where the CPU was found to have the
+//! instructions; so an operation on a vector, or with a proof, may execute them.
 
 use super::vector::{LANES, Partial, Vector};
 use std::arch::x86_64::*;
@@ -78,92 +78,6 @@ macro_rules! common {
             Self(unsafe { $max(self.0, other.0) })
         }
     };
-}
-
-/// Four numbers. Fusing is emulated.
-#[derive(Clone, Copy)]
-pub(super) struct Sse2(__m128);
-
-impl Vector for Sse2 {
-    common!(
-        (),
-        4,
-        _mm_loadu_ps,
-        _mm_storeu_ps,
-        _mm_set1_ps,
-        _mm_add_ps,
-        _mm_sub_ps,
-        _mm_mul_ps,
-        _mm_min_ps,
-        _mm_max_ps
-    );
-
-    #[inline(always)]
-    fn splat_pair((): (), pair: &[f32; 2]) -> Self {
-        // SAFETY: see the top of the file.
-        unsafe {
-            let both = f64::from_bits(u64::from(pair[0].to_bits()) | u64::from(pair[1].to_bits()) << 32);
-            Self(_mm_castpd_ps(_mm_set1_pd(both)))
-        }
-    }
-    #[inline(always)]
-    fn store_pairs(self, other: Self, to: &mut [f32]) {
-        let to = &mut to[..2 * Self::WIDTH];
-        // SAFETY: see the top of the file; the slice has as many numbers as are written.
-        unsafe {
-            _mm_storeu_ps(to.as_mut_ptr(), _mm_unpacklo_ps(self.0, other.0));
-            _mm_storeu_ps(to[4..].as_mut_ptr(), _mm_unpackhi_ps(self.0, other.0));
-        }
-    }
-    #[inline(always)]
-    fn add_pairs(self, other: Self) -> Self {
-        // SAFETY: see the top of the file.
-        unsafe {
-            Self(_mm_add_ps(
-                _mm_shuffle_ps::<0b10_00_10_00>(self.0, other.0),
-                _mm_shuffle_ps::<0b11_01_11_01>(self.0, other.0),
-            ))
-        }
-    }
-
-    #[inline(always)]
-    fn mul_add(self, factor: Self, term: Self) -> Self {
-        // SAFETY: see the top of the file.
-        unsafe {
-            let lower = _mm_cvtpd_ps(fused(_mm_cvtps_pd(self.0), _mm_cvtps_pd(factor.0), _mm_cvtps_pd(term.0)));
-            let upper = _mm_cvtpd_ps(fused(upper(self.0), upper(factor.0), upper(term.0)));
-            Self(_mm_movelh_ps(lower, upper))
-        }
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, term: Self) -> Self {
-        // SAFETY: see the top of the file.
-        Self(unsafe { _mm_xor_ps(self.0, _mm_set1_ps(-0.0)) }).mul_add(factor, term)
-    }
-}
-
-#[inline(always)]
-fn upper(v: __m128) -> __m128d {
-    // SAFETY: see the top of the file.
-    unsafe { _mm_cvtps_pd(_mm_movehl_ps(v, v)) }
-}
-
-/// `a · b + c` in double precision, rounded to odd: two lanes of [`super::vector::fused`].
-#[inline(always)]
-fn fused(a: __m128d, b: __m128d, c: __m128d) -> __m128d {
-    // SAFETY: see the top of the file.
-    unsafe {
-        let product = _mm_mul_pd(a, b);
-        let sum = _mm_add_pd(product, c);
-        let part = _mm_sub_pd(sum, product);
-        let error = _mm_add_pd(_mm_sub_pd(product, _mm_sub_pd(sum, part)), _mm_sub_pd(c, part));
-        let (bits, one) = (_mm_castpd_si128(sum), _mm_set1_epi64x(1));
-        let opposite = _mm_srli_epi64::<63>(_mm_xor_si128(_mm_castpd_si128(error), bits));
-        let towards = _mm_sub_epi64(one, _mm_add_epi64(opposite, opposite));
-        let even = _mm_sub_epi64(_mm_and_si128(bits, one), one);
-        let inexact = _mm_castpd_si128(_mm_cmpneq_pd(error, _mm_setzero_pd()));
-        _mm_castsi128_pd(_mm_add_epi64(bits, _mm_and_si128(towards, _mm_and_si128(even, inexact))))
-    }
 }
 
 /// Eight numbers.

@@ -23,7 +23,7 @@ const SOFTEST_CONTACT: f64 = 0.01;
 const HARDEST_CONTACT: f64 = 0.000_05;
 
 /// The stream of random phases, beside that of a voice's noise.
-const PHASE_STREAM: u64 = 0x0055_4e49_534f_4e;
+const PHASE_STREAM: u64 = 0x55_4e49_534f_4e00;
 
 /// What moves the modes of a voice. Real-time safe.
 pub(super) struct Strike {

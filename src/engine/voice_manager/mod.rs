@@ -1,5 +1,6 @@
 //! Who plays what: polyphony, stealing, re-striking, pedals, choke groups, and which notes have ended. Knows no DSP.
 
+mod footprint;
 mod held_keys;
 mod pool;
 mod room;
@@ -8,8 +9,9 @@ mod voice;
 
 use super::note::{Note, Notes};
 pub use crate::params::{PlayMode, Priority};
+pub use footprint::Footprint;
 use held_keys::HeldKeys;
-pub use pool::{Footprint, VoicePool};
+pub use pool::VoicePool;
 pub use room::{has_room, make_room};
 pub use slot::MAX_UNISON;
 use slot::{Slot, State};

@@ -1,7 +1,7 @@
 //! What gives way when a pool runs short: the notes that will be missed least, over all managers that share it.
 
 use super::VoiceManager;
-use super::pool::Footprint;
+use super::footprint::Footprint;
 use super::voice::Voice;
 
 /// Whether a note that takes `need` can start in a pool of size `capacity`, of which `free` is free, without any other

@@ -1,6 +1,7 @@
 //! A note that sounds, with its voices; or the place for one.
 
-use super::pool::{Footprint, VoicePool};
+use super::footprint::Footprint;
+use super::pool::VoicePool;
 use super::voice::{Unison, Voice};
 use crate::engine::note::{Note, Notes};
 

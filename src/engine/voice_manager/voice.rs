@@ -1,6 +1,6 @@
 //! What the voice manager asks of a voice.
 
-use super::pool::Footprint;
+use super::footprint::Footprint;
 use crate::engine::note::Note;
 
 /// Something that sounds one note at a time. All methods are called on the audio thread.

@@ -1,0 +1,217 @@
+//! Fused multiplication for CPUs without an instruction for it: `a · b + c` in single precision, rounded once.
+//!
+//! A product of two numbers of single precision is exact in double precision: 48 bits of 53, and never too small or
+//! too large. So `a · b + c` in double precision is the exact sum `e` rounded once, to `s`; the result is `s` rounded
+//! to single precision. Call a *midpoint* what lies halfway between two neighbouring numbers of single precision, or
+//! where rounding begins to give infinity: midpoints are numbers of double precision. Rounding is monotone, so `s` lies
+//! below a midpoint only if `e` does, and above one only if `e` does. Hence, **unless `s` is a midpoint itself, `s`
+//! rounds to what `e` rounds to.** If it is one, `e` may lie beside it, and which side decides.
+//!
+//! Midpoints are told by their bits. From 2⁻¹²⁶ on, a number of single precision has 23 of the 52 bits of the fraction,
+//! so that the 29 lowest bits of a midpoint are 100…0. Below, where single precision has a fixed step, everything but
+//! zero counts as one here. Infinities and what is not a number never do: their lowest bits are zeros. Random
+//! sums are midpoints once in 2²⁹ times, so that looking for them in a whole vector and repairing the rare find costs
+//! little, and the same whatever the numbers are.
+
+/// The lowest bits of a double that single precision has no room for, and what they are in a midpoint.
+pub(super) const LOST: u64 = (1 << 29) - 1;
+pub(super) const HALF: u64 = 1 << 28;
+
+/// The bits of 2⁻¹²⁶, the least number that single precision has at full precision.
+pub(super) const LEAST_NORMAL: u64 = (1023 - 126) << 52;
+
+/// Whether the target has an instruction for it, which is then the way.
+const HAS_INSTRUCTION: bool =
+    cfg!(any(target_feature = "fma", target_arch = "aarch64", all(target_arch = "riscv64", target_feature = "f")));
+
+/// `a · b + c` rounded once, number by number.
+#[inline(always)]
+pub(super) fn fused(a: [f32; 4], b: [f32; 4], c: [f32; 4]) -> [f32; 4] {
+    let mut result = c;
+    if HAS_INSTRUCTION {
+        for l in 0..4 {
+            result[l] = a[l].mul_add(b[l], c[l]);
+        }
+        return result;
+    }
+    let mut midpoint = false;
+    for l in 0..4 {
+        let sum = f64::from(a[l]) * f64::from(b[l]) + f64::from(c[l]);
+        midpoint |= may_be_midpoint(sum);
+        result[l] = sum as f32;
+    }
+    if midpoint { repaired(a, b, c) } else { result }
+}
+
+/// Whether a sum may be a midpoint.
+#[inline(always)]
+fn may_be_midpoint(sum: f64) -> bool {
+    // Halves of 32 bits, which every CPU compares.
+    let (low, high) = (sum.to_bits() as u32, (sum.to_bits() >> 32) as u32);
+    let shift = LOST.count_ones();
+    let (half, magnitude) = (low << (32 - shift), high << 1);
+    // Less one, zero is the greatest of all.
+    (half == (HALF as u32) << (32 - shift)) | (magnitude.wrapping_sub(1) < ((LEAST_NORMAL >> 32) as u32 * 2) - 1)
+}
+
+/// `a · b + c` rounded once, number by number, whatever the sums are.
+#[cold]
+#[inline(never)]
+pub(super) fn repaired(a: [f32; 4], b: [f32; 4], c: [f32; 4]) -> [f32; 4] {
+    std::array::from_fn(|l| rounded_to_odd(a[l], b[l], c[l]) as f32)
+}
+
+/// `a · b + c` rounded to odd: of the two doubles around an inexact sum, the one whose last bit is 1. No midpoint is
+/// such a one, so it lies on the side of every midpoint on which the exact sum does (Boldo and Melquiond 2008, "Emulation
+/// of a FMA and correctly rounded sums").
+fn rounded_to_odd(a: f32, b: f32, c: f32) -> f64 {
+    let (product, c) = (f64::from(a) * f64::from(b), f64::from(c));
+    let sum = product + c;
+    // Knuth's TwoSum: what rounding took away. Not a number where the sum is infinite, which is then right as it is.
+    let part = sum - product;
+    let error = (product - (sum - part)) + (c - part);
+    let bits = sum.to_bits();
+    let inexact = error.abs() > 0.0;
+    let away_from_zero = (error > 0.0) == (sum > 0.0);
+    let odd = match (inexact && bits & 1 == 0, away_from_zero) {
+        (false, _) => bits,
+        (true, true) => bits + 1,
+        (true, false) => bits - 1,
+    };
+    f64::from_bits(odd)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dsp::random::key;
+    use crate::dsp::simd::vector::{Scalar, Vector};
+
+    /// What a vector makes of `a · b + c` and of `c − a · b`.
+    fn both<V: Vector<Proof = ()>>(a: &[f32], b: &[f32], c: &[f32]) -> [[f32; 4]; 2] {
+        let mut results = [[0.0; 4]; 2];
+        let load = |from| V::load((), from);
+        load(a).mul_add(load(b), load(c)).store(&mut results[0]);
+        load(a).neg_mul_add(load(b), load(c)).store(&mut results[1]);
+        results
+    }
+
+    /// Checks four sums in every emulation.
+    fn check(a: [f32; 4], b: [f32; 4], c: [f32; 4]) {
+        let repaired = repaired(a, b, c);
+        let vectors = [
+            both::<Scalar>(&a, &b, &c),
+            #[cfg(target_arch = "x86_64")]
+            both::<crate::dsp::simd::sse2::Sse2>(&a, &b, &c),
+        ];
+        for l in 0..4 {
+            let same = |expected: f32, found: f32, sign| {
+                let fine = expected.to_bits() == found.to_bits() || (expected.is_nan() && found.is_nan());
+                assert!(fine, "{sign}{:e} · {:e} + {:e}: {expected:e}, not {found:e}", a[l], b[l], c[l]);
+            };
+            let (plus, minus) = (a[l].mul_add(b[l], c[l]), (-a[l]).mul_add(b[l], c[l]));
+            same(plus, repaired[l], "repaired, ");
+            for [found_plus, found_minus] in vectors {
+                same(plus, found_plus[l], "");
+                same(minus, found_minus[l], "−");
+            }
+        }
+    }
+
+    /// A stream of random bits.
+    struct Bits(u64);
+
+    impl Bits {
+        fn next(&mut self) -> u64 {
+            self.0 += 1;
+            key(11, self.0)
+        }
+
+        /// Any number of single precision at all; every fourth time, one with few bits, which makes ties likely.
+        fn number(&mut self) -> f32 {
+            let bits = self.next();
+            let mask = if bits >> 62 == 0 { u32::MAX << (bits >> 32 & 31) } else { u32::MAX };
+            f32::from_bits(bits as u32 & mask)
+        }
+
+        /// A number of a magnitude from 2^`low` up, below 2^`high`.
+        fn between(&mut self, low: i32, high: i32) -> f32 {
+            let exponent = low + (self.next() % (high - low) as u64) as i32;
+            let number = f32::from_bits(0x3f80_0000 | (self.next() as u32 & 0x807f_ffff));
+            number * libm::exp2f(exponent as f32)
+        }
+    }
+
+    /// `SPRUNG_FUSED_CASES` asks for more sums.
+    fn cases() -> u64 {
+        std::env::var("SPRUNG_FUSED_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(1_000_000)
+    }
+
+    #[test]
+    fn random_sums_round_once() {
+        let mut bits = Bits(0);
+        for n in 0..cases() / 4 {
+            let mut four = |which: u64| -> [f32; 4] {
+                std::array::from_fn(|_| match n % 4 {
+                    // Every pattern of bits there is; magnitudes that meet each other; what kernels have; around 2⁻¹²⁶.
+                    0 => bits.number(),
+                    1 => bits.between(-20, 20),
+                    2 => bits.between(-10, 1),
+                    _ if which == 2 => bits.between(-126, -122) * 0.125,
+                    _ => bits.between(-70, -62),
+                })
+            };
+            let (a, b, c) = (four(0), four(1), four(2));
+            check(a, b, c);
+            check(a, b, std::array::from_fn(|l| -(a[l] * b[l])));
+        }
+    }
+
+    /// Exact sums on a midpoint, and beside one by less than double precision can tell.
+    #[test]
+    fn sums_beside_midpoints_round_once() {
+        let mut bits = Bits(1 << 40);
+        for n in 0..cases() / 100 {
+            // Of all magnitudes, and every other time around 2⁻¹²⁶ and below.
+            let mask = if n % 2 == 0 { u32::MAX } else { 0x80ff_ffff };
+            let c: [f32; 4] = std::array::from_fn(|_| f32::from_bits(bits.number().to_bits() & mask));
+            // Half a step, as a product of two numbers.
+            let half = c.map(|c| 0.5 * (f64::from(c.abs()) - f64::from(c.abs().next_down())));
+            let root = half.map(|half| libm::exp2((libm::log2(half) * 0.5).floor()));
+            // Products of 1, 1 + 2⁻³³ and 1 − 2⁻³³.
+            let (small, smaller) = (libm::exp2f(-11.0), libm::exp2f(-22.0));
+            for (a, b) in [(1.0, 1.0), (1.0 + small, 1.0 - small + smaller), (1.0 - small, 1.0 + small + smaller)] {
+                let a = root.map(|root| root as f32 * a);
+                check(a, std::array::from_fn(|l| (half[l] / root[l]) as f32 * b), c);
+            }
+        }
+        let tie = 1.0 + f32::EPSILON;
+        for tiny in [1e-30_f32, -1e-30, f32::MIN_POSITIVE, 1e-44, 0.0, -0.0] {
+            check(
+                [tie, tiny, 16_777_217.0, 1.0 + 4_096.0 * f32::EPSILON],
+                [tie, tie, 1.0, 1.0 - 4_096.0 * f32::EPSILON],
+                [tiny, tie, tiny, tiny],
+            );
+            check([tie; 4], [tie, 1.5, 0.5, -0.5], [tiny; 4]);
+        }
+    }
+
+    /// All sums of numbers at the ends of the range and of their neighbours.
+    #[test]
+    fn sums_of_extremes_round_once() {
+        let least = f32::from_bits(1);
+        let positive =
+            [0.0, least, f32::MIN_POSITIVE, 1.0, libm::exp2f(-75.0), libm::exp2f(-63.0), libm::exp2f(64.0), 4_097.0];
+        let large = [f32::MAX, libm::exp2f(127.0), libm::exp2f(103.0), libm::exp2f(-24.0), f32::INFINITY, f32::NAN];
+        let near = |number: f32| [number, number.next_up(), number.next_down()];
+        let all: Vec<f32> =
+            positive.into_iter().chain(large).flat_map(near).flat_map(|number| [number, -number]).collect();
+        for &a in &all {
+            for &b in &all {
+                for c in all.chunks(4) {
+                    check([a; 4], [b; 4], std::array::from_fn(|l| c[l % c.len()]));
+                }
+            }
+        }
+    }
+}

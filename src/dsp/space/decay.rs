@@ -1,0 +1,64 @@
+//! How fast a body's modes decay, by their frequency.
+
+use crate::dsp::coefficients::LN_MINUS_60_DB;
+use libm::{exp2, log2};
+
+/// T60 at low and at high frequencies, in seconds. Between 200 Hz and 6.4 kHz its logarithm follows a smooth step
+/// over the logarithm of frequency; below and above it stays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decay {
+    /// T60 up to [`Decay::LOW_FREQUENCY`].
+    pub low: f64,
+    /// T60 from [`Decay::HIGH_FREQUENCY`] on.
+    pub high: f64,
+}
+
+impl Decay {
+    /// Up to here `low` holds, in Hz.
+    pub const LOW_FREQUENCY: f64 = 200.0;
+    /// From here on `high` holds, in Hz.
+    pub const HIGH_FREQUENCY: f64 = 6400.0;
+    /// Shortest and longest T60 in seconds. Beyond the longest, single precision would show in the decay.
+    pub const RANGE: [f64; 2] = [0.05, 30.0];
+
+    /// T60 in seconds at a frequency in Hz.
+    pub fn t60_at(&self, frequency: f64) -> f64 {
+        let Self { low, high } = self.clamped();
+        exp2(log2(low) + height(frequency) * log2(high / low))
+    }
+
+    /// Within what a body can do; what is not a number is short.
+    fn clamped(&self) -> Self {
+        let [shortest, longest] = Self::RANGE;
+        let clamp = |t60: f64| if t60.is_nan() { shortest } else { t60.clamp(shortest, longest) };
+        Self { low: clamp(self.low), high: clamp(self.high) }
+    }
+
+    /// The rate at which amplitudes decay: base-2 logarithms of its value per frame at the low end, and of its ratio
+    /// between the ends.
+    pub(super) fn log_rates(&self, sample_rate: f64) -> [f64; 2] {
+        let Self { low, high } = self.clamped();
+        [log2(-LN_MINUS_60_DB / (low * sample_rate)), log2(low / high)]
+    }
+}
+
+/// Where between low and high a frequency is: 0 to 1.
+pub(super) fn height(frequency: f64) -> f64 {
+    let way = log2(frequency / Decay::LOW_FREQUENCY) / log2(Decay::HIGH_FREQUENCY / Decay::LOW_FREQUENCY);
+    let way = way.clamp(0.0, 1.0);
+    way * way * (3.0 - 2.0 * way)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ends_are_as_asked() {
+        let decay = Decay { low: 4.0, high: 1.0 };
+        assert!((decay.t60_at(100.0) - 4.0).abs() < 1e-12 && (decay.t60_at(9000.0) - 1.0).abs() < 1e-12);
+        assert!((decay.t60_at(1131.37) - 2.0).abs() < 1e-5, "the geometric mean halfway");
+        let wild = Decay { low: f64::NAN, high: f64::INFINITY };
+        assert_eq!([wild.t60_at(100.0), wild.t60_at(9000.0)], Decay::RANGE.map(|t60| exp2(log2(t60))));
+    }
+}

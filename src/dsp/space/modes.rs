@@ -1,0 +1,55 @@
+//! What a resonant body is to a reverb: its modes, each with a frequency and its share in the drive and the pick-ups.
+
+/// Most modes that a body keeps. A body with more keeps its lowest.
+pub const MAX_MODES: usize = 16_384;
+
+/// One mode of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyMode {
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Mode shape where the body is driven: amplitude that a sample of 1 gives the mode.
+    pub drive: f64,
+    /// Mode shape at the left pick-up.
+    pub left: f64,
+    /// Mode shape at the right pick-up.
+    pub right: f64,
+}
+
+/// The modes of a body, by ascending frequency. Making one allocates: not for the audio thread.
+///
+/// Levels do not matter: a [`super::Resonator`] plays every body equally loud.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModeSet {
+    modes: Vec<BodyMode>,
+}
+
+impl ModeSet {
+    /// Sorts modes by frequency. Modes that are not finite, and frequencies of 0 and below, are left out.
+    pub fn new(modes: impl IntoIterator<Item = BodyMode>) -> Self {
+        let is_valid = |mode: &BodyMode| {
+            let numbers = [mode.frequency, mode.drive, mode.left, mode.right];
+            mode.frequency > 0.0 && numbers.iter().all(|number| number.is_finite())
+        };
+        let mut modes: Vec<_> = modes.into_iter().filter(is_valid).collect();
+        // A stable sort: modes of one frequency keep the order in which the body names them, on every machine.
+        modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        modes.truncate(MAX_MODES);
+        Self { modes }
+    }
+
+    /// The modes, lowest first.
+    pub fn modes(&self) -> &[BodyMode] {
+        &self.modes
+    }
+
+    /// Number of modes.
+    pub fn len(&self) -> usize {
+        self.modes.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.modes.is_empty()
+    }
+}

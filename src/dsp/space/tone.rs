@@ -1,0 +1,180 @@
+//! Tone: a shelf for lows and one for highs.
+
+use super::smoothed::{Smoothed, held};
+use super::ticks::Ticks;
+use crate::dsp::CONTROL_FRAMES;
+use libm::{exp, log, tan};
+use std::f64::consts::{LN_10, PI};
+
+/// Two shelves of first order, `H(s) = (s + ω√g)/(s + ω/√g)` for lows of gain `g` and its mirror for highs: a cut undoes the
+/// boost of as many dB. Each is what came in, and `g − 1` times a one-pole filter of it, in a form whose coefficients may
+/// move (V. Zavalishin, *The Art of VA Filter Design*, §3.10).
+///
+/// At rest at 0 dB it touches nothing. Real-time safe.
+///
+/// ```
+/// let mut tone = sprung::dsp::space::Tone::new(48_000.0);
+/// tone.set(6.0, -3.0);
+/// let (mut left, mut right) = (vec![1.0; 48_000], vec![1.0; 48_000]);
+/// tone.process(&mut left, &mut right);
+/// assert!((left[47_999] - 1.995).abs() < 1e-3, "6 dB more of 0 Hz");
+/// ```
+#[derive(Clone, Debug)]
+pub struct Tone {
+    sample_rate: f64,
+    ticks: Ticks<{ CONTROL_FRAMES as u64 }>,
+    shelves: [Shelf; 2],
+    /// Frames since the last control tick.
+    passed: usize,
+    /// Frames of silence at the input.
+    silent_frames: u64,
+}
+
+#[derive(Clone, Debug)]
+struct Shelf {
+    decibels: Smoothed,
+    /// `g − 1`, and the filter's coefficient, at the last control tick and at the next.
+    amount: [f32; 2],
+    coefficient: [f32; 2],
+    /// The low-pass filter of each side.
+    state: [f32; 2],
+}
+
+impl Tone {
+    /// Corner of the low shelf in Hz.
+    pub const LOW_CORNER: f64 = 250.0;
+    /// Corner of the high shelf in Hz.
+    pub const HIGH_CORNER: f64 = 3500.0;
+    /// Greatest boost and cut in dB.
+    pub const MOST: f32 = 18.0;
+
+    /// One that leaves everything as it is.
+    pub fn new(sample_rate: f64) -> Self {
+        let shelf = Shelf {
+            decibels: Smoothed::new(0.0, sample_rate),
+            amount: [0.0; 2],
+            coefficient: [0.0; 2],
+            state: [0.0; 2],
+        };
+        let mut tone =
+            Self { sample_rate, ticks: Ticks::default(), shelves: [shelf.clone(), shelf], passed: 0, silent_frames: 0 };
+        tone.aim(0);
+        tone.aim(0);
+        tone
+    }
+
+    /// Moves to these gains of lows and highs in dB, from −18 to 18, in 20 ms.
+    pub fn set(&mut self, low: f32, high: f32) {
+        for (shelf, decibels) in self.shelves.iter_mut().zip([low, high]) {
+            shelf.decibels.set(decibels.clamp(-Self::MOST, Self::MOST));
+        }
+    }
+
+    /// Silence, and all that moves where it is to be.
+    pub fn reset(&mut self) {
+        for shelf in &mut self.shelves {
+            shelf.decibels.jump(shelf.decibels.target());
+            shelf.state = [0.0; 2];
+        }
+        (self.ticks, self.passed, self.silent_frames) = (Ticks::default(), 0, 0);
+        self.aim(0);
+        self.aim(0);
+    }
+
+    /// Whether silence in gives silence out.
+    pub fn is_silent(&self) -> bool {
+        self.shelves.iter().all(|shelf| shelf.state == [0.0; 2])
+    }
+
+    /// At most how many frames of silence it takes until that is so.
+    pub fn tail_frames(&self) -> u64 {
+        if self.is_silent() {
+            0
+        } else {
+            self.forget_frames().saturating_sub(self.silent_frames) + CONTROL_FRAMES as u64
+        }
+    }
+
+    /// In so many frames what a filter holds falls by 160 dB: the lowest pole is at the low shelf's corner over the root of
+    /// its greatest gain.
+    fn forget_frames(&self) -> u64 {
+        (8.0 * LN_10 / (2.0 * PI * 80.0) * self.sample_rate) as u64
+    }
+
+    /// Sends both shelves to where their gains are `frames` frames from now.
+    fn aim(&mut self, frames: usize) {
+        let sample_rate = self.sample_rate;
+        for (index, shelf) in self.shelves.iter_mut().enumerate() {
+            let at_rest = !shelf.decibels.is_moving();
+            let (amount, coefficient) = if at_rest && frames > 0 && shelf.amount[1] == shelf.amount[0] {
+                (shelf.amount[1], shelf.coefficient[1])
+            } else {
+                let decibels = f64::from(shelf.decibels.after(frames));
+                let gain = exp(decibels * LN_10 / 20.0);
+                let root = exp(0.5 * log(gain));
+                let corner = [Self::LOW_CORNER / sample_rate, Self::HIGH_CORNER / sample_rate][index];
+                let warped = tan(PI * corner.min(0.45)) * if index == 0 { 1.0 / root } else { root };
+                ((gain - 1.0) as f32, (warped / (1.0 + warped)) as f32)
+            };
+            shelf.amount = [shelf.amount[1], amount];
+            shelf.coefficient = [shelf.coefficient[1], coefficient];
+            shelf.decibels.advance(frames);
+        }
+    }
+
+    fn is_flat(&self) -> bool {
+        self.shelves.iter().all(|shelf| shelf.decibels.rests_at(0.0) && shelf.amount[1] == 0.0)
+    }
+
+    /// Changes `left` and `right`, up to the length of the shorter.
+    pub fn process(&mut self, left: &mut [f32], right: &mut [f32]) {
+        let frames = left.len().min(right.len());
+        let mut start = 0;
+        while start < frames {
+            if self.ticks.is_due() {
+                // What filters hold is not heard once both are flat; and none holds numbers below the normal ones.
+                if self.is_flat() || self.silent_frames > self.forget_frames() {
+                    self.shelves.iter_mut().for_each(|shelf| shelf.state = [0.0; 2]);
+                }
+                if self.is_flat() {
+                    return;
+                }
+                self.aim(CONTROL_FRAMES);
+                self.passed = 0;
+            }
+            let end = start + self.ticks.frames_before(frames - start);
+            for frame in start..end {
+                let share = self.passed as f32 * (1.0 / CONTROL_FRAMES as f32);
+                let sides = [&mut left[frame], &mut right[frame]];
+                let silent = sides.iter().all(|sample| **sample == 0.0);
+                self.silent_frames = if silent { self.silent_frames + 1 } else { 0 };
+                let [low, high] = &mut self.shelves;
+                for (side, sample) in sides.into_iter().enumerate() {
+                    let heard = held(*sample);
+                    let below = low.low_pass(side, heard, share);
+                    let middle = heard + low.amount_at(share) * below;
+                    let above = middle - high.low_pass(side, middle, share);
+                    *sample = middle + high.amount_at(share) * above;
+                }
+                self.passed += 1;
+            }
+            self.ticks.advance(end - start);
+            start = end;
+        }
+    }
+}
+
+impl Shelf {
+    fn amount_at(&self, share: f32) -> f32 {
+        self.amount[0] + (self.amount[1] - self.amount[0]) * share
+    }
+
+    /// A sample of one side through the one-pole filter.
+    fn low_pass(&mut self, side: usize, sample: f32, share: f32) -> f32 {
+        let coefficient = self.coefficient[0] + (self.coefficient[1] - self.coefficient[0]) * share;
+        let step = (sample - self.state[side]) * coefficient;
+        let low = self.state[side] + step;
+        self.state[side] = low + step;
+        low
+    }
+}

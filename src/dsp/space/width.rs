@@ -1,0 +1,49 @@
+//! How wide the stereo image is: the side signal against the middle.
+
+use super::smoothed::Smoothed;
+
+/// Scales the difference between left and right: 0 is mono, 1 leaves both as they are, 2 is the widest.
+///
+/// `middle = (l + r)/2` stays, so mono sums do not change (A. D. Blumlein 1931). At rest at 1 it touches nothing. Real-time
+/// safe.
+///
+/// ```
+/// let mut width = sprung::dsp::space::Width::new(48_000.0);
+/// width.set(0.0);
+/// let (mut left, mut right) = (vec![1.0; 2000], vec![0.0; 2000]);
+/// width.process(&mut left, &mut right);
+/// assert_eq!((left[1999], right[1999]), (0.5, 0.5));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Width {
+    width: Smoothed,
+}
+
+impl Width {
+    /// One that leaves everything as it is.
+    pub fn new(sample_rate: f64) -> Self {
+        Self { width: Smoothed::new(1.0, sample_rate) }
+    }
+
+    /// Moves to a width from 0 to 2 in 20 ms.
+    pub fn set(&mut self, width: f32) {
+        self.width.set(width.clamp(0.0, 2.0));
+    }
+
+    /// Ends what moves.
+    pub fn reset(&mut self) {
+        self.width.jump(self.width.target());
+    }
+
+    /// Changes `left` and `right`, up to the length of the shorter.
+    pub fn process(&mut self, left: &mut [f32], right: &mut [f32]) {
+        if self.width.rests_at(1.0) {
+            return;
+        }
+        for (left, right) in left.iter_mut().zip(right) {
+            let (middle, side) = (0.5 * (*left + *right), 0.5 * (*left - *right) * self.width.after(0));
+            (*left, *right) = (middle + side, middle - side);
+            self.width.advance(1);
+        }
+    }
+}

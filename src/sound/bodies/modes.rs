@@ -1,0 +1,139 @@
+//! The modes of a body: what a model gives, with all that makes it this body.
+
+use super::body::{Body, RATIO_RANGE, T60_RANGE};
+use super::fields;
+use super::mass;
+use super::material::LN_1000;
+use super::partial::{Pair, Partial, Point};
+use crate::dsp::random::{key, uniform};
+use crate::units::{gain_from_db, ratio_from_semitones};
+use libm::{cos, log, log2, sin};
+use std::f64::consts::PI;
+
+/// One mode of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyMode {
+    /// Frequency in Hz.
+    pub frequency: f64,
+    /// Frequency over the body's.
+    pub ratio: f64,
+    /// T60 in seconds.
+    pub t60: f64,
+    /// The mode shape where the body is struck. Shapes belong to modes that have the mass of the whole body.
+    pub strike: f64,
+    /// The mode shape where it is heard.
+    pub pickup: f64,
+    /// The mode shape where it is joined to another body.
+    pub joint: f64,
+    /// `strike · pickup`, tilted; of a custom mode its own level, tilted.
+    pub level: f64,
+    /// −1 (left) to 1 (right).
+    pub pan: f64,
+}
+
+/// The mode that the body's pitch is said of.
+fn is_pitch(ratio: f64) -> bool {
+    (ratio - 1.0).abs() < 1e-9
+}
+
+/// Which number of a mode's stream is for what; a bed's own come before.
+const SPREAD: u64 = 10;
+const AXIS: u64 = 11;
+const PAN: u64 = 12;
+
+impl Body {
+    /// Its modes in ascending order of frequency, one at least. Not fit for the audio thread: it allocates, and takes up to some
+    /// tens of milliseconds.
+    ///
+    /// Modes are kept however weak they are, so that a place moves levels and nothing else; and however high, since the bank
+    /// fades those at the top of the spectrum.
+    pub fn modes(&self) -> Vec<BodyMode> {
+        let body = fields::in_range(self);
+        let frequency = body.frequency();
+        let mut stiffness = body.inharmonicity;
+        if let Some(size) = body.size() {
+            stiffness = (stiffness + body.model.inharmonicity(&size, &body.material)).min(1.0);
+        }
+        let mut modes = Vec::with_capacity(2 * body.modes);
+        let partials = body.model.partials(frequency, &body.material, body.seed, body.modes);
+        for (serial, partial) in partials.iter().enumerate() {
+            let random = Random(key(body.seed, serial as u64));
+            let stiff = ((1.0 + stiffness * partial.ratio * partial.ratio) / (1.0 + stiffness)).sqrt();
+            let cents = if is_pitch(partial.ratio) { 0.0 } else { body.spread * random.number(SPREAD) };
+            let ratio = partial.ratio * stiff * ratio_from_semitones(0.01 * cents);
+            body.push(partial, ratio, frequency, &random, &mut modes);
+        }
+        modes.retain(|mode| (RATIO_RANGE.0..=RATIO_RANGE.1).contains(&mode.ratio));
+        modes.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+        modes.truncate(body.modes);
+        if modes.is_empty() {
+            let partial = &mass::partials()[0];
+            body.push(partial, 1.0, frequency, &Random(0), &mut modes);
+            modes.truncate(1);
+        }
+        if let Some(lowest) = modes.first_mut() {
+            lowest.pan = 0.0;
+        }
+        modes
+    }
+
+    /// Adds a resonance's mode, or both of a pair.
+    fn push(&self, partial: &Partial, ratio: f64, frequency: f64, random: &Random, modes: &mut Vec<BodyMode>) {
+        // An imperfection has an axis on which one mode of a pair has its lobe and the other its node; without one, the strike
+        // chooses it.
+        let split = self.split > 0.0 && partial.pair != Pair::Single && self.modes > 1;
+        let axis = match (partial.pair, split) {
+            (Pair::Diameters(_), true) => 0.5 * random.number(AXIS),
+            (Pair::Diameters(_), false) => self.strike.y,
+            // About half way between the two directions, so that both are heard.
+            _ => 0.125 + 0.0625 * random.number(AXIS),
+        };
+        let cents = if split { 0.5 * self.split } else { 0.0 };
+        let sides: &[(f64, bool)] = if split { &[(-1.0, false), (1.0, true)] } else { &[(0.0, false)] };
+        for (side, other) in sides {
+            let turned = |angle: f64| if *other { sin(angle) } else { cos(angle) };
+            let at = |point: Point| {
+                let value = (partial.shape)(point);
+                match partial.pair {
+                    Pair::Diameters(m) => value * turned(2.0 * PI * f64::from(m) * (point.y - axis)),
+                    Pair::Directions if split => value * turned(2.0 * PI * axis),
+                    _ => value,
+                }
+            };
+            let ratio = ratio * ratio_from_semitones(0.01 * cents * side);
+            let (strike, pickup) = (at(self.strike), at(self.pickup));
+            modes.push(BodyMode {
+                frequency: frequency * ratio,
+                ratio,
+                t60: self.ring_time(partial, frequency * ratio),
+                strike,
+                pickup,
+                joint: at(self.joint),
+                level: partial.gain * strike * pickup * gain_from_db(self.tilt * log2(ratio)),
+                pan: self.pan * random.number(PAN) * if *other { -1.0 } else { 1.0 },
+            });
+        }
+    }
+
+    fn ring_time(&self, partial: &Partial, frequency: f64) -> f64 {
+        let rate = self.material.loss.rate(frequency) * partial.loss_factor + partial.radiation;
+        let t60 = LN_1000 / (self.damping * rate);
+        // A rate of 0 rings longest.
+        if t60 < T60_RANGE.1 { t60.max(T60_RANGE.0) } else { T60_RANGE.1 }
+    }
+}
+
+/// The mode whose ratio is nearest to 1 by interval: the one that the body's pitch is said of.
+pub(super) fn pitch_mode(modes: &[BodyMode]) -> Option<&BodyMode> {
+    modes.iter().min_by(|a, b| log(a.ratio).abs().total_cmp(&log(b.ratio).abs()))
+}
+
+/// The random numbers of one resonance.
+struct Random(u64);
+
+impl Random {
+    /// Uniform over −1 to 1.
+    fn number(&self, which: u64) -> f64 {
+        f64::from(uniform(self.0, which))
+    }
+}

@@ -1,0 +1,17 @@
+//! Dimensions of a body, from which its pitch follows.
+
+/// What a body measures. What each number means for a model stands with [`super::Model`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// Length of a string, bar, tube, or of a plate's side; diameter of a round body. In metres.
+    pub length: f64,
+    /// Thickness of a bar, plate, head or wall; diameter of a string or of a bore. In metres.
+    pub thickness: f64,
+    /// Tension: of a string in N, of a head in N/m.
+    pub tension: f64,
+}
+
+impl Size {
+    /// A string of half a metre, from which files and knobs depart.
+    pub const DEFAULT: Size = Size { length: 0.5, thickness: 1e-3, tension: 1000.0 };
+}

@@ -1,0 +1,183 @@
+//! Two bodies joined at a point by a spring and a damper, solved exactly: together they are one set of modes again.
+//!
+//! A string on a soundboard, a bar over a tube, a head on a shell. Each body is given by its modes when it is free. The
+//! joint pulls both towards each other with `K` times the distance of the two points plus `R` times its rate. The pair
+//! then has as many modes as both bodies had, each heard on both of them, and a bank of modes plays it at no extra
+//! cost: beating pairs, a long and a short decay, and bodies that damp strings at their own resonances come by themselves.
+//!
+//! Seen as functions of frequency, the joined bodies are those of Woodhouse, "On the synthesis of guitar plucks"
+//! (Acta Acustica united with Acustica 90, 2004); here their poles and residues are found, without
+//! approximating the damping. The joint changes the diagonal system of all free modes by a matrix of rank one, so the
+//! poles are the roots of a secular equation (Golub, "Some modified matrix eigenvalue problems", SIAM Review 15, 1973),
+//! with a complex frequency where Golub has a real one. `system` has the equation, `start` the guesses, `poles` the
+//! iteration, and a mode's shapes are the residues by the formula of Sherman and Morrison (1950).
+//!
+//! Poles and residues are within 1e−14 of a computation in 50 digits (*`tests/coupled_reference.rs`*), however close two
+//! poles are, for every place is kept as its distance from the nearest free pole (Gu & Eisenstat, "A stable and efficient
+//! algorithm for the rank-one modification of the symmetric eigenproblem", SIAM J. Matrix Anal. Appl. 15, 1994).
+//!
+//! All of it runs off the audio thread, and allocates. It needs additions, multiplications, divisions and square roots
+//! only, in a fixed order: the bits are the same on every machine. The time grows with the square of the number of
+//! modes: about 1.5 ms for 64 + 64, 5 ms for 128 + 128 and 0.1 s for 512 + 512.
+
+mod complex;
+mod mode;
+mod poles;
+mod series;
+mod start;
+mod system;
+#[cfg(test)]
+mod tests;
+
+pub use complex::Complex;
+pub use mode::{BodyMode, CoupledMode, Partial};
+
+use crate::error::{Error, Result};
+use poles::Pair;
+use system::{Law, System};
+
+/// What joins two bodies at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Joint {
+    /// A spring of `stiffness` in N/m and, beside it, a damper of `damping` in N s/m. Both zero: no joint.
+    Spring {
+        /// Zero or more.
+        stiffness: f64,
+        /// Zero or more.
+        damping: f64,
+    },
+    /// The two points move as one. There is one mode less.
+    Rigid,
+}
+
+/// Beyond this many times what the bodies themselves oppose to it, a joint cannot be told from a rigid one.
+const RIGID: f64 = 1e40;
+
+/// The modes of two bodies, joined where [`BodyMode::joint`] tells. In the order of their frequencies.
+///
+/// No mode grows, and none that rings decays more slowly than the slowest of the free ones. With `Σ` over all modes, a blow
+/// starts with no displacement (`Σ cosine = 0`) and with the velocity that the free bodies would have. If the damper makes
+/// two poles almost the same, their amplitudes are large and nearly cancel at first.
+///
+/// # Errors
+///
+/// [`Error::Value`] for a number that is out of range, and if the poles could not be found.
+pub fn joined(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<Vec<CoupledMode>> {
+    first.iter().chain(second).try_for_each(BodyMode::check)?;
+    let law = law(first, second, joint)?;
+    if !law.rigid && law.stiffness == 0.0 && law.damping == 0.0 {
+        return apart(first, second);
+    }
+    let mut modes = ATTEMPTS
+        .iter()
+        .find_map(|(ease, change)| solve(first, second, law.scaled(*change), *ease))
+        .ok_or_else(|| Error::value("joint", "the poles of the joined bodies were not found: change it a little"))?;
+    sort(&mut modes);
+    Ok(modes)
+}
+
+/// How much softer the joint is for the first guesses, and what it is multiplied by. The first attempt nearly always
+/// succeeds. With very strong damping the poles can run in a circle, and others do not. Where two poles are all but the
+/// same, as in critical damping, their motion is not two damped sinusoids, and the joint is changed by a millionth.
+const ATTEMPTS: [(f64, f64); 5] = [(1.0, 1.0), (4.0, 1.0), (0.25, 1.0), (1.0, 1.0 + 1e-6), (16.0, 1.0 + 2e-6)];
+
+/// Displacements at the start as a share of all amplitudes: those of well separated poles are below 1e−11.
+const AT_REST: f64 = 1e-9;
+
+fn solve(first: &[BodyMode], second: &[BodyMode], law: Law, ease: f64) -> Option<Vec<CoupledMode>> {
+    let (system, mut modes) = System::new(first, second, law);
+    let slowest = system.rate.iter().copied().fold(f64::INFINITY, f64::min);
+    for pair in poles::find(&system, start::guesses(&system, ease))? {
+        match pair {
+            Pair::Conjugate(place) => {
+                let rate = system.rate[place.origin] - place.offset.re;
+                modes.push(system.mode(place, true, rate.max(slowest)));
+            }
+            Pair::Real(found, _) => {
+                modes.extend(found.map(|s| system.mode(poles::on_axis(&system, s), false, (-s).max(0.0))));
+            }
+        }
+    }
+    start_at_rest(&modes).then_some(modes)
+}
+
+/// Whether no blow displaces anything at once, as must be: if it does, or an amplitude is not finite, then two poles are
+/// so nearly the same that the amplitudes have lost their digits.
+fn start_at_rest(modes: &[CoupledMode]) -> bool {
+    let both = [[1.0, 0.0], [0.0, 1.0]];
+    let (mut most, mut size) = (0.0_f64, 0.0);
+    for (struck, heard) in both.into_iter().flat_map(|struck| both.map(|heard| (struck, heard))) {
+        let mut sum = 0.0;
+        for mode in modes {
+            let Partial { cosine, sine } = mode.displacement(struck, heard);
+            sum += cosine;
+            size += cosine.abs() + sine.abs();
+        }
+        most = most.max(sum.abs());
+    }
+    size < f64::INFINITY && most <= AT_REST * size
+}
+
+/// The modes of two bodies that do not act on each other. In the order of their frequencies.
+///
+/// # Errors
+///
+/// [`Error::Value`] for a number that is out of range.
+pub fn apart(first: &[BodyMode], second: &[BodyMode]) -> Result<Vec<CoupledMode>> {
+    first.iter().chain(second).try_for_each(BodyMode::check)?;
+    let free = |mode: &BodyMode, on: [f64; 2]| {
+        let shapes = |shape: f64| on.map(|on| on * shape);
+        CoupledMode::free(mode.angular_frequency, mode.decay_rate, shapes(mode.strike), shapes(mode.pickup))
+    };
+    let mut modes: Vec<CoupledMode> = first
+        .iter()
+        .map(|mode| free(mode, [1.0, 0.0]))
+        .chain(second.iter().map(|mode| free(mode, [0.0, 1.0])))
+        .collect();
+    sort(&mut modes);
+    Ok(modes)
+}
+
+/// The modes of two bodies of which the first drives the second one way: the force on the second is `stiffness` in N/m
+/// times the displacement of the first at the joint. In the order of their frequencies.
+///
+/// A chain of two sets of modes is one set of modes too, by partial fractions. Where the bodies have the same pole, the
+/// two partials differ in sign and nearly cancel at first: then the second body's mode is moved up by 0.0015 times
+/// the faster decay rate (0.3 cents at 440 Hz and a T60 of 20 ms), so that amplitudes stay within single precision.
+///
+/// # Errors
+///
+/// [`Error::Value`] for a number that is out of range.
+pub fn series(first: &[BodyMode], second: &[BodyMode], stiffness: f64) -> Result<Vec<CoupledMode>> {
+    first.iter().chain(second).try_for_each(BodyMode::check)?;
+    if !(0.0..=1e30).contains(&stiffness) {
+        return Err(Error::value("stiffness", format!("{stiffness} is not between 0 and 1e30 N/m")));
+    }
+    let mut modes = series::modes(first, second, stiffness);
+    sort(&mut modes);
+    Ok(modes)
+}
+
+fn sort(modes: &mut [CoupledMode]) {
+    modes.sort_by(|a, b| {
+        let frequencies = a.angular_frequency.total_cmp(&b.angular_frequency);
+        frequencies.then(a.decay_rate.total_cmp(&b.decay_rate))
+    });
+}
+
+fn law(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<Law> {
+    let rigid = Law { rigid: true, stiffness: 0.0, damping: 0.0 };
+    let Joint::Spring { stiffness, damping } = joint else { return Ok(rigid) };
+    for (name, value) in [("stiffness", stiffness), ("damping", damping)] {
+        if value.is_nan() || value < 0.0 {
+            return Err(Error::value(name, format!("{value} is not 0 or more")));
+        }
+    }
+    let (mut weight, mut highest) = (0.0, 0.0_f64);
+    for mode in first.iter().chain(second) {
+        weight += mode.joint * mode.joint;
+        highest = highest.max(mode.angular_frequency).max(mode.decay_rate);
+    }
+    let is_soft = stiffness * weight <= RIGID * highest * highest && damping * weight <= RIGID * highest;
+    Ok(if is_soft { Law { rigid: false, stiffness, damping } } else { rigid })
+}

@@ -1,0 +1,104 @@
+//! Modes: those of a free body, those of two bodies together, and what is heard of them.
+
+use super::complex::Complex;
+use crate::error::{Error, Result};
+
+/// One mode of a free body. Shapes are those of a modal mass of 1 kg; see [`BodyMode::with_mass`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyMode {
+    /// Frequency at which it rings, in radians per second: `2π f`. (The undamped one is `√(ω² + σ²)`.)
+    pub angular_frequency: f64,
+    /// How fast it decays, in nepers per second: `ln 1000 / T60`.
+    pub decay_rate: f64,
+    /// Mode shape where the other body is joined.
+    pub joint: f64,
+    /// Mode shape where the body is struck.
+    pub strike: f64,
+    /// Mode shape where the body is heard.
+    pub pickup: f64,
+}
+
+impl BodyMode {
+    /// The mode with a modal mass in kg: its shapes are divided by `√mass`.
+    #[must_use]
+    pub fn with_mass(self, mass: f64) -> Self {
+        let scale = 1.0 / mass.sqrt();
+        Self { joint: self.joint * scale, strike: self.strike * scale, pickup: self.pickup * scale, ..self }
+    }
+
+    /// An error that names what is out of range.
+    pub(super) fn check(&self) -> Result<()> {
+        let refused = |name, value: f64, wanted| Err(Error::value(name, format!("{value} is not {wanted}")));
+        if !(1e-3..=1e9).contains(&self.angular_frequency) {
+            return refused("angular frequency of a mode", self.angular_frequency, "between 0.001 and 1e9 rad/s");
+        }
+        if !(0.0..=1e9).contains(&self.decay_rate) {
+            return refused("decay rate of a mode", self.decay_rate, "between 0 and 1e9 per second");
+        }
+        for (name, shape) in [("joint", self.joint), ("strike", self.strike), ("pick-up", self.pickup)] {
+            if shape.is_nan() || shape.abs() > 1e9 {
+                return Err(Error::value("mode shape", format!("{shape} at the {name} is not between −1e9 and 1e9")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// One mode of two bodies that act on each other: a damped sinusoid, with complex mode shapes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoupledMode {
+    /// Frequency at which it rings, in radians per second. Zero for an overdamped motion, a plain exponential, which only
+    /// a joint with strong damping brings about.
+    pub angular_frequency: f64,
+    /// How fast it decays, in nepers per second: never negative.
+    pub decay_rate: f64,
+    /// Mode shapes where the first and the second body are struck.
+    pub strike: [Complex; 2],
+    /// Mode shapes where they are heard, scaled so that `strike · pickup` is the complex amplitude.
+    pub pickup: [Complex; 2],
+}
+
+/// A damped sinusoid's two parts: at the time `t` in seconds, `e^(−σt) (cosine · cos ωt + sine · sin ωt)`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Partial {
+    /// What it starts with.
+    pub cosine: f64,
+    /// What it has a quarter turn later.
+    pub sine: f64,
+}
+
+impl CoupledMode {
+    /// A mode of one body that does not act on the other.
+    pub(super) fn free(frequency: f64, rate: f64, strike: [f64; 2], pickup: [f64; 2]) -> Self {
+        // The response of displacement is sin(ωt)/ω.
+        Self {
+            angular_frequency: frequency,
+            decay_rate: rate,
+            strike: strike.map(|shape| Complex::new(shape, 0.0)),
+            pickup: pickup.map(|shape| Complex::new(0.0, -(shape / frequency))),
+        }
+    }
+
+    /// The mode's part of the displacement that is heard after a strike with a momentum of 1 N s.
+    ///
+    /// `struck` is how much of the strike each body gets, and `heard` how much of each is heard: `[1.0, 0.0]` for the
+    /// first alone.
+    pub fn displacement(&self, struck: [f64; 2], heard: [f64; 2]) -> Partial {
+        let amplitude = self.amplitude(struck, heard);
+        Partial { cosine: amplitude.re, sine: -amplitude.im }
+    }
+
+    /// The same of the velocity that is heard.
+    pub fn velocity(&self, struck: [f64; 2], heard: [f64; 2]) -> Partial {
+        let pole = Complex::new(-self.decay_rate, self.angular_frequency);
+        let amplitude = self.amplitude(struck, heard) * pole;
+        Partial { cosine: amplitude.re, sine: -amplitude.im }
+    }
+
+    /// `A` in `Re(A e^(st))`.
+    fn amplitude(&self, struck: [f64; 2], heard: [f64; 2]) -> Complex {
+        let strike = self.strike[0].scale(struck[0]) + self.strike[1].scale(struck[1]);
+        let pickup = self.pickup[0].scale(heard[0]) + self.pickup[1].scale(heard[1]);
+        strike * pickup
+    }
+}
