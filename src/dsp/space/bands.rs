@@ -113,7 +113,10 @@ impl Bands {
 
     /// At most how many frames it takes until that has fallen to `peak`. An exponential a band for each of some five steps.
     pub(super) fn frames_until(&self, peak: f64, input: f64) -> u64 {
-        let heard = |band: &Band| (band.pick_up * (band.amplitude + input * band.drive), band.ln_radius);
-        Energies::new(self.bands.iter().map(heard)).frames_until(peak, 0)
+        let mut amplitudes = Energies::<BANDS>::NONE;
+        for band in &self.bands {
+            amplitudes.add(band.pick_up * (band.amplitude + input * band.drive), band.ln_radius);
+        }
+        amplitudes.frames_until(peak)
     }
 }
