@@ -104,12 +104,8 @@ impl State {
 
     /// Writes the state so that [`State::parse`] gives it back exactly.
     pub(crate) fn to_json(&self) -> String {
-        let by_id = |is_kept: &dyn Fn(usize, Param) -> bool, value: &dyn Fn(usize, Param) -> f32| {
-            let kept = PARAMS.iter().enumerate().filter(|(index, info)| is_kept(*index, info.param));
-            kept.map(|(index, info)| (info.id, value(index, info.param))).collect()
-        };
         let own = positions_of(&self.values);
-        let positions = by_id(&|index, _| self.positions[index] != own[index], &|index, _| self.positions[index]);
+        let positions = changes(|param| self.positions[param as usize], |param| own[param as usize]);
         let mut saved = Saved {
             format: FORMAT,
             preset: None,
@@ -124,10 +120,9 @@ impl State {
             Playable::Preset(preset) => saved.preset = Some(preset.to_toml()),
             Playable::Kit(kit) => {
                 let of_files = *kit.kit().values();
-                let differs = |param: Param| self.values.get(param) != of_files.get(param);
                 saved.kit = Some(kit.to_toml());
                 saved.sounds = kit.sounds.iter().map(|(name, preset)| (name.clone(), preset.to_toml())).collect();
-                saved.values = by_id(&|_, param| differs(param), &|_, param| self.values.get(param));
+                saved.values = changes(|param| self.values.get(param), |param| of_files.get(param));
             }
         }
         serde_json::to_string(&saved).unwrap_or_default()
@@ -183,6 +178,12 @@ impl State {
         }
         Ok(Read { state, complaints })
     }
+}
+
+/// What `now` is of the parameters of which `before` was something else, by id.
+fn changes(now: impl Fn(Param) -> f32, before: impl Fn(Param) -> f32) -> BTreeMap<&'static str, f32> {
+    let changed = PARAMS.iter().filter(|info| now(info.param) != before(info.param));
+    changed.map(|info| (info.id, now(info.param))).collect()
 }
 
 /// The preset or kit of a state. Parameters that have another value than the text says, because a route moves them, are
