@@ -4,6 +4,7 @@ use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
+use sprung::preset::Preset;
 
 fn event(frame: u32, kind: EventKind) -> Event {
     Event { frame, channel: 0, kind }
@@ -245,4 +246,33 @@ fn a_voice_returns_to_a_held_key_in_its_own_patch() {
         assert_eq!(periods(&kept), 52, "mode {mode}: 261.6 Hz for a fifth of a second");
         assert!(kept == changed, "mode {mode}: {} periods", periods(&changed));
     }
+}
+
+/// Values that are all set at once in silence are heard as if they had always been there, and modulation stays.
+#[test]
+fn values_set_at_once_have_no_slopes() {
+    let mut values = Preset::find("Marimba").unwrap().patch.values;
+    values.set(Param::Gain, -9.0);
+    let expected = {
+        let patch = Patch { values, ..Patch::default() };
+        let mut synth = Synth::new(48_000.0, 1);
+        synth.set_patch(&patch);
+        synth.handle(&event(0, EventKind::Modulate { id: None, param: Param::Tune, offset: 0.1 }));
+        played(&mut synth, &[on(9600, 60, 0.8)])
+    };
+    let mut synth = Synth::new(48_000.0, 1);
+    synth.handle(&event(0, EventKind::Modulate { id: None, param: Param::Tune, offset: 0.1 }));
+    synth.process(&[], &mut [0.0; 9600], &mut [0.0; 9600]);
+    synth.set_values(&values);
+    assert_eq!(synth.values(), &values);
+    let found = played(&mut synth, &[on(0, 60, 0.8)]);
+    assert!(expected[9600..14_400].iter().any(|sample| *sample != 0.0));
+    assert_eq!(found[..4800], expected[9600..14_400]);
+}
+
+/// The left side of what a synth plays.
+fn played(synth: &mut Synth, events: &[Event]) -> Vec<f32> {
+    let (mut left, mut right) = (vec![0.0; 14_400], vec![0.0; 14_400]);
+    synth.process(events, &mut left, &mut right);
+    left
 }

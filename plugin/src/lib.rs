@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `plugin` | what hosts are told, and their calls |
 //! | `params` | the host's parameters, made from [`sprung::params::PARAMS`] |
-//! | `slate` | the exact patch, shared between threads without locks |
+//! | `loaded` | the exact sound, and how the audio thread takes it without waiting |
 //! | `live` | the audio thread: follows parameters, hands over events, renders |
 //! | `events` | the wrapper's note events as the engine's |
 //! | `tail` | how long the sound goes on |
@@ -18,9 +18,9 @@ mod editor;
 mod events;
 mod export;
 mod live;
+mod loaded;
 mod params;
 mod plugin;
-mod slate;
 mod state;
 mod tail;
 

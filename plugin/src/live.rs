@@ -1,15 +1,17 @@
 //! The audio thread: follows the parameters, hands over events at their frames, renders.
 
 use crate::events::translate;
+use crate::loaded::Loaded;
 use crate::params::{Look, SprungParams};
-use crate::slate::Loaded;
 use crate::tail::Tail;
 use nice_plug::prelude::*;
 use nice_plug_core::midi::{Channel, Key, VoiceID};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::{PARAM_COUNT, PARAMS, Param};
+use sprung::sound::kit::KEYS;
 use sprung::units::mono_from_stereo;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Frames that are rendered at a time where the output is mono.
 const MONO_FRAMES: usize = 256;
@@ -24,9 +26,9 @@ pub(crate) const MAX_VOICES: u32 = sprung::engine::voice_manager::MAX_VOICES as 
 /// A synth that plays what the host says. Real-time safe once built.
 pub(crate) struct Live {
     synth: Synth,
-    /// The loaded patch that positions are compared with, and its generation.
-    loaded: Loaded,
-    generation: Option<u32>,
+    /// What is played, and what positions are compared with. `SprungParams` has a handle as well, so that this one is
+    /// never the last; it keeps the kit that the synth has.
+    loaded: Arc<Loaded>,
     /// Where the knobs stood last.
     positions: [f32; PARAM_COUNT],
     /// How far modulation of the whole instrument turned them last.
@@ -46,12 +48,16 @@ pub(crate) struct Live {
 impl Live {
     /// For a sample rate, and a host that plays in real time or renders to a file. Allocates.
     pub(crate) fn new(sample_rate: f64, offline: bool, params: &SprungParams) -> Self {
-        let loaded = params.state().loaded;
+        let loaded = params.loaded();
+        let mut synth = Synth::new(sample_rate, loaded.seed);
+        // So that any kit finds room on the audio thread.
+        synth.reserve(KEYS);
+        synth.set_kit(&loaded.kit);
+        synth.set_values(&loaded.values);
         let mut live = Self {
-            synth: Synth::new(sample_rate, loaded.seed),
-            loaded,
-            generation: None,
+            synth,
             positions: loaded.positions,
+            loaded,
             offsets: [0.0; PARAM_COUNT],
             tempo: None,
             voices: 0,
@@ -64,33 +70,32 @@ impl Live {
         live
     }
 
-    /// Silences everything, and starts anew with the patch as it is now.
+    /// Silences everything, and starts anew with the sound as it is now.
     pub(crate) fn reset(&mut self, params: &SprungParams) {
-        self.generation = None;
         self.follow(params);
         self.synth.reset();
         (self.offsets, self.tempo, self.told) = ([0.0; PARAM_COUNT], None, 0);
         self.early.clear();
     }
 
-    /// Takes over what has changed of the patch and its knobs. While another thread writes, all stays as it was until
+    /// Takes over what has changed of the sound and its knobs. While another thread writes, all stays as it was until
     /// the next block.
     fn follow(&mut self, params: &SprungParams) {
-        let Some(Look { positions, news }) = params.look(self.generation) else { return };
+        let Some(Look { positions, news }) = params.look(&self.loaded) else { return };
         let before = std::mem::replace(&mut self.positions, positions);
         let moved = |index: usize| positions[index].to_bits() != before[index].to_bits();
         // While nothing sounds, values need no slope: what a host sets before it plays holds from the first note on.
-        let whole = news.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
-        if let Some((generation, loaded)) = news {
-            (self.generation, self.loaded) = (Some(generation), loaded);
+        // Of a kit that has just been loaded nothing sounds either.
+        let at_once = news.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
+        if let Some(loaded) = news {
             self.synth.set_seed(loaded.seed);
+            self.synth.set_kit(&loaded.kit);
+            // Only now: until here, it has kept the kit before.
+            self.loaded = loaded;
         }
-        if whole {
-            let mut patch = self.loaded.patch;
-            for (index, info) in PARAMS.iter().enumerate() {
-                patch.set(info.param, self.loaded.value(index, positions[index]));
-            }
-            self.synth.set_patch(&patch);
+        if at_once {
+            self.tail.forget();
+            self.synth.set_values(&self.loaded.values_at(&positions));
         } else {
             for (index, info) in PARAMS.iter().enumerate() {
                 if moved(index) {
@@ -134,7 +139,7 @@ impl Live {
         self.follow_host(params, context.transport().tempo);
         // A mode that changes lets go of the keys that wait.
         self.tell(0, context);
-        let voices = self.synth.patch().get(Param::Voices) as u32;
+        let voices = self.synth.values().get(Param::Voices) as u32;
         if voices != self.voices {
             self.voices = voices;
             context.set_current_voice_capacity(voices);

@@ -2,11 +2,12 @@
 
 #![allow(unsafe_code, reason = "the wrapper takes parameters as pointers and has no safe way to set several at once")]
 
-use crate::slate::{Loaded, Slate};
-use crate::state::{self, About, State};
+use crate::loaded::{Loaded, Slot, retire};
+use crate::state::{self, Read, State};
 use nice_plug::prelude::*;
 use nice_plug_core::params::InternalParamMut;
 use sprung::params::{Change, PARAM_COUNT, PARAMS, ParamInfo, Unit};
+use sprung::preset::Playable;
 use std::array::from_fn;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -82,28 +83,42 @@ where
 /// What the audio thread sees at one look.
 pub(crate) struct Look {
     pub(crate) positions: [f32; PARAM_COUNT],
-    /// A patch that has been loaded since, with its generation.
-    pub(crate) news: Option<(u32, Loaded)>,
+    /// What has been loaded since.
+    pub(crate) news: Option<Arc<Loaded>>,
 }
 
-/// All that the threads of one instance share: parameters, the exact patch, and what is written beside it.
+/// What is kept beside the knobs and not for the audio thread.
+struct Kept {
+    /// Presets or kit as they were loaded.
+    playable: Playable,
+    /// Width and height of the window.
+    window: [u32; 2],
+    /// What was not understood of it, one line each.
+    complaints: Arc<[String]>,
+    /// What was loaded last, which is what is in the slot.
+    loaded: Arc<Loaded>,
+    /// What the audio thread may still have of what was loaded before, and the last as well.
+    may_sound: Vec<Arc<Loaded>>,
+}
+
+/// All that the threads of one instance share: parameters, what was loaded, and what is written beside it.
 pub(crate) struct SprungParams {
     knobs: Vec<Knob>,
-    slate: Slate,
-    /// Held while a patch is written or its whole is read; never by the audio thread.
-    about: Mutex<About>,
+    slot: Slot,
+    /// Held while something is loaded or the whole is read; never by the audio thread.
+    kept: Mutex<Kept>,
 }
 
 impl Default for SprungParams {
     fn default() -> Self {
         let state = State::default();
-        let params = Self {
-            knobs: PARAMS.iter().map(Knob::new).collect(),
-            slate: Slate::new(&state.loaded),
-            about: Mutex::new(state.about.clone()),
-        };
-        params.load(state);
-        params
+        let loaded = Arc::new(state.loaded());
+        let State { playable, positions, window, .. } = state;
+        let knobs: Vec<Knob> = PARAMS.iter().map(Knob::new).collect();
+        knobs.iter().zip(positions).for_each(|(knob, position)| knob.turn(position));
+        let may_sound = vec![loaded.clone()];
+        let kept = Kept { playable, window, complaints: Arc::new([]), loaded: loaded.clone(), may_sound };
+        Self { knobs, slot: Slot::new(loaded), kept: Mutex::new(kept) }
     }
 }
 
@@ -113,42 +128,79 @@ impl SprungParams {
         &self.knobs
     }
 
-    /// What is written beside the patch. Not for the audio thread.
-    pub(crate) fn about(&self) -> MutexGuard<'_, About> {
-        self.about.lock().unwrap_or_else(PoisonError::into_inner)
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes over a patch, its knobs and what is written beside it, all at once. Not for the audio thread. The host
-    /// does not hear of it.
-    pub(crate) fn load(&self, state: State) {
-        let mut about = self.about();
-        *about = state.about;
-        self.slate.write(&state.loaded, || {
-            for (knob, position) in self.knobs.iter().zip(state.loaded.positions) {
+    /// What is played is called so. Not for the audio thread.
+    pub(crate) fn name(&self) -> String {
+        self.kept().playable.name().to_owned()
+    }
+
+    /// Calls what is played so. Not for the audio thread.
+    pub(crate) fn rename(&self, name: String) {
+        match &mut self.kept().playable {
+            Playable::Preset(preset) => preset.name = name,
+            Playable::Kit(kit) => kit.name = name,
+        }
+    }
+
+    /// Width and height of the window. Not for the audio thread.
+    pub(crate) fn window(&self) -> [u32; 2] {
+        self.kept().window
+    }
+
+    /// Keeps the width and height of the window. Not for the audio thread.
+    pub(crate) fn set_window(&self, window: [u32; 2]) {
+        self.kept().window = window;
+    }
+
+    /// What was not understood of the state that was loaded last, one line each. Not for the audio thread.
+    pub(crate) fn complaints(&self) -> Arc<[String]> {
+        self.kept().complaints.clone()
+    }
+
+    /// Takes over a sound, its knobs and what is written beside it, all at once. Not for the audio thread: makes the
+    /// sound, and frees what is no longer played. The host does not hear of it.
+    pub(crate) fn load(&self, Read { state, complaints }: Read) {
+        let loaded = Arc::new(state.loaded());
+        let mut kept = self.kept();
+        kept.playable = state.playable;
+        kept.window = state.window;
+        kept.complaints = complaints.into();
+        kept.loaded = loaded.clone();
+        kept.may_sound.push(loaded.clone());
+        self.slot.put(loaded, || {
+            for (knob, position) in self.knobs.iter().zip(state.positions) {
                 knob.turn(position);
             }
         });
+        retire(&mut kept.may_sound);
     }
 
-    /// The patch as it is now, and what is written beside it. Not for the audio thread.
+    /// All as it is now. Not for the audio thread.
     pub(crate) fn state(&self) -> State {
-        let about = self.about();
-        let mut loaded = self.slate.get();
+        let kept = self.kept();
         let positions: [f32; PARAM_COUNT] = from_fn(|index| self.knobs[index].position());
-        let values: [f32; PARAM_COUNT] = from_fn(|index| loaded.value(index, positions[index]));
-        for (info, value) in PARAMS.iter().zip(values) {
-            loaded.patch.set(info.param, value);
+        let values = kept.loaded.values_at(&positions);
+        let mut playable = kept.playable.clone();
+        if let Playable::Preset(preset) = &mut playable {
+            preset.patch.values = values;
         }
-        loaded.positions = positions;
-        State { loaded, about: about.clone() }
+        State { playable, values, positions, seed: kept.loaded.seed, window: kept.window }
     }
 
-    /// Where the knobs stand and, unless `known` is still the generation of the loaded patch, that patch with its new
-    /// generation. `None` while another thread writes. Real-time safe.
-    pub(crate) fn look(&self, known: Option<u32>) -> Option<Look> {
-        self.slate.read(|generation| Look {
+    /// What was loaded last. Not for the audio thread.
+    pub(crate) fn loaded(&self) -> Arc<Loaded> {
+        self.kept().loaded.clone()
+    }
+
+    /// Where the knobs stand and, unless `known` is still what was loaded last, what is. `None` while another thread
+    /// writes. Real-time safe.
+    pub(crate) fn look(&self, known: &Arc<Loaded>) -> Option<Look> {
+        self.slot.read(|loaded| Look {
             positions: from_fn(|index| self.knobs[index].position()),
-            news: (known != Some(generation)).then(|| (generation, self.slate.get())),
+            news: (!Arc::ptr_eq(known, loaded)).then(|| loaded.clone()),
         })
     }
 }
@@ -169,9 +221,12 @@ unsafe impl Params for SprungParams {
     }
 
     fn deserialize_fields(&self, fields: &BTreeMap<String, String>) {
-        // What cannot be read has been taken out before.
-        if let Some(Ok(state)) = fields.get(state::FIELD).map(|json| State::parse(json)) {
-            self.load(state);
+        // What is no state at all has been taken out before.
+        if let Some(Ok(read)) = fields.get(state::FIELD).map(|json| State::parse(json)) {
+            read.complaints
+                .iter()
+                .for_each(|complaint| nice_warn!("a state was not understood as a whole: {complaint}"));
+            self.load(read);
         }
     }
 }
@@ -240,7 +295,7 @@ mod tests {
             };
             assert_eq!(written, shown, "{text}");
             params.knobs()[row as usize].turn(position);
-            assert_eq!(params.state().loaded.patch.get(row), row.info().parse(text).unwrap(), "{text}");
+            assert_eq!(params.state().values.get(row), row.info().parse(text).unwrap(), "{text}");
         }
         let Knob::Continuous(gain) = &params.knobs()[Row::Gain as usize] else { panic!("gain is continuous") };
         assert_eq!(gain.string_to_normalized_value("loud"), None);

@@ -5,7 +5,7 @@ use super::terminal::{complain, print};
 use clap::Subcommand;
 use clap_complete::ArgValueCompleter;
 use sprung::io::Inputs;
-use sprung::preset::{Playable, Preset, is_file_name};
+use sprung::preset::{Playable, Preset, Replaced, is_file_name};
 use sprung::text::printable;
 use sprung::{Error, Result};
 use std::ffi::{OsStr, OsString};
@@ -35,7 +35,7 @@ enum Action {
         #[arg(add = ArgValueCompleter::new(completion::presets))]
         name: OsString,
     },
-    /// Check preset and kit files and report what is wrong with each
+    /// Check preset and kit files and report all that is wrong with each
     Check {
         /// Preset and kit files
         #[arg(required = true, value_name = "FILE")]
@@ -67,8 +67,11 @@ pub(super) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
 }
 
 fn read(path: &Path, inputs: &mut Inputs) -> Result<Playable> {
-    let warn = &mut |origin: &str, replaced| complain("warning", format_args!("{origin}: {replaced}"));
-    Playable::read(path, &mut |path| inputs.open(path), warn)
+    Playable::read(path, &mut |path| inputs.open(path), &mut warn)
+}
+
+fn warn(origin: &str, replaced: Replaced) {
+    complain("warning", format_args!("{origin}: {replaced}"));
 }
 
 fn list(presets: &[Preset]) -> String {
@@ -86,18 +89,19 @@ fn list(presets: &[Preset]) -> String {
 fn check(files: &[PathBuf]) -> Result<()> {
     let (mut wrong, mut inputs) = (0, Inputs::default());
     for path in files {
-        let read = read(path, &mut inputs);
+        let read = Playable::read_lenient(path, &mut |path| inputs.open(path), &mut warn);
         inputs.check_stdout()?;
-        match read {
-            Ok(playable) => {
+        let complaints = match read {
+            Ok((playable, complaints)) if complaints.is_empty() => {
                 let line = format!("{}: ‘{}’ is in order", path.display(), playable.name());
                 print(&format!("{}\n", printable(&line)))?;
+                continue;
             }
-            Err(error) => {
-                wrong += 1;
-                complain("error", error);
-            }
-        }
+            Ok((_, complaints)) => complaints.into_iter().map(|line| format!("{}: {line}", path.display())).collect(),
+            Err(error) => vec![error.to_string()],
+        };
+        wrong += 1;
+        complaints.iter().for_each(|line| complain("error", line));
     }
     if wrong == 0 { Ok(()) } else { Err(Error::value("presets", format!("{wrong} of {} cannot be used", files.len()))) }
 }

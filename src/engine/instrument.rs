@@ -96,14 +96,15 @@ impl Instrument {
         self.settings_changes = None;
     }
 
-    /// Takes all parameters to where `value` puts those of the sound, at once.
-    pub(crate) fn begin_at(&mut self, value: impl Fn(Param, f32) -> f32) {
+    /// Takes all parameters to where `value` puts those of the sound, moved by `offsets` in knob travel, at once.
+    pub(crate) fn begin_at(&mut self, value: impl Fn(Param, f32) -> f32, offsets: &[f32; PARAM_COUNT]) {
         for info in PARAMS {
             self.values.set(info.param, value(info.param, self.sound.patch().get(info.param)));
         }
-        self.modulated = self.values;
-        self.smoother = Smoother::new(self.sample_rate, &self.values, self.smoother.beat_rate());
+        self.modulated = all_modulated(&self.values, offsets);
+        self.smoother = Smoother::new(self.sample_rate, &self.modulated, self.smoother.beat_rate());
         self.controls = self.smoother.after(0);
+        self.settings_changes = None;
     }
 
     /// Sets a parameter that is moved by an offset in knob travel, at frame `clock`.

@@ -1,5 +1,6 @@
 //! What preset and kit files say of themselves: name, author, tags, comment.
 
+use super::complaints::Complaints;
 use super::value::unexpected;
 use crate::text::printable_lines;
 use toml::{Table, Value};
@@ -7,6 +8,9 @@ use toml_writer::{ToTomlValue, TomlStringBuilder};
 
 /// Longest name, author or tag, in characters: what a list can still show.
 const MAX_LABEL: usize = 100;
+
+/// The name of what has none that can be read.
+const UNNAMED: &str = "Unnamed";
 
 /// What a file says of itself.
 pub(super) struct About {
@@ -18,12 +22,15 @@ pub(super) struct About {
 
 impl About {
     /// Reads it. A file has a name.
-    pub(super) fn read(table: &Table) -> Result<Self, String> {
-        let name = label(table, "name", "")?;
-        if name.is_empty() {
-            return Err("there is no ‘name’: expected name = \"…\"".to_owned());
+    pub(super) fn read(table: &Table, complaints: &mut Complaints) -> Self {
+        if table.get("name").is_none_or(|name| name.as_str() == Some("")) {
+            complaints.add("there is no ‘name’: expected name = \"…\"");
         }
-        Ok(Self { name, author: label(table, "author", "")?, tags: tags(table)?, comment: text(table, "comment", "")? })
+        let name = Some(label(table, "name", "", complaints)).filter(|name| !name.is_empty());
+        let name = name.unwrap_or_else(|| UNNAMED.to_owned());
+        let author = label(table, "author", "", complaints);
+        let tags = tags(table, complaints);
+        Self { name, author, tags, comment: complaints.take("", text(table, "comment", "")).unwrap_or_default() }
     }
 }
 
@@ -43,8 +50,9 @@ fn text(table: &Table, key: &str, place: &str) -> Result<String, String> {
 }
 
 /// A line of text in a table at `place` (empty, or ending in a dot); empty where there is none.
-pub(super) fn label(table: &Table, key: &str, place: &str) -> Result<String, String> {
-    text(table, key, place).and_then(|label| check_label(&format!("{place}{key}"), label))
+pub(super) fn label(table: &Table, key: &str, place: &str, complaints: &mut Complaints) -> String {
+    let label = text(table, key, place).and_then(|label| check_label(&format!("{place}{key}"), label));
+    complaints.take("", label).unwrap_or_default()
 }
 
 fn check_label(key: &str, label: String) -> Result<String, String> {
@@ -55,17 +63,20 @@ fn check_label(key: &str, label: String) -> Result<String, String> {
     }
 }
 
-fn tags(table: &Table) -> Result<Vec<String>, String> {
+fn tags(table: &Table, complaints: &mut Complaints) -> Vec<String> {
     let tags = match table.get("tags") {
-        None => return Ok(Vec::new()),
+        None => return Vec::new(),
         Some(Value::Array(tags)) => tags,
-        Some(other) => return Err(unexpected("tags", "a list of texts", other)),
+        Some(other) => {
+            complaints.add(unexpected("tags", "a list of texts", other));
+            return Vec::new();
+        }
     };
     let tag = |(index, tag): (usize, &Value)| match tag {
         Value::String(tag) => check_label(&format!("tags[{index}]"), tag.clone()),
         other => Err(unexpected(&format!("tags[{index}]"), "a text", other)),
     };
-    tags.iter().enumerate().map(tag).collect()
+    tags.iter().enumerate().filter_map(|each| complaints.take("", tag(each))).collect()
 }
 
 /// A text between quotes, so that whoever prints the file has nothing in it that steers the terminal: where the text has

@@ -1,5 +1,6 @@
 //! The body of a preset file, from which its modes are made: `[body]` with `model = "marimba"`.
 
+use super::complaints::Complaints;
 use super::value::unexpected;
 use crate::error::nearest;
 use crate::params::Param;
@@ -16,26 +17,27 @@ pub fn modes_of_body(body: &Body) -> ModeTable {
 
 /// The body that modes were made from, if they were. Allocates.
 pub fn body_of_modes(modes: &ModeTable) -> Option<Body> {
-    read_body(&toml::from_str(modes.origin()?).ok()?).ok()
+    let mut complaints = Complaints::default();
+    let body = read_body(&toml::from_str(modes.origin()?).ok()?, &mut complaints);
+    body.filter(|_| complaints.into_lines().is_empty())
 }
 
 /// Reads the body of a file, if it has one: its modes, and its T60 unless the file says another `decay`.
-pub(super) fn read(file: &Table, patch: &mut Patch) -> Result<(), String> {
+pub(super) fn read(file: &Table, patch: &mut Patch, complaints: &mut Complaints) {
     let table = match file.get("body") {
-        None => return Ok(()),
+        None => return,
         Some(_) if file.contains_key("modes") => {
-            return Err("body: the file has ‘modes’ too: expected one of the two".to_owned());
+            return complaints.add("body: the file has ‘modes’ too: expected one of the two");
         }
         Some(Value::Table(table)) => table,
-        Some(other) => return Err(unexpected("body", "a table [body]", other)),
+        Some(other) => return complaints.add(unexpected("body", "a table [body]", other)),
     };
-    let body = read_body(table)?;
+    let Some(body) = read_body(table, complaints) else { return };
     patch.modes = modes_of_body(&body);
     let decay = Param::Decay.info();
     if file.get("params").and_then(|params| params.get(decay.id)).is_none() {
         patch.set(Param::Decay, (body.t60() as f32).clamp(decay.min, decay.max));
     }
-    Ok(())
 }
 
 /// Whether a parameter is written even at its default: what would else be read from the body.
@@ -48,40 +50,43 @@ pub(super) fn to_toml(patch: &Patch) -> String {
     patch.modes.origin().map_or(String::new(), |origin| format!("\n[body]\n{origin}"))
 }
 
-fn read_body(table: &Table) -> Result<Body, String> {
+/// A body, if its model is known and it has a frequency. Numbers that cannot be read are the model's own.
+fn read_body(table: &Table, complaints: &mut Complaints) -> Option<Body> {
     let names = || ["model", "material"].into_iter().chain(FIELDS.iter().map(|field| field.name));
-    if let Some(unknown) = table.keys().find(|key| !names().any(|name| name == *key)) {
-        return Err(match nearest(unknown, names()) {
+    for unknown in table.keys().filter(|key| !names().any(|name| name == *key)) {
+        complaints.add(match nearest(unknown, names()) {
             Some(near) => format!("unknown key ‘body.{unknown}’; the nearest is {near}"),
             None => format!("unknown key ‘body.{unknown}’: expected one of {}", names().collect::<Vec<_>>().join(", ")),
         });
     }
     let models = || Model::ALL.iter().map(|(id, _)| *id);
-    let model = named(table, "model", Model::find, models)?.ok_or_else(|| {
-        format!("body: there is no ‘model’: expected one of {}", models().collect::<Vec<_>>().join(", "))
-    })?;
-    let mut body = Body::new(model.clone());
-    if let Some(material) = named(table, "material", Material::find, || MATERIALS.iter().map(|material| material.id))? {
+    let model = named(table, "model", Model::find, models).and_then(|model| {
+        let expected = || models().collect::<Vec<_>>().join(", ");
+        model.ok_or_else(|| format!("body: there is no ‘model’: expected one of {}", expected()))
+    });
+    let mut body = Body::new(complaints.take("", model)?.clone());
+    let material = named(table, "material", Material::find, || MATERIALS.iter().map(|material| material.id));
+    if let Some(material) = complaints.take("", material).flatten() {
         body.material = *material;
     }
     let given = |name: &str| table.contains_key(name);
-    if given("frequency") && (given("length") || given("thickness") || given("tension")) {
-        return Err("body.frequency: it follows from length, thickness and tension: expected it or them".to_owned());
+    let is_twice = given("frequency") && (given("length") || given("thickness") || given("tension"));
+    if is_twice {
+        complaints.add("body.frequency: it follows from length, thickness and tension: expected it or them");
     }
-    for field in FIELDS {
+    for field in FIELDS.iter().filter(|field| !(is_twice && field.name == "frequency")) {
         let Some(value) = table.get(field.name) else { continue };
-        let value = number(field, value).map_err(|message| format!("body.{}: {message}", field.name))?;
+        let Some(value) = complaints.take(&format!("body.{}: ", field.name), number(field, value)) else { continue };
         (field.set)(&mut body, value);
         if (field.get)(&body).is_none() {
-            return Err(format!("body.{}: the model {} has no such number", field.name, body.model.id()));
+            complaints.add(format!("body.{}: the model {} has no such number", field.name, body.model.id()));
         }
     }
-    match body.size() {
-        Some(size) if body.model.frequency(&size, &body.material).is_none() => {
-            Err(format!("body: the model {} has no size: expected a ‘frequency’", body.model.id()))
-        }
-        _ => Ok(body),
+    if body.size().is_some_and(|size| body.model.frequency(&size, &body.material).is_none()) {
+        complaints.add(format!("body: the model {} has no size: expected a ‘frequency’", body.model.id()));
+        return None;
     }
+    Some(body)
 }
 
 /// What a key names, if it is there.

@@ -1,12 +1,13 @@
 //! The TOML of a preset file, read key by key so that every error names its place and what would be right.
 
 use super::about::{About, about_to_toml};
+use super::complaints::Complaints;
 use super::migration::{self, Replaced};
 use super::value::{check_keys, param_value, table, unexpected};
 use super::{FORMAT_VERSION, Preset};
 use super::{body, routes};
 use crate::error::Error;
-use crate::params::retired::Retired;
+use crate::params::retired::RETIRED;
 use crate::params::{PARAMS, Param, Unit};
 use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use std::fmt::Write;
@@ -14,95 +15,120 @@ use toml::{Table, Value};
 
 const KEYS: [&str; 9] = ["format", "name", "author", "tags", "comment", "modes", "body", "routes", "params"];
 
-pub(super) fn parse(text: &str, origin: &str, replaced: &mut dyn FnMut(Replaced)) -> crate::Result<Preset> {
-    read(&table(text, origin)?, replaced).map_err(|message| Error::format(origin, message))
+/// Reads as much of a preset as can be; the error is that it is none at all.
+pub(super) fn parse(
+    text: &str,
+    origin: &str,
+    complaints: &mut Complaints,
+    replaced: &mut dyn FnMut(Replaced),
+) -> crate::Result<Preset> {
+    read(&table(text, origin)?, complaints, replaced).map_err(|message| Error::format(origin, message))
 }
 
-pub(super) fn read(table: &Table, replaced: &mut dyn FnMut(Replaced)) -> Result<Preset, String> {
+pub(super) fn read(
+    table: &Table,
+    complaints: &mut Complaints,
+    replaced: &mut dyn FnMut(Replaced),
+) -> Result<Preset, String> {
     if table.contains_key("kit") {
         return Err(format!("this is a kit: expected a preset, which begins with format = {FORMAT_VERSION}"));
     }
-    // The version first: in another version's file, its other keys mean nothing to this one.
+    // The version first: in a newer version's file, other keys may mean something else.
     let format = match table.get("format") {
         Some(Value::Integer(format @ 1..=FORMAT_VERSION)) => *format,
         Some(Value::Integer(newer)) if *newer > FORMAT_VERSION => {
-            return Err(format!(
-                "format {newer} is of a newer version: this one reads up to format = {FORMAT_VERSION}"
-            ));
+            complaints
+                .add(format!("format {newer} is of a newer version: this one reads up to format = {FORMAT_VERSION}"));
+            FORMAT_VERSION
         }
         Some(other) => {
             return Err(format!("format {other} is unknown: this version reads format = 1 to {FORMAT_VERSION}"));
         }
         None => return Err(format!("there is no ‘format’: expected format = {FORMAT_VERSION}")),
     };
-    check_keys(table, "", &KEYS)?;
-    let About { name, author, tags, comment } = About::read(table)?;
+    check_keys(table, "", &KEYS, complaints);
+    let About { name, author, tags, comment } = About::read(table, complaints);
     let mut params = match table.get("params") {
         Some(Value::Table(params)) => params.clone(),
-        Some(other) => return Err(unexpected("params", "a table [params]", other)),
         None => Table::new(),
+        Some(other) => {
+            complaints.add(unexpected("params", "a table [params]", other));
+            Table::new()
+        }
     };
     let is_old = format < migration::FIRST_WITHOUT_RETIRED;
     let mut patch = Patch::default();
-    let retired = if is_old { Some(migration::take(&mut params, &mut patch)?) } else { None };
-    read_params(&params, &mut patch)?;
-    patch.modes = ModeTable::new(&read_modes(table.get("modes"))?);
-    body::read(table, &mut patch)?;
-    routes::read(table, &mut patch)?;
+    let retired = if is_old { Some(migration::take(&mut params, &mut patch, complaints)) } else { None };
+    read_params(&params, &mut patch, complaints);
+    patch.modes = ModeTable::new(&read_modes(table.get("modes"), complaints));
+    body::read(table, &mut patch, complaints);
+    routes::read(table, &mut patch, complaints);
     if let Some(retired) = retired {
         migration::migrate(&retired, &params, &mut patch, replaced);
     }
     Ok(Preset { name, author, tags, comment, patch })
 }
 
-fn read_params(params: &Table, patch: &mut Patch) -> Result<(), String> {
-    if let Some(retired) = params.keys().find_map(|id| Retired::from_id(id)) {
-        return Err(format!("params.{}: {}", retired.id(), retired.message()));
+fn read_params(params: &Table, patch: &mut Patch, complaints: &mut Complaints) {
+    let mut params = params.clone();
+    for retired in RETIRED.iter().filter(|retired| params.remove(retired.id()).is_some()) {
+        complaints.add(format!("params.{}: {}", retired.id(), retired.message()));
     }
-    check_keys(params, "params.", &PARAMS.iter().map(|info| info.id).collect::<Vec<_>>())?;
-    for (id, value) in params {
-        if let Some(param) = Param::from_id(id) {
-            let value = param_value(param.info(), value).map_err(|message| format!("params.{id}: {message}"))?;
+    check_keys(&params, "params.", &PARAMS.iter().map(|info| info.id).collect::<Vec<_>>(), complaints);
+    for (id, value) in &params {
+        if let Some(param) = Param::from_id(id)
+            && let Some(value) = complaints.take(&format!("params.{id}: "), param_value(param.info(), value))
+        {
             patch.set(param, value);
         }
     }
-    Ok(())
 }
 
-fn read_modes(modes: Option<&Value>) -> Result<Vec<Mode>, String> {
+fn read_modes(modes: Option<&Value>, complaints: &mut Complaints) -> Vec<Mode> {
     let modes = match modes {
-        None => return Ok(vec![Mode::UNIT]),
+        None => return vec![Mode::UNIT],
         Some(Value::Array(modes)) => modes,
-        Some(other) => return Err(unexpected("modes", "a list of modes, [{ ratio = … }, …]", other)),
+        Some(other) => {
+            complaints.add(unexpected("modes", "a list of modes, [{ ratio = … }, …]", other));
+            return vec![Mode::UNIT];
+        }
     };
     if !(1..=MAX_MODES).contains(&modes.len()) {
-        return Err(format!("modes: {} of them is out of range: expected 1 to {MAX_MODES}", modes.len()));
+        complaints.add(format!("modes: {} of them is out of range: expected 1 to {MAX_MODES}", modes.len()));
     }
-    let mode = |(index, mode): (usize, &Value)| read_mode(&format!("modes[{index}]"), mode);
-    modes.iter().enumerate().map(mode).collect()
+    let mode = |(index, mode): (usize, &Value)| read_mode(&format!("modes[{index}]"), mode, complaints);
+    modes.iter().take(MAX_MODES).enumerate().filter_map(mode).collect()
 }
 
-fn read_mode(place: &str, mode: &Value) -> Result<Mode, String> {
+/// A mode, if it has a ratio.
+fn read_mode(place: &str, mode: &Value, complaints: &mut Complaints) -> Option<Mode> {
     let Value::Table(mode) = mode else {
-        return Err(unexpected(place, "a mode, { ratio = … }", mode));
+        complaints.add(unexpected(place, "a mode, { ratio = … }", mode));
+        return None;
     };
-    check_keys(mode, &format!("{place}."), &Mode::FIELDS.map(|(name, ..)| name))?;
+    check_keys(mode, &format!("{place}."), &Mode::FIELDS.map(|(name, ..)| name), complaints);
     if !mode.contains_key("ratio") {
-        return Err(format!("{place}: there is no ‘ratio’"));
+        complaints.add(format!("{place}: there is no ‘ratio’"));
+        return None;
     }
-    let mut fields = Mode::UNIT.fields();
+    let (mut fields, mut has_ratio) = (Mode::UNIT.fields(), true);
     for ((name, min, max), field) in Mode::FIELDS.into_iter().zip(&mut fields) {
-        *field = match mode.get(name) {
-            None => continue,
-            Some(Value::Integer(number)) => *number as f32,
-            Some(Value::Float(number)) => *number as f32,
-            Some(other) => return Err(unexpected(&format!("{place}.{name}"), "a number", other)),
+        let Some(value) = mode.get(name) else { continue };
+        let number = match value {
+            Value::Integer(number) => Ok(*number as f32),
+            Value::Float(number) => Ok(*number as f32),
+            other => Err(unexpected(&format!("{place}.{name}"), "a number", other)),
         };
-        if !(min..=max).contains(field) {
-            return Err(format!("{place}.{name}: {field} is out of range: expected {min} to {max}"));
+        let number = number.and_then(|number| match (min..=max).contains(&number) {
+            true => Ok(number),
+            false => Err(format!("{place}.{name}: {number} is out of range: expected {min} to {max}")),
+        });
+        match complaints.take("", number) {
+            Some(number) => *field = number,
+            None => has_ratio &= name != "ratio",
         }
     }
-    Ok(Mode::from_fields(fields))
+    has_ratio.then(|| Mode::from_fields(fields))
 }
 
 pub(super) fn to_toml(preset: &Preset) -> String {
@@ -156,7 +182,7 @@ mod tests {
     use proptest::sample::select;
 
     fn read_text(text: &str) -> crate::Result<Preset> {
-        parse(text, "x", &mut |_| {})
+        Preset::parse(text, "x")
     }
 
     fn error(body: &str) -> String {

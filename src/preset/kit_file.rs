@@ -1,6 +1,7 @@
 //! The TOML of a kit file, read key by key so that every error names its place and what would be right.
 
 use super::about::{About, about_to_toml, label, toml_string};
+use super::complaints::Complaints;
 use super::file;
 use super::kit::{KIT_VERSION, KitPreset, Playable};
 use super::value::{check_keys, param_value, table, unexpected};
@@ -18,10 +19,12 @@ const PAD_KEYS: [&str; 7] = ["key", "name", "sound", "pitch", "gain", "pan", "ch
 /// What finds the presets that a kit names.
 type Find<'a> = &'a mut dyn FnMut(&str) -> crate::Result<Preset>;
 
+/// Reads as much of a preset or kit as can be; the error is that it is neither.
 pub(super) fn parse(
     text: &str,
     origin: &str,
     find: Find,
+    complaints: &mut Complaints,
     replaced: &mut dyn FnMut(Replaced),
 ) -> crate::Result<Playable> {
     if text.len() as u64 > MAX_FILE_SIZE {
@@ -29,83 +32,93 @@ pub(super) fn parse(
     }
     let table = table(text, origin)?;
     let read = match table.get("kit") {
-        None => file::read(&table, replaced).map(Playable::Preset),
-        Some(version) => read(&table, version, find).map(Playable::Kit),
+        None => file::read(&table, complaints, replaced).map(Playable::Preset),
+        Some(version) => read(&table, version, find, complaints).map(Playable::Kit),
     };
     read.map_err(|message| Error::format(origin, message))
 }
 
-fn read(table: &Table, version: &Value, find: Find) -> Result<KitPreset, String> {
+fn read(table: &Table, version: &Value, find: Find, complaints: &mut Complaints) -> Result<KitPreset, String> {
     match version {
         Value::Integer(KIT_VERSION) => {}
         Value::Integer(newer) if *newer > KIT_VERSION => {
-            return Err(format!("kit {newer} is of a newer version: this one reads kit = {KIT_VERSION}"));
+            complaints.add(format!("kit {newer} is of a newer version: this one reads kit = {KIT_VERSION}"));
         }
         other => return Err(format!("kit {other} is unknown: this version reads kit = {KIT_VERSION}")),
     }
-    check_keys(table, "", &KEYS)?;
-    let About { name, author, tags, comment } = About::read(table)?;
-    let voices = Param::Voices.info();
-    let voices = match table.get("voices") {
-        None => voices.max,
-        Some(value) => param_value(voices, value).map_err(|message| format!("voices: {message}"))?,
-    };
+    check_keys(table, "", &KEYS, complaints);
+    let About { name, author, tags, comment } = About::read(table, complaints);
+    let voices = number(table, "voices", Param::Voices, "", complaints).unwrap_or(Param::Voices.info().max);
     let mut kit = KitPreset { name, author, tags, comment, voices: voices as u8, sounds: vec![], pads: vec![] };
     let pads = match table.get("keys") {
-        Some(Value::Array(pads)) if !pads.is_empty() => pads,
+        Some(Value::Array(pads)) if !pads.is_empty() => &pads[..],
         Some(Value::Array(_)) | None => {
-            return Err("there are no ‘keys’: expected [[keys]] with key and sound".to_owned());
+            complaints.add("there are no ‘keys’: expected [[keys]] with key and sound");
+            &[]
         }
-        Some(other) => return Err(unexpected("keys", "a list of tables, [[keys]]", other)),
+        Some(other) => {
+            complaints.add(unexpected("keys", "a list of tables, [[keys]]", other));
+            &[]
+        }
     };
     for (index, pad) in pads.iter().enumerate() {
         let place = format!("keys[{index}]");
-        let Value::Table(pad) = pad else { return Err(unexpected(&place, "a table, [[keys]]", pad)) };
-        read_pad(&place, pad, &mut kit, find)?;
+        match pad {
+            Value::Table(pad) => read_pad(&place, pad, &mut kit, find, complaints),
+            other => complaints.add(unexpected(&place, "a table, [[keys]]", other)),
+        }
     }
     Ok(kit)
 }
 
-fn read_pad(place: &str, table: &Table, kit: &mut KitPreset, find: Find) -> Result<(), String> {
+/// Adds a pad to a kit, if it has a key and a sound.
+fn read_pad(place: &str, table: &Table, kit: &mut KitPreset, find: Find, complaints: &mut Complaints) {
     let dotted = format!("{place}.");
-    check_keys(table, &dotted, &PAD_KEYS)?;
-    let key = read_key(table.get("key")).map_err(|message| format!("{dotted}key: {message}"))?;
-    if let Some(other) = kit.pads.iter().position(|(taken, _)| *taken == key) {
-        return Err(format!(
-            "{dotted}key: {} ({key}) is that of keys[{other}] already: expected another",
-            note_name(key)
-        ));
+    check_keys(table, &dotted, &PAD_KEYS, complaints);
+    let key = complaints.take(&format!("{dotted}key: "), read_key(table.get("key")));
+    let key = key.filter(|key| match kit.pads.iter().position(|(taken, _)| taken == key) {
+        None => true,
+        Some(other) => {
+            let name = note_name(*key);
+            complaints.add(format!("{dotted}key: {name} ({key}) is that of keys[{other}] already: expected another"));
+            false
+        }
+    });
+    let sound = complaints.take("", read_sound(place, table, kit, find));
+    let a4_hz = sound.map_or(440.0, |sound| f64::from(kit.sounds[sound].1.patch.get(Param::Tuning)));
+    let pitch = table.get("pitch").map(|value| read_pitch(value, a4_hz)).transpose();
+    let pad = Pad {
+        name: label(table, "name", &dotted, complaints),
+        sound: sound.unwrap_or(0),
+        pitch: complaints.take(&format!("{dotted}pitch: "), pitch).flatten(),
+        gain_db: number(table, "gain", Param::Gain, &dotted, complaints).unwrap_or(0.0),
+        pan: complaints.take(&format!("{dotted}pan: "), read_pan(table.get("pan"))).unwrap_or(0.0),
+        choke: number(table, "choke", Param::Choke, &dotted, complaints).map(|choke| choke as u8),
+    };
+    if let (Some(key), Some(_)) = (key, sound) {
+        kit.pads.push((key, pad));
     }
+}
+
+/// A number that is one of a parameter's values, if there is any.
+fn number(table: &Table, key: &str, param: Param, place: &str, complaints: &mut Complaints) -> Option<f32> {
+    let value = table.get(key).map(|value| param_value(param.info(), value)).transpose();
+    complaints.take(&format!("{place}{key}: "), value).flatten()
+}
+
+/// Which of the kit's sounds a pad plays; one that the kit has not yet is found and added.
+fn read_sound(place: &str, table: &Table, kit: &mut KitPreset, find: Find) -> Result<usize, String> {
     let name = match table.get("sound") {
         Some(Value::String(name)) => name,
-        Some(other) => return Err(unexpected(&format!("{dotted}sound"), "a factory preset or a preset file", other)),
+        Some(other) => return Err(unexpected(&format!("{place}.sound"), "a factory preset or a preset file", other)),
         None => return Err(format!("{place}: there is no ‘sound’: expected a factory preset or a preset file")),
     };
-    let known = kit.sounds.iter().position(|(known, _)| known == name);
-    let sound = match known {
-        Some(known) => known,
-        None => {
-            let preset = find(name).map_err(|error| format!("{dotted}sound: {error}"))?;
-            kit.sounds.push((name.clone(), preset));
-            kit.sounds.len() - 1
-        }
-    };
-    let a4_hz = f64::from(kit.sounds[sound].1.patch.get(Param::Tuning));
-    let pitch = table.get("pitch").map(|value| read_pitch(value, a4_hz)).transpose();
-    let number = |name: &str, param: Param| {
-        let value = table.get(name).map(|value| param_value(param.info(), value)).transpose();
-        value.map_err(|message| format!("{dotted}{name}: {message}"))
-    };
-    let pad = Pad {
-        name: label(table, "name", &dotted)?,
-        sound,
-        pitch: pitch.map_err(|message| format!("{dotted}pitch: {message}"))?,
-        gain_db: number("gain", Param::Gain)?.unwrap_or(0.0),
-        pan: read_pan(table.get("pan")).map_err(|message| format!("{dotted}pan: {message}"))?,
-        choke: number("choke", Param::Choke)?.map(|choke| choke as u8),
-    };
-    kit.pads.push((key, pad));
-    Ok(())
+    if let Some(known) = kit.sounds.iter().position(|(known, _)| known == name) {
+        return Ok(known);
+    }
+    let preset = find(name).map_err(|error| format!("{place}.sound: {error}"))?;
+    kit.sounds.push((name.clone(), preset));
+    Ok(kit.sounds.len() - 1)
 }
 
 /// A key as the command reads it: a name or a number.
@@ -177,7 +190,7 @@ mod tests {
     use super::*;
 
     fn parse(text: &str) -> crate::Result<Playable> {
-        super::parse(text, "x", &mut |name| Preset::find(name).cloned(), &mut |_| {})
+        Playable::parse(text, "x", &mut |name| Preset::find(name).cloned())
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Kits from texts and files, and back.
 
+use super::complaints::Complaints;
 use super::kit::{KitPreset, Playable};
 use super::{Preset, Replaced, kit_file, load};
 use crate::error::{Error, Result};
@@ -25,12 +26,38 @@ impl Playable {
         open: &mut dyn FnMut(&Path) -> Result<File>,
         replaced: &mut dyn FnMut(&str, Replaced),
     ) -> Result<Self> {
+        let mut complaints = Complaints::default();
+        let playable = Self::read_on(path, open, &mut complaints, replaced)?;
+        complaints.into_first(&path.display().to_string()).map(|()| playable)
+    }
+
+    /// As [`Playable::read`], but reads what can be read of the file. Whatever cannot has its default, and is told beside
+    /// the rest, in one line each.
+    ///
+    /// # Errors
+    /// As [`Playable::read`] for a file that cannot be opened, or is no TOML, or neither a preset nor a kit.
+    pub fn read_lenient(
+        path: &Path,
+        open: &mut dyn FnMut(&Path) -> Result<File>,
+        replaced: &mut dyn FnMut(&str, Replaced),
+    ) -> Result<(Self, Vec<String>)> {
+        let mut complaints = Complaints::default();
+        let playable = Self::read_on(path, open, &mut complaints, replaced)?;
+        Ok((playable, complaints.into_lines()))
+    }
+
+    fn read_on(
+        path: &Path,
+        open: &mut dyn FnMut(&Path) -> Result<File>,
+        complaints: &mut Complaints,
+        replaced: &mut dyn FnMut(&str, Replaced),
+    ) -> Result<Self> {
         let origin = path.display().to_string();
         let text = load::text(open(path)?, &origin)?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut told = vec![];
         let mut find = |name: &str| preset_of_kit(name, folder, open, replaced);
-        let playable = kit_file::parse(&text, &origin, &mut find, &mut |one| told.push(one));
+        let playable = kit_file::parse(&text, &origin, &mut find, complaints, &mut |one| told.push(one));
         told.into_iter().for_each(|one| replaced(&origin, one));
         playable
     }
@@ -40,7 +67,25 @@ impl Playable {
     /// # Errors
     /// [`Error::Format`] as [`Preset::parse`], and where a kit names what is not there.
     pub fn parse(text: &str, origin: &str, preset: &mut dyn FnMut(&str) -> Result<Preset>) -> Result<Self> {
-        kit_file::parse(text, origin, preset, &mut |_| {})
+        let mut complaints = Complaints::default();
+        let playable = kit_file::parse(text, origin, preset, &mut complaints, &mut |_| {})?;
+        complaints.into_first(origin).map(|()| playable)
+    }
+
+    /// As [`Playable::parse`], but reads what can be read, as [`Playable::read_lenient`] does; `replaced` is told of each
+    /// retired parameter in a preset.
+    ///
+    /// # Errors
+    /// [`Error::Format`] for a text that is no TOML, or neither a preset nor a kit.
+    pub fn parse_lenient(
+        text: &str,
+        origin: &str,
+        preset: &mut dyn FnMut(&str) -> Result<Preset>,
+        replaced: &mut dyn FnMut(Replaced),
+    ) -> Result<(Self, Vec<String>)> {
+        let mut complaints = Complaints::default();
+        let playable = kit_file::parse(text, origin, preset, &mut complaints, replaced)?;
+        Ok((playable, complaints.into_lines()))
     }
 
     /// Its file.

@@ -1,5 +1,6 @@
 //! Presets from texts and files, and back.
 
+use super::complaints::Complaints;
 use super::{Preset, Replaced, file};
 use crate::error::{Error, Result};
 use std::io::Read;
@@ -23,7 +24,20 @@ impl Preset {
     /// # Errors
     /// As [`Preset::parse`].
     pub fn parse_old(text: &str, origin: &str, replaced: &mut dyn FnMut(Replaced)) -> Result<Self> {
-        file::parse(text, origin, replaced)
+        let mut complaints = Complaints::default();
+        let preset = file::parse(text, origin, &mut complaints, replaced)?;
+        complaints.into_first(origin).map(|()| preset)
+    }
+
+    /// As [`Preset::parse_old`], but reads what can be read. Whatever cannot has its default, and is told beside the
+    /// preset, in one line each.
+    ///
+    /// # Errors
+    /// [`Error::Format`] for a text that is no TOML or no preset.
+    pub fn parse_lenient(text: &str, origin: &str, replaced: &mut dyn FnMut(Replaced)) -> Result<(Self, Vec<String>)> {
+        let mut complaints = Complaints::default();
+        let preset = file::parse(text, origin, &mut complaints, replaced)?;
+        Ok((preset, complaints.into_lines()))
     }
 
     /// Writes the preset so that [`Preset::parse`] gives it back exactly. Parameters at their defaults are left out.
@@ -66,6 +80,9 @@ pub(super) fn text(reader: impl Read, origin: &str) -> Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::params::Param;
+    use crate::patch::routes::{Routes, Source};
+    use crate::patch::{Mode, ModeTable, Patch};
 
     #[test]
     fn files_that_cannot_be_presets_are_refused() {
@@ -82,5 +99,40 @@ mod tests {
         }
         assert!(matches!(Preset::load(&directory.path().join("none.toml")), Err(Error::Io { .. })));
         assert!(matches!(Preset::load(directory.path()), Err(Error::Io { .. })));
+    }
+
+    #[test]
+    fn a_lenient_reader_takes_what_can_be_read_and_tells_the_rest() {
+        let text = "format = 9\nname = \"a\"\nwarp = 1\ntags = [\"x\", 2]\n\
+            modes = [{ ratio = 2, level = 9, pan = 0.5 }, { level = 1 }, { ratio = -1 }, 3]\n\
+            routes = [{ source = \"lfo9\", to = \"tune\" }, { source = \"lfo1\", to = \"tune\", amount = 5 }]\n\
+            [params]\ndecay = 2\ngain = 99\nxylophone = 1\ndecay_key = 3\n";
+        let (preset, complaints) = Preset::parse_lenient(text, "x", &mut |_| panic!("of the present format")).unwrap();
+        let mut patch = Patch::default().with(Param::Decay, 2.0);
+        patch.modes = ModeTable::new(&[Mode { ratio: 2.0, pan: 0.5, ..Mode::UNIT }]);
+        patch.routes = Routes::NONE;
+        let patch = patch.with_route(1, Source::Lfo1, Param::Tune, 5.0);
+        assert_eq!(preset.patch, patch);
+        assert_eq!((preset.name.as_str(), preset.tags), ("a", vec!["x".to_owned()]));
+        let starts = [
+            "format 9 is of a newer version",
+            "unknown key ‘warp’",
+            "tags[1]: expected a text",
+            "params.decay_key: ‘decay_key’ is retired",
+            "unknown key ‘params.xylophone’",
+            "params.gain: 99 is out of range",
+            "modes[0].level: 9 is out of range",
+            "modes[1]: there is no ‘ratio’",
+            "modes[2].ratio: -1 is out of range",
+            "modes[3]: expected a mode",
+            "routes[0].source: ‘lfo9’ is none",
+        ];
+        assert_eq!(complaints.len(), starts.len(), "{complaints:?}");
+        assert!(complaints.iter().zip(starts).all(|(line, start)| line.starts_with(start)), "{complaints:?}");
+        let strict = Preset::parse(text, "x").unwrap_err().to_string();
+        assert_eq!(strict, format!("x: {}", complaints[0]), "a strict one tells the first");
+        for none in ["= =", "", "format = \"1\"", "kit = 1"] {
+            assert!(Preset::parse_lenient(none, "x", &mut |_| {}).is_err(), "{none}");
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Presets of formats 1 and 2: what their retired parameters and built-in effects did, routes do.
 
+use super::complaints::Complaints;
 use super::value::param_value;
 use crate::params::retired::{RETIRED, Retired};
 use crate::params::{Curve, Param, ParamInfo};
@@ -41,15 +42,13 @@ struct Work {
 
 /// Takes the retired parameters out of those of a file, and the routes out of a new patch: the format had none. Returns
 /// the values, and whether the file has them.
-pub(super) fn take(params: &mut Table, patch: &mut Patch) -> Result<Vec<(f32, bool)>, String> {
+pub(super) fn take(params: &mut Table, patch: &mut Patch, complaints: &mut Complaints) -> Vec<(f32, bool)> {
     patch.routes = Routes::NONE;
     (0..MAX_ROUTES).for_each(|place| patch.set(amount_param(place), 0.0));
-    let value = |row: &ParamInfo| match params.remove(row.id) {
-        None => Ok((row.default, false)),
-        Some(value) => match param_value(row, &value) {
-            Ok(value) => Ok((value, true)),
-            Err(message) => Err(format!("params.{}: {message}", row.id)),
-        },
+    let value = |row: &ParamInfo| {
+        let given = params.remove(row.id);
+        let read = given.and_then(|value| complaints.take(&format!("params.{}: ", row.id), param_value(row, &value)));
+        (read.unwrap_or(row.default), read.is_some())
     };
     RETIRED.iter().map(|retired| &retired.row).map(value).collect()
 }

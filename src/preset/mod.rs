@@ -2,6 +2,7 @@
 
 mod about;
 mod body;
+mod complaints;
 mod factory;
 mod file;
 mod kit;

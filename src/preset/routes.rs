@@ -1,5 +1,6 @@
 //! The routes of a preset file: `routes = [{ source = "lfo1", to = "tune", amount = 2 }]`.
 
+use super::complaints::Complaints;
 use super::value::{check_keys, param_value, unexpected};
 use crate::params::Param;
 use crate::patch::Patch;
@@ -10,45 +11,58 @@ use toml::{Table, Value};
 const KEYS: [&str; 6] = ["source", "to", "amount", "response", "scale", "place"];
 
 /// Reads the routes of a file, and their amounts.
-pub(super) fn read(file: &Table, patch: &mut Patch) -> Result<(), String> {
+pub(super) fn read(file: &Table, patch: &mut Patch, complaints: &mut Complaints) {
     let routes = match file.get("routes") {
-        None => return Ok(()),
+        None => return,
         Some(_) if file.get("format") == Some(&Value::Integer(1)) => {
-            return Err("routes: a preset of format 1 has none: expected format = 3".to_owned());
+            return complaints.add("routes: a preset of format 1 has none: expected format = 3");
         }
         Some(Value::Array(routes)) => routes,
-        Some(other) => return Err(unexpected("routes", "a list of routes, [{ source = …, to = … }, …]", other)),
+        Some(other) => {
+            return complaints.add(unexpected("routes", "a list of routes, [{ source = …, to = … }, …]", other));
+        }
     };
     patch.routes = Routes::NONE;
     let mut place = 0;
     for (index, route) in routes.iter().enumerate() {
         let at = format!("routes[{index}]");
         let Value::Table(route) = route else {
-            return Err(unexpected(&at, "a route, { source = …, to = … }", route));
+            complaints.add(unexpected(&at, "a route, { source = …, to = … }", route));
+            continue;
         };
-        check_keys(route, &format!("{at}."), &KEYS)?;
-        place = read_place(route, &at)?.unwrap_or(place);
+        check_keys(route, &format!("{at}."), &KEYS, complaints);
+        place = complaints.take("", read_place(route, &at)).flatten().unwrap_or(place);
         if place >= MAX_ROUTES {
-            return Err(format!("{at}: there are places for {MAX_ROUTES} routes"));
+            complaints.add(format!("{at}: there are places for {MAX_ROUTES} routes"));
+            continue;
         }
         if patch.routes.get(place).is_some() {
-            return Err(format!("{at}: place {} has a route already", place + 1));
+            complaints.add(format!("{at}: place {} has a route already", place + 1));
+            continue;
         }
-        patch.routes.set(place, Some(read_route(route, &at)?));
-        let param = amount_param(place);
-        let in_params = file.get("params").is_some_and(|params| params.get(param.info().id).is_some());
-        if let Some(amount) = route.get("amount") {
-            if in_params {
-                return Err(format!("{at}.amount: it is given twice, here and as params.{}", param.info().id));
-            }
-            let value = param_value(param.info(), amount).map_err(|message| format!("{at}.amount: {message}"))?;
-            patch.set(param, value);
-        } else if !in_params {
-            patch.set(param, 0.0);
+        if let Some(read) = complaints.take("", read_route(route, &at)) {
+            patch.routes.set(place, Some(read));
+            read_amount(file, route, &at, place, patch, complaints);
         }
         place += 1;
     }
-    Ok(())
+}
+
+/// Reads the amount of the route at a place: in itself or among the parameters, or else it is 0.
+fn read_amount(file: &Table, route: &Table, at: &str, place: usize, patch: &mut Patch, complaints: &mut Complaints) {
+    let info = amount_param(place).info();
+    let in_params = file.get("params").is_some_and(|params| params.get(info.id).is_some());
+    match route.get("amount") {
+        Some(_) if in_params => {
+            complaints.add(format!("{at}.amount: it is given twice, here and as params.{}", info.id));
+        }
+        None if in_params => {}
+        amount => {
+            let read = amount.map(|amount| param_value(info, amount)).transpose();
+            let value = complaints.take(&format!("{at}.amount: "), read).flatten();
+            patch.set(info.param, value.unwrap_or(0.0));
+        }
+    }
 }
 
 /// The place that a route asks for, from 0.
@@ -135,7 +149,12 @@ mod tests {
     fn parse(routes: &str) -> Result<Patch, String> {
         let mut patch = Patch::default();
         let table = toml::from_str(routes).unwrap();
-        read(&table, &mut patch).map(|()| patch)
+        let mut complaints = Complaints::default();
+        read(&table, &mut patch, &mut complaints);
+        match complaints.into_lines().into_iter().next() {
+            None => Ok(patch),
+            Some(first) => Err(first),
+        }
     }
 
     #[test]

@@ -1,18 +1,18 @@
 //! TOML values as the parts of a preset file read them, with errors that say what would be right.
 
+use super::complaints::Complaints;
 use crate::error::{Error, nearest};
 use crate::params::{ParamInfo, Unit};
 use toml::{Table, Value};
 
 /// That a table at `place` (empty, or ending in a dot) has no other keys than these.
-pub(super) fn check_keys(table: &Table, place: &str, known: &[&str]) -> Result<(), String> {
-    match table.keys().find(|key| !known.contains(&key.as_str())) {
-        None => Ok(()),
-        Some(key) => Err(match nearest(key, known.iter().copied()) {
+pub(super) fn check_keys(table: &Table, place: &str, known: &[&str], complaints: &mut Complaints) {
+    for key in table.keys().filter(|key| !known.contains(&key.as_str())) {
+        complaints.add(match nearest(key, known.iter().copied()) {
             Some(near) => format!("unknown key ‘{place}{key}’; the nearest is {near}"),
             None if known.len() <= 10 => format!("unknown key ‘{place}{key}’: expected one of {}", known.join(", ")),
             None => format!("unknown key ‘{place}{key}’; ‘sprung params’ shows them all"),
-        }),
+        });
     }
 }
 

@@ -53,12 +53,6 @@ const STEPS: &[Step] = &[
         shows: Shows::Tests,
     },
     Step {
-        name: "orders of the lock",
-        arguments: "test --manifest-path plugin/sequence_lock/Cargo.toml --target-dir target/loom",
-        environment: &[("RUSTFLAGS", "--cfg loom")],
-        shows: Shows::Tests,
-    },
-    Step {
         name: "golden, release",
         arguments: "test --release --package sprung --no-default-features --features analysis --test golden",
         environment: &[],

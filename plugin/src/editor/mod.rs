@@ -29,7 +29,7 @@ impl SprungEditor {
 
 /// A window's state of its own, in the size that is kept.
 fn state(params: &SprungParams) -> Arc<EguiEditorState> {
-    let [width, height] = params.about().window.map(|side| side as f32);
+    let [width, height] = params.window().map(|side| side as f32);
     EguiEditorState::from_size(LogicalSize { width, height }, 1.0)
 }
 

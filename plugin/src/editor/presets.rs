@@ -1,4 +1,4 @@
-//! The window's head: factory presets, preset files, and what came of the last of it.
+//! The window's head: factory presets, preset and kit files, and what came of the last of it.
 
 use super::rows::announce;
 use crate::params::SprungParams;
@@ -6,7 +6,8 @@ use crate::state::State;
 use egui::{ComboBox, TextEdit, Ui};
 use nice_plug_core::context::gui::GuiContext;
 use sprung::io::{Inputs, Output, Target};
-use sprung::preset::Preset;
+use sprung::preset::{Playable, Preset, Replaced};
+use std::fs::File;
 use std::io::Write as _;
 use std::path::Path;
 
@@ -22,25 +23,25 @@ pub(super) struct Presets {
 impl Presets {
     pub(super) fn show(&mut self, ui: &mut Ui, params: &SprungParams, host: &GuiContext) {
         ui.horizontal(|ui| {
-            let name = params.about().name.clone();
+            let name = params.name();
             ComboBox::from_id_salt("presets").selected_text(name.as_str()).width(220.0).height(400.0).show_ui(
                 ui,
                 |ui| {
                     for preset in Preset::factory() {
                         if ui.selectable_label(preset.name == name, &preset.name).clicked() {
                             self.message.clear();
-                            load(preset.clone(), params, host);
+                            load(Playable::Preset(preset.clone()), params, host);
                         }
                     }
                 },
             );
-            let path = TextEdit::singleline(&mut self.path).hint_text("path of a preset file, …/name.toml");
+            let path = TextEdit::singleline(&mut self.path).hint_text("path of a preset or kit file, …/name.toml");
             ui.add(path.desired_width(ui.available_width() - 110.0));
             if ui.button("Load").clicked() {
                 self.message = match read(&self.path) {
-                    Ok(preset) => {
-                        load(preset, params, host);
-                        format!("loaded {}", self.path)
+                    Ok((playable, remarks)) => {
+                        load(playable, params, host);
+                        [vec![format!("loaded {}", self.path)], remarks].concat().join("; ")
                     }
                     Err(message) => message,
                 };
@@ -52,13 +53,22 @@ impl Presets {
         if !self.message.is_empty() {
             ui.label(&self.message);
         }
+        let complaints = params.complaints();
+        if let Some(line) = summary(&complaints) {
+            ui.colored_label(ui.visuals().warn_fg_color, line).on_hover_text(complaints.join("\n"));
+        }
     }
 
     fn save(&mut self, params: &SprungParams) {
         let replace = self.confirm.take().is_some_and(|path| path == self.path);
-        self.message = match write(params.state().preset(), &self.path, replace) {
+        let Playable::Preset(preset) = params.state().playable else {
+            self.message =
+                "a kit is kept in the project with its presets: only single presets are saved as files".to_owned();
+            return;
+        };
+        self.message = match write(preset, &self.path, replace) {
             Ok(name) => {
-                params.about().name = name;
+                params.rename(name);
                 format!("saved {}", self.path)
             }
             Err(sprung::Error::Exists { path }) => {
@@ -70,15 +80,28 @@ impl Presets {
     }
 }
 
-/// Takes over a preset, with its name for the window and its knobs for the host.
-fn load(preset: Preset, params: &SprungParams, host: &GuiContext) {
-    let State { loaded, about } = params.state();
-    params.load(State::from_preset(preset, loaded.seed, about.window));
+/// What is told of the state that was loaded last, if it was not understood as a whole: all if it is little.
+fn summary(complaints: &[String]) -> Option<String> {
+    let [first, rest @ ..] = complaints else { return None };
+    let rest = if rest.is_empty() { String::new() } else { format!(" (and {} more)", rest.len()) };
+    Some(format!("Not all of the project’s state was understood: {first}{rest}"))
+}
+
+/// Takes over a preset or kit, with its name for the window and its knobs for the host.
+fn load(playable: Playable, params: &SprungParams, host: &GuiContext) {
+    let State { seed, window, .. } = params.state();
+    params.load(State::new(playable, seed, window).into());
     announce(params, host);
 }
 
-fn read(path: &str) -> Result<Preset, String> {
-    check(path).and_then(Preset::load).map_err(|error| error.to_string())
+/// Reads a preset or kit file, with remarks about what is retired of it.
+fn read(path: &str) -> Result<(Playable, Vec<String>), String> {
+    let mut open =
+        |path: &Path| File::open(path).map_err(|source| sprung::Error::io(path.display().to_string(), source));
+    let mut remarks = vec![];
+    let mut remark = |_: &str, replaced: Replaced| remarks.push(replaced.to_string());
+    let read = check(path).and_then(|path| Playable::read(path, &mut open, &mut remark));
+    read.map(|playable| (playable, remarks)).map_err(|error| error.to_string())
 }
 
 /// Writes a preset file, whole or not at all. The preset is then called as the file is; gives that name.
@@ -115,12 +138,14 @@ mod tests {
         let path = folder.path().join("my sound.toml").display().to_string();
         let [bell, kick] = ["Church Bell", "Kick"].map(|name| Preset::find(name).unwrap());
         assert_eq!(write(bell.clone(), &path, false).unwrap(), "my sound");
-        let saved = read(&path).unwrap();
-        assert_eq!((saved.name.as_str(), saved.patch, &saved.comment), ("my sound", bell.patch, &bell.comment));
+        let renamed = |preset: &Preset| {
+            (Playable::Preset(Preset { name: "my sound".to_owned(), ..preset.clone() }), Vec::<String>::new())
+        };
+        assert_eq!(read(&path).unwrap(), renamed(bell));
         assert!(matches!(write(kick.clone(), &path, false), Err(sprung::Error::Exists { .. })));
-        assert_eq!(read(&path).unwrap(), saved);
+        assert_eq!(read(&path).unwrap(), renamed(bell));
         write(kick.clone(), &path, true).unwrap();
-        assert_eq!(read(&path).unwrap().patch, kick.patch);
+        assert_eq!(read(&path).unwrap(), renamed(kick));
     }
 
     #[test]
@@ -138,5 +163,16 @@ mod tests {
             let error = read(path).unwrap_err();
             assert!(error.contains("expected a whole path, such as "), "{error}");
         }
+    }
+
+    #[test]
+    fn kits_are_read_and_what_was_not_understood_is_told_in_a_line() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/kits/drums.toml");
+        let path = std::fs::canonicalize(path).unwrap().display().to_string();
+        assert!(matches!(read(&path), Ok((Playable::Kit(_), _))));
+        let lines = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!(summary(&[]), None);
+        assert_eq!(summary(&lines[..1]).as_deref(), Some("Not all of the project’s state was understood: a"));
+        assert!(summary(&lines).unwrap().ends_with(": a (and 2 more)"));
     }
 }

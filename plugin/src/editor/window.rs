@@ -68,7 +68,7 @@ impl NiceEguiApp for Window {
     fn resized(&mut self, size: WindowSize) {
         let [least, most] = WINDOW_RANGE;
         let side = |side: f64| (side.round() as u32).clamp(least, most);
-        self.params.about().window = [side(size.logical.width), side(size.logical.height)];
+        self.params.set_window([side(size.logical.width), side(size.logical.height)]);
     }
 
     fn editor_closed(&mut self) {

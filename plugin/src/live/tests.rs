@@ -4,7 +4,7 @@ use super::*;
 use crate::plugin::Sprung;
 use crate::state::State;
 use sprung::patch::Patch;
-use sprung::preset::Preset;
+use sprung::preset::{Playable, Preset};
 use std::cell::Cell;
 use std::collections::VecDeque;
 
@@ -69,7 +69,8 @@ fn off(timing: u32, id: i32) -> NoteEvent<()> {
 
 fn params(patch: Patch) -> SprungParams {
     let params = SprungParams::default();
-    params.load(State::from_preset(Preset { patch, ..Preset::find("Init").unwrap().clone() }, 3, [800, 600]));
+    let preset = Preset { patch, ..Preset::find("Init").unwrap().clone() };
+    params.load(State::new(Playable::Preset(preset), 3, [800, 600]).into());
     params
 }
 
@@ -100,8 +101,8 @@ fn strike(key: u8, id: i32) -> EventKind {
 
 #[test]
 fn the_shell_has_the_bits_of_the_engine() {
-    let patch = Preset::find("Church Bell").unwrap().patch.with(Param::Decay, 0.123_456_79);
-    let params = params(patch);
+    let patch = Preset::find("Church Bell").unwrap().patch.clone().with(Param::Decay, 0.123_456_79);
+    let params = params(patch.clone());
     let mut live = Live::new(RATE, false, &params);
     let mut host = Host::new(&[on(100, 1, 60), on(100, 2, 67), off(2_000, 1)]);
     let (out, _) = stereo(&mut live, &params, &mut host, FRAMES);
@@ -138,14 +139,14 @@ fn knobs_are_followed_at_once_in_silence_and_smoothly_in_sound() {
     let (out, _) = stereo(&mut live, &params, &mut Host::new(&[on(0, 1, 60)]), 64);
     assert_eq!(out, alone(&Patch::default().with(Param::Gain, -20.0), &[(0, strike(60, 1))], 64));
 
-    params.knobs()[index].turn(params.state().loaded.positions[index] + 0.2);
-    let value = params.state().loaded.patch.get(Param::Gain);
+    params.knobs()[index].turn(params.state().positions[index] + 0.2);
+    let value = params.state().values.get(Param::Gain);
     let (after, _) = stereo(&mut live, &params, &mut Host::new(&[]), 64);
     let louder = EventKind::Param { param: Param::Gain, value };
     let patch = Patch::default().with(Param::Gain, -20.0);
     let [expected, _] = alone(&patch, &[(0, strike(60, 1)), (64, louder)], 128);
     assert_eq!(after[0], expected[64..]);
-    assert_eq!(live.synth.patch().get(Param::Gain), value);
+    assert_eq!(live.synth.values().get(Param::Gain), value);
 }
 
 #[test]
@@ -154,9 +155,9 @@ fn a_loaded_patch_and_seed_play_from_the_next_note_on() {
     let mut live = Live::new(RATE, false, &params);
     stereo(&mut live, &params, &mut Host::new(&[]), 64);
     let snare = Preset::find("Snare").unwrap();
-    params.load(State::from_preset(snare.clone(), 4, [800, 600]));
+    params.load(State::new(Playable::Preset(snare.clone()), 4, [800, 600]).into());
     let (out, _) = stereo(&mut live, &params, &mut Host::new(&[on(0, 1, 60)]), FRAMES);
-    assert_eq!(live.synth.patch(), &snare.patch);
+    assert_eq!(live.synth.kit(), &snare.kit());
     let with_seed = |seed| {
         let mut synth = Synth::new(RATE, seed);
         synth.set_patch(&snare.patch);
@@ -204,4 +205,35 @@ fn tempo_and_voices_are_told_when_they_change() {
     assert_eq!(host.voices.take(), None);
     live.reset(&params);
     assert_eq!(live.tempo, None, "the synth has forgotten it, so it is told again");
+}
+
+#[test]
+fn a_kit_takes_the_place_of_a_sound_while_that_rings_on() {
+    let kit = "kit = 1\nname = \"k\"\nkeys = [{ key = 36, sound = \"Kick\" }, { key = 38, sound = \"Snare\" }]";
+    let kit = Playable::parse(kit, "x", &mut |name| Preset::find(name).cloned()).unwrap();
+    let params = params(Patch::default());
+    let mut live = Live::new(RATE, false, &params);
+    let mut synth = Synth::new(RATE, 3);
+    let play = |synth: &mut Synth, key, id| {
+        let mut out = [vec![0.0; 64], vec![0.0; 64]];
+        let [left, right] = &mut out;
+        synth.process(&[Event { frame: 0, channel: 0, kind: strike(key, id) }], left, right);
+        out
+    };
+    let (out, _) = stereo(&mut live, &params, &mut Host::new(&[on(0, 1, 60)]), 64);
+    assert_eq!(out, play(&mut synth, 60, 1));
+    let mut state = State::new(kit.clone(), 3, [800, 600]);
+    state.values.set(Param::Gain, -12.0);
+    state.positions[Param::Gain as usize] = Param::Gain.info().normalise(-12.0) as f32;
+    let before = Arc::downgrade(&params.loaded());
+    params.load(state.into());
+    synth.set_kit(&kit.kit());
+    let mut values = *kit.kit().values();
+    values.set(Param::Gain, -12.0);
+    synth.set_values(&values);
+    let (out, _) = stereo(&mut live, &params, &mut Host::new(&[on(0, 2, 38)]), 64);
+    assert_eq!(out, play(&mut synth, 38, 2));
+    assert!(before.upgrade().is_some(), "the audio thread has freed nothing");
+    params.load(params.state().into());
+    assert!(before.upgrade().is_none(), "it is freed by who loads next");
 }

@@ -73,9 +73,12 @@ pub(crate) fn expressions_reach_their_notes() {
             on(3_000, 0, 67, 3, 0.6),
             express(whole, 4_001, values[0]),
         ];
-        let patch = patch()
-            .with_route(0, Source::Pressure, Param::Vibrato, 6.67)
-            .with_route(1, Source::Pressure, Param::Damper, 30.0);
+        let patch = patch().with_route(0, Source::Pressure, Param::Vibrato, 6.67).with_route(
+            1,
+            Source::Pressure,
+            Param::Damper,
+            30.0,
+        );
         compare(&format!("{kind:?}"), &patch, &song);
     }
 }

@@ -35,7 +35,7 @@ pub(crate) fn every_rate_and_block_size_plays() {
     for rate in [1_234.567_8, 8_000.0, 11_025.0, 22_050.0, 44_100.0, 44_100.5, 96_000.0, 192_000.0, 768_000.0] {
         for max_block in [1, 2, 31, 64, 512, 1_000, 8_192] {
             let mut instance = Instance::new();
-            let patch = patches()[1].1;
+            let patch = patches().swap_remove(1).1;
             load(&mut instance, &patch);
             let mut player = instance.play(rate, max_block);
             let (sent, events) = two_notes();
@@ -74,7 +74,7 @@ pub(crate) fn instances_do_not_hear_each_other() {
         .map(|(_, patch)| {
             let mut instance = Instance::of(&entry, true);
             load(&mut instance, patch);
-            (instance.play(RATE, 64), *patch)
+            (instance.play(RATE, 64), patch.clone())
         })
         .collect();
     let (sent, events) = two_notes();
@@ -102,7 +102,7 @@ pub(crate) fn instances_do_not_hear_each_other() {
 /// An instance on each of several threads at once.
 pub(crate) fn instances_on_several_threads_play_at_once() {
     let play = || {
-        let patch = patches()[2].1;
+        let patch = patches().swap_remove(2).1;
         for _ in 0..10 {
             let mut instance = Instance::new();
             load(&mut instance, &patch);
@@ -117,7 +117,7 @@ pub(crate) fn instances_on_several_threads_play_at_once() {
 
 /// Stereo is the engine's own; mono is the mean of both sides; what comes in is not heard, also in the same memory.
 pub(crate) fn every_layout_plays_and_ignores_its_input() {
-    let patch = patches()[1].1;
+    let patch = patches().swap_remove(1).1;
     let (sent, events) = two_notes();
     let stereo = render(&patch, RATE, &events, FRAMES);
     let mean: Vec<f32> = stereo[0].iter().zip(&stereo[1]).map(|(left, right)| 0.5 * (left + right)).collect();
@@ -215,7 +215,7 @@ pub(crate) fn starts_and_stops_need_no_block_in_between() {
 /// A host that does not tell threads apart.
 pub(crate) fn a_host_without_thread_checks_gets_the_same() {
     let mut instance = Instance::of(&open(), false);
-    let patch = patches()[1].1;
+    let patch = patches().swap_remove(1).1;
     load(&mut instance, &patch);
     plays_from_the_beginning("without thread checks", &mut instance.play(RATE, 480), &patch, RATE);
 }
@@ -223,7 +223,7 @@ pub(crate) fn a_host_without_thread_checks_gets_the_same() {
 /// What an audio thread plays on a thread of its own is what the main thread would play.
 pub(crate) fn audio_may_run_on_any_thread() {
     let mut instance = Instance::new();
-    let patch = patches()[1].1;
+    let patch = patches().swap_remove(1).1;
     load(&mut instance, &patch);
     let Player { instance, mut audio } = instance.play(RATE, 480);
     let (sent, events) = two_notes();

@@ -3,6 +3,7 @@
 //! `plugin/tests/README.md` lists what is covered and where.
 
 mod automation;
+mod damage;
 mod expression;
 mod fuzz;
 mod growth;
@@ -141,11 +142,15 @@ fn main() -> ExitCode {
             a_state_loaded_while_processing_is_heard_exactly
             touching_a_knob_keeps_the_exact_value
             streams_may_deliver_a_byte_at_a_time
-            what_cannot_be_read_changes_nothing
-            damaged_states_never_leave_half_a_patch
+            a_kit_comes_back_with_its_presets
             states_of_all_versions_load
             parameters_that_a_state_lacks_have_their_defaults
             two_states_in_turn_while_audio_runs_are_never_mixed
+        }
+        Nothing: damage {
+            what_is_no_state_changes_nothing
+            what_can_be_read_of_a_state_is_taken_over
+            damaged_states_never_leave_half_a_patch
         }
         Nothing: fuzz {
             random_events_give_clean_sound_at_every_rate
@@ -156,6 +161,7 @@ fn main() -> ExitCode {
         Nothing: song {
             one_channel_has_the_bits_of_the_command
             an_mpe_performance_has_the_bits_of_the_command
+            a_kit_has_the_bits_of_the_command
             sixteen_channels_have_the_bits_of_one_synth
         }
         Nothing: growth {
@@ -188,6 +194,7 @@ fn main() -> ExitCode {
         Python: vst3 {
             every_parameter_can_be_set_and_read
             one_channel_has_the_bits_of_the_command
+            a_kit_has_the_bits_of_the_command
             what_is_saved_comes_back
             automation_has_the_bits_of_the_engine
         }

@@ -4,11 +4,13 @@ use crate::host::Instance;
 use sprung::params::Param;
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
-use sprung::preset::Preset;
+use sprung::preset::{Playable, Preset};
+use std::fs::File;
+use std::path::Path;
 
 /// Sounds that between them use every exciter, few and many modes, both laws, and values that no knob's position gives.
 pub(crate) fn patches() -> Vec<(&'static str, Patch)> {
-    let factory = |name: &'static str| (name, Preset::find(name).unwrap().patch);
+    let factory = |name: &'static str| (name, Preset::find(name).unwrap().patch.clone());
     let mut odd = Patch::default()
         .with(Param::Exciter, 2.0)
         .with(Param::Decay, 0.731_234_5)
@@ -29,7 +31,7 @@ pub(crate) fn patches() -> Vec<(&'static str, Patch)> {
         factory("Marimba"),
         factory("Church Bell"),
         factory("Snare"),
-        ("odd legato", odd),
+        ("odd legato", odd.clone()),
         ("classic", odd.with(Param::Coefficients, 1.0).with(Param::Mode, 0.0)),
     ]
 }
@@ -41,14 +43,32 @@ pub(crate) fn state(patch: &Patch) -> Vec<u8> {
         author: String::new(),
         tags: Vec::new(),
         comment: String::new(),
-        patch: *patch,
+        patch: patch.clone(),
     };
     state_of_text(&preset.to_toml())
 }
 
 /// A preset file's text as the state that holds it.
 pub(crate) fn state_of_text(preset: &str) -> Vec<u8> {
-    let own = serde_json::json!({ "format": 1, "preset": preset, "seed": 0, "window": [880, 640] });
+    let own = serde_json::json!({ "format": 2, "preset": preset, "seed": 0, "window": [880, 640] });
+    enclosed(&own.to_string())
+}
+
+/// The kit in the tree, as the command reads it.
+pub(crate) fn drums() -> Playable {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/kits/drums.toml");
+    let mut open = |path: &Path| Ok(File::open(path).expect("the file is there"));
+    Playable::read(&path, &mut open, &mut |_, _| {}).unwrap()
+}
+
+/// A kit as the state that holds it with its presets.
+pub(crate) fn state_of_kit(kit: &Playable) -> Vec<u8> {
+    let Playable::Kit(preset) = kit else { panic!("a kit") };
+    let sounds = preset.sounds.iter().map(|(name, preset)| (name.clone(), preset.to_toml().into())).collect();
+    let sounds = serde_json::Value::Object(sounds);
+    let own = serde_json::json!(
+        { "format": 2, "kit": kit.to_toml(), "sounds": sounds, "seed": 0, "window": [880, 640] }
+    );
     enclosed(&own.to_string())
 }
 

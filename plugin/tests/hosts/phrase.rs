@@ -89,10 +89,26 @@ pub(crate) fn mpe_messages() -> Vec<(u64, [u8; 3])> {
     messages
 }
 
-/// The phrase with each controller, bend and pressure of the channel at the start of its block.
-pub(crate) fn with_controllers_by_block(block: u64) -> Vec<(u64, [u8; 3])> {
+/// The phrase on the keys of a drum kit, without pedals and bends.
+pub(crate) fn kit_messages() -> Vec<(u64, [u8; 3])> {
+    let mut messages = messages();
+    messages.retain(|(_, [status, controller, _])| match status & 0xF0 {
+        0xB0 => [7, 10, 11].contains(controller),
+        0xE0 => false,
+        _ => true,
+    });
+    for (_, [status, key, _]) in &mut messages {
+        if matches!(*status & 0xF0, 0x80 | 0x90 | 0xA0) {
+            *key = 35 + *key % 24;
+        }
+    }
+    messages
+}
+
+/// Messages with each controller, bend and pressure of the channel at the start of its block.
+pub(crate) fn with_controllers_by_block(messages: &[(u64, [u8; 3])], block: u64) -> Vec<(u64, [u8; 3])> {
     let is_controller = |data: [u8; 3]| matches!(data[0] & 0xF0, 0xB0 | 0xD0 | 0xE0);
-    let mut moved = messages();
+    let mut moved = messages.to_vec();
     moved.iter_mut().filter(|(_, data)| is_controller(*data)).for_each(|(frame, _)| *frame -= *frame % block);
     // On one frame, controllers come first.
     moved.sort_by_key(|&(frame, data)| (frame, !is_controller(data)));

@@ -4,7 +4,7 @@
 //! system's library, and the kernel refuses every system call: a lock made of atomic operations that waits is one.
 
 use crate::host::{Address, Instance, Player, Sent};
-use crate::patches::{patches, state};
+use crate::patches::{drums, patches, state, state_of_kit};
 use crate::process::{command, scratch, succeeds, wait_until};
 use crate::screen::Screen;
 use crate::window::{Editor, Parent};
@@ -81,7 +81,8 @@ pub(crate) fn work(name: &str) -> ExitCode {
 fn play_under_watch(parent: Option<Parent>) -> ExitCode {
     let mut instance = Instance::new();
     let blocks = storm(&mut instance);
-    let states: Vec<Vec<u8>> = patches().iter().map(|(_, patch)| state(patch)).collect();
+    let mut states: Vec<Vec<u8>> = patches().iter().map(|(_, patch)| state(patch)).collect();
+    states.insert(1, state_of_kit(&drums()));
     let Player { mut instance, mut audio } = instance.play(48_000.0, 64);
     let editor = parent.as_ref().map(|parent| Editor::open(&mut instance, parent));
     let (stop, played, loudest) = (AtomicBool::new(false), AtomicU32::new(0), AtomicU32::new(0));

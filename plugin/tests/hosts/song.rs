@@ -2,16 +2,17 @@
 
 use crate::host::reference::{assert_same_bits, assert_sound};
 use crate::host::{Instance, Player, Timed};
-use crate::patches::{load, patches};
+use crate::patches::{drums, load, patches, state_of_kit};
 use crate::phrase::{self, Dialect, FRAMES, SAMPLE_RATE};
 use sprung::dsp::random::{key, uniform};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::Param;
-use sprung::patch::routes::Source;
 use sprung::patch::Patch;
+use sprung::patch::routes::Source;
 use sprung::render::{Job, Options, Tail};
-use sprung::sound::Tuning;
+use sprung::sound::{Kit, Tuning};
 use std::path::Path;
+use std::sync::Arc;
 
 /// A name, and the lengths of blocks one after the other.
 type Division = (&'static str, Box<dyn FnMut() -> usize>);
@@ -33,10 +34,10 @@ fn divisions() -> Vec<Division> {
 }
 
 /// What `sprung render` makes of a MIDI file, as samples.
-pub(crate) fn rendered_by_the_command(midi: &[u8], patch: &Patch) -> Vec<Vec<f32>> {
+pub(crate) fn rendered_by_the_command(midi: &[u8], kit: &Arc<Kit>) -> Vec<Vec<f32>> {
     let song = phrase::song(midi);
     let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 1024, tail: Tail::None };
-    let job = Job { song: &song, patch, programs: &[], tuning: &Tuning::EQUAL, options };
+    let job = Job { song: &song, kit, channels: &[], programs: &[], tuning: &Tuning::EQUAL, options };
     let mut channels = vec![Vec::new(), Vec::new()];
     job.render(|left, right| {
         channels[0].extend(left);
@@ -56,7 +57,7 @@ fn player(patch: &Patch) -> Player {
 pub(crate) fn one_channel_has_the_bits_of_the_command() {
     let midi = phrase::midi_file();
     for (name, patch) in patches() {
-        let expected = rendered_by_the_command(&midi, &patch);
+        let expected = rendered_by_the_command(&midi, &Kit::of_patch(&patch));
         assert_sound(name, &expected);
         for dialect in [Dialect::Clap, Dialect::Midi] {
             let sent = phrase::sent(&phrase::messages(), dialect);
@@ -74,7 +75,7 @@ pub(crate) fn an_mpe_performance_has_the_bits_of_the_command() {
     let midi = phrase::file(&messages);
     for (name, patch) in patches() {
         let patch = patch.with_route(1, Source::Pressure, Param::Vibrato, 5.0).with(Param::Voices, 16.0);
-        let expected = rendered_by_the_command(&midi, &patch);
+        let expected = rendered_by_the_command(&midi, &Kit::of_patch(&patch));
         assert_sound(name, &expected);
         for dialect in [Dialect::Clap, Dialect::Midi] {
             for (division, block) in divisions().into_iter().skip(1) {
@@ -82,6 +83,24 @@ pub(crate) fn an_mpe_performance_has_the_bits_of_the_command() {
                 let found = player(&patch).render(&sent, FRAMES, block).channels;
                 assert_same_bits(&format!("MPE, {name}, {dialect:?}, {division}"), &found, &expected);
             }
+        }
+    }
+}
+
+/// A kit that a project keeps, on the keys that it has.
+pub(crate) fn a_kit_has_the_bits_of_the_command() {
+    let messages = phrase::kit_messages();
+    let drums = drums();
+    let expected = rendered_by_the_command(&phrase::file(&messages), &drums.kit());
+    assert_sound("drums", &expected);
+    for dialect in [Dialect::Clap, Dialect::Midi] {
+        let sent = phrase::sent(&messages, dialect);
+        for (division, block) in divisions() {
+            let mut instance = Instance::new();
+            assert!(instance.load(&state_of_kit(&drums)), "the plugin takes a state with a kit");
+            let mut player = instance.play(f64::from(SAMPLE_RATE), 8192);
+            let found = player.render(&sent, FRAMES, block).channels;
+            assert_same_bits(&format!("drums, {dialect:?}, {division}"), &found, &expected);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::host::bundle;
 use crate::host::reference::{At, assert_same_bits, render};
-use crate::patches::{patches, state};
+use crate::patches::{drums, patches, state, state_of_kit};
 use crate::phrase::{self, FRAMES, SAMPLE_RATE};
 use crate::process::wait_until;
 use crate::screen::{Onlooker, Screen};
@@ -11,9 +11,11 @@ use serde_json::{Value, json};
 use sprung::engine::EventKind;
 use sprung::params::{PARAMS, Param, ParamInfo, Unit};
 use sprung::patch::Patch;
+use sprung::sound::Kit;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::Arc;
 
 /// The plugin's class, as preset files name it. Pinned: hosts find a song's plugin by it.
 const CLASS: &[u8; 32] = b"537072756E674D617373537072696E67";
@@ -68,9 +70,9 @@ fn ask(host: &str, question: &Value) -> Value {
     serde_json::from_str(stdout.lines().last().unwrap_or_default()).unwrap_or_else(|_| panic!("{host}: {stdout}"))
 }
 
-/// A preset file as VST3 hosts keep them, with the state that holds a patch; in a folder.
-fn preset_file(folder: &Path, name: &str, patch: &Patch) -> PathBuf {
-    let state = &state(patch)[8..];
+/// A preset file as VST3 hosts keep them, with a state as CLAP hosts keep them; in a folder.
+fn preset_file(folder: &Path, name: &str, state: &[u8]) -> PathBuf {
+    let state = &state[8..];
     let header = 48_u64;
     let mut bytes = b"VST3".to_vec();
     bytes.extend(1_u32.to_le_bytes());
@@ -140,32 +142,41 @@ pub(crate) fn every_parameter_can_be_set_and_read() {
 /// where the host lets them come. VST3 hands controllers over as parameters, and JUCE, which both hosts are made with,
 /// gives each parameter one value a block, at its first frame; notes and their pressure lie at their own frames.
 pub(crate) fn one_channel_has_the_bits_of_the_command() {
-    let midi = phrase::midi_file();
+    for (name, patch) in patches() {
+        assert_bits_of_the_command(name, &phrase::messages(), &state(&patch), &Kit::of_patch(&patch), &[1, 64, 480]);
+    }
+}
+
+/// The same of a kit that a project keeps.
+pub(crate) fn a_kit_has_the_bits_of_the_command() {
+    let drums = drums();
+    assert_bits_of_the_command("drums", &phrase::kit_messages(), &state_of_kit(&drums), &drums.kit(), &[64]);
+}
+
+/// Plays messages with a state in both hosts, in dawdreamer in blocks of these lengths.
+fn assert_bits_of_the_command(name: &str, messages: &[(u64, [u8; 3])], state: &[u8], kit: &Arc<Kit>, blocks: &[u64]) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("phrase.mid");
-    std::fs::write(&path, &midi).unwrap();
-    for (name, patch) in patches() {
-        let preset = preset_file(folder.path(), name, &patch);
-        for block in [1, 64, 480] {
-            let expected = rendered_by_the_command(&phrase::file(&phrase::with_controllers_by_block(block)), &patch);
-            let audio = folder.path().join("dawdreamer.f32");
-            let plugin = bundle::vst3();
-            ask("dawdreamer", &json!(["render", plugin, preset, path, SAMPLE_RATE, block, FRAMES, audio]));
-            assert_same_bits(&format!("dawdreamer, {name}, blocks of {block}"), &samples(&audio), &expected);
-        }
-        let block = 480;
-        let expected = rendered_by_the_command(&phrase::file(&phrase::with_controllers_by_block(block)), &patch);
-        let audio = folder.path().join("pedalboard.f32");
-        let messages = phrase::messages();
-        ask("pedalboard", &json!(["render", bundle::vst3(), preset, messages, SAMPLE_RATE, block, FRAMES, audio]));
-        assert_same_bits(&format!("pedalboard, {name}"), &samples(&audio), &expected);
+    std::fs::write(&path, phrase::file(messages)).unwrap();
+    let preset = preset_file(folder.path(), name, state);
+    let expected =
+        |block| rendered_by_the_command(&phrase::file(&phrase::with_controllers_by_block(messages, block)), kit);
+    for block in blocks {
+        let audio = folder.path().join("dawdreamer.f32");
+        let plugin = bundle::vst3();
+        ask("dawdreamer", &json!(["render", plugin, preset, path, SAMPLE_RATE, block, FRAMES, audio]));
+        assert_same_bits(&format!("dawdreamer, {name}, blocks of {block}"), &samples(&audio), &expected(*block));
     }
+    let block = 480;
+    let audio = folder.path().join("pedalboard.f32");
+    ask("pedalboard", &json!(["render", bundle::vst3(), preset, messages, SAMPLE_RATE, block, FRAMES, audio]));
+    assert_same_bits(&format!("pedalboard, {name}"), &samples(&audio), &expected(block));
 }
 
 pub(crate) fn what_is_saved_comes_back() {
     let folder = tempfile::tempdir().unwrap();
     for (name, patch) in patches() {
-        let preset = preset_file(folder.path(), name, &patch);
+        let preset = preset_file(folder.path(), name, &state(&patch));
         let [first, second] = ["first", "second"].map(|name| folder.path().join(format!("{name}.state")));
         let values = ask("dawdreamer", &json!(["state", bundle::vst3(), preset, first, second]));
         for info in PARAMS {

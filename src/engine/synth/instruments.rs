@@ -72,7 +72,7 @@ impl Instruments {
         let rates = [self.sample_rate, DEFAULT_BEAT_RATE];
         for (instrument, sound) in self.instruments.iter_mut().zip(self.kit.sounds()) {
             *instrument = Instrument::new(sound.clone(), rates, self.seed, &self.offsets, 0);
-            instrument.begin_at(value_of_sound(&self.kit, &self.values));
+            instrument.begin_at(value_of_sound(&self.kit, &self.values), &self.offsets);
         }
         (self.first_patch, self.bodies) = (0, 0);
         self.number();
@@ -179,6 +179,17 @@ impl Instruments {
     pub(super) fn set(&mut self, param: Param, value: f32, clock: u64) {
         self.values.set(param, value);
         self.update(param, clock);
+    }
+
+    /// Sets all parameters of the kit at once, without slopes, at frame `clock`. Modulation stays.
+    pub(super) fn set_values(&mut self, values: &Values, clock: u64) {
+        self.values = *values;
+        for instrument in &mut self.instruments {
+            // Until now, shared oscillators have had the rate before.
+            instrument.move_shared(clock, 0);
+            instrument.begin_at(value_of_sound(&self.kit, values), &self.offsets);
+        }
+        self.number();
     }
 
     /// Moves a parameter of the kit by an offset in knob travel, at frame `clock`.

@@ -130,6 +130,17 @@ impl Synth {
         self.set_kit(&Kit::of_patch(patch));
     }
 
+    /// Sets all parameters of the kit at once, without slopes: what was set before has no part in the notes from now on.
+    /// Notes that sound jump, so this is for times when nothing does. Modulation stays. Real-time safe.
+    pub fn set_values(&mut self, values: &Values) {
+        self.instruments.set_values(values, self.clock);
+        for (note, voice) in self.manager.active() {
+            self.instruments.of_note(note).into_iter().for_each(|instrument| voice.follow(instrument));
+        }
+        self.needs_control = true;
+        self.configure_manager();
+    }
+
     /// The kit in use. Real-time safe.
     pub fn kit(&self) -> &Arc<Kit> {
         self.instruments.kit()

@@ -1,0 +1,162 @@
+//! The sound that was loaded last, exactly, with the knob positions that belong to its values, shared by a handle.
+
+use sprung::params::{PARAM_COUNT, PARAMS, Values};
+use sprung::sound::Kit;
+use std::array::from_fn;
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+
+/// A kit with the value of each parameter and the knob position that belongs to it. Never changed once it is shared.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Loaded {
+    pub(crate) kit: Arc<Kit>,
+    /// The parameters of the whole kit.
+    pub(crate) values: Values,
+    /// Where the host's knobs stand while these values hold.
+    pub(crate) positions: [f32; PARAM_COUNT],
+    /// What randomness starts from.
+    pub(crate) seed: u64,
+}
+
+impl Loaded {
+    /// The value of the parameter at `index` of the table with its knob at `position`: the one that was loaded where it
+    /// belongs to the position, else what the position means. Real-time safe.
+    pub(crate) fn value(&self, index: usize, position: f32) -> f32 {
+        let info = &PARAMS[index];
+        if position.to_bits() == self.positions[index].to_bits() {
+            self.values.get(info.param)
+        } else {
+            info.denormalise(f64::from(position))
+        }
+    }
+
+    /// As [`Loaded::value`], of all parameters. Real-time safe.
+    pub(crate) fn values_at(&self, positions: &[f32; PARAM_COUNT]) -> Values {
+        let mut values = self.values;
+        for (index, info) in PARAMS.iter().enumerate() {
+            values.set(info.param, self.value(index, positions[index]));
+        }
+        values
+    }
+}
+
+/// Where a knob stands for each value.
+pub(crate) fn positions_of(values: &Values) -> [f32; PARAM_COUNT] {
+    from_fn(|index| PARAMS[index].normalise(values.get(PARAMS[index].param)) as f32)
+}
+
+/// Where the audio thread finds what was loaded last. It only ever tries: while another thread is here, it goes on with
+/// what it has until the next block.
+///
+/// Nobody waits at the mutex, not even a writer, who tries again. So whoever leaves has nobody to wake up, and the audio
+/// thread makes no system call. Who writes keeps a handle of what it replaces for as long as others have it: see
+/// [`retire`].
+pub(crate) struct Slot(Mutex<Arc<Loaded>>);
+
+impl Slot {
+    pub(crate) fn new(loaded: Arc<Loaded>) -> Self {
+        Self(Mutex::new(loaded))
+    }
+
+    /// Replaces what is here, with `meanwhile` run before anybody else may look. Not for the audio thread.
+    pub(crate) fn put(&self, loaded: Arc<Loaded>, meanwhile: impl FnOnce()) {
+        let mut slot = loop {
+            match self.enter() {
+                Some(slot) => break slot,
+                None => std::thread::yield_now(),
+            }
+        };
+        *slot = loaded;
+        meanwhile();
+    }
+
+    /// Runs `read` with what is here, unless another thread is. What `read` looks at belongs together if writers change it
+    /// within [`Slot::put`]. Real-time safe if `read` is.
+    pub(crate) fn read<T>(&self, read: impl FnOnce(&Arc<Loaded>) -> T) -> Option<T> {
+        self.enter().map(|slot| read(&slot))
+    }
+
+    fn enter(&self) -> Option<MutexGuard<'_, Arc<Loaded>>> {
+        match self.0.try_lock() {
+            Ok(slot) => Some(slot),
+            Err(TryLockError::Poisoned(poisoned)) => Some(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => None,
+        }
+    }
+}
+
+/// Frees of what was loaded before all that nobody else has. The audio thread takes handles only of what is in the
+/// slot, so what it has let go of it does not take again, and it never has the last handle. Not for the audio thread.
+pub(crate) fn retire(kept: &mut Vec<Arc<Loaded>>) {
+    kept.retain(|loaded| Arc::strong_count(loaded) > 1);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::params::Param;
+    use sprung::patch::Patch;
+    use sprung::preset::Preset;
+    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+    use std::time::{Duration, Instant};
+
+    fn loaded(patch: &Patch, seed: u64) -> Loaded {
+        let positions = positions_of(&patch.values);
+        Loaded { kit: Kit::of_patch(patch), values: patch.values, positions, seed }
+    }
+
+    #[test]
+    fn a_reader_gets_what_belongs_together_or_nothing_and_frees_nothing() {
+        let both = ["Church Bell", "Kick"].map(|name| &Preset::find(name).unwrap().patch);
+        let first = Arc::new(loaded(both[0], 0));
+        // Beside the slot, as knobs are.
+        let (slot, beside) = (Slot::new(first.clone()), AtomicU64::new(0));
+        let done = AtomicBool::new(false);
+        let mut kept = vec![first];
+        let mut most = 0;
+        std::thread::scope(|scope| {
+            let reader = scope.spawn(|| {
+                let (mut seen, mut last, start) = (0, None, Instant::now());
+                while seen < 1_000 && start.elapsed() < Duration::from_secs(30) {
+                    let look = |found: &Arc<Loaded>| (found.clone(), beside.load(Ordering::Relaxed));
+                    let Some((found, number)) = slot.read(look) else { continue };
+                    assert_eq!(found.seed, number);
+                    assert_eq!(&found.values, &both[number as usize % 2].values);
+                    assert_eq!(found.kit.sounds()[0].patch(), both[number as usize % 2]);
+                    let before = last.replace(found);
+                    assert!(before.as_ref().is_none_or(|before: &Arc<Loaded>| Arc::strong_count(before) > 1));
+                    seen += 1;
+                }
+                done.store(true, Ordering::Relaxed);
+                seen
+            });
+            for number in 1.. {
+                if done.load(Ordering::Relaxed) {
+                    break;
+                }
+                let next = Arc::new(loaded(both[number as usize % 2], number));
+                kept.push(next.clone());
+                slot.put(next, || beside.store(number, Ordering::Relaxed));
+                retire(&mut kept);
+                most = most.max(kept.len());
+            }
+            assert_eq!(reader.join().unwrap(), 1_000);
+        });
+        assert!(most <= 3, "{most} were kept at once");
+        retire(&mut kept);
+        assert_eq!(kept.len(), 1, "what is in the slot stays");
+        slot.read(|_| assert!(slot.read(|_| ()).is_none(), "two at once"));
+    }
+
+    #[test]
+    fn a_knob_that_comes_back_has_the_exact_value_again() {
+        // A value of its own on a knob whose position as f32 would not give it back.
+        let mut loaded = loaded(&Patch::default().with(Param::Decay, 0.123_456_79), 0);
+        let index = Param::Decay as usize;
+        let position = loaded.positions[index];
+        assert_eq!(loaded.value(index, position), 0.123_456_79);
+        let moved = loaded.value(index, position + 0.1);
+        assert_eq!(moved, Param::Decay.info().denormalise(f64::from(position + 0.1)));
+        loaded.positions[index] = 0.75;
+        assert_eq!(loaded.value(index, 0.75), 0.123_456_79, "the position that came with it counts");
+    }
+}

@@ -1,0 +1,235 @@
+//! States that come back, that are old, and that cannot be read as a whole.
+
+use super::*;
+use crate::params::{Knob, SprungParams};
+use nice_plug::prelude::{Param as _, Params as _};
+use nice_plug_core::plugin::ParamValue;
+use proptest::prelude::*;
+use sprung::params::{PARAM_COUNT, Param};
+use std::path::Path;
+
+/// A state as the wrapper makes it.
+fn wrapped(params: &SprungParams) -> PluginState {
+    let value = |knob: &Knob| match knob {
+        Knob::Continuous(knob) => ParamValue::F32(knob.unmodulated_plain_value()),
+        Knob::Stepped(knob) => ParamValue::I32(knob.unmodulated_plain_value()),
+    };
+    let values = PARAMS.iter().zip(params.knobs()).map(|(info, knob)| (info.id.to_owned(), value(knob)));
+    let fields = params.serialize_fields();
+    PluginState { version: env!("CARGO_PKG_VERSION").to_owned(), params: values.collect(), fields }
+}
+
+/// A sound with a value in each kind of parameter that its knob's position would not give, and a knob at a
+/// position that its value would not give.
+fn odd() -> State {
+    let bell = Preset::find("Church Bell").unwrap();
+    let patch = bell.patch.clone().with(Param::Decay, 0.123_456_79).with(Param::Fine, -0.1).with(Param::Voices, 7.0);
+    let mut state = State::new(Playable::Preset(Preset { patch, ..bell.clone() }), 42, [1000, 500]);
+    state.positions[Param::Gain as usize] = 0.123_456_78;
+    state
+}
+
+#[test]
+fn a_state_is_read_back_exactly_and_unchanged() {
+    let (params, other) = (SprungParams::default(), SprungParams::default());
+    assert_eq!(params.state(), State::default());
+    params.load(odd().into());
+    assert_eq!(params.state(), odd());
+    let mut state = wrapped(&params);
+    let text = serde_json::to_string(&state).unwrap();
+    filter(&mut state);
+    assert!(state.params.is_empty(), "the wrapper sets nothing by itself");
+    other.deserialize_fields(&state.fields);
+    assert_eq!(other.state(), odd());
+    assert_eq!(serde_json::to_string(&wrapped(&other)).unwrap(), text);
+}
+
+/// A kit with sounds of the factory and of its own, and values that its files do not have.
+fn odd_kit() -> State {
+    let text = "kit = 1\nname = \"Odd\"\nvoices = 9\nkeys = [{ key = 36, sound = \"Kick\", pan = -0.3 },\
+        { key = 38, sound = \"mine.toml\", choke = 2 }, { key = 40, sound = \"Kick\", pitch = 50.5 }]";
+    let Playable::Preset(bell) = odd().playable else { panic!("a preset") };
+    let mut find = |name: &str| Preset::find(name).cloned().or_else(|_| Ok(bell.clone()));
+    let mut state = State::new(Playable::parse(text, "x", &mut find).unwrap(), 42, [1000, 500]);
+    assert_eq!(state.values.get(Param::Voices), 9.0);
+    for (param, value) in [(Param::Decay, 0.123_456_79), (Param::Mode, 1.0), (Param::Voices, 3.0)] {
+        state.values.set(param, value);
+    }
+    state.positions = positions_of(&state.values);
+    state.positions[Param::Gain as usize] = 0.123_456_78;
+    state
+}
+
+#[test]
+fn a_kit_is_kept_with_its_presets() {
+    let (params, other) = (SprungParams::default(), SprungParams::default());
+    params.load(odd_kit().into());
+    assert_eq!(params.state(), odd_kit());
+    let json = params.state().to_json();
+    let read = State::parse(&json).unwrap();
+    assert_eq!(read, odd_kit().into());
+    other.load(read);
+    assert_eq!(other.state().to_json(), json);
+    assert_eq!(*other.loaded(), odd_kit().loaded());
+    other.load(odd().into());
+    assert_eq!(other.state(), odd(), "a preset after a kit");
+
+    let mut saved: Map<String, Value> = serde_json::from_str(&json).unwrap();
+    saved["sounds"].as_object_mut().unwrap().remove("mine.toml");
+    saved["sounds"]["Kick"] = "format = 3\nname = \"Kick\"\n[params]\ngain = 99".into();
+    saved["values"]["mode"] = 7.into();
+    let Read { state, complaints } = State::parse(&serde_json::to_string(&saved).unwrap()).unwrap();
+    let Playable::Kit(kit) = &state.playable else { panic!("a kit") };
+    assert_eq!(kit.pads.iter().map(|(key, _)| *key).collect::<Vec<_>>(), [36, 40]);
+    assert_eq!((state.values.get(Param::Mode), state.values.get(Param::Voices)), (0.0, 3.0));
+    let starts =
+        ["keys[1].sound: preset: there is no factory preset", "‘Kick’: params.gain: 99 is out", "values.mode: 7"];
+    assert_eq!(complaints.len(), starts.len(), "{complaints:?}");
+    assert!(complaints.iter().zip(starts).all(|(line, start)| line.starts_with(start)), "{complaints:?}");
+}
+
+/// Changes in the JSON of a state.
+fn change(json: &str, from: &str, to: &str) -> String {
+    assert!(json.contains(from), "{from} in {json}");
+    json.replacen(from, to, 1)
+}
+
+fn fields(json: String) -> BTreeMap<String, String> {
+    BTreeMap::from([(FIELD.to_owned(), json)])
+}
+
+#[test]
+fn what_is_no_state_at_all_says_why_and_changes_nothing() {
+    let json = odd().to_json();
+    for (bad, why) in [
+        (String::new(), "not a state of Sprung: EOF"),
+        ("[]".to_owned(), "not a state of Sprung"),
+        ("{}".to_owned(), "not a state of Sprung: there is neither a preset nor a kit"),
+        (change(&json, "\"preset\":", "\"present\":"), "not a state of Sprung: there is neither"),
+        (change(&json, "format = 3", "format = "), "the state's preset:"),
+        (change(&json, "format = 3", "fermat = 3"), "the state's preset: there is no ‘format’"),
+    ] {
+        let error = State::parse(&bad).unwrap_err();
+        assert!(error.starts_with(why), "{error}");
+        let params = SprungParams::default();
+        params.load(odd().into());
+        let mut state = wrapped(&SprungParams::default());
+        state.fields = fields(bad);
+        filter(&mut state);
+        assert!(state.params.is_empty() && state.fields.is_empty());
+        params.deserialize_fields(&state.fields);
+        assert_eq!(params.state(), odd());
+    }
+}
+
+#[test]
+fn what_can_be_read_is_taken_over_and_the_rest_is_told() {
+    let json = odd().to_json();
+    let with = |param: Param, value: f32| {
+        let mut state = odd();
+        state.values.set(param, value);
+        state.positions[param as usize] = positions_of(&state.values)[param as usize];
+        let Playable::Preset(preset) = &mut state.playable else { panic!("a preset") };
+        preset.patch.values = state.values;
+        state
+    };
+    let knob = || State { positions: positions_of(&odd().values), ..odd() };
+    let default = Param::Decay.info().default;
+    for (from, to, expected, why) in [
+        ("\"format\":2", "\"format\":3", odd(), "state format 3 is unknown: this version reads 1 to 2"),
+        ("{\"format\":2,", "{", odd(), "state format null is unknown"),
+        ("\"seed\":42", "\"seed\":-1", State { seed: 0, ..odd() }, "seed: -1 is none"),
+        ("\"seed\":42", "\"sead\":42", State { seed: 0, ..odd() }, "unknown key ‘sead’"),
+        ("[1000,500]", "[1000,0]", State { window: WINDOW, ..odd() }, "window: [1000,0] is out of range: expected two"),
+        ("[1000,500]", "[1000]", State { window: WINDOW, ..odd() }, "window: [1000] is out of range"),
+        ("{\"gain\":0.12345678}", "[]", knob(), "positions: expected numbers by parameter, found []"),
+        ("\"gain\":0.12345678", "\"gain\":1.5", knob(), "positions.gain: 1.5 is not a position of that knob"),
+        ("\"gain\":0.12345678", "\"gain\":null", knob(), "positions.gain: expected a number, found null"),
+        ("\"gain\":0.12345678", "\"mode\":0.5", knob(), "positions.mode: 0.5 is not a position of that knob"),
+        ("\"gain\":0.12345678", "\"gian\":0.5", knob(), "positions: there is no parameter ‘gian’"),
+        ("format = 3", "format = 9", odd(), "format 9 is of a newer version"),
+        ("decay = 0.12345679", "decay = nan", with(Param::Decay, default), "params.decay: NaN is out of range"),
+        ("decay = 0.12345679", "decya = 1", with(Param::Decay, default), "unknown key ‘params.decya’"),
+        ("fine = -0.1", "fine = -0.1\\ndecay_key = 3", odd(), "params.decay_key: ‘decay_key’ is retired"),
+    ] {
+        let params = SprungParams::default();
+        let mut state = wrapped(&SprungParams::default());
+        state.fields = fields(change(&json, from, to));
+        filter(&mut state);
+        params.deserialize_fields(&state.fields);
+        assert_eq!(params.state(), expected, "{why}");
+        let complaints = params.complaints();
+        assert!(complaints.len() == 1 && complaints[0].starts_with(why), "{complaints:?}");
+        params.load(odd().into());
+        assert!(params.complaints().is_empty(), "of the last state only");
+    }
+}
+
+#[test]
+fn parameters_that_a_state_does_not_name_have_their_defaults() {
+    let params = SprungParams::default();
+    params.load(odd().into());
+    let old = r#"{"format":1,"preset":"format = 1\nname = \"Old\"\n[params]\ngain = -3","window":[880,640]}"#;
+    params.deserialize_fields(&fields(old.to_owned()));
+    let patch = Patch::default().with(Param::Gain, -3.0);
+    let (name, author, tags, comment) = ("Old".to_owned(), String::new(), Vec::new(), String::new());
+    let preset = Preset { name, author, tags, comment, patch };
+    assert_eq!(params.state(), State::new(Playable::Preset(preset), 0, WINDOW));
+    assert!(params.complaints().is_empty());
+}
+
+/// Each released version leaves here a state that it wrote, and the preset that was in it.
+#[test]
+fn states_of_all_versions_load() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/states");
+    let own = folder.join(concat!(env!("CARGO_PKG_VERSION"), ".json"));
+    if !own.exists() {
+        let params = SprungParams::default();
+        params.load(odd().into());
+        std::fs::write(&own, serde_json::to_string_pretty(&wrapped(&params)).unwrap()).unwrap();
+        std::fs::write(own.with_extension("toml"), odd().playable.to_toml()).unwrap();
+        panic!("{} was not there; it has been written for this version, to be committed", own.display());
+    }
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "json") {
+            continue;
+        }
+        let mut state: PluginState = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        let params = SprungParams::default();
+        filter(&mut state);
+        params.deserialize_fields(&state.fields);
+        let expected = Preset::load(&path.with_extension("toml")).unwrap();
+        let State { playable, positions, seed, window, .. } = params.state();
+        assert_eq!(playable, Playable::Preset(expected), "{}", path.display());
+        assert_eq!((seed, window), (42, [1000, 500]), "{}", path.display());
+        assert_eq!(positions[Param::Gain as usize], 0.123_456_78, "{}", path.display());
+    }
+}
+
+proptest! {
+    #[test]
+    fn knobs_come_back_to_where_they_stood(
+        positions in proptest::collection::vec(0.0..=1.0f32, PARAM_COUNT),
+    ) {
+        let mut state = State::default();
+        for (index, info) in PARAMS.iter().enumerate() {
+            let value = info.denormalise(f64::from(positions[index]));
+            state.values.set(info.param, value);
+            let stepped = matches!(info.unit, Unit::Count | Unit::Choice);
+            state.positions[index] = if stepped { info.normalise(value) as f32 } else { positions[index] };
+        }
+        let Playable::Preset(preset) = &mut state.playable else { panic!("a preset") };
+        preset.patch.values = state.values;
+        let json = state.to_json();
+        let (params, read) = (SprungParams::default(), State::parse(&json).map_err(TestCaseError::fail)?);
+        prop_assert_eq!(&read, &state.into());
+        params.load(read);
+        prop_assert_eq!(params.state().to_json(), json);
+    }
+
+    #[test]
+    fn random_text_is_refused(text in "\\PC*") {
+        prop_assert!(State::parse(&text).is_err());
+    }
+}
