@@ -524,8 +524,7 @@ impl Synth {
             }
             if into_tick == 0 || self.needs_control {
                 for instrument in &mut self.instruments {
-                    instrument.next_controls = instrument.smoother.after(to_tick as u32);
-                    instrument.move_shared(self.clock, to_tick as u32);
+                    instrument.look_ahead(self.clock, to_tick as u32);
                 }
                 for (note, voice) in self.manager.active() {
                     let wheels = wheels(&self.channels, &self.zones, note.channel);
