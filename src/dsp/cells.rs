@@ -28,13 +28,15 @@ impl Cell {
 /// handed over, never copied: nothing but [`Cell::new`] allocates, and everything is real-time safe.
 pub struct Cells {
     cells: [Option<Box<Cell>>; MAX_CELLS],
+    /// Modes of all cells.
+    len: usize,
     /// The sum of several cells.
     sum: [[f32; CONTROL_FRAMES]; 2],
 }
 
 impl Cells {
     /// No cell yet.
-    pub const EMPTY: Self = Self { cells: [const { None }; MAX_CELLS], sum: [[0.0; CONTROL_FRAMES]; 2] };
+    pub const EMPTY: Self = Self { cells: [const { None }; MAX_CELLS], len: 0, sum: [[0.0; CONTROL_FRAMES]; 2] };
 
     /// How many cells so many modes take.
     pub fn count_for(modes: usize) -> usize {
@@ -43,15 +45,21 @@ impl Cells {
 
     /// Adds a cell; gives it back if there are [`MAX_CELLS`].
     pub fn add(&mut self, cell: Box<Cell>) -> Option<Box<Cell>> {
+        let len = cell.bank.len();
         match self.cells.iter_mut().find(|place| place.is_none()) {
-            Some(place) => place.replace(cell),
+            Some(place) => {
+                self.len += len;
+                place.replace(cell)
+            }
             None => Some(cell),
         }
     }
 
     /// Takes the last cell out.
     pub fn take(&mut self) -> Option<Box<Cell>> {
-        self.cells.iter_mut().rev().find_map(Option::take)
+        let cell = self.cells.iter_mut().rev().find_map(Option::take)?;
+        self.len -= cell.bank.len();
+        Some(cell)
     }
 
     fn iter(&self) -> impl Iterator<Item = &Cell> {
@@ -86,6 +94,7 @@ impl Cells {
             let rows = modes.iter().zip(ratios).zip(t60_scales);
             bank.load(rows.map(|((mode, ratio), scale)| setup(mode, *ratio, *scale)));
         }
+        self.len = self.iter().map(|cell| cell.bank.len()).sum();
     }
 
     /// As [`super::ModeBank::retune`]: `tuning` makes frequency and T60 of a mode's ratio and its T60's scale.
@@ -104,7 +113,7 @@ impl Cells {
 
     /// Number of modes.
     pub fn len(&self) -> usize {
-        self.iter().map(|cell| cell.bank.len()).sum()
+        self.len
     }
 
     /// Whether there are no modes.
@@ -131,7 +140,7 @@ impl Cells {
 
     /// As [`super::ModeBank::render`]; all cells are driven alike.
     pub fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
-        let Self { cells, sum } = self;
+        let Self { cells, sum, .. } = self;
         let frames = frames.min(CONTROL_FRAMES);
         let (first, rest) = cells.split_at_mut(1);
         let mut rest = rest.iter_mut().map_while(Option::as_deref_mut).peekable();

@@ -181,9 +181,15 @@ impl Controls {
         }
     }
 
-    /// Takes over a level and a pan that differ from these.
-    pub(crate) fn find_gains(&mut self, [gain_db, pan]: [f32; 2]) {
-        if [self.gain_db, self.pan] != [gain_db, pan] {
+    /// Finds the gains of a level and a pan that differ from those `before`; `base` has the gains of its own, exactly.
+    pub(crate) fn find_gains(&mut self, before: [f32; 2], base: Option<&Self>) {
+        let now = self.level_and_pan();
+        if now == before {
+            return;
+        }
+        if let Some(base) = base.filter(|base| base.level_and_pan() == now) {
+            (self.gain_left, self.gain_right) = (base.gain_left, base.gain_right);
+        } else {
             let (left, right) = pan_gains(self.pan * 0.005 + 0.5);
             let gain = power_of_two(self.gain_db * DOUBLINGS_PER_DB);
             (self.gain_left, self.gain_right) = (gain * left, gain * right);

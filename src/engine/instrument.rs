@@ -26,8 +26,9 @@ pub(crate) struct Instrument {
     pub(crate) smoother: Smoother,
     /// Live parameters at this frame, when a note starts.
     pub(crate) controls: Controls,
-    /// Live parameters at the next control tick.
+    /// Live parameters at the next control tick, and a count of how often they have changed.
     pub(crate) next_controls: Controls,
+    pub(crate) controls_serial: u32,
     /// Pitch of the note before, in semitones, to glide from.
     pub(crate) last_pitch: Option<f64>,
     /// The routes of the sound.
@@ -40,7 +41,8 @@ pub(crate) struct Instrument {
     pub(crate) positions: Positions,
     /// A sound since the start has had routes.
     has_routes: bool,
-    /// Changes of the smoother that the settings have, if they have arrived.
+    /// Changes of the smoother that the next controls and the settings have, if they have arrived.
+    controls_changes: Option<u32>,
     settings_changes: Option<u32>,
     /// The frame at which the shared oscillators are.
     shared_clock: u64,
@@ -71,12 +73,14 @@ impl Instrument {
             smoother,
             controls,
             next_controls: controls,
+            controls_serial: 0,
             last_pitch: None,
             has_routes: !bus.is_empty(),
             bus,
             settings: Settings::STILL,
             shared: SharedLfos::new(seed),
             positions: Positions::default(),
+            controls_changes: None,
             settings_changes: None,
             shared_clock: clock,
             sound,
@@ -93,7 +97,7 @@ impl Instrument {
         self.has_routes |= !self.bus.is_empty();
         // Voices of the sound before keep its controls, so the new ones need no slope.
         self.smoother = Smoother::new(self.sample_rate, &self.modulated, self.smoother.beat_rate());
-        self.settings_changes = None;
+        (self.controls_changes, self.settings_changes) = (None, None);
     }
 
     /// Takes all parameters to where `value` puts those of the sound, moved by `offsets` in knob travel, at once.
@@ -104,7 +108,7 @@ impl Instrument {
         self.modulated = all_modulated(&self.values, offsets);
         self.smoother = Smoother::new(self.sample_rate, &self.modulated, self.smoother.beat_rate());
         self.controls = self.smoother.after(0);
-        self.settings_changes = None;
+        (self.controls_changes, self.settings_changes) = (None, None);
     }
 
     /// Sets a parameter that is moved by an offset in knob travel, at frame `clock`.
@@ -115,6 +119,18 @@ impl Instrument {
         // Until now, shared oscillators have had the rate before.
         self.move_shared(clock, 0);
         self.smoother.set(param, value);
+    }
+
+    /// Finds what voices follow at the next control tick, which is `ahead` frames after frame `clock`.
+    pub(crate) fn look_ahead(&mut self, clock: u64, ahead: u32) {
+        // What slides is read again, until all have arrived.
+        let changes = self.smoother.changes(ahead);
+        if changes.is_none() || changes != self.controls_changes {
+            self.next_controls = self.smoother.after(ahead);
+            self.controls_serial = self.controls_serial.wrapping_add(1);
+        }
+        self.controls_changes = changes;
+        self.move_shared(clock, ahead);
     }
 
     /// Moves the shared oscillators to frame `clock`, and reads what modulators are to follow `ahead` frames from then: if

@@ -290,8 +290,10 @@ impl ModeBank {
         let [first, second] = &mut self.states;
         let (start, end) = if self.current == 0 { (first, second) } else { (second, first) };
         // What modes that have come to rest left here two ticks ago must not be struck to life.
-        end.x.0[self.live..self.len].fill(0.0);
-        end.y.0[self.live..self.len].fill(0.0);
+        if self.live < self.len {
+            end.x.0[self.live..self.len].fill(0.0);
+            end.y.0[self.live..self.len].fill(0.0);
+        }
         let (table, modes, out) = (&mut self.table, &self.modes, &mut self.output);
         self.instructions.run(Ring { form, table, modes, start, end, out });
     }

@@ -1,28 +1,31 @@
 //! The routes of a sound in the order in which they count, and how far they move what they lead to.
 
-use crate::dsp::power_of_two;
-use crate::params::{Change, Curve, Param};
-use crate::patch::routes::{MAX_ROUTES, Response, Routes, Source, place_of_amount};
-
-/// How many sources there are.
-pub(crate) const SOURCES: usize = Source::ALL.len();
-
-/// Values of all sources, by `Source as usize`.
-pub(crate) type Sources = [f32; SOURCES];
-
-/// How far each destination is moved, in knob travel.
-pub(crate) type Sums = [f32; MAX_ROUTES];
+use super::destination::{Destination, Target};
+use super::link::{Amounts, Link, MOVING, Mover, Offsets, SOURCES, Sources, bit};
+use crate::params::Param;
+use crate::patch::routes::{MAX_ROUTES, Route, Routes, Source};
 
 /// What the routes lead to, and the routes to each: those that move macros and amounts of others come first, and otherwise
 /// the order of their places counts. Plain data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bus {
+    /// First the routes that move others; then the rest, in groups that lead to one destination.
     links: [Link; MAX_ROUTES],
     links_len: usize,
+    /// What the first of them move, and the destination of each.
+    movers: [(Mover, u8); MAX_ROUTES],
+    movers_len: usize,
     destinations: [Destination; MAX_ROUTES],
+    /// The links of each: from one index to before another. None for those of the movers.
+    groups: [[u8; 2]; MAX_ROUTES],
     destinations_len: usize,
-    /// A bit for each source that is read.
+    /// A bit for each destination that sounding notes follow.
+    followed: u32,
+    /// Bits of the destinations that each source moves.
+    moved: [u16; SOURCES],
+    /// A bit for each source that is read, and for each that moves routes.
     read: u32,
+    read_by_movers: u32,
     /// Sources that move by themselves move what decides when a note is over, or may do so by other routes.
     moves_the_end: bool,
 }
@@ -30,141 +33,77 @@ pub(crate) struct Bus {
 /// What decides when a note is over.
 const DECIDING: [Param; 6] = [Param::Decay, Param::DecayTilt, Param::Release, Param::Damper, Param::Gain, Param::Pan];
 
-/// The bit of a source.
-pub(crate) const fn bit(source: Source) -> u32 {
-    1 << source as u32
-}
-
-/// The sources that move while nothing happens.
-const MOVING: u32 =
-    bit(Source::Lfo1) | bit(Source::Lfo2) | bit(Source::Lfo3) | bit(Source::Envelope1) | bit(Source::Envelope2);
-
-/// A route that leads to the destination at `to`.
-#[derive(Clone, Copy, Debug)]
-struct Link {
-    place: u8,
-    source: Source,
-    scale: Option<Source>,
-    response: Response,
-    to: u8,
-    /// A bit for each source that it reads.
-    reads: u32,
-    /// What of the bus itself is moved.
-    moves: Option<Moved>,
-}
-
-impl Link {
-    /// How far it moves its destination, in knob travel.
-    fn way(&self, sources: &Sources, amounts: &[f32; MAX_ROUTES]) -> f32 {
-        let scale = self.scale.map_or(1.0, |scale| sources[scale as usize]);
-        amounts[usize::from(self.place)] * self.response.apply(sources[self.source as usize]) * scale
-    }
-}
-
-/// What routes move of the bus itself, by index.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Moved {
-    Amount(u8),
-    Macro(u8),
-}
-
-impl Moved {
-    fn of(param: Param) -> Option<Self> {
-        let index = (param as usize).checked_sub(Param::Macro1 as usize).filter(|index| *index < 8);
-        let amount = place_of_amount(param).map(|place| Self::Amount(place as u8));
-        amount.or(index.map(|index| Self::Macro(index as u8)))
-    }
-}
-
-/// A parameter that routes lead to.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Destination {
-    pub(crate) param: Param,
-    pub(crate) target: Target,
-    min: f32,
-    max: f32,
-    /// The parameter's range, or how often its ends are doubled.
-    span: f32,
-    is_logarithmic: bool,
-}
-
-/// Which part of the engine uses a destination.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Target {
-    /// The next strike.
-    Strike,
-    /// What sounding voices follow.
-    Control,
-    /// The rate of an oscillator.
-    Lfo(u8),
-}
-
-impl Destination {
-    const NONE: Self =
-        Self { param: Param::Gain, target: Target::Strike, min: 0.0, max: 0.0, span: 0.0, is_logarithmic: false };
-
-    fn new(param: Param) -> Self {
-        let info = param.info();
-        let is_logarithmic = info.curve == Curve::Logarithmic;
-        let (min, max) = (info.min, info.max);
-        let octaves = || libm::log2(f64::from(max) / f64::from(min)) as f32;
-        let target = match (param, info.change) {
-            (Param::Lfo1Rate, _) => Target::Lfo(0),
-            (Param::Lfo2Rate, _) => Target::Lfo(1),
-            (Param::Lfo3Rate, _) => Target::Lfo(2),
-            (_, Change::Smoothed(_)) if Moved::of(param).is_none() => Target::Control,
-            _ => Target::Strike,
-        };
-        Self { param, target, min, max, span: if is_logarithmic { octaves() } else { max - min }, is_logarithmic }
-    }
-
-    /// A value moved by an offset in knob travel, within the parameter's range. Real-time safe.
-    pub(crate) fn moved(&self, value: f32, offset: f32) -> f32 {
-        let way = offset * self.span;
-        let moved = if self.is_logarithmic { value * power_of_two(way) } else { value + way };
-        moved.clamp(self.min, self.max)
-    }
+/// The places of the bits that are set, from the lowest.
+pub(super) fn places(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let place = bits.trailing_zeros();
+        bits &= bits.wrapping_sub(1);
+        (place < u32::BITS).then_some(place as usize)
+    })
 }
 
 impl Bus {
     /// No routes.
-    pub(crate) const EMPTY: Self = {
-        let (source, response) = (Source::Velocity, Response::Linear);
-        let link = Link { place: 0, source, scale: None, response, to: 0, reads: 0, moves: None };
-        Self {
-            links: [link; MAX_ROUTES],
-            links_len: 0,
-            destinations: [Destination::NONE; MAX_ROUTES],
-            destinations_len: 0,
-            read: 0,
-            moves_the_end: false,
-        }
+    pub(crate) const EMPTY: Self = Self {
+        links: [Link::NONE; MAX_ROUTES],
+        links_len: 0,
+        movers: [(Mover::Amount(0), 0); MAX_ROUTES],
+        movers_len: 0,
+        destinations: [Destination::NONE; MAX_ROUTES],
+        groups: [[0; 2]; MAX_ROUTES],
+        destinations_len: 0,
+        followed: 0,
+        moved: [0; SOURCES],
+        read: 0,
+        read_by_movers: 0,
+        moves_the_end: false,
     };
 
     /// That of some routes. Real-time safe.
     pub(crate) fn new(routes: &Routes) -> Self {
         let mut bus = Self::EMPTY;
-        for moves_bus in [true, false] {
-            let is_now = |param: Param| Moved::of(param).is_some() == moves_bus;
-            for (place, route) in routes.iter().filter(|(_, route)| is_now(route.destination)) {
-                let param = route.destination;
-                let known = bus.destinations().iter().position(|destination| destination.param == param);
-                let to = known.unwrap_or_else(|| {
-                    bus.destinations[bus.destinations_len] = Destination::new(param);
-                    bus.destinations_len += 1;
-                    bus.destinations_len - 1
-                });
-                let (source, scale, response) = (route.source, route.scale, route.response);
-                let moves = Moved::of(param);
-                let reads = bit(source) | scale.map_or(0, bit);
-                bus.links[bus.links_len] =
-                    Link { place: place as u8, source, scale, response, to: to as u8, reads, moves };
-                bus.links_len += 1;
-                bus.read |= reads;
-                bus.moves_the_end |= reads & MOVING != 0 && (DECIDING.contains(&param) || moves.is_some());
+        for (place, route) in routes.iter() {
+            if let Some(mover) = Mover::of(route.destination) {
+                let to = bus.place_of(route.destination);
+                bus.movers[bus.movers_len] = (mover, to as u8);
+                bus.movers_len += 1;
+                bus.read_by_movers |= bus.add(place, &route, to);
             }
         }
+        let others = || routes.iter().filter(|(_, route)| Mover::of(route.destination).is_none());
+        others().for_each(|(_, route)| _ = bus.place_of(route.destination));
+        for to in 0..bus.destinations_len {
+            let (first, param) = (bus.links_len, bus.destinations[to].param);
+            for (place, route) in others().filter(|(_, route)| route.destination == param) {
+                bus.add(place, &route, to);
+            }
+            bus.groups[to] = [first as u8, bus.links_len as u8];
+        }
         bus
+    }
+
+    /// The place of a destination, a new one if need be.
+    fn place_of(&mut self, param: Param) -> usize {
+        let known = self.destinations().iter().position(|destination| destination.param == param);
+        known.unwrap_or_else(|| {
+            let (to, destination) = (self.destinations_len, Destination::new(param));
+            self.destinations[to] = destination;
+            self.followed |= u32::from(destination.target != Target::Strike) << to;
+            self.destinations_len += 1;
+            to
+        })
+    }
+
+    /// Adds a route to the destination at `to`. Returns a bit for each source that it reads.
+    fn add(&mut self, place: usize, route: &Route, to: usize) -> u32 {
+        let (link, is_mover) = (Link::new(place, route), Mover::of(route.destination).is_some());
+        self.links[self.links_len] = link;
+        self.links_len += 1;
+        let reads = link.reads();
+        self.read |= reads;
+        self.moves_the_end |= reads & MOVING != 0 && (DECIDING.contains(&route.destination) || is_mover);
+        places(reads).for_each(|source| self.moved[source] |= 1 << to);
+        reads
     }
 
     pub(crate) fn is_empty(&self) -> bool {
@@ -176,14 +115,14 @@ impl Bus {
         self.moves_the_end
     }
 
-    /// Whether any route reads the source that is so many after `first`.
-    pub(crate) fn reads_nth(&self, first: Source, nth: usize) -> bool {
-        self.read & 1 << (first as usize + nth) != 0
+    /// Whether any route reads the source.
+    pub(crate) fn reads(&self, source: Source) -> bool {
+        self.read & bit(source) != 0
     }
 
-    /// A bit for each source that is read.
-    pub(crate) fn read(&self) -> u32 {
-        self.read
+    /// The same of the source that is so many after `first`.
+    pub(crate) fn reads_nth(&self, first: Source, nth: usize) -> bool {
+        self.read & bit(first) << nth != 0
     }
 
     /// Whether a source that is read moves while nothing happens.
@@ -191,59 +130,51 @@ impl Bus {
         self.read & MOVING != 0
     }
 
+    /// A bit for each source that moves macros or amounts, and so may move all that the routes lead to.
+    pub(crate) fn read_by_movers(&self) -> u32 {
+        self.read_by_movers
+    }
+
     /// What the routes lead to; offsets are in this order.
     pub(crate) fn destinations(&self) -> &[Destination] {
         &self.destinations[..self.destinations_len]
     }
 
-    /// A bit for each destination whose offset depends on any of some sources, given as bits.
+    /// A bit for each destination that sounding notes follow.
+    pub(crate) fn followed(&self) -> u32 {
+        self.followed
+    }
+
+    /// A bit for each destination whose offset depends on any of some sources, given as bits, none of which moves routes.
     pub(crate) fn moved_by(&self, sources: u32) -> u32 {
-        let links = &self.links[..self.links_len];
-        let all = (1 << self.destinations_len) - 1;
-        let mut moved = 0;
-        for link in links.iter().filter(|link| link.reads & sources != 0) {
-            // What moves a macro or an amount may move all that follows.
-            moved |= if link.moves.is_some() { all } else { 1 << link.to };
-        }
-        moved
+        places(sources & self.read).fold(0, |moved, source| moved | u32::from(self.moved[source]))
     }
 
-    /// How far a destination is moved where no route moves macros or amounts: as [`Bus::offsets`].
-    fn offset(&self, to: usize, sources: &Sources, amounts: &[f32; MAX_ROUTES]) -> f32 {
-        let links = self.links[..self.links_len].iter().filter(|link| usize::from(link.to) == to);
-        links.fold(0.0, |offset, link| offset + link.way(sources, amounts))
+    /// Moves macros, among the sources, and amounts from where the settings have them. Returns how far, at the places of
+    /// the destinations. Real-time safe.
+    pub(crate) fn move_routes(&self, sources: &mut Sources, amounts: &mut Amounts) -> Offsets {
+        let mut offsets = [0.0; MAX_ROUTES];
+        for (link, (mover, to)) in self.links.iter().zip(&self.movers[..self.movers_len]) {
+            let travel = link.travel(sources, amounts);
+            offsets[usize::from(*to)] += travel;
+            mover.apply(travel, sources, amounts);
+        }
+        offsets
     }
 
-    /// Finds anew how far the destinations of some bits are moved. Real-time safe.
-    pub(crate) fn update(&self, offsets: &mut Sums, moved: u32, sources: &Sources, amounts: &[f32; MAX_ROUTES]) {
-        if self.links.first().is_some_and(|link| link.moves.is_some()) {
-            *offsets = self.offsets(sources, amounts);
-            return;
-        }
-        for to in (0..self.destinations_len).filter(|to| moved & 1 << to != 0) {
-            offsets[to] = self.offset(to, sources, amounts);
-        }
+    /// How far a destination that is no macro and no amount is moved, in knob travel, after [`Bus::move_routes`].
+    /// Real-time safe.
+    pub(crate) fn offset(&self, to: usize, sources: &Sources, amounts: &Amounts) -> f32 {
+        let [first, end] = self.groups[to].map(usize::from);
+        self.links[first..end].iter().fold(0.0, |offset, link| offset + link.travel(sources, amounts))
     }
 
     /// How far each destination is moved, in knob travel, by sources with these values through routes with these
-    /// amounts. Real-time safe.
-    pub(crate) fn offsets(&self, sources: &Sources, amounts: &[f32; MAX_ROUTES]) -> Sums {
-        let (mut sources, mut amounts, mut offsets) = (*sources, *amounts, [0.0; MAX_ROUTES]);
-        for link in &self.links[..self.links_len] {
-            let way = link.way(&sources, &amounts);
-            offsets[usize::from(link.to)] += way;
-            match link.moves {
-                None => {}
-                Some(Moved::Amount(index)) => {
-                    // Knob travel of an amount is half of its range, which is from −1 to 1.
-                    let amount = &mut amounts[usize::from(index)];
-                    *amount = (*amount + 2.0 * way).clamp(-1.0, 1.0);
-                }
-                Some(Moved::Macro(index)) => {
-                    let position = &mut sources[Source::Macro1 as usize + usize::from(index)];
-                    *position = (*position + way).clamp(0.0, 1.0);
-                }
-            }
+    /// amounts, macros and amounts as the settings have them. Real-time safe.
+    pub(crate) fn offsets(&self, mut sources: Sources, mut amounts: Amounts) -> Offsets {
+        let mut offsets = self.move_routes(&mut sources, &mut amounts);
+        for to in (0..self.destinations_len).filter(|to| self.groups[*to][0] < self.groups[*to][1]) {
+            offsets[to] = self.offset(to, &sources, &amounts);
         }
         offsets
     }
@@ -252,7 +183,7 @@ impl Bus {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::patch::routes::Route;
+    use crate::patch::routes::{Response, Route};
 
     fn route(source: Source, destination: Param) -> Route {
         Route { source, destination, response: Response::Linear, scale: None }
@@ -269,15 +200,15 @@ mod tests {
         for (source, value) in
             [(Source::Velocity, 0.5), (Source::Lfo1, -1.0), (Source::Wheel, 0.25), (Source::Bend, -0.5)]
         {
-            assert!(bus.reads_nth(source, 0));
+            assert!(bus.reads(source));
             sources[source as usize] = value;
         }
-        assert!(!bus.reads_nth(Source::Random, 0));
+        assert!(!bus.reads(Source::Random));
         let mut amounts = [9.0; MAX_ROUTES];
         (amounts[3], amounts[5], amounts[7]) = (0.5, 1.0, -1.0);
         let params: Vec<_> = bus.destinations().iter().map(|destination| destination.param).collect();
         assert_eq!(params, [Param::Gain, Param::Decay]);
-        assert_eq!(bus.offsets(&sources, &amounts)[..2], [0.0, 0.25]);
+        assert_eq!(bus.offsets(sources, amounts)[..2], [0.0, 0.25]);
     }
 
     #[test]
@@ -291,21 +222,9 @@ mod tests {
             (sources[Source::Lfo1 as usize], sources[Source::Wheel as usize]) = (1.0, 0.5);
             let mut amounts = [0.0; MAX_ROUTES];
             amounts[mover] = 0.25;
-            let offsets = bus.offsets(&sources, &amounts);
+            let offsets = bus.offsets(sources, amounts);
             assert_eq!(bus.destinations()[1].param, Param::Tune);
             assert_eq!(offsets[1], 0.25, "half of a quarter, twice");
         }
-    }
-
-    #[test]
-    fn values_move_along_the_knob_and_stay_in_range() {
-        let destination = Destination::new;
-        assert_eq!(destination(Param::Gain).moved(-24.0, 0.25), -6.0);
-        assert_eq!(destination(Param::Gain).moved(-24.0, 9.0), 12.0);
-        let decay = destination(Param::Decay);
-        let info = Param::Decay.info();
-        let expected = info.denormalise(info.normalise(0.5) + 0.1);
-        assert!((decay.moved(0.5, 0.1) / expected - 1.0).abs() < 1e-4);
-        assert_eq!(decay.moved(0.5, -9.0), info.min);
     }
 }

@@ -223,8 +223,7 @@ impl Instruments {
     /// Reads at frame `clock` what voices follow until the next control tick, `to_tick` frames later.
     pub(super) fn control(&mut self, clock: u64, to_tick: u32) {
         for instrument in &mut self.instruments {
-            instrument.next_controls = instrument.smoother.after(to_tick);
-            instrument.move_shared(clock, to_tick);
+            instrument.look_ahead(clock, to_tick);
         }
     }
 

@@ -16,13 +16,15 @@ pub(super) struct Decay {
     /// A release changes nothing.
     rings_on: bool,
     released: bool,
+    /// The bank has the decay of the last controls.
+    settled: bool,
 }
 
 impl Decay {
     /// Of a voice that has had no note.
     pub(super) fn new() -> Self {
         let damping = Damping { decay: 1.0, release: 1.0, amount: 0.0 };
-        Self { tilt: 0.0, damping, rings_on: false, released: false }
+        Self { tilt: 0.0, damping, rings_on: false, released: false, settled: false }
     }
 
     /// Reads how the patch's modes ring.
@@ -36,14 +38,15 @@ impl Decay {
     fn set_tilt(&mut self, tilt: f64, modes: &[Mode], bank: &mut Cells) {
         self.tilt = tilt;
         for (scale, mode) in bank.t60_scales_mut().zip(modes) {
-            *scale = f64::from(mode.decay) * pow(mode.ratio.into(), -tilt);
+            let tilted = if tilt == 0.0 { 1.0 } else { pow(mode.ratio.into(), -tilt) };
+            *scale = f64::from(mode.decay) * tilted;
         }
     }
 
     /// A key goes down, with a T60 in seconds.
     pub(super) fn press(&mut self, decay: f64) {
         self.damping = Damping { decay, release: 0.0, amount: 0.0 };
-        self.released = false;
+        (self.released, self.settled) = (false, false);
     }
 
     /// Reads what a strike says of the release.
@@ -53,12 +56,22 @@ impl Decay {
 
     /// The key comes up.
     pub(super) fn release(&mut self) {
-        self.released = !self.rings_on;
+        (self.released, self.settled) = (!self.rings_on, false);
     }
 
-    /// Sets the T60s of the bank if they have changed. A voice of the present patch has its `modes` to tilt anew.
-    /// Returns whether anything has changed.
-    pub(super) fn control(&mut self, controls: &Controls, modes: Option<&[Mode]>, bank: &mut Cells) -> bool {
+    /// Sets the T60s of the bank if they have changed; `is_new` says whether the controls may have. A voice of the present
+    /// patch has its `modes` to tilt anew. Returns whether anything has changed.
+    pub(super) fn control(
+        &mut self,
+        controls: &Controls,
+        is_new: bool,
+        modes: Option<&[Mode]>,
+        bank: &mut Cells,
+    ) -> bool {
+        if self.settled && !is_new {
+            return false;
+        }
+        self.settled = true;
         let tilted = modes.filter(|_| controls.decay_tilt != self.tilt);
         tilted.into_iter().for_each(|modes| self.set_tilt(controls.decay_tilt, modes, bank));
         let amount = if self.released { 1.0 } else { controls.damper };

@@ -47,6 +47,8 @@ pub(crate) struct SynthVoice {
     fader: Fader,
     /// The parameters that it follows, as they will be at the next control tick.
     controls: Controls,
+    /// The count of the instrument's controls that these are made of, if they are.
+    controls_serial: Option<u32>,
     key: u8,
     /// −0.5 to 0.5.
     brightness: f64,
@@ -76,6 +78,7 @@ impl SynthVoice {
             decay: Decay::new(),
             fader: Fader::CLOSED,
             controls,
+            controls_serial: None,
             key: 0,
             brightness: 0.0,
             expressions: Expressions::new(sample_rate),
@@ -97,9 +100,16 @@ impl SynthVoice {
         let passed = self.clock.since_control();
         self.clock.control();
         self.pitch.advance(self.controls.vibrato_rate, passed);
-        if let Some(Instrument { smoother, next_controls, .. }) = instrument {
-            let own = !self.modulation.is_none();
-            self.controls = if own { smoother.modulated(&self.modulation, frames as u32) } else { *next_controls };
+        let base = instrument.filter(|_| self.modulation.is_none()).map(|instrument| &instrument.next_controls);
+        let mut is_new = self.fresh;
+        if let Some(Instrument { smoother, controls_serial, .. }) = instrument {
+            let serial = base.map(|_| *controls_serial);
+            if serial.is_none() || serial != self.controls_serial {
+                let own = || smoother.modulated(&self.modulation, frames as u32);
+                (self.controls, self.controls_serial) = (base.copied().unwrap_or_else(own), serial);
+                self.modulators.unsettle();
+                is_new = true;
+            }
         }
         if !self.modulators.are_idle() {
             self.modulators.advance(passed);
@@ -114,11 +124,11 @@ impl SynthVoice {
                 self.modulators.follow(own.as_ref().unwrap_or(settings), own.is_some(), &instrument.shared);
             }
             // A note starts where its modulation starts: its pitch goes on from there below.
-            self.move_controls(wheels, if self.fresh { 0 } else { frames });
+            is_new |= self.move_controls(base, wheels, if self.fresh { 0 } else { frames });
         }
 
         let modes = instrument.map(|instrument| instrument.sound.patch().modes.as_slice());
-        if self.decay.control(&self.controls, modes, &mut self.bank) {
+        if self.decay.control(&self.controls, is_new, modes, &mut self.bank) {
             self.energy.forget_end();
         }
         let bends = Bends { wheels, tuning: self.expressions.tuning.into() };
@@ -127,7 +137,7 @@ impl SynthVoice {
             self.bank.jump_to(self.pitch.aim(&self.controls, &bends, &self.clock, 0));
             if !self.modulators.are_idle() {
                 start = Some([self.controls.gain_left, self.controls.gain_right]);
-                self.move_controls(wheels, frames);
+                self.move_controls(base, wheels, frames);
             }
         }
         self.pitch.aim(&self.controls, &bends, &self.clock, frames);
@@ -154,15 +164,22 @@ impl SynthVoice {
         }
     }
 
-    /// Puts the controls where the routes want them in `frames` frames.
-    fn move_controls(&mut self, wheels: Wheels, frames: usize) {
+    /// Puts the controls, which are those of `base` if that is known, where the routes want them in `frames` frames. Returns
+    /// whether any has moved.
+    fn move_controls(&mut self, base: Option<&Controls>, wheels: Wheels, frames: usize) -> bool {
         let mut positions = wheels.positions(self.brightness);
         positions.pressure = self.pressure(wheels) as f32;
         positions.wheel = positions.wheel.max(self.expressions.vibrato);
         let (seconds, controls) = (self.clock.seconds(frames as u64), &mut self.controls);
-        let before = controls.level_and_pan();
-        self.modulators.control(seconds, &positions, |param, value| controls.set(param, value));
-        controls.find_gains(before);
+        let (before, mut has_moved) = (controls.level_and_pan(), false);
+        self.modulators.control(seconds, &positions, |param, value| {
+            controls.set(param, value);
+            has_moved = true;
+        });
+        if has_moved {
+            controls.find_gains(before, base);
+        }
+        has_moved
     }
 
     /// Sends the modes to the pitch that [`SynthVoice::control`] has found. Apart from it, so that what one voice

@@ -88,7 +88,7 @@ impl Voice for SynthVoice {
         self.clock = Clock::new(self.sample_rate);
         self.energy = Energy::NONE;
         self.fader = Fader::CLOSED;
-        self.controls = instrument.controls;
+        (self.controls, self.controls_serial) = (instrument.controls, None);
         (self.key, self.brightness) = (note.key, note.brightness.into());
         self.expressions = Expressions::new(self.sample_rate);
         self.expressions.begin(note.gain, note.pan);
@@ -114,7 +114,7 @@ impl Voice for SynthVoice {
         let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
         let setup = |mode: &Mode, ratio: f64, scale: f64| {
             let pan = (f64::from(mode.pan) * width + spread).clamp(-1.0, 1.0);
-            let (left, right) = pan_gains((pan * 0.5 + 0.5) as f32);
+            let (left, right) = if pan == 0.0 { (1.0, 1.0) } else { pan_gains((pan * 0.5 + 0.5) as f32) };
             ModeSetup { frequency: frequency * ratio, t60: damping.t60(scale), left, right }
         };
         self.bank.load(law, self.sample_rate, instrument.sound.patch().modes.as_slice(), setup);

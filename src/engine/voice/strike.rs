@@ -80,10 +80,16 @@ impl Strike {
         let modes = values.instrument.sound.patch().modes.as_slice();
         let tilt = values.get(Param::Tilt) / (20.0 / LOG2_10);
         let (noise_gain, position) = (gain_from_db(values.get(Param::NoiseLevel)), values.get(Param::Position));
-        let tilted = |mode: &Mode| f64::from(mode.level) * pow(f64::from(mode.ratio), tilt);
-        let plain: f64 = modes.iter().map(|mode| fabs(mode.level.into())).sum();
-        let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
-        let balance = if tilt != 0.0 && total > 0.0 { plain / total } else { 1.0 };
+        let tilted = |mode: &Mode| {
+            let tilt = if tilt == 0.0 { 1.0 } else { pow(f64::from(mode.ratio), tilt) };
+            f64::from(mode.level) * tilt
+        };
+        let mut balance = 1.0;
+        if tilt != 0.0 {
+            let plain: f64 = modes.iter().map(|mode| fabs(mode.level.into())).sum();
+            let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
+            balance = if total > 0.0 { plain / total } else { 1.0 };
+        }
 
         let exciter = values.instrument.modulated.choice::<Exciter>(Param::Exciter);
         let (mut noisy, mut energy) = (false, 0.0);
@@ -92,8 +98,10 @@ impl Strike {
             let struck = if exciter == Exciter::Noise { 0.0 } else { level * f64::from(mode.strike) };
             let noise =
                 if exciter == Exciter::Noise { level } else { level * (1.0 - f64::from(mode.strike)) } * noise_gain;
-            let plucked = struck * sin(PI * position * 0.01 * f64::from(mode.ratio));
-            let (push, pull) = if exciter == Exciter::Pluck { (0.0, plucked) } else { (struck, 0.0) };
+            let (push, pull) = match exciter {
+                Exciter::Pluck => (0.0, struck * sin(PI * position * 0.01 * f64::from(mode.ratio))),
+                _ => (struck, 0.0),
+            };
             let gains =
                 ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32, phase: self.phase };
             bank.set_excitation_gains(m, gains);

@@ -1,0 +1,89 @@
+//! What the modulators of all voices of an instrument follow: settings, and oscillators that notes can share.
+
+use super::bus::Bus;
+use super::lfo::Lfo;
+use super::link::Amounts;
+use crate::dsp::random;
+use crate::params::{Choice, NoteValue, PARAMS, Param, Shape};
+use crate::patch::routes::{MAX_ROUTES, amount_param};
+
+/// How many slow oscillators there are.
+pub(super) const LFOS: usize = 3;
+
+/// The stream of random numbers of the first of them.
+pub(super) const LFO_STREAM: u64 = 0x4c46_4f00;
+
+/// The parameter of an oscillator that is `first` of the first one.
+pub(super) fn of_lfo(first: Param, index: usize) -> Param {
+    let rows = Param::Lfo2Rate as usize - Param::Lfo1Rate as usize;
+    PARAMS[first as usize + index * rows].param
+}
+
+/// What voices follow of the modulators' own parameters, and of those that routes lead to. Plain data.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Settings {
+    /// Counts how often they were made anew.
+    pub(super) serial: u32,
+    /// Rounds a second.
+    pub(super) rates: [f64; LFOS],
+    /// Whether the rate is that of a note value, which nothing moves.
+    pub(super) are_synchronised: [bool; LFOS],
+    pub(super) shapes: [Shape; LFOS],
+    pub(super) macros: [f32; 8],
+    pub(super) amounts: Amounts,
+    /// Values of the bus's destinations before they are moved.
+    pub(super) bases: [f32; MAX_ROUTES],
+}
+
+impl Settings {
+    /// Nothing moves.
+    pub(crate) const STILL: Self = Self {
+        serial: 0,
+        rates: [0.0; LFOS],
+        are_synchronised: [false; LFOS],
+        shapes: [Shape::Sine; LFOS],
+        macros: [0.0; 8],
+        amounts: [0.0; MAX_ROUTES],
+        bases: [0.0; MAX_ROUTES],
+    };
+
+    /// Those after these: of parameters with these values, at a tempo in beats per second.
+    pub(crate) fn next(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
+        let mut bases = [0.0; MAX_ROUTES];
+        bus.destinations().iter().zip(&mut bases).for_each(|(destination, base)| *base = value(destination.param));
+        let sync = |index| NoteValue::from_value(value(of_lfo(Param::Lfo1Sync, index)));
+        Self {
+            serial: self.serial.wrapping_add(1),
+            bases,
+            rates: std::array::from_fn(|index| {
+                let rate = f64::from(value(of_lfo(Param::Lfo1Rate, index)));
+                super::rate_at(sync(index), rate, beat_rate)
+            }),
+            are_synchronised: std::array::from_fn(|index| sync(index) != NoteValue::Off),
+            shapes: std::array::from_fn(|index| Shape::from_value(value(of_lfo(Param::Lfo1Shape, index)))),
+            macros: std::array::from_fn(|index| value(PARAMS[Param::Macro1 as usize + index].param) * 0.01),
+            amounts: std::array::from_fn(|place| value(amount_param(place)) * 0.01),
+        }
+    }
+
+    /// Those of one note, told from all that the instrument will have next.
+    pub(crate) fn own(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
+        Self { serial: self.serial.wrapping_sub(1), ..self.next(bus, value, beat_rate) }
+    }
+}
+
+/// Oscillators that all voices of an instrument can follow.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SharedLfos(pub(super) [Lfo; LFOS]);
+
+impl SharedLfos {
+    /// At their start, for a seed.
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(std::array::from_fn(|index| Lfo::new(0.0, random::key(seed, LFO_STREAM + index as u64))))
+    }
+
+    /// Lets time pass.
+    pub(crate) fn advance(&mut self, settings: &Settings, seconds: f64) {
+        self.0.iter_mut().zip(settings.rates).for_each(|(lfo, rate)| lfo.advance(rate * seconds));
+    }
+}
