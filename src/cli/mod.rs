@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand.
 
 mod completion;
+mod diff;
 mod interrupt;
 mod lab;
 mod manual;
@@ -10,6 +11,7 @@ mod play;
 mod presets;
 mod progress;
 mod quantity;
+mod recording;
 mod render;
 mod song;
 mod sound;
@@ -70,6 +72,9 @@ enum Command {
     /// Print the table of parameters
     #[command(after_help = parameters::EXAMPLES)]
     Params(parameters::Args),
+    /// Compare two sound files
+    #[command(after_help = diff::EXAMPLES)]
+    Diff(diff::Args),
     /// Compare ways to integrate a mass on a spring
     #[command(after_help = lab::EXAMPLES)]
     Lab(lab::Args),
@@ -88,6 +93,8 @@ pub(crate) fn run() -> ExitCode {
         Err(error) => return usage::refuse(error, &Cli::command()),
     }
     match Cli::try_parse() {
+        // That it is different is no error.
+        Ok(Cli { command: Command::Diff(args) }) => diff::run(&args),
         Ok(cli) => finish(execute(&cli.command)),
         // `--help` and `--version` are no errors, and go to stdout.
         Err(error) if !error.use_stderr() => finish(checked(error.print().and_then(|()| std::io::stdout().flush()))),
@@ -108,6 +115,7 @@ fn execute(command: &Command) -> Result<()> {
         )),
         Command::Presets(args) => presets::run(args),
         Command::Params(args) => parameters::run(args),
+        Command::Diff(_) => unreachable!("it has exit codes of its own"),
         Command::Lab(args) => lab::run(args),
         Command::Completions(args) => completion::run(args),
         Command::Man(args) => manual::run(args, Cli::command()),
@@ -155,6 +163,7 @@ mod tests {
             parameters::EXAMPLES,
             #[cfg(feature = "realtime")]
             play::EXAMPLES,
+            diff::EXAMPLES,
             lab::EXAMPLES,
             manual::EXAMPLES,
             completion::EXAMPLES,

@@ -158,14 +158,14 @@ fn coded_files_hold_the_same_sound() {
         let starts = if frames.is_some() { 0..1 } else { 0..found.frames() - 1800 };
         let least = starts.map(|start| error(&found, start)).fold(f64::INFINITY, f64::min);
         assert!(least < tolerance, "{name}: {least}");
-        let half = parsed(&bytes[..bytes.len() / 2]);
-        match half {
-            Ok(half) => {
-                assert!(half.frames() > 200 && half.frames() < found.frames(), "{name}: {}", half.frames());
-                assert!(!half.warnings.is_empty(), "{name}");
+        let part = parsed(&bytes[..bytes.len() * 9 / 10]);
+        match part {
+            Ok(part) => {
+                assert!(part.frames() > 200 && part.frames() < found.frames(), "{name}: {}", part.frames());
+                assert!(!part.warnings.is_empty(), "{name}");
             }
             // So short an Ogg has its sound in a single page.
-            Err(error) => assert!(name == "Ogg" && error.to_string().contains("no sound in the file"), "{error}"),
+            Err(error) => assert!(name == "Ogg" && error.to_string().contains("expected"), "{name}: {error}"),
         }
         for len in [12, 40] {
             let message = parsed(&bytes[..len]).unwrap_err().to_string();
