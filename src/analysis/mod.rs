@@ -10,4 +10,5 @@ pub mod diff;
 pub mod digest;
 pub mod figure;
 pub mod level;
+pub mod modes;
 pub mod spectrum;

@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod analyze;
 mod completion;
 mod diff;
 mod interrupt;
@@ -45,6 +46,8 @@ Examples:
   sprung render --note C2 --preset Kick -o kick.wav
   sprung presets list
   sprung params
+  sprung analyze strike.wav
+  sprung diff before.wav after.wav
   sprung lab compare -o report.html
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.";
@@ -72,6 +75,9 @@ enum Command {
     /// Print the table of parameters
     #[command(after_help = parameters::EXAMPLES)]
     Params(parameters::Args),
+    /// Take the recording of a strike apart into its modes
+    #[command(after_help = analyze::EXAMPLES)]
+    Analyze(analyze::Args),
     /// Compare two sound files
     #[command(after_help = diff::EXAMPLES)]
     Diff(diff::Args),
@@ -115,6 +121,7 @@ fn execute(command: &Command) -> Result<()> {
         )),
         Command::Presets(args) => presets::run(args),
         Command::Params(args) => parameters::run(args),
+        Command::Analyze(args) => analyze::run(args),
         Command::Diff(_) => unreachable!("it has exit codes of its own"),
         Command::Lab(args) => lab::run(args),
         Command::Completions(args) => completion::run(args),
@@ -163,6 +170,7 @@ mod tests {
             parameters::EXAMPLES,
             #[cfg(feature = "realtime")]
             play::EXAMPLES,
+            analyze::EXAMPLES,
             diff::EXAMPLES,
             lab::EXAMPLES,
             manual::EXAMPLES,

@@ -1,5 +1,6 @@
 //! Figures of renders as PNG or SVG, with axes in units.
 
+pub mod modes;
 mod panel;
 
 use crate::error::{Error, Result};
