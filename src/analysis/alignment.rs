@@ -73,7 +73,8 @@ fn best_shift(first: &[Vec<f32>], second: &[Vec<f32>], start: usize) -> isize {
         };
         let stretch = first.get(start..).unwrap_or_default();
         let sought = |n: usize| stretch.get(n).filter(|_| n < STRETCH).map_or(0.0, |sample| f64::from(*sample));
-        let place = |n: usize| window.checked_add_unsigned(n).and_then(|frame| second.get(usize::try_from(frame).ok()?));
+        let place =
+            |n: usize| window.checked_add_unsigned(n).and_then(|frame| second.get(usize::try_from(frame).ok()?));
         let searched = |n: usize| place(n).filter(|_| n < STRETCH + 2 * MOST_SHIFT).map_or(0.0, |s| f64::from(*s));
         let (sought, spectrum) = (spectrum(&sought), spectrum(&searched));
         sums.iter_mut().zip(sought.iter().zip(&spectrum)).for_each(|(sum, (a, b))| *sum += a.conj() * b);

@@ -51,8 +51,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     recording.check_finite(&name)?;
     interrupt::catch(true)?;
     let figure = args.figure.open(&inputs)?;
-    let settings =
-        Settings { most_modes: args.modes.into(), all_strikes: args.hits, ..Settings::default() };
+    let settings = Settings { most_modes: args.modes.into(), all_strikes: args.hits, ..Settings::default() };
     let mut bar = Bar::new();
     let mut progress = |share: f64| {
         bar.show(Progress { frames: (share * STEPS as f64) as u64, expected: STEPS });
@@ -88,7 +87,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
 
 /// A T60 that is infinite is null.
 fn mode_json(mode: &Mode) -> serde_json::Value {
-    let channels: Vec<_> = mode.channels.iter().map(|(level, phase)| json!({"level_db": level, "phase": phase})).collect();
+    let channels: Vec<_> =
+        mode.channels.iter().map(|(level, phase)| json!({"level_db": level, "phase": phase})).collect();
     let mut value = json!({
         "frequency": mode.frequency,
         "t60": mode.t60,

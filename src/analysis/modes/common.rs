@@ -47,10 +47,11 @@ pub fn common(strikes: &[Strike]) -> Vec<Common> {
             members.iter().for_each(|(strike, place)| taken[*strike][*place] = true);
             let of = |(strike, place): &(usize, usize)| &strikes[*strike].modes[*place];
             let mean = |value: &dyn Fn(&(usize, usize)) -> (f64, f64)| {
-                let (sum, weights) = members.iter().map(value).fold((0.0, 0.0), |(sum, weights), (value, deviation)| {
-                    let weight = 1.0 / (deviation * deviation).max(1e-18);
-                    (sum + weight * value, weights + weight)
-                });
+                let (sum, weights) =
+                    members.iter().map(value).fold((0.0, 0.0), |(sum, weights), (value, deviation)| {
+                        let weight = 1.0 / (deviation * deviation).max(1e-18);
+                        (sum + weight * value, weights + weight)
+                    });
                 sum / weights
             };
             let mut levels_db = vec![None; strikes.len()];

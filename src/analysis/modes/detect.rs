@@ -76,7 +76,8 @@ fn running_median(energies: &[f64], half: usize) -> Vec<f64> {
             sorted.clear();
             let (from, to) = (centre.saturating_sub(half), (centre + half).min(energies.len()));
             // Near the ends the neighbourhood is moved, not cut.
-            let (from, to) = (from.min(energies.len().saturating_sub(2 * half)), to.max((2 * half).min(energies.len())));
+            let (from, to) =
+                (from.min(energies.len().saturating_sub(2 * half)), to.max((2 * half).min(energies.len())));
             sorted.extend_from_slice(&energies[from..to]);
             let middle = sorted.len() / 2;
             *sorted.select_nth_unstable_by(middle, f64::total_cmp).1 / std::f64::consts::LN_2

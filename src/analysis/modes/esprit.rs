@@ -80,7 +80,8 @@ impl Band {
         let columns = band.len() - rows + 1;
         let data = DMatrix::from_fn(rows, columns, |row, column| band[row + column]);
         let covariance = &data * data.adjoint();
-        let Some(SymmetricEigen { eigenvectors, eigenvalues }) = SymmetricEigen::try_new(covariance, 1e-15, 10_000) else {
+        let Some(SymmetricEigen { eigenvectors, eigenvalues }) = SymmetricEigen::try_new(covariance, 1e-15, 10_000)
+        else {
             return Vec::new();
         };
         let mut order: Vec<usize> = (0..rows).collect();

@@ -10,8 +10,9 @@ use realfft::num_complex::Complex;
 
 /// Largest step of a pole, in its own widths.
 const LONGEST_STEP: f64 = 0.7;
-/// Added to the unit diagonal of normal equations, so that poles which all but coincide can be solved for.
-const RIDGE: f64 = 1e-13;
+/// What is added to the unit diagonal of normal equations, the least that does, so that poles which all but coincide can be
+/// solved for.
+const RIDGES: [f64; 4] = [1e-14, 1e-12, 1e-10, 1e-8];
 
 /// Modes with the amplitudes that fit best.
 #[derive(Clone)]
@@ -93,9 +94,14 @@ impl Solver {
             for row in 0..matrix.nrows() {
                 matrix[(row, column)] *= scale[row] * scale[column];
             }
-            matrix[(column, column)] += damping + RIDGE;
+            matrix[(column, column)] += damping;
         }
-        Some(Self { scale, factors: Cholesky::new(matrix)? })
+        let ridged = |ridge: f64| {
+            let mut matrix = matrix.clone();
+            (0..matrix.ncols()).for_each(|at| matrix[(at, at)] += ridge);
+            Cholesky::new(matrix)
+        };
+        Some(Self { scale, factors: RIDGES.into_iter().find_map(ridged)? })
     }
 
     fn solve(&self, right: &DVector<f64>) -> DVector<f64> {

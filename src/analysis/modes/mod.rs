@@ -139,13 +139,7 @@ fn clipping(channels: &[Vec<f32>]) -> Option<String> {
     (count > 0).then(|| format!("the sound is clipped in {count} places: levels and high modes are doubtful"))
 }
 
-fn strike(
-    found: &search::Found,
-    channels: &[Vec<f32>],
-    sound: &[f64],
-    stretch: &Stretch,
-    sample_rate: f64,
-) -> Strike {
+fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: &Stretch, sample_rate: f64) -> Strike {
     let samples = &sound[stretch.start..stretch.end];
     let residual = found.fit.residual(samples);
     let energy = |samples: &[f64]| samples.iter().map(|sample| sample * sample).sum::<f64>();

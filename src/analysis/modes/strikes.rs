@@ -60,7 +60,8 @@ fn onsets(samples: &[f64], sample_rate: f64) -> Vec<usize> {
     let least = FAINT * FAINT * peak * peak * step as f64 * 0.1;
     let mut found: Vec<usize> = Vec::new();
     for (block, energy) in energies.iter().enumerate() {
-        let loudest = energies[block.saturating_sub(memory)..block].iter().fold(0.0_f64, |most, energy| most.max(*energy));
+        let loudest =
+            energies[block.saturating_sub(memory)..block].iter().fold(0.0_f64, |most, energy| most.max(*energy));
         let before = block.checked_sub(1).map_or(0.0, |before| energies[before]);
         if *energy < least || *energy < RISE * before || *energy < 1.5 * loudest {
             continue;
