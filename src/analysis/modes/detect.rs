@@ -17,6 +17,8 @@ const NEIGHBOURHOOD: f64 = 30.0;
 const LEAST_NEIGHBOURHOOD: f64 = 60.0;
 /// Medians that are taken in each neighbourhood; between them the floor is interpolated.
 const MEDIANS: usize = 4;
+/// Bins that a median is taken of, at most, evenly spread.
+const MEDIAN_BINS: usize = 500;
 
 /// A peak that noise does not explain.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +80,7 @@ fn running_median(energies: &[f64], half: usize) -> Vec<f64> {
             // Near the ends the neighbourhood is moved, not cut.
             let (from, to) =
                 (from.min(energies.len().saturating_sub(2 * half)), to.max((2 * half).min(energies.len())));
-            sorted.extend_from_slice(&energies[from..to]);
+            sorted.extend(energies[from..to].iter().step_by((2 * half).div_ceil(MEDIAN_BINS)));
             let middle = sorted.len() / 2;
             *sorted.select_nth_unstable_by(middle, f64::total_cmp).1 / std::f64::consts::LN_2
         })

@@ -35,8 +35,16 @@ pub(super) struct Stretch {
 /// Finds strikes in samples that are not silent; none longer than `longest` seconds.
 pub(super) fn strikes(samples: &[f64], sample_rate: f64, longest: f64) -> Vec<Stretch> {
     let frames = |seconds: f64| ((seconds * sample_rate) as usize).max(1);
-    let onsets = onsets(samples, sample_rate);
-    let floor = quietest(samples, frames(BLOCK));
+    // A constant is no sound.
+    let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
+    let samples: Vec<f64> = samples.iter().map(|sample| sample - mean).collect();
+    let samples = &samples[..];
+    let mut onsets = onsets(samples, sample_rate);
+    if onsets.is_empty() {
+        // It sounds all the time.
+        onsets.push(0);
+    }
+    let floor = noise(samples, frames(BLOCK));
     let next = |index: usize| onsets.get(index + 1).map_or(samples.len(), |next| next.saturating_sub(frames(0.002)));
     let stretch = |(index, onset): (usize, &usize)| {
         let start = released(samples, *onset, frames(0.001), frames(CONTACT));
@@ -58,11 +66,13 @@ fn onsets(samples: &[f64], sample_rate: f64) -> Vec<usize> {
     let energies: Vec<f64> = samples.chunks(step).map(|block| block.iter().map(|x| x * x).sum()).collect();
     let (memory, apart) = ((MEMORY / STEP) as usize, (APART * sample_rate) as usize);
     let least = FAINT * FAINT * peak * peak * step as f64 * 0.1;
+    // Nothing is known of what came before the recording.
+    let quietest = energies.iter().copied().fold(f64::INFINITY, f64::min);
     let mut found: Vec<usize> = Vec::new();
     for (block, energy) in energies.iter().enumerate() {
         let loudest =
             energies[block.saturating_sub(memory)..block].iter().fold(0.0_f64, |most, energy| most.max(*energy));
-        let before = block.checked_sub(1).map_or(0.0, |before| energies[before]);
+        let before = block.checked_sub(1).map_or(quietest, |before| energies[before]);
         if *energy < least || *energy < RISE * before || *energy < 1.5 * loudest {
             continue;
         }
@@ -98,9 +108,11 @@ fn rms(samples: &[f64]) -> f64 {
     sqrt(samples.iter().map(|sample| sample * sample).sum::<f64>() / samples.len().max(1) as f64)
 }
 
-/// Level of the quietest block.
-fn quietest(samples: &[f64], block: usize) -> f64 {
-    samples.chunks_exact(block).map(rms).fold(f64::INFINITY, f64::min).min(1e300)
+/// Level of the quietest block, where noise alone is left; 0 where no block is much quieter than others.
+fn noise(samples: &[f64], block: usize) -> f64 {
+    let levels = || samples.chunks_exact(block).map(rms);
+    let (quietest, loudest) = (levels().fold(f64::INFINITY, f64::min), levels().fold(0.0, f64::max));
+    if quietest < 0.1 * loudest { quietest } else { 0.0 }
 }
 
 #[cfg(test)]
