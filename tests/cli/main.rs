@@ -10,6 +10,7 @@ mod lab;
 mod listings;
 mod messages;
 mod outputs;
+mod recordings;
 mod songs;
 mod sound;
 mod tuning;
