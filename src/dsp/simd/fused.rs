@@ -11,7 +11,7 @@
 //! so that the 29 lowest bits of a midpoint are 100…0. Below, where single precision has a fixed step, everything but
 //! zero counts as one here. Infinities and what is not a number never do: their lowest bits are zeros. Random
 //! sums are midpoints once in 2²⁹ times, so that looking for them in a whole vector and repairing the rare find costs
-//! little, and the same whatever the numbers are.
+//! little; zeros, of which banks are full, cost no more than others.
 
 /// The lowest bits of a double that single precision has no room for, and what they are in a midpoint.
 pub(super) const LOST: u64 = (1 << 29) - 1;
