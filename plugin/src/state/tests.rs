@@ -83,7 +83,7 @@ fn a_kit_is_kept_with_its_presets() {
     assert_eq!(kit.pads.iter().map(|(key, _)| *key).collect::<Vec<_>>(), [36, 40]);
     assert_eq!((state.values.get(Param::Mode), state.values.get(Param::Voices)), (0.0, 3.0));
     let starts =
-        ["keys[1].sound: preset: there is no factory preset", "‘Kick’: params.gain: 99 is out", "values.mode: 7"];
+        ["keys[1].sound: preset: there is no factory preset", "‘Kick’: params.gain: 99 is out", "values.mode: ‘7’"];
     assert_eq!(complaints.len(), starts.len(), "{complaints:?}");
     assert!(complaints.iter().zip(starts).all(|(line, start)| line.starts_with(start)), "{complaints:?}");
 }
