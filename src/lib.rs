@@ -27,7 +27,7 @@
 //! let mut synth = Synth::new(48_000.0, 0);
 //! synth.set_patch(&kick.patch.clone().with(Param::Gain, -9.0));
 //!
-//! let on = EventKind::NoteOn { key: 36, detune: 0.0, velocity: 0.8, id: -1 };
+//! let on = EventKind::NoteOn { key: 36, detune: 0.0, velocity: 0.8, id: None };
 //! let (mut left, mut right) = ([0.0; 480], [0.0; 480]);
 //! synth.process(&[Event { frame: 100, channel: 0, kind: on }], &mut left, &mut right);
 //!

@@ -1,7 +1,7 @@
 //! The audio thread never allocates, and neither does measuring: both under an allocator that forbids it.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
-use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
+use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use sprung::render::Meter;
@@ -20,8 +20,8 @@ fn storm(block: u32) -> Vec<Event> {
         let value = (n % 11) as f32 / 10.0;
         let param = &PARAMS[((n + block * 13) as usize) % PARAMS.len()];
         for kind in [
-            EventKind::NoteOn { key, detune: 0.1, velocity: value, id: n as i32 },
-            EventKind::NoteOff { key: key - 5, velocity: value, id: -1 },
+            EventKind::NoteOn { key, detune: 0.1, velocity: value, id: NoteId::new(n as i32) },
+            EventKind::NoteOff { key: key - 5, velocity: value, id: None },
             EventKind::PitchBend(value),
             EventKind::ChannelPressure(value),
             EventKind::PolyPressure { key, pressure: value },
@@ -32,10 +32,14 @@ fn storm(block: u32) -> Vec<Event> {
             EventKind::Param { param: param.param, value: param.denormalise(value.into()) },
             EventKind::Choke { group: (n % 3) as u8 },
             EventKind::Express { notes: Notes::on(channel, key), expression: Expression::ALL[n as usize % 7], value },
-            EventKind::Silence { notes: Notes { id: Some(n as i32 - 9), ..Notes::default() } },
-            EventKind::Modulate { id: (n % 2 == 0).then_some(n as i32), param: param.param, offset: value - 0.5 },
+            EventKind::Silence { notes: Notes { id: NoteId::new(n as i32 - 9), ..Notes::default() } },
+            EventKind::Modulate {
+                id: NoteId::new(n as i32).filter(|_| n % 2 == 0),
+                param: param.param,
+                offset: value - 0.5,
+            },
             EventKind::Tempo(60.0 + value),
-            EventKind::Release { notes: Notes { id: Some(n as i32 - 5), ..Notes::default() }, velocity: value },
+            EventKind::Release { notes: Notes { id: NoteId::new(n as i32 - 5), ..Notes::default() }, velocity: value },
             EventKind::Program((n % 4) as u8),
         ] {
             events.push(Event { frame, channel, kind });
@@ -70,7 +74,7 @@ fn processing_does_not_allocate() {
     let mut large = Patch::default().with(Param::Decay, 10.0);
     large.modes = ModeTable::new(&[Mode::UNIT; MAX_MODES]);
     let mut ensemble = Ensemble::new(48_000.0, 1, &large, &[]);
-    let kind = |n: u32| EventKind::NoteOn { key: (n % 90) as u8, detune: 0.0, velocity: 0.5, id: -1 };
+    let kind = |n: u32| EventKind::NoteOn { key: (n % 90) as u8, detune: 0.0, velocity: 0.5, id: None };
     let notes: Vec<_> = (0..200).map(|n| Event { frame: n * 2, channel: (n % 16) as u8, kind: kind(n) }).collect();
     assert_no_alloc(|| (0..4).for_each(|_| ensemble.process(&notes, &mut left, &mut right)));
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
@@ -118,7 +122,7 @@ fn kits_come_and_go_without_allocating_or_freeing() {
         most = shelf.collect().max(most);
         let sent = [kit];
         let channel = (n % 16) as u8;
-        let strike = EventKind::NoteOn { key: (20 + n * 7 % 90) as u8, detune: 0.0, velocity: 0.8, id: -1 };
+        let strike = EventKind::NoteOn { key: (20 + n * 7 % 90) as u8, detune: 0.0, velocity: 0.8, id: None };
         let events = [
             Event { frame: 3, channel, kind: strike },
             Event { frame: 20, channel: (n / 3 % 16) as u8, kind: EventKind::Program((n % 4) as u8) },

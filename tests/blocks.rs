@@ -5,7 +5,7 @@ use proptest::sample::select;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use sprung::engine::midi::parse_message;
-use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
+use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::routes::{Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -91,12 +91,12 @@ fn any_key() -> impl Strategy<Value = u8> + Clone {
     36..60u8
 }
 
-fn any_id() -> impl Strategy<Value = i32> + Clone {
-    -1..6i32
+fn any_id() -> impl Strategy<Value = Option<NoteId>> + Clone {
+    (-1..6i32).prop_map(NoteId::new)
 }
 
 fn any_notes() -> impl Strategy<Value = Notes> {
-    let id = prop::option::of(0..6i32);
+    let id = any_id();
     (id, prop::option::of(any_channel()), prop::option::of(any_key())).prop_map(|(id, channel, key)| Notes {
         id,
         channel,
@@ -126,7 +126,7 @@ fn any_kind() -> impl Strategy<Value = EventKind> {
             .prop_map(|(controller, value)| EventKind::Control { controller, value }),
         3 => (any_param(), 0.0..1.0f64)
             .prop_map(|(param, position)| EventKind::Param { param, value: param.info().denormalise(position) }),
-        3 => (prop::option::of(0..6i32), any_param(), -1.0..1.0f32)
+        3 => (any_id(), any_param(), -1.0..1.0f32)
             .prop_map(|(id, param, offset)| EventKind::Modulate { id, param, offset }),
         1 => (20.0..300.0f32).prop_map(EventKind::Tempo),
         1 => (0..3u8).prop_map(|group| EventKind::Choke { group }),
@@ -189,7 +189,7 @@ trait Plays {
 /// What was told of a render: notes that ended, by their serial numbers, and the tail after the last block.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct About {
-    ended: BTreeSet<(u64, i32, u8, u8)>,
+    ended: BTreeSet<(u64, Option<NoteId>, u8, u8)>,
     times_ended: usize,
     tail: u64,
     is_silent: bool,

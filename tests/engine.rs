@@ -1,6 +1,6 @@
 //! The engine as its users see it: any event, any time, any rate.
 
-use sprung::engine::{Ensemble, Event, EventKind, Expression, Notes, Synth};
+use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -11,11 +11,11 @@ fn event(frame: u32, kind: EventKind) -> Event {
 }
 
 fn on(frame: u32, key: u8, velocity: f32) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 })
+    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })
 }
 
 fn off(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: None })
 }
 
 fn render(patch: &Patch, events: &[Event], frames: usize) -> (Vec<f32>, Vec<f32>) {
@@ -32,7 +32,7 @@ fn garbage_in_events_never_comes_out() {
     let mut events = vec![];
     for (n, value) in bad.into_iter().enumerate() {
         let frame = n as u32 * 500;
-        events.push(event(frame, EventKind::NoteOn { key: 255, detune: value, velocity: value, id: -1 }));
+        events.push(event(frame, EventKind::NoteOn { key: 255, detune: value, velocity: value, id: None }));
         events.push(on(frame, 60, 1.0));
         for kind in [
             EventKind::PitchBend(value),
@@ -45,7 +45,7 @@ fn garbage_in_events_never_comes_out() {
             EventKind::Release { notes: Notes::on(255, 255), velocity: value },
             EventKind::Silence { notes: Notes::on(255, 255) },
             EventKind::Modulate { id: None, param: Param::Gain, offset: value },
-            EventKind::Modulate { id: Some(-1), param: Param::Tune, offset: value },
+            EventKind::Modulate { id: NoteId::new(-1), param: Param::Tune, offset: value },
         ] {
             events.push(Event { frame, channel: 255, kind });
             events.push(event(frame, kind));

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sprung::dsp::CONTROL_FRAMES;
-use sprung::engine::{Event, EventKind, Expression, Notes, Synth};
+use sprung::engine::{Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::Param;
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -15,16 +15,16 @@ fn event(frame: u32, kind: EventKind) -> Event {
 }
 
 fn on(frame: u32, channel: u8, key: u8, id: i32) -> Event {
-    Event { frame, channel, kind: EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id } }
+    Event { frame, channel, kind: EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: NoteId::new(id) } }
 }
 
 fn express(frame: u32, id: i32, expression: Expression, value: f32) -> Event {
-    let notes = Notes { id: Some(id), ..Notes::default() };
+    let notes = Notes { id: NoteId::new(id), ..Notes::default() };
     event(frame, EventKind::Express { notes, expression, value })
 }
 
 fn modulate(frame: u32, id: Option<i32>, param: Param, offset: f32) -> Event {
-    event(frame, EventKind::Modulate { id, param, offset })
+    event(frame, EventKind::Modulate { id: id.and_then(NoteId::new), param, offset })
 }
 
 fn control(channel: u8, controller: u8, value: u8) -> Event {
@@ -92,8 +92,8 @@ fn wildcards_choose_notes() {
         (Notes::default(), 0),
         (Notes { channel: Some(1), ..Notes::default() }, 2),
         (Notes { key: Some(60), ..Notes::default() }, 1),
-        (Notes { id: Some(3), ..Notes::default() }, 2),
-        (Notes { id: Some(9), ..Notes::default() }, 3),
+        (Notes { id: NoteId::new(3), ..Notes::default() }, 2),
+        (Notes { id: NoteId::new(9), ..Notes::default() }, 3),
         (Notes::on(0, 64), 2),
     ] {
         for kind in [EventKind::Silence { notes }, EventKind::Release { notes, velocity: 0.5 }] {
@@ -203,7 +203,7 @@ fn mpe_members_bend_by_48_semitones_and_their_master_bends_all() {
     // The master's pedal holds its members' notes, until the zone is dissolved.
     let dissolve = control(0, 6, 0);
     let pedal = |events: &[Event]| {
-        let off = EventKind::NoteOff { key: 57, velocity: 0.5, id: -1 };
+        let off = EventKind::NoteOff { key: 57, velocity: 0.5, id: None };
         let off = Event { frame: 4800, channel: 1, kind: off };
         let all: Vec<_> = zone.iter().chain(events).chain(&[on(0, 1, 57, -1), off]).copied().collect();
         peak(&render(&sine().with(Param::Release, 0.01), &all, RATE)[0][24_000..])
@@ -248,21 +248,21 @@ proptest! {
                 0..=3 => {
                     id += 1;
                     started.push(id);
-                    EventKind::NoteOn { key, detune: 0.0, velocity: 0.8, id }
+                    EventKind::NoteOn { key, detune: 0.0, velocity: 0.8, id: NoteId::new(id) }
                 }
-                4 => EventKind::NoteOff { key, velocity: 0.5, id: -1 },
-                5 => EventKind::Release { notes: Notes { id: Some(id), ..Notes::default() }, velocity: 0.5 },
+                4 => EventKind::NoteOff { key, velocity: 0.5, id: None },
+                5 => EventKind::Release { notes: Notes { id: NoteId::new(id), ..Notes::default() }, velocity: 0.5 },
                 6 => pedal(f32::from(key % 2)),
                 _ => EventKind::Param { param: Param::Mode, value: f32::from(key % 3) },
             };
             let frames = frames as usize;
             synth.process(&[Event { frame: 0, channel, kind }], &mut left[..frames], &mut right[..frames]);
-            ended.extend(synth.ended().iter().map(|note| note.id));
+            ended.extend(synth.ended().iter().filter_map(|note| note.id.map(NoteId::number)));
         }
         let release = EventKind::Release { notes: Notes::default(), velocity: 0.5 };
         let silence = EventKind::Silence { notes: Notes::default() };
         synth.process(&[event(0, release), event(100, silence)], &mut left, &mut right);
-        ended.extend(synth.ended().iter().map(|note| note.id));
+        ended.extend(synth.ended().iter().filter_map(|note| note.id.map(NoteId::number)));
         prop_assert!(synth.is_silent());
         ended.sort_unstable();
         prop_assert_eq!(ended, started);

@@ -18,11 +18,11 @@ fn event(frame: u32, kind: EventKind) -> Event {
 }
 
 fn off(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: None })
 }
 
 fn on(frame: u32, key: u8, velocity: f32) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 })
+    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })
 }
 
 type Sides = [Vec<u32>; 2];

@@ -159,8 +159,8 @@ fn events(stream: &mut Stream) -> Vec<Event> {
             let frame = (stream.next() * stream.next() * FRAMES as f64) as u32;
             let (key, value) = (36 + (stream.next() * 48.0) as u8, stream.next() as f32);
             let kind = match (stream.next() * 10.0) as u8 {
-                0..=4 => EventKind::NoteOn { key, detune: value, velocity: value, id: -1 },
-                5 => EventKind::NoteOff { key, velocity: value, id: -1 },
+                0..=4 => EventKind::NoteOn { key, detune: value, velocity: value, id: None },
+                5 => EventKind::NoteOff { key, velocity: value, id: None },
                 6 => EventKind::PitchBend(value * 2.0 - 1.0),
                 7 => EventKind::ChannelPressure(value),
                 8 => EventKind::Control { controller: [1, 2, 7, 10, 11, 64][(value * 5.9) as usize], value },

@@ -1,6 +1,6 @@
 //! What routes do to a note: every source and kind of destination, heard.
 
-use sprung::engine::{Event, EventKind, Expression, Notes, Synth};
+use sprung::engine::{Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param, Param::*};
 use sprung::patch::routes::{Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -12,11 +12,11 @@ fn event(frame: u32, kind: EventKind) -> Event {
 }
 
 fn on(frame: u32, key: u8, velocity: f32) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 })
+    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })
 }
 
 fn off(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: None })
 }
 
 fn control(frame: u32, controller: u8, value: f32) -> Event {
@@ -261,8 +261,8 @@ fn a_brightness_does_not_read_a_strike_again() {
 #[test]
 fn a_host_modulates_macros_and_amounts_for_single_notes() {
     let routed = patch(&[(Source::Macro1, Tune, 12.5)]);
-    let note = EventKind::NoteOn { key: 57, detune: 0.0, velocity: 1.0, id: 7 };
-    let modulated = |param, offset| event(0, EventKind::Modulate { id: Some(7), param, offset });
+    let note = EventKind::NoteOn { key: 57, detune: 0.0, velocity: 1.0, id: NoteId::new(7) };
+    let modulated = |param, offset| event(0, EventKind::Modulate { id: NoteId::new(7), param, offset });
     let pitch = |patch: &Patch, events: &[Event]| frequency(&render(patch, 0, events, 20_000), 0.2) / 220.0;
     assert_near(pitch(&routed, &[event(0, note), modulated(Macro1, 1.0)]), 2.0, 1e-4);
     let turned = routed.with(Macro1, 100.0).with(Route1, 0.0);
@@ -324,7 +324,7 @@ fn every_quantity_can_be_moved_and_is_heard() {
         control(4000, 1, 0.5),
         event(4000, EventKind::ChannelPressure(0.4)),
         event(4000, EventKind::PitchBend(0.5)),
-        event(28_000, EventKind::NoteOff { key: 64, velocity: 0.9, id: -1 }),
+        event(28_000, EventKind::NoteOff { key: 64, velocity: 0.9, id: None }),
     ];
     let deaf = PARAMS.iter().filter(|info| info.is_modulatable() && info.param != Route16).filter(|info| {
         (0..4).all(|exciter| {

@@ -35,7 +35,7 @@ fn event(frame: usize, kind: EventKind) -> Event {
 
 fn on(frame: usize, key: f64) -> Event {
     let nearest = libm::round(key).clamp(0.0, 127.0);
-    event(frame, EventKind::NoteOn { key: nearest as u8, detune: (key - nearest) as f32, velocity: 1.0, id: -1 })
+    event(frame, EventKind::NoteOn { key: nearest as u8, detune: (key - nearest) as f32, velocity: 1.0, id: None })
 }
 
 /// Bends up, down and back in straight lines of pitch, by two octaves each way or as far as there is time for.
@@ -89,7 +89,7 @@ fn glides(sample_rate: f64, t60: f64, key: f64, octaves: f64) -> Motion {
     let seconds = (0.25 * t60).max(2.0 / FASTEST) as f32;
     let way = libm::ceil(f64::from(seconds) * sample_rate) as usize + TICK;
     let to = key + 12.0 * octaves;
-    let off = EventKind::NoteOff { key: libm::round(to) as u8, velocity: 0.5, id: -1 };
+    let off = EventKind::NoteOff { key: libm::round(to) as u8, velocity: 0.5, id: None };
     Motion {
         name: format!("glides of {octaves} octaves in {seconds} s and back"),
         patch: Patch::default().with(Param::Glide, seconds).with(Param::Mode, 2.0),

@@ -25,7 +25,7 @@ fn patch(modes: usize) -> Patch {
 }
 
 fn on(frame: u32, channel: u8, key: u8, velocity: f32) -> Event {
-    Event { frame, channel, kind: EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 } }
+    Event { frame, channel, kind: EventKind::NoteOn { key, detune: 0.0, velocity, id: None } }
 }
 
 /// Notes on all channels, more and more of them, with programs of other sizes, choke groups and some that are let go.
@@ -41,7 +41,7 @@ fn storm() -> Vec<Event> {
         events.push(on(frame, channel, key, 0.2 + (n % 8) as f32 * 0.1));
         if n % 5 == 0 {
             events.push(on(frame, (channel + 1) % 16, key, 0.5));
-            events.push(event(EventKind::NoteOff { key: key - 3, velocity: 0.5, id: -1 }));
+            events.push(event(EventKind::NoteOff { key: key - 3, velocity: 0.5, id: None }));
         }
         if n % 31 == 0 {
             events.push(event(EventKind::Param { param: Param::Mode, value: (n % 3) as f32 }));
@@ -143,7 +143,7 @@ fn a_voice_of_512_modes_is_the_sum_of_eight_of_64() {
         synth.set_patch(patch);
         let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
         let bend = Event { frame: 3_000, channel: 0, kind: EventKind::PitchBend(0.5) };
-        let off = Event { frame: 9_000, channel: 0, kind: EventKind::NoteOff { key: 45, velocity: 0.5, id: -1 } };
+        let off = Event { frame: 9_000, channel: 0, kind: EventKind::NoteOff { key: 45, velocity: 0.5, id: None } };
         synth.process(&[on(100, 0, 45, 0.8), bend, off], &mut left, &mut right);
         left
     };

@@ -118,9 +118,9 @@ impl Stereo {
 
 fn note(channel: u8, key: u8, on: bool, velocity: f32) -> Event {
     let kind = if on {
-        EventKind::NoteOn { key, detune: 0.0, velocity: velocity / 127.0, id: -1 }
+        EventKind::NoteOn { key, detune: 0.0, velocity: velocity / 127.0, id: None }
     } else {
-        EventKind::NoteOff { key, velocity: 0.5, id: -1 }
+        EventKind::NoteOff { key, velocity: 0.5, id: None }
     };
     Event { frame: 0, channel, kind }
 }

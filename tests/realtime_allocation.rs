@@ -38,7 +38,7 @@ fn play<T: DeviceSample>(frames: usize, channels: usize) {
     for block in 0..24_000 / frames as u32 {
         for n in 0..12_u8 {
             let key = (30 + 7 * u32::from(n) + block % 20) as u8;
-            keys.send_now(n, EventKind::NoteOn { key, detune: 0.0, velocity: 0.7, id: -1 });
+            keys.send_now(n, EventKind::NoteOn { key, detune: 0.0, velocity: 0.7, id: None });
             keys.send_now(n, EventKind::Program(n % 4));
             keys.send_now(n, EventKind::PitchBend(0.1));
         }

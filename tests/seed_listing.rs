@@ -116,7 +116,7 @@ fn the_classic_sound_of_the_synth_is_the_listing_to_the_bit() {
         synth.set_patch(&patch);
         let key = key_from_frequency(frequency.into(), 440.0);
         let (near, detune) = (libm::round(key) as u8, (key - libm::round(key)) as f32);
-        let on = EventKind::NoteOn { key: near, detune, velocity: 1.0, id: -1 };
+        let on = EventKind::NoteOn { key: near, detune, velocity: 1.0, id: None };
         let (mut left, mut right) = (vec![0.0; 9600], vec![0.0; 9600]);
         synth.process(&[Event { frame: 0, channel: 0, kind: on }], &mut left, &mut right);
         assert!(left == expected && right == expected, "{frequency} Hz");

@@ -40,7 +40,7 @@ impl Chord {
         synth.set_patch(patch);
         let strike = |voice: usize| {
             let key = (36 + voice % 64) as u8;
-            let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 };
+            let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
             Event { frame: 0, channel: 0, kind }
         };
         let strikes = (0..voices).map(strike).collect();

@@ -3,7 +3,7 @@
 use nice_plug::prelude::{NoteEvent, PluginApi};
 use nice_plug_core::midi::{Channel, Key, VoiceID};
 use sprung::engine::midi::parse_message;
-use sprung::engine::{EventKind, Expression, Notes};
+use sprung::engine::{EventKind, Expression, NoteId, Notes};
 use sprung::params::PARAMS;
 
 /// The engine's event, and its channel. `None` for what an instrument has no use for, and for a note without a key.
@@ -16,7 +16,7 @@ pub(crate) fn translate(event: &NoteEvent<()>, api: PluginApi) -> Option<(u8, Ev
     };
     Some(match *event {
         NoteEvent::NoteOn { voice_id, channel, key, velocity, .. } => {
-            let id = voice_id.id().unwrap_or(-1);
+            let id = voice_id.id().and_then(NoteId::new);
             let kind = EventKind::NoteOn { key: key.number()?, detune: 0.0, velocity, id };
             (channel.number().unwrap_or(0), kind)
         }
@@ -49,7 +49,8 @@ pub(crate) fn translate(event: &NoteEvent<()>, api: PluginApi) -> Option<(u8, Ev
         }
         NoteEvent::PolyModulation { voice_id, poly_modulation_id, normalized_offset, .. } => {
             let param = PARAMS.get(poly_modulation_id as usize)?.param;
-            (0, EventKind::Modulate { id: Some(voice_id), param, offset: normalized_offset })
+            // A voice without an id cannot be meant.
+            (0, EventKind::Modulate { id: Some(NoteId::new(voice_id)?), param, offset: normalized_offset })
         }
         NoteEvent::MidiChannelPressure { channel, pressure, .. } => (channel, EventKind::ChannelPressure(pressure)),
         NoteEvent::MidiPitchBend { channel, value, .. } => (channel, bend(value)),
@@ -61,7 +62,7 @@ pub(crate) fn translate(event: &NoteEvent<()>, api: PluginApi) -> Option<(u8, Ev
 /// The notes that are meant: what is not given is any. The wrapper's own fallback for a missing id is never used: it
 /// ignores ids that are there.
 fn notes(id: VoiceID, channel: Channel, key: Key) -> Notes {
-    Notes { id: id.id().filter(|id| *id >= 0), channel: channel.number(), key: key.number() }
+    Notes { id: id.id().and_then(NoteId::new), channel: channel.number(), key: key.number() }
 }
 
 fn express(notes: Notes, expression: Expression, value: f32) -> (u8, EventKind) {
@@ -90,25 +91,29 @@ mod tests {
     const ID: VoiceID = VoiceID::ID(7);
     const CHANNEL: Channel = Channel::Number(3);
     const KEY: Key = Key::Number(60);
-    const ONE: Notes = Notes { id: Some(7), channel: Some(3), key: Some(60) };
+    fn one() -> Notes {
+        Notes { id: NoteId::new(7), channel: Some(3), key: Some(60) }
+    }
 
     #[test]
     fn notes_are_translated() {
         let off = |voice_id, channel, key| NoteEvent::NoteOff { timing: 0, voice_id, channel, key, velocity: 0.5 };
         let release = |notes| Some((0, EventKind::Release { notes, velocity: 0.5 }));
         let on = |voice_id, channel, key| NoteEvent::NoteOn { timing: 0, voice_id, channel, key, velocity: 0.5 };
-        let strike = |channel, id| Some((channel, EventKind::NoteOn { key: 60, detune: 0.0, velocity: 0.5, id }));
+        let strike = |channel, id| {
+            Some((channel, EventKind::NoteOn { key: 60, detune: 0.0, velocity: 0.5, id: NoteId::new(id) }))
+        };
         let choke = NoteEvent::Choke { timing: 0, voice_id: ID, channel: CHANNEL, key: KEY };
         for (event, expected) in [
             (on(ID, CHANNEL, KEY), strike(3, 7)),
             (on(VoiceID::Wildcard, Channel::Wildcard, KEY), strike(0, -1)),
             (on(ID, CHANNEL, Key::Wildcard), None),
-            (off(ID, CHANNEL, KEY), release(ONE)),
-            (off(VoiceID::Wildcard, CHANNEL, KEY), release(Notes { id: None, ..ONE })),
+            (off(ID, CHANNEL, KEY), release(one())),
+            (off(VoiceID::Wildcard, CHANNEL, KEY), release(Notes { id: None, ..one() })),
             // VST3 hosts without note ids.
-            (off(VoiceID::ID(-1), CHANNEL, KEY), release(Notes { id: None, ..ONE })),
+            (off(VoiceID::ID(-1), CHANNEL, KEY), release(Notes { id: None, ..one() })),
             (off(VoiceID::Wildcard, Channel::Wildcard, Key::Wildcard), release(Notes::default())),
-            (choke, Some((0, EventKind::Silence { notes: ONE }))),
+            (choke, Some((0, EventKind::Silence { notes: one() }))),
         ] {
             assert_eq!(translate(&event, PluginApi::Clap), expected, "{event:?}");
         }
@@ -117,7 +122,7 @@ mod tests {
     #[test]
     fn expressions_are_translated() {
         let (timing, voice_id, channel, key) = (0, ID, CHANNEL, KEY);
-        let says = |expression| Some((0, EventKind::Express { notes: ONE, expression, value: 0.25 }));
+        let says = |expression| Some((0, EventKind::Express { notes: one(), expression, value: 0.25 }));
         for (event, in_clap, in_vst3) in [
             (
                 NoteEvent::PolyPressure { timing, voice_id, channel, key, pressure: 0.25 },
@@ -160,7 +165,7 @@ mod tests {
             poly_modulation_id,
             normalized_offset: 0.25,
         };
-        let kind = EventKind::Modulate { id: Some(7), param: Param::Decay, offset: 0.25 };
+        let kind = EventKind::Modulate { id: NoteId::new(7), param: Param::Decay, offset: 0.25 };
         assert_eq!(translate(&modulation(Param::Decay as u32), PluginApi::Clap), Some((0, kind)));
         assert_eq!(translate(&modulation(9999), PluginApi::Clap), None);
     }

@@ -218,7 +218,7 @@ impl Live {
     fn tell<P: Plugin<SysExMessage = ()>>(&mut self, frame: usize, context: &mut impl ProcessContext<P>) {
         let ended = self.synth.ended();
         for note in ended.get(self.told..).unwrap_or_default() {
-            let voice_id = if note.id >= 0 { VoiceID::ID(note.id) } else { VoiceID::Wildcard };
+            let voice_id = note.id.map_or(VoiceID::Wildcard, |id| VoiceID::ID(id.number()));
             // A host that takes no events, or no more of them, does without.
             let _ = context.try_send_event(NoteEvent::VoiceTerminated {
                 timing: frame as u32,

@@ -140,7 +140,7 @@ mod tests {
     #[test]
     fn notes_are_counted_from_the_program_change_on_that_leaves_the_preset() {
         let [preset, other] = [0.0, -3.0].map(|gain| Kit::of_patch(&Patch::default().with(Param::Gain, gain)));
-        let note = EventKind::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: -1 };
+        let note = EventKind::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: None };
         let program = EventKind::Program;
         let events = [
             (0, note),

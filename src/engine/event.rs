@@ -1,6 +1,6 @@
 //! What happens to the engine, and at which frame.
 
-use super::note::Notes;
+use super::note::{NoteId, Notes};
 use crate::params::Param;
 
 /// An event at a frame of the block that it is handed over with.
@@ -26,8 +26,8 @@ pub enum EventKind {
         detune: f32,
         /// 0–1.
         velocity: f32,
-        /// The host's identifier of this note, or −1.
-        id: i32,
+        /// The identifier that the host gives this note.
+        id: Option<NoteId>,
     },
     /// A key comes up.
     NoteOff {
@@ -35,8 +35,8 @@ pub enum EventKind {
         key: u8,
         /// 0–1; 0.5 where the controller does not tell.
         velocity: f32,
-        /// Ends the note with this identifier only, or any on the key if −1.
-        id: i32,
+        /// Ends the note with this identifier only; none for any on the key.
+        id: Option<NoteId>,
     },
     /// Pressure on one key, 0–1.
     PolyPressure {
@@ -90,7 +90,7 @@ pub enum EventKind {
     Modulate {
         /// The sounding note that is meant, which then heeds its own offset only; none for the whole instrument. A
         /// note can be modulated in the parameters that it follows while it sounds ([`crate::params::Change::Smoothed`]).
-        id: Option<i32>,
+        id: Option<NoteId>,
         /// Which.
         param: Param,
         /// Knob travel.

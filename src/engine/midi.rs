@@ -50,11 +50,11 @@ pub fn parse_message(bytes: &[u8]) -> Option<(u8, EventKind)> {
     let unit = |byte: u8| f32::from(byte) / 127.0;
     let first = data(0)?;
     let kind = match status >> 4 {
-        0x8 => EventKind::NoteOff { key: first, velocity: unit(data(1)?), id: -1 },
+        0x8 => EventKind::NoteOff { key: first, velocity: unit(data(1)?), id: None },
         0x9 => match data(1)? {
             // A note-on of velocity 0 is a note-off whose velocity the controller does not tell.
-            0 => EventKind::NoteOff { key: first, velocity: 0.5, id: -1 },
-            velocity => EventKind::NoteOn { key: first, detune: 0.0, velocity: unit(velocity), id: -1 },
+            0 => EventKind::NoteOff { key: first, velocity: 0.5, id: None },
+            velocity => EventKind::NoteOn { key: first, detune: 0.0, velocity: unit(velocity), id: None },
         },
         0xA => EventKind::PolyPressure { key: first, pressure: unit(data(1)?) },
         0xB => EventKind::Control { controller: first, value: unit(data(1)?) },
@@ -85,9 +85,9 @@ mod tests {
     fn messages_are_read_one_by_one() {
         use EventKind as E;
         for (bytes, expected) in [
-            (&[0x91, 60, 127][..], Some((1, E::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: -1 }))),
-            (&[0x9f, 60, 0], Some((15, E::NoteOff { key: 60, velocity: 0.5, id: -1 }))),
-            (&[0x80, 60, 127], Some((0, E::NoteOff { key: 60, velocity: 1.0, id: -1 }))),
+            (&[0x91, 60, 127][..], Some((1, E::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: None }))),
+            (&[0x9f, 60, 0], Some((15, E::NoteOff { key: 60, velocity: 0.5, id: None }))),
+            (&[0x80, 60, 127], Some((0, E::NoteOff { key: 60, velocity: 1.0, id: None }))),
             (&[0xa3, 1, 127], Some((3, E::PolyPressure { key: 1, pressure: 1.0 }))),
             (&[0xb3, 64, 127], Some((3, E::Control { controller: 64, value: 1.0 }))),
             (&[0xc2, 7], Some((2, E::Program(7)))),

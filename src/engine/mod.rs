@@ -23,7 +23,7 @@ mod zones;
 
 pub use ensemble::Ensemble;
 pub use event::{Event, EventKind, Expression};
-pub use note::{Note, Notes};
+pub use note::{Note, NoteId, Notes};
 pub use snapshot::Snapshot;
 pub use synth::Synth;
 pub use telemetry::{Telemetry, TelemetryWriter};

@@ -2,6 +2,22 @@
 
 use crate::sound::tuning::Pitch;
 
+/// The identifier that a host gives a note, to tell it from others on its key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct NoteId(u32);
+
+impl NoteId {
+    /// That of a number as plugin hosts count them; none for a negative one, which stands for any note. Real-time safe.
+    pub fn new(number: i32) -> Option<Self> {
+        u32::try_from(number).ok().map(Self)
+    }
+
+    /// The number that it was made from. Real-time safe.
+    pub fn number(self) -> i32 {
+        self.0 as i32
+    }
+}
+
 /// A note as the manager hands it to a voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Note {
@@ -19,8 +35,8 @@ pub struct Note {
     pub soft: bool,
     /// Brightness of the channel, −0.5 to 0.5.
     pub brightness: f32,
-    /// The host's identifier, or −1.
-    pub id: i32,
+    /// The identifier that the host has given it.
+    pub id: Option<NoteId>,
     /// Counts the notes of a synth.
     pub serial: u64,
     /// Counts the sounds that a synth has been given.
@@ -47,7 +63,7 @@ impl Note {
         velocity: 0.0,
         soft: false,
         brightness: 0.0,
-        id: -1,
+        id: None,
         serial: 0,
         patch: 0,
         body: 0,
@@ -63,7 +79,7 @@ impl Note {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Notes {
     /// The host's identifier; a note that was given none agrees with any.
-    pub id: Option<i32>,
+    pub id: Option<NoteId>,
     /// MIDI channel, 0–15.
     pub channel: Option<u8>,
     /// MIDI key, 0–127.
@@ -78,7 +94,7 @@ impl Notes {
 
     /// Whether a note is one of these. Real-time safe.
     pub(super) fn include(&self, note: &Note) -> bool {
-        self.id.is_none_or(|id| note.id == id || note.id == -1)
+        self.id.is_none_or(|id| note.id.is_none_or(|own| own == id))
             && self.channel.is_none_or(|channel| note.channel == nearest_channel(channel))
             && self.key.is_none_or(|key| note.key == nearest_key(key))
     }

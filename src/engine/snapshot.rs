@@ -51,7 +51,7 @@ mod tests {
         let patch = Patch { modes: ModeTable::new(&[Mode::UNIT, quiet]), ..Patch::default() };
         let mut ensemble = Ensemble::new(48_000.0, 0, &patch, &[]);
         assert_eq!(ensemble.snapshot(), Snapshot::default());
-        let strike = EventKind::NoteOn { key: 69, detune: 0.0, velocity: 1.0, id: -1 };
+        let strike = EventKind::NoteOn { key: 69, detune: 0.0, velocity: 1.0, id: None };
         let (mut left, mut right) = ([0.0; 27], [0.0; 27]);
         let events = [0, 3].map(|channel| Event { frame: 0, channel, kind: strike });
         ensemble.process(&events, &mut left, &mut right);

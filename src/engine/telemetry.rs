@@ -233,8 +233,8 @@ mod tests {
         let tell = |kind| writer.note_event(&Event { frame: 0, channel: 3, kind });
         [0, 63, 64, 127]
             .into_iter()
-            .for_each(|key| tell(EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 }));
-        tell(EventKind::NoteOff { key: 63, velocity: 0.5, id: -1 });
+            .for_each(|key| tell(EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None }));
+        tell(EventKind::NoteOff { key: 63, velocity: 0.5, id: None });
         assert_eq!(telemetry.keys(3), 1 | 1 << 64 | 1 << 127);
         assert_eq!((telemetry.keys(2), telemetry.program(3)), (0, None));
         for number in [7, 0, 255] {

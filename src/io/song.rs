@@ -1,6 +1,6 @@
 //! Songs: events in the order of their times, as a MIDI file or a chord of notes gives them.
 
-use crate::engine::{Event, EventKind};
+use crate::engine::{Event, EventKind, NoteId};
 
 /// An event of a song.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,7 @@ impl Song {
         };
         let event = |seconds, kind| SongEvent { seconds, channel: 0, kind };
         let (mut on, mut off) = (Vec::new(), Vec::new());
-        for (&pitch, id) in keys.iter().zip(0..) {
+        for (&pitch, id) in keys.iter().zip((0..).map(NoteId::new)) {
             let key = nearest_free(pitch);
             let detune = (pitch - f64::from(key)) as f32;
             on.push(event(0.0, EventKind::NoteOn { key, detune, velocity, id }));
@@ -82,6 +82,7 @@ mod tests {
         let expected = [(60, 0.0, 0), (69, 0.25, 1), (127, 13.5, 2), (61, -0.75, 3)];
         assert_eq!(song.events.len(), 2 * expected.len());
         for ((on, off), (key, detune, id)) in song.events[..4].iter().zip(&song.events[4..]).zip(expected) {
+            let id = NoteId::new(id);
             assert_eq!(
                 *on,
                 SongEvent { seconds: 0.0, channel: 0, kind: EventKind::NoteOn { key, detune, velocity: 0.5, id } }

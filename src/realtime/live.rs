@@ -54,7 +54,7 @@ impl LiveSender {
         for channel in 0..16 {
             while self.keys[usize::from(channel)] != 0 {
                 let key = self.keys[usize::from(channel)].trailing_zeros() as u8;
-                self.send_now(channel, EventKind::NoteOff { key, velocity: 0.5, id: -1 });
+                self.send_now(channel, EventKind::NoteOff { key, velocity: 0.5, id: None });
             }
             if self.pedals & (1 << channel) != 0 {
                 self.send_now(channel, EventKind::Control { controller: SUSTAIN, value: 0.0 });
@@ -153,8 +153,8 @@ mod tests {
     #[test]
     fn a_sender_lets_go_of_what_it_holds_and_of_nothing_else() {
         let ([mut sender], mut inputs) = LiveInputs::new();
-        let on = |key| EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 };
-        let off = |key| EventKind::NoteOff { key, velocity: 0.5, id: -1 };
+        let on = |key| EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
+        let off = |key| EventKind::NoteOff { key, velocity: 0.5, id: None };
         let pedal = |value| EventKind::Control { controller: SUSTAIN, value };
         for (channel, kind) in [(0, on(60)), (3, on(61)), (3, on(127)), (0, off(60)), (15, pedal(1.0))] {
             sender.send_now(channel, kind);

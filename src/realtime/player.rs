@@ -242,7 +242,7 @@ mod tests {
         let mut out = vec![0.0_f32; 2 * 4410];
         player.fill(&mut out, 2, at(0));
         let stamp = super::super::Stamp::System(start + Duration::from_millis(40));
-        let kind = EventKind::NoteOn { key: 69, detune: 0.0, velocity: 1.0, id: -1 };
+        let kind = EventKind::NoteOn { key: 69, detune: 0.0, velocity: 1.0, id: None };
         sender.send(super::super::LiveEvent { stamp, channel: 0, kind });
         player.fill(&mut out, 2, at(100));
         let first = out.iter().position(|sample| *sample != 0.0).unwrap() / 2;

@@ -97,8 +97,8 @@ fn dense_song() -> Song {
         let kind = match n % 8 {
             0 => EventKind::Program((n / 8 % 3) as u8),
             3 => EventKind::PitchBend((n % 5) as f32 / 5.0),
-            5 => EventKind::NoteOff { key: (40 + n * 5 % 50) as u8, velocity: 0.5, id: -1 },
-            _ => EventKind::NoteOn { key: (40 + n * 7 % 50) as u8, detune: 0.0, velocity: 0.8, id: -1 },
+            5 => EventKind::NoteOff { key: (40 + n * 5 % 50) as u8, velocity: 0.5, id: None },
+            _ => EventKind::NoteOn { key: (40 + n * 7 % 50) as u8, detune: 0.0, velocity: 0.8, id: None },
         };
         SongEvent { seconds: 0.003 * f64::from(n), channel: (n * 11 % 16) as u8, kind }
     };

@@ -7,9 +7,9 @@ pub(crate) fn event(frame: u32, kind: EventKind) -> Event {
 }
 
 pub(crate) fn on(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 })
+    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None })
 }
 
 pub(crate) fn off(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: None })
 }

@@ -1,7 +1,7 @@
 //! The golden cases: every factory preset, every song in `assets/midi`, and what the engine does beside plain notes.
 
 use crate::score::Score;
-use sprung::engine::EventKind;
+use sprung::engine::{EventKind, NoteId};
 use sprung::params::Param;
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -115,7 +115,7 @@ fn line(name: &str, patch: Patch) -> Score {
 
 /// A group that chokes across channels.
 fn choking(patch: Patch) -> Score {
-    let strike = |key: u8| EventKind::NoteOn { key, detune: 0.25, velocity: 0.8, id: i32::from(key) };
+    let strike = |key: u8| EventKind::NoteOn { key, detune: 0.25, velocity: 0.8, id: NoteId::new(key.into()) };
     Score::new("engine-choking", patch.with(Param::Decay, 2.0), 1.2)
         .then(0.0, 0, strike(60))
         .then(0.25, 9, strike(64))

@@ -68,12 +68,12 @@ impl Score {
     /// Key down on channel 0, with a velocity as MIDI counts it.
     pub(crate) fn on(self, seconds: f64, key: u8, velocity: u8) -> Self {
         let velocity = f32::from(velocity) / 127.0;
-        self.then(seconds, 0, EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 })
+        self.then(seconds, 0, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })
     }
 
     /// Key up on channel 0.
     pub(crate) fn off(self, seconds: f64, key: u8) -> Self {
-        self.then(seconds, 0, EventKind::NoteOff { key, velocity: 0.5, id: -1 })
+        self.then(seconds, 0, EventKind::NoteOff { key, velocity: 0.5, id: None })
     }
 
     /// A controller on channel 0, with a value as MIDI counts it.

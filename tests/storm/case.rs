@@ -3,7 +3,7 @@
 //! Five bytes of header, then records of five bytes each. Every string of bytes is a case, and what is left of a case
 //! when records are taken out of it is one too: that is what makes failing cases easy to shrink.
 
-use sprung::engine::{Event, EventKind, Expression, Notes};
+use sprung::engine::{Event, EventKind, Expression, NoteId, Notes};
 use sprung::params::Param;
 use sprung::patch::routes::{MAX_ROUTES, Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -207,7 +207,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Case {
                 let (count, step, interval) = (1 + u32::from(b & 31), b >> 5, 1 + u32::from(c));
                 for n in 0..count {
                     let key = a.wrapping_add(n as u8 * step);
-                    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 };
+                    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
                     events.push(Event { frame: now + n * interval, channel: 0, kind });
                 }
                 now += (count - 1) * interval;
@@ -279,10 +279,10 @@ fn setting(param: Param, high: u8, low: u8) -> f32 {
 fn event(kind: Kind, a: u8, b: u8, c: u8) -> EventKind {
     // One in 256 numbers is out of all range.
     let number = |value: f32| if c == 255 { GARBAGE[usize::from(b & 3)] } else { value };
-    let id = i32::from((c >> 4) & 3) - 1;
+    let id = NoteId::new(i32::from((c >> 4) & 3) - 1);
     let notes = match c >> 6 {
         0 => Notes::default(),
-        1 => Notes { id: Some(id), ..Notes::default() },
+        1 => Notes { id, ..Notes::default() },
         2 => Notes::on(c & 15, a),
         _ => Notes { channel: Some(c & 15), ..Notes::default() },
     };
@@ -311,7 +311,7 @@ fn event(kind: Kind, a: u8, b: u8, c: u8) -> EventKind {
         }
         Kind::Param => EventKind::Param { param: param(a), value: setting(param(a), b, c) },
         Kind::Modulate => {
-            let id = (c & 128 != 0).then_some(id);
+            let id = id.filter(|_| c & 128 != 0);
             EventKind::Modulate { id, param: param(a), offset: number(signed(b)) }
         }
         Kind::Release => EventKind::Release { notes, velocity: number(unit(b)) },

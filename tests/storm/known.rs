@@ -54,7 +54,7 @@ fn deep_vibrato_just_below_nyquist() {
     let patch = Patch::default().with(Param::Vibrato, 800.0).with(Param::VibratoRate, 20.0).with(Param::Decay, 60.0);
     let key = key_from_frequency(23_000.0, 440.0);
     let detune = (key - 127.0) as f32;
-    let note = event(0, EventKind::NoteOn { key: 127, detune, velocity: 1.0, id: -1 });
+    let note = event(0, EventKind::NoteOn { key: 127, detune, velocity: 1.0, id: None });
     stays_bounded("23 kHz", &case(patch, vec![note], 480_000), 0.5);
 }
 

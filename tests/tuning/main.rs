@@ -30,7 +30,7 @@ fn tuning(names: &str) -> Tuning {
 
 /// Notes struck together and held for as long as they are rendered: the left channel.
 fn render(tuning: &Tuning, patch: &Patch, keys: &[u8], seconds: f64) -> Vec<f32> {
-    let on = |key: &u8| EventKind::NoteOn { key: *key, detune: 0.0, velocity: 1.0, id: -1 };
+    let on = |key: &u8| EventKind::NoteOn { key: *key, detune: 0.0, velocity: 1.0, id: None };
     let events = keys.iter().map(|key| SongEvent { seconds: 0.0, channel: 0, kind: on(key) }).collect();
     let song = Song { events, seconds };
     let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 4096, tail: Tail::None };

@@ -2,7 +2,7 @@
 
 use super::{SAMPLE_RATE, cents, heard, tuning};
 use sprung::analysis::damped_sine::fit_unknown;
-use sprung::engine::{Ensemble, Event, EventKind, Synth};
+use sprung::engine::{Ensemble, Event, EventKind, NoteId, Synth};
 use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::patch::routes::Source;
@@ -11,11 +11,11 @@ use sprung::sound::Tuning;
 const FRAMES: usize = 12_000;
 
 fn on(channel: u8, key: u8, id: i32) -> Event {
-    Event { frame: 0, channel, kind: EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id } }
+    Event { frame: 0, channel, kind: EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: NoteId::new(id) } }
 }
 
 fn off(channel: u8, key: u8) -> Event {
-    Event { frame: 0, channel, kind: EventKind::NoteOff { key, velocity: 0.5, id: -1 } }
+    Event { frame: 0, channel, kind: EventKind::NoteOff { key, velocity: 0.5, id: None } }
 }
 
 /// A quarter of a second of the left channel.
@@ -84,14 +84,14 @@ fn a_note_on_an_unmapped_key_starts_nothing() {
         synth.set_tuning(&tuning("diatonic white-keys"));
         let silent = play(&mut synth, &[on(0, 61, 5)]);
         assert!(silent.iter().all(|sample| *sample == 0.0) && synth.is_silent(), "mode {mode}");
-        let ended: Vec<i32> = synth.ended().iter().map(|note| note.id).collect();
-        assert_eq!(ended, [5], "it has ended as it began");
+        let ended: Vec<Option<NoteId>> = synth.ended().iter().map(|note| note.id).collect();
+        assert_eq!(ended, [NoteId::new(5)], "it has ended as it began");
         play(&mut synth, &[off(0, 61)]);
         assert!(synth.is_silent() && synth.ended().is_empty());
 
         // Beside a note that sounds it changes nothing: it neither steals, retunes nor releases.
         assert!(cents(frequency(&play(&mut synth, &[on(0, 69, 6), on(0, 61, 7), off(0, 61)])), 440.0).abs() < 0.01);
-        assert_eq!(synth.ended().iter().map(|note| note.id).collect::<Vec<_>>(), [7]);
+        assert_eq!(synth.ended().iter().map(|note| note.id).collect::<Vec<_>>(), [NoteId::new(7)]);
     }
 }
 

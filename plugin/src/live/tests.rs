@@ -3,6 +3,7 @@
 use super::*;
 use crate::plugin::Sprung;
 use crate::state::State;
+use sprung::engine::NoteId;
 use sprung::patch::Patch;
 use sprung::preset::{Playable, Preset};
 use std::cell::Cell;
@@ -96,7 +97,7 @@ fn alone(patch: &Patch, events: &[(u32, EventKind)], frames: usize) -> [Vec<f32>
 }
 
 fn strike(key: u8, id: i32) -> EventKind {
-    EventKind::NoteOn { key, detune: 0.0, velocity: 0.8, id }
+    EventKind::NoteOn { key, detune: 0.0, velocity: 0.8, id: NoteId::new(id) }
 }
 
 #[test]
@@ -106,7 +107,7 @@ fn the_shell_has_the_bits_of_the_engine() {
     let mut live = Live::new(RATE, false, &params);
     let mut host = Host::new(&[on(100, 1, 60), on(100, 2, 67), off(2_000, 1)]);
     let (out, _) = stereo(&mut live, &params, &mut host, FRAMES);
-    let release = EventKind::NoteOff { key: 60, velocity: 0.5, id: 1 };
+    let release = EventKind::NoteOff { key: 60, velocity: 0.5, id: NoteId::new(1) };
     let expected = alone(&patch, &[(100, strike(60, 1)), (100, strike(67, 2)), (2_000, release)], FRAMES);
     assert!(expected[0].iter().any(|sample| *sample != 0.0));
     assert_eq!(out, expected);

@@ -4,7 +4,7 @@ use crate::host::reference::{At, assert_same_bits, render};
 use crate::host::{Address, Instance, Rendered, Sent, Timed};
 use crate::parameters::host_value;
 use crate::patches::load;
-use sprung::engine::EventKind;
+use sprung::engine::{EventKind, NoteId};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::Patch;
 
@@ -23,7 +23,7 @@ pub(crate) fn patch() -> Patch {
 pub(crate) fn on(frame: u64, channel: u8, key: u8, id: i32, velocity: f32) -> (Timed, At) {
     let note = Address::note(channel.into(), key.into(), id);
     let sent = Sent::On(note, velocity.into()).at(frame);
-    (sent, At(frame, channel, EventKind::NoteOn { key, detune: 0.0, velocity, id }))
+    (sent, At(frame, channel, EventKind::NoteOn { key, detune: 0.0, velocity, id: NoteId::new(id) }))
 }
 
 /// Plays a song in a host and on the engine, and compares; the sound of both.

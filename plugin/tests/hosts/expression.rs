@@ -5,7 +5,7 @@ use crate::host::reference::At;
 use crate::host::{Address, Instance, Sent};
 use crate::parameters::is_stepped;
 use clack_host::events::event_types::NoteExpressionType as Kind;
-use sprung::engine::{EventKind, Expression, Notes};
+use sprung::engine::{EventKind, Expression, NoteId, Notes};
 use sprung::params::{Change, PARAMS, Param};
 use sprung::patch::routes::Source;
 
@@ -16,7 +16,7 @@ pub(crate) fn modulation_moves_one_voice_or_all() {
         // Hosts count amounts as they count values: in steps, where there are steps.
         let travel = if is_stepped(info) { f64::from(info.max - info.min) } else { 1.0 };
         let amount = |note: i32, frame: u64, offset: f32| {
-            let kind = EventKind::Modulate { id: Some(note), param: info.param, offset };
+            let kind = EventKind::Modulate { id: NoteId::new(note), param: info.param, offset };
             (Sent::Modulate(id, Address::id(note), f64::from(offset) * travel).at(frame), At(frame, 0, kind))
         };
         let song = [
@@ -44,7 +44,10 @@ pub(crate) fn modulation_moves_one_voice_or_all() {
 
 pub(crate) fn expressions_reach_their_notes() {
     let note = |channel: u8, key: u8, id: i32| {
-        (Address::note(channel.into(), key.into(), id), Notes { id: Some(id), channel: Some(channel), key: Some(key) })
+        (
+            Address::note(channel.into(), key.into(), id),
+            Notes { id: NoteId::new(id), channel: Some(channel), key: Some(key) },
+        )
     };
     let whole = (Address::id(-1), Notes::default());
     let by_key = (Address::key(-1, 64), Notes { key: Some(64), ..Notes::default() });

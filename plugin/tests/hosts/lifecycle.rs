@@ -7,7 +7,7 @@ use clack_extensions::audio_ports_config::{AudioPortsConfigBuffer, PluginAudioPo
 use clack_extensions::render::{PluginRender, RenderMode};
 use clack_extensions::tail::TailLength;
 use clack_host::prelude::*;
-use sprung::engine::EventKind;
+use sprung::engine::{EventKind, NoteId};
 use sprung::params::Param;
 use sprung::patch::Patch;
 
@@ -18,7 +18,7 @@ const FRAMES: usize = 9_600;
 fn two_notes() -> (Vec<Timed>, Vec<At>) {
     let note = |frame: u64, key: u8, id: i32| {
         let (address, velocity) = (Address::note(0, key.into(), id), 0.7_f32);
-        let kind = EventKind::NoteOn { key, detune: 0.0, velocity, id };
+        let kind = EventKind::NoteOn { key, detune: 0.0, velocity, id: NoteId::new(id) };
         (Sent::On(address, velocity.into()).at(frame), At(frame, 0, kind))
     };
     [note(10, 57, 1), note(333, 64, 2)].into_iter().unzip()

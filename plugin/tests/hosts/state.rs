@@ -6,7 +6,7 @@ use crate::patches::{drums, load, own_part, patch_in, patches, state, state_of_k
 use crate::process::{Stops, wait_until};
 use clack_host::prelude::EventBuffer;
 use sprung::dsp::random::{key, uniform};
-use sprung::engine::EventKind;
+use sprung::engine::{EventKind, NoteId};
 use sprung::params::PARAMS;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
@@ -19,7 +19,7 @@ pub(crate) fn strike() -> (Vec<Timed>, Vec<At>) {
     let (note, velocity) = (Address::note(0, 57, 1), 0.8_f32);
     (
         vec![Sent::On(note, velocity.into()).at(3)],
-        vec![At(3, 0, EventKind::NoteOn { key: 57, detune: 0.0, velocity, id: 1 })],
+        vec![At(3, 0, EventKind::NoteOn { key: 57, detune: 0.0, velocity, id: NoteId::new(1) })],
     )
 }
 

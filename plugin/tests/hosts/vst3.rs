@@ -212,7 +212,7 @@ pub(crate) fn automation_has_the_bits_of_the_engine() {
         let question =
             json!(["automate", bundle::vst3(), "", param as usize, values, path, SAMPLE_RATE, FRAMES, audio]);
         ask("dawdreamer", &question);
-        let mut song = vec![At(3, 0, EventKind::NoteOn { key: 57, detune: 0.0, velocity: 100.0 / 127.0, id: -1 })];
+        let mut song = vec![At(3, 0, EventKind::NoteOn { key: 57, detune: 0.0, velocity: 100.0 / 127.0, id: None })];
         // What is set while nothing sounds holds at once.
         let first = info.denormalise(positions[0].into());
         let mut last = Some(first);

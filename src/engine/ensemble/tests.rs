@@ -9,12 +9,12 @@ use crate::sound::Kit;
 const FRAMES: usize = 480;
 
 fn on(channel: u8, key: u8) -> Event {
-    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: -1 };
+    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
     Event { frame: 20, channel, kind }
 }
 
 fn off(channel: u8, key: u8) -> Event {
-    Event { frame: 0, channel, kind: EventKind::NoteOff { key, velocity: 0.5, id: -1 } }
+    Event { frame: 0, channel, kind: EventKind::NoteOff { key, velocity: 0.5, id: None } }
 }
 
 /// What a synth and an ensemble make of the events, each a block of its own.

@@ -2,7 +2,7 @@
 
 use super::Synth;
 use crate::engine::event::{Event, EventKind, Expression, finite, unit};
-use crate::engine::note::{Note, Notes, nearest_channel, nearest_key};
+use crate::engine::note::{Note, NoteId, Notes, nearest_channel, nearest_key};
 use crate::engine::voice_manager::{has_room, make_room};
 use crate::params::{Change, Param};
 use crate::sound::tuning::Pitch;
@@ -31,7 +31,7 @@ impl Synth {
                 self.note_serial += 1;
             }
             EventKind::NoteOff { key, velocity, id } => {
-                self.note_off(Notes { id: (id != -1).then_some(id), ..Notes::on(channel, key) }, velocity);
+                self.note_off(Notes { id, ..Notes::on(channel, key) }, velocity);
             }
             EventKind::Release { notes, velocity } => self.note_off(notes, velocity),
             EventKind::Silence { notes } => self.manager.silence(notes),
@@ -96,12 +96,11 @@ impl Synth {
     }
 
     /// Moves a parameter of one note by an offset in knob travel.
-    fn modulate_note(&mut self, id: i32, param: Param, offset: f32) {
-        // Notes without an identifier (−1) cannot be modulated one by one.
-        if id < 0 || !matches!(param.info().change, Change::Smoothed(_)) {
+    fn modulate_note(&mut self, id: NoteId, param: Param, offset: f32) {
+        if !matches!(param.info().change, Change::Smoothed(_)) {
             return;
         }
-        for (note, voice) in self.manager.active().filter(|(note, _)| note.id == id) {
+        for (note, voice) in self.manager.active().filter(|(note, _)| note.id == Some(id)) {
             if let Some(instrument) = self.instruments.of_note(note) {
                 voice.modulate(instrument, param, offset, instrument.smoother.value_after(param, 0));
             }

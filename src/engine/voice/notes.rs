@@ -34,7 +34,7 @@ impl SynthVoice {
     /// was told fades to this one's.
     fn take_over(&mut self, note: &Note) {
         // A MIDI controller that has not let go of the key still presses it.
-        let pressure = if note.key == self.key && note.id == -1 { self.expressions.pressure } else { 0.0 };
+        let pressure = if note.key == self.key && note.id.is_none() { self.expressions.pressure } else { 0.0 };
         self.expressions.begin(note.gain, note.pan);
         self.expressions.pressure = pressure;
         self.modulation.let_go();

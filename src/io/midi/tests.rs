@@ -36,9 +36,9 @@ fn every_message_becomes_an_event() {
     let u = |value: u8| midly::num::u7::new(value);
     let bend = |value: u16| M::PitchBend { bend: PitchBend(value.into()) };
     for (message, expected) in [
-        (on(60, 127), E::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: -1 }),
-        (on(60, 0), E::NoteOff { key: 60, velocity: 0.5, id: -1 }),
-        (M::NoteOff { key: u(60), vel: u(127) }, E::NoteOff { key: 60, velocity: 1.0, id: -1 }),
+        (on(60, 127), E::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: None }),
+        (on(60, 0), E::NoteOff { key: 60, velocity: 0.5, id: None }),
+        (M::NoteOff { key: u(60), vel: u(127) }, E::NoteOff { key: 60, velocity: 1.0, id: None }),
         (M::Aftertouch { key: u(1), vel: u(127) }, E::PolyPressure { key: 1, pressure: 1.0 }),
         (M::ChannelAftertouch { vel: u(0) }, E::ChannelPressure(0.0)),
         (M::Controller { controller: u(64), value: u(127) }, E::Control { controller: 64, value: 1.0 }),

@@ -70,7 +70,7 @@ impl Keyboard {
         let key = self.lowest() + semitone;
         if key < 128 {
             let velocity = self.velocity as f32 / 127.0;
-            self.sender.send_now(channel, EventKind::NoteOn { key, detune: 0.0, velocity, id: -1 });
+            self.sender.send_now(channel, EventKind::NoteOn { key, detune: 0.0, velocity, id: None });
             self.down.push(Down { character, channel, key, until });
         }
         true
@@ -100,7 +100,7 @@ impl Keyboard {
 
     fn let_go(&mut self, over: impl Fn(&Down) -> bool) {
         for down in self.down.extract_if(.., |down| over(down)) {
-            self.sender.send_now(down.channel, EventKind::NoteOff { key: down.key, velocity: 0.5, id: -1 });
+            self.sender.send_now(down.channel, EventKind::NoteOff { key: down.key, velocity: 0.5, id: None });
         }
     }
 }

@@ -3,7 +3,7 @@
 mod fake;
 
 use super::*;
-use crate::engine::note::Notes;
+use crate::engine::note::{NoteId, Notes};
 use crate::sound::tuning::Pitch;
 use fake::{FakeInstrument, FakeVoice, Log};
 
@@ -55,7 +55,7 @@ fn play_with(
             velocity,
             soft: false,
             brightness: 0.0,
-            id: i32::from(key) + 1000,
+            id: NoteId::new(i32::from(key) + 1000),
             serial: serial as u64,
             patch,
             body: patch,
@@ -76,7 +76,7 @@ fn play_with(
             OnChokePatch(key, group, _) => _ = manager.note_on(&instrument, on(key, 1.0, group, patch)),
             OnPatch(key, _) => _ = manager.note_on(&instrument, on(key, 1.0, 0, patch)),
             Off(key) => manager.note_off(&instrument, Notes::on(0, key), 0.25),
-            OffId(key, id) => manager.note_off(&instrument, Notes { id: Some(id), ..Notes::on(0, key) }, 0.25),
+            OffId(key, id) => manager.note_off(&instrument, Notes { id: NoteId::new(id), ..Notes::on(0, key) }, 0.25),
             Sustain(down) => manager.sustain(0, down),
             Sostenuto(down) => manager.sostenuto(0, down),
             NotesOff => manager.all_notes_off(0),
