@@ -384,7 +384,7 @@ impl Synth {
         instrument.move_shared(self.clock, 0);
         if instrument.has_routes() {
             let wheels = wheels(&self.channels, &self.zones, note.channel);
-            instrument.positions = wheels.positions(note.brightness.into());
+            instrument.positions = wheels.positions(note.brightness.into(), |_| true);
         }
         note = Note {
             pitch,

@@ -34,8 +34,7 @@ pub(super) struct Link {
 }
 
 impl Link {
-    pub(super) const NONE: Self =
-        Self { place: 0, source: Source::Velocity, scale: None, response: Response::Linear };
+    pub(super) const NONE: Self = Self { place: 0, source: Source::Velocity, scale: None, response: Response::Linear };
 
     /// That of the route at a place.
     pub(super) fn new(place: usize, route: &Route) -> Self {

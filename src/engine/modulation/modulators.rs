@@ -86,7 +86,7 @@ impl Modulators {
     }
 
     /// Whether any route reads the source.
-    pub(crate) fn read(&self, source: Source) -> bool {
+    pub(crate) fn reads(&self, source: Source) -> bool {
         self.bus.reads(source)
     }
 
