@@ -3,6 +3,7 @@
 use super::gain::StereoGain;
 use super::midi::{controller, seven_bits};
 use super::modulation::Positions;
+use crate::patch::routes::Source;
 
 /// Channel controllers, in the units that voices use them in. Real-time safe.
 #[derive(Clone, Copy, Debug)]
@@ -184,16 +185,27 @@ impl Wheels<'_> {
         self.master.map_or(own, |master| (own.0 + bend(master), own.1 + tuning(master)))
     }
 
-    /// Where wheels, breath and pressure are, for the modulation of a note whose brightness is from −0.5 to 0.5.
-    pub(super) fn positions(&self, brightness: f64) -> Positions {
-        Positions {
-            pressure: self.most(|channel| channel.pressure) as f32,
-            timbre: (2.0 * brightness) as f32,
-            bend: (self.channel.bend + self.master.map_or(0.0, |master| master.bend)).clamp(-1.0, 1.0),
-            wheel: self.most(|channel| channel.wheel) as f32,
-            breath: self.most(|channel| channel.breath) as f32,
-            expression: self.channel.expression * self.master.map_or(1.0, |master| master.expression),
+    /// Where wheels, breath and pressure are, for the modulation of a note whose brightness is from −0.5 to 0.5: those that
+    /// `is_read` tells of.
+    pub(super) fn positions(&self, brightness: f64, is_read: impl Fn(Source) -> bool) -> Positions {
+        let mut positions = Positions { timbre: (2.0 * brightness) as f32, ..Positions::default() };
+        if is_read(Source::Pressure) {
+            positions.pressure = self.most(|channel| channel.pressure) as f32;
         }
+        if is_read(Source::Bend) {
+            let master = self.master.map_or(0.0, |master| master.bend);
+            positions.bend = (self.channel.bend + master).clamp(-1.0, 1.0);
+        }
+        if is_read(Source::Wheel) {
+            positions.wheel = self.most(|channel| channel.wheel) as f32;
+        }
+        if is_read(Source::Breath) {
+            positions.breath = self.most(|channel| channel.breath) as f32;
+        }
+        if is_read(Source::Expression) {
+            positions.expression = self.channel.expression * self.master.map_or(1.0, |master| master.expression);
+        }
+        positions
     }
 
     pub(super) fn gains_after(&self, frames: u32) -> (f32, f32) {

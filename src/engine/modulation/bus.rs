@@ -116,6 +116,7 @@ impl Bus {
     }
 
     /// Whether any route reads the source.
+    #[inline]
     pub(crate) fn reads(&self, source: Source) -> bool {
         self.read & bit(source) != 0
     }

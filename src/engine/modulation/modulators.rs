@@ -86,7 +86,7 @@ impl Modulators {
     }
 
     /// Whether any route reads the source.
-    pub(crate) fn read(&self, source: Source) -> bool {
+    pub(crate) fn reads(&self, source: Source) -> bool {
         self.bus.reads(source)
     }
 
@@ -269,7 +269,7 @@ impl Modulators {
 /// Sets the source that is so many after `first`, and notes whether it has changed.
 fn set_nth(sources: &mut Sources, changed: &mut u32, first: Source, nth: usize, value: f32) {
     let source = &mut sources[first as usize + nth];
-    *changed |= u32::from(*source != value) * bit(first) << nth;
+    *changed |= u32::from(*source != value) * (bit(first) << nth);
     *source = value;
 }
 

@@ -69,7 +69,7 @@ impl Synth {
         };
         note.soft = self.channels.is_soft(note.channel);
         if instrument.has_routes() {
-            instrument.positions = self.channels.wheels(note.channel).positions(note.brightness.into());
+            instrument.positions = self.channels.wheels(note.channel).positions(note.brightness.into(), |_| true);
         }
         if let Some(capacity) = self.own_pool {
             let need = self.manager.need(instrument, &note);

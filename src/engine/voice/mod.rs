@@ -89,11 +89,6 @@ impl SynthVoice {
         }
     }
 
-    /// Pressure on the note, 0–1: its own or its channel's.
-    fn pressure(&self, wheels: Wheels) -> f64 {
-        wheels.most(|channel| channel.pressure).max(self.expressions.pressure.into())
-    }
-
     /// Sets out for where pitch, decay and gain are to be in `frames` frames: at the next control tick.
     /// There is no instrument for a voice of an earlier patch, which keeps the last controls it had.
     pub(crate) fn control(&mut self, instrument: Option<&Instrument>, wheels: Wheels, frames: usize) {
@@ -167,8 +162,8 @@ impl SynthVoice {
     /// Puts the controls, which are those of `base` if that is known, where the routes want them in `frames` frames. Returns
     /// whether any has moved.
     fn move_controls(&mut self, base: Option<&Controls>, wheels: Wheels, frames: usize) -> bool {
-        let mut positions = wheels.positions(self.brightness);
-        positions.pressure = self.pressure(wheels) as f32;
+        let mut positions = wheels.positions(self.brightness, |source| self.modulators.reads(source));
+        positions.pressure = positions.pressure.max(self.expressions.pressure);
         positions.wheel = positions.wheel.max(self.expressions.vibrato);
         let (seconds, controls) = (self.clock.seconds(frames as u64), &mut self.controls);
         let (before, mut has_moved) = (controls.level_and_pan(), false);
