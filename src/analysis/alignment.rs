@@ -65,7 +65,7 @@ fn best_shift(first: &[Vec<f32>], second: &[Vec<f32>], start: usize) -> isize {
     let mut energies = vec![0.0; len + 1];
     let window = start as isize - MOST_SHIFT as isize;
     for (first, second) in first.iter().zip(second) {
-        let mut spectrum = |at: &dyn Fn(usize) -> f64| {
+        let spectrum = |at: &dyn Fn(usize) -> f64| {
             let mut input: Vec<f64> = (0..len).map(at).collect();
             let mut output = forward.make_output_vec();
             forward.process(&mut input, &mut output).expect("the buffers are the transform's own");

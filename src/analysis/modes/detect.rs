@@ -26,8 +26,6 @@ pub(super) struct Candidate {
     pub(super) pole: Pole,
     /// Energy that a mode of this pole would explain.
     pub(super) energy: f64,
-    /// How many times that is what noise brings there on average.
-    pub(super) ratio: f64,
 }
 
 /// A matched spectrum and its floor.
@@ -128,7 +126,7 @@ impl Spectra {
                 let peak = value > spectrum.energies[bin - 1] && value >= spectrum.energies[bin + 1];
                 if peak && value >= energy && value >= ratio * spectrum.floor[bin] && (low..=high).contains(&theta) {
                     let pole = Pole { decay: spectrum.decay, theta };
-                    all.push(Candidate { pole, energy: value, ratio: value / spectrum.floor[bin] });
+                    all.push(Candidate { pole, energy: value });
                 }
             }
         }
