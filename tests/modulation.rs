@@ -272,8 +272,8 @@ fn a_host_modulates_macros_and_amounts_for_single_notes() {
 #[test]
 fn what_a_host_moves_of_a_sounding_note_slides_all_the_way() {
     let routed = patch(&[(Source::Macro1, Tune, 12.5)]);
-    let note = EventKind::NoteOn { key: 57, detune: 0.0, velocity: 1.0, id: 7 };
-    let later = |param, offset| event(4_000, EventKind::Modulate { id: Some(7), param, offset });
+    let note = EventKind::NoteOn { key: 57, detune: 0.0, velocity: 1.0, id: NoteId::new(7) };
+    let later = |param, offset| event(4_000, EventKind::Modulate { id: NoteId::new(7), param, offset });
     let pitch = |patch: &Patch, later| frequency(&render(patch, 0, &[event(0, note), later], 24_000), 0.2) / 220.0;
     assert_near(pitch(&routed, later(Macro1, 1.0)), 2.0, 1e-4);
     let turned = routed.with(Macro1, 100.0).with(Route1, 0.0);

@@ -122,8 +122,8 @@ mod tests {
     #[test]
     fn different_sounds_leave_a_residual_and_silence_has_no_place() {
         let (a, b) = (noise(5000), noise(9000)[4000..].iter().map(|x| x * x).collect::<Vec<_>>());
-        assert!(align(&[a.clone()], &[b]).unwrap().residual_db > -1.0);
-        assert_eq!(align(&[a.clone()], &[vec![0.0; 10]]), None);
+        assert!(align(std::slice::from_ref(&a), &[b]).unwrap().residual_db > -1.0);
+        assert_eq!(align(std::slice::from_ref(&a), &[vec![0.0; 10]]), None);
         assert_eq!(align(&[a], &[vec![f32::NAN]]), None);
         assert_eq!(align(&[], &[]), None);
     }

@@ -90,7 +90,7 @@ mod tests {
     fn a_difference_is_in_its_octave() {
         let (a, b) = (sine(250.0, 0.5), sine(4000.0, 0.01));
         let both: Vec<f32> = a.iter().zip(&b).map(|(a, b)| a + b).collect();
-        assert_eq!(Comparison::of(&[a.clone()], &[a.clone()], 48_000.0), None);
+        assert_eq!(Comparison::of(std::slice::from_ref(&a), std::slice::from_ref(&a), 48_000.0), None);
         let found = Comparison::of(&[a], &[both], 48_000.0).unwrap();
         let loudest = found.octaves.iter().max_by(|a, b| a.difference_db.total_cmp(&b.difference_db)).unwrap();
         assert_eq!((loudest.frequency, found.octaves.len()), (4000.0, 8));

@@ -1,6 +1,6 @@
 //! Modes that several strikes have in common: what is struck, told apart from how.
 
-use super::mode::Strike;
+use super::mode::{Mode, Strike};
 
 /// A mode that was found in several strikes.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,19 +46,21 @@ pub fn common(strikes: &[Strike]) -> Vec<Common> {
             }
             members.iter().for_each(|(strike, place)| taken[*strike][*place] = true);
             let of = |(strike, place): &(usize, usize)| &strikes[*strike].modes[*place];
-            let mean = |value: &dyn Fn(&(usize, usize)) -> (f64, f64)| {
-                let (sum, weights) =
-                    members.iter().map(value).fold((0.0, 0.0), |(sum, weights), (value, deviation)| {
+            let mean = |value: fn(&Mode) -> (f64, f64)| {
+                let (sum, weights) = members.iter().map(|member| value(of(member))).fold(
+                    (0.0, 0.0),
+                    |(sum, weights), (value, deviation)| {
                         let weight = 1.0 / (deviation * deviation).max(1e-18);
                         (sum + weight * value, weights + weight)
-                    });
+                    },
+                );
                 sum / weights
             };
             let mut levels_db = vec![None; strikes.len()];
             members.iter().for_each(|member| levels_db[member.0] = Some(of(member).level_db));
             found.push(Common {
-                frequency: mean(&|member| (of(member).frequency, of(member).uncertainty.frequency)),
-                t60: mean(&|member| (of(member).t60, of(member).uncertainty.t60)),
+                frequency: mean(|mode| (mode.frequency, mode.uncertainty.frequency)),
+                t60: mean(|mode| (mode.t60, mode.uncertainty.t60)),
                 levels_db,
             });
         }

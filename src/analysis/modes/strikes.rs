@@ -49,9 +49,9 @@ pub(super) fn strikes(samples: &[f64], sample_rate: f64, longest: f64) -> Vec<St
     let stretch = |(index, onset): (usize, &usize)| {
         let start = released(samples, *onset, frames(0.001), frames(CONTACT));
         let limit = next(index).min(start + frames(longest));
-        let blocks = samples[start.min(limit)..limit].chunks(frames(BLOCK));
+        let mut blocks = samples[start.min(limit)..limit].chunks(frames(BLOCK)).enumerate();
         let above = |block: &[f64]| rms(block) > ABOVE_NOISE * floor;
-        let heard = blocks.enumerate().filter(|(_, block)| above(block)).last().map_or(0, |(block, _)| block + 1);
+        let heard = blocks.rfind(|(_, block)| above(block)).map_or(0, |(block, _)| block + 1);
         let end = (start + (heard * frames(BLOCK)).max(frames(SHORTEST))).min(limit);
         Stretch { onset: *onset, start, end }
     };
