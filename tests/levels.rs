@@ -193,7 +193,7 @@ fn reference() -> &'static [(Case, Stereo)] {
 fn differences(level: Level, found: impl Fn(&Case) -> Stereo) -> Vec<String> {
     let line = |(case, expected): &(Case, Stereo)| {
         let found = found(case);
-        let difference = diff::compare(expected, &found)?;
+        let difference = diff::compare([&expected[0], &expected[1]], [&found[0], &found[1]])?;
         Some(format!("{}: scalar and {} differ: {difference}", case.name, level.name()))
     };
     reference().iter().filter_map(line).collect()

@@ -83,11 +83,6 @@ pub(super) fn gain_db(text: &str) -> Result<f64, String> {
     number(text, &[("", 1.0), ("dB", 1.0)], -120.0..=120.0, " dB")
 }
 
-/// A level of error in dBFS.
-pub(super) fn tolerance_db(text: &str) -> Result<f64, String> {
-    number(text, &[("", 1.0), ("dB", 1.0), ("dBFS", 1.0)], -300.0..=0.0, " dBFS")
-}
-
 pub(super) fn level(text: &str) -> Result<Level, String> {
     match text.split_once('=') {
         Some(("peak", value)) => {

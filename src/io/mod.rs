@@ -1,4 +1,4 @@
-//! Files: MIDI songs and recordings in, WAV sound out, and the care with which outputs appear on disk.
+//! Files: MIDI songs in, WAV sound out, and the care with which outputs appear on disk.
 
 #[cfg(feature = "render")]
 mod bars;
@@ -13,8 +13,6 @@ mod riff;
 mod room;
 pub mod song;
 mod song_cursor;
-#[cfg(feature = "recordings")]
-pub mod sound_file;
 pub mod target;
 #[cfg(feature = "render")]
 mod tempo;

@@ -10,7 +10,6 @@ mod lab;
 mod listings;
 mod messages;
 mod outputs;
-mod recordings;
 mod songs;
 mod sound;
 mod tuning;

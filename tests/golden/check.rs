@@ -79,7 +79,7 @@ pub(crate) fn check(store: &Store, case: &Score) -> Result<(), String> {
     check_audio(store, case, &audio)?;
     for block in BLOCKS {
         let blocks = case.render(block);
-        if let Some(difference) = diff::compare(&audio, &blocks) {
+        if let Some(difference) = diff::compare([&audio[0], &audio[1]], [&blocks[0], &blocks[1]]) {
             let message = format!("{}: blocks of {block} differ from one block: {difference}", case.name);
             let folder = explain(store, case, &blocks, Some(&audio), &message);
             return Err(format!("{message}\n    see {}", folder.display()));
@@ -100,8 +100,8 @@ pub(crate) fn check_audio(store: &Store, case: &Score, audio: &Stereo) -> Result
     let accepted = Digest::parse(&text, &path.display().to_string()).map_err(|error| format!("{name}: {error}"))?;
     let kept = if case.keeps_audio { Some(read_wav(&store.audio_path(name))?) } else { None };
     let difference = kept.as_ref().and_then(|kept| {
-        // Blessing keeps the beginning alone.
-        diff::compare(&kept[..], &beginning(audio))
+        let [left, right] = beginning(audio);
+        diff::compare([&kept[0], &kept[1]], [left, right])
     });
     let drift = accepted.compare(&Digest::of(&audio[0], &audio[1], case.sample_rate));
     let message = match (difference, drift) {
