@@ -75,7 +75,7 @@ struct Saved {
 impl Default for State {
     fn default() -> Self {
         let (name, author, tags, comment) = ("Init".to_owned(), String::new(), Vec::new(), String::new());
-        let preset = Preset { name, author, tags, comment, patch: Patch::default() };
+        let preset = Preset { name, author, tags, comment, patch: Patch::default(), tuning: None };
         Self::new(Playable::Preset(preset), 0, WINDOW)
     }
 }

@@ -5,7 +5,7 @@ use super::complaints::Complaints;
 use super::migration::{self, Replaced};
 use super::value::{check_keys, param_value, table, unexpected};
 use super::{FORMAT_VERSION, Preset};
-use super::{body, routes};
+use super::{body, routes, tuning};
 use crate::error::Error;
 use crate::params::retired::RETIRED;
 use crate::params::{PARAMS, Param, Unit};
@@ -13,7 +13,7 @@ use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use std::fmt::Write;
 use toml::{Table, Value};
 
-const KEYS: [&str; 9] = ["format", "name", "author", "tags", "comment", "modes", "body", "routes", "params"];
+const KEYS: [&str; 10] = ["format", "name", "author", "tags", "comment", "modes", "body", "routes", "params", "tuning"];
 
 /// Reads as much of a preset as can be; the error is that it is none at all.
 pub(super) fn parse(
@@ -66,7 +66,8 @@ pub(super) fn read(
     if let Some(retired) = retired {
         migration::migrate(&retired, &params, &mut patch, replaced);
     }
-    Ok(Preset { name, author, tags, comment, patch })
+    let tuning = tuning::read(table, complaints);
+    Ok(Preset { name, author, tags, comment, patch, tuning })
 }
 
 fn read_params(params: &Table, patch: &mut Patch, complaints: &mut Complaints) {
@@ -157,6 +158,7 @@ pub(super) fn to_toml(preset: &Preset) -> String {
             };
         }
     }
+    out.push_str(&tuning::to_toml(preset.tuning.as_ref()));
     out
 }
 
@@ -302,7 +304,7 @@ mod tests {
             }
             routes.into_iter().enumerate().for_each(|(place, route)| patch.routes.set(place, route));
             let [name, author, tag] = <[String; 3]>::try_from(texts).unwrap();
-            let preset = Preset { name, author, tags: vec![tag], comment, patch };
+            let preset = Preset { name, author, tags: vec![tag], comment, patch, tuning: None };
             let text = preset.to_toml();
             prop_assert_eq!(read_text(&text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?, preset);
         }

@@ -2,7 +2,7 @@
 
 use super::Preset;
 use crate::sound::kit::KEYS;
-use crate::sound::{Kit, Pad, Sound};
+use crate::sound::{Kit, Pad};
 use std::sync::Arc;
 
 /// The kit format that this version reads and writes.
@@ -40,7 +40,7 @@ pub enum Playable {
 impl KitPreset {
     /// The kit to play. Allocates.
     pub fn kit(&self) -> Arc<Kit> {
-        let sounds = self.sounds.iter().map(|(_, preset)| Arc::new(Sound::new(preset.patch.clone()))).collect();
+        let sounds = self.sounds.iter().map(|(_, preset)| preset.sound()).collect();
         let mut pads = vec![None; KEYS];
         for (key, pad) in &self.pads {
             if let Some(place) = pads.get_mut(usize::from(*key)) {

@@ -11,6 +11,7 @@ mod kit_load;
 mod load;
 mod migration;
 mod routes;
+mod tuning;
 mod value;
 
 use crate::patch::Patch;
@@ -23,6 +24,7 @@ pub use kit::{KIT_VERSION, KitPreset, Playable};
 pub use kit_load::is_file_name;
 pub use load::MAX_FILE_SIZE;
 pub use migration::Replaced;
+pub use tuning::OwnTuning;
 
 /// The preset format that this version writes. It reads those before as well: 1 had no routes, and both had parameters
 /// that are retired ([`crate::params::retired`]).
@@ -41,12 +43,19 @@ pub struct Preset {
     pub comment: String,
     /// The sound.
     pub patch: Patch,
+    /// How it tunes the keys; none for the way of the whole instrument.
+    pub tuning: Option<OwnTuning>,
 }
 
 impl Preset {
+    /// The sound to play, in its own tuning. Allocates.
+    pub fn sound(&self) -> Arc<Sound> {
+        let tuning = self.tuning.as_ref().map(|own| *own.tuning());
+        Arc::new(Sound::new(self.patch.clone()).tuned(tuning))
+    }
+
     /// The kit of this sound alone, under the preset's name. Allocates.
     pub fn kit(&self) -> Arc<Kit> {
-        let sound = Arc::new(Sound::new(self.patch.clone()));
-        Arc::new(Kit::new(self.name.clone(), vec![sound], vec![Some(Pad::of(0)); KEYS]))
+        Arc::new(Kit::new(self.name.clone(), vec![self.sound()], vec![Some(Pad::of(0)); KEYS]))
     }
 }

@@ -44,6 +44,7 @@ pub(crate) fn state(patch: &Patch) -> Vec<u8> {
         tags: Vec::new(),
         comment: String::new(),
         patch: patch.clone(),
+        tuning: None,
     };
     state_of_text(&preset.to_toml())
 }
