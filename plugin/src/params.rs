@@ -47,9 +47,11 @@ impl Knob {
 
     /// How far modulation of the whole instrument turns it beyond that. Real-time safe.
     pub(crate) fn offset(&self) -> f32 {
+        // The position first: the wrapper writes it last. If it changes in between, the sum is where the knob goes.
+        let position = self.position();
         match self {
-            Self::Continuous(knob) => knob.modulated_normalized_value() - knob.unmodulated_normalized_value(),
-            Self::Stepped(knob) => knob.modulated_normalized_value() - knob.unmodulated_normalized_value(),
+            Self::Continuous(knob) => knob.modulated_normalized_value() - position,
+            Self::Stepped(knob) => knob.modulated_normalized_value() - position,
         }
     }
 
@@ -68,8 +70,8 @@ fn turn<P: Param + InternalParamMut>(knob: &P, position: f32, offset: f32)
 where
     P::Plain: PartialEq,
 {
-    // SAFETY: the methods write atomics of a parameter that is borrowed here; that they are meant for wrappers only is
-    // because the host hears nothing of it, which callers see to.
+    // SAFETY: the methods only write atomics of a parameter that is borrowed here. They are marked unsafe because they do
+    // not notify the host; callers do that where it is needed.
     unsafe {
         knob._internal_set_normalized_value(position);
         if knob.unmodulated_plain_value() != knob.preview_plain(position) {

@@ -82,7 +82,7 @@ impl Smoother {
         before.own(bus, value, self.beat_rate)
     }
 
-    /// Counts what has been set; a count of its own while the values of `frames` frames from now are not the last.
+    /// How often a parameter or the tempo has been set; none if a parameter will still be sliding `frames` frames from now.
     pub(crate) fn changes(&self, frames: u32) -> Option<u32> {
         (frames >= self.moving).then_some(self.changes)
     }

@@ -118,8 +118,8 @@ pub enum Expression {
     Pan,
     /// 0–1; acts as the channel's pressure does, where it is the greater.
     Pressure,
-    /// 0–1, neutral at 0.5: tilts the strike by up to 12 dB per octave either way; below, it also damps the higher
-    /// modes of what sounds.
+    /// 0–1, neutral at 0.5: the source `timbre` of routes. By those of a new patch it tilts the strike by up to 12 dB per
+    /// octave either way, and below 0.5 it damps the higher modes of what sounds.
     Brightness,
     /// 0–1; acts as the modulation wheel does, where it is the greater.
     Vibrato,

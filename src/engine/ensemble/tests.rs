@@ -124,6 +124,7 @@ fn keys_that_are_held_while_a_zone_is_made_are_let_go() {
     let mut ensemble = Ensemble::new(48_000.0, 0, &Patch::default().with(Param::Release, 0.01), &[]);
     let (mut left, mut right) = ([0.0; FRAMES], [0.0; FRAMES]);
     ensemble.process(&[on(5, 60)], &mut left, &mut right);
+    assert!(!ensemble.is_silent(), "it sounds");
     ensemble.process(&[data(101, 0), data(100, 6), data(6, 15)], &mut left, &mut right);
     (0..10).for_each(|_| ensemble.process(&[], &mut left, &mut right));
     assert!(ensemble.is_silent());

@@ -46,7 +46,7 @@ pub(crate) struct Modulators {
     amounts: Amounts,
     /// Sources that have changed since they were last looked at, as bits.
     changed: u32,
-    /// Everything is to be worked out anew: settings have changed since then, or what the values have been handed to.
+    /// All destinations are to be computed at the next control: settings have changed, or the controls were replaced.
     unsettled: bool,
     /// How far each destination of the bus is moved that sounding notes follow; and how far all were at the strike.
     offsets: Offsets,
@@ -178,7 +178,7 @@ impl Modulators {
         self.share(shared);
     }
 
-    /// What the next control hands values to has none of those that it was handed before.
+    /// The controls were replaced by unmoved ones: the next control writes every destination again.
     pub(crate) fn unsettle(&mut self) {
         self.unsettled = true;
     }

@@ -29,8 +29,8 @@ const POOL: Footprint = Footprint { voices: 256, cells: 256 };
 /// A synthesizer that plays one kit on sixteen channels (as MPE uses them).
 ///
 /// The same seed, kit, events and sample rate give the same bits, however the frames are divided into blocks.
-/// [`Synth::new`], [`Synth::prepare`], [`Synth::reserve`] and [`Synth::set_patch`] allocate; everything else is real-time
-/// safe.
+/// [`Synth::new`], [`Synth::prepare`], [`Synth::reserve`] and [`Synth::set_patch`] allocate; [`Synth::set_kit`] is
+/// real-time safe on the conditions that it names, and everything else always.
 pub struct Synth {
     manager: VoiceManager<SynthVoice>,
     /// The size of its own pool of voices; none for a part of an ensemble, which makes room for its notes.

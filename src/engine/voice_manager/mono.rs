@@ -9,7 +9,8 @@ use crate::params::PlayMode;
 impl<V: Voice> VoiceManager<V> {
     /// The slot of the note whose voices a monophonic one takes over.
     pub(super) fn slot_to_take_over(&self, note: &Note) -> Option<usize> {
-        // Notes after the first were started in polyphonic mode, and those with another body by another patch.
+        // There is one such slot, except after a change from polyphonic mode: then it is the first. Notes of another body
+        // cannot be taken over.
         self.slots.in_use().iter().position(|slot| slot.is_sounding() && slot.note.body == note.body)
     }
 
@@ -53,7 +54,7 @@ impl<V: Voice> VoiceManager<V> {
         slot.retune((slot.note.patch == self.patch).then_some(context), &note);
         // The voice keeps the sound that it has.
         let Note { patch, body, choke, .. } = slot.note;
-        let before = std::mem::replace(&mut slot.note, Note { patch, body, choke, ..note });
+        let before = slot.set_note(Note { patch, body, choke, ..note });
         self.retire(before);
         true
     }

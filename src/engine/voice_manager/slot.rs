@@ -104,6 +104,12 @@ impl<V: Voice> Slot<V> {
     pub(super) fn hold(&mut self, note: Note) -> Note {
         self.state = State::Held;
         self.key_down = true;
+        self.set_note(note)
+    }
+
+    /// Gives the slot another note; returns the one that it had. A sostenuto pedal holds notes of its own channel only.
+    pub(super) fn set_note(&mut self, note: Note) -> Note {
+        self.sostenuto &= note.channel == self.note.channel;
         std::mem::replace(&mut self.note, note)
     }
 
