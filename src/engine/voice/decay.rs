@@ -59,6 +59,11 @@ impl Decay {
         (self.released, self.settled) = (!self.rings_on, false);
     }
 
+    /// The controls have moved since the bank was given their decay: the next control looks at them again.
+    pub(super) fn unsettle(&mut self) {
+        self.settled = false;
+    }
+
     /// Sets the T60s of the bank if they have changed; `is_new` says whether the controls may have. A voice of the present
     /// patch has its `modes` to tilt anew. Returns whether anything has changed.
     pub(super) fn control(

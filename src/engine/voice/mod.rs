@@ -132,7 +132,9 @@ impl SynthVoice {
             self.bank.jump_to(self.pitch.aim(&self.controls, &bends, &self.clock, 0));
             if !self.modulators.are_idle() {
                 start = Some([self.controls.gain_left, self.controls.gain_right]);
-                self.move_controls(base, wheels, frames);
+                if self.move_controls(base, wheels, frames) {
+                    self.decay.unsettle();
+                }
             }
         }
         self.pitch.aim(&self.controls, &bends, &self.clock, frames);
