@@ -1,8 +1,8 @@
-//! Banks of masses at work on every level of vector instructions, beside a plain loop over an array of oscillators.
+//! Banks of masses on every level of vector instructions, compared with a plain loop over an array of oscillators.
 //!
-//! Elements are modes × frames. `plain loop` is what the ratios in `benches/README.md` refer to. Ringing banks are
-//! rendered by tables, modulated and driven ones step by step. A call has a block of frames; banks are of 64 modes
-//! at most, one after the other.
+//! Elements are modes × frames. The ratios in `benches/README.md` are relative to `plain loop`. Ringing banks are
+//! rendered by tables, modulated and driven banks step by step. A call renders a block of frames. Banks have at most 64
+//! modes; larger numbers are several banks, rendered one after the other.
 
 mod struck;
 
@@ -16,7 +16,7 @@ fn levels() -> impl Iterator<Item = Level> {
     Level::ALL.into_iter().filter(|level| level.force())
 }
 
-/// An array of structs, stepped sample by sample: what one writes first.
+/// An array of structs, stepped sample by sample: the simplest implementation.
 fn plain_loop(criterion: &mut Criterion) {
     const MODES: usize = 1024;
     const FRAMES: usize = 64;
@@ -58,7 +58,7 @@ fn banks(criterion: &mut Criterion) {
     }
 }
 
-/// What happens now and then, per mode.
+/// Operations at control ticks, per mode.
 fn control(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("control");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(MAX_MODES as u64));
@@ -74,7 +74,7 @@ fn control(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Many short samples: what other work on the machine spoils is told from the fastest.
+/// Many short samples, so that the fastest is not disturbed by other work on the machine.
 fn quick() -> Criterion {
     let short = Duration::from_millis(150);
     Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(2000)

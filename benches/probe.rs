@@ -1,6 +1,6 @@
-//! What the machine can do: its clock, and fused multiplications and additions a second, on one core.
+//! The speed of the machine: its clock, and fused multiply-adds per second, on one core.
 //!
-//! Elements of `clock` are cycles, those of the others are scalar `a·b + c`. To be read beside every other figure.
+//! Elements of `clock` are cycles, those of the others are scalar `a·b + c`. Read these next to every other figure.
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
@@ -8,7 +8,7 @@ use std::time::Duration;
 
 const STEPS: u64 = 4096;
 
-/// An exclusive or and a multiplication that wait for each other: four cycles on Intel's and AMD's cores since 2013.
+/// An exclusive or and a multiplication, each waiting for the other: four cycles on Intel and AMD cores since 2013.
 fn clock(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("probe");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(4 * STEPS));
@@ -19,7 +19,7 @@ fn clock(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Twelve sums side by side: more than two units of four cycles' latency can have under way.
+/// Twelve independent sums: more than two units with a latency of four cycles can process at once.
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use std::arch::x86_64::{_mm256_fmadd_ps, _mm256_set1_ps, _mm512_fmadd_ps, _mm512_set1_ps};
@@ -62,7 +62,7 @@ fn fused(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The levels above are x86's; of other CPUs, only the clock is told.
+/// The levels above are those of x86; on other CPUs only the clock is measured.
 #[cfg(not(target_arch = "x86_64"))]
 fn fused(_: &mut Criterion) {}
 

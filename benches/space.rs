@@ -1,6 +1,7 @@
-//! A plate reverb with every one of its modes beside the driven mode bank, in one run.
+//! A plate reverb with all of its modes, compared with the driven mode bank in the same run.
 //!
-//! On every level of vector instructions. Elements are modes × frames of the plate and of the bank alike; `silence` is a whole block of a reverb that sleeps.
+//! On every level of vector instructions. Elements are modes × frames, for plate and bank alike; `silence` is a whole
+//! block of a reverb that is idle.
 
 #[allow(dead_code, reason = "shared with other benches")]
 mod struck;
@@ -56,7 +57,7 @@ fn plate_beside_bank(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Per frame, in stereo.
+/// The cost per frame, in stereo.
 fn effects(criterion: &mut Criterion) {
     let input = noise();
     let mut group = criterion.benchmark_group("effects");
@@ -93,7 +94,7 @@ fn effects(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Many short samples: what other work on the machine spoils is told from the fastest.
+/// Many short samples, so that the fastest is not disturbed by other work on the machine.
 fn quick() -> Criterion {
     let short = Duration::from_millis(150);
     Criterion::default().warm_up_time(short / 3).measurement_time(short).sample_size(20).nresamples(2000)

@@ -1,6 +1,6 @@
 //! The one error type: every message says what is wrong, where, and what would be right.
 
-/// Everything that can go wrong outside the audio thread. The audio path itself has no errors: it cannot fail.
+/// Everything that can fail outside the audio thread. The audio path itself cannot fail.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -9,10 +9,10 @@ pub enum Error {
     Io {
         /// The file, or `stdout`/`stdin`.
         path: String,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// The file exists and was not to be overwritten.
+    /// The file exists and must not be overwritten.
     #[error("{path}: the file exists; add --force to overwrite it")]
     Exists {
         /// The file.
@@ -59,8 +59,8 @@ impl Error {
 /// A result with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// The candidates that `word` was most likely meant to be, in quotes and joined by “or”: those of which it is a whole
-/// word, or else those that are the fewest edits away. None if all are too far.
+/// The candidates most similar to `word`, in quotes and joined by “or”: those that contain it as a whole word, or else
+/// those with the fewest edits. `None` if all are too different.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let word = word.trim().to_lowercase();
     let scored: Vec<_> = candidates.into_iter().map(|candidate| (similarity(&word, candidate), candidate)).collect();
@@ -69,12 +69,13 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     Some(found.map(|(_, candidate)| format!("‘{candidate}’")).collect::<Vec<_>>().join(" or "))
 }
 
-/// Candidates less like the word than this are not worth naming.
+/// Minimum similarity of a suggested candidate.
 const LEAST_SIMILARITY: f64 = 0.55;
 
 const MOST_SUGGESTIONS: usize = 3;
 
-/// 0–1, by edits between the two as a whole, or, counting a little less, between `word` and one word of the candidate.
+/// Similarity from 0 to 1, by the edits between the two texts. The edits between `word` and one word of the candidate
+/// also count, with slightly less weight.
 fn similarity(word: &str, candidate: &str) -> f64 {
     let candidate = candidate.to_lowercase();
     let parts = candidate.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());

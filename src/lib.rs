@@ -9,8 +9,9 @@
 //! | [`params`], [`patch`], [`preset`] | what can be set, a set of values, and its file |
 //! | [`sound`] | what the keys play: their tuning, also by Scala's files |
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
-//! | [`io`] | songs, and files that are written whole or not at all; MIDI files in and WAV files out (feature `render`) |
+//! | [`io`] | songs, and files that are written whole or not at all; MIDI files in and WAV files out (feature `render`), sound files in (features `recordings` and `codecs`) |
 //! | `render` | the offline renderer (feature `render`) |
+//! | `analysis` | what sound is measured with: the modes of a recorded strike, differences, spectra (feature `analysis`) |
 //! | `lab` | ways to integrate a mass on a spring, side by side: what the oscillator is measured against (feature `lab`) |
 //! | `realtime` | sound devices, MIDI ports and a terminal to play from (feature `realtime`) |
 //!

@@ -1,8 +1,8 @@
-//! Text from outside (files, names, devices) as a terminal may safely show it.
+//! Makes text from outside (files, names, devices) safe to show in a terminal.
 
 use std::borrow::Cow;
 
-/// The text with everything that could steer a terminal or reorder what is read there written as `\u001b`: control
+/// Replaces every character that could control a terminal or reorder the text by its code, such as `\u001b`: control
 /// characters (line ends and tabs included), bidirectional formatting, and the line and paragraph separators.
 ///
 /// This is also how TOML and JSON write these characters between double quotes.
@@ -10,7 +10,7 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     escape(text, is_printable)
 }
 
-/// [`printable`] for several lines: line ends (`\n`) and tabs stay.
+/// [`printable`] for several lines: keeps line ends (`\n`) and tabs.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escape(text, |character| matches!(character, '\n' | '\t') || is_printable(character))
 }
@@ -24,14 +24,15 @@ fn escape(text: &str, stays: impl Fn(char) -> bool) -> Cow<'_, str> {
         if stays(character) {
             escaped.push(character);
         } else {
-            // Four digits are enough: those that are not printable lie within the first 65,536 characters.
+            // Four digits are enough: all unprintable characters are below 65,536.
             escaped += &format!("\\u{:04x}", u32::from(character));
         }
     }
     Cow::Owned(escaped)
 }
 
-/// Bidirectional formatting: Unicode Standard Annex #9, 2. "Directional Formatting Characters".
+/// Whether a character is safe to print. Bidirectional formatting: Unicode Standard Annex #9, 2. "Directional
+/// Formatting Characters".
 fn is_printable(character: char) -> bool {
     let reorders = matches!(
         character,

@@ -2,7 +2,7 @@
 
 use libm::{exp2, log2, log10, pow};
 
-/// MIDI key of A4, the note that the tuning frequency belongs to.
+/// MIDI key of A4, the note whose frequency sets the tuning.
 pub const A4_KEY: f64 = 69.0;
 
 /// Amplitude ratio of a level in decibels. 0 dB is exactly 1.
@@ -42,7 +42,7 @@ pub fn note_name(key: u8) -> String {
     format!("{}{}", NOTE_NAMES[usize::from(key % 12)], i32::from(key / 12) - 1)
 }
 
-/// MIDI key of a note name (`C#4`, `Db4`, `a0`, `C-1`), or `None` if it is not one or outside 0–127.
+/// MIDI key of a note name (`C#4`, `Db4`, `a0`, `C-1`); `None` if it is not a note name or outside 0–127.
 pub fn key_from_note_name(name: &str) -> Option<u8> {
     let mut characters = name.trim().chars();
     let letter = characters.next()?.to_ascii_uppercase();
@@ -58,12 +58,12 @@ pub fn key_from_note_name(name: &str) -> Option<u8> {
     u8::try_from(key).ok().filter(|key| *key < 128)
 }
 
-/// One channel of two: their mean. Real-time safe.
+/// Mixes two channels to one: their mean. Real-time safe.
 pub fn mono_from_stereo(left: f32, right: f32) -> f32 {
     0.5 * (left + right)
 }
 
-/// A fractional MIDI key from what a person writes: `C#4`, `60`, `60.5`, `440Hz`. `a4_hz` places frequencies.
+/// A fractional MIDI key from text: `C#4`, `60`, `60.5`, `440Hz`. `a4_hz` is used to convert frequencies.
 pub fn parse_key(text: &str, a4_hz: f64) -> Result<f64, String> {
     let expected = "expected a note name (C#4), a key from 0 to 127 (60, 60.5) or a frequency (440Hz)";
     let key = if let Some(key) = key_from_note_name(text) {
@@ -78,7 +78,7 @@ pub fn parse_key(text: &str, a4_hz: f64) -> Result<f64, String> {
             _ => return Err(format!("‘{text}’ is not a note: {expected}")),
         }
     };
-    // A frequency may lie beyond the keyboard, down to the subsonic and up to any Nyquist limit; keys may not.
+    // A frequency may be outside the keyboard, from subsonic frequencies up to any Nyquist limit; a key may not.
     let is_frequency = text.to_ascii_lowercase().contains("hz");
     let range = if is_frequency { -60.0..=200.0 } else { 0.0..=127.0 };
     if range.contains(&key) {
@@ -89,7 +89,7 @@ pub fn parse_key(text: &str, a4_hz: f64) -> Result<f64, String> {
     Err(format!("note ‘{text}’ is out of range: {expected}{hint}"))
 }
 
-/// What `text` is with a decimal point, if it is a quantity with a decimal comma: `"0,5 s"` gives `"0.5 s"`.
+/// If `text` is a quantity with a decimal comma, the same with a decimal point: `"0,5 s"` gives `"0.5 s"`.
 pub fn with_decimal_point(text: &str) -> Option<String> {
     let (whole, rest) = text.split_once(',')?;
     let between_digits =
@@ -99,7 +99,7 @@ pub fn with_decimal_point(text: &str) -> Option<String> {
     (between_digits && !unit.contains([',', '='])).then_some(written)
 }
 
-/// Splits `"-12 dB"` into `(-12.0, "dB")`; `None` if it does not begin with a finite number.
+/// Splits `"-12 dB"` into `(-12.0, "dB")`; `None` if the text does not begin with a finite number.
 pub fn split_quantity(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     let end = text

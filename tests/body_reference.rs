@@ -1,10 +1,10 @@
-//! Bodies against independent numbers: SciPy's, made by `bodies/scipy_reference.py`.
+//! Compares bodies with independent numbers from SciPy, made by `bodies/scipy_reference.py`.
 
 use sprung::sound::bodies::{Body, FIELDS, Model};
 
 const NUMBERS: &str = include_str!("bodies/scipy_reference.csv");
 
-/// One line: a mode of a body with these numbers set.
+/// One line: a mode of a body with these values.
 struct Line {
     model: String,
     set: String,
@@ -52,11 +52,12 @@ fn bodies_agree_with_scipy() {
             if (mode.ratio / line.ratio - 1.0).abs() > line.tolerance {
                 breaches.push(format!("{name}: ratio {} for {}", mode.ratio, line.ratio));
             }
-            // A tenth of a decibel, and near nodes a little of the greatest levels, which are about 2.
+            // A tenth of a decibel; near nodes, a small share of the largest levels, which are about 2.
             if (mode.level - line.product).abs() > 0.0115 * line.product.abs() + 1e-5 {
                 breaches.push(format!("{name}: level {} for {}", mode.level, line.product));
             }
-            // The T60 is a function of the frequency, so it is as near as that is; what is printed in tables has four digits.
+            // The T60 is a function of the frequency, so its error is similar; the numbers in the tables have four
+            // digits.
             if (mode.t60 / line.t60 - 1.0).abs() > 3e-4 + line.tolerance {
                 breaches.push(format!("{name}: {} s for {} s", mode.t60, line.t60));
             }
@@ -67,7 +68,7 @@ fn bodies_agree_with_scipy() {
 
 #[test]
 fn every_model_with_a_law_of_its_own_is_among_them() {
-    // A mass has one mode; beds are random, and tested where they are made.
+    // A mass has only one mode. Beds are random and have their own tests.
     let without = ["mass", "shell", "box", "wires", "wash", "air"];
     for (id, _) in Model::ALL.iter().filter(|(id, _)| !without.contains(id)) {
         assert!(NUMBERS.lines().any(|line| line.split(',').next() == Some(*id)), "{id}");

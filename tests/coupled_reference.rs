@@ -1,11 +1,11 @@
-//! Joined bodies against a dense eigenproblem: SciPy's numbers, made by `coupled/scipy_reference.py`.
+//! Compares joined bodies with a dense eigenproblem solved by SciPy, made by `coupled/scipy_reference.py`.
 
 use sprung::sound::coupled::{BodyMode, CoupledMode, Joint, joined};
 use std::collections::BTreeMap;
 
 const NUMBERS: &str = include_str!("coupled/scipy_reference.csv");
 
-/// SplitMix64, as the script has it.
+/// SplitMix64, as in the script.
 struct Chance(u64);
 
 impl Chance {
@@ -26,7 +26,7 @@ impl Chance {
     }
 }
 
-/// The bodies and the joint of a case: what the script's `pair` makes, in its order.
+/// The bodies and the joint of a case, created in the same order as by `pair` in the script.
 fn pair(case: u64) -> ([Vec<BodyMode>; 2], Joint) {
     let mut chance = Chance(case);
     let mut size = || {
@@ -61,7 +61,7 @@ fn pair(case: u64) -> ([Vec<BodyMode>; 2], Joint) {
     (bodies, if rigid { Joint::Rigid } else { Joint::Spring { stiffness, damping } })
 }
 
-/// Frequency, rate, cosine and sine of the velocity heard, and how many poles there are.
+/// Frequency, rate, cosine and sine of the velocity that is heard, and the number of poles.
 type Line = ([f64; 4], usize);
 
 fn cases() -> BTreeMap<u64, Vec<Line>> {

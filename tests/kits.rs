@@ -1,4 +1,4 @@
-//! Kits: keys that play sounds of their own, choke each other, and are exchanged while they ring.
+//! Kits: keys that play sounds of their own, choke each other, and are replaced while they ring.
 
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::error::Error;
@@ -48,7 +48,7 @@ fn kit(patches: &[Patch], pads: Vec<Option<Pad>>) -> Arc<Kit> {
     Arc::new(Kit::new("kit".to_owned(), sounds, pads))
 }
 
-/// A pad on each of some keys.
+/// A kit's pads with these pads on these keys.
 fn on_keys(pads: &[(usize, Pad)]) -> Vec<Option<Pad>> {
     (0..KEYS).map(|key| pads.iter().find(|(of, _)| *of == key).map(|(_, pad)| pad.clone())).collect()
 }
@@ -106,7 +106,7 @@ fn a_kit_of_one_is_its_patch_bit_for_bit() {
         let expected = play(&mut by_patch, &events, 4800);
         let single = kit(std::slice::from_ref(&patch), vec![Some(Pad::of(0)); KEYS]);
         assert!(sounds(&expected) && play(&mut synth(&single), &events, 4800) == expected, "{name}");
-        // A second sound changes nothing as long as parameters stay.
+        // A second sound changes nothing as long as the parameters are the same.
         let poly = patch.with(Param::Mode, 0.0).with(Param::Voices, 64.0);
         let plain: Vec<Event> = events.iter().copied().filter(|event| !is_param(event)).collect();
         let several = kit(&[poly.clone(), factory("Gong")], vec![Some(Pad::of(0)); KEYS]);
@@ -138,7 +138,7 @@ fn a_parameter_moves_each_sound_by_the_same_knob_travel() {
         let mut alone = synth(&Kit::of_patch(patch));
         play(&mut alone, &[on(0, key, 1.0), event(0, EventKind::Silence { notes: Default::default() })], 14_400 + 960);
         let [mut back, mut expected] = [&mut kit, &mut alone].map(|synth| play(synth, &[on(0, key, 1.0)], 960));
-        // The seed's next notes have other noise, so only what is not random is compared: the level.
+        // Later notes of the seed have different noise, so only the level is compared, which is not random.
         let peak = |sides: &mut Sides| sides[0].iter().map(|bits| f32::from_bits(*bits).abs()).fold(0.0, f32::max);
         let (back, expected) = (peak(&mut back), peak(&mut expected));
         assert!((back / expected - 1.0).abs() < 0.05, "key {key}: {back} {expected}");
@@ -230,7 +230,7 @@ fn pads_of_a_group_choke_each_other_across_keys_sounds_and_channels() {
     }
 }
 
-/// Notes on several keys and channels, all of which ring on.
+/// Notes on several keys and channels that ring on for long.
 fn chord() -> Vec<Event> {
     (0..12).map(|n| Event { channel: (n % 3) as u8, ..on(10 + 20 * n, 40 + 5 * n as u8, 0.8) }).collect()
 }
@@ -263,7 +263,7 @@ fn what_rings_is_not_touched_by_another_kit() {
                 ..event(n * 31, EventKind::Program((number + (n % 2) as u8) % 3))
             })
             .collect();
-        // The same bits: nothing is retuned, and nothing clicks.
+        // The same bits: nothing is retuned and nothing clicks.
         assert!(render(&changes) == untouched, "to {}", program.name());
     }
 }

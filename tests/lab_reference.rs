@@ -1,11 +1,11 @@
-//! The lab's true motions against an independent integrator's: SciPy's numbers, made by `lab/scipy_reference.py`.
+//! Compares the lab's true motions with SciPy's independent integrator; numbers from `lab/scipy_reference.py`.
 
 use sprung::lab::system::{Force, Spring, State, System};
 use sprung::lab::{closed_form::ClosedForm, reference};
 
 const NUMBERS: &str = include_str!("lab/scipy_reference.csv");
 
-/// One line: the case, its start, and where SciPy says it is at a time.
+/// One line: the case, its initial state, and SciPy's state at a time.
 struct Line {
     name: String,
     system: System,

@@ -1,6 +1,6 @@
-//! The lab's pages in headless Chromium: toggles by mouse and keyboard, light and dark, offline, without an error.
+//! The lab's pages in headless Chromium: switches by mouse and keyboard, light and dark, offline, without errors.
 //!
-//! Where no Chromium is installed, the tests count as ignored.
+//! If Chromium is not installed, the tests are reported as ignored.
 
 #[path = "lab/browser.rs"]
 mod browser;
@@ -32,7 +32,7 @@ fn main() -> ExitCode {
     libtest_mimic::run(&arguments, trials).exit_code()
 }
 
-/// A page that `sprung lab` writes, in a directory that goes with it.
+/// A page written by `sprung lab`, in a directory that is removed afterwards.
 fn written(command: &str, name: &str) -> (tempfile::TempDir, PathBuf) {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join(name);
@@ -72,7 +72,7 @@ fn a_click_on_a_toggle_changes_the_charts(program: &Path) {
 fn the_keyboard_reaches_every_control(program: &Path) {
     let (_directory, mut page) = report(program);
     let mut reached = Vec::new();
-    // Once round: the slider of the time is the last.
+    // Once around: the time slider is the last element.
     while reached.last().is_none_or(|name| name != "time") && reached.len() < 40 {
         page.press(Key::Tab);
         let focused = page.value("(e => e === document.body ? '' : e.id || e.value)(document.activeElement)");
@@ -95,8 +95,8 @@ fn the_keyboard_reaches_every_control(program: &Path) {
     assert_eq!(page.errors, Vec::<String>::new());
 }
 
-/// Contrast ratios of WCAG 2.2 between each colour and the page's: at least 4.5 for text, 2.5 for lines, which differ
-/// in dashes and have labels as well.
+/// Contrast ratios by WCAG 2.2 between each colour and the page's background: at least 4.5 for text, 2.5 for lines,
+/// which also differ by dashes and have labels.
 const CONTRASTS: &str = "(() => {
   const rgb = (text) => text.match(/[\\d.]+/g).slice(0, 3).map(Number);
   const light = (text) => rgb(text).map((c) => c / 255)

@@ -1,21 +1,21 @@
-//! What an ensemble holds in memory.
+//! Memory use of an ensemble.
 
 use sprung::engine::{Ensemble, Synth};
 use sprung::patch::Patch;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Counts the bytes that are allocated.
+/// An allocator that counts the allocated bytes.
 struct Counting;
 
 static HELD: AtomicUsize = AtomicUsize::new(0);
 
-// SAFETY: everything is the system's allocator's; the counter is beside it.
+// SAFETY: all calls go to the system's allocator; only the counter is added.
 #[allow(unsafe_code)]
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         HELD.fetch_add(layout.size(), Relaxed);
-        // SAFETY: the caller's promises are those that it asks for.
+        // SAFETY: the caller fulfils the conditions of the system's allocator.
         unsafe { System.alloc(layout) }
     }
 
@@ -29,7 +29,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Bytes that are held while `made` lives.
+/// Bytes that are allocated while the result of `made` lives.
 fn held<T>(made: impl FnOnce() -> T) -> usize {
     let before = HELD.load(Relaxed);
     let made = made();
@@ -38,7 +38,7 @@ fn held<T>(made: impl FnOnce() -> T) -> usize {
     held
 }
 
-/// One test, so that no other allocates beside it.
+/// Only one test in this program, so that no other allocates at the same time.
 #[test]
 fn an_ensemble_takes_less_than_16_megabytes() {
     let patch = Patch::default();

@@ -1,6 +1,6 @@
-//! Decay and tuning do not depend on how the pitch moves.
+//! Decay and tuning are independent of how the pitch moves.
 //!
-//! One mass is measured on rendered audio before it bends, glides or vibrates, and after it has come back.
+//! One mass is measured on rendered audio before it bends, glides or vibrates, and after it has returned.
 
 use sprung::analysis::damped_sine::{DampedSine, fit};
 use sprung::engine::{Event, EventKind, Synth};
@@ -9,23 +9,23 @@ use sprung::patch::Patch;
 use sprung::units::{key_from_frequency, ratio_from_semitones};
 use std::f64::consts::TAU;
 
-/// −60 dB as an exponent.
+/// ln 1000: −60 dB as an exponent.
 const LN_60_DB: f64 = 6.907_755_278_982_137;
-/// Frames of a control tick: pitch bends are sent as often as pitch is followed.
+/// Frames of a control tick: pitch bends are sent as often as the engine reads the pitch.
 const TICK: usize = 32;
 const RATES: [f64; 5] = [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0];
 const T60S: [f64; 3] = [0.3, 1.0, 5.0];
-/// The fastest, in octaves a second: an octave in 20 ms.
+/// The fastest movement, in octaves per second: an octave in 20 ms.
 const FASTEST: f64 = 50.0;
 
-/// What a note does between two stretches at rest.
+/// The movement of a note between two stretches of constant pitch.
 struct Motion {
     name: String,
     patch: Patch,
-    /// Frames are counted from the start of the motion.
+    /// Frames are relative to the start of the motion.
     events: Vec<Event>,
     frames: usize,
-    /// Mean of the pitch ratio over the motion, if it is known.
+    /// Mean pitch ratio over the motion, if it is known.
     mean_ratio: Option<f64>,
 }
 
@@ -38,7 +38,7 @@ fn on(frame: usize, key: f64) -> Event {
     event(frame, EventKind::NoteOn { key: nearest as u8, detune: (key - nearest) as f32, velocity: 1.0, id: None })
 }
 
-/// Bends up, down and back in straight lines of pitch, by two octaves each way or as far as there is time for.
+/// Bends up, down and back, linearly in pitch, by two octaves each way or as far as time allows.
 fn bends(sample_rate: f64, t60: f64, octaves_per_second: f64, every: usize) -> Motion {
     let seconds = (0.5 * t60).max(8.0 / FASTEST);
     let depth = (octaves_per_second * seconds / 4.0).min(2.0);
@@ -60,15 +60,15 @@ fn bends(sample_rate: f64, t60: f64, octaves_per_second: f64, every: usize) -> M
         patch: Patch::default().with(Param::BendRange, 24.0),
         events,
         frames: frames + every,
-        // A bend every few ticks is a staircase, of another mean.
+        // A bend every few ticks is a staircase, which has another mean.
         mean_ratio: (every <= TICK).then(|| (mean * frames as f64 + every as f64) / (frames + every) as f64),
     }
 }
 
-/// Vibrato that comes and goes where its sine is zero.
+/// Vibrato that starts and stops where its sine is zero.
 fn vibrato(sample_rate: f64, t60: f64, cents: f64, rate: f64, rest: usize) -> Motion {
     let rate = f64::from(rate as f32);
-    // The note has rested for `rest` frames.
+    // The note has had a constant pitch for `rest` frames.
     let until_zero = |frame: f64| libm::ceil(frame * rate / sample_rate) * sample_rate / rate;
     let start = until_zero(rest as f64) as usize - rest;
     let cycles = libm::ceil((0.5 * t60).max(0.15) * rate);
@@ -78,13 +78,13 @@ fn vibrato(sample_rate: f64, t60: f64, cents: f64, rate: f64, rest: usize) -> Mo
         name: format!("vibrato of ±{cents} cents at {rate} Hz"),
         patch: Patch::default().with(Param::VibratoRate, rate as f32),
         events: vec![depth(start, cents), depth(end, 0.0)],
-        // Parameters slide for 20 ms.
+        // Parameters are smoothed over 20 ms.
         frames: end + (0.02 * sample_rate) as usize + TICK,
         mean_ratio: None,
     }
 }
 
-/// A legato note, two octaves up or down, and back to the first.
+/// A legato note two octaves up or down, then back to the first.
 fn glides(sample_rate: f64, t60: f64, key: f64, octaves: f64) -> Motion {
     let seconds = (0.25 * t60).max(2.0 / FASTEST) as f32;
     let way = libm::ceil(f64::from(seconds) * sample_rate) as usize + TICK;
@@ -99,14 +99,14 @@ fn glides(sample_rate: f64, t60: f64, key: f64, octaves: f64) -> Motion {
     }
 }
 
-/// A struck mass that rests, moves and rests again.
+/// A struck mass: constant pitch, motion, constant pitch.
 struct Note {
     sample_rate: f64,
     frequency: f64,
     t60: f64,
 }
 
-/// What is measured.
+/// The results of the measurement.
 struct Measured {
     after: DampedSine,
     /// T60 over the motion.
@@ -116,7 +116,7 @@ struct Measured {
 }
 
 impl Note {
-    /// Frames of a stretch at rest: enough cycles, and enough of the decay.
+    /// Frames of a stretch of constant pitch: enough cycles, and enough decay.
     fn rest(&self) -> usize {
         let seconds = (0.1 * self.t60).max(4.0 / self.frequency).min(0.3);
         (seconds * self.sample_rate) as usize / TICK * TICK
@@ -128,7 +128,7 @@ impl Note {
         synth.set_patch(&motion.patch.clone().with(Param::Decay, self.t60 as f32));
         let mut events = vec![on(0, key_from_frequency(self.frequency, 440.0))];
         events.extend(motion.events.iter().map(|event| Event { frame: event.frame + rest as u32, ..*event }));
-        // Lines end at the tick after next.
+        // A line of pitch ends at the second tick after its start.
         let back = rest + motion.frames.next_multiple_of(TICK) + 2 * TICK;
         let (mut left, mut right) = (vec![0.0; back + rest], vec![0.0; back + rest]);
         synth.process(&events, &mut left, &mut right);
@@ -140,7 +140,7 @@ impl Note {
         let amplitude = before.amplitude * libm::exp(-fall(rest as f64 / self.sample_rate, before.t60));
         let t60 = LN_60_DB * seconds / libm::log(amplitude / after.amplitude);
 
-        // Cycles from the end of the first stretch to the start of the second: whole ones by counting.
+        // Cycles from the end of the first stretch to the start of the second. The whole cycles come from counting.
         let phase = |cycles: f64| cycles - libm::floor(cycles);
         let start = before.frequency * rest as f64 / self.sample_rate + before.phase / TAU;
         let crossings = left[rest - 1..=back].windows(2).skip(1).filter(|pair| pair[0] < 0.0 && pair[1] >= 0.0).count();
@@ -167,16 +167,16 @@ fn t60_and_tuning_are_the_same_however_the_pitch_moves() {
                 let rest = note.rest();
                 let mut motions: Vec<Motion> =
                     [1.0, 10.0, FASTEST].iter().map(|speed| bends(sample_rate, t60, *speed, TICK)).collect();
-                // Not in step with control ticks.
+                // Not synchronous with control ticks.
                 motions.push(bends(sample_rate, t60, 5.0, 100));
-                // Out of step with control ticks: most lines are broken off.
+                // Not synchronous with control ticks: most lines are interrupted.
                 motions.push(bends(sample_rate, t60, FASTEST, 23));
                 motions.push(vibrato(sample_rate, t60, 50.0, 5.5, rest));
                 motions.push(vibrato(sample_rate, t60, 400.0, 20.0, rest));
                 motions.push(vibrato(sample_rate, t60, 1200.0, 4.0, rest));
                 motions.push(glides(sample_rate, t60, key, 2.0));
                 motions.push(glides(sample_rate, t60, key, -2.0));
-                // Keys end at 127, and voices at −120 dBFS.
+                // Keys end at 127, and voices end at −120 dBFS.
                 motions.retain(|motion| motion.patch.get(Param::Mode) == 0.0 || key < 103.0);
                 motions.retain(|motion| (motion.frames as f64) < 1.2 * t60 * sample_rate);
                 for motion in motions {

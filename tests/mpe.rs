@@ -1,4 +1,4 @@
-//! An MPE performance from a MIDI file, rendered by the command: every note is where its own channel bends it.
+//! An MPE performance from a MIDI file, rendered by the command: every note follows the bends of its own channel.
 
 use midly::num::{u4, u7, u14, u15, u24, u28};
 use midly::{Format, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, TrackEvent, TrackEventKind};
@@ -13,7 +13,7 @@ const SAMPLE_RATE: u32 = 48_000;
 /// Frames for which a channel keeps a bend: three cycles of the lowest note.
 const HOLD: usize = 4801;
 
-/// Bends of each channel.
+/// Number of bends per channel.
 const BENDS: usize = 40;
 
 const KEY: u8 = 72;
@@ -22,24 +22,24 @@ const START: usize = 777;
 /// The bend range of a member channel.
 const SEMITONES: f64 = 48.0;
 
-/// The bend of a channel, as 14 bits: all of the range, its ends among it.
+/// The `n`-th bend of a channel, as 14 bits: over the whole range, including both ends.
 fn bend(channel: u8, n: usize) -> u16 {
     match n {
         3 => 0,
         5 => 16_383,
-        // 8.4 kHz is the highest that is asked for.
+        // The highest resulting frequency is 8.4 kHz.
         _ => ((n * 1_237 + usize::from(channel) * 2_711) % 16_384) as u16,
     }
 }
 
-/// Semitones that a bend means.
+/// A bend in semitones.
 fn semitones(bend: u16) -> f64 {
     let from_centre = f64::from(bend) - 8192.0;
     SEMITONES * if from_centre < 0.0 { from_centre / 8192.0 } else { from_centre / 8191.0 }
 }
 
-/// The performance, with a note on one of the fifteen channels: the others bend, press and turn beside it. Four ticks
-/// of the file are a frame.
+/// The performance, with a note on only one of the fifteen channels; the others send bends, pressure and controllers
+/// meanwhile. Four ticks of the file are one frame.
 fn performance(heard: u8) -> Vec<u8> {
     let control =
         |controller: u8, value: u8| MidiMessage::Controller { controller: u7::new(controller), value: u7::new(value) };
@@ -73,7 +73,7 @@ fn performance(heard: u8) -> Vec<u8> {
     bytes
 }
 
-/// What the command makes of a MIDI file.
+/// The samples that the command renders from a MIDI file.
 fn render(folder: &Path, midi: &[u8]) -> Vec<f32> {
     let (song, sound) = (folder.join("mpe.mid"), folder.join("mpe.wav"));
     std::fs::write(&song, midi).unwrap();
@@ -90,7 +90,7 @@ fn render(folder: &Path, midi: &[u8]) -> Vec<f32> {
     hound::WavReader::open(sound).unwrap().into_samples().map(|sample| sample.unwrap()).collect()
 }
 
-/// From the control tick after a bend has come, until the next one comes, the note has the pitch that was sent.
+/// From the control tick after a bend until the next bend, the note has exactly the pitch that was sent.
 #[test]
 fn every_bend_is_where_it_was_sent_from_the_next_tick_on() {
     let folder = tempfile::tempdir().unwrap();
@@ -104,7 +104,7 @@ fn every_bend_is_where_it_was_sent_from_the_next_tick_on() {
             let cents = 1200.0 * libm::log2(found.frequency / frequency);
             let case = format!("channel {channel}, bend {n}, {frequency:.1} Hz");
             assert!(cents.abs() < 0.05, "{case}: {cents:+.4} cents");
-            // Had one tick another pitch, the whole would be no sinusoid.
+            // If one tick had another pitch, the whole would not be a sinusoid.
             assert!(found.residual_db < -80.0, "{case}: {:.1} dB", found.residual_db);
             (worst, measured) = (worst.max(cents.abs()), measured + 1);
         }

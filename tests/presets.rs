@@ -1,4 +1,4 @@
-//! Every factory preset keeps what its name promises: pitch, partials, decay, attack, brightness, level and end.
+//! Checks that every factory preset sounds like its name: pitch, partials, decay, attack, brightness, level and end.
 
 use sprung::analysis::level::{dbfs, peak};
 use sprung::analysis::spectrum::{Spectrum, peaks, spectrum};
@@ -8,21 +8,22 @@ use sprung::preset::Preset;
 
 const RATE: f64 = 48_000.0;
 
-/// What a note of velocity 100 is to be like. Ranges are from–to, both inclusive.
+/// Properties of a note with velocity 100. Ranges are from–to, both inclusive.
 struct Promise {
     preset: &'static str,
     key: u8,
-    /// Seconds until the key comes up.
+    /// Seconds until the key is released.
     held: f64,
-    /// Frequency of ratio 1 in Hz, ratios that must be heard, and from when on (after any sweep), in seconds.
+    /// Frequency of ratio 1 in Hz, ratios that must be audible, and the time in seconds from which they are (after any
+    /// sweep).
     pitch: (f64, &'static [f64], f64),
-    /// T60 over its first 20 dB, in seconds.
+    /// T60 measured over the first 20 dB, in seconds.
     t60: (f64, f64),
-    /// When the loudest moment is, in ms.
+    /// Time of the loudest moment, in ms.
     attack: (f64, f64),
-    /// Centre of gravity of the first half second's spectrum, in Hz.
+    /// Spectral centroid of the first half second, in Hz.
     centroid: (f64, f64),
-    /// By when it has fallen by 60 dB for good, in seconds.
+    /// Time after which the level stays 60 dB below the peak, in seconds.
     gone: f64,
 }
 
@@ -38,7 +39,7 @@ const fn promise(
     Promise { preset, key, held, pitch, t60, attack, centroid, gone }
 }
 
-/// No pitch is promised.
+/// For sounds without a promised pitch.
 const NOISE: (f64, &[f64], f64) = (0.0, &[], 0.0);
 
 #[rustfmt::skip]
@@ -86,13 +87,13 @@ const PROMISES: &[Promise] = &[
     promise("Wine Glass",     (76, 0.5),  (659.26, &[1.0, 2.8284, 5.4233], 0.0), (2.0, 3.5), (0.0, 15.0),  (700.0, 1500.0),   3.5),
 ];
 
-/// Peak of a note of velocity 100, in dBFS.
+/// Range of the peak of a note with velocity 100, in dBFS.
 const PEAK: (f64, f64) = (-15.0, -6.0);
 
-/// A partial lies within this many cents of where it is promised: the widest of the split pairs, and then some.
+/// Maximum deviation of a partial from its promised frequency, in cents: slightly more than the widest split pair.
 const CENTS: f64 = 15.0;
 
-/// Among the spectral peaks this close to a partial, as a ratio, the partial is the highest.
+/// A partial must be the highest spectral peak within this frequency ratio.
 const NEIGHBOURHOOD: f64 = 1.04;
 
 struct Stereo {
@@ -135,8 +136,7 @@ fn play(patch: &Patch, keys: &[u8], velocity: f32, held: f64, seconds: f64) -> S
     Stereo { left, right }
 }
 
-/// Spectrum of half a second from `start`, under a window that is highest there: a strike's partials count from the
-/// first.
+/// Spectrum of half a second from `start`, with a window that is highest at its start, so that the attack counts fully.
 fn onset_spectrum(mono: &[f32], start: f64) -> Spectrum {
     let (start, half) = ((start * RATE) as usize, (0.5 * RATE) as usize);
     let mut samples = vec![0.0; half];
@@ -164,7 +164,7 @@ fn t60(energy: &[f64]) -> f64 {
     (falls_to(-25.0) - falls_to(-5.0)) / RATE * 3.0
 }
 
-/// When the energy of 3 ms is greatest, in ms, counted to the end of the 3 ms.
+/// The end of the 3 ms that have the most energy, in ms.
 fn attack(energy: &[f64]) -> f64 {
     let window = (0.003 * RATE) as usize;
     let sums: Vec<f64> = energy.windows(window).map(|window| window.iter().sum()).collect();
@@ -172,20 +172,20 @@ fn attack(energy: &[f64]) -> f64 {
     (loudest + window) as f64 / RATE * 1e3
 }
 
-/// The last time that the sound is within 60 dB of its peak, in seconds.
+/// The last time at which the sound is within 60 dB of its peak, in seconds.
 fn last_heard(energy: &[f64]) -> f64 {
     let most = energy.iter().fold(0.0, |most: f64, energy| most.max(*energy));
     energy.iter().rposition(|energy| *energy > most * 1e-6).unwrap_or(0) as f64 / RATE
 }
 
-/// Promised partials that are not there.
+/// Promised partials that are missing.
 fn missing_partials(mono: &[f32], (base, ratios, start): (f64, &[f64], f64)) -> Vec<String> {
     let spectrum = onset_spectrum(mono, start);
     let found = peaks(&spectrum, -100.0);
     let missing = |ratio: &f64| {
         let promised = base * ratio;
         let near = |frequency: f64| frequency < promised * NEIGHBOURHOOD && frequency > promised / NEIGHBOURHOOD;
-        // Loudest first.
+        // The loudest first.
         match found.iter().find(|peak| near(peak.frequency)) {
             None => Some(format!("no partial near {promised:.1} Hz")),
             Some(peak) => {
@@ -197,7 +197,7 @@ fn missing_partials(mono: &[f32], (base, ratios, start): (f64, &[f64], f64)) -> 
     ratios.iter().filter_map(missing).collect()
 }
 
-/// What of the promise is not kept.
+/// The promises that are not kept.
 fn breaches(promise: &Promise, patch: &Patch) -> Vec<String> {
     let sound = play(patch, &[promise.key], 100.0, promise.held, promise.gone.max(promise.held) + 2.0);
     let (mono, energy) = (sound.mono(), sound.energy());
@@ -271,7 +271,7 @@ fn a_closed_hat_chokes_an_open_one() {
     };
     energy(&[note(0, 60, true, 100.0)]);
     let ringing = energy(&[]);
-    // As quiet as can be, so that what is left is the open hat's.
+    // As quiet as possible, so that only the open hi-hat remains.
     energy(&[Event { frame: 0, channel: 1, kind: EventKind::Program(0) }, note(1, 60, true, 1.0)]);
     let choked = energy(&[]);
     assert!(choked < ringing * 1e-5, "{choked} of {ringing} is left");

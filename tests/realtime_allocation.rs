@@ -1,4 +1,4 @@
-//! The audio callback never allocates: song, live events, patches and recording under an allocator that forbids it.
+//! The audio callback never allocates, with song, live events, patches and recording: a forbidding allocator checks.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use sprung::engine::EventKind;
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
 
-/// Plays half a second in blocks of `frames`, everything happening at once.
+/// Plays half a second in blocks of `frames`, with everything happening at the same time.
 fn play<T: DeviceSample>(frames: usize, channels: usize) {
     let directory = tempfile::tempdir().unwrap();
     let output = Output::create(&Target::new(directory.path().join("take.wav")), false, &Inputs::default()).unwrap();

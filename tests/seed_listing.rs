@@ -1,6 +1,6 @@
-//! The `classic` sound against the original listing, compiled as it was written: the same bits.
+//! Compares the `classic` sound with the original listing, compiled unchanged: the bits must be the same.
 //!
-//! Where there is no C++ compiler, the tests count as ignored.
+//! If there is no C++ compiler, the tests are reported as ignored.
 
 use libtest_mimic::{Arguments, Trial};
 use sprung::dsp::{Coefficients, HarmonicOscillator};
@@ -39,20 +39,21 @@ fn main() -> ExitCode {
     libtest_mimic::run(&arguments, trials).exit_code()
 }
 
-/// The listing as a program. Compiled once: the tests run side by side, and a program that is being written cannot be run.
+/// The listing as a program. Compiled only once, because tests run in parallel and a file cannot run while it is
+/// written.
 fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
         let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("harmonic_oscillator");
         let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/seed/harmonic_oscillator.cpp");
-        // No fusing: the listing's operations one by one, as on the machines of its time.
+        // No fused multiplication: the listing's operations are done one by one, as on the machines of its time.
         let compiler = Command::new("c++").args(["-O2", "-ffp-contract=off", source, "-o"]).arg(&program).status();
         assert!(compiler.unwrap().success(), "the listing does not compile");
         program
     })
 }
 
-/// What the listing gives for the cases.
+/// The results of the listing for the cases.
 fn listing(cases: &[Case]) -> Vec<f32> {
     let mut child = Command::new(program()).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let mut input = child.stdin.take().unwrap();
@@ -69,7 +70,7 @@ fn listing(cases: &[Case]) -> Vec<f32> {
     text.lines().map(|bits| f32::from_bits(bits.parse().unwrap())).collect()
 }
 
-/// Two hundred settings all over the range in which the listing is stable.
+/// Two hundred settings over the whole range in which the listing is stable.
 fn cases() -> Vec<Case> {
     let stream = sprung::dsp::random::key(2, 2);
     let unit = |n: u64| f64::from(sprung::dsp::random::uniform(stream, n)) * 0.5 + 0.5;

@@ -1,7 +1,7 @@
 //! Sixteen voices of 64 modes for 64 frames, by fundsp and by Sprung in one run. Elements are modes × frames.
 //!
-//! fundsp's vectors are those that the compiler is allowed: build with `RUSTFLAGS="-C target-cpu=x86-64-v3"`. Its filters
-//! take a sample of input each frame, as Sprung's do when `driven`. Other peers: `run.sh`, beside this.
+//! fundsp uses the vector instructions that the compiler may use, so build with `RUSTFLAGS="-C target-cpu=x86-64-v3"`.
+//! Its filters take an input sample in each frame, as Sprung's do when `driven`. Other peers: `run.sh`, in this folder.
 
 #[path = "../struck/mod.rs"]
 mod struck;
@@ -25,7 +25,7 @@ fn frequency(m: usize) -> f32 {
     100.0 + 20.0 * m as f32
 }
 
-/// Something to filter.
+/// An input signal for the filters.
 fn noise() -> [f32; FRAMES] {
     let mut turn = 1_u32;
     black_box([(); FRAMES].map(|()| {
@@ -34,7 +34,7 @@ fn noise() -> [f32; FRAMES] {
     }))
 }
 
-/// Eight biquads in a vector; all of them.
+/// All filters, as banks of eight biquads in a vector.
 fn biquad_banks() -> Vec<BiquadBank<F32x>> {
     let resonator = |m| BiquadCoefs::resonator(48_000.0, frequency(m), 1000.0);
     let bank = |n: usize| {
@@ -52,7 +52,8 @@ fn biquad_banks() -> Vec<BiquadBank<F32x>> {
     (0..MODES / 8).map(bank).collect()
 }
 
-/// Bank after bank over the block, by a loop around `tick` that the compiler sees through: the best that it can do.
+/// One bank after the other over the block, in a loop around `tick` that the compiler can optimise: fundsp at its
+/// fastest.
 fn biquad_ticks(criterion: &mut Criterion) {
     let mut banks = biquad_banks();
     let input = noise();
@@ -68,7 +69,7 @@ fn biquad_ticks(criterion: &mut Criterion) {
     });
 }
 
-/// Bank after bank, by `process`, as fundsp's graphs do it.
+/// One bank after the other, with `process`, as fundsp's graphs do it.
 fn biquad_blocks(criterion: &mut Criterion) {
     let mut banks = biquad_banks();
     let (mut input, mut output) = (BufferArray::<U8>::new(), BufferArray::<U8>::new());

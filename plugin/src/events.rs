@@ -1,4 +1,4 @@
-//! The wrapper's note events as the engine's.
+//! Converts the wrapper's note events to the engine's events.
 
 use nice_plug::prelude::{NoteEvent, PluginApi};
 use nice_plug_core::midi::{Channel, Key, VoiceID};
@@ -6,10 +6,10 @@ use sprung::engine::midi::parse_message;
 use sprung::engine::{EventKind, Expression, NoteId, Notes};
 use sprung::params::PARAMS;
 
-/// The engine's event, and its channel. `None` for what an instrument has no use for, and for a note without a key.
-/// Real-time safe.
+/// The engine's event, and its channel. `None` for events that the instrument does not use, and for a note without a
+/// key. Real-time safe.
 pub(crate) fn translate(event: &NoteEvent<()>, api: PluginApi) -> Option<(u8, EventKind)> {
-    // The wrapper mixes these two up where they come in through VST3.
+    // The wrapper confuses these two when they arrive through VST3.
     let (swell, brightness) = match api {
         PluginApi::Vst3 => (Expression::Brightness, Expression::Swell),
         PluginApi::Clap | PluginApi::Standalone => (Expression::Swell, Expression::Brightness),
@@ -49,7 +49,7 @@ pub(crate) fn translate(event: &NoteEvent<()>, api: PluginApi) -> Option<(u8, Ev
         }
         NoteEvent::PolyModulation { voice_id, poly_modulation_id, normalized_offset, .. } => {
             let param = PARAMS.get(poly_modulation_id as usize)?.param;
-            // A voice without an id cannot be meant.
+            // Without an id, no voice can be selected.
             (0, EventKind::Modulate { id: Some(NoteId::new(voice_id)?), param, offset: normalized_offset })
         }
         NoteEvent::MidiChannelPressure { channel, pressure, .. } => (channel, EventKind::ChannelPressure(pressure)),
@@ -59,8 +59,8 @@ pub(crate) fn translate(event: &NoteEvent<()>, api: PluginApi) -> Option<(u8, Ev
     })
 }
 
-/// The notes that are meant: what is not given is any. The wrapper's own fallback for a missing id is never used: it
-/// ignores ids that are there.
+/// The notes that an event selects; a field that is not given matches any note. The wrapper's own fallback for a
+/// missing id is not used, because it also ignores ids that are given.
 fn notes(id: VoiceID, channel: Channel, key: Key) -> Notes {
     Notes { id: id.id().and_then(NoteId::new), channel: channel.number(), key: key.number() }
 }
@@ -69,8 +69,8 @@ fn express(notes: Notes, expression: Expression, value: f32) -> (u8, EventKind) 
     (0, EventKind::Express { notes, expression, value })
 }
 
-/// A wheel's position 0–1 as an event: that of the 14 bits it was made from, if it was made from 14 bits, so that it
-/// is what a MIDI file gives.
+/// Converts a pitch wheel's position 0–1 to an event. If it was made from a 14-bit value, that value is used, so that
+/// the result is the same as from a MIDI file.
 fn bend(value: f32) -> EventKind {
     let steps = value * 16_383.0;
     let whole = steps.round();
@@ -110,7 +110,7 @@ mod tests {
             (on(ID, CHANNEL, Key::Wildcard), None),
             (off(ID, CHANNEL, KEY), release(one())),
             (off(VoiceID::Wildcard, CHANNEL, KEY), release(Notes { id: None, ..one() })),
-            // VST3 hosts without note ids.
+            // From VST3 hosts without note ids.
             (off(VoiceID::ID(-1), CHANNEL, KEY), release(Notes { id: None, ..one() })),
             (off(VoiceID::Wildcard, Channel::Wildcard, Key::Wildcard), release(Notes::default())),
             (choke, Some((0, EventKind::Silence { notes: one() }))),
@@ -183,7 +183,7 @@ mod tests {
             let event = NoteEvent::MidiPitchBend { timing: 0, channel: 3, value: f32::from(steps) / 16_383.0 };
             assert_eq!(translate(&event, PluginApi::Clap), file, "{steps}");
         }
-        // A host whose wheel has no steps.
+        // From a host whose wheel has no steps.
         for (value, expected) in [(0.5, 0.0), (0.250_01, -0.499_98), (f32::NAN, f32::NAN)] {
             let EventKind::PitchBend(bend) = bend(value) else { panic!("a bend is a bend") };
             assert!((bend - expected).abs() < 1e-6 || (bend.is_nan() && expected.is_nan()), "{bend}");

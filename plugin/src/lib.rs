@@ -1,18 +1,18 @@
-//! Sprung as a CLAP and VST3 instrument: a thin shell around [`sprung::engine::Synth`]. It has no DSP of its own.
+//! Sprung as a CLAP and VST3 instrument: a thin shell around [`sprung::engine::Synth`], without DSP of its own.
 //!
 //! | module | holds |
 //! |---|---|
-//! | `plugin` | what hosts are told, and their calls |
+//! | `plugin` | the description that hosts read, and the calls that they make |
 //! | `params` | the host's parameters, made from [`sprung::params::PARAMS`] |
-//! | `loaded` | the exact sound, and how the audio thread takes it without waiting |
-//! | `live` | the audio thread: follows parameters, hands over events, renders |
-//! | `events` | the wrapper's note events as the engine's |
-//! | `tail` | how long the sound goes on |
-//! | `state` | what a host's project keeps |
+//! | `loaded` | the loaded sound with exact values, and how the audio thread gets it without waiting |
+//! | `live` | the audio thread: follows parameters, passes events on, renders |
+//! | `events` | converts the wrapper's note events to the engine's |
+//! | `tail` | how long the sound continues |
+//! | `state` | the state that a host stores in its project |
 //! | `editor` | the window |
 //! | `export` | the entry points of the library |
 //!
-//! The wrapper is nice-plug; what it calls a normalised value is called a position here: how far a knob is turned.
+//! The wrapper is nice-plug. Its normalised values are called positions here: knob positions from 0 to 1.
 
 mod editor;
 mod events;

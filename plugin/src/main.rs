@@ -1,4 +1,4 @@
-//! `sprung-standalone`: the plugin with a sound device of its own, for trying it without a host.
+//! `sprung-standalone`: the plugin with its own sound device, for trying it without a host.
 
 use nice_plug::prelude::nice_export_standalone;
 

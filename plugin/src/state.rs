@@ -1,6 +1,6 @@
-//! What a host's project keeps: the preset or kit as its file would be, and where the knobs stand.
+//! The state that a host stores in its project: the text of the preset or kit, and the knob positions.
 //!
-//! A kit's presets are in the state as well: a project must not depend on files that may go away.
+//! A kit's presets are in the state too: a project must not depend on files that may disappear.
 
 use crate::loaded::{Loaded, positions_of};
 use nice_plug::prelude::{PluginState, nice_error};
@@ -12,10 +12,10 @@ use sprung::patch::Patch;
 use sprung::preset::{Playable, Preset, Replaced};
 use std::collections::BTreeMap;
 
-/// The wrapper's name for what is kept.
+/// The wrapper's name for the state.
 pub(crate) const FIELD: &str = "sprung";
 
-/// The format that this version writes. It reads 1 as well, which had no kits.
+/// The state format that is written. Format 1, which had no kits, is read too.
 const FORMAT: u64 = 2;
 
 /// The keys of a state.
@@ -27,22 +27,22 @@ pub(crate) const WINDOW: [u32; 2] = [880, 640];
 /// Smallest and largest width and height of a window.
 pub(crate) const WINDOW_RANGE: [u32; 2] = [320, 8192];
 
-/// All that is kept.
+/// The whole state.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {
-    /// What is played. A preset's patch has the values below.
+    /// The preset or kit. A preset's patch has the values below.
     pub(crate) playable: Playable,
-    /// The parameters of the whole.
+    /// The parameters of the preset or kit.
     pub(crate) values: Values,
-    /// Where the knobs stand.
+    /// The knob positions.
     pub(crate) positions: [f32; PARAM_COUNT],
-    /// What randomness starts from.
+    /// Seed of all random numbers.
     pub(crate) seed: u64,
     /// Width and height of the window.
     pub(crate) window: [u32; 2],
 }
 
-/// What was read of a state, with a line for all that was not understood.
+/// A state that was read, with a line for each part that was not understood.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Read {
     pub(crate) state: State,
@@ -53,19 +53,19 @@ pub(crate) struct Read {
 #[derive(Serialize)]
 struct Saved {
     format: u64,
-    /// A preset file's text.
+    /// The text of a preset file.
     #[serde(skip_serializing_if = "Option::is_none")]
     preset: Option<String>,
-    /// A kit file's text, where there is no preset.
+    /// The text of a kit file, if there is no preset.
     #[serde(skip_serializing_if = "Option::is_none")]
     kit: Option<String>,
     /// The texts of the presets that a kit names.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     sounds: BTreeMap<String, String>,
-    /// Values that are not those of the kit's files, by parameter id.
+    /// Values that differ from those of the kit's files, by parameter id.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     values: BTreeMap<&'static str, f32>,
-    /// Knob positions that are not exactly those of the values, by parameter id.
+    /// Knob positions that differ from those of the values, by parameter id.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     positions: BTreeMap<&'static str, f32>,
     seed: u64,
@@ -87,7 +87,7 @@ impl From<State> for Read {
 }
 
 impl State {
-    /// A preset or kit with each knob where its value is.
+    /// The state of a preset or kit, with all knobs at the positions of its values.
     pub(crate) fn new(playable: Playable, seed: u64, window: [u32; 2]) -> Self {
         let values = match &playable {
             Playable::Preset(preset) => preset.patch.values,
@@ -96,13 +96,13 @@ impl State {
         Self { playable, values, positions: positions_of(&values), seed, window }
     }
 
-    /// What the audio thread is given of it. Makes the sounds.
+    /// The part of the state for the audio thread. Makes the sounds.
     pub(crate) fn loaded(&self) -> Loaded {
         let Self { playable, values, positions, seed, .. } = self;
         Loaded { kit: playable.kit(), values: *values, positions: *positions, seed: *seed }
     }
 
-    /// Writes the state so that [`State::parse`] gives it back exactly.
+    /// Writes the state as JSON. [`State::parse`] gives exactly the same state.
     pub(crate) fn to_json(&self) -> String {
         let own = positions_of(&self.values);
         let positions = changes(|param| self.positions[param as usize], |param| own[param as usize]);
@@ -128,11 +128,11 @@ impl State {
         serde_json::to_string(&saved).unwrap_or_default()
     }
 
-    /// Reads what can be read of a state, of this version or another one. Parameters that it does not name, and what
-    /// cannot be read, have their defaults.
+    /// Reads as much of a state as possible, of this or another version. Parameters that are missing or cannot be read
+    /// get their defaults.
     ///
     /// # Errors
-    /// Says why it is no state at all: it is no JSON, or holds neither a preset nor a kit.
+    /// The reason why the text is no state at all: it is not JSON, or has neither a preset nor a kit.
     pub(crate) fn parse(json: &str) -> Result<Read, String> {
         let saved: Map<String, Value> =
             serde_json::from_str(json).map_err(|error| format!("not a state of Sprung: {error}"))?;
@@ -172,7 +172,7 @@ impl State {
                 let complaint = format!("{position} is not a position of that knob: expected 0 to 1");
                 complaints.push(format!("positions.{}: {complaint}", info.id));
             } else if !rebased.contains(&param) {
-                // Where a route moves a parameter from another value now, the knob stands at that value.
+                // If a route now modulates a parameter from a new base value, the knob belongs at that value.
                 state.positions[param as usize] = position;
             }
         }
@@ -180,13 +180,13 @@ impl State {
     }
 }
 
-/// What `now` is of the parameters of which `before` was something else, by id.
+/// The values of `now` that differ from `before`, by parameter id.
 fn changes(now: impl Fn(Param) -> f32, before: impl Fn(Param) -> f32) -> BTreeMap<&'static str, f32> {
     let changed = PARAMS.iter().filter(|info| now(info.param) != before(info.param));
     changed.map(|info| (info.id, now(info.param))).collect()
 }
 
-/// The preset or kit of a state. Parameters that have another value than the text says, because a route moves them, are
+/// The preset or kit of a state. Parameters whose value differs from the text, since a route modulates them now, are
 /// added to `rebased`.
 fn read_playable(
     saved: &Map<String, Value>,
@@ -231,8 +231,7 @@ fn read_window(window: Option<&Value>) -> Result<[u32; 2], String> {
         .ok_or_else(|| format!("window: {window} is out of range: expected two numbers from {least} to {most}"))
 }
 
-/// The numbers by parameter id in a part of the state. Those of parameters that are retired are left out: routes have
-/// taken their places.
+/// The numbers by parameter id in a part of the state. Retired parameters are ignored, since routes have replaced them.
 fn numbers(saved: &Map<String, Value>, key: &str, complaints: &mut Vec<String>) -> Vec<(Param, f32)> {
     let numbers = match saved.get(key) {
         None => return Vec::new(),
@@ -253,8 +252,8 @@ fn numbers(saved: &Map<String, Value>, key: &str, complaints: &mut Vec<String>) 
     read
 }
 
-/// Leaves of a wrapper's state what [`State::parse`] can read, and nothing else: then the wrapper touches no
-/// parameter by itself, and what is no state changes nothing.
+/// Removes everything from the wrapper's state that [`State::parse`] cannot read. So the wrapper sets no parameter on
+/// its own, and data that is no state changes nothing.
 pub(crate) fn filter(state: &mut PluginState) {
     let is_state = |json: &str| State::parse(json).inspect_err(|error| nice_error!("{error}")).is_ok();
     state.params.clear();

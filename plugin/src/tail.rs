@@ -1,35 +1,35 @@
-//! How long the sound goes on if nothing more happens, without counting it in every block.
+//! Reports to the host how long the sound continues, without computing the tail in every block.
 
 use nice_plug::prelude::ProcessStatus;
 use sprung::engine::Synth;
 
-/// Frames between counts while the host plays in real time: counting takes some microseconds for each voice that
-/// something has happened to.
+/// Frames between two computations of the tail in real time: it takes some microseconds for each voice that has
+/// changed.
 const RECOUNT: usize = 4096;
 
-/// What the host is told of the tail. Between two counts it shrinks by what has been rendered. Real-time safe.
+/// The tail that is reported to the host. Between two computations it shrinks by the rendered frames. Real-time safe.
 pub(crate) struct Tail {
     frames: u64,
-    /// Nothing has happened since the count.
+    /// No event or change has happened since the last computation.
     holds: bool,
-    /// Frames since the count.
+    /// Frames since the last computation.
     since: usize,
-    /// Whether the host renders to a file: then it is counted whenever it must.
+    /// Whether the host renders to a file. The tail is then computed after every change.
     offline: bool,
 }
 
 impl Tail {
-    /// A tail that is not known yet.
+    /// A tail that has not been computed yet.
     pub(crate) fn new(offline: bool) -> Self {
         Self { frames: 0, holds: false, since: RECOUNT, offline }
     }
 
-    /// Something has happened.
+    /// Marks the tail as out of date, after an event or a change.
     pub(crate) fn forget(&mut self) {
         self.holds = false;
     }
 
-    /// What the host is told after a block of so many frames.
+    /// The status to report to the host after a block of `frames` frames.
     pub(crate) fn status(&mut self, synth: &mut Synth, frames: usize) -> ProcessStatus {
         self.since = self.since.saturating_add(frames);
         self.frames = self.frames.saturating_sub(frames as u64);

@@ -1,6 +1,6 @@
-//! Ctrl-C, SIGTERM and SIGHUP: outputs that are not whole yet are removed.
+//! Handles Ctrl-C, SIGTERM and SIGHUP: removes outputs that are not complete yet.
 //!
-//! What was ignored when the program started, as `nohup` has it, stays ignored.
+//! A signal that was ignored when the program started, as `nohup` does, stays ignored.
 
 use super::terminal::complain;
 use sprung::io::Output;
@@ -9,16 +9,16 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// What the shell reports for a program that Ctrl-C has ended.
+/// Exit code that shells report for a program that was ended by Ctrl-C.
 pub(super) const INTERRUPTED: u8 = 130;
 
 static REQUESTED: AtomicBool = AtomicBool::new(false);
-/// What [`end_at_once`] removes.
+/// The files that [`end_at_once`] removes.
 static TEMPORARIES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// From now on an interrupt makes [`check`] fail, so that the work ends in order and its temporary file goes.
-/// Where there is none (`removable` is false), the process ends at once: a pipe that nobody reads would otherwise
-/// hold it for ever.
+/// From now on, an interrupt makes [`check`] fail, so that the work stops in order and removes its temporary file. If
+/// there is none (`removable` is false), the process ends at once: otherwise a pipe that nobody reads could block it
+/// forever.
 pub(super) fn catch(removable: bool) -> Result<()> {
     let handler = move || {
         if removable {
@@ -30,13 +30,13 @@ pub(super) fn catch(removable: bool) -> Result<()> {
     install(handler)
 }
 
-/// From now on an interrupt ends the process at once, wherever its work is: the temporary files of [`remove`] go first.
+/// From now on, an interrupt ends the process at once. The temporary files given to [`remove`] are deleted first.
 pub(super) fn end_at_once() -> Result<()> {
     install(|| {
-        // The lock is kept to the end: no file is made known that would stay.
+        // The lock is held until the process ends, so that no file can be added that would remain.
         let temporaries = TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner);
         for path in &*temporaries {
-            // It may have got its name in the meantime: then it is whole.
+            // If the file was renamed in the meantime, it is complete, and nothing is removed.
             let _ = std::fs::remove_file(path);
         }
         end();
@@ -49,7 +49,7 @@ pub(super) fn remove(output: &Output) {
     TEMPORARIES.lock().unwrap_or_else(PoisonError::into_inner).extend(temporary);
 }
 
-/// Calls `handler`, on a thread of its own, each time that an interrupt comes.
+/// Calls `handler` on its own thread at each interrupt.
 #[cfg(unix)]
 fn install(mut handler: impl FnMut() + 'static + Send) -> Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -62,19 +62,19 @@ fn install(mut handler: impl FnMut() + 'static + Send) -> Result<()> {
         .map_err(failed)
 }
 
-/// Whether a signal is ignored; once a handler is installed, it is not.
+/// Whether a signal is ignored. Must be called before a handler is installed.
 #[cfg(unix)]
 #[expect(unsafe_code, reason = "no crate tells by a safe function how a signal is handled")]
 fn is_ignored(signal: std::ffi::c_int) -> bool {
     let mut action = std::mem::MaybeUninit::<libc::sigaction>::uninit();
-    // SAFETY: without a new action, `sigaction` only writes the present one, which it has done when it gives 0.
+    // SAFETY: without a new action, `sigaction` only writes the present action, and it has written it if it returns 0.
     unsafe {
         libc::sigaction(signal, std::ptr::null(), action.as_mut_ptr()) == 0
             && action.assume_init().sa_sigaction == libc::SIG_IGN
     }
 }
 
-/// Calls `handler`, on a thread of its own, each time that an interrupt comes.
+/// Calls `handler` on its own thread at each interrupt.
 #[cfg(windows)]
 fn install(handler: impl FnMut() + 'static + Send) -> Result<()> {
     ctrlc::set_handler(handler).map_err(failed)
@@ -89,7 +89,7 @@ fn end() -> ! {
     std::process::exit(INTERRUPTED.into())
 }
 
-/// Fails once an interrupt has come.
+/// Returns an error if an interrupt has happened.
 pub(super) fn check() -> Result<()> {
     if REQUESTED.load(Ordering::Relaxed) { Err(Error::Interrupted) } else { Ok(()) }
 }

@@ -21,7 +21,7 @@ pub(super) struct Args {
     force: bool,
 }
 
-/// Tells of `command`, which is the whole of `sprung`.
+/// Prints or writes the pages of `command`, which is the whole of `sprung`.
 pub(super) fn run(args: &Args, command: clap::Command) -> Result<()> {
     match &args.directory {
         Some(directory) => write_pages(command, directory, args.force),
@@ -29,15 +29,14 @@ pub(super) fn run(args: &Args, command: clap::Command) -> Result<()> {
     }
 }
 
-/// Writes all pages before the first of them gets its name, so that one that cannot be written leaves the others as they
-/// were.
+/// Writes all pages to temporary files before the first is renamed: if one cannot be written, the old pages stay.
 fn write_pages(command: clap::Command, directory: &Path, force: bool) -> Result<()> {
     std::fs::create_dir_all(directory).map_err(|error| Error::io(directory.display().to_string(), error))?;
     let mut command = command.disable_help_subcommand(true);
     command.build();
     let mut written = Vec::new();
     for page in pages(&command) {
-        // Manual pages are made from the command line itself.
+        // Manual pages have no input files.
         let target = Target::Path(directory.join(page.get_filename()));
         let mut output = Output::create(&target, force, &Inputs::default())?;
         output.stream().write_all(&rendered(&page)?).map_err(|error| Error::io(output.name(), error))?;

@@ -83,7 +83,7 @@ fn to_json(info: &ParamInfo) -> serde_json::Value {
     })
 }
 
-/// The number as the table has it: 0.3, not the 0.30000001192092896 that its `f32` widens to.
+/// The number as it is in the table: 0.3, not 0.30000001192092896, which is the `f32` converted directly.
 fn exact(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(value.into())
 }

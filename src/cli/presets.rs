@@ -1,4 +1,4 @@
-//! `sprung presets`: the factory's, and checks of one's own, kits among them.
+//! `sprung presets`: lists and shows factory presets, and checks preset and kit files.
 
 use super::completion;
 use super::terminal::{complain, print};
@@ -56,7 +56,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// The preset or kit that a user names: a file if it looks like one, else the factory's.
+/// Loads the preset or kit that the user names: a file if it looks like a file name, else a factory preset.
 pub(super) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
     let path = Path::new(name);
     if is_file_name(path) {

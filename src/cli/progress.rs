@@ -1,11 +1,11 @@
-//! A progress bar on stderr, for people who wait.
+//! A progress bar on stderr.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use sprung::render::Progress;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-/// Work that ends sooner shows no bar.
+/// The bar appears only after this time.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 pub(super) struct Bar {

@@ -1,4 +1,4 @@
-//! The song that a command plays, and what its program changes mean for `--preset` and `--channel`.
+//! Reads the song that a command plays, and warns if its program changes conflict with `--preset` and `--channel`.
 
 use super::terminal::complain;
 use sprung::Result;
@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Repairs that are told one by one.
+/// Maximum number of repairs that are reported one by one.
 const MOST_REPAIRS: usize = 10;
 
 /// How a song is read and played.
@@ -46,12 +46,12 @@ impl SongArgs {
         Ok(song)
     }
 
-    /// The sounds that program changes choose from.
+    /// The kits that program changes select.
     pub(super) fn programs<'a>(&self, programs: &'a [Arc<Kit>]) -> &'a [Arc<Kit>] {
         if self.ignore_programs { &[] } else { programs }
     }
 
-    /// Warns of program changes that choose nothing, and of notes that do not play on what their channels were `asked` to.
+    /// Warns of program changes without a preset, and of notes that do not play with the kit that the user `asked` for.
     pub(super) fn warn_of_programs(&self, song: &Song, asked: [Option<&Arc<Kit>>; 16], programs: &[Arc<Kit>]) {
         if self.ignore_programs {
             return;
@@ -74,12 +74,12 @@ impl SongArgs {
     }
 }
 
-/// Notes that do not play on what their channels were asked to.
+/// Notes that do not play with the kit that the user asked for.
 #[derive(Debug, Default, PartialEq)]
 struct Elsewhere {
     channels: BTreeSet<u8>,
     notes: usize,
-    /// Notes of the song.
+    /// Number of notes in the song.
     all: usize,
 }
 

@@ -1,27 +1,28 @@
-//! What is written to stdout and stderr: with nothing in it that steers the terminal.
+//! Writes to stdout and stderr, without control characters that would affect the terminal.
 
 use sprung::text::{printable, printable_lines};
 use sprung::{Error, Result};
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
-/// Says one line on stderr, with nothing in it that steers the terminal.
+/// Prints one line on stderr, without control characters.
 pub(super) fn complain(severity: &str, message: impl Display) {
     complain_lines(&format!("sprung: {severity}: {}\n", printable(&message.to_string())));
 }
 
-/// Writes lines to stderr, with nothing in them that steers the terminal. If it is closed, there is nobody left to tell.
+/// Writes lines to stderr, without control characters. If stderr is closed, nothing can be reported, so errors are
+/// ignored.
 pub(super) fn complain_lines(text: &str) {
     let _ = write!(std::io::stderr(), "{}", printable_lines(text));
 }
 
-/// Writes lines to stdout, with nothing in them that steers the terminal.
+/// Writes lines to stdout, without control characters.
 pub(super) fn print(text: &str) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
     checked(stdout.write_all(printable_lines(text).as_bytes()).and_then(|()| stdout.flush()))
 }
 
-/// What came of writing to stdout. A reader that has gone away, as `head` does, has what it wanted: that is no error.
+/// The result of writing to stdout. A reader such as `head` may close the pipe when it has enough: that is no error.
 pub(super) fn checked(written: std::io::Result<()>) -> Result<()> {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("stdout", error)),

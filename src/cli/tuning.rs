@@ -1,4 +1,4 @@
-//! The tuning that a command plays in: Scala's files, named by `--scale` and `--keymap`.
+//! The tuning that a command uses: Scala's files, given with `--scale` and `--keymap`.
 
 use super::terminal::complain;
 use sprung::engine::EventKind;
@@ -24,7 +24,7 @@ pub(super) struct TuningArgs {
 }
 
 impl TuningArgs {
-    /// Reads the files; twelve equal steps where none is named.
+    /// Reads the files. Without a scale, the tuning is twelve equal steps.
     pub(super) fn read(&self, inputs: &mut Inputs) -> Result<Tuning> {
         let Some(path) = &self.scale else { return Ok(Tuning::EQUAL) };
         let scale = Scale::read(inputs.open(path)?, &path.display().to_string())?;
@@ -35,7 +35,8 @@ impl TuningArgs {
         Ok(Tuning::new(&scale, &keymap))
     }
 
-    /// Refuses notes that a scale says nothing of: those between keys. A key given twice would sound by its neighbour.
+    /// Returns an error for notes that a scale cannot tune: those between two keys. A key that is given twice is an
+    /// error too, since the second note would sound on the key beside it.
     pub(super) fn check_notes(&self, notes: &[String]) -> Result<()> {
         let mut keys = BTreeSet::new();
         for note in notes.iter().filter(|_| self.scale.is_some()) {
@@ -51,7 +52,7 @@ impl TuningArgs {
         Ok(())
     }
 
-    /// Warns of notes that a tuning keeps silent.
+    /// Warns of notes whose keys the tuning leaves silent.
     pub(super) fn warn_of_unmapped(&self, song: &Song, tuning: &Tuning) {
         let keys = || {
             song.events.iter().filter_map(|event| match event.kind {

@@ -1,4 +1,4 @@
-//! What clap says of wrong usage: safe for the terminal, and with what would be right.
+//! Prints clap's usage errors: safe for the terminal, and with a tip about what would be right.
 
 use super::terminal::complain_lines;
 use clap::builder::StyledStr;
@@ -6,7 +6,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, Error};
 use std::process::ExitCode;
 
-/// Tells a usage error and gives the exit code.
+/// Prints a usage error and returns the exit code.
 pub(super) fn refuse(mut error: Error, command: &Command) -> ExitCode {
     let args: Vec<String> = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect();
     if let Some(tip) = tip(&error, subcommand(command, &args)) {
@@ -14,7 +14,7 @@ pub(super) fn refuse(mut error: Error, command: &Command) -> ExitCode {
     }
     let plain = error.render().to_string();
     if sprung::text::printable_lines(&plain) == plain {
-        // With colours. If stderr is closed, there is nobody left to tell.
+        // Printed with colours. If stderr is closed, nothing can be reported.
         let _ = error.print();
     } else {
         complain_lines(&plain);
@@ -22,7 +22,7 @@ pub(super) fn refuse(mut error: Error, command: &Command) -> ExitCode {
     ExitCode::from(error.exit_code() as u8)
 }
 
-/// The innermost subcommand that the arguments name.
+/// The innermost subcommand among the arguments.
 fn subcommand<'a>(command: &'a Command, args: &[String]) -> &'a Command {
     let words = args.iter().skip(1).take_while(|arg| !arg.starts_with('-'));
     words
@@ -33,7 +33,7 @@ fn subcommand<'a>(command: &'a Command, args: &[String]) -> &'a Command {
         .0
 }
 
-/// What would be right, where clap does not tell.
+/// A tip about what would be right, for errors where clap gives none.
 fn tip(error: &Error, command: &Command) -> Option<String> {
     let Some(ContextValue::String(wrong)) = error.get(ContextKind::InvalidArg) else {
         let missing = matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::Strings(missing))

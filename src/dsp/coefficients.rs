@@ -1,4 +1,4 @@
-//! The two numbers that make a mass ring: three ways to compute them, and what follows from them in closed form.
+//! The two coefficients of a mass on a spring: three ways to compute them, and quantities derived from them.
 //!
 //! As a matrix the step is `[x; v] ← [[1−ω², 1−ζ], [−ω², 1−ζ]] [x; v]`, with determinant `1−ζ` and trace `2−ω²−ζ`.
 //! A damped sinusoid of radius `r` and angle `θ` per sample has determinant `r²` and trace `2 r cos θ`;
@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 /// Natural logarithm of −60 dB, as an amplitude ratio of 0.001.
 pub const LN_MINUS_60_DB: f64 = -6.907_755_278_982_137;
 
-/// `ζ`, `ω²` and the state to start from.
+/// `ζ`, `ω²` and the starting state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     /// Share of the velocity that is lost per sample.
@@ -80,8 +80,9 @@ impl Coefficients {
     /// and velocity `velocity0` (per second): the step follows the continuous motion exactly, in every regime:
     /// under-, critically and over-damped, undamped (`c = 0`), unsprung (`k = 0`) and unimpeded (both).
     ///
-    /// Where the damper leaves nothing of a velocity within one sample (`ζ` rounds to 1), no `v0` can move the mass, and
-    /// it is 0: the displacement is then out by at most `(|velocity0| + |x0| k/c)·m/c`, which shrinks as the mass returns.
+    /// If the damper stops any velocity within one sample (`ζ` rounds to 1), no `v0` can move the mass, so `v0` is 0.
+    /// The displacement is then wrong by at most `(|velocity0| + |x0| k/c)·m/c`, and this error shrinks as the mass
+    /// returns.
     ///
     /// `m > 0`, `c ≥ 0`, `k ≥ 0`, `dt > 0`, in consistent units. Source: the closed form of "Damped Harmonic
     /// Oscillator" (`τ₀`, `τ₁`). Real-time safe.
@@ -91,8 +92,8 @@ impl Coefficients {
         let sigma_squared = lambda * lambda - omega0_squared;
         let scale = sqrt(sigma_squared.abs());
         let decay = exp(-lambda);
-        // τ₀ and τ₁ over one sample, both times e^(−λ̄) so that neither cosh nor sinh can overflow where their sum decays,
-        // and ω² = 1 + g² − 2 g τ₀ written so that nothing cancels.
+        // τ₀ and τ₁ over one sample are both multiplied by e^(−λ̄), so that cosh and sinh cannot overflow where their
+        // product with it is small. ω² = 1 + g² − 2 g τ₀ is written so that no digits cancel.
         let (tau0, tau1, omega2) = if sigma_squared < 0.0 {
             (decay * cos(scale), decay * sin(scale) / scale, omega2_from_angle(decay, scale))
         } else if sigma_squared > 0.0 {
@@ -114,23 +115,24 @@ impl Coefficients {
         sqrt(1.0 - self.zeta)
     }
 
-    /// Angle per sample `θ`, for coefficients that ring. NaN where they do not (over-damped, or past the explosion).
+    /// Angle per sample `θ`, for coefficients that ring. NaN for those that do not (over-damped or unstable).
     pub fn angle(&self) -> f64 {
         let radius = self.radius();
         let loss = 1.0 - radius;
         2.0 * asin(sqrt((self.omega2 - loss * loss) / (4.0 * radius)))
     }
 
-    /// The sweep that multiplies the pitch by exactly `ratio`; the decay stays as it is, for the sweep leaves the
-    /// determinant `1−ζ` alone. The pitch stays below half the sample rate. Real-time safe.
+    /// The sweep that multiplies the pitch by exactly `ratio`. The decay does not change, because the sweep does not
+    /// change the determinant `1−ζ`. The pitch stays below half the sample rate. Real-time safe.
     pub fn sweep_for_ratio(&self, ratio: f64) -> f64 {
         sqrt(omega2_from_angle(self.radius(), (ratio * self.angle()).min(PI)) / self.omega2)
     }
 
-    /// Amplitude of the ringing that the state `(x, v)` is part of: what the envelope of the output is at this sample.
+    /// Amplitude of the damped sinusoid that passes through the state `(x, v)`: the envelope of the output at this
+    /// sample.
     ///
-    /// From `A² sin²θ = ω² x² + (ζ−ω²) x v + (1−ζ) v²`, a form that every step multiplies by `r²`.
-    /// Meaningful for coefficients that ring. Real-time safe.
+    /// From `A² sin²θ = ω² x² + (ζ−ω²) x v + (1−ζ) v²`; each step multiplies this quadratic form by `r²`. Only
+    /// meaningful for coefficients that ring. Real-time safe.
     pub fn amplitude(&self, x: f64, v: f64) -> f64 {
         sqrt(self.quadratic_form(x, v).max(0.0) / self.sin_squared_angle())
     }
@@ -140,7 +142,7 @@ impl Coefficients {
         self.quadratic_form(x, v).max(0.0) / self.sin_squared_angle()
     }
 
-    /// `A² sin²θ` of a state: a form that every step multiplies by `r²`.
+    /// `A² sin²θ` of a state: each step multiplies it by `r²`.
     pub(super) fn quadratic_form(&self, x: f64, v: f64) -> f64 {
         self.omega2 * x * x + (self.zeta - self.omega2) * x * v + (1.0 - self.zeta) * v * v
     }
@@ -204,7 +206,8 @@ mod tests {
         }
     }
 
-    /// Against `(s₂ e^(s₁t) − s₁ e^(s₂t)) / (s₂ − s₁)` and `(e^(s₁t) − e^(s₂t)) / (s₁ − s₂)`, where the fast `e^(s₂t)` is 0.
+    /// Compared with `(s₂ e^(s₁t) − s₁ e^(s₂t)) / (s₂ − s₁)` and `(e^(s₁t) − e^(s₂t)) / (s₁ − s₂)`, where the fast
+    /// `e^(s₂t)` is 0.
     #[test]
     fn heavy_damping_creeps_and_does_not_overflow() {
         for (m, c, k, x0, velocity0) in [
@@ -228,7 +231,7 @@ mod tests {
         }
     }
 
-    /// Pitch error in cents of the original formulas, of which the published figures at 48 kHz are these.
+    /// The original formulas' pitch error in cents must match the published figures for 48 kHz.
     #[test]
     fn the_seed_is_as_far_out_as_published() {
         let cents = |frequency: f64, t60: f64| {
@@ -254,7 +257,7 @@ mod tests {
             let c = Coefficients::from_polar(LN_MINUS_60_DB / frames, theta, amplitude);
             prop_assert!((c.angle() / theta - 1.0).abs() < 1e-9);
             prop_assert!((2.0 * LN_MINUS_60_DB / log(1.0 - c.zeta) / frames - 1.0).abs() < 1e-8);
-            // Swept, the trace is that of the new angle and the determinant the same.
+            // With the sweep, the trace must be that of the new angle and the determinant must not change.
             let target = (ratio * theta).min(PI);
             let s = c.sweep_for_ratio(ratio);
             let trace = 2.0 - s * s * c.omega2 - c.zeta;

@@ -1,51 +1,54 @@
-//! A stereo true-peak limiter without latency: it lowers what would exceed full scale, and nothing else.
+//! A stereo true-peak limiter without latency: it lowers peaks above full scale and changes nothing else.
 //!
-//! The gain falls at once and is held for as long as peaks may be apart in the lowest tones; then it rises slowly.
-//! A peak between two samples is known half of [`TAPS`] samples after it has gone out. Until the gain follows, single
-//! samples are lowered so far that no point between samples exceeds [`GUARD`] by what it has so far, which is what it
-//! comes to if silence follows. It is always possible: a sample of 0 adds nothing to any point.
+//! The gain falls at once, is held as long as the lowest tones need from one peak to the next, and then rises slowly. A
+//! peak between two samples is only known after half of [`TAPS`] further samples have been output. Until the gain
+//! follows, single samples are lowered so that no partial sum of an interpolated point exceeds [`GUARD`]; the partial
+//! sum is the value of the point if only silence follows. This is always possible, because a sample of 0 adds nothing
+//! to any point.
 
 use super::simd::vector::Vector;
 use super::simd::{Instructions, Kernel};
 use super::true_peak::{ByAge, Interpolator, TAPS, Weights};
 use libm::exp;
 
-/// The gain is 1 while no peak, on a sample or between two, exceeds this: −0.92 dBFS. The difference from −1 dBFS is
-/// for meters that interpolate in another way.
+/// The gain is 1 while no peak, on a sample or between two, exceeds this level, −0.92 dBFS. The difference from −1 dBFS
+/// allows for meters that interpolate differently.
 pub const THRESHOLD: f32 = 0.9;
 
-/// What higher peaks are brought down to, −1.9 dBFS: a point of a sine that is not complete can exceed the sine's peak
-/// 1.17 times, which is [`GUARD`] then. So steady tones are never changed but by the gain.
+/// Level to which higher peaks are lowered, −1.9 dBFS. An incomplete point of a sine can exceed the sine's peak by a
+/// factor of 1.17, and that is [`GUARD`] at this level. So a steady tone is changed by the gain only.
 pub const CEILING: f32 = 0.805;
 
-/// Most that the waveform between samples comes to, −0.45 dBFS: −0.3 dBFS on meters that interpolate in another way.
+/// Upper bound of the waveform between samples, −0.45 dBFS; −0.3 dBFS on meters that interpolate differently.
 pub const GUARD: f32 = 0.95;
 
-/// Samples below this cannot have a peak beyond [`THRESHOLD`] between them: the weights of a point add up to 1.865.
+/// Samples below this level cannot have a peak above [`THRESHOLD`] between them, since the weights of a point add up to
+/// 1.865.
 const QUIET: f32 = 0.48;
 
-/// How long the gain is held: half a period of the lowest tone that is not distorted by its rising between peaks.
+/// How long the gain is held: half a period of a 17 Hz tone. During lower tones the gain rises between two peaks, which
+/// distorts them.
 const HOLD_SECONDS: f64 = 0.03;
 
 /// Time constant of the gain's rise.
 const RELEASE_SECONDS: f64 = 0.1;
 
-/// A gain beyond this has risen to 1.
+/// A rising gain above this value is set to 1.
 const SETTLED: f64 = 0.999_99;
 
-/// A gain below this counts as work: −0.1 dB.
+/// A gain below this value (−0.1 dB) is counted in [`Work::frames`].
 const WORK: f64 = 0.988_6;
 
-/// Frames that are looked at together for whether they are all quiet.
+/// Number of frames that are tested together for being quiet.
 const SCAN: usize = 64;
 
 /// Holds a stereo signal's true peak to about −0.3 dBFS, with the same gain on both sides and no latency.
 ///
-/// A signal whose true peak stays below −1 dBFS passes bit for bit. From the first peak beyond [`THRESHOLD`] on, a point
-/// between samples is held to [`GUARD`], as this module interpolates. What had been let through before that peak stays:
-/// where samples below the threshold break off or turn round within [`TAPS`] samples, as in white noise, the point
-/// between them may be higher before the gain has fallen: +0.5 dBFS was seen in noise, and two samples of 0.89 alone have
-/// +0.9 dBFS. Only a limiter with latency could have known.
+/// A signal whose true peak stays below −1 dBFS passes bit for bit. From the first peak above [`THRESHOLD`] on, the
+/// points between samples stay below [`GUARD`], as this module interpolates them. Samples that were output before that
+/// peak cannot be changed any more: where samples below the threshold stop or change sign within [`TAPS`] samples, as
+/// in white noise, the point between them may be higher before the gain has fallen. Measured: +0.5 dBFS in noise, and
+/// +0.9 dBFS for two single samples of 0.89. Only a limiter with latency could avoid this.
 ///
 /// The bits do not depend on how frames are divided into blocks. Real-time safe.
 #[derive(Clone, Debug)]
@@ -54,29 +57,29 @@ pub struct Limiter {
     weights: Weights,
     input: [Interpolator; 2],
     output: [Interpolator; 2],
-    /// Limits of the points of the output that are not complete, for the present `ceiling`.
+    /// Limits of the incomplete points of the output, for the present `ceiling`.
     limits: ByAge,
     ceiling: f32,
     gain: f64,
-    /// Share of the way to its target that a rising gain goes each frame.
+    /// A rising gain moves by this share of its distance from the target in each frame.
     release: f64,
     recent_peaks: RecentPeaks,
-    /// The last samples that went out, oldest first.
+    /// The last samples that were output, oldest first.
     last: [[f32; TAPS]; 2],
-    /// The input's interpolators have not seen the last samples.
+    /// The input's interpolators have not received the last samples.
     is_stale: bool,
-    /// Frames since one that was lowered, no more than [`TAPS`]: from then on the input's and the output's points are
-    /// the same, and only the input's are kept.
+    /// Frames since the last frame that was lowered, at most [`TAPS`]. At [`TAPS`], the points of input and output are
+    /// the same, and only those of the input are computed.
     unchanged_frames: usize,
-    /// Silence would pass unchanged: there is nothing to process.
+    /// Silence would pass unchanged, so it need not be processed.
     is_idle: bool,
     work: Work,
 }
 
-/// How much a limiter has done.
+/// What a limiter has done so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Work {
-    /// Lowest gain of a sample, an amplitude ratio; 1 if none was lowered.
+    /// Lowest gain applied to a sample, an amplitude ratio; 1 if no sample was lowered.
     pub least_gain: f64,
     /// Frames that were lowered by more than 0.1 dB.
     pub frames: u64,
@@ -85,12 +88,12 @@ pub struct Work {
 }
 
 impl Work {
-    /// None.
+    /// No work yet.
     pub const NONE: Self = Self { least_gain: 1.0, frames: 0, non_finite: 0 };
 }
 
 impl Limiter {
-    /// A limiter at rest, for a sample rate in Hz.
+    /// A limiter in its initial state, for a sample rate in Hz.
     pub fn new(sample_rate: f64) -> Self {
         let weights = Weights::new();
         Self {
@@ -111,7 +114,7 @@ impl Limiter {
         }
     }
 
-    /// Back to rest, as after silence.
+    /// Returns to the initial state, as after silence.
     pub fn reset(&mut self) {
         self.recent_peaks.clear();
         self.set_ceiling(THRESHOLD);
@@ -119,18 +122,19 @@ impl Limiter {
         self.forget_samples();
     }
 
-    /// Whether silence would be passed without changing anything, so that it need not be processed.
+    /// Whether silence would pass unchanged, so that it need not be processed.
     pub fn is_idle(&self) -> bool {
         self.is_idle
     }
 
-    /// What it has done since it was made or reset.
+    /// What the limiter has done since it was created or reset.
     pub fn work(&self) -> Work {
         self.work
     }
 
-    /// Limits the next frames in place; both slices are of one length. Switched off, it passes all frames, once a
-    /// lowered gain has risen to 1 as after a last peak. While it is on, samples that are not finite become 0.
+    /// Limits the next frames in place. Both slices have the same length. With `is_on` false, all frames pass, but a
+    /// lowered gain first rises to 1 as it does after a last peak. With `is_on` true, samples that are not finite
+    /// become 0.
     pub fn process(&mut self, is_on: bool, left: &mut [f32], right: &mut [f32]) {
         for (left, right) in left.chunks_mut(SCAN).zip(right.chunks_mut(SCAN)) {
             let [last_left, last_right] = &self.last;
@@ -190,8 +194,8 @@ impl Limiter {
         out
     }
 
-    /// Takes in a frame that needs no limiting; of any other it takes in nothing. The output's points are the same as
-    /// the input's: most of the work that there is for loud frames.
+    /// Accepts a frame that needs no limiting and returns true; does nothing with any other frame. Called while the
+    /// output's points are the same as the input's. This test is most of the work for loud frames.
     #[inline(always)]
     fn passes(&mut self, frame: [f32; 2]) -> bool {
         let passes = self.input.iter().zip(frame).all(|(points, sample)| {
@@ -205,10 +209,11 @@ impl Limiter {
         passes
     }
 
-    /// Moves the gain by one frame, in which the input's peak is `peak`.
+    /// Updates the gain for one frame whose input peak is `peak`.
     fn follow(&mut self, peak: f32) {
         let highest = self.recent_peaks.add(peak);
-        // From the threshold down to the ceiling as peaks rise, so that the gain has no step where it sets in.
+        // The ceiling falls from the threshold to its lowest value as peaks rise, so that the gain has no step where
+        // limiting begins.
         self.set_ceiling((2.0 * THRESHOLD - highest).clamp(CEILING, THRESHOLD));
         let target = if highest > THRESHOLD { f64::from(self.ceiling) / f64::from(highest) } else { 1.0 };
         if target <= self.gain {
@@ -229,7 +234,7 @@ impl Limiter {
         }
     }
 
-    /// Shows the input's interpolators what passed while they were not needed.
+    /// Gives the input's interpolators the samples that passed while they were not used.
     fn catch_up(&mut self) {
         if self.is_stale {
             for (channel, last) in self.last.iter().enumerate() {
@@ -247,7 +252,8 @@ impl Limiter {
     }
 }
 
-/// Limits some frames, one after the other. That the points of a frame fill vectors is for the compiler to see.
+/// Limits some frames, one after the other. A kernel, so that the compiler can compute the points of a frame with
+/// vectors.
 struct Steps<'a> {
     limiter: &'a mut Limiter,
     is_on: bool,
@@ -266,31 +272,31 @@ impl Kernel for Steps<'_> {
     }
 }
 
-/// Limits of points that are not complete: [`GUARD`] at the lowest ceiling, and at the threshold as far above it as
-/// those of a signal can be that must not be changed.
+/// Limits of incomplete points: [`GUARD`] at the lowest ceiling. At the threshold, they are raised as far as a signal
+/// can reach that must not be changed.
 fn limits(weights: &Weights, ceiling: f32) -> ByAge {
     let share = (ceiling - CEILING) / (THRESHOLD - CEILING);
     weights.partial_bounds(THRESHOLD).map(|bound| GUARD + share * (bound - GUARD).max(0.0))
 }
 
-/// Whether no sample is beyond [`QUIET`]; false with NaN. Without a branch, so that it is done in vectors.
+/// Whether no sample exceeds [`QUIET`]; false if one is NaN. Has no branch, so that the compiler can use vectors.
 fn is_quiet(samples: &[f32]) -> bool {
     samples.iter().fold(true, |quiet, sample| quiet & (sample.abs() <= QUIET))
 }
 
-/// Appends samples to the last ones.
+/// Appends samples to the kept ones and drops the oldest.
 fn keep_last(last: &mut [f32; TAPS], samples: &[f32]) {
     let kept = TAPS.saturating_sub(samples.len());
     last.copy_within(TAPS - kept.., 0);
     last[kept..].copy_from_slice(&samples[samples.len() - (TAPS - kept)..]);
 }
 
-/// The highest peak of the last frames, to an eighth of how many they are.
+/// The highest peak of the last frames. The window is divided into eight parts, so its length is exact to an eighth.
 #[derive(Clone, Debug)]
 struct RecentPeaks {
-    /// The highest peak of each part, the newest first.
+    /// The highest peak of each part, newest first.
     parts: [f32; 8],
-    /// The highest of all but the newest.
+    /// The highest of all parts but the newest.
     highest_before: f32,
     part_frames: u32,
     elapsed: u32,
@@ -305,7 +311,7 @@ impl RecentPeaks {
         (self.parts, self.highest_before, self.elapsed) = ([0.0; 8], 0.0, 0);
     }
 
-    /// Adds the peak of the next frame and returns the highest.
+    /// Adds the peak of the next frame and returns the highest peak in the window.
     fn add(&mut self, peak: f32) -> f32 {
         if self.elapsed == self.part_frames {
             self.parts.rotate_right(1);
@@ -349,7 +355,7 @@ mod tests {
         let (weights, mut worst) = (Weights::new(), 0.0f32);
         for first in 0..4096 {
             let mut points = Interpolator::SILENT;
-            // Every choice of signs of the twelve samples that a point is made of.
+            // Every combination of signs of the twelve samples of a point.
             for n in 0..TAPS {
                 let sample = if first >> n & 1 == 1 { QUIET } else { -QUIET };
                 worst = worst.max(points.peak_with(&weights, sample));

@@ -1,4 +1,4 @@
-//! Pure numerics: no events, no files, no threads. Everything in it is real-time safe.
+//! Pure numerics: no events, no files, no threads. Everything here is real-time safe.
 
 pub mod bank;
 pub mod cells;
@@ -28,5 +28,6 @@ pub use oscillator::HarmonicOscillator;
 pub use power::power_of_two;
 pub use simd::Level;
 
-/// Frames between two control ticks. Frozen: pitch and gain move in straight lines between ticks.
+/// Frames between two control ticks. Frozen: pitch and gain move in straight lines between ticks, so all samples depend
+/// on it.
 pub const CONTROL_FRAMES: usize = 32;

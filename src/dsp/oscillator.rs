@@ -1,13 +1,13 @@
-//! The mass on a spring: two multiplications, two subtractions and one addition a sample.
+//! The mass on a spring: two multiplications, two subtractions and one addition per sample.
 
 use super::coefficients::Coefficients;
 use super::real::Real;
 
-/// A mass on a spring, stepped once a sample: what a mode *is*.
+/// A mass on a spring, stepped once per sample: the definition of a mode.
 ///
-/// This is the definition from which the coefficients of [`super::ModeBank`] follow and with which its tests compare it.
-/// The bank keeps the same mass in other coordinates, `(x, y)`, in which its pitch may move as it likes: there `y` is the
-/// displacement a quarter turn ahead, and with coefficients that stand still both give the same samples.
+/// The coefficients of [`super::ModeBank`] are derived from it, and the bank's tests compare the bank with it. The bank
+/// stores the same mass in other coordinates, `(x, y)`, where `y` is the displacement a quarter period later. There the
+/// pitch may move in any way. With constant coefficients both give the same samples.
 ///
 /// `x` is the displacement (the audio sample), `v` the velocity in displacement per sample. Source: `Step` and
 /// `StepWithSweep` of "Harmonic oscillator, I turned jiggle physics code into a synthesizer", operation for operation.
@@ -23,12 +23,12 @@ pub struct HarmonicOscillator<T> {
 }
 
 impl HarmonicOscillator<f32> {
-    /// At rest, without a spring.
+    /// At rest, with neither spring nor damper.
     pub const REST: Self = Self { x: 0.0, v: 0.0, zeta: 0.0, omega2: 0.0 };
 }
 
 impl<T: Real> HarmonicOscillator<T> {
-    /// An oscillator in the starting state of `coefficients`, rounded to `T`.
+    /// An oscillator with the starting state of `coefficients`, rounded to `T`.
     pub fn new(coefficients: &Coefficients) -> Self {
         Self {
             x: T::from_f64(coefficients.x0),
@@ -46,13 +46,15 @@ impl<T: Real> HarmonicOscillator<T> {
         self.x
     }
 
-    /// The next sample at a swept pitch (about `sweep` times the frequency; [`Coefficients::sweep_for_ratio`] is exact).
+    /// The next sample at a swept pitch: about `sweep` times the frequency. ([`Coefficients::sweep_for_ratio`] is
+    /// exact.)
     ///
-    /// At any constant sweep below [`Coefficients::sweep_for_ratio`]'s limit this is as exact as [`Self::step`]. The sweep
-    /// may be modulated slowly against the oscillation and well below half the sample rate: a bend, a vibrato of a few
-    /// hertz, a kick's fall. What moves at a rate near twice the mass's frequency, or near half the sample rate, pumps energy
-    /// into it without bound (+108 dB in two seconds at 23 kHz under a vibrato of ±800 cents at 20 Hz and 48 kHz), and so
-    /// does damping that changes while the sweep moves. The bank has no such limits.
+    /// At any constant sweep below the limit of [`Coefficients::sweep_for_ratio`] this is as exact as [`Self::step`].
+    /// The sweep may be modulated if it moves slowly compared with the oscillation and stays well below half the sample
+    /// rate: a bend, a vibrato of a few hertz, the falling pitch of a kick drum. Movement at a rate near twice the
+    /// mass's frequency, or at a pitch near half the sample rate, adds energy without bound (+108 dB in two seconds at
+    /// 23 kHz with a vibrato of ±800 cents at 20 Hz, at 48 kHz). So does damping that changes while the sweep moves.
+    /// The bank has no such limits.
     #[inline]
     pub fn step_with_sweep(&mut self, sweep: T) -> T {
         self.v -= self.v * self.zeta + self.x * self.omega2 * sweep;
@@ -60,7 +62,7 @@ impl<T: Real> HarmonicOscillator<T> {
         self.x
     }
 
-    /// Strikes the mass: adds velocity, so that a moving mass gains (or loses) energy and never clicks.
+    /// Strikes the mass: adds velocity, so that a moving mass gains (or loses) energy and there is no click.
     pub fn strike(&mut self, velocity: T) {
         self.v += velocity;
     }
@@ -71,7 +73,7 @@ impl<T: Real> HarmonicOscillator<T> {
         self.omega2 = T::from_f64(coefficients.omega2);
     }
 
-    /// The coefficients in use, with the present state as the starting one.
+    /// The coefficients in use, with the present state as the starting state.
     pub fn coefficients(&self) -> Coefficients {
         Coefficients {
             zeta: self.zeta.to_f64(),
@@ -108,7 +110,7 @@ mod tests {
             for n in 1..=(t60 * 48_000.0) as i32 {
                 let expected = 0.8 * pow(radius, n.into()) * sin(f64::from(n) * theta);
                 assert!((reference.step() - expected).abs() < 1e-9, "{frequency} Hz, frame {n}");
-                // In single precision ω² is rounded, by 2⁻²³ at most: a phase error that grows with n sin θ.
+                // In single precision the rounding of ω², 2⁻²³ at most, causes a phase error that grows with n sin θ.
                 let drift = f64::from(n) * 1.2e-7 / (2.0 * sin(theta));
                 let error = (f64::from(audio.step()) - expected).abs() / pow(radius, n.into());
                 assert!(error < 4e-5 + drift, "{frequency} Hz in f32, frame {n}: {error:e}");

@@ -1,8 +1,8 @@
-//! What moves the pitch of a voice over time: the sweep envelope and the glide.
+//! The movements of a voice's pitch over time: the sweep envelope and the glide.
 
 use libm::exp;
 
-/// A sweep that starts some semitones away and arrives after a time, as a function of time. Real-time safe.
+/// A pitch sweep that starts some semitones away and reaches 0 after some time, as a function of time. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub struct SweepEnvelope {
     semitones: f64,
@@ -13,14 +13,14 @@ pub struct SweepEnvelope {
 }
 
 impl SweepEnvelope {
-    /// A sweep from `semitones` to 0 in `seconds`. `curve` from −1 to 1: 0 is a straight line, above it the sweep
-    /// falls fast and settles slowly, below the reverse.
+    /// A sweep from `semitones` to 0 in `seconds`. `curve` is −1 to 1: 0 is a straight line; above 0 the sweep starts
+    /// fast and ends slowly, below 0 the reverse.
     pub fn new(semitones: f64, seconds: f64, curve: f64) -> Self {
         let steepness = 8.0 * curve;
         Self { semitones, seconds, steepness, end: exp(-steepness) }
     }
 
-    /// Semitones `time` seconds after the start; exactly 0 from its end on.
+    /// Semitones, `time` seconds after the start; exactly 0 from `seconds` on.
     pub fn at(&self, time: f64) -> f64 {
         if time >= self.seconds || self.semitones == 0.0 {
             return 0.0;
@@ -32,7 +32,7 @@ impl SweepEnvelope {
     }
 }
 
-/// A slide in semitones at constant speed, as a function of time. Real-time safe.
+/// A glide in semitones at constant speed, as a function of time. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub struct Glide {
     from: f64,
@@ -41,12 +41,12 @@ pub struct Glide {
 }
 
 impl Glide {
-    /// A slide from `from` to `to` in `seconds`; 0 is a jump.
+    /// A glide from `from` to `to` in `seconds`; 0 is a jump.
     pub fn new(from: f64, to: f64, seconds: f64) -> Self {
         Self { from, to, seconds }
     }
 
-    /// Semitones `time` seconds after the start.
+    /// Semitones, `time` seconds after the start.
     pub fn at(&self, time: f64) -> f64 {
         if time >= self.seconds { self.to } else { self.from + (self.to - self.from) * (time / self.seconds) }
     }

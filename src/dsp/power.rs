@@ -1,10 +1,10 @@
-//! Powers of two, quickly: for what moves at every control tick and need not be exact.
+//! Fast powers of two, for values that move at every control tick and need not be exact.
 
-/// `2^x` within 3e−7 of it, for x from −126 to 126; numbers beyond count as these. A tenth of the time that an exact one
-/// takes, and the same bits on every machine. Real-time safe.
+/// `2^x` with a relative error of at most 3e−7, for x from −126 to 126; x is clamped to this range. Takes a tenth of
+/// the time of an exact function, and gives the same bits on every machine. Real-time safe.
 pub fn power_of_two(x: f32) -> f32 {
     let x = x.clamp(-126.0, 126.0);
-    // The nearest whole number, by a cast that rounds towards 0.
+    // The nearest whole number: the cast rounds towards 0, and x + 127.5 is positive.
     let whole = (x + 127.5) as i32 - 127;
     // The series of 2^f for |f| ≤ ½: powers of ln 2 over factorials.
     let f = x - whole as f32;

@@ -1,8 +1,8 @@
 //! A straight line from one value to another, as a function of elapsed frames.
 
-/// A value on its way to a target. Real-time safe.
+/// A value that moves to a target. Real-time safe.
 ///
-/// Its value depends only on how many frames have passed, never on how they were divided into blocks.
+/// The value depends only on the number of frames elapsed, never on how they were divided into blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct Ramp {
     from: f32,
@@ -12,12 +12,12 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// A ramp that rests at `value`.
+    /// A ramp that stays at `value`.
     pub fn at_rest(value: f32) -> Self {
         Self { from: value, to: value, frames: 0, elapsed: 0 }
     }
 
-    /// Starts towards `target` from where the ramp is now, to arrive in `frames`.
+    /// Starts a line from the present value to `target`, which is reached after `frames`.
     pub fn set(&mut self, target: f32, frames: u32) {
         *self = Self { from: self.after(0), to: target, frames, elapsed: 0 };
     }
@@ -32,7 +32,7 @@ impl Ramp {
         }
     }
 
-    /// Lets `frames` frames pass.
+    /// Moves `frames` frames ahead.
     pub fn advance(&mut self, frames: u32) {
         self.elapsed = self.elapsed.saturating_add(frames);
     }

@@ -1,6 +1,6 @@
-//! Randomness as a function of a counter, so that any sample of it can be computed in any order on any machine.
+//! Random numbers as a function of a counter, so that any of them can be computed in any order on any machine.
 
-/// Mixes a 64-bit number into an unrelated one (Steele, Lea and Flood 2014: the finaliser of SplitMix64).
+/// Mixes the bits of a 64-bit number (Steele, Lea and Flood 2014: the finaliser of SplitMix64).
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -9,12 +9,12 @@ fn mix(mut z: u64) -> u64 {
 
 const GOLDEN_RATIO: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// The key of a stream: that of the `serial`-th note, channel or file of a seed.
+/// The key of a stream of random numbers, for the `serial`-th note, channel or file of a seed.
 pub fn key(seed: u64, serial: u64) -> u64 {
     mix(mix(seed.wrapping_add(GOLDEN_RATIO)).wrapping_add(serial.wrapping_mul(GOLDEN_RATIO)))
 }
 
-/// The `n`-th number of a stream: uniform over [−1, 1), a multiple of 2⁻²³, mean 0, variance 1/3.
+/// The `n`-th number of a stream: uniform in [−1, 1), a multiple of 2⁻²³, mean 0, variance 1/3.
 pub fn uniform(key: u64, n: u64) -> f32 {
     let bits = mix(key.wrapping_add(n.wrapping_mul(GOLDEN_RATIO))) >> 40;
     bits as f32 * (1.0 / 8_388_608.0) - 1.0
@@ -36,7 +36,7 @@ mod tests {
         assert!(values.iter().all(|v| (-1.0..1.0).contains(v)));
     }
 
-    /// Renders must not change between versions: the first numbers of a stream are pinned.
+    /// Renders must not change between versions, so the first numbers of a stream are pinned.
     #[test]
     fn streams_are_pinned_and_differ() {
         let first = |k: u64| [uniform(k, 0), uniform(k, 1)];

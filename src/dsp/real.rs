@@ -1,4 +1,4 @@
-//! The two number types that the oscillator is made in: `f32` for audio, `f64` for reference.
+//! The two number types of the oscillator: `f32` for audio, `f64` as the reference.
 
 use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
 

@@ -1,18 +1,18 @@
-//! The waveform between samples, by interpolation: points that are complete, and those that samples to come will complete.
+//! The waveform between samples, by interpolation: complete points, and points that still need later samples.
 
 use libm::{cos, sin};
 use std::f64::consts::PI;
 
-/// Samples that each interpolated point is made of.
+/// Number of samples from which each point is interpolated.
 pub const TAPS: usize = 12;
 
-/// Points per sample: the sample itself and three between it and the next.
+/// Points per sample: the sample itself and three between it and the next one.
 const POINTS: usize = 4;
 
 const WEIGHTS: usize = TAPS * POINTS;
 
-/// A number for each point that is not complete, by age: those that are complete with the newest sample first. Twice
-/// over, so that it can be read from any age on.
+/// One number for each incomplete point, ordered by age: first those that the newest sample completes. Stored twice in
+/// a row, so that it can be read starting at any age.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct ByAge([f32; 2 * WEIGHTS]);
@@ -22,12 +22,12 @@ impl ByAge {
         Self(std::array::from_fn(|index| number(index % WEIGHTS)))
     }
 
-    /// The same with every number changed.
+    /// Applies `change` to every number.
     pub fn map(self, change: impl Fn(f32) -> f32) -> Self {
         Self(self.0.map(change))
     }
 
-    /// The numbers for points that are kept from place `next` on, in the order of their places.
+    /// The numbers in the order in which an [`Interpolator`] stores its points, if its oldest are at place `next`.
     #[inline(always)]
     fn from(&self, next: usize) -> &[f32; WEIGHTS] {
         let start = (TAPS - next) * POINTS;
@@ -39,25 +39,25 @@ impl ByAge {
 /// Plain data; making one calls transcendental functions.
 #[derive(Clone, Debug)]
 pub struct Weights {
-    /// Weight of the newest sample in each point that it contributes to.
+    /// Weight of the newest sample in each point to which it contributes.
     of_newest: ByAge,
-    /// No bits for points that were complete with the sample before, whose places the newest points take, and all bits
-    /// for others: unlike a factor, a mask forgets infinity too.
+    /// A mask: no bits for points that the sample before completed, whose places the newest points take, and all bits
+    /// for the others. Unlike multiplication by 0, a mask also removes infinity.
     kept: ByAge,
-    /// The most that each point can be so far, if it and all before it never exceed 1 once complete.
+    /// Upper bound of each point's partial sum, if no point ever exceeds 1 when complete.
     partial_bounds: ByAge,
 }
 
 impl Weights {
-    /// The weights; the same bits on every machine.
+    /// Computes the weights; the same bits on every machine.
     pub fn new() -> Self {
         let of_newest: [f32; WEIGHTS] = std::array::from_fn(|index| {
             let window = 0.5 * (1.0 - cos(2.0 * PI * index as f64 / WEIGHTS as f64));
             let x = PI * (index as f64 - WEIGHTS as f64 / 2.0) / POINTS as f64;
             (if x == 0.0 { 1.0 } else { window * sin(x) / x }) as f32
         });
-        // What a point has so far is at most the sum of the weights had, since samples are at most 1, and at most what
-        // it will be and the sum of the weights to come.
+        // A partial sum is at most the sum of the weights used so far, since samples are at most 1. It is also at most
+        // the complete point, 1, plus the sum of the remaining weights.
         let partial_bounds = ByAge::new(|index| {
             let of_point = |range: std::ops::Range<usize>| -> f32 {
                 range.skip(index % POINTS).step_by(POINTS).map(|index| f32::abs(of_newest[index])).sum()
@@ -69,7 +69,7 @@ impl Weights {
         Self { of_newest: ByAge::new(|index| of_newest[index]), kept, partial_bounds }
     }
 
-    /// The most that each point can be so far, where no point ever exceeds `peak` once complete.
+    /// Upper bound of each point's partial sum, if no point ever exceeds `peak` when complete.
     pub fn partial_bounds(&self, peak: f32) -> ByAge {
         self.partial_bounds.map(|bound| bound * peak)
     }
@@ -81,21 +81,21 @@ impl Default for Weights {
     }
 }
 
-/// The points of one channel. They depend on the last [`TAPS`] samples only, to the bit. Real-time safe.
+/// The interpolated points of one channel. They depend only on the last [`TAPS`] samples, to the bit. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct Interpolator {
-    /// What each point has so far. A point stays in its place until it is complete; then a new one takes it.
+    /// The partial sum of each point. A point stays in its place until it is complete; then a new one takes the place.
     sums: [f32; WEIGHTS],
-    /// The place, in groups of [`POINTS`], of the points that the next sample completes.
+    /// The place, in groups of [`POINTS`], of the points that the next sample will complete.
     next: usize,
 }
 
 impl Interpolator {
-    /// After silence.
+    /// The state after silence.
     pub const SILENT: Self = Self { sums: [0.0; WEIGHTS], next: 0 };
 
-    /// What each point has before the next sample, and that sample's weight in it.
+    /// Each point's partial sum before the next sample, and the weight of that sample in the point.
     #[inline(always)]
     fn points<'a>(&'a self, weights: &'a Weights) -> impl Iterator<Item = (f32, f32)> + 'a {
         let kept = self
@@ -106,7 +106,7 @@ impl Interpolator {
         kept.zip(weights.of_newest.from(self.next).iter().copied())
     }
 
-    /// The largest magnitude of the points that the next sample completes, which lie half of [`TAPS`] samples back.
+    /// The largest magnitude of the points that `sample` would complete. They lie half of [`TAPS`] samples back.
     #[inline(always)]
     pub fn peak_with(&self, weights: &Weights, sample: f32) -> f32 {
         let (sums, weights) = (self.sums.as_chunks::<POINTS>().0, weights.of_newest.0.as_chunks::<POINTS>().0);
@@ -118,7 +118,7 @@ impl Interpolator {
         peak
     }
 
-    /// Takes in the next sample.
+    /// Adds the next sample.
     #[inline(always)]
     pub fn push(&mut self, weights: &Weights, sample: f32) {
         let mut sums = [0.0; WEIGHTS];
@@ -127,16 +127,16 @@ impl Interpolator {
         self.next = if self.next + 1 < TAPS { self.next + 1 } else { 0 };
     }
 
-    /// Whether no point exceeds its limit by what it has with the next sample.
+    /// Whether no partial sum would exceed its limit after the next sample.
     #[inline(always)]
     pub fn is_within(&self, weights: &Weights, limits: &ByAge, sample: f32) -> bool {
         let points = self.points(weights).zip(limits.from(self.next));
-        // Without a branch, so that it is done in vectors.
+        // Has no branch, so that the compiler can use vectors.
         points.fold(true, |within, ((sum, weight), limit)| within & ((sum + weight * sample).abs() <= *limit))
     }
 
-    /// The largest share of `sample`, 0–1, with which no point so far exceeds its limit. A point that does already
-    /// does not grow.
+    /// The largest share of `sample`, 0–1, with which no partial sum exceeds its limit. A partial sum that exceeds it
+    /// already does not grow.
     #[inline(always)]
     pub fn share_within(&self, weights: &Weights, limits: &ByAge, sample: f32) -> f32 {
         if self.is_within(weights, limits, sample) {

@@ -1,22 +1,22 @@
-//! What a MIDI channel remembers: its wheel, pressure, controllers and registered parameters.
+//! The state of a MIDI channel: pitch wheel, pressure, controllers and registered parameters.
 
 use super::gain::StereoGain;
 use super::midi::{controller, seven_bits};
 use super::modulation::Positions;
 use crate::patch::routes::Source;
 
-/// Channel controllers, in the units that voices use them in. Real-time safe.
+/// The controllers of a channel, in the units that voices use. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Channel {
     /// −1 to 1.
     pub(crate) bend: f32,
-    /// Bend range in semitones set by RPN 0, which overrides the patch's.
+    /// Bend range in semitones, if RPN 0 has set it. It overrides the patch's.
     pub(crate) bend_range: Option<f32>,
     /// 0–1.
     pub(crate) wheel: f32,
     /// 0–1.
     pub(crate) pressure: f32,
-    /// −0.5 to 0.5, of controller 74.
+    /// −0.5 to 0.5, from controller 74.
     pub(crate) brightness: f32,
     /// 0–1.
     pub(crate) breath: f32,
@@ -33,9 +33,9 @@ pub(crate) struct Channel {
 /// The registered parameters that a channel has: bend range, fine tuning and coarse tuning.
 #[derive(Clone, Copy, Debug)]
 struct Registered {
-    /// Which one data entry goes to, as most and least significant seven bits; 127, 127 is none.
+    /// The parameter that data entry sets, as most and least significant seven bits; (127, 127) is none.
     number: (u8, u8),
-    /// Most and least significant seven bits of each.
+    /// Values of the three parameters, as most and least significant seven bits.
     data: [(u8, u8); 3],
 }
 
@@ -45,10 +45,10 @@ impl Registered {
     const FINE: usize = 1;
     const COARSE: usize = 2;
     const MPE: (u8, u8) = (0, 6);
-    /// Two semitones, and in tune.
+    /// A bend range of two semitones, and no transposition.
     const INITIAL: Self = Self { number: Self::NONE, data: [(2, 0), (64, 0), (64, 0)] };
 
-    /// The data that entry goes to, if there is such a parameter.
+    /// The value that data entry sets; none if there is no such parameter.
     fn selected(&mut self) -> Option<&mut (u8, u8)> {
         let (0, number) = self.number else { return None };
         self.data.get_mut(usize::from(number))
@@ -67,7 +67,7 @@ impl Registered {
 }
 
 impl Channel {
-    /// A channel as after power-on: wheel centred, volume and expression full, pan centred.
+    /// A channel in its power-on state: wheel and pan centred, volume and expression at maximum.
     pub(crate) fn new(sample_rate: f64) -> Self {
         Self {
             bend: 0.0,
@@ -85,7 +85,7 @@ impl Channel {
         }
     }
 
-    /// Takes in a controller at a value 0–1. Pedals that hold notes and mode messages are the voice manager's.
+    /// Handles a controller at a value 0–1. The voice manager handles sustain, sostenuto and mode messages.
     pub(crate) fn control(&mut self, controller: u8, value: f32) {
         let data = seven_bits(value);
         match controller {
@@ -110,7 +110,7 @@ impl Channel {
         }
     }
 
-    /// Data entry for the selected registered parameter.
+    /// Changes the value of the selected registered parameter.
     fn enter(&mut self, change: impl FnOnce(&mut (u8, u8))) {
         if let Some(entry) = self.registered.selected() {
             change(entry);
@@ -120,12 +120,12 @@ impl Channel {
         }
     }
 
-    /// Whether data entry is an MPE configuration message.
+    /// Whether data entry sets the size of an MPE zone.
     pub(crate) fn awaits_zone(&self) -> bool {
         self.registered.number == Registered::MPE
     }
 
-    /// Whether data entry has just set the bend range.
+    /// Whether data entry sets the bend range.
     pub(crate) fn awaits_bend_range(&self) -> bool {
         self.registered.number == (0, Registered::BEND_RANGE as u8)
     }
@@ -135,7 +135,7 @@ impl Channel {
         self.registered.tuning()
     }
 
-    /// "Reset all controllers" as RP-015 has it: volume, pan and registered parameters keep their values.
+    /// "Reset all controllers" according to RP-015: volume, pan and registered parameters keep their values.
     fn reset_controllers(&mut self) {
         self.bend = 0.0;
         self.wheel = 0.0;
@@ -151,28 +151,28 @@ impl Channel {
         self.gain.after(frames).into()
     }
 
-    /// Frames that gains take to arrive after a controller has moved.
+    /// Frames that gains take to reach their target.
     pub(crate) fn slope_frames(&self) -> u32 {
         self.gain.slope_frames()
     }
 
-    /// Lets `frames` frames pass.
+    /// Advances the gains by `frames` frames.
     pub(crate) fn advance(&mut self, frames: u32) {
         self.gain.advance(frames);
     }
 }
 
-/// What a voice follows of the channels that its note is on.
+/// The channels whose controllers a voice follows.
 #[derive(Clone, Copy)]
 pub(crate) struct Wheels<'a> {
     /// The note's own channel.
     pub(crate) channel: &'a Channel,
-    /// The master of its zone.
+    /// The master channel of the note's MPE zone.
     pub(crate) master: Option<&'a Channel>,
 }
 
 impl Wheels<'_> {
-    /// The greater of a controller's positions on the channel and on its master.
+    /// The greater of a controller's values on the channel and on its master.
     pub(super) fn most(&self, position: impl Fn(&Channel) -> f32) -> f64 {
         self.master.map_or(0.0, &position).max(position(self.channel)).into()
     }
@@ -185,8 +185,8 @@ impl Wheels<'_> {
         self.master.map_or(own, |master| (own.0 + bend(master), own.1 + tuning(master)))
     }
 
-    /// Where wheels, breath and pressure are, for the modulation of a note whose brightness is from −0.5 to 0.5: those that
-    /// `is_read` tells of.
+    /// Controller positions as modulation sources, for a note whose brightness is −0.5 to 0.5. Only the sources for
+    /// which `is_read` is true are set.
     pub(super) fn positions(&self, brightness: f64, is_read: impl Fn(Source) -> bool) -> Positions {
         let mut positions = Positions { timbre: (2.0 * brightness) as f32, ..Positions::default() };
         if is_read(Source::Pressure) {
@@ -215,7 +215,8 @@ impl Wheels<'_> {
     }
 }
 
-/// A controller's value with MIDI's centre, 64 of 127, at 0.5: 1–127 about 64, as RP-036 recommends.
+/// Maps a controller's value so that MIDI's centre, 64 of 127, becomes 0.5: 1–127 are symmetrical, as RP-036
+/// recommends.
 fn centred(value: f32) -> f32 {
     ((value * 127.0 - 1.0) / 126.0).clamp(0.0, 1.0)
 }

@@ -1,8 +1,8 @@
-//! How long the modes of a note ring: their own decay, and the damper's hold on it.
+//! T60 of a note's modes: their own decay, and the effect of the damper.
 
 use libm::pow;
 
-/// T60 below which a mode is a click whatever its pitch.
+/// Lower limit of T60 in seconds: below it, a mode is a click at any pitch.
 const SHORTEST_T60: f64 = 0.000_5;
 
 /// How the note is damped.
@@ -10,14 +10,15 @@ const SHORTEST_T60: f64 = 0.000_5;
 pub(crate) struct Damping {
     /// T60 of a held note of ratio 1, in seconds.
     pub(crate) decay: f64,
-    /// T60 of a damped mode, in seconds; 0 where `amount` is.
+    /// T60 of a fully damped mode, in seconds. Not used if `amount` is 0.
     pub(crate) release: f64,
-    /// How far it is damped, 0–1.
+    /// Degree of damping, 0–1.
     pub(crate) amount: f64,
 }
 
 impl Damping {
-    /// T60 in seconds of a mode whose T60 is `scale` times the decay: between its own and the damper's, by ratio.
+    /// T60 in seconds of a mode whose own T60 is `scale` times the decay: interpolated geometrically towards the
+    /// damper's.
     pub(crate) fn t60(self, scale: f64) -> f64 {
         let held = (self.decay * scale).max(SHORTEST_T60);
         let damped = held.min(self.release).max(SHORTEST_T60);

@@ -1,9 +1,9 @@
-//! What one note has been told while it sounds.
+//! The note expressions of one note.
 
 use super::event::{Expression, finite, unit};
 use super::gain::StereoGain;
 
-/// The expressions of a note, each neutral until it is told otherwise. Real-time safe.
+/// The expressions of a note. Each is neutral until it is set. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Expressions {
     /// Semitones.
@@ -17,13 +17,13 @@ pub(crate) struct Expressions {
     volume: f32,
     swell: f32,
     pan: f32,
-    /// Level and position of the note's pad.
+    /// Amplitude ratio and pan of the note's pad.
     pad: (f32, f32),
     gain: StereoGain,
 }
 
 impl Expressions {
-    /// A note that has been told nothing.
+    /// Neutral expressions.
     pub(crate) fn new(sample_rate: f64) -> Self {
         Self::neutral(StereoGain::new(sample_rate))
     }
@@ -38,7 +38,7 @@ impl Expressions {
         self.gain.aim(self.volume * self.swell * self.swell * gain, (self.pan + 0.5 * pan).clamp(0.0, 1.0));
     }
 
-    /// Takes in one expression; numbers out of range become the nearest within, NaN becomes zero.
+    /// Sets one expression. A value out of range is clamped; NaN counts as zero.
     pub(crate) fn set(&mut self, expression: Expression, value: f32) {
         let value = finite(value);
         match expression {
@@ -55,13 +55,14 @@ impl Expressions {
         }
     }
 
-    /// Forgets everything for a note whose pad has an amplitude ratio and a position from −1 to 1; gains slide there.
+    /// Resets all expressions for a new note whose pad has an amplitude ratio and a pan from −1 to 1. Gains change
+    /// smoothly.
     pub(crate) fn begin(&mut self, gain: f32, pan: f32) {
         *self = Self { pad: (gain, pan), ..Self::neutral(self.gain) };
         self.aim();
     }
 
-    /// Puts the gains where they are going: for a note that has not sounded yet.
+    /// Sets the gains to their targets at once, for a note that has not sounded yet.
     pub(crate) fn land(&mut self) {
         self.gain.land();
     }
@@ -71,7 +72,7 @@ impl Expressions {
         self.gain.after(frames)
     }
 
-    /// Lets `frames` frames pass.
+    /// Advances the gains by `frames` frames.
     pub(crate) fn advance(&mut self, frames: u32) {
         self.gain.advance(frames);
     }

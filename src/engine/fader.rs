@@ -1,19 +1,19 @@
-//! The gain of a voice: straight lines between control ticks, and the fade that ends a voice early.
+//! The gain of a voice: linear ramps between control ticks, and the fade-out that ends a voice early.
 
-/// Gain to the left and right. A function of elapsed frames, however they are divided. Real-time safe.
+/// Left and right gain. It depends on the elapsed frames only, not on how they are divided into calls. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fader {
     from: [f32; 2],
     step: [f32; 2],
-    /// Frames since the line was set out on.
+    /// Frames since the start of the ramp.
     elapsed: u32,
-    /// Length of the fade, 0 for none, and how much of it has passed.
+    /// Length of the fade-out in frames, 0 if there is none, and, in the next field, how much of it has passed.
     fade_frames: u32,
     faded: u32,
 }
 
 impl Fader {
-    /// Silent, to be put somewhere by [`Fader::jump`].
+    /// A silent fader. [`Fader::jump`] sets its first gain.
     pub(crate) const CLOSED: Fader = Fader { from: [0.0; 2], step: [0.0; 2], elapsed: 0, fade_frames: 0, faded: 0 };
 
     /// The gain of the last frame.
@@ -21,12 +21,12 @@ impl Fader {
         [0, 1].map(|side| self.from[side] + self.step[side] * self.elapsed as f32)
     }
 
-    /// Puts the gain at `target`.
+    /// Sets the gain to `target` at once.
     pub(crate) fn jump(&mut self, target: [f32; 2]) {
         (self.from, self.step, self.elapsed) = (target, [0.0; 2], 0);
     }
 
-    /// Sets out for `target`, to be there in `frames` frames. Returns whether it is elsewhere now.
+    /// Starts a ramp to `target` that takes `frames` frames. Returns whether the gain changes.
     pub(crate) fn aim(&mut self, target: [f32; 2], frames: usize) -> bool {
         let from = self.now();
         let step = [0, 1].map(|side| (target[side] - from[side]) / frames as f32);
@@ -34,27 +34,27 @@ impl Fader {
         from != target
     }
 
-    /// Frames until a fade has come to its end, if there is one.
+    /// Frames until a fade-out ends, if there is one.
     pub(crate) fn frames_left(&self) -> Option<u64> {
         (self.fade_frames > 0).then(|| u64::from(self.fade_frames - self.faded))
     }
 
-    /// Whether the gain rests, but for a fade.
+    /// Whether the gain is constant, apart from a fade-out.
     pub(crate) fn is_level(&self) -> bool {
         self.step == [0.0; 2]
     }
 
-    /// Begins to fade out.
+    /// Starts to fade out.
     pub(crate) fn fade(&mut self, frames: u32) {
         self.fade_frames = frames;
     }
 
-    /// Whether the fade has come to its end.
+    /// Whether the fade-out has ended.
     pub(crate) fn is_closed(&self) -> bool {
         self.fade_frames > 0 && self.faded >= self.fade_frames
     }
 
-    /// How much of the energy a fade has left.
+    /// The fraction of the energy that a fade-out leaves.
     pub(crate) fn remaining(&self) -> f64 {
         if self.fade_frames == 0 {
             return 1.0;
@@ -84,7 +84,7 @@ impl Fader {
             } else if step == 0.0 {
                 pairs.for_each(|(into, voice)| *into += voice * from);
             } else {
-                // Signed: there is a vector instruction for it on every CPU.
+                // A signed counter, since every CPU has a vector instruction that converts it to float.
                 for (i, (into, voice)) in (elapsed as i32 + 1..).zip(pairs) {
                     *into += voice * (from + step * i as f32);
                 }
@@ -97,7 +97,7 @@ impl Fader {
     }
 }
 
-/// An S-curve, so that neither end of a fade has a corner.
+/// An S-curve from 1 to 0. Its slope is zero at both ends, so a fade makes no click.
 fn fade_after(frames: u32, length: u32) -> f32 {
     let u = frames.min(length) as f32 / length as f32;
     1.0 - u * u * (3.0 - 2.0 * u)

@@ -2,13 +2,13 @@
 
 use super::EventKind;
 
-/// Numbers of the controllers that are acted on.
+/// Numbers of the controllers that the engine responds to.
 pub mod controller {
     /// Modulation wheel.
     pub const WHEEL: u8 = 1;
     /// Breath.
     pub const BREATH: u8 = 2;
-    /// Data entry of the registered parameter that was chosen, most significant seven bits.
+    /// Data entry for the selected registered parameter, most significant seven bits.
     pub const DATA: u8 = 6;
     /// Channel volume.
     pub const VOLUME: u8 = 7;
@@ -26,23 +26,23 @@ pub mod controller {
     pub const SOFT: u8 = 67;
     /// Brightness.
     pub const BRIGHTNESS: u8 = 74;
-    /// Chooses a parameter that is not registered, least significant seven bits.
+    /// Selects a non-registered parameter, least significant seven bits.
     pub const NRPN_FINE: u8 = 98;
-    /// Chooses a parameter that is not registered, most significant seven bits.
+    /// Selects a non-registered parameter, most significant seven bits.
     pub const NRPN: u8 = 99;
-    /// Chooses a registered parameter, least significant seven bits.
+    /// Selects a registered parameter, least significant seven bits.
     pub const RPN_FINE: u8 = 100;
-    /// Chooses a registered parameter, most significant seven bits.
+    /// Selects a registered parameter, most significant seven bits.
     pub const RPN: u8 = 101;
     /// All sound off.
     pub const ALL_SOUND_OFF: u8 = 120;
     /// Reset all controllers.
     pub const RESET: u8 = 121;
-    /// All notes off; so are the mode messages above it, up to 127.
+    /// All notes off. The mode messages 124–127 do the same.
     pub const ALL_NOTES_OFF: u8 = 123;
 }
 
-/// The channel and event of one complete MIDI message, as a port delivers it; none for what is not a channel message.
+/// The channel and event of one complete MIDI message, as a port delivers it; none if it is not a channel message.
 /// Real-time safe.
 pub fn parse_message(bytes: &[u8]) -> Option<(u8, EventKind)> {
     let (&status, data) = bytes.split_first()?;
@@ -52,7 +52,7 @@ pub fn parse_message(bytes: &[u8]) -> Option<(u8, EventKind)> {
     let kind = match status >> 4 {
         0x8 => EventKind::NoteOff { key: first, velocity: unit(data(1)?), id: None },
         0x9 => match data(1)? {
-            // A note-on of velocity 0 is a note-off whose velocity the controller does not tell.
+            // A note on with velocity 0 is a note off without a velocity of its own.
             0 => EventKind::NoteOff { key: first, velocity: 0.5, id: None },
             velocity => EventKind::NoteOn { key: first, detune: 0.0, velocity: unit(velocity), id: None },
         },
@@ -66,12 +66,12 @@ pub fn parse_message(bytes: &[u8]) -> Option<(u8, EventKind)> {
     Some((status & 15, kind))
 }
 
-/// A controller's value 0–1 as MIDI counts it.
+/// Converts a controller's value 0–1 to MIDI's 0–127.
 pub(super) fn seven_bits(value: f32) -> u8 {
     (value * 127.0 + 0.5) as u8
 }
 
-/// 0…16383 as −1…1: both ends and the centre are exact, so the upper half has steps of its own.
+/// Converts 0…16383 to −1…1. Both ends and the centre are exact, so the two halves have slightly different step sizes.
 fn bend_position(value: i16) -> f32 {
     let steps = f32::from(value - 8192);
     if steps < 0.0 { steps / 8192.0 } else { steps / 8191.0 }

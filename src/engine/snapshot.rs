@@ -1,23 +1,23 @@
-//! What is to be seen of a sounding instrument: its voices, and where their masses are.
+//! What a display shows of a sounding instrument: the number of voices, and the motion of their masses.
 
 use super::voice::SynthVoice;
 use crate::dsp::mode_bank::MAX_MODES;
 
-/// One mass, or the sum of those that are the same mode of several voices.
+/// One mass, or the sum over the voices that have the same mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mass {
-    /// Displacement, 1 being the amplitude that a strike of full force gives.
+    /// Displacement. A strike of full force has an amplitude of 1.
     pub displacement: f32,
     /// Squared amplitude.
     pub energy: f32,
 }
 
-/// What sounds at one moment. Plain data of fixed size; taking it is real-time safe.
+/// What sounds at one moment. Plain data of fixed size; making one is real-time safe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snapshot {
-    /// Voices that are not free, fading ones included.
+    /// Number of voices that play or fade.
     pub voices: u32,
-    /// The masses by mode number, added up over all voices: the first [`MAX_MODES`] of those that have more.
+    /// The masses by mode number, added up over all voices. Modes after the first [`MAX_MODES`] are left out.
     pub masses: [Mass; MAX_MODES],
 }
 
@@ -57,7 +57,8 @@ mod tests {
         ensemble.process(&events, &mut left, &mut right);
         let snapshot = ensemble.snapshot();
         assert_eq!(snapshot.voices, 2);
-        // A quarter of a period after the strike the mass is where it turns: both voices at full amplitude.
+        // A quarter of a period after the strike the displacement is at its maximum: the sum of both voices'
+        // amplitudes.
         assert!((snapshot.masses[0].displacement - 2.0).abs() < 0.02, "{:?}", snapshot.masses[0]);
         assert!((snapshot.masses[0].energy - 2.0).abs() < 0.02, "{:?}", snapshot.masses[0]);
         assert!((snapshot.masses[1].energy - 0.5).abs() < 0.01, "{:?}", snapshot.masses[1]);

@@ -1,4 +1,4 @@
-//! MPE zones: which channels carry one note each, and the channel that speaks for them all.
+//! MPE zones: member channels that carry one note each, and a master channel whose messages apply to all members.
 //!
 //! Source: MIDI Polyphonic Expression 1.0 (M1-100-UM): a configuration message is registered parameter 6 on channel
 //! 1 (the lower zone) or 16 (the upper zone), whose value is the number of member channels.
@@ -14,7 +14,7 @@ pub(crate) const MEMBER_BEND_RANGE: f32 = 48.0;
 const LOWER_MASTER: u8 = 0;
 const UPPER_MASTER: u8 = 15;
 
-/// The zones in use: none until a configuration message comes. Real-time safe.
+/// The zones in use; none until a configuration message arrives. Real-time safe.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Zones {
     lower: u8,
@@ -22,8 +22,8 @@ pub(crate) struct Zones {
 }
 
 impl Zones {
-    /// Takes in a configuration message, unless `channel` is none that it can come on. The later of two zones that
-    /// overlap takes the channels.
+    /// Handles a configuration message. Ignores it if `channel` cannot be a master. If two zones overlap, the later one
+    /// gets the channels.
     pub(crate) fn configure(&mut self, channel: u8, members: u8) {
         let members = members.min(15);
         let (zone, other) = match channel {
@@ -32,11 +32,11 @@ impl Zones {
             _ => return,
         };
         *zone = members;
-        // Sixteen channels, less two masters.
+        // Sixteen channels minus two masters.
         *other = (*other).min(14_u8.saturating_sub(members));
     }
 
-    /// The channel that speaks for `channel` as well.
+    /// The master channel of the zone that `channel` is a member of.
     pub(crate) fn master_of(&self, channel: u8) -> Option<u8> {
         if (1..=self.lower).contains(&channel) {
             Some(LOWER_MASTER)
@@ -47,35 +47,36 @@ impl Zones {
         }
     }
 
-    /// The channels that a message on `channel` is for: itself, and its members if it is a master.
+    /// The channels that a message on `channel` affects: itself, and the members of its zone if it is a master.
     pub(crate) fn reach(&self, channel: u8) -> impl Iterator<Item = u8> + use<> {
         let zones = *self;
         (0..16).filter(move |other| *other == channel || zones.master_of(*other) == Some(channel))
     }
 
-    /// The channels that share their bend range with `channel`: the members of its zone, or itself.
+    /// The channels with the same bend range as `channel`: all members of its zone, or only itself if it is no member.
     pub(crate) fn siblings(&self, channel: u8) -> impl Iterator<Item = u8> + use<> {
         let (zones, master) = (*self, self.master_of(channel));
         (0..16).filter(move |other| *other == channel || (master.is_some() && zones.master_of(*other) == master))
     }
 }
 
-/// Whose instrument plays each channel of an ensemble: the master's those of its zone, and else its own. Real-time safe.
+/// Which channel's instrument plays each channel of an ensemble: the master's for members of a zone, else its own.
+/// Real-time safe.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Owners {
     zones: Zones,
-    /// Whether the next data entry on the lower or the upper master is the number of a zone's members: both bytes of the
-    /// registered parameter's number are as they must be.
+    /// For the lower and the upper master: whether each byte of the selected registered parameter's number is that of
+    /// the MPE configuration. If both are, the next data entry gives the number of members.
     chosen: [[bool; 2]; 2],
 }
 
 impl Owners {
-    /// The channel whose instrument plays a channel.
+    /// The channel whose instrument plays `channel`.
     pub(crate) fn of(&self, channel: u8) -> u8 {
         self.zones.master_of(channel).unwrap_or(channel)
     }
 
-    /// Takes in an event. Gives the master channel and the number of members if it configures a zone.
+    /// Handles an event. Returns the master channel and the number of members if it configures a zone.
     pub(crate) fn hear(&mut self, event: &Event) -> Option<(u8, u8)> {
         let EventKind::Control { controller: number, value } = event.kind else { return None };
         let channel = nearest_channel(event.channel);
@@ -107,7 +108,7 @@ impl Owners {
     }
 }
 
-/// The number of the registered parameter.
+/// Number of the registered parameter for the MPE configuration.
 const ZONE_PARAMETER: u8 = 6;
 
 #[cfg(test)]

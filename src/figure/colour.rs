@@ -7,12 +7,12 @@ pub const INK: RGBColor = RGBColor(40, 40, 46);
 /// Grid lines.
 pub const GRID: RGBColor = RGBColor(226, 226, 230);
 
-/// Blue of the set below: left channels, expected signals.
+/// Blue of `SERIES`: left channels, expected signals.
 pub const BLUE: RGBColor = SERIES[0];
-/// Vermillion of the same set: right channels, actual signals.
+/// Vermillion of `SERIES`: right channels, actual signals.
 pub const VERMILLION: RGBColor = SERIES[1];
 
-/// Six colours of Okabe & Ito, "Color Universal Design" (2008), without black (the truth's) and yellow (too pale).
+/// Six colours of Okabe & Ito, "Color Universal Design" (2008), without black (the true motion) and yellow (too pale).
 const SERIES: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -22,7 +22,7 @@ const SERIES: [RGBColor; 6] = [
     RGBColor(86, 180, 233),
 ];
 
-/// Colour of the `n`-th series, and whether its line is dashed: twelve that differ.
+/// Colour of the `n`-th series, and whether its line is dashed: twelve different combinations.
 pub fn series(n: usize) -> (RGBColor, bool) {
     (SERIES[n % SERIES.len()], (n / SERIES.len()) % 2 == 1)
 }
@@ -40,7 +40,7 @@ const VIRIDIS: [[f64; 3]; 9] = [
     [253.0, 231.0, 37.0],
 ];
 
-/// The colour of `position`, from 0 (dark) to 1 (bright): lightness rises evenly, so that it also reads in grey.
+/// The colour at `position`, from 0 (dark) to 1 (bright). Lightness rises evenly, so it is also readable in grey.
 pub fn viridis(position: f64) -> RGBColor {
     let position = if position.is_nan() { 0.0 } else { position.clamp(0.0, 1.0) };
     let scaled = position * (VIRIDIS.len() - 1) as f64;

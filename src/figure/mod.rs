@@ -1,4 +1,4 @@
-//! Figures as SVG text or PNG bytes, drawn once for both; their one font comes with the crate.
+//! Figures as SVG text or PNG bytes, from the same drawing code; their only font is included in the crate.
 
 pub mod colour;
 pub mod envelope;
@@ -23,10 +23,10 @@ pub trait Picture {
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B>;
 }
 
-/// Family that the figures' font is registered under. An SVG is shown in the reader's font of that kind.
+/// Name under which the figures' font is registered. An SVG is shown in the reader's own font with this generic name.
 const FONT: &str = "monospace";
 
-/// Text of `size` pixels.
+/// Text style of `size` pixels.
 pub fn text(size: i32) -> TextStyle<'static> {
     static READY: Once = Once::new();
     READY.call_once(|| {

@@ -1,8 +1,8 @@
-//! Numbers as people read them.
+//! Formats numbers for people.
 
 use libm::{floor, log10};
 
-/// A number with no more decimals than it needs; powers of ten where it is very large or small.
+/// A number with no more decimals than necessary; with a power of ten if it is very large or small.
 pub fn short(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -33,7 +33,7 @@ pub fn measured(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return short(value);
     }
-    // Rounded first: 0.9999 is 1.00, not 1.000.
+    // Round first, so that 0.9999 becomes 1.00 and not 1.000.
     let rounded = format!("{value:.2e}");
     let magnitude = rounded.rsplit('e').next().and_then(|power| power.parse::<i32>().ok()).unwrap_or(0);
     let text =

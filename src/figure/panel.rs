@@ -1,4 +1,4 @@
-//! A chart with axes in units, and lines that end where they leave it.
+//! A chart with axes in units, and lines that are clipped at its edges.
 
 use super::colour::{GRID, INK};
 use super::number::short;
@@ -11,11 +11,11 @@ use std::ops::Range;
 /// An axis: its range, what it measures and how.
 #[derive(Clone, Debug)]
 pub struct Axis<'a> {
-    /// From where to where; of a logarithmic axis, the decimal logarithms.
+    /// Smallest and largest value; for a logarithmic axis, their decimal logarithms.
     pub range: Range<f64>,
-    /// What it measures, with its unit; empty leaves out the labels.
+    /// What it measures, with its unit. If empty, the axis has no labels.
     pub label: &'a str,
-    /// Whether lines are given the decimal logarithm of what is measured.
+    /// Whether the coordinates of lines are decimal logarithms of the values.
     pub logarithmic: bool,
 }
 
@@ -25,7 +25,7 @@ impl<'a> Axis<'a> {
         Self { range, label, logarithmic: false }
     }
 
-    /// An axis of decades, of which `range` holds the logarithms.
+    /// A logarithmic axis; `range` contains decimal logarithms.
     pub fn logarithmic(range: Range<f64>, label: &'a str) -> Self {
         Self { range, label, logarithmic: true }
     }
@@ -47,7 +47,7 @@ impl<'a> Axis<'a> {
         (ceil(start / step - 1e-9) as i64..=floor(end / step + 1e-9) as i64).map(|n| n as f64 * step).collect()
     }
 
-    /// What stands at a tick. One that is 0 but for rounding is 0.
+    /// The label of a tick. A tick that differs from 0 only by rounding is labelled 0.
     fn name(&self, tick: f64) -> String {
         if self.logarithmic {
             return short(pow(10.0, tick));
@@ -66,7 +66,7 @@ pub struct Panel<'a> {
     pub title: &'a str,
 }
 
-/// A coordinate with ticks of our choice.
+/// A coordinate with our own choice of ticks.
 pub struct Ticked {
     range: Range<f64>,
     ticks: Vec<f64>,
@@ -90,7 +90,7 @@ impl Ranged for Ticked {
     }
 }
 
-/// A drawn panel that takes lines.
+/// A drawn panel, to which lines can be added.
 pub type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<Ticked, Ticked>>;
 
 impl Panel<'_> {
@@ -155,7 +155,7 @@ pub fn line<B: DrawingBackend>(chart: &mut Chart<B>, points: &[(f64, f64)], stro
     Ok(())
 }
 
-/// The pieces of a polyline within a rectangle. Points that are not numbers end a piece.
+/// The pieces of a polyline within a rectangle. A point that is not a number ends a piece.
 pub fn clipped(points: &[(f64, f64)], x: &Range<f64>, y: &Range<f64>) -> Vec<Vec<(f64, f64)>> {
     let mut pieces: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut joined = false;

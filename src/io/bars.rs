@@ -1,33 +1,33 @@
-//! Where in a song a tick is: bar and beat through its time signatures.
+//! Converts a tick of a song to bar and beat, using its time signatures.
 
 use super::tempo::TempoMap;
 use midly::Timing;
 
-/// Time signatures that are kept: places later than so many of them are off, in messages only.
+/// Maximum number of time signatures. Beyond it, places in messages are wrong, but nothing else is.
 const MOST_SIGNATURES: usize = 4096;
 
-/// The bars of a song, as far as it has been read. For messages: songs play without it.
+/// The bars of a song, as far as it has been read. Used for messages only.
 pub(super) struct Bars {
     timing: Timing,
-    /// First tick, beats in a bar, and the power of two of the note that a beat lasts.
+    /// For each signature: its first tick, the beats in a bar, and the beat's note value as a power of two.
     signatures: Vec<(u64, u8, u8)>,
 }
 
 impl Bars {
-    /// Bars of four quarter notes, as until the first time signature (Standard MIDI Files 1.0).
+    /// Bars of four quarter notes, which hold until the first time signature (Standard MIDI Files 1.0).
     pub(super) fn new(timing: Timing) -> Self {
         Self { timing, signatures: vec![(0, 4, 2)] }
     }
 
-    /// Takes in a time signature. One that cannot be is left out.
+    /// Adds a time signature. Ignores one that is not valid.
     pub(super) fn change(&mut self, tick: u64, beats: u8, note: u8) {
-        // Shorter beats than 1/128 are shorter than most ticks.
+        // A beat shorter than 1/128 is shorter than a tick in most files.
         if beats > 0 && note <= 7 && self.signatures.len() < MOST_SIGNATURES {
             self.signatures.push((tick, beats, note));
         }
     }
 
-    /// `bar 3, beat 2` of a tick, counted from 1, or `2.5 s` where ticks are parts of a second.
+    /// The place of a tick, such as `bar 3, beat 2`, counted from 1; or `2.5 s` if ticks are parts of a second.
     pub(super) fn place(&self, tick: u64) -> String {
         let Timing::Metrical(division) = self.timing else {
             let seconds = TempoMap::new(self.timing, &[]).map_or(0.0, |map| map.seconds(tick));
@@ -36,7 +36,7 @@ impl Bars {
         let mut signatures = self.signatures.clone();
         signatures.sort_by_key(|(start, ..)| *start);
         signatures.retain(|(start, ..)| *start <= tick);
-        // The division counts the ticks of a quarter note.
+        // The division is the number of ticks per quarter note.
         let whole_note = 4 * u128::from(division.as_int().max(1));
         let (mut bars, mut beat) = (0, 0);
         for (index, (start, beats, note)) in signatures.iter().enumerate() {
@@ -44,7 +44,7 @@ impl Bars {
             let passed = u128::from(end - start) << note;
             let bar = whole_note * u128::from(*beats);
             beat = passed % bar / whole_note;
-            // A change within a bar starts another.
+            // A change inside a bar starts a new bar.
             bars += if index + 1 < signatures.len() { passed.div_ceil(bar) } else { passed / bar };
         }
         format!("bar {}, beat {}", bars + 1, beat + 1)
@@ -64,7 +64,8 @@ mod tests {
         {
             assert_eq!(bars.place(tick), place);
         }
-        // 6/8 from bar 3 on, told after 3/4 from bar 5 on; both of another track than 5/4 amid a bar.
+        // 6/8 from bar 3 on is added after 3/4 from bar 5 on; both come from another track than 5/4 in the middle of a
+        // bar.
         bars.change(768 + 2 * 288, 3, 2);
         bars.change(768, 6, 3);
         bars.change(768 + 2 * 288 + 100, 5, 2);

@@ -1,4 +1,4 @@
-//! The files that a command reads: none of them may become its output.
+//! The files that a command reads, so that none of them can become its output.
 
 use crate::error::{Error, Result};
 use same_file::Handle;
@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{self, Stdin};
 use std::path::Path;
 
-/// Files that are open as inputs, told apart by device and inode, so that links and other paths to them are known too.
+/// The open input files, identified by device and inode, so that links and other paths to them are recognised too.
 #[derive(Debug, Default)]
 pub struct Inputs(Vec<(String, Handle)>);
 
@@ -33,14 +33,14 @@ impl Inputs {
         Ok(io::stdin())
     }
 
-    /// A terminal or socket is read and written at once without harm; a file is not.
+    /// Adds an input if it is a file. Terminals and sockets can safely be input and output at once.
     fn add(&mut self, name: String, handle: Handle) {
         if handle.as_file().metadata().is_ok_and(|metadata| metadata.is_file()) {
             self.0.push((name, handle));
         }
     }
 
-    /// Refuses an output that is one of the inputs.
+    /// Returns an error if the output is one of the inputs.
     pub(super) fn check(&self, name: &str, output: &Handle) -> Result<()> {
         match self.0.iter().find(|(_, input)| input == output) {
             Some((input, _)) => {
@@ -50,12 +50,13 @@ impl Inputs {
         }
     }
 
-    /// Refuses standard output if it goes to one of the inputs, as in `sprung presets show mine.toml >> mine.toml`.
+    /// Returns an error if standard output goes to one of the inputs, as in `sprung presets show mine.toml >>
+    /// mine.toml`.
     ///
     /// # Errors
     /// [`Error::Value`] that names the input.
     pub fn check_stdout(&self) -> Result<()> {
-        // Where stdout goes to nothing that can be looked at, it goes to none of the inputs.
+        // If standard output cannot be examined, it is none of the inputs.
         Handle::stdout().map_or(Ok(()), |stdout| self.check("stdout", &stdout))
     }
 }

@@ -1,4 +1,4 @@
-//! Standard MIDI Files (types 0 and 1) as songs: events in the order of their time.
+//! Reads Standard MIDI Files (types 0 and 1) as songs: events in order of time.
 
 mod container;
 mod fault;
@@ -14,35 +14,35 @@ use std::io::Read;
 
 pub use reader::MAX_EVENTS;
 
-/// Largest MIDI file that is read, in bytes.
+/// Maximum size of a MIDI file in bytes.
 pub const MAX_FILE_SIZE: u64 = 64 << 20;
 
 impl Song {
     /// Reads a MIDI file to its end. `origin` names it in errors.
     ///
     /// # Errors
-    /// [`Error::Io`] if reading fails; [`Error::Format`] if there is more than [`MAX_FILE_SIZE`] or [`Song::parse`]
-    /// refuses it.
+    /// [`Error::Io`] if reading fails; [`Error::Format`] if the file is larger than [`MAX_FILE_SIZE`], or as
+    /// [`Song::parse`].
     pub fn read(reader: impl Read, origin: &str) -> crate::Result<Self> {
         Self::parse(&read_file(reader, origin)?, origin)
     }
 
-    /// As [`Song::read`], with [`Song::parse_leniently`].
+    /// As [`Song::read`], but with [`Song::parse_leniently`].
     ///
     /// # Errors
-    /// Those of [`Song::read`].
+    /// As [`Song::read`].
     pub fn read_leniently(reader: impl Read, origin: &str) -> crate::Result<(Self, Vec<String>)> {
         Self::parse_leniently(&read_file(reader, origin)?, origin)
     }
 
     /// Reads the bytes of a MIDI file of type 0 or 1. `origin` names it in errors.
     ///
-    /// Reading is strict: a file that breaks off or strays from the standard is an error that names the track, the bar
-    /// and the beat, instead of a song that silently misses notes. Two liberties are granted, because nothing is lost by
-    /// them: tracks may lack their end mark, and whatever follows the declared number of tracks is not looked at.
+    /// Reading is strict: if a file is cut off or violates the standard, the error names track, bar and beat, and no
+    /// notes are lost silently. There are two exceptions, in which nothing is lost: tracks may have no end mark, and
+    /// data after the declared number of tracks is ignored.
     ///
     /// # Errors
-    /// [`Error::Format`]; the message says if [`Song::parse_leniently`] reads the file.
+    /// [`Error::Format`]. The message says so if [`Song::parse_leniently`] could read the file.
     pub fn parse(bytes: &[u8], origin: &str) -> crate::Result<Self> {
         parse(bytes, false).map(|(song, _)| song).map_err(|mut message| {
             if parse(bytes, true).is_ok() {
@@ -52,12 +52,12 @@ impl Song {
         })
     }
 
-    /// As [`Song::parse`], but repairs what has a known remedy, and says what: running status goes on after a meta or
-    /// SysEx event, impossible meta events and tempos of 0 are left out, a file that breaks off is played as far as it
-    /// goes, and sizes and counts of tracks follow from what is there.
+    /// As [`Song::parse`], but repairs known faults, and returns a description of each. Running status continues after
+    /// a meta or SysEx event; invalid meta events and tempos of 0 are ignored; a file that is cut off is read up to its
+    /// end; wrong sizes and track counts are replaced by the real ones.
     ///
     /// # Errors
-    /// [`Error::Format`] for faults of other kinds.
+    /// [`Error::Format`] for all other faults.
     pub fn parse_leniently(bytes: &[u8], origin: &str) -> crate::Result<(Self, Vec<String>)> {
         parse(bytes, true).map_err(|message| Error::format(origin, message))
     }
@@ -73,10 +73,10 @@ fn read_file(reader: impl Read, origin: &str) -> crate::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The song, and what was repaired.
+/// Returns the song, and descriptions of the repairs.
 fn parse(bytes: &[u8], lenient: bool) -> Result<(Song, Vec<String>), String> {
     let Container { header, tracks, mut repairs } = Container::open(bytes, lenient)?;
-    // A division that cannot be is told before anything that is placed by it.
+    // Check the division first, since the places in later errors depend on it.
     TempoMap::new(header.timing, &[])?;
     let mut reader = TrackReader::new(header.timing, lenient);
     for (track, number) in tracks.iter().zip(1..) {
@@ -84,7 +84,7 @@ fn parse(bytes: &[u8], lenient: bool) -> Result<(Song, Vec<String>), String> {
     }
     let TrackReader { mut events, mut tempos, last_tick, .. } = reader;
     repairs.extend(reader.repairs.iter().map(ToString::to_string));
-    // Stable sorts: at one tick, the order of tracks and of events in them stays, after the tempo.
+    // Stable sorts: at the same tick, tempo comes first, and the order of tracks and of events in a track stays.
     tempos.sort_by_key(|(tick, _)| *tick);
     let beats_per_minute = |tempo: u32| (6e7 / f64::from(tempo)) as f32;
     let told = tempos.iter().map(|(tick, tempo)| (*tick, 0, EventKind::Tempo(beats_per_minute(*tempo))));

@@ -1,4 +1,4 @@
-//! Where output goes: a file that appears whole or not at all, a device, a named pipe, or standard output.
+//! Opens outputs: a file that appears only when it is complete, a device, a named pipe, or standard output.
 
 use super::inputs::Inputs;
 use super::target::{Target, resolve};
@@ -10,14 +10,14 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
-/// An output under way. Dropping it before [`Output::commit`] leaves no trace of it on disk.
+/// An output that is being written. If it is dropped before [`Output::commit`], nothing remains on disk.
 pub struct Output {
     name: String,
     stream: File,
     pending: Option<Pending>,
 }
 
-/// A temporary file and the name that it gets once it is whole.
+/// A temporary file, and the name that it gets when it is complete.
 struct Pending {
     temporary: TempPath,
     target: PathBuf,
@@ -25,13 +25,14 @@ struct Pending {
 }
 
 impl Output {
-    /// Opens `target`, which must be none of the `inputs`. A file is written under a temporary name beside it, and an
-    /// existing one stays untouched until [`Output::commit`]; devices and pipes are written straight. `force` allows
-    /// to replace a file. What a symbolic link points to is replaced or made, not the link.
+    /// Opens `target`, which must not be one of the `inputs`. A file is written to a temporary file in the same folder,
+    /// and an existing file stays unchanged until [`Output::commit`]. Devices and pipes are written directly. `force`
+    /// allows replacing a file. If `target` is a symbolic link, the file that it points to is written, and the link
+    /// stays.
     ///
     /// # Errors
-    /// [`Error::Value`] for one of the inputs; [`Error::Exists`] for an existing file without `force`; [`Error::Io`]
-    /// if nothing can be written there.
+    /// [`Error::Value`] if it is one of the inputs; [`Error::Exists`] for an existing file without `force`;
+    /// [`Error::Io`] if it cannot be written.
     pub fn create(target: &Target, force: bool, inputs: &Inputs) -> Result<Self> {
         let name = target.name();
         let failed = |source| Error::io(&name, source);
@@ -70,35 +71,35 @@ impl Output {
         Ok(Self { name, stream, pending })
     }
 
-    /// What errors call the output.
+    /// The name of the output in error messages.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Whether what was written can be gone back to.
+    /// Whether the writer can seek in the output.
     pub fn is_seekable(&self) -> bool {
         self.pending.is_some()
     }
 
-    /// The file that the output is in until [`Output::commit`]; none where it is written straight.
+    /// The temporary file before [`Output::commit`]; none if the output is written directly.
     pub fn temporary(&self) -> Option<&Path> {
         self.pending.as_ref().map(|pending| &*pending.temporary)
     }
 
-    /// Where to write to.
+    /// The stream to write to.
     pub fn stream(&mut self) -> &mut File {
         &mut self.stream
     }
 
-    /// Gives the file its name. All must have been written and flushed.
+    /// Renames the file to its final name. Everything must have been written and flushed.
     ///
     /// # Errors
-    /// [`Error::Exists`] if a file of that name has appeared and may not be replaced; [`Error::Io`].
+    /// [`Error::Exists`] if a file with that name has appeared and must not be replaced; [`Error::Io`].
     pub fn commit(self) -> Result<()> {
         let Some(Pending { temporary, target, replace }) = self.pending else {
             return Ok(());
         };
-        // The file stays open, and so locked, until it has its name.
+        // The file stays open, and thus locked, until it is renamed.
         let renamed = if replace { temporary.persist(&target) } else { temporary.persist_noclobber(&target) };
         renamed.map_err(|failure| match failure.error.kind() {
             ErrorKind::AlreadyExists => Error::Exists { path: self.name },
@@ -107,17 +108,17 @@ impl Output {
     }
 }
 
-/// Refuses an existing file that is one of the inputs, is not to be replaced, or cannot be written.
+/// Returns an error if an existing file is one of the inputs, must not be replaced, or cannot be written.
 fn check_replaceable(path: &Path, metadata: &Metadata, name: &str, force: bool, inputs: &Inputs) -> Result<()> {
     let failed = |source| Error::io(name, source);
     let open = || OpenOptions::new().write(true).open(path);
-    // A file that can be written but not read is still told apart.
+    // This also identifies a file that can be written but not read.
     let handle = Handle::from_path(path).or_else(|_| Handle::from_file(open()?)).map_err(failed)?;
     inputs.check(name, &handle)?;
     if !force {
         return Err(Error::Exists { path: name.to_owned() });
     }
-    // Renaming would replace it all the same, and the superuser can open it all the same.
+    // Renaming could replace it nevertheless, and the superuser could open it.
     if metadata.permissions().readonly() {
         let message = "the file is read-only: make it writable, or choose another name";
         return Err(failed(io::Error::new(ErrorKind::PermissionDenied, message)));
@@ -125,7 +126,7 @@ fn check_replaceable(path: &Path, metadata: &Metadata, name: &str, force: bool, 
     open().map(drop).map_err(failed)
 }
 
-/// Errors are to speak of the folder, not of a temporary name that nobody gave.
+/// An error that names the folder instead of the temporary file, whose name the user does not know.
 fn in_folder(folder: &Path, error: &io::Error) -> io::Error {
     let reason = error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error);
     io::Error::new(error.kind(), format!("no file can be made in the folder {}: {reason}", folder.display()))
@@ -178,7 +179,7 @@ mod tests {
     fn an_existing_file_is_replaced_only_by_force() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.wav");
-        // One that appears while the other is being written is not lost either.
+        // A file that appears while the output is being written is not lost either.
         let racing = create(&path, false).unwrap();
         fs::write(&path, b"old").unwrap();
         assert!(matches!(racing.commit(), Err(Error::Exists { .. })));
@@ -260,7 +261,7 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn a_folder_that_takes_no_files_is_named() {
-        // Not even the superuser can make a file here.
+        // Not even the superuser can create a file here.
         let error = create("/sys/a.wav", false).err().unwrap().to_string();
         assert!(error.starts_with("/sys/a.wav: no file can be made in the folder /sys: "), "{error}");
         assert!(!error.contains(".part"), "{error}");

@@ -1,4 +1,4 @@
-//! The header of a WAV file: RIFF up to 4 GiB, RF64 beyond.
+//! The header of a WAV file: RIFF up to 4 GiB, RF64 for longer files.
 
 use super::output::Output;
 use super::wav_format::WavFormat;
@@ -6,24 +6,24 @@ use crate::error::Error;
 use std::fs::File;
 use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
 
-/// Bytes of `RIFF` and its size, which the size itself does not count.
+/// Length of `RIFF` and its size field in bytes. The size field does not include them.
 const RIFF_PREAMBLE: u64 = 8;
 
-/// Length of the contents of a `ds64` chunk without a table: the sizes of RIFF and data, the number of frames, and
-/// the length of the table.
+/// Length in bytes of the contents of a `ds64` chunk without a table: the sizes of RIFF and data, the number of frames,
+/// and the length of the table.
 const DS64_LEN: u32 = 3 * 8 + 4;
 
-/// What the 32-bit size fields of an RF64 file hold.
+/// Value of the 32-bit size fields in an RF64 file: the sizes are in the `ds64` chunk.
 const IN_DS64: u32 = u32::MAX;
 
-/// Longest file in bytes: what a file system's signed 64-bit offsets can tell.
+/// Maximum length of a file in bytes, since file systems use signed 64-bit offsets.
 const MAX_LEN: u64 = i64::MAX as u64;
 
 impl WavFormat {
-    /// Length in bytes of a file of so many frames.
+    /// Length in bytes of a file with this many frames.
     ///
     /// # Errors
-    /// [`Error::Value`] for more than a file can have.
+    /// [`Error::Value`] if a file cannot be that long.
     pub fn file_len(&self, frames: u64) -> crate::Result<u64> {
         let header_len = header(self, 0).len() as u64;
         let data_len = frames.checked_mul(self.frame_len()).filter(|len| *len < MAX_LEN - header_len);
@@ -33,11 +33,11 @@ impl WavFormat {
     }
 }
 
-/// The header of a file of so many frames. Its length is the same for every number of frames, so that it can be
-/// written again once the number is known: what holds the 64-bit sizes of an RF64 file (EBU Tech 3306) is a `JUNK`
-/// chunk in a RIFF file, as EBU Tech 3306 recommends.
+/// The header of a file with this many frames. Its length does not depend on their number, so that it can be written
+/// again when the number is known: a RIFF file has a `JUNK` chunk in the place where an RF64 file has its 64-bit sizes
+/// (`ds64`), as EBU Tech 3306 recommends.
 pub(super) fn header(format: &WavFormat, frames: u64) -> Vec<u8> {
-    // From hound: `RIFF`, its size, `WAVE`, the chunk `fmt `, `data` and its size.
+    // hound writes `RIFF`, its size, `WAVE`, the chunk `fmt `, `data` and its size.
     let plain = format.spec().into_header_for_infinite_file();
     let (riff, chunks) = plain.split_at(12);
     let chunks = &chunks[..chunks.len() - 4];
@@ -63,18 +63,18 @@ pub(super) fn header(format: &WavFormat, frames: u64) -> Vec<u8> {
     header
 }
 
-/// Bytes that follow the samples: a chunk of odd length is followed by a zero that only the RIFF size counts
-/// (Multimedia Programming Interface and Data Specifications 1.0, 1991).
+/// Number of bytes after the samples: a chunk of odd length is followed by a zero byte, which only the RIFF size
+/// includes (Multimedia Programming Interface and Data Specifications 1.0, 1991).
 pub(super) fn padding(data_len: u64) -> u64 {
     data_len % 2
 }
 
 impl Output {
-    /// Completes a WAV whose writing failed, so that what got as far as the disk can be played: cuts it after its last
-    /// whole frame and tells the header its length, which takes no further room. Gives the number of frames.
+    /// Completes a WAV file after writing has failed, so that the part on the disk can be played: cuts it after its
+    /// last complete frame and corrects the header, which needs no additional disk space. Returns the number of frames.
     ///
     /// # Errors
-    /// [`Error::Io`] if the file cannot be changed, has no whole header, or is not a file.
+    /// [`Error::Io`] if the output is not a file, cannot be changed, or has no complete header.
     pub fn salvage_wav(&mut self, format: WavFormat) -> crate::Result<u64> {
         let salvaged = match self.is_seekable() {
             true => salvage(self.stream(), &format),
@@ -84,8 +84,8 @@ impl Output {
     }
 }
 
-/// Completes the file of a writer that failed: ends it after its last whole frame and writes the header for that
-/// length. Gives the number of frames.
+/// Completes a file after writing has failed: cuts it after its last complete frame and writes the header for that
+/// length. Returns the number of frames.
 fn salvage(file: &mut File, format: &WavFormat) -> io::Result<u64> {
     let header_len = header(format, 0).len() as u64;
     let Some(data_len) = file.metadata()?.len().checked_sub(header_len) else {
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn sizes_beyond_32_bits_are_in_the_ds64_chunk() {
         let header_len = header(&FORMAT, 0).len() as u64;
-        // The longest that RIFF can count, since its largest number says that RF64 does.
+        // The longest file with a RIFF header: the largest value of the size field is reserved for RF64.
         let longest = (u64::from(u32::MAX) - 1 - (header_len - 8)) / 8;
         let riff = header(&FORMAT, longest);
         assert_eq!((&riff[..4], &riff[12..16]), (&b"RIFF"[..], &b"JUNK"[..]));
@@ -148,7 +148,7 @@ mod tests {
                 whole.into_inner()
             };
             let (mut broken, data) = (write(3), header(&format, 0).len());
-            // As it is before the sizes are written.
+            // The header before the sizes are known.
             broken[..data].copy_from_slice(&header(&format, 0));
             let frame_len = format.frame_len() as usize;
             for (len, expected) in [

@@ -1,14 +1,14 @@
-//! Whether there is room for an output before it is written.
+//! Checks the free disk space before an output is written.
 
 use super::output::Output;
 use crate::error::{Error, Result};
 use std::io::{self, ErrorKind};
 
 impl Output {
-    /// Refuses more bytes than there is room for, where that can be told.
+    /// Returns an error if there is not enough free space for this many bytes. Does nothing if that is unknown.
     ///
     /// # Errors
-    /// [`Error::Io`] with both numbers.
+    /// [`Error::Io`] with both sizes.
     pub fn check_room(&self, bytes: u64) -> Result<()> {
         let Some(room) = self.temporary().and_then(|path| fs4::available_space(path).ok()) else { return Ok(()) };
         if bytes <= room {

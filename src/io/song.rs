@@ -1,4 +1,4 @@
-//! Songs: events in the order of their times, as a MIDI file or a chord of notes gives them.
+//! Songs: events in order of time, from a MIDI file or from a chord.
 
 use crate::engine::{Event, EventKind, NoteId};
 
@@ -9,40 +9,40 @@ pub struct SongEvent {
     pub seconds: f64,
     /// MIDI channel, 0–15.
     pub channel: u8,
-    /// What happens.
+    /// The event.
     pub kind: EventKind,
 }
 
 impl SongEvent {
-    /// The frame that the event is nearest to.
+    /// The nearest frame at this sample rate in Hz.
     pub fn frame(&self, sample_rate: f64) -> u64 {
         frames(self.seconds, sample_rate)
     }
 
-    /// The event at a frame of a block.
+    /// The event, at a frame of a block.
     pub fn at(&self, frame: u32) -> Event {
         Event { frame, channel: self.channel, kind: self.kind }
     }
 }
 
-/// The whole number of frames nearest to a time; what does not fit into a `u64` becomes its largest.
+/// The number of frames nearest to a time in seconds, limited to the range of `u64`.
 pub fn frames(seconds: f64, sample_rate: f64) -> u64 {
     (seconds * sample_rate).round() as u64
 }
 
-/// Events in the order of their times, and how long they last.
+/// Events in order of time, and the length of the song.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Song {
-    /// In order; those of one time are in the order of the file's tracks and of each track's events.
+    /// In order of time. Events at the same time are in the order of tracks, and of events in a track.
     pub events: Vec<SongEvent>,
     /// Length in seconds: the time of the last event, end-of-track marks included.
     pub seconds: f64,
 }
 
 impl Song {
-    /// Notes struck together at the start and released together at the end. `keys` are fractional MIDI keys, also
-    /// beyond the keyboard: each takes the nearest key from 0 to 127 that no note before it has, so that none strikes
-    /// another's voice again, and the rest as its detune. Beyond 128 notes, keys are shared.
+    /// Notes that start together and are released together at the end. `keys` are fractional MIDI keys, and may be
+    /// outside the keyboard. Each note takes the nearest key from 0 to 127 that no earlier note has, so that none
+    /// strikes another one's voice again; the rest becomes its detune. With more than 128 notes, keys are shared.
     pub fn chord(keys: &[f64], velocity: f32, seconds: f64) -> Self {
         let mut taken = [false; 128];
         let mut nearest_free = |key: f64| {
@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn a_chord_is_struck_and_released_at_once() {
         let song = Song::chord(&[60.0, 69.25, 140.5, 60.25], 0.5, 2.0);
-        // The last of them finds its nearest key taken.
+        // The last note finds its nearest key taken.
         let expected = [(60, 0.0, 0), (69, 0.25, 1), (127, 13.5, 2), (61, -0.75, 3)];
         assert_eq!(song.events.len(), 2 * expected.len());
         for ((on, off), (key, detune, id)) in song.events[..4].iter().zip(&song.events[4..]).zip(expected) {

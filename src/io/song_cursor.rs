@@ -1,14 +1,14 @@
-//! A song as it is played: each block's events, at their frames.
+//! The position in a song that is being played: it gives each block's events with their frames.
 
 use super::song::Song;
 use crate::engine::Event;
 use std::borrow::Borrow;
 
-/// A song that is played to its end is over when nothing sounds at a multiple of this many frames after it: often
-/// enough for a tight end, and at frames that do not depend on the block.
+/// After the end of a song, silence is checked at multiples of this number of frames: often enough for an exact end,
+/// and at frames that do not depend on the block size.
 pub const SILENCE_INTERVAL: u64 = 64;
 
-/// Where in a song, owned or borrowed, the playing is. Real-time safe after [`SongCursor::new`].
+/// A position in a song, which may be owned or borrowed. Real-time safe after [`SongCursor::new`].
 #[derive(Clone, Debug)]
 pub struct SongCursor<S> {
     song: S,
@@ -19,23 +19,24 @@ pub struct SongCursor<S> {
 }
 
 impl<S: Borrow<Song>> SongCursor<S> {
-    /// At the start of a song that is played at this sample rate, in Hz.
+    /// The start of a song, at a sample rate in Hz.
     pub fn new(song: S, sample_rate: f64) -> Self {
         let song_frames = song.borrow().frames(sample_rate);
         Self { song, sample_rate, next: 0, frame: 0, song_frames }
     }
 
-    /// Frames from the song's start.
+    /// Frames since the start of the song.
     pub fn frame(&self) -> u64 {
         self.frame
     }
 
-    /// Length of the song in frames, up to where it was halted.
+    /// Length of the song in frames. If it was halted, up to that point.
     pub fn song_frames(&self) -> u64 {
         self.song_frames
     }
 
-    /// Most events that fall into one block of at most `frames`. Takes time in proportion to the song's events.
+    /// The largest number of events in any block of at most `frames` frames. Takes time in proportion to the number of
+    /// events.
     pub fn densest_block(&self, frames: usize) -> usize {
         let events = &self.song.borrow().events;
         let frame = |index: usize| events[index].frame(self.sample_rate);
@@ -49,7 +50,7 @@ impl<S: Borrow<Song>> SongCursor<S> {
         most
     }
 
-    /// Appends the events of the next `frames` to `events`, which allocates only if it has no room for them.
+    /// Appends the events of the next `frames` frames to `events`. Allocates only if `events` has not enough room.
     pub fn advance(&mut self, frames: usize, events: &mut Vec<Event>) {
         let end = self.frame.saturating_add(frames as u64);
         while let Some(event) = self.song.borrow().events.get(self.next) {
@@ -63,13 +64,13 @@ impl<S: Borrow<Song>> SongCursor<S> {
         self.frame = end;
     }
 
-    /// Plays no further: the song ends here.
+    /// Ends the song at the present position.
     pub fn halt(&mut self) {
         self.next = self.song.borrow().events.len();
         self.song_frames = self.song_frames.min(self.frame);
     }
 
-    /// Whether the end has been reached and no event is left.
+    /// Whether the end was reached and all events were given.
     pub fn is_over(&self) -> bool {
         self.frame >= self.song_frames && self.next == self.song.borrow().events.len()
     }

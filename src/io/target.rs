@@ -1,10 +1,10 @@
-//! What the user names as output, and where that is.
+//! Interprets the name of an output: standard output, or the file that a path leads to.
 
 use crate::error::{Error, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What the user named as output.
+/// The output that the user named.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Target {
     /// Standard output, written `-`.
@@ -13,17 +13,17 @@ pub enum Target {
     Path(PathBuf),
 }
 
-/// Endings of files that sound is kept in, and that are not WAV.
+/// File name extensions of sound formats other than WAV.
 const OTHER_FORMATS: [&str; 22] = [
     "aac", "aif", "aifc", "aiff", "alac", "ape", "au", "caf", "flac", "m4a", "mid", "midi", "mka", "mp2", "mp3", "mp4",
     "oga", "ogg", "opus", "snd", "w64", "wma",
 ];
 
-/// Most symbolic links that are followed one after the other, as in Linux.
+/// Maximum number of symbolic links that are followed in a row, as in Linux.
 const MAX_LINKS: usize = 40;
 
 impl Target {
-    /// `-` is standard output, as are its names in the file system (`/dev/stdout`); all else is a path.
+    /// `-` and the paths of standard output (`/dev/stdout`) are standard output. Everything else is a path.
     pub fn new(path: impl Into<PathBuf>) -> Self {
         let path = path.into();
         if path == Path::new("-") || links(&path).any(|path| is_stdout(&path)) {
@@ -33,7 +33,7 @@ impl Target {
         }
     }
 
-    /// The target as errors call it.
+    /// The name of the target in error messages.
     pub fn name(&self) -> String {
         match self {
             Self::Stdout => "stdout".to_owned(),
@@ -41,7 +41,7 @@ impl Target {
         }
     }
 
-    /// Refuses a name that promises another format than WAV.
+    /// Returns an error if the name has the extension of another format than WAV.
     ///
     /// # Errors
     /// [`Error::Value`] that says what would be right.
@@ -56,12 +56,12 @@ impl Target {
     }
 }
 
-/// Where a file is that gets the name `path`: what symbolic links lead to, whether or not there is a file yet.
+/// The file that gets written for `path`, after following symbolic links. It need not exist yet.
 pub(super) fn resolve(path: &Path) -> PathBuf {
     links(path).last().unwrap_or_else(|| path.to_owned())
 }
 
-/// The path, and if it is a symbolic link, what it leads to, and so on.
+/// The path, and if it is a symbolic link, the path that it points to, and so on.
 fn links(path: &Path) -> impl Iterator<Item = PathBuf> {
     let next = |path: &PathBuf| {
         let to = fs::read_link(path).ok()?;
@@ -70,7 +70,7 @@ fn links(path: &Path) -> impl Iterator<Item = PathBuf> {
     std::iter::successors(Some(path.to_owned()), next).take(MAX_LINKS)
 }
 
-/// Whether a path is the descriptor of standard output in the folder of this process's descriptors.
+/// Whether a path is the file descriptor of standard output in a folder of this process's descriptors.
 fn is_stdout(path: &Path) -> bool {
     let folder = || path.parent().and_then(|folder| fs::canonicalize(folder).ok());
     path.file_name().is_some_and(|name| name == "1")

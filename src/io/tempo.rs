@@ -1,23 +1,24 @@
-//! From the ticks of a MIDI file to seconds, through its tempo changes.
+//! Converts ticks of a MIDI file to seconds, using its tempo changes.
 
 use midly::{Fps, Timing};
 
 /// Microseconds per quarter note before any tempo event (Standard MIDI Files 1.0: 120 beats per minute).
 const DEFAULT_TEMPO: u32 = 500_000;
 
-/// Where each tempo starts. Sums are kept as whole numbers, so that a time is rounded once, at its end.
+/// The start of each tempo. Sums are integers, so that each time is rounded only once, at the end.
 pub(super) struct TempoMap {
-    /// (first tick, sum of the ticks before it each times its tempo, tempo), in order of ticks.
+    /// (first tick, sum of tick × tempo over all ticks before it, tempo), in order of ticks.
     segments: Vec<(u64, u128, u32)>,
-    /// What the sums are divided by to give seconds.
+    /// Dividing a sum by this number gives seconds.
     divisor: u64,
 }
 
 impl TempoMap {
-    /// A map of `changes`, (tick, microseconds per quarter note) in order of ticks; of several at one tick the last
-    /// holds. Ticks of an SMPTE division are of one length and ignore tempo, as the standard has it.
+    /// A map of `changes`: (tick, microseconds per quarter note), in order of ticks. Of several changes at one tick,
+    /// the last is used. With an SMPTE division, all ticks have the same length, independent of tempo, as the standard
+    /// says.
     ///
-    /// Errors: a division of zero.
+    /// Errors: the division is zero.
     pub(super) fn new(timing: Timing, changes: &[(u64, u32)]) -> Result<Self, String> {
         match timing {
             Timing::Metrical(ticks) if ticks.as_int() == 0 => {
@@ -34,7 +35,7 @@ impl TempoMap {
                 Ok(Self { segments, divisor })
             }
             Timing::Timecode(fps, ticks) => {
-                // 29.97 frames per second are 30000/1001.
+                // 29.97 frames per second are exactly 30000/1001.
                 let (frames, per_seconds) = match fps {
                     Fps::Fps24 => (24, 1),
                     Fps::Fps25 => (25, 1),
@@ -53,7 +54,7 @@ impl TempoMap {
 }
 
 fn sum_at(segments: &[(u64, u128, u32)], tick: u64) -> u128 {
-    // The first segment starts at tick 0, so one always starts at or before any tick.
+    // The first segment starts at tick 0, so a segment is always found.
     let index = segments.partition_point(|(start, ..)| *start <= tick) - 1;
     let (start, sum, tempo) = segments[index];
     sum + u128::from(tick - start) * u128::from(tempo)
@@ -77,7 +78,7 @@ mod tests {
 
     #[test]
     fn a_long_song_loses_nothing_to_rounding() {
-        // 1/3 s per beat cannot be written in µs; a million tempo changes must not add up their errors.
+        // 1/3 s per beat is not a whole number of µs. The errors of a million tempo changes must not add up.
         let changes: Vec<(u64, u32)> = (0..1_000_000).map(|tick| (tick, 333_333 + (tick % 3 == 0) as u32)).collect();
         let map = metrical(1, &changes);
         assert_eq!(map.seconds(999_999), (333_333.0 * 999_999.0 + 333_333.0) / 1e6);

@@ -1,4 +1,4 @@
-//! Temporary files of outputs: locked while they are written, so that those of processes that died are told apart.
+//! Temporary files of outputs. They are locked while in use, so that files of dead processes can be recognised.
 
 use std::fs::{self, File, OpenOptions};
 use std::io;
@@ -8,8 +8,8 @@ use tempfile::TempPath;
 const PREFIX: &str = ".sprung-";
 const SUFFIX: &str = ".part";
 
-/// A new, locked file in `folder`, with the permissions that any new file would get. Temporary files there that no
-/// living process holds are removed.
+/// Creates a locked file in `folder`, with the permissions that any new file would get. Removes temporary files in the
+/// folder that no running process has locked.
 pub(super) fn create_in(folder: &Path) -> io::Result<(File, TempPath)> {
     remove_stale(folder);
     let mut builder = tempfile::Builder::new();
@@ -18,16 +18,16 @@ pub(super) fn create_in(folder: &Path) -> io::Result<(File, TempPath)> {
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     loop {
         let (file, path) = builder.tempfile_in(folder)?.into_parts();
-        // Where the file system has no locks, nobody takes the file for stale either.
+        // If the file system has no locks, other processes cannot lock the file either, so they will not remove it.
         let _ = file.lock();
-        // Another process may have found the file before it was locked, and removed it.
+        // Another process may have found and removed the file before it was locked.
         if fs::exists(&path)? {
             return Ok((file, path));
         }
     }
 }
 
-/// Removes what killed processes have left. What cannot be removed stays.
+/// Removes the files of processes that were killed. Ignores errors.
 fn remove_stale(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
@@ -37,7 +37,8 @@ fn remove_stale(folder: &Path) {
             continue;
         }
         let file = OpenOptions::new().read(true).write(true).open(entry.path());
-        // The lock is kept while the file is removed: a process that has just made it waits, and finds it gone.
+        // The lock is held during the removal: a process that has just created the file waits, and then finds it
+        // removed.
         if let Ok(file) = file
             && file.try_lock().is_ok()
         {

@@ -1,4 +1,4 @@
-//! WAV files: 16- and 24-bit integers with or without dither, and 32-bit floats.
+//! Writes WAV files: 16- and 24-bit integers with or without dither, and 32-bit floats.
 
 use super::quantise::quantise;
 use super::riff;
@@ -7,7 +7,7 @@ use crate::dsp::random;
 use crate::error::{Error, Result};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 
-/// Writes blocks of frames as a WAV: RIFF up to 4 GiB, RF64 (EBU Tech 3306) beyond.
+/// Writes blocks of frames to a WAV file: RIFF up to 4 GiB, RF64 (EBU Tech 3306) for longer files.
 pub struct WavWriter<W: Write + Seek> {
     out: BufWriter<W>,
     name: String,
@@ -20,13 +20,13 @@ pub struct WavWriter<W: Write + Seek> {
 }
 
 impl<W: Write + Seek> WavWriter<W> {
-    /// Starts a file on `out`, which has to be empty and able to seek, unless `frames`, the exact length, is given
-    /// beforehand: then it is written from front to back. `name` is what errors call it. `dither` is the seed of
-    /// triangular noise of ±1 step that is added before rounding to integers (TPDF; Lipshitz, Wannamaker and
-    /// Vanderkooy 1992); floats are not rounded and get none.
+    /// Starts a file on `out`, which must be empty and seekable. It need not be seekable if `frames`, the exact length,
+    /// is given: the file is then written from start to end. `name` is used in errors. `dither` is the seed of
+    /// triangular noise of ±1 step that is added before rounding to integers (TPDF; Lipshitz, Wannamaker and Vanderkooy
+    /// 1992). Floats are not rounded and get no noise.
     ///
     /// # Errors
-    /// [`Error::Io`] if the header cannot be written, [`Error::Value`] if `frames` are more than a file can have.
+    /// [`Error::Io`] if the header cannot be written, [`Error::Value`] if a file cannot have that many frames.
     pub fn new(out: W, name: &str, format: WavFormat, dither: Option<u64>, frames: Option<u64>) -> Result<Self> {
         format.file_len(frames.unwrap_or(0))?;
         let mut out = BufWriter::with_capacity(1 << 16, out);
@@ -35,8 +35,8 @@ impl<W: Write + Seek> WavWriter<W> {
         Ok(Self { out, name: name.to_owned(), format, dither, frames: 0, expected: frames, clipped: 0 })
     }
 
-    /// Appends a block: a slice per channel (the second is not looked at in a file of one channel), 1.0 being full
-    /// scale. Integers take the nearest step, and beyond full scale the last one.
+    /// Appends a block: one slice per channel (the second is ignored for a file with one channel); 1.0 is full scale.
+    /// Integers are rounded to the nearest step and clipped.
     ///
     /// # Errors
     /// [`Error::Io`] if writing fails.
@@ -59,15 +59,15 @@ impl<W: Write + Seek> WavWriter<W> {
         Ok(())
     }
 
-    /// Samples beyond full scale so far, of those that were to become integers.
+    /// Number of samples so far that were clipped. Only integers are.
     pub fn clipped(&self) -> u64 {
         self.clipped
     }
 
-    /// Completes the file and writes out all of it.
+    /// Completes the file and flushes it.
     ///
     /// # Errors
-    /// [`Error::Io`] if writing fails, [`Error::Value`] if the length is not the one that was announced.
+    /// [`Error::Io`] if writing fails, [`Error::Value`] if the length differs from the one given to [`WavWriter::new`].
     pub fn finish(mut self) -> Result<()> {
         if let Some(expected) = self.expected.filter(|expected| *expected != self.frames) {
             let message = format!("{} frames were written where {expected} were announced", self.frames);
@@ -92,7 +92,7 @@ impl<W: Write + Seek> WavWriter<W> {
             let uniform = |n| f64::from(random::uniform(keys[channel], n));
             0.5 * (uniform(2 * n) + uniform(2 * n + 1))
         });
-        // Full scale itself is one step beyond the largest integer; that step is not worth a warning.
+        // Exactly full scale is one step above the largest integer. That step is not worth a warning.
         if sample.abs() > 1.0 {
             self.clipped += 1;
         }

@@ -1,13 +1,13 @@
-//! What a WAV file holds: rate, channels, and how samples are stored.
+//! The format of a WAV file: sample rate, channels, and sample format.
 
-/// How a sample is stored.
+/// The format of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleFormat {
     /// 16-bit integers.
     Int16,
     /// 24-bit integers.
     Int24,
-    /// 32-bit IEEE floats: the engine's own samples, unrounded and never clipped.
+    /// 32-bit IEEE floats: the engine's samples without rounding or clipping.
     Float32,
 }
 
@@ -22,14 +22,14 @@ impl SampleFormat {
     }
 }
 
-/// What a WAV file holds.
+/// The format of a WAV file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WavFormat {
     /// Frames per second.
     pub sample_rate: u32,
     /// Samples per frame: 1 or 2.
     pub channels: u16,
-    /// How samples are stored.
+    /// The format of a sample.
     pub samples: SampleFormat,
 }
 
@@ -39,7 +39,7 @@ impl WavFormat {
         u64::from(self.channels) * u64::from(self.samples.bits() / 8)
     }
 
-    /// The same in hound's words.
+    /// The format as hound describes it.
     pub(super) fn spec(&self) -> hound::WavSpec {
         hound::WavSpec {
             channels: self.channels,

@@ -1,6 +1,6 @@
 //! The amplification matrix of a method: what one step does to every state of a linear spring.
 //!
-//! A 2 × 2 matrix, found by stepping two states; growth, pitch and decay follow from it.
+//! The 2 × 2 matrix is found by stepping two states. Growth, pitch and decay follow from it.
 
 use super::method::Method;
 use super::system::{Force, State, System};
@@ -14,22 +14,23 @@ pub struct Amplification {
     rows: [[f64; 2]; 2],
 }
 
-/// What a step's eigenvalues are as a tone.
+/// The tone that belongs to a step's eigenvalues.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tone {
-    /// A pair `e^(−decay ± i angle)`: decay in nepers per step (negative: growth), angle in rad per step.
+    /// A pair of eigenvalues `e^(−decay ± i angle)`: decay in nepers per step (negative: growth), angle in rad per
+    /// step.
     Rings {
         /// Nepers per step.
         decay: f64,
         /// Radians per step.
         angle: f64,
     },
-    /// Two real eigenvalues: no pitch.
+    /// Two real eigenvalues, so there is no pitch.
     Silent,
 }
 
 impl Amplification {
-    /// Of a method with steps of `h` seconds, on a linear system with a spring. Target and force are left out.
+    /// The matrix of a method with steps of `h` seconds, for a linear system with a spring. Ignores target and force.
     pub fn of(method: Method, system: &System, h: f64) -> Result<Self> {
         if !system.is_linear() {
             return Err(Error::value("spring", "must be linear: the step of another depends on the amplitude"));
@@ -41,7 +42,7 @@ impl Amplification {
         Ok(Self { rows: [[displaced.x, moving.x], [displaced.v / omega, moving.v / omega]] })
     }
 
-    /// Of the oscillator's own step on `(x, v)`, in its own units.
+    /// The matrix of the oscillator's own step on `(x, v)`, in the oscillator's units.
     pub fn of_step(coefficients: &Coefficients) -> Self {
         let step = |x: f64, v: f64| {
             let mut mass = HarmonicOscillator::new(&Coefficients { x0: x, v0: v, ..*coefficients });
@@ -58,8 +59,8 @@ impl Amplification {
         a * d - b * c
     }
 
-    /// Growth in nepers per step of the fastest-growing state, by squaring the matrix 40 times: the logarithm of
-    /// Gelfand's `‖Mⁿ‖^(1/n)` at n = 2⁴⁰.
+    /// Growth in nepers per step of the fastest-growing state. The matrix is squared 40 times, which gives the
+    /// logarithm of Gelfand's `‖Mⁿ‖^(1/n)` at n = 2⁴⁰.
     pub fn growth(&self) -> f64 {
         let mut matrix = self.rows;
         let (mut growth, mut share) = (0.0, 1.0);
@@ -76,12 +77,12 @@ impl Amplification {
         growth
     }
 
-    /// Whether every state stays bounded: growth within what rounding and a merely linear growth can feign.
+    /// Whether every state stays bounded. The limit allows for rounding and for growth that is only linear.
     pub fn is_bounded(&self) -> bool {
         self.growth() < 1e-10
     }
 
-    /// Pitch and decay of the eigenvalues, without the cancellation of `trace² − 4 det`.
+    /// Pitch and decay of the eigenvalues, computed without the cancellation in `trace² − 4 det`.
     pub fn tone(&self) -> Tone {
         let [[a, b], [c, d]] = self.rows;
         let half_difference = 0.5 * (a - d);
@@ -112,7 +113,8 @@ mod tests {
         assert_eq!(Amplification { rows: [[0.0; 2]; 2] }.growth(), f64::NEG_INFINITY);
     }
 
-    /// Eigenvalues `1 ± iωh` of explicit Euler and their inverses of implicit Euler; area kept by symplectic Euler.
+    /// Eigenvalues `1 ± iωh` of explicit Euler, and their inverses for implicit Euler; symplectic Euler preserves
+    /// areas.
     #[test]
     fn matrices_are_the_textbook_ones() {
         let system = System::linear(2.0, 8.0, 0.0).unwrap();

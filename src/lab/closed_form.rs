@@ -1,4 +1,4 @@
-//! The exact motion of a linear spring, in every damping regime: what all methods are measured against.
+//! The exact motion of a linear spring, in every damping regime: the reference for all methods.
 //!
 //! Source: "Damped Harmonic Oscillator", its general form `(I τ₀ + M τ₁) e^(−λ̄t)` with `M = [[λ̄, 1], [−ω², −λ̄]]`,
 //! `σ² = λ̄² − ω²`, and `τ₀`, `τ₁` the even and odd parts of `e^(σt)`: `cos`, `1` or `cosh`, and `sin κt/κ`, `t` or
@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use libm::{atan2, cos, exp, expm1, hypot, sin, sqrt};
 use std::f64::consts::TAU;
 
-/// How a spring and a damper share the motion.
+/// The damping regimes: how spring and damper share the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Regime {
     /// `λ̄ = 0`: rings for ever.
@@ -18,11 +18,11 @@ pub enum Regime {
     Underdamped,
     /// `λ̄ = ω`: returns as fast as it can without ringing.
     CriticallyDamped,
-    /// `λ̄ > ω`: creeps back.
+    /// `λ̄ > ω`: returns slowly, without ringing.
     Overdamped,
-    /// `ω = 0`: slows down where it is.
+    /// `ω = 0`: slows down and stops anywhere.
     Unsprung,
-    /// Neither: flies on.
+    /// Neither spring nor damper: moves on at constant speed.
     Unimpeded,
 }
 
@@ -46,22 +46,22 @@ fn sigma_squared(system: &System) -> f64 {
     system.decay_rate() * system.decay_rate() - system.stiffness / system.mass
 }
 
-/// The matrix that takes `(x − target, v)` over a stretch of time, without a force.
+/// The matrix that takes `(x − target, v)` from one time to another, without a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transition {
     rows: [[f64; 2]; 2],
-    /// `τ₁ e^(−λ̄t)`: what a velocity becomes of displacement.
+    /// `τ₁ e^(−λ̄t)`: the displacement per unit of initial velocity.
     pub reach: f64,
 }
 
 impl Transition {
-    /// The transition over `t` seconds of a linear system.
+    /// The transition of a linear system over `t` seconds.
     pub fn over(system: &System, t: f64) -> Self {
         let lambda = system.decay_rate();
         let omega_squared = system.stiffness / system.mass;
         let squared = sigma_squared(system);
         let scale = sqrt(squared.abs());
-        // Both times e^(−λ̄t), so that neither cosh nor sinh can overflow where their sum decays.
+        // Both are multiplied by e^(−λ̄t), so that cosh and sinh cannot overflow where their product with it is small.
         let (tau0, tau1) = if squared < 0.0 {
             let decay = exp(-lambda * t);
             (decay * cos(scale * t), decay * sin(scale * t) / scale)
@@ -76,7 +76,7 @@ impl Transition {
         Self { rows: [[tau0 + lambda * tau1, tau1], [-omega_squared * tau1, tau0 - lambda * tau1]], reach: tau1 }
     }
 
-    /// The state after the stretch, of displacement `d = x − target` and velocity.
+    /// The state after this time, from the displacement `d = x − target` and the velocity.
     #[inline]
     pub fn apply(&self, d: f64, v: f64) -> (f64, f64) {
         let [[a, b], [c, e]] = self.rows;
@@ -88,14 +88,15 @@ impl Transition {
 #[derive(Clone, Copy, Debug)]
 pub struct ClosedForm {
     system: System,
-    /// What is left of the start when the forced motion is taken away.
+    /// The initial state minus that of the forced motion.
     free: State,
 }
 
 impl ClosedForm {
-    /// The motion of a linear `system` from `start`. An error for a spring that has no closed form here.
+    /// The motion of a linear `system` from `start`. Returns an error for a spring that has no closed form here.
     ///
-    /// The forced part is exact; within a relative 1e−8 of an undamped resonance, but not on it, it loses digits.
+    /// The forced part is exact. Within a relative 1e−8 of an undamped resonance, but not exactly on it, it loses
+    /// digits.
     pub fn new(system: &System, start: State) -> Result<Self> {
         if !system.is_linear() {
             return Err(Error::value("spring", "has no closed form unless it is linear"));
@@ -112,7 +113,7 @@ impl ClosedForm {
     }
 }
 
-/// A motion that satisfies the equation with the force (whatever its start), as `d` and `v`.
+/// A motion that satisfies the equation with the force, with any initial state, as `d` and `v`.
 fn forced_motion(system: &System, t: f64) -> State {
     let (m, c, k) = (system.mass, system.damping, system.stiffness);
     let force = system.force;
@@ -154,7 +155,7 @@ pub struct AmplitudePhase {
 }
 
 impl AmplitudePhase {
-    /// From the state at time 0. An error where the motion does not ring, is forced, or the spring is not linear.
+    /// From the state at time 0. Returns an error if the motion does not ring, is forced, or the spring is not linear.
     pub fn new(system: &System, start: State) -> Result<Self> {
         let squared = sigma_squared(system);
         if !system.is_linear() || system.force.amplitude != 0.0 || squared >= 0.0 {
@@ -203,7 +204,7 @@ mod tests {
         }
     }
 
-    /// The motion must satisfy its own equation: `m ẍ + c ẋ + k (x − target) = f(t)`, and begin where it begins.
+    /// The motion must satisfy its own equation, `m ẍ + c ẋ + k (x − target) = f(t)`, and begin with the given state.
     #[test]
     fn the_equation_of_motion_holds_in_every_regime_with_and_without_a_force() {
         let start = State { x: 0.4, v: -0.6 };

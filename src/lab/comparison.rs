@@ -1,4 +1,4 @@
-//! Several methods at several steps on one system: what the lab's first figure, table and report show.
+//! Compares several methods with several steps on one system: the data of the lab's first figure, table and report.
 
 use super::energy::Energy;
 use super::method::Method;
@@ -16,7 +16,7 @@ pub struct Setup {
     pub start: State,
     /// Seconds to integrate.
     pub end: f64,
-    /// Steps in seconds.
+    /// Step sizes in seconds.
     pub steps: Vec<f64>,
     /// The methods.
     pub methods: Vec<Method>,
@@ -27,7 +27,7 @@ pub struct Setup {
 pub struct Comparison {
     /// What was compared.
     pub setup: Setup,
-    /// The true motion, finely sampled from 0 to the end.
+    /// The true motion, finely sampled from time 0 to the end.
     pub truth: Vec<State>,
     /// Time between the samples of `truth`, in seconds.
     pub truth_step: f64,
@@ -35,12 +35,12 @@ pub struct Comparison {
     pub runs: Vec<Vec<Trajectory>>,
 }
 
-/// Samples of the true motion that figures draw, at least.
+/// Minimum number of samples of the true motion in figures.
 const FINE: f64 = 1000.0;
 
 impl Comparison {
-    /// Runs everything. An error for values that cannot be, for a method that cannot integrate the system, and for more
-    /// states than memory should hold.
+    /// Runs all methods with all steps. Returns an error for impossible values, for a method that cannot integrate the
+    /// system, and for more states than memory should hold.
     pub fn new(setup: Setup) -> Result<Self> {
         let Setup { system, start, end, steps, methods } = &setup;
         system.validate()?;
@@ -66,20 +66,20 @@ impl Comparison {
                 runs.push(run_against(*method, system, *h, truth.clone())?);
             }
         }
-        // Forty points to a period draw a curve.
+        // Forty points per period draw a smooth curve.
         let turns = system.omega().unwrap_or(0.0) / std::f64::consts::TAU + system.force.frequency;
         let truth_step = end / (40.0 * turns * end).clamp(FINE, 50.0 * FINE).ceil();
         let truth = truth(system, *start, truth_step, *end)?;
         Ok(Self { truth, truth_step, runs, setup })
     }
 
-    /// Greatest distance of the true motion from 0, in m.
+    /// Largest distance of the true motion from 0, in m.
     pub fn size(&self) -> f64 {
         self.truth.iter().fold(0.0, |size, state| state.x.abs().max(size))
     }
 
-    /// Energy at the end over that of the true motion at the end. Infinite where the numbers overflow, NaN where there
-    /// is none left to compare with.
+    /// Energy at the end divided by the energy of the true motion at the end. Infinite if the numbers overflow, NaN if
+    /// the true motion has no energy left.
     pub fn energy_ratio(&self, run: &Trajectory) -> f64 {
         if run.overflow().is_some() {
             return f64::INFINITY;
@@ -89,8 +89,8 @@ impl Comparison {
         if truth > 0.0 { got / truth } else { f64::NAN }
     }
 
-    /// By what factor the swing changes from the first to the last fifth of the run, over the same of the true motion:
-    /// above 1 it grows, below it shrinks. Infinite where the numbers overflow.
+    /// The factor by which the amplitude changes from the first to the last fifth of the run, divided by the same
+    /// factor of the true motion. Above 1 it grows, below 1 it shrinks. Infinite if the numbers overflow.
     pub fn swell(&self, run: &Trajectory) -> f64 {
         if run.overflow().is_some() {
             return f64::INFINITY;

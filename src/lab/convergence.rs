@@ -13,7 +13,7 @@ pub struct Convergence {
     pub method: Method,
     /// One per step, as given.
     pub points: Vec<Point>,
-    /// Slope of log error over log step; none where the errors are all rounding, or fewer than three are above it.
+    /// Slope of log error over log step; `None` if fewer than three errors are clearly larger than rounding.
     pub order: Option<f64>,
 }
 
@@ -22,15 +22,15 @@ pub struct Convergence {
 pub struct Point {
     /// Step in seconds.
     pub h: f64,
-    /// Greatest error of the position over the run, in m.
+    /// Largest position error of the run, in m.
     pub error: f64,
-    /// Error that rounding alone can make in as many steps, in m.
+    /// Error that rounding alone can cause in as many steps, in m.
     pub rounding: f64,
     /// Whether the order is fitted to this point.
     pub fitted: bool,
 }
 
-/// Steps that halve from `longest` on.
+/// `count` step sizes in seconds, each half of the one before; the first is `longest`.
 pub fn halving(longest: f64, count: i32) -> Vec<f64> {
     (0..count).map(|n| longest * exp(-f64::from(n) * std::f64::consts::LN_2)).collect()
 }
@@ -51,8 +51,8 @@ pub fn converge(
         let truth = truth(system, start, h, end)?;
         let size = truth.iter().fold(0.0_f64, |size, state| size.max(state.x.abs()));
         for (points, method) in points.iter_mut().zip(methods) {
-            // One rounding per step and a factor for the several operations of it. The seed's share of velocity lost
-            // per step is 1 − exp(…) in single precision.
+            // One rounding per step, times a factor because a step has several operations. The seed computes the share
+            // of velocity lost per step, 1 − exp(…), in single precision.
             let precision =
                 if *method == Method::SynthSeed { 0.5 * f64::from(f32::EPSILON) } else { 8.0 * f64::EPSILON };
             let rounding = precision * truth.len() as f64 * size;
@@ -108,7 +108,8 @@ mod tests {
         }
     }
 
-    /// A force makes the exact methods second order and leaves the others as they are; so does a nonlinear spring.
+    /// A force makes the exact methods second order and does not change the order of the others. So does a nonlinear
+    /// spring.
     #[test]
     fn orders_hold_with_a_force_and_on_nonlinear_springs() {
         let force = Force { amplitude: 5.0, frequency: 0.9, phase: 0.5 };

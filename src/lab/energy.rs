@@ -1,4 +1,4 @@
-//! Energy of a state, and the Lagrangian that the equation of motion follows from.
+//! The energy of a state, and the Lagrangian from which the equation of motion follows.
 //!
 //! With the generalised coordinate `q = x`, `L = T − V = ½ m q̇² − V(q)`, and Euler–Lagrange,
 //! `∂L/∂q = d/dt ∂L/∂q̇`, is `−V′(q) = m q̈`.
@@ -11,24 +11,24 @@ use libm::{sin, sqrt};
 pub struct Energy {
     /// `½ m v²`.
     pub kinetic: f64,
-    /// Work stored in the spring: `½ k d²` of a linear one.
+    /// Energy stored in the spring: `½ k d²` for a linear spring.
     pub potential: f64,
 }
 
 impl Energy {
-    /// Energy of a state. The force `f(t)` is external: its work is not in it.
+    /// Energy of a state. The force `f(t)` is external, so its work is not included.
     pub fn of(system: &System, state: State) -> Self {
         let d = state.x - system.target;
         let potential = match system.spring {
             Spring::Linear => 0.5 * system.stiffness * d * d,
             Spring::Duffing { cubic } => (0.5 * system.stiffness + 0.25 * cubic * d * d) * d * d,
-            // k (1 − cos d), which would cancel at small angles.
+            // Equals k (1 − cos d), but does not cancel at small angles.
             Spring::Pendulum => 2.0 * system.stiffness * sin(0.5 * d) * sin(0.5 * d),
         };
         Self { kinetic: 0.5 * system.mass * state.v * state.v, potential }
     }
 
-    /// `T + V`: constant without damper and force.
+    /// `T + V`: constant if there is no damper and no force.
     pub fn total(&self) -> f64 {
         self.kinetic + self.potential
     }
@@ -44,12 +44,12 @@ pub fn momentum(system: &System, state: State) -> f64 {
     system.mass * state.v
 }
 
-/// The greatest stiffness in N/m that a motion through `state` meets without a force: what sets its shortest period.
+/// The largest stiffness in N/m on a motion through `state` without a force. It determines the shortest period.
 pub fn greatest_stiffness(system: &System, state: State) -> f64 {
     match system.spring {
         Spring::Linear | Spring::Pendulum => system.stiffness,
         Spring::Duffing { cubic } => {
-            // ¼ cubic d⁴ ≤ E bounds the stretch, whatever the linear part.
+            // ¼ cubic d⁴ ≤ E limits the stretch, whatever the linear part is.
             let total = Energy::of(system, state).total();
             system.stiffness + 6.0 * sqrt(cubic * total)
         }
@@ -69,7 +69,7 @@ mod tests {
         })
     }
 
-    /// `∂L/∂q` by a difference of `L`, `d/dt ∂L/∂q̇` by a difference of the momentum along the motion.
+    /// Checks `∂L/∂q` by a difference quotient of `L`, and `d/dt ∂L/∂q̇` by one of the momentum along the motion.
     #[test]
     fn the_motion_satisfies_euler_lagrange() {
         for system in systems() {

@@ -1,4 +1,4 @@
-//! The spring lab: ways to integrate a mass on a spring, side by side, in figures, numbers and sound.
+//! The spring lab: compares ways to integrate a mass on a spring, in figures, numbers and sound.
 //!
 //! | module | holds |
 //! |---|---|

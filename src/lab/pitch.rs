@@ -1,4 +1,4 @@
-//! How out of tune each method would play at a sample rate: the pitch and decay of its step against those asked for.
+//! Pitch and decay errors of each method at a sample rate.
 
 use super::amplification::{Amplification, Tone};
 use super::method::Method;
@@ -9,49 +9,49 @@ use crate::error::{Error, Result};
 use libm::{log, log2};
 use std::f64::consts::TAU;
 
-/// What becomes of a note.
+/// How a note sounds when a method plays it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// It rings and decays.
+    /// Rings and decays.
     Decays {
         /// Error of the frequency in cents.
         cents: f64,
         /// Error of the −60 dB time in %.
         decay_percent: f64,
     },
-    /// It rings, and grows instead of decaying.
+    /// Rings, but grows instead of decaying.
     Grows {
         /// Error of the frequency in cents.
         cents: f64,
         /// Growth in dB per second.
         db_per_second: f64,
     },
-    /// It has no pitch and explodes.
+    /// Has no pitch and explodes.
     Explodes {
         /// Growth in dB per second.
         db_per_second: f64,
     },
-    /// It has no pitch and dies away: over-damped by its own error.
+    /// Has no pitch and dies away: the error of the method makes it over-damped.
     Dies,
 }
 
-/// A note that a method plays.
+/// A note played by a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Note {
     /// The method.
     pub method: Method,
-    /// Hz asked for.
+    /// Requested frequency in Hz.
     pub frequency: f64,
-    /// Seconds to −60 dB asked for.
+    /// Requested −60 dB time in seconds.
     pub t60: f64,
-    /// What it sounds like.
+    /// How it sounds.
     pub outcome: Outcome,
 }
 
-/// Plays `frequency` Hz with a −60 dB time of `t60` seconds (infinite: none) in one step per sample of `sample_rate`.
+/// Plays `frequency` Hz with a −60 dB time of `t60` seconds (infinite: no decay), one step per sample of `sample_rate`.
 ///
-/// Every method integrates the spring that has exactly this pitch and decay, but for the seed's coefficients: those are
-/// asked for the note as a player would, `Initialise(sample_rate, frequency, decay_frames)`.
+/// Every method integrates the spring that has exactly this pitch and decay. Only the seed's coefficients are computed
+/// from the note itself, as a player would: `Initialise(sample_rate, frequency, decay_frames)`.
 pub fn play(method: Method, frequency: f64, t60: f64, sample_rate: f64) -> Result<Note> {
     if !(sample_rate > 0.0 && sample_rate.is_finite()) {
         return Err(Error::value("rate", format!("must be greater than 0 Hz, got {sample_rate}")));
@@ -77,7 +77,7 @@ fn outcome(step: &Amplification, frequency: f64, t60: f64, sample_rate: f64) -> 
         return if step.is_bounded() { Outcome::Dies } else { Outcome::Explodes { db_per_second } };
     };
     let cents = 1200.0 * log2(angle * sample_rate / TAU / frequency);
-    // An undamped note that keeps its level but for rounding has the decay asked for, which is none.
+    // An undamped note whose level changes only by rounding has the requested decay, which is none.
     let asked = -LN_MINUS_60_DB / (t60 * sample_rate);
     if asked == 0.0 && decay.abs() < 1e-13 {
         Outcome::Decays { cents, decay_percent: 0.0 }
@@ -88,7 +88,7 @@ fn outcome(step: &Amplification, frequency: f64, t60: f64, sample_rate: f64) -> 
     }
 }
 
-/// `count` frequencies in even musical steps from `from` to `to` Hz.
+/// `count` frequencies from `from` to `to` Hz, in equal musical intervals.
 pub fn musical_steps(from: f64, to: f64, count: usize) -> Vec<f64> {
     super::stability::spaced(log(from), log(to), count).into_iter().map(libm::exp).collect()
 }
@@ -104,7 +104,7 @@ mod tests {
         }
     }
 
-    /// The published figures of the seed's coefficients at 48 kHz, to the digits given.
+    /// The published figures for the seed's coefficients at 48 kHz, to all digits given.
     #[test]
     fn the_seed_is_as_sharp_and_as_flat_as_published() {
         for (frequency, t60, published, half_digit) in [
@@ -137,7 +137,7 @@ mod tests {
         }
     }
 
-    /// The leading terms of theory: angle `atan ωh` of implicit Euler, `2 asin(ωh/2)` of the symplectic ones.
+    /// The leading terms from theory: angle `atan ωh` for implicit Euler, `2 asin(ωh/2)` for the symplectic methods.
     #[test]
     fn undamped_pitch_is_that_of_theory() {
         let angle = TAU * 4000.0 / 48_000.0;

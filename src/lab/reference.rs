@@ -1,6 +1,6 @@
-//! What a trajectory is measured against: the true motion.
+//! The true motion, with which a trajectory is compared.
 //!
-//! It is the closed form or, of a nonlinear spring, an integration so fine that a finer one changes nothing.
+//! It is the closed form. For a nonlinear spring it is an integration so fine that a finer one changes nothing.
 
 use super::closed_form::ClosedForm;
 use super::energy::greatest_stiffness;
@@ -9,19 +9,20 @@ use super::system::{State, System};
 use crate::error::{Error, Result};
 use libm::sqrt;
 
-/// Change between one refinement and the next, relative to the greatest displacement, at which the reference is done.
+/// Refinement ends when the change from one refinement to the next, relative to the largest displacement, is below
+/// this.
 const TOLERANCE: f64 = 1e-11;
-/// Steps of the finest integration that is tried.
+/// Maximum number of steps of the finest integration.
 const MOST_STEPS: f64 = 1e7;
 
-/// The states at `0, h, … count·h` seconds. An error where no reference can be had: of a motion so sensitive
-/// (chaotic, or very long) that refinements do not settle.
+/// The states at `0, h, … count·h` seconds. Returns an error if there is no reference, because the motion is so
+/// sensitive (chaotic, or very long) that refinements do not converge.
 pub fn states(system: &System, start: State, h: f64, count: usize) -> Result<Vec<State>> {
     system.validate()?;
     if let Ok(motion) = ClosedForm::new(system, start) {
         return Ok((0..=count).map(|n| motion.at(n as f64 * h)).collect());
     }
-    // 1/200 rad of the fastest oscillation per step: an error of some 1e−12 per radian, before any refinement.
+    // 1/200 rad of the fastest oscillation per step: an error of about 1e−12 per radian, before any refinement.
     let angle = sqrt(greatest_stiffness(system, start) / system.mass) * h;
     let mut substeps = (200.0 * angle).ceil().max(4.0);
     let steps = count as f64 * substeps;
@@ -46,7 +47,7 @@ pub fn states(system: &System, start: State, h: f64, count: usize) -> Result<Vec
     Err(Error::value("end", "is too far for a reference of this nonlinear motion: choose an earlier one"))
 }
 
-/// Runge–Kutta with `substeps` steps in each `h`.
+/// Runge–Kutta integration with `substeps` steps in each `h`.
 fn integrated(system: &System, start: State, h: f64, count: usize, substeps: usize) -> Result<Vec<State>> {
     let step = h / substeps as f64;
     let method = Method::RungeKutta4.integrator(system, step)?;

@@ -1,4 +1,4 @@
-//! What each method sounds like: a struck mass, one step per sample, with a limiter for those that explode.
+//! The sound of each method: a struck mass, one step per sample, with a limiter for methods that explode.
 
 use super::method::Method;
 use super::pitch::play;
@@ -9,9 +9,9 @@ use crate::error::{Error, Result};
 use libm::{floor, hypot, log10};
 use std::f64::consts::TAU;
 
-/// Peak of a strike that nothing distorts: −6 dBFS.
+/// Peak of a strike, −6 dBFS: low enough for no distortion.
 pub const STRIKE: f64 = 0.5;
-/// Amplitude at which the limiter holds a mass that explodes: −1 dBFS.
+/// Amplitude to which the limiter reduces a mass that explodes: −1 dBFS.
 pub const CEILING: f64 = 0.891_250_938_133_745_6;
 
 /// A method's sound.
@@ -19,23 +19,24 @@ pub const CEILING: f64 = 0.891_250_938_133_745_6;
 pub struct Sound {
     /// The method.
     pub method: Method,
-    /// One per frame; within ±[`CEILING`].
+    /// One sample per frame, within ±[`CEILING`].
     pub samples: Vec<f32>,
-    /// Seconds after which the limiter first had to hold the mass back.
+    /// Time in seconds at which the limiter first acted, if it did.
     pub limited: Option<f64>,
-    /// Growth in dB that the limiter took off.
+    /// Growth in dB that the limiter removed.
     pub reduction_db: f64,
 }
 
-/// Strikes a spring of `frequency` Hz and a −60 dB time of `t60` seconds, and lets `method` move it for `seconds`.
+/// Strikes a spring of `frequency` Hz with a −60 dB time of `t60` seconds, and integrates it with `method` for
+/// `seconds`.
 ///
-/// Where the amplitude passes [`CEILING`], the limiter scales the whole state back to it: pitch and waveform go on as
-/// they were, at a steady level, and the growth is summed in `reduction_db`.
+/// If the amplitude exceeds [`CEILING`], the limiter scales the whole state back to it. Pitch and waveform do not
+/// change, the level stays constant, and the removed growth is added up in `reduction_db`.
 ///
 /// # Errors
 /// [`Error::Value`] for a note that cannot be played, and for a sound of more than [`MOST_STEPS`] samples.
 pub fn listen(method: Method, frequency: f64, t60: f64, seconds: f64, sample_rate: f64) -> Result<Sound> {
-    // What cannot be played is refused by the same rules.
+    // The same rules decide which notes cannot be played.
     play(method, frequency, t60, sample_rate)?;
     let longest = floor(1000.0 * MOST_STEPS as f64 / sample_rate) / 1000.0;
     if !(seconds > 0.0 && seconds <= longest) {
@@ -75,7 +76,7 @@ pub fn listen(method: Method, frequency: f64, t60: f64, seconds: f64, sample_rat
     Ok(Sound { method, samples, limited: limiter.limited, reduction_db })
 }
 
-/// Keeps an amplitude at or below [`CEILING`].
+/// Limits an amplitude to [`CEILING`].
 struct Limiter {
     limited: Option<f64>,
     /// Product of all gains so far.
@@ -123,7 +124,7 @@ mod tests {
             assert_eq!(sound.reduction_db > 0.0, explodes, "{method:?}");
             assert!(peak(&sound.samples) <= CEILING as f32 * 1.000_001 && sound.samples.iter().all(|s| s.is_finite()));
         }
-        // Above fs/π the seed's coefficients explode as well.
+        // Above fs/π, the seed's coefficients explode too.
         let sound = heard(Method::SynthSeed, 16_000.0);
         assert!(sound.limited.is_some_and(|t| t < 0.01) && sound.reduction_db > 1000.0, "{sound:?}");
     }
@@ -136,7 +137,7 @@ mod tests {
         assert!((start - 0.5).abs() < 0.02 && (end / start - 0.001).abs() < 1e-4, "{start} {end}");
     }
 
-    /// The limiter does not change the pitch: zero crossings of explicit Euler, which explodes at once.
+    /// The limiter does not change the pitch: counts zero crossings of explicit Euler, which explodes at once.
     #[test]
     fn a_limited_sound_keeps_its_pitch() {
         let sound = heard(Method::ExplicitEuler, 1000.0);

@@ -1,7 +1,7 @@
-//! How long a step may be before a method explodes.
+//! The longest step with which a method stays stable.
 //!
-//! The region of `ω·h` and damping ratio `ζ` in which a method stays bounded, found by running it, and the limit that
-//! theory gives.
+//! Computes the region of `ω·h` and damping ratio `ζ` in which a method stays bounded, by running the method, and the
+//! limit according to theory.
 
 use super::amplification::Amplification;
 use super::method::Method;
@@ -9,34 +9,34 @@ use super::system::System;
 use crate::error::{Error, Result};
 use libm::{exp, hypot, sqrt};
 
-/// Longest `ω·h` that is tried before a method counts as stable for every step.
+/// Longest `ω·h` that is tried. A method that is still stable there counts as stable for every step.
 pub const LONGEST: f64 = 100.0;
-/// Shortest `ω·h` that is tried before a method counts as stable for none.
+/// Shortest `ω·h` that is tried. A method that is unstable there counts as never stable.
 pub const SHORTEST: f64 = 0.01;
 
-/// One method at one step and damping ratio.
+/// One method with one step and one damping ratio.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
     /// Undamped angle per step in rad.
     pub omega_h: f64,
     /// Damping ratio `c / 2√(km)`.
     pub zeta: f64,
-    /// Growth in nepers per step; NaN where the method refuses the step.
+    /// Growth in nepers per step; NaN if the method refuses the step.
     pub growth: f64,
     /// Whether every state stays bounded.
     pub bounded: bool,
 }
 
-/// The matrix of a step of `omega_h` on a spring of `ω = 1`, `m = 1` and damping ratio `zeta`.
+/// The matrix of a step of `omega_h` for a spring with `ω = 1`, `m = 1` and damping ratio `zeta`.
 fn amplification(method: Method, omega_h: f64, zeta: f64) -> Result<Amplification> {
     Amplification::of(method, &System::linear(1.0, 1.0, 2.0 * zeta)?, omega_h)
 }
 
-/// Runs a method at one point of the plane. A step that the method refuses (the synth's, at whole half turns and where
-/// rounding leaves none of the velocity) is not an explosion: it counts as bounded.
+/// Runs a method at one point of the plane. A step that the method refuses counts as bounded, since it is not an
+/// explosion. (The synth refuses whole half turns, and steps after which rounding leaves no velocity.)
 ///
 /// # Errors
-/// [`Error::Value`] for a step that is not positive, and for a damping ratio that is negative.
+/// [`Error::Value`] for a step that is not positive, and for a negative damping ratio.
 pub fn cell(method: Method, omega_h: f64, zeta: f64) -> Result<Cell> {
     if !(omega_h > 0.0 && omega_h.is_finite()) {
         return Err(Error::value("omega_h", format!("must be greater than 0 rad, got {omega_h}")));
@@ -54,7 +54,8 @@ fn check(zeta: f64) -> Result<()> {
     Err(Error::value("zeta", format!("a damping ratio must be 0 or more, got {zeta}")))
 }
 
-/// The `ω·h` up to which a method stays bounded, found numerically: 0 if it never does, infinite if it always does.
+/// The largest `ω·h` with which a method stays bounded, found numerically: 0 if it never does, infinite if it always
+/// does.
 pub fn limit(method: Method, zeta: f64) -> Result<f64> {
     check(zeta)?;
     // As in [`cell`], a step that the method refuses is not an explosion.
@@ -62,8 +63,8 @@ pub fn limit(method: Method, zeta: f64) -> Result<f64> {
     Ok(first(explodes, 1.02))
 }
 
-/// The first value of `ω·h` between [`SHORTEST`] and [`LONGEST`] at which `explodes` holds, searched for in steps of
-/// `ratio`, then by bisection. 0 if it holds from the start, infinite if it never does.
+/// The first value of `ω·h` between [`SHORTEST`] and [`LONGEST`] for which `explodes` is true, searched in steps of
+/// `ratio` and then by bisection. 0 if it is true from the start, infinite if it is never true.
 fn first(explodes: impl Fn(f64) -> bool, ratio: f64) -> f64 {
     if explodes(SHORTEST) {
         return 0.0;
@@ -83,14 +84,14 @@ fn first(explodes: impl Fn(f64) -> bool, ratio: f64) -> f64 {
     inside
 }
 
-/// The limit of `ω·h` that theory gives: 0 for never stable, infinite for always.
+/// The limit of `ω·h` according to theory: 0 if never stable, infinite if always stable.
 pub fn theory(method: Method, zeta: f64) -> f64 {
     match method {
         // |1 + z| < 1 for both eigenvalues z = ωh (−ζ ± √(ζ²−1)).
         Method::ExplicitEuler if zeta <= 1.0 => 2.0 * zeta,
         Method::ExplicitEuler => 2.0 / (zeta + sqrt(zeta * zeta - 1.0)),
         Method::ImplicitEuler | Method::ChouImplicit | Method::SynthExact | Method::Exponential => f64::INFINITY,
-        // Jury: trace > −(1 + det) of det = 1 − 2ζωh, trace = 2 − 2ζωh − (ωh)².
+        // Jury criterion: trace > −(1 + det) with det = 1 − 2ζωh, trace = 2 − 2ζωh − (ωh)².
         Method::SymplecticEuler | Method::SymplecticEulerPositionFirst | Method::ChouSemiImplicit => {
             2.0 / (sqrt(zeta * zeta + 1.0) + zeta)
         }
@@ -102,7 +103,7 @@ pub fn theory(method: Method, zeta: f64) -> f64 {
     }
 }
 
-/// Where `|R(z)|` of a stability polynomial `R` first exceeds 1, along the eigenvalues of `zeta`.
+/// Where `|R(z)|` of a stability polynomial `R` first exceeds 1, along the eigenvalues for `zeta`.
 fn polynomial_limit(zeta: f64, coefficients: &[f64]) -> f64 {
     let size = |re: f64, im: f64| {
         let (value_re, value_im) = coefficients
@@ -119,7 +120,7 @@ fn polynomial_limit(zeta: f64, coefficients: &[f64]) -> f64 {
             size(-(zeta + spread) * omega_h, 0.0).max(size(-omega_h / (zeta + spread), 0.0))
         }
     };
-    // More than rounding, and less than Heun's (ωh)⁴/8.
+    // The threshold is larger than rounding errors and smaller than Heun's (ωh)⁴/8.
     first(|omega_h| largest(omega_h) > 1.0 + 1e-12, 1.02)
 }
 
@@ -167,7 +168,7 @@ mod tests {
         }
     }
 
-    /// The matrix argument against brute force: 200,000 plain steps on either side of each finite limit.
+    /// Compares the limits from the matrix with 200,000 plain steps on either side of each finite limit.
     #[test]
     fn runs_explode_beyond_the_limit_and_not_before() {
         for method in Method::ALL {

@@ -1,4 +1,4 @@
-//! What is integrated: a mass on a spring, with a damper and a force.
+//! The system that is integrated: a mass on a spring, with a damper and a force.
 
 use crate::error::{Error, Result};
 use libm::{cos, sin, sqrt};
@@ -7,14 +7,14 @@ use std::f64::consts::TAU;
 /// Position and velocity at one time: a point of the phase plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
-    /// Position in m (or rad, of a pendulum).
+    /// Position in m (in rad for a pendulum).
     pub x: f64,
     /// Velocity in m/s.
     pub v: f64,
 }
 
 impl State {
-    /// Whether both are numbers a next step can be made from.
+    /// Whether both numbers are finite, so that a next step can be computed.
     pub fn is_finite(&self) -> bool {
         self.x.is_finite() && self.v.is_finite()
     }
@@ -37,11 +37,11 @@ pub enum Spring {
 /// An external force `f(t) = amplitude · cos(2π frequency t + phase)`; at a frequency of 0 it is constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Force {
-    /// N.
+    /// Amplitude in N.
     pub amplitude: f64,
-    /// Hz.
+    /// Frequency in Hz.
     pub frequency: f64,
-    /// rad.
+    /// Phase in rad.
     pub phase: f64,
 }
 
@@ -61,7 +61,7 @@ pub struct System {
     pub stiffness: f64,
     /// `c` in kg/s.
     pub damping: f64,
-    /// Where the spring pulls to, in m.
+    /// Rest position of the spring, in m.
     pub target: f64,
     /// Law of the spring.
     pub spring: Spring,
@@ -70,15 +70,16 @@ pub struct System {
 }
 
 impl System {
-    /// A linear spring without a force. An error where the mass is not positive, or stiffness or damping negative.
+    /// A linear spring without a force. Returns an error if the mass is not positive, or stiffness or damping is
+    /// negative.
     pub fn linear(mass: f64, stiffness: f64, damping: f64) -> Result<Self> {
         let system = Self { mass, stiffness, damping, target: 0.0, spring: Spring::Linear, force: Force::default() };
         system.validate()?;
         Ok(system)
     }
 
-    /// The linear system of which the motion is a decay by 60 dB in `t60` seconds (infinite: none) at `frequency` Hz,
-    /// on a mass of 1 kg.
+    /// The linear system with a mass of 1 kg that oscillates at `frequency` Hz and decays by 60 dB in `t60` seconds
+    /// (infinite: no decay).
     pub fn from_note(frequency: f64, t60: f64) -> Result<Self> {
         if !(frequency > 0.0 && frequency.is_finite()) {
             return Err(Error::value("frequency", format!("must be greater than 0 Hz, got {frequency}")));
@@ -91,7 +92,7 @@ impl System {
         Self::linear(1.0, ringing * ringing + lambda * lambda, 2.0 * lambda)
     }
 
-    /// An error that names the first value that no mass, spring, damper or force can have.
+    /// Returns an error that names the first value that is impossible for a mass, spring, damper or force.
     pub fn validate(&self) -> Result<()> {
         if !(self.mass > 0.0 && self.mass.is_finite()) {
             return Err(Error::value("mass", format!("must be greater than 0 kg, got {}", self.mass)));
@@ -120,12 +121,12 @@ impl System {
         Ok(())
     }
 
-    /// Whether force is proportional to stretch, so that there is a closed form.
+    /// Whether the force is proportional to the stretch, so that there is a closed form.
     pub fn is_linear(&self) -> bool {
         matches!(self.spring, Spring::Linear)
     }
 
-    /// `ω = √(k/m)` in rad/s, of small undamped oscillations. An error without a spring.
+    /// `ω = √(k/m)` in rad/s, of small undamped oscillations. Returns an error if there is no spring.
     pub fn omega(&self) -> Result<f64> {
         if self.stiffness > 0.0 {
             Ok(sqrt(self.stiffness / self.mass))
@@ -134,7 +135,7 @@ impl System {
         }
     }
 
-    /// `λ̄ = c / 2m` in 1/s: the rate of decay.
+    /// `λ̄ = c / 2m` in 1/s: the decay rate.
     pub fn decay_rate(&self) -> f64 {
         0.5 * self.damping / self.mass
     }
@@ -165,7 +166,7 @@ impl System {
         (self.spring_force(state.x) - self.damping * state.v + self.force.at(t)) / self.mass
     }
 
-    /// `ẏ = f(y, t)` of the coupled first-order system, `y = (x, v)`.
+    /// `ẏ = f(y, t)` of the equivalent first-order system, `y = (x, v)`.
     #[inline]
     pub fn derivative(&self, state: State, t: f64) -> State {
         State { x: state.v, v: self.acceleration(state, t) }

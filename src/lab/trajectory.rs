@@ -1,11 +1,11 @@
-//! A method run over a stretch of time, next to the true motion.
+//! Runs a method over a period of time and compares it with the true motion.
 
 use super::method::Method;
 use super::reference;
 use super::system::{State, System};
 use crate::error::{Error, Result};
 
-/// States of one run that are kept in memory at most: 160 MB with their truth.
+/// Maximum number of states of one run that are kept in memory: 160 MB together with the true states.
 pub const MOST_STEPS: usize = 5_000_000;
 
 /// The states of a run at `0, h, 2h, …`, and the true ones.
@@ -15,13 +15,13 @@ pub struct Trajectory {
     pub method: Method,
     /// Step in seconds.
     pub h: f64,
-    /// One state per step, the start included; cut short where the numbers overflow.
+    /// One state per step, including the start; fewer if the numbers overflow.
     pub states: Vec<State>,
     /// The true states at the same times, up to the end.
     pub truth: Vec<State>,
-    /// Greatest difference in position in m. Infinite where the numbers overflow.
+    /// Largest difference in position, in m. Infinite if the numbers overflow.
     pub worst_error: f64,
-    /// Difference in position at the end in m. Infinite where the numbers overflow.
+    /// Difference in position at the end, in m. Infinite if the numbers overflow.
     pub end_error: f64,
 }
 
@@ -31,14 +31,14 @@ impl Trajectory {
         (self.states.len() < self.truth.len()).then_some(self.states.len() as f64 * self.h)
     }
 
-    /// Differences in position from the truth in m.
+    /// Differences in position from the true motion, in m.
     pub fn errors(&self) -> impl Iterator<Item = f64> {
         self.states.iter().zip(&self.truth).map(|(state, truth)| state.x - truth.x)
     }
 }
 
-/// Number of steps of `h` that reach `end`: as many as the last of them needs to be there. An error for a step or end
-/// that is not positive, and for more steps than memory should hold.
+/// Number of steps of `h` that reach `end`, rounded up. Returns an error if `h` or `end` is not positive, and for more
+/// steps than memory should hold.
 pub fn step_count(h: f64, end: f64) -> Result<usize> {
     if !(h > 0.0 && h.is_finite()) {
         return Err(Error::value("steps", format!("a step must be longer than 0 s, got {h}")));
@@ -71,7 +71,7 @@ pub fn run(method: Method, system: &System, start: State, h: f64, end: f64) -> R
     run_against(method, system, h, truth(system, start, h, end)?)
 }
 
-/// Runs `method` from the first of `truth`, for as many steps as it has.
+/// Runs `method` from the first state in `truth`, with as many steps as there are states in `truth`.
 pub fn run_against(method: Method, system: &System, h: f64, truth: Vec<State>) -> Result<Trajectory> {
     let integrator = method.integrator(system, h)?;
     let mut states = Vec::with_capacity(truth.len());
@@ -102,7 +102,8 @@ mod tests {
         (System::linear(1.0, 50.0, 0.0).unwrap(), State { x: 0.5, v: 0.0 })
     }
 
-    /// Ratio of the energy after `steps` steps of `omega_h` rad to that before, and the least and greatest on the way.
+    /// Energy after `steps` steps of `omega_h` rad relative to that before, and the smallest and largest value on the
+    /// way.
     fn energies(method: Method, omega_h: f64, steps: usize) -> (f64, f64, f64) {
         let (system, start) = spring();
         let h = omega_h / sqrt(50.0);
@@ -131,7 +132,8 @@ mod tests {
         for omega_h in [0.1, 1.0] {
             for method in [Method::SymplecticEuler, Method::SymplecticEulerPositionFirst, Method::Verlet] {
                 let (_, least, greatest) = energies(method, omega_h, 1_000_000);
-                // The ellipse of the modified energy: axes in the ratio of 1 ± ωh/2, squared and halved for Verlet.
+                // The orbit is an ellipse of the modified energy: axes in the ratio of 1 ± ωh/2, squared and halved for
+                // Verlet.
                 let bound = (1.0 + 0.5 * omega_h) / (1.0 - 0.5 * omega_h);
                 assert!(least > 0.999 / bound && greatest < 1.001 * bound, "{method:?}: {least} … {greatest}");
             }

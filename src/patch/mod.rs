@@ -1,4 +1,4 @@
-//! A patch: one value per parameter, the table of modes and the routes, to be edited and saved.
+//! A patch: a value for each parameter, the table of modes, and the routes. It is what users edit and save.
 
 pub mod routes;
 
@@ -8,29 +8,29 @@ use crate::params::{Param, Values};
 use routes::{Route, Routes, Source, amount_param};
 use std::sync::Arc;
 
-/// Most modes of a body.
+/// Maximum number of modes of a body.
 pub const MAX_MODES: usize = MAX_CELLS * mode_bank::MAX_MODES;
 
-/// One mode of the body: one mass on its spring.
+/// One mode of the body: a mass on a spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
     /// Frequency as a multiple of the note's.
     pub ratio: f32,
-    /// Amplitude after a strike of full force; negative turns the phase round.
+    /// Amplitude after a strike of full force. A negative level inverts the phase.
     pub level: f32,
     /// T60 as a multiple of the patch's `decay`.
     pub decay: f32,
-    /// Share of the excitation that is the strike or pluck; the rest is the noise burst.
+    /// Fraction of the excitation that comes from the strike or pluck; the rest is the noise burst.
     pub strike: f32,
     /// Position from −1 (left) to 1 (right).
     pub pan: f32,
 }
 
 impl Mode {
-    /// The one mass of an `init` patch: at the note's pitch, full level, the patch's own decay, struck, centred.
+    /// The single mode of the preset `init`: at the note's pitch, full level, the patch's own decay, struck, centred.
     pub const UNIT: Mode = Mode { ratio: 1.0, level: 1.0, decay: 1.0, strike: 1.0, pan: 0.0 };
 
-    /// Field names, ranges and accessors: what the preset file reads, checks and writes.
+    /// Names and ranges of the fields, for reading, checking and writing preset files.
     pub(crate) const FIELDS: [(&'static str, f32, f32); 5] = [
         ("ratio", 0.01, 1000.0),
         ("level", -1.0, 1.0),
@@ -50,7 +50,7 @@ impl Mode {
     }
 }
 
-/// A body: one to [`MAX_MODES`] modes. Copies share them.
+/// A body: one to [`MAX_MODES`] modes. Clones share the same table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeTable {
     modes: Arc<[Mode]>,
@@ -58,43 +58,43 @@ pub struct ModeTable {
 }
 
 impl ModeTable {
-    /// The first [`MAX_MODES`] of `modes`, or the unit mode if there are none. Ranges are the caller's to check.
+    /// The first [`MAX_MODES`] of `modes`, or [`Mode::UNIT`] if there are none. The caller must check the ranges.
     /// Allocates.
     pub fn new(modes: &[Mode]) -> Self {
         let modes = if modes.is_empty() { &[Mode::UNIT] } else { modes };
         Self { modes: modes[..modes.len().min(MAX_MODES)].into(), origin: None }
     }
 
-    /// The modes in use.
+    /// The modes.
     pub fn as_slice(&self) -> &[Mode] {
         &self.modes
     }
 
-    /// The table with a text of what its modes were made from, which is for files to write instead of the modes. Allocates.
+    /// The table with a text from which its modes were made. Files contain that text instead of the modes. Allocates.
     #[must_use]
     pub fn with_origin(self, origin: &str) -> Self {
         Self { origin: Some(origin.into()), ..self }
     }
 
-    /// What its modes were made from, if they were not typed.
+    /// The text from which the modes were made, if there is one.
     pub fn origin(&self) -> Option<&str> {
         self.origin.as_deref()
     }
 }
 
-/// A value for each parameter, the modes of the body, and what moves the parameters.
+/// A value for each parameter, the modes of the body, and the routes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patch {
     /// The parameters.
     pub values: Values,
     /// The body.
     pub modes: ModeTable,
-    /// What moves which parameter.
+    /// The modulation routes.
     pub routes: Routes,
 }
 
 impl Default for Patch {
-    /// Every parameter at its default, one mass and [`Routes::INITIAL`]: the preset `init`. Allocates.
+    /// The preset `init`: every parameter at its default, one mode and [`Routes::INITIAL`]. Allocates.
     fn default() -> Self {
         Self { values: Values::default(), modes: ModeTable::new(&[Mode::UNIT]), routes: Routes::INITIAL }
     }
@@ -111,15 +111,15 @@ impl Patch {
         self.values.set(param, value);
     }
 
-    /// The patch with a parameter set, for building one in an expression.
+    /// The patch with one parameter changed, for building a patch in an expression.
     #[must_use]
     pub fn with(mut self, param: Param, value: f32) -> Self {
         self.set(param, value);
         self
     }
 
-    /// The patch with a route at a place, 0 to 15, as [`Patch::with`]: `source` moves `destination` in equal steps, by so
-    /// many per cent of its knob's travel where the source is 1.
+    /// The patch with a route at a place, 0 to 15, as [`Patch::with`]: `source` modulates `destination` linearly, by
+    /// `amount` per cent of its knob travel if the source is 1.
     #[must_use]
     pub fn with_route(mut self, place: usize, source: Source, destination: Param, amount: f32) -> Self {
         self.routes.set(place, Some(Route::linear(source, destination)));

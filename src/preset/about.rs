@@ -1,4 +1,4 @@
-//! What preset and kit files say of themselves: name, author, tags, comment.
+//! The descriptive part of preset and kit files: name, author, tags and comment.
 
 use super::complaints::Complaints;
 use super::value::unexpected;
@@ -6,13 +6,13 @@ use crate::text::printable_lines;
 use toml::{Table, Value};
 use toml_writer::{ToTomlValue, TomlStringBuilder};
 
-/// Longest name, author or tag, in characters: what a list can still show.
+/// Maximum length of a name, author or tag in characters, so that it fits into lists.
 const MAX_LABEL: usize = 100;
 
-/// The name of what has none that can be read.
+/// Name of a preset or kit whose name cannot be read.
 const UNNAMED: &str = "Unnamed";
 
-/// What a file says of itself.
+/// The descriptive fields of a file.
 pub(super) struct About {
     pub(super) name: String,
     pub(super) author: String,
@@ -21,7 +21,7 @@ pub(super) struct About {
 }
 
 impl About {
-    /// Reads it. A file has a name.
+    /// Reads the fields. A missing name is an error.
     pub(super) fn read(table: &Table, complaints: &mut Complaints) -> Self {
         if table.get("name").is_none_or(|name| name.as_str() == Some("")) {
             complaints.add("there is no ‘name’: expected name = \"…\"");
@@ -34,7 +34,7 @@ impl About {
     }
 }
 
-/// Writes it as lines of TOML: name, author and comment, and the tags.
+/// Writes the fields as lines of TOML.
 pub(super) fn about_to_toml([name, author, comment]: [&str; 3], tags: &[String]) -> String {
     let tags: Vec<String> = tags.iter().map(|tag| toml_string(tag)).collect();
     let [name, author, comment] = [name, author, comment].map(toml_string);
@@ -49,7 +49,7 @@ fn text(table: &Table, key: &str, place: &str) -> Result<String, String> {
     }
 }
 
-/// A line of text in a table at `place` (empty, or ending in a dot); empty where there is none.
+/// Reads a single line of text in a table at `place` (empty, or ending in a dot); empty if the key is missing.
 pub(super) fn label(table: &Table, key: &str, place: &str, complaints: &mut Complaints) -> String {
     let label = text(table, key, place).and_then(|label| check_label(&format!("{place}{key}"), label));
     complaints.take("", label).unwrap_or_default()
@@ -79,8 +79,8 @@ fn tags(table: &Table, complaints: &mut Complaints) -> Vec<String> {
     tags.iter().enumerate().filter_map(|each| complaints.take("", tag(each))).collect()
 }
 
-/// A text between quotes, so that whoever prints the file has nothing in it that steers the terminal: where the text has
-/// such characters, they are escapes between double quotes, which read back as they were.
+/// A text as a TOML string that is safe to print on a terminal: control characters become escapes in double quotes,
+/// which read back as the same text.
 pub(super) fn toml_string(text: &str) -> String {
     let builder = TomlStringBuilder::new(text);
     let plain = builder.as_default().to_toml_value();

@@ -1,4 +1,4 @@
-//! The body of a preset file, from which its modes are made: `[body]` with `model = "marimba"`.
+//! The body in a preset file, from which its modes are computed: `[body]` with `model = "marimba"`.
 
 use super::complaints::Complaints;
 use super::value::unexpected;
@@ -10,19 +10,20 @@ use crate::units::split_quantity;
 use std::fmt::Write;
 use toml::{Table, Value};
 
-/// The modes of a body, with the text of `[body]` as their origin, so that a preset is saved with its body. Allocates.
+/// The modes of a body. They keep the text of `[body]` as their origin, so that a preset is saved with its body.
+/// Allocates.
 pub fn modes_of_body(body: &Body) -> ModeTable {
     body.table().with_origin(&text(body))
 }
 
-/// The body that modes were made from, if they were. Allocates.
+/// The body from which modes were made; none if they were not made from one. Allocates.
 pub fn body_of_modes(modes: &ModeTable) -> Option<Body> {
     let mut complaints = Complaints::default();
     let body = read_body(&toml::from_str(modes.origin()?).ok()?, &mut complaints);
     body.filter(|_| complaints.into_lines().is_empty())
 }
 
-/// Reads the body of a file, if it has one: its modes, and its T60 unless the file says another `decay`.
+/// Reads the body of a file, if it has one. Sets the patch's modes and, unless the file has a `decay`, its decay.
 pub(super) fn read(file: &Table, patch: &mut Patch, complaints: &mut Complaints) {
     let table = match file.get("body") {
         None => return,
@@ -40,17 +41,17 @@ pub(super) fn read(file: &Table, patch: &mut Patch, complaints: &mut Complaints)
     }
 }
 
-/// Whether a parameter is written even at its default: what would else be read from the body.
+/// Whether a parameter must be written even at its default, since the reader would otherwise take it from the body.
 pub(super) fn writes(patch: &Patch, param: Param) -> bool {
     param == Param::Decay && patch.modes.origin().is_some()
 }
 
-/// The table `[body]`, if the modes were made from one.
+/// The table `[body]` as TOML; empty if the modes were not made from a body.
 pub(super) fn to_toml(patch: &Patch) -> String {
     patch.modes.origin().map_or(String::new(), |origin| format!("\n[body]\n{origin}"))
 }
 
-/// A body, if its model is known and it has a frequency. Numbers that cannot be read are the model's own.
+/// Reads a body, if its model is known and it has a frequency. Numbers that cannot be read keep the model's values.
 fn read_body(table: &Table, complaints: &mut Complaints) -> Option<Body> {
     let names = || ["model", "material"].into_iter().chain(FIELDS.iter().map(|field| field.name));
     for unknown in table.keys().filter(|key| !names().any(|name| name == *key)) {
@@ -89,7 +90,7 @@ fn read_body(table: &Table, complaints: &mut Complaints) -> Option<Body> {
     Some(body)
 }
 
-/// What a key names, if it is there.
+/// Finds what the text at a key names; none if the key is missing.
 fn named<T: 'static, N: Iterator<Item = &'static str>>(
     table: &Table,
     key: &str,
@@ -106,7 +107,7 @@ fn named<T: 'static, N: Iterator<Item = &'static str>>(
     }
 }
 
-/// A number in the field's unit, or a text with it.
+/// Reads a number in the field's unit, or a text with a unit.
 fn number(field: &Field, value: &Value) -> Result<f64, String> {
     let value = match value {
         Value::Integer(number) => *number as f64,
@@ -126,7 +127,7 @@ fn number(field: &Field, value: &Value) -> Result<f64, String> {
 
 fn quantity(field: &Field, text: &str) -> Option<f64> {
     let (value, unit) = split_quantity(text)?;
-    // Divided, not multiplied by what decimals cannot say: 62 cm is the number 0.62.
+    // Divide: 1/100 and 1/1000 are not exact in binary, but 62 / 100 gives the number 0.62.
     match (field.unit, unit) {
         (own, unit) if own == unit || unit.is_empty() => Some(value),
         ("m", "cm") | ("", "%") => Some(value / 100.0),
@@ -136,10 +137,10 @@ fn quantity(field: &Field, text: &str) -> Option<f64> {
     }
 }
 
-/// The lines of `[body]`: the model, and what differs from how it begins.
+/// The lines of `[body]`: the model, and the values that differ from the model's own.
 fn text(body: &Body) -> String {
     let mut out = format!("model = \"{}\"\n", body.model.id());
-    // Of another model of the same kind, all numbers begin as this one's do.
+    // Start from the listed model with the same identifier, since the reader starts from its values too.
     let mut first = Body::new(Model::find(body.model.id()).unwrap_or(&body.model).clone());
     if body.material.id != first.material.id {
         let _ = writeln!(out, "material = \"{}\"", body.material.id);

@@ -1,28 +1,28 @@
-//! What a reader of presets and kits could not take: readers go on after each complaint, so that all of them are told.
+//! The errors in a preset or kit: readers continue after each error, so that all of them can be reported.
 
 use crate::error::{Error, Result};
 
-/// What is wrong with a text, in the order of reading.
+/// Errors in a text, in the order in which they were found.
 #[derive(Debug, Default)]
 pub(super) struct Complaints(Vec<String>);
 
 impl Complaints {
-    /// Adds one.
+    /// Adds an error.
     pub(super) fn add(&mut self, complaint: impl Into<String>) {
         self.0.push(complaint.into());
     }
 
-    /// What was read, or nothing with the complaint about it, which begins with `place`.
+    /// The value that was read; on an error, adds the error with the prefix `place`, and returns none.
     pub(super) fn take<T>(&mut self, place: &str, read: std::result::Result<T, String>) -> Option<T> {
         read.map_err(|complaint| self.add(format!("{place}{complaint}"))).ok()
     }
 
-    /// All of them.
+    /// All errors.
     pub(super) fn into_lines(self) -> Vec<String> {
         self.0
     }
 
-    /// The first as the error of a text called `origin`, if there are any.
+    /// Returns the first error, if there is any, as an error in the text `origin`.
     pub(super) fn into_first(self, origin: &str) -> Result<()> {
         match self.0.into_iter().next() {
             None => Ok(()),

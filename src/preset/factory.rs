@@ -10,7 +10,7 @@ macro_rules! embed {
     };
 }
 
-/// File names (without `.toml`) and texts. The place in the list is the MIDI program number: only append.
+/// File names (without `.toml`) and texts. The index is the MIDI program number, so only append to the list.
 const FILES: &[(&str, &str)] = embed! {
     "00-init"
     "01-kick"

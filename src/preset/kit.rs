@@ -1,39 +1,39 @@
-//! Kits as people save them: which preset each key plays.
+//! Kits as they are saved: the preset that each key plays.
 
 use super::Preset;
 use crate::sound::kit::KEYS;
 use crate::sound::{Kit, Pad};
 use std::sync::Arc;
 
-/// The kit format that this version reads and writes.
+/// The kit format version that is read and written.
 pub const KIT_VERSION: i64 = 1;
 
-/// Presets on keys, and what a person calls them.
+/// Presets on keys, with name, author, tags and comment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KitPreset {
-    /// What it is called; never empty.
+    /// Name; never empty.
     pub name: String,
-    /// Who made it.
+    /// Author.
     pub author: String,
-    /// Words to search by.
+    /// Words to search for.
     pub tags: Vec<String>,
-    /// What it is and how to play it.
+    /// Description, and how to play it.
     pub comment: String,
-    /// Most notes that sound at once.
+    /// Maximum number of notes that sound at once.
     pub voices: u8,
-    /// The presets that its pads play, each under the name that the file has for it.
+    /// The presets of the pads, each with the name by which the file refers to it.
     pub sounds: Vec<(String, Preset)>,
-    /// Keys from 0 to 127 with what they play, in the order of the file, each once.
+    /// Keys from 0 to 127 with their pads, in the order of the file. Each key occurs once.
     pub pads: Vec<(u8, Pad)>,
 }
 
-/// What a file holds that can be played.
+/// The content of a file: a preset or a kit.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "there is one for each file that is read")]
 pub enum Playable {
-    /// One sound for all keys.
+    /// One sound, which all keys play.
     Preset(Preset),
-    /// Sounds on keys.
+    /// Sounds that are assigned to keys.
     Kit(KitPreset),
 }
 
@@ -52,7 +52,7 @@ impl KitPreset {
 }
 
 impl Playable {
-    /// What it is called.
+    /// The name of the preset or kit.
     pub fn name(&self) -> &str {
         match self {
             Self::Preset(preset) => &preset.name,
@@ -68,7 +68,7 @@ impl Playable {
         }
     }
 
-    /// The presets that it plays.
+    /// The presets in it.
     pub fn presets_mut(&mut self) -> Vec<&mut Preset> {
         match self {
             Self::Preset(preset) => vec![preset],

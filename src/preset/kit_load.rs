@@ -1,4 +1,4 @@
-//! Kits from texts and files, and back.
+//! Reads kits from texts and files, and writes them.
 
 use super::complaints::Complaints;
 use super::kit::{KitPreset, Playable};
@@ -8,19 +8,19 @@ use std::fs::File;
 use std::path::{Component, Path};
 
 impl KitPreset {
-    /// Writes the kit so that [`Playable::read`] gives it back exactly where its presets are.
+    /// Writes the kit as TOML. [`Playable::read`] gives exactly the same kit, provided it finds the same presets.
     pub fn to_toml(&self) -> String {
         kit_file::to_toml(self)
     }
 }
 
 impl Playable {
-    /// Reads the preset or kit file at `path`. It and the presets that a kit names are opened by `open`; `replaced` is told
-    /// of each retired parameter in any of them, and of the file that it is in.
+    /// Reads the preset or kit file at `path`. `open` opens it and the preset files that a kit names. `replaced` is
+    /// called with each retired parameter in any of them and the name of its file.
     ///
     /// # Errors
-    /// As [`Preset::load`]; for a kit, [`Error::Format`] names the place in it as well. A preset file of a kit has to lie in
-    /// the kit's folder or below: other paths, and links that lead elsewhere, are refused before anything is opened.
+    /// As [`Preset::load`]. For a kit, [`Error::Format`] also names the place in the kit. Preset files of a kit must be
+    /// in the kit's folder or below it: other paths, and links that lead outside, are rejected before they are opened.
     pub fn read(
         path: &Path,
         open: &mut dyn FnMut(&Path) -> Result<File>,
@@ -31,11 +31,11 @@ impl Playable {
         complaints.into_first(&path.display().to_string()).map(|()| playable)
     }
 
-    /// As [`Playable::read`], but reads what can be read of the file. Whatever cannot has its default, and is told beside
-    /// the rest, in one line each.
+    /// As [`Playable::read`], but reads as much as possible. What cannot be read gets its default value, and is
+    /// described in one line of the returned list.
     ///
     /// # Errors
-    /// As [`Playable::read`] for a file that cannot be opened, or is no TOML, or neither a preset nor a kit.
+    /// As [`Playable::read`], for a file that cannot be opened, is not TOML, or is neither a preset nor a kit.
     pub fn read_lenient(
         path: &Path,
         open: &mut dyn FnMut(&Path) -> Result<File>,
@@ -62,21 +62,22 @@ impl Playable {
         playable
     }
 
-    /// Reads a preset or kit from its text, which errors call `origin`; `preset` finds the presets that a kit names.
+    /// Reads a preset or kit from a text. `origin` names the text in errors. `preset` finds the presets that a kit
+    /// names.
     ///
     /// # Errors
-    /// [`Error::Format`] as [`Preset::parse`], and where a kit names what is not there.
+    /// [`Error::Format`] as [`Preset::parse`], and if a preset that a kit names cannot be found.
     pub fn parse(text: &str, origin: &str, preset: &mut dyn FnMut(&str) -> Result<Preset>) -> Result<Self> {
         let mut complaints = Complaints::default();
         let playable = kit_file::parse(text, origin, preset, &mut complaints, &mut |_| {})?;
         complaints.into_first(origin).map(|()| playable)
     }
 
-    /// As [`Playable::parse`], but reads what can be read, as [`Playable::read_lenient`] does; `replaced` is told of each
-    /// retired parameter in a preset.
+    /// As [`Playable::parse`], but reads as much as possible, as [`Playable::read_lenient`] does. `replaced` is called
+    /// with each retired parameter in a preset.
     ///
     /// # Errors
-    /// [`Error::Format`] for a text that is no TOML, or neither a preset nor a kit.
+    /// [`Error::Format`] for a text that is not TOML, or is neither a preset nor a kit.
     pub fn parse_lenient(
         text: &str,
         origin: &str,
@@ -88,7 +89,7 @@ impl Playable {
         Ok((playable, complaints.into_lines()))
     }
 
-    /// Its file.
+    /// The preset or kit as TOML.
     pub fn to_toml(&self) -> String {
         match self {
             Self::Preset(preset) => preset.to_toml(),
@@ -97,12 +98,12 @@ impl Playable {
     }
 }
 
-/// Whether a name of a sound is that of a file: it ends in `.toml` or lies in a folder.
+/// Whether a sound's name is a file name: it ends in `.toml` or contains a folder.
 pub fn is_file_name(name: &Path) -> bool {
     name.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) || name.components().count() > 1
 }
 
-/// The preset that a kit in `folder` names: a file there, or else one of the factory's.
+/// The preset with this name for a kit in `folder`: a file there, or else a factory preset.
 fn preset_of_kit(
     name: &str,
     folder: &Path,

@@ -1,4 +1,4 @@
-//! Presets from texts and files, and back.
+//! Reads presets from texts and files, and writes them.
 
 use super::complaints::Complaints;
 use super::{Preset, Replaced, file};
@@ -6,20 +6,20 @@ use crate::error::{Error, Result};
 use std::io::Read;
 use std::path::Path;
 
-/// Largest preset file that is read, in bytes.
+/// Maximum size of a preset file in bytes.
 pub const MAX_FILE_SIZE: u64 = 1 << 20;
 
 impl Preset {
-    /// Reads a preset. `origin` names the text in errors: a path, or where else it came from.
+    /// Reads a preset. `origin` names the text in errors: a path, or another source.
     ///
     /// # Errors
-    /// [`Error::Format`] for anything but a preset of a format up to [`FORMAT_VERSION`](super::FORMAT_VERSION) whose every key is known and every value
-    /// in range; it names the key and what would be right.
+    /// [`Error::Format`] if it is not a preset of a format up to [`FORMAT_VERSION`](super::FORMAT_VERSION), a key is
+    /// unknown, or a value is out of range. The error names the key and what would be right.
     pub fn parse(text: &str, origin: &str) -> Result<Self> {
         Self::parse_old(text, origin, &mut |_| {})
     }
 
-    /// As [`Preset::parse`], telling `replaced` of each retired parameter in it.
+    /// As [`Preset::parse`]. `replaced` is called with each retired parameter in the preset.
     ///
     /// # Errors
     /// As [`Preset::parse`].
@@ -29,18 +29,19 @@ impl Preset {
         complaints.into_first(origin).map(|()| preset)
     }
 
-    /// As [`Preset::parse_old`], but reads what can be read. Whatever cannot has its default, and is told beside the
-    /// preset, in one line each.
+    /// As [`Preset::parse_old`], but reads as much as possible. What cannot be read gets its default value, and is
+    /// described in one line of the returned list.
     ///
     /// # Errors
-    /// [`Error::Format`] for a text that is no TOML or no preset.
+    /// [`Error::Format`] for a text that is not TOML or not a preset.
     pub fn parse_lenient(text: &str, origin: &str, replaced: &mut dyn FnMut(Replaced)) -> Result<(Self, Vec<String>)> {
         let mut complaints = Complaints::default();
         let preset = file::parse(text, origin, &mut complaints, replaced)?;
         Ok((preset, complaints.into_lines()))
     }
 
-    /// Writes the preset so that [`Preset::parse`] gives it back exactly. Parameters at their defaults are left out.
+    /// Writes the preset as TOML. [`Preset::parse`] gives exactly the same preset. Parameters at their defaults are
+    /// left out.
     pub fn to_toml(&self) -> String {
         file::to_toml(self)
     }
@@ -55,7 +56,7 @@ impl Preset {
         Self::read(std::fs::File::open(path).map_err(|source| Error::io(&origin, source))?, &origin)
     }
 
-    /// Reads a preset file from `reader`, which errors call `origin`.
+    /// Reads a preset file from `reader`. `origin` names the file in errors.
     ///
     /// # Errors
     /// As [`Preset::load`].
@@ -64,7 +65,7 @@ impl Preset {
     }
 }
 
-/// The text of a preset or kit file, which errors call `origin`.
+/// Reads the text of a preset or kit file. `origin` names the file in errors.
 pub(super) fn text(reader: impl Read, origin: &str) -> Result<String> {
     let mut bytes = Vec::new();
     reader.take(MAX_FILE_SIZE + 1).read_to_end(&mut bytes).map_err(|source| Error::io(origin, source))?;

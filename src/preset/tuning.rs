@@ -1,4 +1,4 @@
-//! The tuning of a preset file: the texts of Scala's files, in `[tuning]` with `scale` and `keymap`.
+//! The tuning in a preset file: the texts of Scala's files in the table `[tuning]`, with the keys `scale` and `keymap`.
 
 use super::about::toml_string;
 use super::complaints::Complaints;
@@ -10,7 +10,7 @@ use toml::{Table, Value};
 
 const KEYS: [&str; 2] = ["scale", "keymap"];
 
-/// The tuning that a sound brings along, which goes before that of the instrument, with the texts that it was read from.
+/// The tuning of a preset, which replaces the instrument's, and the texts from which it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnTuning {
     scale: String,
@@ -19,11 +19,11 @@ pub struct OwnTuning {
 }
 
 impl OwnTuning {
-    /// Reads the text of a scale (`.scl`) and of a keyboard mapping (`.kbm`); without one, degree 0 is on key 60, and
-    /// each key is the next degree. Allocates.
+    /// Reads the text of a scale (`.scl`) and of a keyboard mapping (`.kbm`). Without a mapping, degree 0 is on key 60,
+    /// and each key plays the next degree. Allocates.
     ///
     /// # Errors
-    /// As [`Scale::parse`] and [`Keymap::parse`], which call the texts `tuning.scale` and `tuning.keymap`.
+    /// As [`Scale::parse`] and [`Keymap::parse`], with the origins `tuning.scale` and `tuning.keymap`.
     pub fn from_scala(scale: String, keymap: Option<String>) -> Result<Self> {
         let steps = Scale::parse(&scale, "tuning.scale")?;
         let keys = keymap.as_deref().map_or(Ok(Keymap::LINEAR), |keymap| Keymap::parse(keymap, "tuning.keymap"))?;
@@ -59,7 +59,7 @@ pub(super) fn read(file: &Table, complaints: &mut Complaints) -> Option<OwnTunin
     complaints.take("", OwnTuning::from_scala(scale, keymap).map_err(|error| error.to_string()))
 }
 
-/// The table `[tuning]`, if there is one.
+/// The table `[tuning]` as TOML; empty without a tuning.
 pub(super) fn to_toml(tuning: Option<&OwnTuning>) -> String {
     tuning.map_or(String::new(), |OwnTuning { scale, keymap, .. }| {
         let keymap = keymap.as_ref().map_or(String::new(), |keymap| format!("keymap = {}\n", toml_string(keymap)));

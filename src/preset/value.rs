@@ -1,11 +1,11 @@
-//! TOML values as the parts of a preset file read them, with errors that say what would be right.
+//! Reads TOML values for the parts of a preset file, with errors that say what would be right.
 
 use super::complaints::Complaints;
 use crate::error::{Error, nearest};
 use crate::params::{ParamInfo, Unit};
 use toml::{Table, Value};
 
-/// That a table at `place` (empty, or ending in a dot) has no other keys than these.
+/// Checks that a table has no other keys than `known`. `place` is its path: empty, or ending in a dot.
 pub(super) fn check_keys(table: &Table, place: &str, known: &[&str], complaints: &mut Complaints) {
     for key in table.keys().filter(|key| !known.contains(&key.as_str())) {
         complaints.add(match nearest(key, known.iter().copied()) {
@@ -16,12 +16,12 @@ pub(super) fn check_keys(table: &Table, place: &str, known: &[&str], complaints:
     }
 }
 
-/// What was expected of a key, and what is there.
+/// The error for a value of a wrong type: what was expected, and what was found.
 pub(super) fn unexpected(key: &str, expected: &str, found: &Value) -> String {
     format!("{key}: expected {expected}, found {} ‘{}’", found.type_str(), found.to_string().trim())
 }
 
-/// A parameter's value: a number in its unit, or a text with one.
+/// The value of a parameter: a number in its unit, or a text with a unit.
 pub(super) fn param_value(info: &ParamInfo, value: &Value) -> Result<f32, String> {
     match (value, info.unit) {
         (Value::String(text), _) => info.parse(text),
@@ -32,7 +32,7 @@ pub(super) fn param_value(info: &ParamInfo, value: &Value) -> Result<f32, String
     }
 }
 
-/// The TOML of a file that errors call `origin`.
+/// Parses TOML. `origin` names the text in errors.
 pub(super) fn table(text: &str, origin: &str) -> crate::Result<Table> {
     toml::from_str(text).map_err(|error| syntax_error(text, origin, &error))
 }
@@ -43,7 +43,7 @@ fn syntax_error(text: &str, origin: &str, error: &toml::de::Error) -> Error {
         let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
         format!(":{line}:{column}")
     });
-    // The TOML reader puts what it expected on a second line.
+    // The TOML library puts what it expected on a second line.
     let message: Vec<&str> = error.message().lines().map(str::trim).filter(|line| !line.is_empty()).collect();
     Error::format(format!("{origin}{place}"), format!("not valid TOML: {}", message.join("; ")))
 }

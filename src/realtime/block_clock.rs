@@ -1,26 +1,26 @@
-//! When each block is heard, and where in it an event belongs that came at a given time.
+//! Converts time stamps to frames: the time at which each block is heard, and where in it an event belongs.
 
 use std::time::{Duration, Instant};
 
-/// A difference beyond this many seconds is another clock (the stream is a new one), not jitter.
+/// A greater difference than this, in seconds, means that the stream is new and has another clock. Less is jitter.
 const ANOTHER_CLOCK: f64 = 0.05;
 
-/// Time in which the longest time to the sound is forgotten, and in which a drift of the device's clock against the
-/// system's is followed, in seconds.
+/// Time constant in seconds with which the longest latency is forgotten, and with which a drift between the device's
+/// clock and the system's is followed.
 const SHRINK_SECONDS: f64 = 30.0;
 
-/// When a block was asked for and when it is heard.
+/// The times of a block: when it was requested, and when it will be heard.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
-    /// The time of the call.
+    /// Time of the callback, on the system's clock.
     pub now: Instant,
-    /// The same on the device's clock.
+    /// Time of the callback, on the device's clock.
     pub called: Duration,
-    /// When the block's first frame is heard, on the device's clock.
+    /// Time at which the block's first frame will be heard, on the device's clock.
     pub heard: Duration,
 }
 
-/// When an event came.
+/// The time at which an event arrived.
 #[derive(Clone, Copy, Debug)]
 pub enum Stamp {
     /// On the system's clock.
@@ -31,18 +31,18 @@ pub enum Stamp {
 
 /// Places events inside blocks by their time stamps.
 ///
-/// An event that came a third of the way from one block's time to the next one's sounds a third of the way into the
-/// latter: one block late, to the frame. A block's time is when it is heard, which the device knows, less a constant; not
-/// when it is asked for. So neither jitter of the callback nor a device's clock that runs unevenly becomes jitter of the
-/// notes. Real-time safe.
+/// If an event arrives a third of the way from one block's time to the next one's, it sounds a third of the way into
+/// the next block: exactly one block late. A block's time is the time at which it is heard, which the device knows,
+/// minus a constant; it is not the time of the callback. So notes have no jitter, even if the callbacks have, or if the
+/// device's clock runs unevenly. Real-time safe.
 #[derive(Clone, Debug)]
 pub struct BlockClock {
     sample_rate: f64,
     epoch: Instant,
-    /// Seconds since the epoch at which the device's clock read 0. A callback can look at the system's clock late, but
-    /// never early: the least difference counts.
+    /// Seconds since the epoch at which the device's clock was 0. A callback may read the system's clock too late but
+    /// never too early, so the smallest difference is the most accurate.
     offset: Option<f64>,
-    /// Longest time from the call to the sound, in seconds: that of a callback that is called without delay.
+    /// Longest time from a callback to the sound, in seconds. That is the time of a callback without delay.
     ahead: f64,
     /// Times of the block before this one and of this one, in seconds on the device's clock.
     times: [f64; 2],
@@ -50,12 +50,12 @@ pub struct BlockClock {
 }
 
 impl BlockClock {
-    /// A clock that has seen no block yet.
+    /// A clock before the first block.
     pub fn new(sample_rate: f64) -> Self {
         Self { sample_rate, epoch: Instant::now(), offset: None, ahead: 0.0, times: [0.0; 2], frames: 0 }
     }
 
-    /// A block of `frames` is asked for.
+    /// Begins a block of `frames` frames.
     pub fn begin(&mut self, moment: Moment, frames: u32) {
         let length = f64::from(frames) / self.sample_rate;
         let follow = (length / SHRINK_SECONDS).min(1.0);
@@ -73,8 +73,8 @@ impl BlockClock {
         self.frames = frames;
     }
 
-    /// The frame of this block at which an event with this time stamp sounds: the first if it should have sounded
-    /// earlier, none if it belongs to a later block.
+    /// The frame of this block at which an event with this time stamp sounds: the first frame if the event is late,
+    /// none if it belongs to a later block.
     pub fn frame_of(&self, stamp: Stamp) -> Option<u32> {
         let [before, time] = self.times;
         let at = match stamp {
@@ -88,7 +88,7 @@ impl BlockClock {
         Some((frame as u32).min(self.frames.saturating_sub(1)))
     }
 
-    /// Seconds from the time stamp of an event to the frame in which it is heard.
+    /// Seconds from the time stamp of an event to the time at which it is heard.
     pub fn delay(&self) -> f64 {
         self.ahead + f64::from(self.frames) / self.sample_rate
     }
@@ -114,8 +114,8 @@ mod tests {
         Moment { now: epoch + Duration::from_secs_f64(called), called: device(called), heard: device(heard) }
     }
 
-    /// Sends an event every `interval` frames through blocks whose callbacks are late by up to `jitter` seconds, and
-    /// returns how many frames after its time stamp each sounds, after a second to settle.
+    /// Sends an event every `interval` frames through blocks whose callbacks are up to `jitter` seconds late. Returns,
+    /// from the second second on, how many frames after its time stamp each event sounds.
     fn delays(jitter: f64, interval: f64) -> Vec<f64> {
         let mut clock = BlockClock::new(RATE);
         let epoch = Instant::now();

@@ -1,15 +1,15 @@
-//! Stereo floats to the frames of a device: its sample format and its number of channels.
+//! Converts stereo floats to the sample format and the number of channels of a device.
 
 use crate::io::quantise;
 use crate::units::mono_from_stereo;
 
-/// A sample as a device takes it.
+/// A sample in a format that devices use.
 pub trait DeviceSample: Copy {
     /// Silence.
     const SILENCE: Self;
 
-    /// The nearest step to `sample`, 1.0 being full scale; what lies beyond becomes the last step. Floats stay as
-    /// they are. NaN is silence.
+    /// Converts a sample; 1.0 is full scale. Integer formats round to the nearest step and clip beyond full scale;
+    /// floats stay unchanged. NaN becomes silence.
     fn from_float(sample: f32) -> Self;
 }
 
@@ -45,8 +45,8 @@ impl DeviceSample for u8 {
     }
 }
 
-/// Writes stereo into the interleaved frames of a device. One channel gets (L + R) / 2; of more than two, the first
-/// two get left and right and the others silence. Real-time safe.
+/// Writes stereo into the interleaved frames of a device. A single channel gets (L + R) / 2; of more than two, the
+/// first two get left and right, and the others silence. Real-time safe.
 pub fn interleave<T: DeviceSample>(left: &[f32], right: &[f32], channels: usize, out: &mut [T]) {
     let frames = out.chunks_exact_mut(channels.max(1));
     for ((&left, &right), frame) in left.iter().zip(right).zip(frames) {

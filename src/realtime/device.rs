@@ -1,26 +1,26 @@
-//! Which sound device to play on, at which rate and block, and what there is to choose from.
+//! Chooses the sound device, its sample rate and block size, and lists the available devices.
 
 use crate::error::{Error, Result, nearest};
 use cpal::traits::{DeviceTrait, HostTrait};
 use cpal::{BufferSize, HostId, SampleFormat, StreamConfig, SupportedBufferSize, SupportedStreamConfigRange};
 use std::fmt::Write;
 
-/// Sample rates to play at where nobody asks for one, the first that the device has.
+/// Default sample rates: the first one that the device supports is used.
 const USUAL_RATES: [u32; 4] = [48_000, 44_100, 96_000, 88_200];
 
-/// Block to play in where nobody asks for one, in frames: 5 ms, which fingers do not notice.
+/// Default block size in frames: 5 ms at 48 kHz, which players do not notice.
 const USUAL_BLOCK: u32 = 256;
 
-/// Sample formats that can be played, best first.
+/// Supported sample formats, best first.
 const FORMATS: [SampleFormat; 4] = [SampleFormat::F32, SampleFormat::I32, SampleFormat::I16, SampleFormat::U8];
 
-/// Most channels that are played on.
+/// Maximum number of channels of a device.
 const MAX_CHANNELS: u16 = 8;
 
-/// What the user asks for; what is left open is chosen.
+/// The user's choice. Fields without a value are chosen automatically.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Choice {
-    /// The sound system: `alsa`, `jack` and others, by platform.
+    /// The audio system: `alsa`, `jack` and others, depending on the platform.
     pub host: Option<String>,
     /// The device, by its name or a part of it.
     pub device: Option<String>,
@@ -30,7 +30,7 @@ pub struct Choice {
     pub buffer: Option<u32>,
 }
 
-/// A device, and how to play on it.
+/// A device, and the stream settings to use on it.
 pub struct Found {
     pub(super) device: cpal::Device,
     pub(super) config: StreamConfig,
@@ -40,10 +40,10 @@ pub struct Found {
 }
 
 impl Found {
-    /// Finds the device that is asked for, or the default one, and a way to play on it.
+    /// Finds the device that the user chose, or the default one, and stream settings for it.
     ///
     /// # Errors
-    /// [`Error::Value`] if there is no such host or device, no device at all, or it cannot do what is asked.
+    /// [`Error::Value`] if there is no such host or device, no device at all, or no settings as chosen.
     pub fn find(choice: &Choice) -> Result<Self> {
         let id = host_id(choice.host.as_deref())?;
         let host = open_host(id)?;
@@ -73,7 +73,7 @@ impl Found {
         self.config.sample_rate
     }
 
-    /// Whether it is a JACK server's.
+    /// Whether the device belongs to a JACK server.
     pub fn is_jack(&self) -> bool {
         self.host.name().eq_ignore_ascii_case("jack")
     }
@@ -107,7 +107,7 @@ pub fn list() -> String {
     out
 }
 
-/// Keeps ALSA's library from writing its own errors to stderr, from this thread: they come back as errors.
+/// Stops ALSA's library from printing its errors to stderr on this thread. They are returned as errors anyway.
 pub fn silence_library() {
     #[cfg(target_os = "linux")]
     drop(alsa::Output::local_error_handler());
@@ -125,7 +125,7 @@ fn open_host(id: HostId) -> Result<cpal::Host> {
     cpal::host_from_id(id).map_err(|error| Error::value("--host", format!("{} cannot be used: {error}", id.name())))
 }
 
-/// Devices that can play: with the name to choose them by, and a description.
+/// The output devices: each with its identifier and a description.
 fn devices(host: &cpal::Host) -> Vec<(cpal::Device, String, String)> {
     let outputs = host.devices().into_iter().flatten().filter(DeviceTrait::supports_output);
     outputs
@@ -137,7 +137,7 @@ fn devices(host: &cpal::Host) -> Vec<(cpal::Device, String, String)> {
         .collect()
 }
 
-/// The device whose name or description is `wanted`, or the only one that has it in either.
+/// The device whose name or description is `wanted`, or else the only one whose name or description contains it.
 fn named(host: &cpal::Host, id: HostId, wanted: &str) -> Result<(cpal::Device, String)> {
     let mut devices = devices(host);
     let lower = wanted.to_lowercase();
@@ -166,7 +166,7 @@ fn none(id: HostId, reason: &str) -> Error {
     Error::value("--device", format!("{server}: {host} has none{reason}; {advice}"))
 }
 
-/// The best way to play: two channels, or one, or as few as there are; the format with the finest steps.
+/// The best settings: two channels, else one, else as few as possible; the format with the finest steps.
 fn choose(
     ranges: &[SupportedStreamConfigRange],
     rate: Option<u32>,

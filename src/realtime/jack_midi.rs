@@ -1,4 +1,4 @@
-//! A JACK port as live input: its events have exact frames.
+//! A JACK port as live input. JACK gives the exact frame of each event.
 
 use super::block_clock::Stamp;
 use super::live::{LiveEvent, LiveSender};
@@ -10,14 +10,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// How often ports, and a lost server, are looked for.
+/// Time between two searches for ports, or for a server that was lost.
 const SCAN: Duration = Duration::from_secs(1);
 
-/// A MIDI input port in the JACK graph. To be polled now and then.
+/// A MIDI input port in the JACK graph. [`JackMidi::poll`] must be called regularly.
 pub struct JackMidi {
     wanted: Option<Wanted>,
     client: Option<AsyncClient<Notifications, Process>>,
-    /// Here while there is no client.
+    /// Held here while there is no client.
     sender: Option<LiveSender>,
     home: (Sender<LiveSender>, Receiver<LiveSender>),
     gone: Arc<AtomicBool>,
@@ -58,14 +58,14 @@ impl jack::ProcessHandler for Process {
 impl Drop for Process {
     fn drop(&mut self) {
         if let Some(sender) = self.sender.take() {
-            // Nobody waits for it any more if this fails.
+            // This fails if the receiver no longer exists.
             let _ = self.home.send(sender);
         }
     }
 }
 
 impl JackMidi {
-    /// Opens nothing yet. What is not `wanted` can still be connected by hand.
+    /// Opens nothing yet. Ports that are not `wanted` can still be connected by hand.
     pub fn new(wanted: Option<Wanted>, sender: LiveSender) -> Self {
         Self {
             wanted,
@@ -77,12 +77,12 @@ impl JackMidi {
         }
     }
 
-    /// Opens the port if there is a server, connects what is wanted, and gives what there is to tell.
+    /// Opens the port if there is a server, and connects the wanted ports. Returns messages for the user.
     pub fn poll(&mut self) -> Vec<String> {
         if self.gone.swap(false, Ordering::AcqRel)
             && let Some(client) = self.client.take()
         {
-            // The client of a dead server can take its time.
+            // Dropping the client of a dead server can take long.
             std::thread::spawn(move || drop(client));
         }
         if Instant::now() < self.scan_at {
@@ -111,7 +111,7 @@ impl JackMidi {
             };
             let own = format!("{}:midi_in", client.name());
             for port in client.ports(None, Some("midi"), flags).into_iter().filter(|port| wanted.wants(port)) {
-                // Fails if they are connected already.
+                // Fails if the two are connected already.
                 if client.connect_ports_by_name(&port, &own).is_ok() {
                     news.push(format!("MIDI port ‘{port}’ is connected"));
                 }

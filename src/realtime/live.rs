@@ -1,4 +1,4 @@
-//! Live events on their way to the audio thread: bounded queues without locks, merged in the order of time.
+//! Passes live events to the audio thread through lock-free queues of fixed size, merged in order of time.
 
 use super::{BlockClock, Stamp};
 use crate::engine::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF, SOSTENUTO, SUSTAIN};
@@ -7,30 +7,31 @@ use crate::engine::{Event, EventKind};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::time::Instant;
 
-/// Events that a queue holds until the audio thread takes them.
+/// Number of events that a queue can hold.
 const CAPACITY: usize = 1024;
 
 /// A live event.
 #[derive(Clone, Copy, Debug)]
 pub struct LiveEvent {
-    /// When it came.
+    /// When the event arrived.
     pub stamp: Stamp,
     /// MIDI channel, 0–15.
     pub channel: u8,
-    /// What happens.
+    /// The event.
     pub kind: EventKind,
 }
 
-/// The sending end of a queue. Sending is real-time safe.
+/// The sending end of a queue. [`LiveSender::send`] is real-time safe.
 pub struct LiveSender {
     queue: Producer<LiveEvent>,
-    /// Keys that this sender has put down, a bit each, and channels whose pedals it has.
+    /// Keys that are down because of this sender, one bit each; and, in the next field, channels whose sustain pedal
+    /// is.
     keys: [u128; 16],
     pedals: u16,
 }
 
 impl LiveSender {
-    /// Hands an event over; false if the queue is full and the event is lost.
+    /// Sends an event. Returns false if the queue is full: the event is then lost.
     pub fn send(&mut self, event: LiveEvent) -> bool {
         let channel = usize::from(nearest_channel(event.channel));
         let bit = 1 << channel;
@@ -44,12 +45,12 @@ impl LiveSender {
         self.queue.push(event).is_ok()
     }
 
-    /// Hands over an event that comes now.
+    /// Sends an event with the present time as its time stamp.
     pub fn send_now(&mut self, channel: u8, kind: EventKind) -> bool {
         self.send(LiveEvent { stamp: Stamp::System(Instant::now()), channel, kind })
     }
 
-    /// Lets go of the keys and sustain pedals that this sender has put down.
+    /// Releases the keys and sustain pedals that are down because of this sender.
     pub fn release_held(&mut self) {
         for channel in 0..16 {
             while self.keys[usize::from(channel)] != 0 {
@@ -62,7 +63,7 @@ impl LiveSender {
         }
     }
 
-    /// Lets go of every note and pedal on every channel.
+    /// Releases every note and pedal on every channel.
     pub fn release_all(&mut self) {
         for channel in 0..16 {
             for controller in [SUSTAIN, SOSTENUTO, ALL_NOTES_OFF] {
@@ -71,7 +72,7 @@ impl LiveSender {
         }
     }
 
-    /// Silences everything within milliseconds.
+    /// Fades out everything within milliseconds.
     pub fn silence_all(&mut self) {
         for channel in 0..16 {
             self.send_now(channel, EventKind::Control { controller: ALL_SOUND_OFF, value: 0.0 });
@@ -83,7 +84,7 @@ impl LiveSender {
 pub struct LiveInputs(Vec<Consumer<LiveEvent>>);
 
 impl LiveInputs {
-    /// `N` queues.
+    /// Makes `N` queues.
     pub fn new<const N: usize>() -> ([LiveSender; N], Self) {
         let mut inputs = Vec::with_capacity(N);
         let senders = std::array::from_fn(|_| {
@@ -94,20 +95,21 @@ impl LiveInputs {
         (senders, Self(inputs))
     }
 
-    /// Most events that [`LiveInputs::merge`] adds at a time.
+    /// Maximum number of events that [`LiveInputs::merge`] adds in one call.
     pub fn capacity(&self) -> usize {
         self.0.len() * CAPACITY
     }
 
-    /// Puts the events that are due before frame `end` of the clock's block into `events`, which are in order and stay
-    /// so; `start` is where their frames count from. At one frame, those that are there already come first. Events
-    /// that are sent during the call may be left for the next one.
+    /// Inserts the events that belong before frame `end` of the clock's block into `events`, which must be in order and
+    /// stays so. Frames in `events` count from `start`. At the same frame, events that are already there come first.
+    /// Events that are sent during the call may wait for the next one.
     ///
-    /// Real-time safe if `events` has room for [`LiveInputs::capacity`] more.
+    /// Real-time safe if `events` has room for [`LiveInputs::capacity`] more events.
     pub fn merge(&mut self, clock: &BlockClock, start: u32, end: u32, events: &mut Vec<Event>) {
         for input in &mut self.0 {
             let mut earliest = 0;
-            // Only what waits now: a sender that fills the queue as fast as it is emptied would never let this end.
+            // Only events that wait now: a sender that fills the queue as fast as it is emptied would keep this loop
+            // busy forever.
             for _ in 0..input.slots() {
                 let Ok(&LiveEvent { stamp, channel, kind }) = input.peek() else { break };
                 let Some(frame) = clock.frame_of(stamp).filter(|frame| *frame < end) else { break };
@@ -145,7 +147,7 @@ mod tests {
         inputs.merge(&clock, 0, 192, &mut events);
         inputs.merge(&clock, 0, 480, &mut events);
         let order: Vec<_> = events.iter().map(|event| (event.frame, event.kind)).collect();
-        // Within a queue the order stays, even where the stamps say otherwise.
+        // Events of one queue stay in order, even if their time stamps are not.
         let expected = [(48, 0), (48, 1), (144, 3), (240, 5), (240, 6), (240, 7)];
         assert_eq!(order, expected.map(|(frame, number)| (frame, program(number))));
     }

@@ -1,4 +1,4 @@
-//! The system's MIDI ports as live input: those that are wanted, as they come and go.
+//! The system's MIDI ports as live input: connects the wanted ones as they appear and disappear.
 
 use super::block_clock::Stamp;
 use super::live::{LiveEvent, LiveSender};
@@ -7,17 +7,17 @@ use midir::{Ignore, MidiInput, MidiInputConnection, MidiInputPort};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// How often ports are looked for.
+/// Time between two searches for ports.
 const SCAN: Duration = Duration::from_secs(1);
 
 const CLIENT: &str = "sprung";
 
-/// Which MIDI ports to listen to.
+/// The MIDI ports to listen to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wanted {
-    /// All that there are.
+    /// All ports.
     All,
-    /// Those that have this in their name.
+    /// Ports whose name contains this text.
     Named(String),
 }
 
@@ -36,29 +36,29 @@ struct Connected {
     _connection: MidiInputConnection<()>,
 }
 
-/// Connections to MIDI ports. To be polled now and then.
+/// Connections to MIDI ports. [`MidiPorts::poll`] must be called regularly.
 pub struct MidiPorts {
     wanted: Wanted,
-    /// Shared by the threads of the ports, none of which is the audio thread.
+    /// Shared by the ports' threads, none of which is the audio thread.
     sender: Arc<Mutex<LiveSender>>,
     connected: Vec<Connected>,
     scan_at: Instant,
-    /// Something is amiss and has been told.
+    /// A problem was found and has been reported.
     told: bool,
 }
 
 impl MidiPorts {
-    /// Connects nothing yet.
+    /// Makes no connections yet.
     pub fn new(wanted: Wanted, sender: LiveSender) -> Self {
         Self { wanted, sender: Arc::new(Mutex::new(sender)), connected: vec![], scan_at: Instant::now(), told: false }
     }
 
-    /// Names of the ports that are listened to.
+    /// Names of the connected ports.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.connected.iter().map(|connected| connected.name.as_str())
     }
 
-    /// Connects ports that have come, forgets those that have gone, and gives what there is to tell.
+    /// Connects new ports and drops those that have disappeared. Returns messages for the user.
     pub fn poll(&mut self) -> Vec<String> {
         if Instant::now() < self.scan_at {
             return vec![];
@@ -87,7 +87,7 @@ impl MidiPorts {
         if self.connected.len() < released
             && let Ok(mut sender) = self.sender.lock()
         {
-            // The keys that were down will not come up any more.
+            // The port can no longer release the keys that are down.
             sender.release_held();
         }
         for (port, name) in &ports {
@@ -120,7 +120,7 @@ impl MidiPorts {
     }
 }
 
-/// Names of the MIDI ports that there are.
+/// Names of all MIDI ports.
 pub fn list() -> Vec<String> {
     let Ok(input) = MidiInput::new(CLIENT) else { return vec![] };
     input.ports().iter().filter_map(|port| input.port_name(port).ok()).collect()

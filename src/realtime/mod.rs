@@ -1,7 +1,7 @@
 //! Playing live: sound devices, MIDI ports, a recorder, and a terminal to play from.
 //!
-//! The audio thread owns the [`Player`]. What reaches it (live events, patches) and what leaves it (recording, status)
-//! goes through bounded queues and atomics, so that it never allocates, locks or waits.
+//! The audio thread owns the [`Player`]. Everything that it receives (live events, kits) and sends (recording, status)
+//! goes through queues of fixed size and atomics, so that it never allocates, locks or waits.
 
 pub mod block_clock;
 pub mod convert;

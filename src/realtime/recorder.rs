@@ -1,4 +1,4 @@
-//! Records what is played to a file, from a thread of its own that the audio thread never waits for.
+//! Records the output to a file, on a thread of its own for which the audio thread never waits.
 
 use crate::error::{Error, Result};
 use crate::io::{Output, SampleFormat, WavFormat, WavWriter};
@@ -9,21 +9,21 @@ use std::sync::atomic::{AtomicU8, AtomicU64};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Seconds of sound that wait for a slow disk before any is lost.
+/// Length of the queue in seconds: if the disk is slow for longer, frames are lost.
 const QUEUE_SECONDS: usize = 20;
 
-/// Frames that are handed on at a time.
+/// Number of frames that are passed on at a time.
 const CHUNK: usize = 1024;
 
-/// How long the writer sleeps when nothing waits.
+/// How long the writer sleeps if the queue is empty.
 const NAP: Duration = Duration::from_millis(20);
 
-/// What the recorder is to do.
+/// Orders to the recorder's thread.
 const RECORD: u8 = 0;
 const FINISH: u8 = 1;
 const ABANDON: u8 = 2;
 
-/// The end of the queue that the audio thread has.
+/// The audio thread's end of the queue.
 pub struct Tap {
     queue: Producer<f32>,
     scratch: Vec<f32>,
@@ -31,7 +31,7 @@ pub struct Tap {
 }
 
 impl Tap {
-    /// Hands frames to the recorder, or counts them as lost where the queue is full. Real-time safe.
+    /// Passes frames to the recorder. Counts them as lost if the queue is full. Real-time safe.
     pub(super) fn record(&mut self, left: &[f32], right: &[f32]) {
         for (left, right) in left.chunks(CHUNK).zip(right.chunks(CHUNK)) {
             let samples = &mut self.scratch[..2 * left.len()];
@@ -45,28 +45,28 @@ impl Tap {
     }
 }
 
-/// What became of a recording.
+/// The result of a recording.
 #[derive(Debug)]
 pub struct Recorded {
     /// Frames in the file.
     pub frames: u64,
-    /// Frames that the disk was too slow for.
+    /// Frames that were lost because the disk was too slow.
     pub lost: u64,
-    /// Why the recording ended early, if it did. The file is whole up to there.
+    /// Why the recording ended early, if it did. The file is complete up to that point.
     pub problem: Option<Error>,
 }
 
-/// A recording under way.
+/// A recording in progress.
 pub struct Recording {
     thread: JoinHandle<Result<Recorded>>,
     order: Arc<AtomicU8>,
 }
 
 impl Recording {
-    /// Starts to record stereo floats into `output`, which has to be a file.
+    /// Starts to record stereo floats into `output`, which must be a file.
     ///
     /// # Errors
-    /// [`Error::Value`] for an output that cannot be gone back to, [`Error::Io`] if no thread can be started.
+    /// [`Error::Value`] if the output is not seekable, [`Error::Io`] if the thread cannot be started.
     pub fn start(mut output: Output, sample_rate: u32) -> Result<(Tap, Self)> {
         if !output.is_seekable() {
             return Err(Error::value("--record", format!("{} is a pipe or device: expected a file", output.name())));
@@ -85,7 +85,7 @@ impl Recording {
                 }
                 let (frames, problem) = match written {
                     Ok(frames) => (frames, None),
-                    // What is on the disk becomes a whole file.
+                    // Turn the frames that are on the disk into a complete file.
                     Err(error) => (output.salvage_wav(format)?, Some(error)),
                 };
                 output.commit()?;
@@ -95,28 +95,28 @@ impl Recording {
         Ok((Tap { queue, scratch: vec![0.0; 2 * CHUNK], lost }, Self { thread, order }))
     }
 
-    /// Ends it and leaves no file.
+    /// Stops the recording and deletes the file.
     pub fn abandon(self) {
         self.order.store(ABANDON, Release);
         let _ = self.thread.join();
     }
 
-    /// Whether it has ended by itself, which only a problem makes it do.
+    /// Whether the recording has ended early, because of a problem.
     pub fn has_ended(&self) -> bool {
         self.thread.is_finished()
     }
 
-    /// Writes what still waits, and completes the file. The [`Tap`] should not be in use any more.
+    /// Writes the frames that are still waiting, and completes the file. The [`Tap`] should no longer be in use.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Exists`] if no file could be kept at all.
+    /// [`Error::Io`] and [`Error::Exists`] if no file could be kept.
     pub fn finish(self) -> Result<Recorded> {
         self.order.store(FINISH, Release);
         self.thread.join().unwrap_or_else(|_| Err(Error::value("--record", "the recorder broke down")))
     }
 }
 
-/// Writes until it is told to stop and nothing waits any more; gives the number of frames.
+/// Writes until the order to stop arrives and the queue is empty. Returns the number of frames.
 fn write(mut queue: Consumer<f32>, output: &mut Output, format: WavFormat, order: &AtomicU8) -> Result<u64> {
     let name = output.name().to_owned();
     let mut writer = WavWriter::new(output.stream(), &name, format, None, None)?;
@@ -124,7 +124,7 @@ fn write(mut queue: Consumer<f32>, output: &mut Output, format: WavFormat, order
     let (mut left, mut right) = (Vec::with_capacity(CHUNK), Vec::with_capacity(CHUNK));
     let mut frames = 0;
     loop {
-        // Asked before the queue is: what was played before the stop is in it by then.
+        // Read the order before the queue: then all frames that were played before the order are already in the queue.
         let stopping = order.load(Acquire) != RECORD;
         let waiting = (queue.slots() / 2).min(CHUNK);
         if waiting == 0 {

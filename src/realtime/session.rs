@@ -1,4 +1,4 @@
-//! Playing on a device that may go away and come back.
+//! A session: plays on a device that may disappear and come back.
 
 use super::device::{Choice, Found};
 use super::live::LiveSender;
@@ -10,26 +10,27 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// How often a lost device is looked for.
+/// Time between two searches for a lost device.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// A device that asks for nothing for so long is lost.
+/// A device that requests no block for this long is lost.
 const PATIENCE: Duration = Duration::from_secs(4);
 
-/// How long released notes may ring on at the end.
+/// How long released notes may sound at the end.
 const RELEASE: Duration = Duration::from_millis(700);
 
 /// How long a stream may take to end.
 const END: Duration = Duration::from_secs(2);
 
-/// Plays on a device, from [`Session::start`] until it is dropped or finished. To be polled now and then.
+/// Plays on a device from [`Session::start`] until it is finished or dropped. [`Session::poll`] must be called
+/// regularly.
 pub struct Session {
     choice: Choice,
     description: String,
     sample_rate: u32,
     status: Arc<Status>,
     stream: Option<cpal::Stream>,
-    /// Here while there is no stream.
+    /// Held here while there is no stream.
     player: Option<Box<Player>>,
     home: (Sender<Box<Player>>, Receiver<Box<Player>>),
     trouble: (Sender<String>, Receiver<String>),
@@ -38,10 +39,10 @@ pub struct Session {
 }
 
 impl Session {
-    /// Starts to play on a device. `choice` is what it was found by, and will be found by again.
+    /// Starts to play on a device. `choice` is the choice that led to the device; it is used again to find the device.
     ///
     /// # Errors
-    /// [`Error::Value`] if the device refuses.
+    /// [`Error::Value`] if the device cannot be started.
     pub fn start(found: &Found, choice: Choice, player: Player, status: Arc<Status>) -> Result<Self> {
         let mut session = Self {
             choice: Choice { rate: Some(found.sample_rate()), ..choice },
@@ -69,12 +70,12 @@ impl Session {
         self.sample_rate
     }
 
-    /// Whether the device is there.
+    /// Whether the device is present.
     pub fn is_playing(&self) -> bool {
         self.stream.is_some()
     }
 
-    /// Looks after the device; gives what there is to tell when it has gone away or come back.
+    /// Checks the device. Returns a message when it has disappeared or come back.
     pub fn poll(&mut self) -> Option<String> {
         if self.stream.is_some() {
             let reason = self.trouble.1.try_iter().next().or_else(|| self.stalled())?;
@@ -94,8 +95,8 @@ impl Session {
         Some(format!("the sound device is back: {found}"))
     }
 
-    /// Halts the song, lets go of all notes, waits a moment for them to die away, and ends the stream. False if the
-    /// device is stuck and holds on to the player.
+    /// Stops the song, releases all notes, waits a moment until they are silent, and ends the stream. Returns false if
+    /// the device hangs and does not give the player back.
     pub fn finish(mut self, live: &mut LiveSender) -> bool {
         self.status.halt_song();
         live.release_all();
@@ -107,7 +108,7 @@ impl Session {
         self.player.is_some()
     }
 
-    /// Waits until nothing sounds and all that was sent has been heard.
+    /// Waits until nothing sounds and everything that was sent has been heard.
     fn wait_for_silence(&self, limit: Duration) -> bool {
         let start = Instant::now();
         let sent = self.status.delay().min(limit.as_secs_f64());
@@ -137,7 +138,7 @@ impl Session {
         }
     }
 
-    /// Ends the stream on a thread of its own: a device that hangs must not hang the program.
+    /// Ends the stream on another thread, so that a device that hangs cannot hang the program.
     fn close(&mut self) {
         if let Some(stream) = self.stream.take() {
             std::thread::spawn(move || drop(stream));

@@ -1,43 +1,43 @@
-//! What the device and the song are at, between threads and without locks.
+//! The state of the device and the song, shared between threads without locks.
 
 use crate::engine::Telemetry;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
 
-/// What the audio thread tells, and is told. Writing and reading are real-time safe.
+/// State that the audio thread reports, and requests to it. Reading and writing are real-time safe.
 #[derive(Default)]
 pub struct Status {
     telemetry: Arc<Telemetry>,
     xruns: AtomicU64,
-    /// Bits of a float.
+    /// Bits of an `f32`.
     delay: AtomicU32,
     song_over: AtomicBool,
     song_halted: AtomicBool,
 }
 
 impl Status {
-    /// What sounds, and how the audio thread keeps up.
+    /// The engine's state, and the processing load of the audio thread.
     pub fn telemetry(&self) -> &Arc<Telemetry> {
         &self.telemetry
     }
 
-    /// Times that the device says it ran dry.
+    /// Number of times that the device ran out of samples.
     pub fn xruns(&self) -> u64 {
         self.xruns.load(Relaxed)
     }
 
-    /// Seconds from an event's time stamp to the frame in which it is heard.
+    /// Seconds from the time stamp of an event to the time at which it is heard.
     pub fn delay(&self) -> f64 {
         f32::from_bits(self.delay.load(Relaxed)).into()
     }
 
-    /// Whether the song, if there is one, has come to its end.
+    /// Whether the song, if there is one, has ended.
     pub fn is_song_over(&self) -> bool {
         self.song_over.load(Relaxed)
     }
 
-    /// Stops the song where it is.
+    /// Stops the song at its present position.
     pub fn halt_song(&self) {
         self.song_halted.store(true, Relaxed);
     }

@@ -1,4 +1,4 @@
-//! The stream of a device: calls the player for every block, and gives it back when it ends.
+//! The stream of a device: it calls the player for every block, and returns the player when it ends.
 
 use super::block_clock::Moment;
 use super::convert::DeviceSample;
@@ -11,10 +11,10 @@ use std::sync::Arc;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-/// How long a device may take to answer.
+/// How long a device may take to respond.
 const TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A player on loan to a stream; comes home when the stream is dropped.
+/// The player while a stream has it. Returns it through `home` when the stream is dropped.
 struct Loan {
     player: Option<Box<Player>>,
     home: Sender<Box<Player>>,
@@ -23,14 +23,14 @@ struct Loan {
 impl Drop for Loan {
     fn drop(&mut self) {
         if let Some(player) = self.player.take() {
-            // Nobody waits for it any more if this fails.
+            // This fails if the receiver no longer exists.
             let _ = self.home.send(player);
         }
     }
 }
 
-/// Starts to play. What ends the stream is sent to `trouble`; the player comes to `home` when the stream is dropped,
-/// or at once if it cannot be started.
+/// Starts to play. If the stream fails, the reason is sent to `trouble`. The player is sent to `home` when the stream
+/// is dropped, or at once if it cannot be started.
 pub(super) fn open(
     found: &Found,
     player: Box<Player>,
@@ -68,7 +68,7 @@ fn build<T: DeviceSample + SizedSample>(
     let failed = move |error: cpal::Error| match error.kind() {
         ErrorKind::Xrun => status.count_xrun(),
         ErrorKind::RealtimeDenied | ErrorKind::DeviceChanged => {}
-        // The stream is over, so that this may allocate.
+        // The stream has ended, so allocating does no harm.
         _ => drop(trouble.send(error.to_string())),
     };
     found.device.build_output_stream(found.config, callback, failed, Some(TIMEOUT))

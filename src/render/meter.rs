@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use ebur128::{EbuR128, Mode};
 
-/// Measures a signal block by block. Memory does not grow with the length: of the gating blocks of loudness, a histogram
-/// in steps of 0.1 LU is kept.
+/// Measures a signal block by block. Memory use does not grow with the length: loudness is kept as a histogram of
+/// gating blocks in steps of 0.1 LU.
 pub struct Meter {
     channels: usize,
     peak: f32,
@@ -19,17 +19,17 @@ pub struct Meter {
 pub struct Levels {
     /// Largest absolute sample that is finite; 1 is full scale.
     pub peak: f64,
-    /// Root of the mean square over all samples of all channels, those that are not finite counting as 0.
+    /// Root of the mean square over all samples of all channels; samples that are not finite count as 0.
     pub rms: f64,
-    /// Integrated loudness in LUFS (ITU-R BS.1770, EBU R 128), to about 0.1 LU; none for silence, for less than 400 ms,
-    /// and if a sample is not finite.
+    /// Integrated loudness in LUFS (ITU-R BS.1770, EBU R 128), to about 0.1 LU. `None` for silence, for less than 400
+    /// ms, and if a sample is not finite.
     pub lufs: Option<f64>,
     /// Samples that are infinite or not a number.
     pub non_finite: u64,
 }
 
 impl Levels {
-    /// The same levels, with so many more samples that were not finite before a limiter made them 0.
+    /// The same levels, plus a number of samples that were not finite before a limiter replaced them by 0.
     pub(crate) fn with_non_finite(mut self, more: u64) -> Self {
         self.non_finite += more;
         self.lufs = self.lufs.filter(|_| self.non_finite == 0);
@@ -41,17 +41,17 @@ impl Meter {
     /// A meter of one or two channels.
     ///
     /// # Errors
-    /// [`Error::Value`] for a sample rate that loudness is not defined at.
+    /// [`Error::Value`] for a sample rate at which loudness is not defined.
     pub fn new(sample_rate: u32, channels: u16) -> Result<Self> {
         let loudness = EbuR128::new(channels.into(), sample_rate, Mode::I | Mode::HISTOGRAM)
             .map_err(|error| Error::value("loudness", error.to_string()))?;
         Ok(Self { channels: channels.into(), peak: 0.0, sum_of_squares: 0.0, samples: 0, non_finite: 0, loudness })
     }
 
-    /// Measures a block; of one channel, only `left` is looked at.
+    /// Measures a block. With one channel, only `left` is used.
     ///
     /// # Errors
-    /// [`Error::Value`] if the loudness meter fails, for want of memory.
+    /// [`Error::Value`] if the loudness meter runs out of memory.
     pub fn add(&mut self, left: &[f32], right: &[f32]) -> Result<()> {
         let channels = &[left, right][..self.channels];
         for frame in 0..left.len() {
@@ -69,7 +69,7 @@ impl Meter {
         self.loudness.add_frames_planar_f32(channels).map_err(|error| Error::value("loudness", error.to_string()))
     }
 
-    /// The levels so far.
+    /// The levels of all blocks so far.
     pub fn levels(&self) -> Levels {
         let rms = if self.samples == 0 { 0.0 } else { (self.sum_of_squares / self.samples as f64).sqrt() };
         let lufs = self.loudness.loudness_global().ok().filter(|lufs| lufs.is_finite() && self.non_finite == 0);

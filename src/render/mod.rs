@@ -1,4 +1,4 @@
-//! The offline renderer: songs to samples, block by block, as fast as the machine can.
+//! The offline renderer: turns songs into samples, block by block, as fast as the machine can.
 
 mod job;
 pub mod meter;

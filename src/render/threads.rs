@@ -1,16 +1,17 @@
-//! How many threads share a rendering.
+//! Sets how many threads share a rendering.
 
 use crate::error::{Error, Result};
 use std::ops::RangeInclusive;
 
-/// Numbers of threads that can be asked for.
+/// Range of the number of threads.
 pub const THREADS: RangeInclusive<u16> = 1..=256;
 
-/// Does `work` on a pool of so many threads, which end with it; by default one a core, or as many as the environment's
-/// `RAYON_NUM_THREADS` says. For [`Job::render`](super::Job::render) and [`to_wav`](super::to_wav).
+/// Runs `work` on a pool of this many threads, which end afterwards. The default is one thread per core, or the number
+/// in the environment variable `RAYON_NUM_THREADS`. Use it for [`Job::render`](super::Job::render) and
+/// [`to_wav`](super::to_wav).
 ///
 /// # Errors
-/// [`Error::Value`] if the number is not within [`THREADS`], or the system has no such number of threads to give.
+/// [`Error::Value`] if the number is not within [`THREADS`], or if the system cannot create so many threads.
 pub fn on_threads<R: Send>(threads: Option<u16>, work: impl FnOnce() -> R + Send) -> Result<R> {
     if let Some(wanted) = threads.filter(|threads| !THREADS.contains(threads)) {
         let (low, high) = THREADS.into_inner();

@@ -1,4 +1,4 @@
-//! A job rendered into a WAV: channels, level and length settled, and the numbers of what came out.
+//! Renders a job into a WAV file: sets channels, level and length, and reports figures of the result.
 
 use super::job::Job;
 use super::meter::{Levels, Meter};
@@ -7,40 +7,40 @@ use crate::io::{Output, SampleFormat, WavFormat, WavWriter};
 use crate::units::{db_from_gain, gain_from_db, mono_from_stereo};
 use std::time::Instant;
 
-/// How loud a WAV is to be.
+/// The level of a WAV file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Level {
-    /// As rendered, times a gain in dB.
+    /// As rendered, plus a gain in dB.
     Gain(f64),
-    /// With the largest sample at this level in dBFS.
+    /// Scaled so that the largest sample has this level in dBFS.
     Peak(f64),
-    /// With this integrated loudness in LUFS.
+    /// Scaled to this integrated loudness in LUFS.
     Loudness(f64),
 }
 
-/// The form that a rendering is delivered in.
+/// The format in which a rendering is delivered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Delivery {
-    /// How samples are stored.
+    /// The sample format.
     pub samples: SampleFormat,
-    /// Whether to add TPDF dither before rounding to integers; seeded by the job's seed.
+    /// Whether to add TPDF dither before rounding to integers. The dither uses the job's seed.
     pub dither: bool,
-    /// Whether to mix both channels into one, (L + R) / 2.
+    /// Whether to mix both channels to mono, (L + R) / 2.
     pub mono: bool,
-    /// How loud.
+    /// The level.
     pub level: Level,
 }
 
-/// How far the work is.
+/// Progress of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
     /// Frames rendered so far, in all passes.
     pub frames: u64,
-    /// Frames that there will be at least; a tail whose length depends on the sound is not in it.
+    /// Minimum number of frames in total. A tail whose length depends on the sound is not included.
     pub expected: u64,
 }
 
-/// What came out.
+/// Figures of the finished file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     /// Format of the file.
@@ -49,39 +49,39 @@ pub struct Report {
     pub frames: u64,
     /// Length in seconds.
     pub seconds: f64,
-    /// How much of it follows the end of the song, in seconds.
+    /// How much of it comes after the end of the song, in seconds.
     pub tail_seconds: f64,
-    /// Largest finite sample in dBFS, before rounding to integers; none for silence.
+    /// Largest finite sample in dBFS, before rounding to integers; `None` for silence.
     pub peak_dbfs: Option<f64>,
-    /// RMS over all channels, in dB against a full-scale square wave; none for silence.
+    /// RMS over all channels, in dB relative to a full-scale square wave; `None` for silence.
     pub rms_dbfs: Option<f64>,
-    /// Integrated loudness; none for silence, for less than 400 ms, and if a sample is not finite.
+    /// Integrated loudness in LUFS; `None` for silence, for less than 400 ms, and if a sample is not finite.
     pub lufs: Option<f64>,
-    /// Samples that are infinite or not a number, of which there should be none: an integer format holds silence or
-    /// full scale in their place.
+    /// Number of samples that are infinite or NaN. There should be none; an integer format contains silence or full
+    /// scale in their place.
     pub non_finite: u64,
-    /// Gain that [`Level`] came to, in dB.
+    /// Gain in dB that [`Level`] resulted in.
     pub gain_db: f64,
-    /// Samples beyond full scale that an integer format could not hold.
+    /// Number of samples beyond full scale, which an integer format clips.
     pub clipped: u64,
-    /// Most voices that sounded at once on each channel, added up over channels: at least as many as ever sounded at
-    /// once on all of them together.
+    /// The maximum number of simultaneous voices of each channel, added up over all channels: an upper bound of the
+    /// number of voices that sounded at the same time.
     pub voices_used: usize,
-    /// Most that the limiter lowered the gain by, in dB; 0 if it had nothing to do.
+    /// Largest gain reduction of the limiter, in dB; 0 if it did nothing.
     pub limiter_reduction_db: f64,
-    /// How long it lowered the sound by more than 0.1 dB, in seconds.
+    /// Time for which the limiter lowered the sound by more than 0.1 dB, in seconds.
     pub limiter_seconds: f64,
-    /// Seconds of sound per second of work.
+    /// Seconds of sound per second of computing time.
     pub realtime_factor: f64,
 }
 
-/// Renders a job into `output`. A level that depends on the sound, and a length that does while the output cannot be
-/// gone back to, take a first pass that only measures; the engine gives the same samples in the second.
-/// `progress` is called after each block and can end the work with an error.
+/// Renders a job into `output`. A first pass that only measures is needed if the level depends on the sound, or if the
+/// length does and `output` cannot seek. The engine gives the same samples in the second pass. `progress` is called
+/// after each block and can end the work by returning an error.
 ///
 /// # Errors
-/// [`Error::Value`] if an option is out of range, or there is nothing to bring to a level; [`Error::Io`], before any
-/// work if there is no room for the song alone; those of `progress`.
+/// [`Error::Value`] if an option is out of range, or if the sound has no level that could be changed; [`Error::Io`],
+/// before any work if there is no room for the song alone; and the errors of `progress`.
 pub fn to_wav(
     job: &Job,
     delivery: &Delivery,
@@ -154,7 +154,7 @@ pub fn to_wav(
     })
 }
 
-/// What the limiter's work is told down to, −200 dB, so that it can be written as a number.
+/// Lower bound of the reported limiter gain, −200 dB, so that it can be written as a number.
 const LEAST_GAIN: f64 = 1e-10;
 
 fn gain_db(level: Level, measured: Option<Levels>) -> Result<f64> {
@@ -167,7 +167,8 @@ fn gain_db(level: Level, measured: Option<Levels>) -> Result<f64> {
         )),
         (Level::Peak(target), Some(levels)) if levels.peak > 0.0 => Ok(target - db_from_gain(levels.peak)),
         (Level::Loudness(target), Some(Levels { lufs: Some(lufs), .. })) => {
-            // The loudness meter uses the system's mathematics. Rounded, the gain is the same on every machine.
+            // The loudness meter uses the system's mathematics functions. Rounding makes the gain the same on every
+            // machine.
             Ok(((target - lufs) * 1000.0).round() / 1000.0)
         }
         (Level::Loudness(_), Some(levels)) if levels.peak > 0.0 => Err(Error::value(
@@ -179,7 +180,7 @@ fn gain_db(level: Level, measured: Option<Levels>) -> Result<f64> {
     }
 }
 
-/// Settles channels and gain, in buffers that are used again for each block. A sound of one channel has no right one.
+/// Applies channel mode and gain, in buffers that are reused for each block. In mono there is no right channel.
 struct Mix {
     mono: bool,
     gain: f64,

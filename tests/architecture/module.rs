@@ -1,51 +1,51 @@
-//! A module as it is written: the paths that it names, what it imports, and its child modules. Test items are left out.
+//! Parses a module: the paths in it, its imports, and its child modules. Items for tests only are left out.
 
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use std::collections::BTreeSet;
 use syn::visit::{self, Visit};
 use syn::{Attribute, ImplItem, Item, Stmt, UseTree, Visibility};
 
-/// A path of two segments or more, or what a `use` names, with its line.
+/// A path of two or more segments, or the path of an import, with its line.
 #[derive(Clone, Debug)]
 pub(crate) struct Named {
     pub(crate) path: Vec<String>,
     pub(crate) line: usize,
 }
 
-/// One leaf of a `use` item.
+/// One imported name of a `use` item.
 #[derive(Clone, Debug)]
 pub(crate) struct Import {
-    /// The name that it has here; `*` for all that a module has.
+    /// The name that it has in this module; `*` for all names of a module.
     pub(crate) name: String,
     pub(crate) named: Named,
-    /// Whether it is for others to find, such as `pub use`.
+    /// Whether it is visible to other modules, as with `pub use`.
     pub(crate) is_export: bool,
 }
 
-/// A child module that lies in a file of its own.
+/// A child module in a file of its own.
 #[derive(Debug)]
 pub(crate) struct Child {
     pub(crate) name: String,
-    /// What `#[path = "…"]` says.
+    /// The file given by `#[path = "…"]`.
     pub(crate) file: Option<String>,
 }
 
-/// A module without what only tests have.
+/// A module without its items for tests.
 #[derive(Debug, Default)]
 pub(crate) struct Module {
-    /// Names from the crate's root to here.
+    /// Names from the crate's root to this module.
     pub(crate) path: Vec<String>,
     pub(crate) imports: Vec<Import>,
     pub(crate) named: Vec<Named>,
-    /// Items that are defined here.
+    /// Names of the items that are defined here.
     pub(crate) defined: BTreeSet<String>,
     pub(crate) children: Vec<Child>,
 }
 
-/// Parses a file that holds the module at `path`: that module and those written within it.
+/// Parses a file that contains the module at `path`: returns this module and those nested in the file.
 ///
 /// # Errors
-/// The line and message of what is not Rust.
+/// The line and message of a syntax error.
 pub(crate) fn read(path: &[String], source: &str) -> Result<Vec<Module>, String> {
     let file = syn::parse_file(source).map_err(|error| format!("{}: {error}", error.span().start().line))?;
     let mut reader = Reader { open: vec![Module { path: path.to_vec(), ..Module::default() }], closed: Vec::new() };
@@ -55,7 +55,7 @@ pub(crate) fn read(path: &[String], source: &str) -> Result<Vec<Module>, String>
 }
 
 struct Reader {
-    /// The module that is being read, last, and those around it.
+    /// The module that is being read, as the last element, and the modules around it.
     open: Vec<Module>,
     closed: Vec<Module>,
 }
@@ -71,13 +71,13 @@ impl Reader {
         }
     }
 
-    /// Adds the leaves of a `use` tree.
+    /// Adds all names of a `use` tree.
     fn import(&mut self, before: &[String], tree: &UseTree, is_export: bool) {
         let with = |segment: &Ident| [before, &[segment.to_string()]].concat();
         let (name, path, span) = match tree {
             UseTree::Path(path) => return self.import(&with(&path.ident), &path.tree, is_export),
             UseTree::Group(group) => return group.items.iter().for_each(|tree| self.import(before, tree, is_export)),
-            // `use a::b::{self}` names `a::b`.
+            // `use a::b::{self}` imports `a::b`.
             UseTree::Name(leaf) if leaf.ident == "self" => {
                 (before.last().cloned().unwrap_or_default(), before.to_vec(), leaf.ident.span())
             }
@@ -92,7 +92,7 @@ impl Reader {
         self.module().imports.push(Import { name, named, is_export });
     }
 
-    /// Paths in the tokens of a macro, which nobody else parses.
+    /// Adds the paths in the tokens of a macro, which are not parsed otherwise.
     fn scan(&mut self, tokens: TokenStream) {
         let (mut path, mut line, mut colons) = (Vec::new(), 0, 0);
         for token in tokens {
@@ -176,7 +176,7 @@ impl<'ast> Visit<'ast> for Reader {
         self.import(&[], &item.tree, !matches!(item.vis, Visibility::Inherited));
     }
 
-    /// `pub(in …)` is no use of what it names.
+    /// The path in `pub(in …)` does not count as a use.
     fn visit_visibility(&mut self, _: &'ast Visibility) {}
 
     fn visit_path(&mut self, path: &'ast syn::Path) {
@@ -208,7 +208,7 @@ fn is_for_tests(attribute: &Attribute) -> bool {
     attribute.path().is_ident("cfg") && (condition.path().is_ident("test") || among)
 }
 
-/// What `#[path = "…"]` says.
+/// The file given by `#[path = "…"]`.
 fn given_path(attribute: &Attribute) -> Option<String> {
     let pair = attribute.meta.require_name_value().ok().filter(|pair| pair.path.is_ident("path"))?;
     let syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }) = &pair.value else { return None };

@@ -1,4 +1,4 @@
-//! Breaches that are planted in sources made up, to see that each rule finds them.
+//! Violations in invented sources, which check that each rule finds them.
 
 use crate::rules::{self, Row};
 use crate::tree::Tree;
@@ -6,14 +6,14 @@ use std::path::Path;
 
 const ROWS: &[Row] = &[("high", &["low"]), ("low", &[])];
 
-/// A crate of these files, given by name and text.
+/// A crate with these files, given as names and texts.
 fn tree(files: &[(&str, &str)]) -> Tree {
     let source =
         |file: &Path| files.iter().find(|(name, _)| Path::new(name) == file).map(|(_, text)| (*text).to_owned());
     Tree::read(Path::new("lib.rs"), &source).unwrap()
 }
 
-/// A crate in which the file `low.rs` holds this, beside a `high` that has children.
+/// A crate with the file `low.rs`, which has this text, and a module `high` with children.
 fn with_low(low: &str) -> Tree {
     tree(&[
         ("lib.rs", "mod low; pub mod high; pub use high::Thing;"),

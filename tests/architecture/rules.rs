@@ -1,22 +1,22 @@
-//! The rules that sources keep, each a function that gives a line for every breach.
+//! The rules for sources. Each is a function that returns a line for every violation.
 
 use crate::tree::{Dependency, On, Tree};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// A module at the crate's root, and what of the crate it may use.
+/// A module at the crate's root, and the parts of the crate that it may use.
 pub(crate) type Row = (&'static str, &'static [&'static str]);
 
 fn place(dependency: &Dependency) -> String {
     format!("{}:{}", dependency.file.display(), dependency.line)
 }
 
-/// The crate's module at the root that a path lies in.
+/// The module at the crate's root that contains a path.
 fn top(path: &[String]) -> &str {
     path.first().map_or("the root", String::as_str)
 }
 
-/// Uses between modules at the root that no row allows, and modules without a row.
+/// Uses between root modules that no row allows, and root modules without a row.
 pub(crate) fn directions(tree: &Tree, rows: &[Row]) -> Vec<String> {
     let row = |name: &str| rows.iter().find(|(module, _)| *module == name).map(|(_, allowed)| *allowed);
     let tops: BTreeSet<&str> = tree.paths().filter(|path| !path.is_empty()).map(top).collect();
@@ -29,7 +29,7 @@ pub(crate) fn directions(tree: &Tree, rows: &[Row]) -> Vec<String> {
         let On::Inside { named, .. } = &dependency.on else { continue };
         let (user, used) = (top(&dependency.module), top(named));
         let allowed = user == used || row(user).is_some_and(|allowed| allowed.contains(&used));
-        // The root declares everything and uses nothing of it.
+        // The crate's root declares all modules and uses nothing of them.
         let declares = dependency.module.is_empty() && dependency.is_export;
         if !allowed && !declares {
             breaches.push(format!("{}: `{user}` uses `{used}`", place(&dependency)));
@@ -38,7 +38,7 @@ pub(crate) fn directions(tree: &Tree, rows: &[Row]) -> Vec<String> {
     breaches
 }
 
-/// Whether a module may use another one, itself or by way of others.
+/// Whether a module may use another one, directly or through others.
 pub(crate) fn reaches(rows: &[Row], from: &str, to: &str) -> bool {
     let (mut seen, mut open) = (BTreeSet::new(), vec![from]);
     while let Some(name) = open.pop() {
@@ -51,7 +51,7 @@ pub(crate) fn reaches(rows: &[Row], from: &str, to: &str) -> bool {
     false
 }
 
-/// Uses of other crates, or of parts of them, by modules at the root that no row names.
+/// Uses of other crates, or of parts of them, by root modules that no row names.
 pub(crate) fn outside(tree: &Tree, rows: &[Row]) -> Vec<String> {
     let breach = |dependency: Dependency| {
         let On::Outside(path) = &dependency.on else { return None };
@@ -63,7 +63,7 @@ pub(crate) fn outside(tree: &Tree, rows: &[Row]) -> Vec<String> {
     tree.dependencies().into_iter().filter_map(breach).collect()
 }
 
-/// Pairs of files that import each other, the first in the alphabet first, with a line of each.
+/// Pairs of files that import each other, in alphabetical order, with a line number of each.
 pub(crate) fn circles(tree: &Tree) -> BTreeMap<(PathBuf, PathBuf), [usize; 2]> {
     let mut uses = BTreeMap::new();
     for dependency in tree.dependencies().into_iter().filter(|dependency| !dependency.is_export) {
@@ -80,7 +80,7 @@ pub(crate) fn circles(tree: &Tree) -> BTreeMap<(PathBuf, PathBuf), [usize; 2]> {
         .collect()
 }
 
-/// What a file lacks that is to open with its purpose in one line.
+/// What is wrong with the first line of a file, which must state its purpose; `None` if nothing is.
 pub(crate) fn purpose(file: &Path, text: &str) -> Option<String> {
     let mut lines = text.lines();
     let first = lines.next().unwrap_or_default();

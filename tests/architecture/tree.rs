@@ -1,69 +1,69 @@
-//! The modules of a crate, found by following its `mod` items, and the file in which a path ends.
+//! The modules of a crate, found through its `mod` items, and the file to which each path leads.
 
 use crate::module::{self, Import, Module};
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
-/// Aliases that a path is followed through, at most: more would be a circle of `use` items.
+/// Maximum number of aliases on a path: more would be a cycle of `use` items.
 const DEPTH: usize = 16;
 
-/// A crate's modules by their paths, without those that only tests have.
+/// A crate's modules by their paths, without modules for tests only.
 #[derive(Debug, Default)]
 pub(crate) struct Tree {
     modules: BTreeMap<Vec<String>, (PathBuf, Module)>,
 }
 
-/// One file's use of another one, or of another crate.
+/// A use of another file, or of another crate, by a file.
 #[derive(Clone, Debug)]
 pub(crate) struct Dependency {
-    /// Path of the module that uses.
+    /// Path of the module with the use.
     pub(crate) module: Vec<String>,
     pub(crate) file: PathBuf,
     pub(crate) line: usize,
     pub(crate) on: On,
-    /// Whether it only lets others find what is used, such as `pub use`.
+    /// Whether it only makes something visible to others, as `pub use` does.
     pub(crate) is_export: bool,
 }
 
-/// What is used.
+/// The target of a dependency.
 #[derive(Clone, Debug)]
 pub(crate) enum On {
     Inside {
-        /// The module that the path names, which may have it from elsewhere.
+        /// The module named by the path, which may have imported the item itself.
         named: Vec<String>,
-        /// The file that defines it.
+        /// The file that defines the item.
         file: PathBuf,
     },
-    /// A path into another crate, with all aliases spelt out.
+    /// A path into another crate, with all aliases resolved.
     Outside(String),
 }
 
-/// Where a path ends: at a module of the crate, or outside.
+/// Where a path ends: at a module of the crate, or outside the crate.
 enum End {
     Module(Vec<String>),
     Outside(Vec<String>),
 }
 
-/// Whether a path is followed through what modules export that do not define it.
+/// Whether a path is followed through modules that only re-export an item.
 #[derive(Clone, Copy, PartialEq)]
 enum Exports {
     Follow,
-    /// Only through the crate's root, which everything may be found in.
+    /// Only through the crate's root, which may re-export everything.
     Stop,
 }
 
 impl Tree {
-    /// Reads the crate whose root is the file `root`, with `source` giving the text of a file.
+    /// Reads the crate with the root file `root`; `source` returns the text of a file.
     ///
     /// # Errors
-    /// File, line and message of what cannot be read.
+    /// File, line and message of a file that cannot be read or parsed.
     pub(crate) fn read(root: &Path, source: &dyn Fn(&Path) -> Option<String>) -> Result<Self, String> {
         let mut tree = Self::default();
         tree.read_file(&[], root, root.parent().unwrap_or(Path::new("")), source)?;
         Ok(tree)
     }
 
-    /// Reads a module's file; the files of its children lie in `folder`.
+    /// Reads the file of a module whose children's files are in `folder`.
     fn read_file(
         &mut self,
         path: &[String],
@@ -90,7 +90,7 @@ impl Tree {
         Ok(())
     }
 
-    /// How many modules there are.
+    /// Number of modules.
     pub(crate) fn len(&self) -> usize {
         self.modules.len()
     }
@@ -100,7 +100,7 @@ impl Tree {
         self.modules.keys().map(Vec::as_slice)
     }
 
-    /// All that files use of other files and other crates.
+    /// All uses of other files and other crates.
     pub(crate) fn dependencies(&self) -> Vec<Dependency> {
         let mut all = Vec::new();
         for (file, module) in self.modules.values() {
@@ -126,7 +126,7 @@ impl Tree {
         all
     }
 
-    /// Where a path ends, seen from a module.
+    /// Where a path in a module ends.
     fn resolve(&self, from: &[String], path: &[String], exports: Exports, depth: usize) -> End {
         let outside = || End::Outside(path.to_vec());
         let (Some(first), Some((_, module))) = (path.first(), self.modules.get(from)) else { return outside() };
@@ -141,14 +141,14 @@ impl Tree {
         }
         let Some(import) = module.imports.iter().find(|import| import.name == *first) else { return outside() };
         let meant = [&import.named.path[..], &path[1..]].concat();
-        // `use rayon;` means the crate, not itself.
+        // `use rayon;` means the crate, not this import itself.
         if import.named.path[0] == *first || depth > DEPTH {
             return End::Outside(meant);
         }
         self.resolve(from, &meant, exports, depth + 1)
     }
 
-    /// Where a path ends that goes on from a module.
+    /// Where a path ends that continues from a module.
     fn walk(&self, at: &[String], path: &[String], exports: Exports, depth: usize) -> End {
         let here = || End::Module(at.to_vec());
         let (Some((first, rest)), Some((_, module))) = (path.split_first(), self.modules.get(at)) else {
@@ -180,14 +180,14 @@ impl Tree {
         globs.filter_map(source).next().map_or_else(here, End::Module)
     }
 
-    /// The path of a module's child.
+    /// The path of a child of a module.
     fn child(&self, of: &[String], name: &str) -> Option<Vec<String>> {
         let path = [of, &[name.to_owned()]].concat();
         self.modules.contains_key(&path).then_some(path)
     }
 }
 
-/// A path without `..`.
+/// A path with its `..` resolved.
 fn tidy(path: &Path) -> PathBuf {
     let mut tidy = PathBuf::new();
     for component in path.components() {

@@ -1,4 +1,4 @@
-//! No output is one of the inputs, by whatever way it is named.
+//! No output may be one of the inputs, however the file is named.
 
 use crate::{Sandbox, end, note_on, song};
 use sprung::preset::Preset;
@@ -40,7 +40,7 @@ fn an_input_is_not_replaced() {
     assert!(sandbox.read("song.mid") == song);
 }
 
-/// A file to append to, as the shell opens it for `>>`.
+/// Opens a file for appending, as the shell does for `>>`.
 fn append(sandbox: &Sandbox, name: &str) -> File {
     OpenOptions::new().append(true).open(sandbox.path(name)).unwrap()
 }

@@ -1,14 +1,14 @@
-//! What is left when a command is interrupted or killed.
+//! What remains when a command is interrupted or killed.
 
 use crate::{DEFAULT_SIGNALS, Sandbox, Wav};
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// Work of many hours.
+/// Work that takes many hours.
 const ENDLESS: &str = "render --note C2 --length 86400 --rate 8000 --bits 16 --mono";
 
-/// Starts `sprung`, below another program if there is one, and waits until it is under way, which `ready` tells.
+/// Starts `sprung`, as a child of another program if one is given, and waits until `ready` returns true.
 fn start(sandbox: &Sandbox, below: &[&str], args: &str, mut ready: impl FnMut(&mut Child) -> bool) -> Child {
     let sprung = assert_cmd::cargo::cargo_bin!("sprung").to_str().unwrap();
     let words = DEFAULT_SIGNALS.iter().chain(below).copied().chain([sprung]);
@@ -28,7 +28,7 @@ fn start(sandbox: &Sandbox, below: &[&str], args: &str, mut ready: impl FnMut(&m
     child
 }
 
-/// Whether the first 64 KiB are on disk: handlers have long been in place.
+/// Whether the first 64 KiB are on disk: by then, signal handlers have been installed for long.
 fn has_begun(sandbox: &Sandbox) -> bool {
     sandbox.files().iter().any(|name| std::fs::metadata(sandbox.path(name)).is_ok_and(|file| file.len() > 0))
 }
@@ -59,7 +59,7 @@ fn interrupts_leave_nothing_behind() {
 #[test]
 fn signals_that_were_ignored_stay_ignored() {
     let sandbox = Sandbox::new();
-    // A shell's `trap '' …` is inherited, as what `nohup` does is.
+    // A child inherits ignored signals, from `trap '' …` in a shell as from `nohup`.
     for (signal, trap) in [("-HUP", "HUP"), ("-INT", "INT"), ("-TERM", "TERM")] {
         let script = format!("trap '' {trap}; exec \"$@\"");
         let below = ["sh", "-c", &script, "sh"];
@@ -80,7 +80,7 @@ fn what_a_killed_render_left_goes_with_the_next_one() {
     let child = start(&sandbox, &[], &format!("{ENDLESS} -o out.wav"), |_| has_begun(&sandbox));
     let left = sandbox.files();
     assert!(left.len() == 1 && left[0].starts_with(".sprung-") && left[0].ends_with(".part"), "{left:?}");
-    // One that is still being written stays.
+    // The file that is still being written stays.
     sandbox.succeeds("render --note C2 --length 0.1 -o one.wav");
     assert_eq!(sandbox.files(), [&left[0], "one.wav"]);
     end(child, "-KILL");

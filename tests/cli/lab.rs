@@ -1,4 +1,4 @@
-//! `sprung lab` from outside: tables, figures, numbers, sounds, and bad input.
+//! `sprung lab` as a program: tables, figures, numbers, sounds, and bad input.
 
 use crate::{DEFAULT_SIGNALS, Sandbox};
 use std::io::Read;
@@ -9,7 +9,7 @@ fn text(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
-/// The words of the line that starts so.
+/// The words of the line that begins with `start`.
 fn line<'a>(text: &'a str, start: &str) -> Vec<&'a str> {
     let found = text.lines().find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("{start} in {text}"));
     found.split_whitespace().collect()
@@ -123,7 +123,7 @@ fn numbers_go_to_stdout_and_the_table_out_of_their_way() {
     assert!(text(output.stderr).contains("close"));
 }
 
-/// Starts `sprung`; what it says is for the caller to read.
+/// Starts `sprung`; the caller reads its output.
 fn start(sandbox: &Sandbox, args: &str) -> Child {
     let [env, defaults] = DEFAULT_SIGNALS;
     Command::new(env)
@@ -152,7 +152,7 @@ fn an_interrupt_ends_long_work_at_once_and_leaves_nothing_behind() {
     let sandbox = Sandbox::new();
     let mut child = start(&sandbox, "lab stability --grid 400 -o figure.png --csv numbers.csv");
     let limit = Instant::now() + Duration::from_secs(60);
-    // Both are open: the handler has been in place for longer, and seconds of work lie ahead.
+    // Both files are open: the signal handler has been installed before, and seconds of work remain.
     while sandbox.files().len() < 2 {
         assert!(Instant::now() < limit && child.try_wait().unwrap().is_none(), "it never got going");
         std::thread::sleep(Duration::from_millis(5));

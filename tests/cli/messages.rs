@@ -1,4 +1,4 @@
-//! What the command says of mistakes that people make: what is wrong, and what would be right.
+//! Messages about common mistakes: what is wrong, and what would be right.
 
 use crate::Sandbox;
 
@@ -54,7 +54,7 @@ fn rates_are_read_with_their_units() {
         sandbox.succeeds(&format!("lab listen . --methods rk4 --seconds 0.01 --rate {rate} --force"));
         assert_eq!(sandbox.wav("rk4.wav").spec.sample_rate, expected, "{rate}");
     }
-    // With their units, negative quantities are quantities too.
+    // A negative quantity is accepted with its unit, too.
     sandbox.succeeds("render --note 60 --length 0.01 --tail none --gain-db -6dB --force -o x.wav");
 }
 
@@ -103,7 +103,7 @@ fn nothing_from_a_file_or_its_name_steers_the_terminal() {
         let text = run(args);
         assert!(text.contains(&expected), "{args:?}: expected {expected} in {text}");
     }
-    // What is shown is still the preset: nothing is lost by the escapes.
+    // The output is still a valid preset: the escapes lose nothing.
     let shown = run(&["presets", "show", &toml]);
     let (before, after) = (sprung::preset::Preset::parse(preset, "x"), sprung::preset::Preset::parse(&shown, "x"));
     assert_eq!(after.unwrap(), before.unwrap());

@@ -1,4 +1,4 @@
-//! Where WAVs go: files, links, pipes, devices.
+//! Destinations of WAVs: files, links, pipes, devices.
 
 use crate::{Sandbox, Wav, end, exists, note_on, song};
 use std::io::Read;
@@ -131,7 +131,7 @@ fn stdout_is_written_by_its_names() {
     sandbox.succeeds(&format!("{args} -o out.wav"));
     for name in ["/dev/stdout", "/proc/self/fd/1", "/dev/fd/1"] {
         assert!(sandbox.succeeds(&format!("{args} -o {name}")) == sandbox.read("out.wav"), "through a pipe to {name}");
-        // The report does not get between the samples.
+        // The report must not be mixed into the samples.
         let stdout = std::fs::File::create(sandbox.path("redirected.wav")).unwrap();
         let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sprung"));
         command.args(format!("{args} --json -o {name}").split_whitespace()).stdout(stdout).stderr(Stdio::null());

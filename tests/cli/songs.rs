@@ -1,15 +1,15 @@
-//! MIDI files that stray from the standard, and program changes beside `--preset`.
+//! MIDI files that violate the standard, and program changes together with `--preset`.
 
 use crate::{Sandbox, end, midi, note_on, song};
 use midly::MidiMessage;
 
-/// Runs the command, expects it to work, and gives what it said on stderr.
+/// Runs the command, which must succeed, and returns its stderr.
 fn said(sandbox: &Sandbox, args: &str) -> String {
     let output = sandbox.sprung(args).assert().success().get_output().clone();
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// A file of one track of these bytes, 96 ticks a beat.
+/// A MIDI file with one track of these bytes, 96 ticks per beat.
 fn raw(track: &[u8]) -> Vec<u8> {
     let length = (track.len() as u32).to_be_bytes();
     [b"MThd\0\0\0\x06\0\0\0\x01\0\x60MTrk", &length[..], track].concat()
@@ -43,7 +43,7 @@ fn lenient_reading_plays_what_strict_reading_refuses() {
         assert!(warnings.contains(&format!("sprung: warning: in.mid: {message}")), "{name}: {warnings}");
         assert!(sandbox.read("again.wav") == sandbox.read("good.wav"), "{name}");
     }
-    // What has no remedy stays an error.
+    // A fault that cannot be repaired is still an error.
     sandbox.write("in.mid", raw(&[0, 0x90, 60, 200]));
     sandbox.fails("render in.mid --lenient -o out.wav", 1, "expected a data byte of at most 0x7f, found 0xc8");
 }
@@ -84,7 +84,7 @@ fn program_changes_are_told_and_can_be_left_out() {
     let ignored = said(&sandbox, &format!("render changes.mid --preset Kalimba --ignore-programs {base} changes.wav"));
     assert!(!ignored.contains("warning"), "{ignored}");
     assert!(sandbox.read("changes.wav") == sandbox.read("plain.wav"));
-    // Without --preset nobody asked for one sound; what it stands for is no other.
+    // Without --preset there is no warning, because no single sound was requested for all programs.
     for args in ["changes.mid", "changes.mid --ignore-programs"] {
         let told = said(&sandbox, &format!("render {args} {base} out.wav"));
         assert!(!told.contains("warning"), "{told}");

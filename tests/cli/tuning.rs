@@ -1,4 +1,4 @@
-//! Scala's files on the command line.
+//! Scala files on the command line.
 
 use crate::{Sandbox, end, note_on, song};
 
@@ -20,7 +20,7 @@ fn keys_sound_at_the_scale_and_the_frequency_of_the_files() {
         sandbox.succeeds(&format!("{base} {args} --force -o out.wav"));
         sandbox.wav("out.wav").samples
     };
-    // A scale alone counts from A4: key 70 is a fifth above 440 Hz. So is 660 Hz.
+    // Without a keyboard mapping, a scale starts at A4: key 70 is a fifth above 440 Hz, which is 660 Hz.
     assert!(render("--note 70 --scale fifths.scl").iter().any(|sample| sample.abs() > 0.1));
     for (key, args, frequency) in [
         (70, "", 660.0),
@@ -30,7 +30,7 @@ fn keys_sound_at_the_scale_and_the_frequency_of_the_files() {
     ] {
         let samples = render(&format!("--note {key} --scale fifths.scl {args}"));
         let left: Vec<f64> = samples.chunks(2).map(|frame| frame[0]).collect();
-        // Rising zero crossings, the first and the last between two samples.
+        // Rising zero crossings, interpolated between two samples.
         let crossings: Vec<f64> = (1..left.len())
             .filter(|n| left[n - 1] < 0.0 && left[*n] >= 0.0)
             .map(|n| n as f64 - left[n] / (left[n] - left[n - 1]))

@@ -1,4 +1,4 @@
-//! Events on the first channel, as tests write them.
+//! Events on the first channel, in a short form for tests.
 
 use sprung::engine::{Event, EventKind};
 

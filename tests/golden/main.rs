@@ -1,7 +1,7 @@
-//! Golden audio: what the engine renders is, bit for bit, what it rendered when it was last accepted.
+//! Golden audio: the engine's renders are, bit for bit, the ones that were last accepted.
 //!
-//! A case is one score played by one patch. Its digest lies beside this file; a few cases also keep the beginning of
-//! their audio. `cargo xtask bless [CASE]` accepts what is rendered now.
+//! A case is one score played with one patch. Its digest is stored next to this file; a few cases also keep the
+//! beginning of their audio. `cargo xtask bless [CASE]` accepts the present renders.
 
 mod cases;
 mod check;
@@ -14,10 +14,10 @@ use score::Score;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
-/// Environment variable that accepts what is rendered now: a case's name, or `all`.
+/// Environment variable that accepts the present render of the case with this name, or of `all`.
 const BLESS: &str = "SPRUNG_BLESS";
 
-/// Does `job` to every case on all cores and gives the results in the cases' order.
+/// Runs `job` for every case on all cores and returns the results in the order of the cases.
 fn for_all<T: Send>(cases: &[Score], job: impl Fn(&Score) -> T + Sync) -> Vec<T> {
     let queue = Mutex::new(cases.iter().enumerate());
     let results = Mutex::new(Vec::new());
@@ -53,7 +53,7 @@ fn every_case_sounds_as_accepted_at_every_block_size() {
     assert!(failures.is_empty(), "{failed} of {count} golden cases failed\n\n{}\n", failures.join("\n\n"));
 }
 
-/// Accepts what the wanted cases sound like now; says what it did.
+/// Accepts the present sound of the selected cases, and returns a message about it.
 fn bless_cases(store: &Store, cases: &[Score], wanted: &str) -> String {
     if !cfg!(debug_assertions) {
         return "only the debug build, the reference, may bless: run without --release".to_owned();

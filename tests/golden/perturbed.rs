@@ -1,4 +1,4 @@
-//! That golden tests can fail: an engine that is off by one part in a million is caught, and the failure explained.
+//! Checks that golden tests can fail: an engine wrong by one part in a million is noticed, and the failure explained.
 
 use crate::bless_cases;
 use crate::cases::{INIT, init};
@@ -8,7 +8,7 @@ use crate::score::WHOLE;
 /// One part in a million.
 const SLIGHTLY: f64 = 1.0 + 1e-6;
 
-/// A store in a folder of its own, with `init` accepted as it is.
+/// A store in a folder of its own, with the present result of `init` accepted.
 fn store(folder: &tempfile::TempDir) -> Store {
     let store = Store { accepted: folder.path().to_owned(), failures: folder.path().join("failures") };
     bless(&store, &init());

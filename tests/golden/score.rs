@@ -1,9 +1,9 @@
-//! A score: a patch, events at frames, and how long to listen; rendered in blocks of any size.
+//! A score: a patch, events at frames, and a length; can be rendered in blocks of any size.
 
 use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::patch::Patch;
 
-/// The block that is as long as the score.
+/// A block as long as the score.
 pub(crate) const WHOLE: usize = usize::MAX;
 
 /// What a golden case plays.
@@ -14,17 +14,17 @@ pub(crate) struct Score {
     pub(crate) sample_rate: f64,
     pub(crate) seed: u64,
     pub(crate) patch: Patch,
-    /// What program changes choose from.
+    /// The patches that program changes select from.
     pub(crate) programs: Vec<Patch>,
-    /// Events by frame, channel and kind, in order.
+    /// Events as frame, channel and kind, in order of time.
     events: Vec<(u64, u8, EventKind)>,
     pub(crate) frames: usize,
-    /// Whether the beginning of the audio is kept beside the digest.
+    /// Whether the beginning of the audio is kept in addition to the digest.
     pub(crate) keeps_audio: bool,
 }
 
 impl Score {
-    /// `seconds` of nothing, at 48 kHz.
+    /// A score of `seconds` without events, at 48 kHz.
     pub(crate) fn new(name: impl Into<String>, patch: Patch, seconds: f64) -> Self {
         let sample_rate = 48_000.0;
         Self {
@@ -39,7 +39,7 @@ impl Score {
         }
     }
 
-    /// The same length in seconds at another rate; before any event is added.
+    /// Changes the sample rate but not the length in seconds. Must be called before any event is added.
     pub(crate) fn at_rate(mut self, sample_rate: f64) -> Self {
         assert!(self.events.is_empty(), "events are placed by frame");
         self.frames = (self.frames as f64 * sample_rate / self.sample_rate) as usize;
@@ -57,7 +57,7 @@ impl Score {
         self
     }
 
-    /// Adds an event at `seconds`, which must not lie before the last.
+    /// Adds an event at `seconds`, which must not be before the previous event.
     pub(crate) fn then(mut self, seconds: f64, channel: u8, kind: EventKind) -> Self {
         let frame = (seconds * self.sample_rate).round() as u64;
         assert!(self.events.last().is_none_or(|last| last.0 <= frame), "{}: events in order", self.name);
@@ -65,7 +65,7 @@ impl Score {
         self
     }
 
-    /// Key down on channel 0, with a velocity as MIDI counts it.
+    /// Key down on channel 0, with a MIDI velocity.
     pub(crate) fn on(self, seconds: f64, key: u8, velocity: u8) -> Self {
         let velocity = f32::from(velocity) / 127.0;
         self.then(seconds, 0, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })
@@ -76,12 +76,12 @@ impl Score {
         self.then(seconds, 0, EventKind::NoteOff { key, velocity: 0.5, id: None })
     }
 
-    /// A controller on channel 0, with a value as MIDI counts it.
+    /// A controller on channel 0, with a MIDI value.
     pub(crate) fn control(self, seconds: f64, controller: u8, value: u8) -> Self {
         self.then(seconds, 0, EventKind::Control { controller, value: f32::from(value) / 127.0 })
     }
 
-    /// The score with every note's pitch multiplied by `ratio`.
+    /// Multiplies the pitch of every note by `ratio`.
     pub(crate) fn out_of_tune(mut self, ratio: f64) -> Self {
         let semitones = sprung::units::semitones_from_ratio(ratio) as f32;
         for (_, _, kind) in &mut self.events {
@@ -95,7 +95,7 @@ impl Score {
     /// Renders left and right in blocks of at most `block` frames.
     pub(crate) fn render(&self, block: usize) -> [Vec<f32>; 2] {
         let mut ensemble = Ensemble::new(self.sample_rate, self.seed, &self.patch, &self.programs);
-        // Anything but zero: what a block leaves unwritten must show.
+        // Not zero, so that samples which a block does not write are noticed.
         let [mut left, mut right] = [(); 2].map(|()| vec![f32::NAN; self.frames]);
         let mut events = self.events.iter().peekable();
         let mut in_block = Vec::new();

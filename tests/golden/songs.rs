@@ -6,7 +6,7 @@ use sprung::patch::Patch;
 use sprung::preset::Preset;
 use std::path::Path;
 
-/// Seconds that are heard after a song's last event.
+/// Seconds rendered after a song's last event.
 const TAIL: f64 = 1.0;
 
 /// A case for each song.

@@ -1,4 +1,4 @@
-//! A headless Chromium, driven over its DevTools protocol through a pair of pipes.
+//! A headless Chromium, controlled with its DevTools protocol over a pair of pipes.
 
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
@@ -7,10 +7,10 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// How long an answer may take before the browser counts as hung.
+/// Maximum time for an answer, after which the browser is considered hung.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// The browser's program, if it is installed.
+/// The path of the browser, if it is installed.
 pub(crate) fn installed() -> Option<PathBuf> {
     let folders: Vec<PathBuf> = std::env::split_paths(&std::env::var_os("PATH")?).collect();
     let names = ["chromium", "chromium-browser", "google-chrome"];
@@ -25,16 +25,16 @@ pub(crate) enum Key {
     Space,
 }
 
-/// A page in a browser of its own.
+/// A page in its own browser process.
 pub(crate) struct Page {
     browser: Child,
     commands: ChildStdin,
     answers: Receiver<Value>,
     session: Value,
     count: u64,
-    /// Errors that the console showed, and exceptions.
+    /// Errors in the console, and exceptions.
     pub(crate) errors: Vec<String>,
-    /// Addresses that the page asked for.
+    /// Addresses that the page has requested.
     pub(crate) requests: Vec<String>,
     _profile: tempfile::TempDir,
 }
@@ -43,7 +43,7 @@ impl Page {
     /// Opens a file.
     pub(crate) fn open(program: &Path, file: &Path) -> Self {
         let profile = tempfile::tempdir().unwrap();
-        // The protocol is spoken on descriptors 3 and 4; the shell puts our pipes there.
+        // The protocol uses descriptors 3 and 4; the shell connects our pipes to them.
         let mut browser = Command::new("sh")
             .args(["-c", "exec \"$@\" 3<&0 4>&1 </dev/null >/dev/null", "sh"])
             .arg(program)
@@ -84,7 +84,7 @@ impl Page {
         page
     }
 
-    /// Sends a command and gives its result.
+    /// Sends a command and returns its result.
     pub(crate) fn call(&mut self, method: &str, params: Value) -> Value {
         self.count += 1;
         let mut message = json!({ "id": self.count, "method": method, "params": params });
@@ -100,7 +100,7 @@ impl Page {
         answer["result"].take()
     }
 
-    /// Reads messages up to one that is looked for, and takes note of the others.
+    /// Reads messages until the wanted one, and records the errors and requests among the others.
     fn wait(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
         loop {
             let message = self.answers.recv_timeout(PATIENCE).expect("the browser answers");
@@ -145,7 +145,7 @@ impl Page {
         }
     }
 
-    /// Presses and lets go a key.
+    /// Presses and releases a key.
     pub(crate) fn press(&mut self, key: Key) {
         let (key, code, number, text) = match key {
             Key::Tab => ("Tab", "Tab", 9, ""),
@@ -164,7 +164,7 @@ impl Page {
 
 impl Drop for Page {
     fn drop(&mut self) {
-        // Whether it still lives or not, it is to be gone.
+        // The browser must be gone afterwards, whether or not it still runs.
         let _ = self.browser.kill();
         let _ = self.browser.wait();
     }

@@ -1,4 +1,4 @@
-//! On ALSA's file plugin: what reaches the device, what is recorded, and what goes wrong.
+//! `sprung play` on ALSA's file plugin: what reaches the device, what is recorded, and which errors occur.
 
 use super::sandbox::{Running, Sandbox, song, sprung, text, wait_until};
 use std::fs::File;
@@ -8,24 +8,24 @@ use std::process::{Command, Stdio};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How many times faster than real time the reader takes sound.
+/// Factor by which the reader is faster than real time.
 const HASTE: u32 = 4;
 
-/// Most that a reader takes, in bytes: a minute of stereo floats.
+/// Maximum number of bytes that a reader accepts: a minute of stereo floats.
 const MOST: usize = 60 * 48_000 * 8;
 
 const FRAME: usize = 8;
 
-/// A sound device that is a named pipe, with a reader that takes as much as a sound card of some haste would. Nothing
-/// is ever written to a disk.
+/// A sound device that is a named pipe, with a reader that reads as fast as a quick sound card would. Nothing is
+/// written to a disk.
 struct Device {
     sandbox: Sandbox,
-    /// What it has taken, once all who write have gone.
+    /// The bytes it has read, available when all writers have closed the pipe.
     reader: JoinHandle<Vec<u8>>,
 }
 
 impl Device {
-    /// One that takes floats and integers, or, behind ALSA's `linear` plugin, integers only.
+    /// A device that accepts floats and integers, or integers only, with ALSA's `linear` plugin.
     fn new(integers: bool) -> Self {
         let sandbox = Sandbox::new();
         let pipe = sandbox.path("pipe");
@@ -44,7 +44,7 @@ impl Device {
         Self { sandbox, reader }
     }
 
-    /// Starts `sprung`, which can neither write a large file nor run for long; stderr goes to a file of that name.
+    /// Starts `sprung` with limits on file size and running time; stderr goes to a file of that name.
     fn start(&self, arguments: &str) -> Running {
         self.start_in("ulimit -f 200000", arguments)
     }
@@ -92,7 +92,7 @@ fn integers(bytes: &[u8]) -> Vec<i32> {
     bytes.chunks_exact(4).map(|bytes| i32::from_le_bytes(bytes.try_into().unwrap())).collect()
 }
 
-/// Some bars with chords, quick repeats and a rest.
+/// A MIDI file of some bars, with chords, quick repetitions and a rest.
 fn tune() -> Vec<u8> {
     let scale = (0..24).map(|n| (n * 40, 100, 48 + (n * 7 % 25) as u8));
     let chord = [60, 64, 67].map(|key| (1100, 400, key));
@@ -123,7 +123,7 @@ pub(crate) fn a_song_reaches_the_device_and_the_recording_with_the_bits_of_rende
         assert!(expected.iter().any(|sample| sample.abs() > 0.1), "it sounds");
         assert_same_bits(&captured, &expected);
         assert_same_bits(&recorded, &expected);
-        // ALSA's plugin writes in portions of its own and may keep the last for itself.
+        // ALSA's plugin writes in portions of its own size and may not write the last one.
         assert!(recorded.len() >= captured.len(), "{} recorded, {} captured", recorded.len(), captured.len());
     }
 }
@@ -161,7 +161,7 @@ pub(crate) fn a_full_disk_ends_the_recording_and_keeps_it() {
     let device = Device::new(false);
     device.sandbox.write("tune.mid", tune());
     device.sandbox.succeeds("render tune.mid --bits 32f -o expected.wav");
-    // What a full disk does to a file, a limit does as well: 256 KiB.
+    // A file size limit has the same effect as a full disk: 256 KiB.
     let child =
         device.start_in("trap '' XFSZ; ulimit -f 512", "play tune.mid --midi-in none --record take.wav --headless");
     assert_eq!(child.wait(), Some(1), "{}", device.stderr());

@@ -1,4 +1,4 @@
-//! On a JACK server with the dummy driver: live MIDI in time and tune, and a server that goes away and comes back.
+//! `sprung play` on a JACK server with the dummy driver: timing and pitch of live MIDI, and a server that restarts.
 
 use super::sandbox::{Running, Sandbox, signal, song, sprung, text, wait_until};
 use jack::{AudioIn, Client, ClientOptions, Control, MidiOut, ProcessScope, RawMidi};
@@ -36,24 +36,24 @@ fn client(name: &str) -> Option<Client> {
     Client::new(name, ClientOptions::NO_START_SERVER).ok().map(|(client, _)| client)
 }
 
-/// Runs a test in a process of its own that knows only the server of this name: which one JACK's library talks to is
-/// settled by the environment.
+/// Runs a test in a process of its own that only knows the server with this name, because JACK's library selects the
+/// server by an environment variable.
 fn with_own_server(test: &str, body: impl FnOnce(&str)) {
     let variable = "JACK_DEFAULT_SERVER";
     match std::env::var(variable) {
         Ok(name) if name.starts_with("sprung-") => body(&name),
         _ => {
-            // A server without a sound card keeps time by sleeping; a machine that is busy elsewhere can make it miss
-            // periods, which says nothing of Sprung.
+            // Without a sound card, the server's clock is a sleep. On a busy machine it may miss periods, which is no
+            // fault of Sprung.
             let passed = (1..=3).any(|attempt| {
                 let name = format!("sprung-{test}-{}-{attempt}", std::process::id());
                 let mut again = Command::new(std::env::current_exe().unwrap());
                 again.args(["--exact", &format!("jack::{test}")]).env(variable, name).stderr(Stdio::inherit());
                 let output = again.output().unwrap();
                 let said = String::from_utf8_lossy(&output.stdout);
-                // Not to stdout, where it would be counted as another test.
+                // Not to stdout, where it would be counted as a result of another test.
                 eprint!("{said}");
-                // A name that no test has would succeed with none.
+                // If the name matched no test, the process would succeed after zero tests.
                 output.status.success() && said.contains("1 passed")
             });
             assert!(passed, "three times");
@@ -66,8 +66,8 @@ fn start(sandbox: &Sandbox, arguments: &str) -> Running {
     Running(sprung(arguments).current_dir(sandbox.folder()).stderr(stderr).spawn().unwrap())
 }
 
-/// Sends messages at frames of the server's time, and hands on what it hears: the frame and the samples, left and
-/// right, of each period.
+/// Sends messages at frames counted from its start, and passes on the samples that it hears in each period, left and
+/// right.
 struct Peer {
     midi: jack::Port<MidiOut>,
     audio: [jack::Port<AudioIn>; 2],
@@ -91,12 +91,12 @@ impl jack::ProcessHandler for Peer {
     }
 }
 
-/// The ports that the instrument plays on.
+/// The ports to which the instrument sends sound.
 fn outputs(client: &Client) -> Vec<String> {
     client.ports(Some("_out:out_[01]$"), None, jack::PortFlags::IS_OUTPUT)
 }
 
-/// Connects a peer to the instrument, sends, listens for so many frames, and gives what it heard.
+/// Connects a peer to the instrument, sends messages, listens for this many frames, and returns the samples heard.
 fn listen(messages: Vec<(usize, [u8; 3])>, frames: usize) -> [Vec<f32>; 2] {
     let client = client("peer").unwrap();
     let midi = client.register_port("midi", MidiOut::default()).unwrap();
@@ -120,7 +120,7 @@ fn listen(messages: Vec<(usize, [u8; 3])>, frames: usize) -> [Vec<f32>; 2] {
     all
 }
 
-/// Frames at which sound begins after silence.
+/// Frames at which sound starts after silence.
 fn onsets(samples: &[f32]) -> Vec<usize> {
     let mut silent = 1000;
     let mut found = Vec::new();
@@ -152,7 +152,7 @@ pub(crate) fn live_notes_are_in_time_and_in_tune() {
         let sandbox = Sandbox::new();
         let arguments = "play --host jack --headless --record take.wav --set decay=0.05 --set release=0.05";
         let child = start(&sandbox, arguments);
-        // Every frame of a period has its turn.
+        // The messages cover every frame of a period.
         let keys = [57_u8, 69, 64, 72, 60];
         let sent: Vec<(usize, u8)> = (0..24).map(|n| (RATE + n * 9001, keys[n % keys.len()])).collect();
         let messages = sent.iter().flat_map(|&(at, key)| [(at, [0x90, key, 127]), (at + 2000, [0x80, key, 64])]);
@@ -172,7 +172,7 @@ pub(crate) fn live_notes_are_in_time_and_in_tune() {
             assert!(cents.abs() < 3.0, "key {key}: {cents} cents off");
         }
 
-        // The recording began earlier and ended later.
+        // The recording starts before the listening and ends after it.
         let recorded = sandbox.floats("take.wav");
         let recorded_left: Vec<f32> = recorded.chunks_exact(2).map(|frame| frame[0]).collect();
         let start = super::jack::onsets(&recorded_left)[0];
@@ -200,7 +200,7 @@ pub(crate) fn a_server_that_ends_is_waited_for() {
         wait_until("the return is told", || said("the sound device is back: "));
         std::thread::sleep(std::time::Duration::from_secs(1));
         assert_eq!(child.interrupt(), Some(0), "{}", text(&sandbox.path("stderr")));
-        // The song has gone on where it was, and nothing is missing in the recording.
+        // The song has continued where it was, and the recording has no gap.
         let (recorded, expected) = (sandbox.floats("take.wav"), sandbox.floats("expected.wav"));
         let same = recorded.iter().zip(&expected).take_while(|(a, b)| a.to_bits() == b.to_bits()).count();
         assert!(same > 2 * RATE, "{same} samples are those of the song, of {}", recorded.len());

@@ -1,4 +1,4 @@
-//! Where `sprung` is run: its directory, its processes, and a song to play.
+//! The environment in which `sprung` runs: its directory, its processes, and a song to play.
 
 use midly::num::{u4, u7, u15, u28};
 use midly::{Format, Header, MetaMessage, MidiMessage, Smf, Timing, TrackEvent, TrackEventKind};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A directory that goes when the test ends.
+/// A directory that is removed when the test ends.
 pub(crate) struct Sandbox(tempfile::TempDir);
 
 impl Sandbox {
@@ -27,7 +27,7 @@ impl Sandbox {
         self.path(name)
     }
 
-    /// Runs `sprung` here, and says what it wrote to stderr.
+    /// Runs `sprung` here, and returns its stderr.
     pub(crate) fn succeeds(&self, arguments: &str) -> String {
         let output = sprung(arguments).current_dir(self.folder()).output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
@@ -35,15 +35,15 @@ impl Sandbox {
         stderr
     }
 
-    /// The samples of a WAV file of floats.
+    /// The samples of a WAV file with floats.
     pub(crate) fn floats(&self, name: &str) -> Vec<f32> {
         let reader = hound::WavReader::open(self.path(name)).unwrap();
         reader.into_samples().map(|sample| sample.unwrap()).collect()
     }
 }
 
-/// The command, with signals as they are by default: a suite that runs in the background or under `nohup` ignores some
-/// of them, and its children inherit that.
+/// The command with default signal handling: a test suite that runs in the background or under `nohup` ignores some
+/// signals, and its children inherit this.
 pub(crate) fn sprung(arguments: &str) -> Command {
     let mut command = Command::new("env");
     command.args(["--default-signal=HUP,INT,TERM", env!("CARGO_BIN_EXE_sprung")]);
@@ -51,16 +51,16 @@ pub(crate) fn sprung(arguments: &str) -> Command {
     command
 }
 
-/// A process that a test has started and that does not outlive it.
+/// A process started by a test, which is killed when dropped.
 pub(crate) struct Running(pub(crate) Child);
 
 impl Running {
-    /// Its exit code, once it has ended by itself.
+    /// Waits for its end and returns its exit code.
     pub(crate) fn wait(mut self) -> Option<i32> {
         self.0.wait().unwrap().code()
     }
 
-    /// Asks it to end as Ctrl-C does, and waits for that.
+    /// Interrupts it as Ctrl-C does, and waits for its end.
     pub(crate) fn interrupt(self) -> Option<i32> {
         signal(&self.0, "-INT");
         self.wait()
@@ -74,12 +74,12 @@ impl Drop for Running {
     }
 }
 
-/// Sends a signal to a process that this test has started.
+/// Sends a signal to a process started by this test.
 pub(crate) fn signal(child: &Child, name: &str) {
     assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
 }
 
-/// Waits until something is so, and gives up after half a minute.
+/// Waits until a condition is true, for at most half a minute.
 #[track_caller]
 pub(crate) fn wait_until(what: &str, mut so: impl FnMut() -> bool) {
     let start = Instant::now();
@@ -89,12 +89,12 @@ pub(crate) fn wait_until(what: &str, mut so: impl FnMut() -> bool) {
     }
 }
 
-/// A file that something writes to as time goes by.
+/// The present text of a file to which another process writes.
 pub(crate) fn text(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_default()
 }
 
-/// A MIDI file of notes `(tick, length, key)` on channel 1, 960 ticks a second.
+/// A MIDI file of notes `(tick, length, key)` on channel 1, 960 ticks per second.
 pub(crate) fn song(notes: &[(u32, u32, u8)]) -> Vec<u8> {
     let mut events: Vec<(u32, MidiMessage)> = Vec::new();
     for &(tick, length, key) in notes {

@@ -1,12 +1,13 @@
-//! Cases by chance: bytes as [`crate::case::decode`] reads them.
+//! Random cases, as bytes for [`crate::case::decode`].
 //!
-//! Each case draws from kinds of events and lengths of pauses of its own (as in "Swarm Testing", Groce et al. 2012):
-//! what only explodes without a certain event is found too, and a case without events that move gains has a sharp bound.
+//! Each case uses its own selection of event kinds and pause lengths (as in "Swarm Testing", Groce et al. 2012). So
+//! cases are found that only explode without a certain event, and a case without events that move gains has a sharp
+//! bound.
 
 use crate::case::{Kind, PARAM_IDS, RECORD};
 use sprung::dsp::random::{key, uniform};
 
-/// The parameters that move pitch and damping most: half of the cases have some of them.
+/// The parameters with the largest effect on pitch and damping: half of the cases set some of them.
 const MOVING: [&str; 9] =
     ["glide", "vibrato", "vibrato_rate", "mode", "sweep", "sweep_time", "release", "decay", "bend_range"];
 
@@ -34,7 +35,7 @@ impl Stream {
         self.below(256) as u8
     }
 
-    /// A byte at an end of its range as often as not.
+    /// A random byte, in half of the cases at an end of its range.
     fn edgy(&mut self) -> u8 {
         [0, 255, self.byte(), self.byte()][self.below(4)]
     }
@@ -44,18 +45,18 @@ fn byte_of(kind: Kind) -> u8 {
     Kind::ALL.iter().position(|other| *other == kind).expect("every kind is listed") as u8
 }
 
-/// The bytes of the `serial`-th case of a seed.
+/// The bytes of case number `serial` of a seed.
 pub(crate) fn case(seed: u64, serial: u64) -> Vec<u8> {
     let mut stream = Stream { key: key(seed, serial), n: 0 };
     let s = &mut stream;
     let preset = if s.chance(0.25) { 128 + s.byte() / 2 } else { 0 };
     let ensemble = if s.chance(0.01) { 128 } else { 0 };
-    // Few cases are long, few are cut into tiny blocks.
+    // Few cases are long, and few use tiny blocks.
     let tail = if s.chance(0.05) { 200 + s.below(40) } else { 100 + s.below(100) } as u8;
     let block = [0, 0, 0, 1, 2, 3, 5, 6][s.below(8)];
     let mut bytes = vec![s.byte(), preset, ensemble | block, s.byte(), tail];
 
-    // Many patches are small changes of one, some are all chance.
+    // Many patches have only a few changed parameters; some are completely random.
     let params = PARAM_IDS.split_whitespace().count();
     let settings = if s.chance(0.1) { params } else { s.below(10) };
     for n in 0..settings {
@@ -77,7 +78,7 @@ pub(crate) fn case(seed: u64, serial: u64) -> Vec<u8> {
     }
     if s.chance(0.4) {
         let modes = if s.chance(0.1) { 1 + s.below(64) } else { 1 + s.below(4) };
-        // Most ratios from 0.5 to 20.
+        // Most ratios are between 0.5 and 20.
         let spread = if s.chance(0.2) { 256.0 } else { 80.0 };
         for _ in 0..modes {
             let ratio = (128.0 - 0.35 * spread + s.unit() * spread).clamp(0.0, 255.0) as u8;

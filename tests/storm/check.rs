@@ -1,14 +1,14 @@
-//! Plays a case and compares all that comes out with the bound.
+//! Plays a case and compares its output with the bound.
 
 use crate::bound::{Step, bound};
 use crate::case::Case;
 use sprung::engine::{Ensemble, Event, Snapshot, Synth};
 
-/// Rounding in single precision, over the frames of a case.
+/// Relative tolerance for single-precision rounding over all frames of a case.
 const TOLERANCE: f64 = 1e-3;
-/// What a sample may be off whatever the bound: far below −120 dBFS.
+/// Absolute tolerance of a sample: far below −120 dBFS.
 const FLOOR: f64 = 1e-7;
-/// Frames between looks at snapshots and tails, at least.
+/// Minimum number of frames between checks of snapshots and tails.
 const LOOK_FRAMES: usize = 256;
 
 /// A synth or an ensemble.
@@ -46,7 +46,7 @@ impl Player {
     }
 }
 
-/// Plays the case. Gives the highest share of its bound that a sample reached, or what went wrong first.
+/// Plays the case. Returns the largest share of its bound that a sample reached, or the first error.
 pub(crate) fn check(case: &Case) -> Result<f64, String> {
     let steps = bound(case);
     let mut player = Player::new(case);
@@ -71,7 +71,7 @@ pub(crate) fn check(case: &Case) -> Result<f64, String> {
             let limits = step.checked_sub(1).map_or([0.0; 2], |step| steps[step].output);
             for (side, sample, limit) in [("left", *samples.0, limits[0]), ("right", *samples.1, limits[1])] {
                 let size = f64::from(sample.abs());
-                // NaN is not within.
+                // NaN must not count as within the bound.
                 let within = size <= limit * (1.0 + TOLERANCE) + FLOOR;
                 if !within {
                     return Err(format!("frame {frame}, {side}: {sample} where the bound is {limit}"));
@@ -90,7 +90,7 @@ pub(crate) fn check(case: &Case) -> Result<f64, String> {
     Ok(highest)
 }
 
-/// What is to be seen of the player at the end of a block is finite, and no mass is further out than its strikes allow.
+/// Checks that the visible state of the player at the end of a block is finite and within the bound of its strikes.
 fn look(player: &mut Player, step: Option<&Step>, frame: usize) -> Result<(), String> {
     let limit = step.map_or(0.0, |step| step.displacement) * (1.0 + TOLERANCE) + FLOOR;
     for (m, mass) in player.snapshot().masses.iter().enumerate() {
@@ -103,7 +103,7 @@ fn look(player: &mut Player, step: Option<&Step>, frame: usize) -> Result<(), St
         }
     }
     if let Player::Synth(synth) = player {
-        // Overflow panics in builds that check it.
+        // An overflow here panics in builds with overflow checks.
         let tail = synth.tail_frames();
         if tail > 0 && synth.is_silent() {
             return Err(format!("frame {frame}: a tail of {tail} frames of silence"));

@@ -1,4 +1,4 @@
-//! Storms that once exploded, each by its name.
+//! Named cases that once exploded.
 
 use crate::case::{Case, without_limiter};
 use crate::check::check;
@@ -9,7 +9,7 @@ use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 use sprung::units::key_from_frequency;
 
-/// A synth at 48 kHz.
+/// A case on one synth at 48 kHz.
 fn case(patch: Patch, events: Vec<Event>, frames: usize) -> Case {
     let (sample_rate, seed, ensemble, programs, block) = (48_000.0, 1, false, vec![], 512);
     Case { sample_rate, seed, ensemble, patch: without_limiter(patch), programs, block, events, frames }
@@ -19,7 +19,7 @@ fn preset(name: &str) -> Patch {
     Preset::find(name).unwrap().patch.clone()
 }
 
-/// Plays a case, expects it to stay within its bound, and to reach at least `share` of it.
+/// Plays a case, which must stay within its bound and reach at least `share` of it.
 fn stays_bounded(name: &str, storm: &Case, share: f64) {
     match check(storm) {
         Ok(reached) => {
@@ -83,7 +83,7 @@ fn quick_strikes_in_mono_that_are_never_let_go() {
     }
 }
 
-/// Rounding must not add up either: hundreds of thousands of frames at the least damping that there is.
+/// Rounding errors must not add up either: hundreds of thousands of frames with the smallest possible damping.
 #[test]
 fn the_longest_decay_at_the_highest_rate() {
     for (sample_rate, key) in [(768_000.0, 60), (768_000.0, 127), (48_000.0, 127), (44_100.0, 21)] {

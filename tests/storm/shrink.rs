@@ -1,8 +1,8 @@
-//! Makes a failing case small before it is shown.
+//! Makes a failing case smaller before it is printed.
 
 use crate::case::RECORD;
 
-/// Takes records out, in runs that get shorter, and then lowers single bytes, as long as the bytes still fail.
+/// Removes records in shorter and shorter runs, then lowers single bytes, as long as the case still fails.
 pub(crate) fn shrink(mut bytes: Vec<u8>, fails: impl Fn(&[u8]) -> bool) -> Vec<u8> {
     let records = |bytes: &[u8]| bytes.len().saturating_sub(RECORD).div_ceil(RECORD);
     let mut run = records(&bytes).max(1);

@@ -1,4 +1,4 @@
-//! What a tuning does to notes that sound, glide and choke, and what unmapped keys do: nothing.
+//! The effect of a tuning on notes that sound, glide and choke; unmapped keys do nothing.
 
 use super::{SAMPLE_RATE, cents, heard, tuning};
 use sprung::analysis::damped_sine::fit_unknown;
@@ -44,7 +44,7 @@ fn sounding_notes_keep_their_pitch_and_new_ones_take_the_tuning() {
     assert!(cents(frequency(&play(&mut synth, &[on(0, 60, -1)])), 512.0).abs() < 0.01, "a new sample rate as well");
 }
 
-/// What follows pitch does so wherever the pitch comes from: in quarter tones, two keys are a semitone.
+/// Key tracking follows the tuned pitch: in quarter tones, two keys are a semitone.
 #[test]
 fn everything_that_follows_pitch_follows_the_tuned_pitch() {
     let patch = Patch::default()
@@ -89,7 +89,7 @@ fn a_note_on_an_unmapped_key_starts_nothing() {
         play(&mut synth, &[off(0, 61)]);
         assert!(synth.is_silent() && synth.ended().is_empty());
 
-        // Beside a note that sounds it changes nothing: it neither steals, retunes nor releases.
+        // It does not affect a sounding note either: it neither steals, retunes nor releases it.
         assert!(cents(frequency(&play(&mut synth, &[on(0, 69, 6), on(0, 61, 7), off(0, 61)])), 440.0).abs() < 0.01);
         assert_eq!(synth.ended().iter().map(|note| note.id).collect::<Vec<_>>(), [NoteId::new(7)]);
     }

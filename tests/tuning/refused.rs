@@ -1,4 +1,4 @@
-//! Malformed files are refused with the line, what is wrong and what would be right; odd but sound ones are read.
+//! Malformed files are refused with the line, the fault and the remedy; unusual but valid files are read.
 
 use super::tuning;
 use sprung::sound::Tuning;

@@ -1,4 +1,4 @@
-//! `cargo xtask bundle`: the plugin as the files that DAWs load.
+//! `cargo xtask bundle`: packs the plugin into the files that DAWs load.
 
 use crate::files::{copy, replace, write};
 use crate::patch;
@@ -15,7 +15,7 @@ pub(crate) enum Format {
 impl Format {
     pub(crate) const ALL: [Format; 2] = [Format::Clap, Format::Vst3];
 
-    /// What the bundle is called, on every system.
+    /// The name of the bundle, the same on every system.
     pub(crate) fn file_name(self) -> &'static str {
         match self {
             Self::Clap => "Sprung.clap",
@@ -23,10 +23,10 @@ impl Format {
         }
     }
 
-    /// Where the library lies within the bundle; empty if it is the bundle.
+    /// Path of the library within the bundle; empty if the library itself is the bundle.
     fn library(self) -> PathBuf {
         let (architecture, system) = (std::env::consts::ARCH, std::env::consts::OS);
-        // VST 3 SDK, "VST 3 Locations and Format": Windows has a name of its own for 64-bit ARM.
+        // VST 3 SDK, "VST 3 Locations and Format": Windows has its own name for 64-bit ARM.
         let architecture = if (system, architecture) == ("windows", "aarch64") { "arm64" } else { architecture };
         match (self, system) {
             (_, "macos") => "Contents/MacOS/Sprung".into(),
@@ -37,9 +37,9 @@ impl Format {
     }
 }
 
-/// Builds the plugin and puts the bundles into `target/bundled`, which it gives.
+/// Builds the plugin, writes the bundles into `target/bundled` and returns that folder.
 pub(crate) fn run(release: bool) -> Result<PathBuf, String> {
-    // What a debugger would want is most of the library's size.
+    // Debug symbols are most of the library's size.
     let (profile, linking) = if release { ("--release", "-- -C strip=symbols") } else { ("", "") };
     patch::run()?;
     let mut build = cargo(&format!(
@@ -59,7 +59,7 @@ pub(crate) fn run(release: bool) -> Result<PathBuf, String> {
     Ok(folder)
 }
 
-/// Writes a bundle to a path where nothing is.
+/// Writes a bundle to a path where nothing exists yet.
 fn fill(format: Format, library: &Path, bundle: &Path) -> Result<(), String> {
     let place = format.library();
     if place.as_os_str().is_empty() {
@@ -78,7 +78,7 @@ fn fill(format: Format, library: &Path, bundle: &Path) -> Result<(), String> {
     }
 }
 
-/// What macOS wants to know of a bundle.
+/// The property list that macOS requires in a bundle.
 fn property_list(format: Format) -> String {
     let keys = [
         ("CFBundleExecutable", "Sprung"),

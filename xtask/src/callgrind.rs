@@ -1,6 +1,6 @@
-//! `cargo xtask callgrind`: instructions of the kernels and of silence, counted by valgrind, against those kept.
+//! `cargo xtask callgrind`: counts instructions of kernels and of silence with valgrind; compares with kept counts.
 //!
-//! Counts do not depend on how busy the machine is. Valgrind has no AVX-512.
+//! The counts do not depend on how busy the machine is. Valgrind does not support AVX-512.
 
 #[path = "../../benches/struck/mod.rs"]
 mod struck;
@@ -15,10 +15,10 @@ use std::fmt::Write as _;
 use std::process::Command;
 use struck::{StruckBank, Work};
 
-/// The counts as last accepted: instructions per mode and frame by level and work, and per silent block.
+/// The last accepted counts: instructions per mode and frame for each level and kind of work, and per silent block.
 const KEPT: &str = "benches/instructions.txt";
 
-/// A count may grow by this share.
+/// The share by which a count may grow.
 const ALLOWANCE: f64 = 0.05;
 
 const LEVELS: [Level; 3] = [Level::Scalar, Level::Sse2, Level::Avx2];
@@ -26,10 +26,10 @@ const LEVELS: [Level; 3] = [Level::Scalar, Level::Sse2, Level::Avx2];
 /// Frames of a silent block.
 const FRAMES: usize = 64;
 
-/// Rounds that are counted, after a tenth as many that are not: whole turns of what modulates.
+/// Number of counted rounds, a multiple of the modulation's period. A tenth as many run before and are not counted.
 const ROUNDS: usize = 210;
 
-/// Something to count.
+/// Work whose instructions are counted.
 #[derive(Clone, Copy)]
 enum Subject {
     Bank(Level, Work),
@@ -38,14 +38,14 @@ enum Subject {
 }
 
 impl Subject {
-    /// All that this CPU has.
+    /// All work that this CPU can do.
     fn all() -> impl Iterator<Item = Subject> {
         let levels = LEVELS.into_iter().filter(|level| level.is_available());
         let banks = levels.flat_map(|level| Work::ALL.map(|work| Subject::Bank(level, work)));
         banks.chain([Subject::IdleSynth, Subject::IdleEnsemble])
     }
 
-    /// The name that it has in [`KEPT`].
+    /// Its name in [`KEPT`].
     fn name(self) -> String {
         match self {
             Subject::Bank(level, work) => format!("{} {}", level.name(), work.name()),
@@ -54,12 +54,12 @@ impl Subject {
         }
     }
 
-    /// What a round is divided by: a bank's modes and frames; a silent block counts as a whole.
+    /// Divisor of the instructions per round: modes × frames of a bank; 1 for a silent block.
     fn unit(self) -> usize {
         if matches!(self, Subject::Bank(..)) { MAX_MODES * CONTROL_FRAMES } else { 1 }
     }
 
-    /// Some rounds of work: a control tick each, or a block.
+    /// Does this many rounds of work: a control tick or a block each.
     fn work(self, rounds: usize) {
         let [mut left, mut right] = [[0.0; FRAMES]; 2];
         match self {
@@ -80,17 +80,17 @@ impl Subject {
     }
 }
 
-/// Whether there is something to count with.
+/// Whether valgrind is available.
 pub(crate) fn can_count() -> bool {
     succeeds("valgrind", &["--version"])
 }
 
-/// The levels that are counted where the CPU has them, and that this one lacks.
+/// The levels that should be counted but that this CPU lacks.
 pub(crate) fn missing_levels() -> impl Iterator<Item = Level> {
     LEVELS.into_iter().filter(|level| !level.is_available())
 }
 
-/// Counts, and compares with what is kept; or keeps what is counted. Gives the number of counts.
+/// Counts, and compares with the kept counts, or with `accept` keeps the new ones. Returns the number of counts.
 pub(crate) fn run(accept: bool) -> Result<usize, String> {
     let built = cargo("build --release --quiet --package xtask").status().map_err(|error| error.to_string())?;
     if !built.success() {
@@ -99,7 +99,7 @@ pub(crate) fn run(accept: bool) -> Result<usize, String> {
     let mut counts = String::new();
     for subject in Subject::all() {
         let name = subject.name();
-        // The difference of two runs is free of starting up.
+        // The difference between two runs does not include the start-up.
         let (few, many) = (count(&name, ROUNDS / 10)?, count(&name, ROUNDS / 10 + ROUNDS)?);
         let _ = writeln!(counts, "{name} {:.3}", (many - few) / (ROUNDS * subject.unit()) as f64);
     }
@@ -118,7 +118,7 @@ pub(crate) fn run(accept: bool) -> Result<usize, String> {
     Err(format!("{}\naccept with: cargo xtask callgrind --accept", grown.join("\n")))
 }
 
-/// A line for each count that has grown by more than is allowed, or is not kept.
+/// A line for each count that has grown by more than the allowance, or that has no kept count.
 fn grown(kept: &[(String, f64)], found: &[(String, f64)]) -> Vec<String> {
     let line = |(name, now): &(String, f64)| {
         let before = kept.iter().find(|(kept, _)| kept == name).map(|(_, count)| *count);
@@ -137,7 +137,7 @@ fn parse(counts: &str) -> Vec<(String, f64)> {
     counts.lines().filter_map(line).collect()
 }
 
-/// Instructions of a whole run of [`work`].
+/// Instructions of a whole process that runs [`work`].
 fn count(name: &str, rounds: usize) -> Result<f64, String> {
     let mut command = Command::new("valgrind");
     command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(root().join("target/release/xtask"));
@@ -148,7 +148,7 @@ fn count(name: &str, rounds: usize) -> Result<f64, String> {
     collected.filter(|_| output.status.success()).ok_or_else(|| format!("valgrind counted nothing:\n{text}"))
 }
 
-/// What is counted.
+/// Runs the work that is counted.
 pub(crate) fn work(name: &str, rounds: usize) -> Result<(), String> {
     let subject = Subject::all().find(|subject| subject.name() == name);
     subject.ok_or_else(|| format!("there is no ‘{name}’ to count on this CPU"))?.work(rounds);

@@ -1,10 +1,10 @@
-//! Files and folders, copied, replaced and removed whole.
+//! Copies, replaces and removes files and folders as a whole.
 
 use std::fs;
 use std::path::Path;
 
-/// Replaces what is at `path` by what `fill` makes at the path that it is given: nothing is ever half there, and if
-/// `fill` fails, what was there stays.
+/// Replaces the file or folder at `path` by what `fill` creates at the path that it receives. The replacement is never
+/// half done, and if `fill` fails, the old one remains.
 pub(crate) fn replace(path: &Path, fill: impl FnOnce(&Path) -> Result<(), String>) -> Result<(), String> {
     let beside = |suffix: &str| {
         let mut name = path.file_name().unwrap_or_default().to_owned();
@@ -24,13 +24,13 @@ pub(crate) fn replace(path: &Path, fill: impl FnOnce(&Path) -> Result<(), String
             format!("{}: {error}", path.display())
         })
     });
-    // What is left over of either is of no use, and the result says what matters.
+    // Leftover temporary files do no harm, and the result below is more important.
     let _ = remove(&new);
     let _ = remove(&old);
     result
 }
 
-/// Removes a file or a folder with all that is in it. Gives whether there was one.
+/// Removes a file, or a folder with everything in it. Returns whether there was one.
 pub(crate) fn remove(path: &Path) -> Result<bool, String> {
     let failed = |error: std::io::Error| format!("{}: {error}", path.display());
     match path.symlink_metadata() {
@@ -41,7 +41,7 @@ pub(crate) fn remove(path: &Path) -> Result<bool, String> {
     }
 }
 
-/// Copies a file, or a folder with all that is in it, and makes the folders above.
+/// Copies a file, or a folder with everything in it, and creates the folders above it.
 pub(crate) fn copy(from: &Path, to: &Path) -> Result<(), String> {
     if !from.is_dir() {
         make_folder_of(to)?;

@@ -1,17 +1,17 @@
-//! `cargo xtask install` and `uninstall`: the bundles where DAWs look for them.
+//! `cargo xtask install` and `uninstall`: copies the bundles to the folders in which DAWs look for plugins.
 
 use crate::bundle::{self, Format};
 use crate::files;
 use std::path::PathBuf;
 
-/// For whom the plugin is installed.
+/// For which users the plugin is installed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scope {
     User,
     System,
 }
 
-/// Where DAWs look: CLAP's entry.h, and the VST 3 SDK's "VST 3 Locations and Format".
+/// The folder in which DAWs look, by CLAP's entry.h and the VST 3 SDK's "VST 3 Locations and Format".
 fn folder(format: Format, scope: Scope) -> Result<PathBuf, String> {
     let name = match format {
         Format::Clap => "CLAP",
@@ -31,7 +31,7 @@ fn folder(format: Format, scope: Scope) -> Result<PathBuf, String> {
     })
 }
 
-/// Builds the plugin for release and copies it to where DAWs look.
+/// Builds the plugin for release and copies it to the folders in which DAWs look.
 pub(crate) fn install(scope: Scope) -> Result<(), String> {
     let folders = Format::ALL.map(|format| folder(format, scope).map(|folder| (format, folder)));
     let bundles = bundle::run(true)?;
@@ -47,7 +47,7 @@ pub(crate) fn install(scope: Scope) -> Result<(), String> {
     Ok(())
 }
 
-/// Removes what `install` has copied.
+/// Removes the bundles that `install` has copied.
 pub(crate) fn uninstall(scope: Scope) -> Result<(), String> {
     for format in Format::ALL {
         let path = folder(format, scope)?.join(format.file_name());

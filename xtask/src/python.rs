@@ -1,13 +1,13 @@
-//! The plugin hosts that Python drives: a virtual environment of their own under the target directory.
+//! Installs the plugin hosts that are driven from Python, in a virtual environment under the target directory.
 
 use crate::shell::{root, succeeds};
 use std::path::Path;
 use std::process::Command;
 
-/// Versions are pinned there.
+/// The file with the pinned versions.
 const REQUIREMENTS: &str = "plugin/tests/hosts/requirements.txt";
 
-/// Makes `target/python` with what [`REQUIREMENTS`] names, unless it has just that already.
+/// Creates `target/python` with the packages in [`REQUIREMENTS`], unless it already contains exactly these.
 pub(crate) fn install() -> Result<(), String> {
     let wanted = root().join(REQUIREMENTS);
     let folder = root().join("target/python");

@@ -1,35 +1,35 @@
-//! `cargo xtask setup`: what the test suite needs on the system.
+//! `cargo xtask setup`: installs what the test suite needs on the system.
 
 use crate::python;
 use crate::shell::succeeds;
 use std::path::Path;
 use std::process::Command;
 
-/// How something is recognised.
+/// How to find out whether something is installed.
 enum Probe {
     /// A program that answers to `--version`.
     Program(&'static str),
     /// A program that answers to `-V`.
     ShortProgram(&'static str),
-    /// A program that is on the path.
+    /// A program in one of the folders of `PATH`.
     OnPath(&'static str),
     /// A library that pkg-config knows.
     Library(&'static str),
-    /// A library that the system's loader finds.
+    /// A library that the system's loader can find.
     Shared(&'static str),
     /// A driver of the graphics library.
     Driver(&'static str),
-    /// Modules of Python, as one imports them.
+    /// Python modules, by their import names.
     Modules(&'static str),
 }
 
-/// Something that the suite needs beyond Rust and its crates.
+/// Something that the suite needs besides Rust and its crates.
 struct Requirement {
     probe: Probe,
-    /// Debian package that has it.
+    /// Debian package that contains it.
     package: &'static str,
     why: &'static str,
-    /// Whether the suite fails without it. Otherwise the tests that need it are ignored, and say so.
+    /// Whether the suite fails without it. If not, the tests that need it are reported as ignored.
     essential: bool,
 }
 
@@ -132,7 +132,7 @@ const REQUIREMENTS: &[Requirement] = &[
     },
 ];
 
-/// Components of the Rust toolchain, with the command that each brings.
+/// Components of the Rust toolchain, each with the cargo command that it provides.
 const COMPONENTS: [(&str, &str); 2] = [("rustfmt", "fmt"), ("clippy", "clippy")];
 
 impl Requirement {
@@ -156,7 +156,7 @@ impl Requirement {
     }
 }
 
-/// Installs what is missing, or says how to.
+/// Installs what is missing, or tells the user how to install it.
 pub(crate) fn run() -> Result<(), String> {
     let mut problems = Vec::new();
     for (component, command) in COMPONENTS {
@@ -196,7 +196,7 @@ pub(crate) fn run() -> Result<(), String> {
     Err(problems.join("\n"))
 }
 
-/// Installs Debian packages when that needs no password.
+/// Installs Debian packages if this needs no password.
 fn install(packages: &[&str]) -> Result<(), String> {
     let by_hand = format!("install with: sudo apt-get install {}", packages.join(" "));
     let is_root = Command::new("id").arg("-u").output().is_ok_and(|output| output.stdout.trim_ascii() == b"0");

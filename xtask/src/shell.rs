@@ -1,4 +1,4 @@
-//! Running other programs.
+//! Runs other programs.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::Path;
@@ -9,11 +9,11 @@ pub(crate) fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the repository")
 }
 
-/// The cargo that runs this, in the repository's root, with arguments split at spaces.
+/// A command of the cargo that runs this program, in the repository's root; the arguments are split at spaces.
 pub(crate) fn cargo(arguments: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(arguments.split_whitespace()).current_dir(root());
-    // What this program was started with must not leak into the builds that it starts.
+    // Environment variables that cargo has set for this program must not affect the builds that it starts.
     for (name, _) in std::env::vars_os() {
         let inherited =
             name.to_str().is_some_and(|name| name.starts_with("CARGO_PKG_") || name == "CARGO_MANIFEST_DIR");
@@ -24,13 +24,13 @@ pub(crate) fn cargo(arguments: &str) -> Command {
     command
 }
 
-/// Whether a program runs and succeeds, without showing what it says.
+/// Whether a program runs and succeeds. Its output is not shown.
 pub(crate) fn succeeds(program: &str, arguments: &[&str]) -> bool {
     let status = Command::new(program).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).status();
     status.is_ok_and(|status| status.success())
 }
 
-/// Runs a command, shows its output as it comes and gives whether it succeeded and the lines of its stdout.
+/// Runs a command and shows its output as it appears. Returns whether it succeeded, and the lines of its stdout.
 pub(crate) fn run_and_read(mut command: Command) -> Result<(bool, Vec<String>), String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let failed = |error: std::io::Error| format!("{program}: {error}");
@@ -39,7 +39,7 @@ pub(crate) fn run_and_read(mut command: Command) -> Result<(bool, Vec<String>), 
     let stdout = child.stdout.take().expect("stdout is piped");
     for line in BufReader::new(stdout).split(b'\n') {
         let line = String::from_utf8_lossy(&line.map_err(failed)?).into_owned();
-        // A reader that has gone away does not end the suite.
+        // If the reader of stdout has gone, the suite continues.
         let _ = writeln!(std::io::stdout(), "{line}");
         lines.push(line);
     }

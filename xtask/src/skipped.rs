@@ -1,6 +1,6 @@
-//! Tests that were skipped, and the few that may be where nothing else may.
+//! Reports skipped tests, and the few that may be skipped even where no others may.
 
-/// Tests that a machine may be unable to run whatever is installed on it, and why.
+/// Tests that some machines cannot run whatever is installed on them, and why.
 const EXCUSED: &[(&str, &str)] = &[
     ("level::sse2", "x86-64 CPUs have SSE2"),
     ("level::avx2", "x86-64 CPUs since 2013 have AVX2"),
@@ -8,20 +8,20 @@ const EXCUSED: &[(&str, &str)] = &[
     ("level::neon", "AArch64 CPUs have NEON"),
 ];
 
-/// What stands for a test that a harness counted as ignored without showing its name.
+/// Stands for a test that a harness counted as ignored without printing its name.
 const NAMELESS: &str = "a test whose name was not shown";
 
-/// Whether this runs for a continuous integration service: they all set this variable.
+/// Whether this runs in a continuous integration service: all of them set this variable.
 pub(crate) fn in_ci() -> bool {
     std::env::var_os("CI").is_some_and(|value| !value.is_empty())
 }
 
-/// Why a test may be skipped even where nothing else may.
+/// Why a test may be skipped even where no others may; `None` if it may not.
 pub(crate) fn excuse(name: &str) -> Option<&'static str> {
     EXCUSED.iter().find(|(excused, _)| *excused == name).map(|(_, why)| *why)
 }
 
-/// The names of the `count` tests that the output of a test harness tells to be ignored.
+/// The names of the `count` tests that a test harness has reported as ignored.
 pub(crate) fn names(lines: &[String], count: usize) -> Vec<String> {
     let name = |line: &String| {
         let (name, result) = line.strip_prefix("test ")?.split_once(" ... ")?;
@@ -33,7 +33,7 @@ pub(crate) fn names(lines: &[String], count: usize) -> Vec<String> {
     names
 }
 
-/// A line for each test that was skipped; and how many of them have no excuse.
+/// A line for each skipped test, and the number of those without an excuse.
 pub(crate) fn report(skipped: &[String]) -> (String, usize) {
     let line = |name: &String| match excuse(name) {
         Some(why) => format!("skipped: {name}; this machine cannot run it: {why}\n"),

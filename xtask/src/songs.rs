@@ -7,13 +7,13 @@ mod suite;
 use crate::shell::root;
 use std::fs;
 
-/// Makes the bytes of a song's file.
+/// Composes a song and returns the bytes of its file.
 type Compose = fn() -> Result<Vec<u8>, String>;
 
-/// Names of the files and what composes them.
+/// Names of the files, with the functions that compose them.
 const SONGS: [(&str, Compose); 2] = [("groove.mid", groove::compose), ("suite.mid", suite::compose)];
 
-/// Writes the songs, or with `check` compares what is there with what would be written.
+/// Writes the songs. With `check`, compares the existing files with what would be written instead.
 pub(crate) fn run(check: bool) -> Result<(), String> {
     for (name, compose) in SONGS {
         let path = root().join("assets/midi").join(name);

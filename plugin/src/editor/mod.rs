@@ -1,4 +1,4 @@
-//! The plugin's window: parameters by section, a chooser of presets, and preset files.
+//! The plugin's window: parameters by section, a list of factory presets, and preset files.
 
 mod presets;
 mod rows;
@@ -13,10 +13,10 @@ use std::error::Error;
 use std::sync::{Arc, Mutex, PoisonError};
 use window::{LEAST_SIZE, Window};
 
-/// Opens windows, each in the size that the last one had.
+/// Opens windows. Each opens in the size of the last one.
 pub struct SprungEditor {
     params: Arc<SprungParams>,
-    /// What the wrapper's editor knows of the window that was opened last.
+    /// The wrapper's editor state of the last window.
     last: Mutex<Arc<EguiEditorState>>,
 }
 
@@ -27,7 +27,7 @@ impl SprungEditor {
     }
 }
 
-/// A window's state of its own, in the size that is kept.
+/// The wrapper's editor state for a new window, in the stored size.
 fn state(params: &SprungParams) -> Arc<EguiEditorState> {
     let [width, height] = params.window().map(|side| side as f32);
     EguiEditorState::from_size(LogicalSize { width, height }, 1.0)

@@ -1,4 +1,4 @@
-//! The window's head: factory presets, preset and kit files, and what came of the last of it.
+//! The top of the window: factory presets, preset and kit files, and the last message.
 
 use super::rows::announce;
 use crate::params::SprungParams;
@@ -11,12 +11,12 @@ use std::fs::File;
 use std::io::Write as _;
 use std::path::Path;
 
-/// What is being typed, and the last message.
+/// The text that the user is typing, and the last message.
 #[derive(Default)]
 pub(super) struct Presets {
     path: String,
     message: String,
-    /// The path that is to be replaced if it is saved to once more.
+    /// A path whose file is replaced if the user saves to it again.
     confirm: Option<String>,
 }
 
@@ -80,21 +80,22 @@ impl Presets {
     }
 }
 
-/// What is told of the state that was loaded last, if it was not understood as a whole: all if it is little.
+/// A message about the project's last state, if not all of it was understood: the first complaint, and the number of
+/// others.
 fn summary(complaints: &[String]) -> Option<String> {
     let [first, rest @ ..] = complaints else { return None };
     let rest = if rest.is_empty() { String::new() } else { format!(" (and {} more)", rest.len()) };
     Some(format!("Not all of the project’s state was understood: {first}{rest}"))
 }
 
-/// Takes over a preset or kit, with its name for the window and its knobs for the host.
+/// Loads a preset or kit, and tells the host the new knob positions.
 fn load(playable: Playable, params: &SprungParams, host: &GuiContext) {
     let State { seed, window, .. } = params.state();
     params.load(State::new(playable, seed, window).into());
     announce(params, host);
 }
 
-/// Reads a preset or kit file, with remarks about what is retired of it.
+/// Reads a preset or kit file. Returns it with a remark about each retired parameter in it.
 fn read(path: &str) -> Result<(Playable, Vec<String>), String> {
     let mut open =
         |path: &Path| File::open(path).map_err(|source| sprung::Error::io(path.display().to_string(), source));
@@ -104,12 +105,13 @@ fn read(path: &str) -> Result<(Playable, Vec<String>), String> {
     read.map(|playable| (playable, remarks)).map_err(|error| error.to_string())
 }
 
-/// Writes a preset file, whole or not at all. The preset is then called as the file is; gives that name.
+/// Writes a preset file, so that an interrupted save leaves the old file. The preset gets the file's name; returns that
+/// name.
 fn write(mut preset: Preset, path: &str, replace: bool) -> sprung::Result<String> {
     let path = check(path)?;
     preset.name = path.file_stem().unwrap_or_default().to_string_lossy().trim().to_owned();
     let text = preset.to_toml();
-    // A name may be no name for a preset, and what is saved must load.
+    // A file name may not be a valid preset name, and a saved preset must load again.
     Preset::parse(&text, &path.display().to_string())?;
     let mut output = Output::create(&Target::new(path), replace, &Inputs::default())?;
     let written = output.stream().write_all(text.as_bytes());
@@ -118,7 +120,7 @@ fn write(mut preset: Preset, path: &str, replace: bool) -> sprung::Result<String
     Ok(preset.name)
 }
 
-/// A host's working folder is nothing that a person knows: paths say all.
+/// Only full paths are accepted, since users do not know a host's working folder.
 fn check(path: &str) -> sprung::Result<&Path> {
     let path = Path::new(path);
     if path.is_absolute() && path.extension().is_some_and(|extension| extension == "toml") {

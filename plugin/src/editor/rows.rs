@@ -1,4 +1,4 @@
-//! A parameter's row: its name, and a slider or a choice with text to type into.
+//! A parameter's row in the window: its name, and a slider or a choice, with a text field.
 
 use crate::params::{Knob, SprungParams};
 use egui::{ComboBox, Label, Sense, Slider, Ui};
@@ -8,7 +8,7 @@ use sprung::params::{ParamInfo, Unit};
 /// The rows of a window.
 #[derive(Default)]
 pub(super) struct Rows {
-    /// The parameter that the host has been told is being moved.
+    /// Index of the parameter for which the host was told that a gesture has begun.
     moving: Option<usize>,
 }
 
@@ -48,7 +48,7 @@ impl Rows {
         }
     }
 
-    /// Moves a parameter as the host's: it may be recorded as automation.
+    /// Changes a parameter through the host, which may record it as automation.
     fn turn(&mut self, host: &GuiContext, index: usize, knob: &Knob, position: f64) {
         let setter = host.param_setter();
         if self.moving != Some(index) {
@@ -76,7 +76,7 @@ impl Rows {
     }
 }
 
-/// Tells the host where all knobs stand, after they have been turned without it.
+/// Tells the host the positions of all knobs, after they have changed without it.
 pub(super) fn announce(params: &SprungParams, host: &GuiContext) {
     let mut rows = Rows::default();
     for (index, knob) in params.knobs().iter().enumerate() {

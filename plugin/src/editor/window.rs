@@ -1,4 +1,4 @@
-//! What is in the window.
+//! The contents of the window.
 
 use super::presets::Presets;
 use super::rows::Rows;
@@ -12,7 +12,7 @@ use nice_plug_egui::{Frame, KeyCapture, NiceEguiApp};
 use sprung::params::PARAMS;
 use std::sync::Arc;
 
-/// Smallest width and height that the window still works in.
+/// Smallest width and height at which the window can be used.
 pub(super) const LEAST_SIZE: [u32; 2] = [480, 320];
 
 /// An open window.
@@ -37,7 +37,7 @@ impl NiceEguiApp for Window {
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut Frame) {
         let Some(host) = self.host.clone() else { return };
-        // Keys are the host's, but while something is being typed.
+        // Keys go to the host, except while the user is typing.
         let typing = ui.ctx().egui_wants_keyboard_input();
         frame.set_key_capture(if typing { KeyCapture::CaptureAll } else { KeyCapture::IgnoreAll });
         let least = LEAST_SIZE.map(|side| side as f32);

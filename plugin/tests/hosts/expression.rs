@@ -1,4 +1,4 @@
-//! What a host changes of single notes: modulation by voice, expressions, MPE by channel; and the tempo.
+//! What a host can change for single notes: modulation per voice, note expressions, MPE per channel; and the tempo.
 
 use crate::automation::{compare, on, patch};
 use crate::host::reference::At;
@@ -13,7 +13,7 @@ pub(crate) fn modulation_moves_one_voice_or_all() {
     let mut instance = Instance::new();
     for info in PARAMS.iter().filter(|info| matches!(info.change, Change::Smoothed(_))) {
         let id = instance.id(info.param);
-        // Hosts count amounts as they count values: in steps, where there are steps.
+        // Hosts count amounts like values: for a stepped parameter, in steps.
         let travel = if is_stepped(info) { f64::from(info.max - info.min) } else { 1.0 };
         let amount = |note: i32, frame: u64, offset: f32| {
             let kind = EventKind::Modulate { id: NoteId::new(note), param: info.param, offset };
@@ -30,7 +30,7 @@ pub(crate) fn modulation_moves_one_voice_or_all() {
             amount(3, 5_001, 0.125),
         ];
         compare(&format!("voices' {}", info.id), &patch(), &song);
-        // The whole instrument's reaches the shell added to the knob's position, in single precision.
+        // The wrapper adds modulation of the whole instrument to the knob's position, in single precision.
         let position = info.normalise(patch().get(info.param)) as f32;
         let everyone = |frame: u64, offset: f32| {
             let offset_there = (position + offset).clamp(0.0, 1.0) - position;
@@ -61,7 +61,7 @@ pub(crate) fn expressions_reach_their_notes() {
         (Kind::Expression, Expression::Swell, [0.5, 0.25, 1.0]),
     ] {
         let express = |(address, notes): (Address, Notes), frame: u64, value: f64| {
-            // CLAP's pan goes from 0 to 1.
+            // CLAP's pan is from 0 to 1.
             let given = if kind == Kind::Pan { value as f32 * 2.0 - 1.0 } else { value as f32 };
             let event = EventKind::Express { notes, expression, value: given };
             (Sent::Express(address, kind, value).at(frame), At(frame, 0, event))
@@ -86,13 +86,13 @@ pub(crate) fn expressions_reach_their_notes() {
     }
 }
 
-/// MPE as MIDI: a channel a note, each with its own bend, pressure and timbre; the main channel moves all.
+/// MPE as MIDI: one channel per note, each with its own bend, pressure and timbre. The main channel affects all notes.
 pub(crate) fn mpe_is_heard_by_channel() {
     let midi = |frame: u64, data: [u8; 3]| {
         let (channel, kind) = sprung::engine::midi::parse_message(&data).unwrap();
         (Sent::Midi(data).at(frame), At(frame, channel, kind))
     };
-    // The configuration message: from now on, the first channel speaks for the other fifteen.
+    // The MPE configuration message: from now on, the first channel controls the other fifteen.
     let mut song = vec![midi(0, [0xB0, 101, 0]), midi(0, [0xB0, 100, 6]), midi(0, [0xB0, 6, 15])];
     for (channel, key) in [(1_u8, 60_u8), (2, 64), (3, 67)] {
         let at = u64::from(channel) * 100;
@@ -120,7 +120,7 @@ pub(crate) fn mpe_is_heard_by_channel() {
     assert!(both != bent && both != held, "bend and pedal");
 }
 
-/// A vibrato in time with the song: another tempo sounds different, from the frame at which it comes.
+/// A vibrato in time with the song: another tempo sounds different, from its frame on.
 pub(crate) fn the_tempo_is_handed_on() {
     let patch = patch().with(Param::Vibrato, 80.0).with(Param::VibratoSync, 4.0);
     let sound = |first: f64, second: f64| {

@@ -1,11 +1,11 @@
-//! Random events and parameters, as validators throw them: whatever comes, the output stays clean and the same.
+//! Random events and parameters, like those of plugin validators: the output stays finite and reproducible.
 
 use crate::host::reference::{assert_clean, assert_same_bits, assert_sound};
 use crate::host::{Address, Instance, Parameter, Rendered, Sent, Timed};
 use clack_host::events::event_types::NoteExpressionType as Kind;
 use sprung::dsp::random::{key, uniform};
 
-/// A source of small decisions.
+/// A source of random choices.
 struct Dice {
     stream: u64,
     n: u64,
@@ -16,7 +16,7 @@ impl Dice {
         Self { stream: key(seed, 77), n: 0 }
     }
 
-    /// 0 up to, but not, 1.
+    /// Uniform in 0–1, without 1.
     fn unit(&mut self) -> f64 {
         self.n += 1;
         f64::from(uniform(self.stream, self.n) + 1.0) / 2.0
@@ -30,7 +30,7 @@ impl Dice {
         Address::note(self.below(16) as i16, self.below(128) as i16, self.below(40) as i32)
     }
 
-    /// A note, or what may stand for many.
+    /// A single note, or an address with wildcards that match many notes.
     fn address(&mut self) -> Address {
         let mut address = self.note();
         for field in [&mut address.channel, &mut address.key] {
@@ -90,7 +90,7 @@ pub(crate) fn random_events_give_clean_sound_at_every_rate() {
     }
 }
 
-/// Random events sound the same however blocks are cut, and end the same notes.
+/// Random events give the same samples and the same ended notes for all block sizes.
 pub(crate) fn random_events_sound_the_same_in_all_blocks() {
     let parameters = Instance::new().parameters();
     for seed in 10..18 {
@@ -112,7 +112,7 @@ pub(crate) fn random_events_sound_the_same_in_all_blocks() {
     }
 }
 
-/// Random settings of all parameters at once, each played: what parameter fuzzers do.
+/// Random values of all parameters at once, each with some notes, as parameter fuzzers do.
 pub(crate) fn random_settings_sound_clean() {
     let parameters = Instance::new().parameters();
     for seed in 30..90 {
@@ -138,7 +138,7 @@ pub(crate) fn random_settings_sound_clean() {
     }
 }
 
-/// Values far outside, in the middle of processing.
+/// Values far outside their ranges, sent during processing.
 pub(crate) fn wild_values_sound_clean() {
     let parameters = Instance::new().parameters();
     let wild = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e308, 5e-324, -0.0, 1e9];

@@ -1,4 +1,4 @@
-//! A thousand instances come and go, and nothing is left of them.
+//! Creates and destroys a thousand instances, and checks that no memory, file or thread is left.
 
 use crate::host::{Address, Instance, Sent, open};
 use crate::patches::{patches, state};
@@ -13,7 +13,7 @@ pub(crate) fn the_library_can_be_opened_and_closed_again() {
     succeeds(command("reopen"));
 }
 
-/// What this process holds, in bytes and numbers.
+/// Resources of this process: bytes and counts.
 #[derive(Debug)]
 struct Held {
     allocated: usize,
@@ -39,7 +39,7 @@ impl Held {
     }
 }
 
-/// A whole life, with a patch loaded, saved, and a note played.
+/// A whole life of an instance: loads a patch, plays a note, saves.
 fn live(instance: Instance, state: &[u8]) {
     let mut instance = instance;
     assert!(instance.load(state));
@@ -49,7 +49,7 @@ fn live(instance: Instance, state: &[u8]) {
     assert!(!instance.save().is_empty());
 }
 
-/// What the processes that these tests start do.
+/// Runs in the processes that these tests start.
 pub(crate) fn work(name: &str) -> ExitCode {
     let state = state(&patches()[2].1);
     if name == "reopen" {
@@ -65,7 +65,7 @@ pub(crate) fn work(name: &str) -> ExitCode {
     cycles(1_000);
     let after = Held::now();
     println!("before: {before:?}, after: {after:?}");
-    // What is allocated is exact, a kilobyte per instance would be a million; pages come and go in larger steps.
+    // Allocated bytes are exact: a kilobyte per instance would be a million bytes. Pages change in larger steps.
     let kept = after.allocated > before.allocated + 100_000
         || after.resident > before.resident + 8_000_000
         || after.files > before.files

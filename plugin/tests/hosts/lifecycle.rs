@@ -1,4 +1,4 @@
-//! Orders in which hosts create, activate, start, reset, stop and destroy; layouts, rates and block sizes.
+//! All orders in which hosts create, activate, start, reset, stop and destroy; port layouts, rates and block sizes.
 
 use crate::host::reference::{At, assert_clean, assert_same_bits, assert_sound, render};
 use crate::host::{Address, Instance, Player, Sent, Timed, open};
@@ -14,7 +14,7 @@ use sprung::patch::Patch;
 const RATE: f64 = 48_000.0;
 const FRAMES: usize = 9_600;
 
-/// Two notes, as a host sends them and as the engine takes them.
+/// Two notes, as events of the host and of the engine.
 fn two_notes() -> (Vec<Timed>, Vec<At>) {
     let note = |frame: u64, key: u8, id: i32| {
         let (address, velocity) = (Address::note(0, key.into(), id), 0.7_f32);
@@ -42,7 +42,7 @@ pub(crate) fn every_rate_and_block_size_plays() {
             let found = player.render(&sent, FRAMES, || max_block as usize).channels;
             let what = format!("{rate} Hz, blocks of {max_block}");
             assert_sound(&what, &found);
-            // The wrapper hands rates over in single precision.
+            // The wrapper passes the sample rate in single precision.
             assert_same_bits(&what, &found, &render(&patch, f64::from(rate as f32), &events, FRAMES));
         }
     }
@@ -90,7 +90,7 @@ pub(crate) fn instances_do_not_hear_each_other() {
     for (((_, patch), found), (name, _)) in players.iter().zip(&found).zip(&patches) {
         assert_same_bits(name, found, &render(patch, RATE, &events, found[0].len()));
     }
-    // Some go, in any order, while the others play on.
+    // Some instances end, in any order, while the others continue to play.
     drop(players.remove(2).0.stop());
     drop(players.remove(0).0.stop());
     for (player, patch) in &mut players {
@@ -99,7 +99,7 @@ pub(crate) fn instances_do_not_hear_each_other() {
     }
 }
 
-/// An instance on each of several threads at once.
+/// One instance on each of several threads at the same time.
 pub(crate) fn instances_on_several_threads_play_at_once() {
     let play = || {
         let patch = patches().swap_remove(2).1;
@@ -115,7 +115,7 @@ pub(crate) fn instances_on_several_threads_play_at_once() {
     });
 }
 
-/// Stereo is the engine's own; mono is the mean of both sides; what comes in is not heard, also in the same memory.
+/// Stereo is the engine's output; mono is the mean of both sides; the input is ignored, even in the same memory.
 pub(crate) fn every_layout_plays_and_ignores_its_input() {
     let patch = patches().swap_remove(1).1;
     let (sent, events) = two_notes();
@@ -157,8 +157,8 @@ pub(crate) fn every_layout_plays_and_ignores_its_input() {
     }
 }
 
-/// The tail is as long as the sound that is left, to a control tick; then hosts may let the plugin sleep. In real time
-/// it is counted now and then only, and infinite until then.
+/// The tail has the length of the remaining sound, exact to a control tick; then hosts may stop processing. In real
+/// time the plugin computes the tail only from time to time, and reports an infinite tail until then.
 pub(crate) fn the_tail_is_exact_and_then_the_plugin_may_sleep() {
     for mode in [RenderMode::Realtime, RenderMode::Offline] {
         let mut instance = Instance::new();
@@ -198,7 +198,7 @@ pub(crate) fn blocks_without_frames_and_short_blocks_do_no_harm() {
     plays_from_the_beginning("after empty blocks", &mut player, &patch, RATE);
 }
 
-/// Activation and starting without a block in between, again and again; offline and back.
+/// Repeated activation and starting without a block in between; switching to offline and back.
 pub(crate) fn starts_and_stops_need_no_block_in_between() {
     let mut instance = Instance::new();
     for round in 0..20 {
@@ -212,7 +212,7 @@ pub(crate) fn starts_and_stops_need_no_block_in_between() {
     plays_from_the_beginning("after all that", &mut instance.play(RATE, 480), &patch, RATE);
 }
 
-/// A host that does not tell threads apart.
+/// A host without the thread-check extension.
 pub(crate) fn a_host_without_thread_checks_gets_the_same() {
     let mut instance = Instance::of(&open(), false);
     let patch = patches().swap_remove(1).1;
@@ -220,7 +220,7 @@ pub(crate) fn a_host_without_thread_checks_gets_the_same() {
     plays_from_the_beginning("without thread checks", &mut instance.play(RATE, 480), &patch, RATE);
 }
 
-/// What an audio thread plays on a thread of its own is what the main thread would play.
+/// An audio thread plays the same samples as the main thread.
 pub(crate) fn audio_may_run_on_any_thread() {
     let mut instance = Instance::new();
     let patch = patches().swap_remove(1).1;

@@ -1,4 +1,4 @@
-//! The plugin in real hosts: CLAP in clack, VST3 in pedalboard, dawdreamer and a host of our own, the window under Xvfb.
+//! The plugin in real hosts: CLAP in clack; VST3 in pedalboard, dawdreamer and our own host; windows under Xvfb.
 //!
 //! `plugin/tests/README.md` lists what is covered and where.
 
@@ -29,24 +29,24 @@ use libtest_mimic::{Arguments, Trial};
 use std::process::ExitCode;
 use std::sync::LazyLock;
 
-/// What a test needs beyond Rust.
+/// What a test needs besides Rust.
 #[derive(Clone, Copy)]
 enum Needs {
     Nothing,
-    /// A screen that nobody looks at.
+    /// A screen that nobody sees (Xvfb).
     Screen,
     /// The Python hosts.
     Python,
     /// Both.
     PythonAndScreen,
-    /// A library without the standalone's logger, which allocates. Bundles have none.
+    /// A library without the logger of the standalone program, which allocates. Libraries in bundles have none.
     NoLogger,
-    /// That and a screen.
+    /// A library without the logger, and a screen.
     NoLoggerAndScreen,
 }
 
 impl Needs {
-    /// What of it is not there.
+    /// What is missing on this machine.
     fn missing(self) -> Option<String> {
         static SCREEN: LazyLock<Option<String>> = LazyLock::new(screen::missing);
         static PYTHON: LazyLock<Option<String>> = LazyLock::new(vst3::missing);
@@ -61,13 +61,13 @@ impl Needs {
     }
 }
 
-/// Why the library beside this test logs, if it does.
+/// Why this build's library contains the logger, if it does.
 fn logger() -> Option<String> {
     let logs = cfg!(feature = "standalone") && !host::bundle::are_given();
     logs.then(|| "the feature `standalone` has the library log, which allocates: test without it".to_owned())
 }
 
-/// Tests by their modules and names, and what those of a module need.
+/// Makes the list of tests from their modules and names, with what the tests of each module need.
 macro_rules! trials {
     ($($needs:ident: $module:ident { $($test:ident)* })*) => {
         vec![$($((concat!(stringify!($module), "::", stringify!($test)), Needs::$needs, $module::$test as fn()),)*)*]

@@ -1,4 +1,4 @@
-//! Notes as CLAP hosts send them: ended once each, addressed by id, key, channel or not at all, choked, stray.
+//! Notes as CLAP hosts send them: each ends once; addressed by id, key, channel or wildcards; choked; stray.
 
 use crate::host::reference::{assert_clean, assert_sound};
 use crate::host::{Address, Ended, Instance, Player, Sent, Timed};
@@ -25,7 +25,7 @@ fn ended(patch: &Patch, song: &[Timed], frames: usize) -> Vec<Ended> {
     rendered.ended
 }
 
-/// How often each note was told to have ended.
+/// How often each note was reported as ended.
 fn counts(ended: &[Ended]) -> BTreeMap<Address, usize> {
     ended.iter().fold(BTreeMap::new(), |mut counts, end| {
         *counts.entry(end.note).or_default() += 1;
@@ -43,7 +43,8 @@ pub(crate) fn a_note_ends_when_its_sound_does() {
         let [end] = rendered.ended[..] else { panic!("{:?}", rendered.ended) };
         assert_eq!(end.note, note);
         let last = rendered.channels[0].iter().rposition(|sample| *sample != 0.0).unwrap() as u64;
-        // The engine lets go of a voice at the control tick after its last sample; the shell says so within the block.
+        // The engine frees a voice at the control tick after its last sample, and the plugin reports it within the
+        // block.
         assert!((last..last + 64 + 480).contains(&end.frame), "ended at {}, last sample at {last}", end.frame);
     }
 }
@@ -71,7 +72,7 @@ pub(crate) fn every_note_ends_once_also_when_stolen_or_struck_again() {
     }
 }
 
-/// Of keys held in mono, one sounds; in poly, the others are notes no more, and end once all the same.
+/// In mono, one of the held keys sounds. After a change to poly, the others have no voice, and still end exactly once.
 pub(crate) fn held_notes_end_once_when_mono_becomes_poly() {
     let notes = [Address::note(0, 60, 1), Address::note(0, 64, 2), Address::note(0, 67, 3)];
     let mode = Instance::new().id(Param::Mode);
@@ -102,7 +103,7 @@ pub(crate) fn a_stolen_note_ends_when_it_is_stolen() {
 }
 
 pub(crate) fn notes_are_found_by_id_key_channel_or_not_at_all() {
-    // A 16 s decay rings on unless it is let go of: what ends within 2 s was found.
+    // A decay of 16 s rings on unless the note is released, so a note that ends within 2 s was found by its address.
     let patch = patch().with(Param::Decay, 16.0);
     let notes = [Address::note(0, 60, 1), Address::note(0, 64, 2), Address::note(1, 60, 3), Address::note(1, 67, 4)];
     let any = |channel, key, id| Address { channel, key, id };
@@ -137,7 +138,7 @@ pub(crate) fn a_choke_silences_within_a_fade() {
     assert_eq!(rendered.ended.len(), 1);
 }
 
-/// Off without on, twice on, on and off at one frame, expressions of notes that never were.
+/// Note-off without note-on, two note-ons, on and off at one frame, expressions for notes that do not exist.
 pub(crate) fn stray_events_do_no_harm() {
     use clack_host::events::event_types::NoteExpressionType as Kind;
     let mut song = vec![
@@ -168,7 +169,7 @@ pub(crate) fn stray_events_do_no_harm() {
     assert!(rendered.channels.iter().flatten().all(|sample| sample.abs() < 8.0));
 }
 
-/// Notes in a block beyond the event queue's size sound like as many in small blocks.
+/// A block with more notes than the event queue holds sounds the same as small blocks.
 pub(crate) fn a_flood_of_events_loses_none() {
     let song: Vec<Timed> = (0..12_000_u64)
         .map(|n| {

@@ -1,4 +1,4 @@
-//! A phrase that uses all that MIDI has for musicians, as a MIDI file, as what hosts send, and as the engine's events.
+//! A phrase with everything musicians use in MIDI: as a MIDI file, as host events, and as events of the engine.
 
 use crate::host::{Address, Sent, Timed};
 use midly::num::{u4, u7, u15, u24, u28};
@@ -6,21 +6,21 @@ use midly::{Format, Header, MetaMessage, MidiMessage, Smf, Timing, TrackEvent, T
 use sprung::engine::EventKind;
 use sprung::io::Song;
 
-/// Frames per second of the frames below.
+/// Sample rate, in frames per second, for all frames below.
 pub(crate) const SAMPLE_RATE: u32 = 48_000;
 
 /// Length of the phrase in frames.
 pub(crate) const FRAMES: usize = 72_000;
 
-/// How a host hands notes over; everything else comes as MIDI.
+/// How a host sends notes; everything else is sent as MIDI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Dialect {
     Clap,
     Midi,
 }
 
-/// Messages of one channel, by frame. Those that set the bend range lie well apart, since VST3 hands controllers
-/// over as parameters, and parameters that change in one block of some hosts have no order.
+/// Messages of one channel, by frame. Those that set the bend range are far apart: VST3 passes controllers as
+/// parameters, and in some hosts parameters that change within one block have no order.
 pub(crate) fn messages() -> Vec<(u64, [u8; 3])> {
     vec![
         (0, [0xB0, 7, 110]),
@@ -65,8 +65,8 @@ pub(crate) fn messages() -> Vec<(u64, [u8; 3])> {
     ]
 }
 
-/// An MPE performance: a zone of fifteen channels, a note on each, and bends over all of ±48 semitones, pressure and
-/// brightness that move while they sound.
+/// An MPE performance: a zone of fifteen channels with one note each. Bends over the whole range of ±48 semitones,
+/// pressure and brightness move while the notes sound.
 pub(crate) fn mpe_messages() -> Vec<(u64, [u8; 3])> {
     let mut messages = vec![(0, [0xB0, 101, 0]), (0, [0xB0, 100, 6]), (0, [0xB0, 6, 15])];
     for channel in 1..16_u8 {
@@ -105,12 +105,12 @@ pub(crate) fn kit_messages() -> Vec<(u64, [u8; 3])> {
     messages
 }
 
-/// Messages with each controller, bend and pressure of the channel at the start of its block.
+/// The messages, with each controller, bend and pressure of the channel moved to the start of its block.
 pub(crate) fn with_controllers_by_block(messages: &[(u64, [u8; 3])], block: u64) -> Vec<(u64, [u8; 3])> {
     let is_controller = |data: [u8; 3]| matches!(data[0] & 0xF0, 0xB0 | 0xD0 | 0xE0);
     let mut moved = messages.to_vec();
     moved.iter_mut().filter(|(_, data)| is_controller(*data)).for_each(|(frame, _)| *frame -= *frame % block);
-    // On one frame, controllers come first.
+    // On the same frame, controllers come first.
     moved.sort_by_key(|&(frame, data)| (frame, !is_controller(data)));
     moved
 }
@@ -120,8 +120,8 @@ pub(crate) fn midi_file() -> Vec<u8> {
     file(&messages())
 }
 
-/// Messages as the bytes of a MIDI file with four ticks a frame. Each message lies a quarter of a frame late: hosts
-/// that cut times down to whole frames put it where those do that round them, and where `sprung render` puts it.
+/// Messages as the bytes of a MIDI file with four ticks per frame. Each message is a quarter of a frame late, so that
+/// hosts that truncate times to whole frames, hosts that round them and `sprung render` all use the same frame.
 pub(crate) fn file(messages: &[(u64, [u8; 3])]) -> Vec<u8> {
     let tempo = TrackEventKind::Meta(MetaMessage::Tempo(u24::new(125_000)));
     let mut track = vec![TrackEvent { delta: u28::new(0), kind: tempo }];
@@ -156,18 +156,18 @@ fn message([status, first, second]: [u8; 3]) -> MidiMessage {
     }
 }
 
-/// A song as `sprung render` reads it.
+/// Reads a song as `sprung render` does.
 pub(crate) fn song(bytes: &[u8]) -> Song {
     Song::parse(bytes, "the phrase").unwrap()
 }
 
-/// MIDI messages as a host sends them.
+/// MIDI messages as events of a host.
 pub(crate) fn sent(messages: &[(u64, [u8; 3])], dialect: Dialect) -> Vec<Timed> {
     let translate = |&(frame, data): &(u64, [u8; 3])| {
         let note = Address::key(i16::from(data[0] & 15), data[1].into());
         let velocity = f64::from(data[2]) / 127.0;
         let sent = match (dialect, data[0] & 0xF0) {
-            // MIDI does not tell how fast these keys were let go: hosts make it half way.
+            // MIDI does not say how fast these keys were released; hosts use the middle velocity.
             (Dialect::Clap, 0x90) if data[2] == 0 => Sent::Off(note, 0.5),
             (Dialect::Clap, 0x90) => Sent::On(note, velocity),
             (Dialect::Clap, 0x80) => Sent::Off(note, velocity),
@@ -178,9 +178,10 @@ pub(crate) fn sent(messages: &[(u64, [u8; 3])], dialect: Dialect) -> Vec<Timed> 
     messages.iter().map(translate).collect()
 }
 
-/// The messages of a MIDI file, by frame, program changes left out, since a plugin plays one patch.
+/// The messages of a MIDI file, by frame, without program changes, since a plugin plays one patch.
 pub(crate) fn messages_of(bytes: &[u8], sample_rate: f64) -> Vec<(u64, [u8; 3])> {
-    // The times come from the library's own reader, the bytes from the file: both have the same events in one order.
+    // The times come from the library's own reader, the bytes from the file. Both contain the same events in the same
+    // order.
     let song = song(bytes);
     let smf = Smf::parse(bytes).unwrap();
     let mut raw = Vec::new();

@@ -1,4 +1,4 @@
-//! Tests that need a process of their own: this program, started again to do one piece of work.
+//! Tests that need a process of their own: this program starts itself again for one piece of work.
 
 use crate::host::bundle;
 use std::path::{Path, PathBuf};
@@ -6,15 +6,15 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Environment variable: the piece of work that a process is started for.
+/// Environment variable: the piece of work for which a process was started.
 const WORK: &str = "SPRUNG_HOSTS_WORK";
 
-/// The piece of work that this process was started for, if it is not the test program itself.
+/// The piece of work for which this process was started; `None` in the test program itself.
 pub(crate) fn work() -> Option<String> {
     std::env::var(WORK).ok()
 }
 
-/// This program, to be started for a piece of work with the same plugin.
+/// The command that starts this program for a piece of work, with the same plugin.
 pub(crate) fn command(work: &str) -> Command {
     let (name, folder) = bundle::environment();
     let mut command = Command::new(std::env::current_exe().unwrap());
@@ -22,7 +22,7 @@ pub(crate) fn command(work: &str) -> Command {
     command
 }
 
-/// Runs a command to its end; what it writes to stdout, or a failure with all that it wrote.
+/// Runs a command to its end and returns its stdout, or fails with everything that it wrote.
 #[track_caller]
 pub(crate) fn succeeds(mut command: Command) -> String {
     let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
@@ -31,14 +31,14 @@ pub(crate) fn succeeds(mut command: Command) -> String {
     stdout
 }
 
-/// A folder for what the tests make, under the target directory.
+/// A folder under the target directory for files of the tests.
 pub(crate) fn scratch(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hosts");
     std::fs::create_dir_all(&path).unwrap();
     path.join(name)
 }
 
-/// Tells another thread to stop when it goes, so that nobody waits for that thread after a failure.
+/// Tells another thread to stop when dropped, so that after a failure nobody waits for that thread.
 pub(crate) struct Stops<'a>(pub(crate) &'a AtomicBool);
 
 impl Drop for Stops<'_> {
@@ -47,7 +47,7 @@ impl Drop for Stops<'_> {
     }
 }
 
-/// Waits until something is so, and gives up after half a minute.
+/// Waits until a condition is true, for at most half a minute.
 #[track_caller]
 pub(crate) fn wait_until(what: &str, mut so: impl FnMut() -> bool) {
     let start = Instant::now();

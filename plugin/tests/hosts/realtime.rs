@@ -1,7 +1,8 @@
-//! The audio thread under watch: no allocation, no lock, no system call in `process`, whatever the other threads do.
+//! Watches the audio thread: no allocation, lock or system call in `process`, whatever the other threads do.
 //!
-//! `probe.c` is preloaded into a process of its own. On the watched thread it counts allocations and the locks of the
-//! system's library, and the kernel refuses every system call: a lock made of atomic operations that waits is one.
+//! `probe.c` is preloaded into a separate process. On the watched thread it counts allocations and locks of the
+//! system's library, and the kernel refuses every system call. (A lock made of atomic operations also needs a system
+//! call to wait.)
 
 use crate::host::{Address, Instance, Player, Sent};
 use crate::patches::{drums, patches, state, state_of_kit};
@@ -17,7 +18,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
-/// Blocks that are played while the other threads are at work, at least.
+/// Minimum number of blocks played while the other threads work.
 const BLOCKS: u32 = 4_000;
 
 pub(crate) fn process_neither_allocates_nor_locks_nor_calls_the_system() {
@@ -31,7 +32,7 @@ pub(crate) fn nor_does_it_with_the_window_open() {
     succeeds(command);
 }
 
-/// The watch sees what it is for.
+/// The probe must notice what it is meant to notice.
 pub(crate) fn the_watch_bites() {
     for (sin, seen) in [("sin-malloc", "malloc"), ("sin-lock", "pthread_mutex_lock"), ("sin-call", "a system call")] {
         let output = watched(sin).output().unwrap();
@@ -40,7 +41,7 @@ pub(crate) fn the_watch_bites() {
     }
 }
 
-/// This program, to do work with the probe preloaded.
+/// This program with the probe preloaded, for a piece of work.
 fn watched(work: &str) -> Command {
     static BUILD: Mutex<bool> = Mutex::new(false);
     let probe = scratch("probe.so");
@@ -57,7 +58,7 @@ fn watched(work: &str) -> Command {
     command
 }
 
-/// A function of the probe.
+/// Finds a function of the probe.
 #[allow(unsafe_code)]
 fn probe(name: &CStr) -> extern "C" fn() -> i32 {
     // SAFETY: the probe is preloaded; its functions have this signature.
@@ -68,7 +69,7 @@ fn probe(name: &CStr) -> extern "C" fn() -> i32 {
     }
 }
 
-/// What a process that was started under the probe does.
+/// Runs in the processes that are started with the probe.
 pub(crate) fn work(name: &str) -> ExitCode {
     match name {
         "watch" => play_under_watch(None),
@@ -77,7 +78,7 @@ pub(crate) fn work(name: &str) -> ExitCode {
     }
 }
 
-/// Plays on a watched thread while this one does what main threads do.
+/// Plays on a watched thread, while this thread does what main threads do.
 fn play_under_watch(parent: Option<Parent>) -> ExitCode {
     let mut instance = Instance::new();
     let blocks = storm(&mut instance);
@@ -89,7 +90,7 @@ fn play_under_watch(parent: Option<Parent>) -> ExitCode {
     let watch = probe(c"sprung_watch");
     std::thread::scope(|scope| {
         scope.spawn(|| {
-            // One unwatched block: what a thread needs when it runs for the first time is not `process`'s doing.
+            // One block without the watch: what a thread needs when it first runs is not caused by `process`.
             audio.process(&EventBuffer::new(), 64);
             assert_eq!(watch(), 0, "the kernel cannot refuse system calls");
             while !stop.load(Ordering::Relaxed) {
@@ -123,7 +124,7 @@ fn play_under_watch(parent: Option<Parent>) -> ExitCode {
         let played = played.load(Ordering::Relaxed);
         let peak = f32::from_bits(loudest.load(Ordering::Relaxed));
         eprintln!("{played} blocks, {round} rounds of the main thread, a peak of {peak}");
-        // The watched thread cannot even end: the process ends around it.
+        // The watched thread cannot even end normally, so the whole process exits.
         std::process::exit(i32::from(seen() || played < BLOCKS || peak < 1e-3));
     })
 }
@@ -135,7 +136,7 @@ fn seen() -> bool {
     TOLD.load(Ordering::Relaxed)
 }
 
-/// Blocks of every kind of event: notes stolen and struck again, expressions, automation, modulation, MIDI, tempo.
+/// Blocks with every kind of event: stealing, re-striking, expressions, automation, modulation, MIDI, tempo.
 fn storm(instance: &mut Instance) -> Vec<EventBuffer> {
     let parameters = instance.parameters();
     let stream = key(1, 1);
@@ -173,7 +174,7 @@ fn storm(instance: &mut Instance) -> Vec<EventBuffer> {
         .collect()
 }
 
-/// Does on a watched thread what the audio thread must not do.
+/// Does something on a watched thread that the audio thread must not do.
 fn commit(sin: &str) -> ExitCode {
     let lock = std::sync::atomic::AtomicPtr::new(std::ptr::null_mut::<libc::pthread_mutex_t>());
     lock.store(Box::into_raw(Box::new(libc::PTHREAD_MUTEX_INITIALIZER)), Ordering::Relaxed);
@@ -197,6 +198,6 @@ fn commit(sin: &str) -> ExitCode {
 
 #[allow(unsafe_code)]
 fn lock_and_keep(lock: *mut libc::pthread_mutex_t) {
-    // SAFETY: the lock was made for this, and lives as long as the process.
+    // SAFETY: the lock was created for this and is never freed.
     unsafe { libc::pthread_mutex_lock(lock) };
 }

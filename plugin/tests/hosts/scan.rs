@@ -1,4 +1,4 @@
-//! What a host learns of the plugin before it plays: the file, the descriptor, ports, layouts, voices.
+//! What a host reads from the plugin before it plays: the library, the descriptor, ports, layouts, voices.
 
 use crate::host::{Instance, bundle, open};
 use clack_extensions::audio_ports::{AudioPortFlags, AudioPortInfoBuffer, AudioPortType, PluginAudioPorts};
@@ -34,7 +34,7 @@ pub(crate) fn the_descriptor_is_complete() {
     }
     let different: BTreeSet<_> = features.iter().collect();
     assert_eq!(different.len(), features.len(), "a feature is there twice: {features:?}");
-    // The instance says the same of itself as the factory.
+    // The instance must report the same descriptor as the factory.
     let instance = Instance::of(&entry, true);
     let handle = instance.clack.plugin_shared_handle();
     assert_eq!(text(handle.descriptor().unwrap().id()), id);
@@ -53,11 +53,11 @@ pub(crate) fn no_other_plugin_is_made() {
     }
 }
 
-/// Symbols that the system does not have would show here, not when a musician plays.
+/// Symbols that are missing on the system must be found here, not when a musician plays.
 #[allow(unsafe_code)]
 pub(crate) fn all_symbols_are_found_at_once() {
     let path = std::ffi::CString::new(bundle::clap().to_str().unwrap()).unwrap();
-    // SAFETY: the library is our own, and its constructors do nothing that a plain load does not do.
+    // SAFETY: the library is our own, and loading it runs only its usual constructors.
     let (handle, entry) = unsafe {
         let handle = libc::dlopen(path.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL);
         (handle, if handle.is_null() { handle } else { libc::dlsym(handle, c"clap_entry".as_ptr()) })

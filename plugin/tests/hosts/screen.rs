@@ -1,4 +1,4 @@
-//! A screen that nobody looks at: windows on it, what they show, and a hand that moves the mouse and closes them.
+//! A virtual screen: its windows and pixels, and a simulated user who moves the mouse and closes windows.
 
 use std::collections::BTreeSet;
 use std::ffi::CStr;
@@ -15,7 +15,7 @@ use x11rb::rust_connection::RustConnection;
 /// Libraries that the plugin's window loads when it opens.
 const LIBRARIES: [&CStr; 3] = [c"libEGL.so.1", c"libX11-xcb.so.1", c"libxkbcommon-x11.so.0"];
 
-/// What a window on a screen needs and is not there.
+/// What is missing on this machine for a window on a screen.
 pub(crate) fn missing() -> Option<String> {
     let paths = std::env::var_os("PATH").unwrap_or_default();
     if !std::env::split_paths(&paths).any(|folder| folder.join("Xvfb").is_file()) {
@@ -25,7 +25,7 @@ pub(crate) fn missing() -> Option<String> {
     Some(missing.to_string_lossy().into_owned())
 }
 
-/// Whether a library of the system's can be loaded.
+/// Whether a system library can be loaded.
 #[allow(unsafe_code)]
 fn loads(library: &CStr) -> bool {
     // SAFETY: these libraries' constructors do nothing that matters here; the handle is closed once.
@@ -35,10 +35,10 @@ fn loads(library: &CStr) -> bool {
     }
 }
 
-/// A server of a screen's own, as long as it lives.
+/// A running X server with a virtual screen.
 pub(crate) struct Screen {
     server: Child,
-    /// What `DISPLAY` has to say.
+    /// Value for the environment variable `DISPLAY`.
     pub(crate) display: String,
 }
 
@@ -77,7 +77,7 @@ impl Drop for Screen {
     }
 }
 
-/// What a window manager names.
+/// Atoms that a window manager creates.
 const NAMES: &str = "WM_CHANGE_STATE WM_DELETE_WINDOW WM_PROTOCOLS WM_TAKE_FOCUS UTF8_STRING XdndAware \
     _KDE_NET_WM_WINDOW_TYPE_OVERRIDE _MOTIF_WM_HINTS _NET_ACTIVE_WINDOW _NET_FRAME_EXTENTS \
     _NET_SUPPORTED _NET_WM_ACTION_CLOSE _NET_WM_ACTION_FULLSCREEN _NET_WM_ACTION_MINIMIZE \
@@ -87,28 +87,28 @@ const NAMES: &str = "WM_CHANGE_STATE WM_DELETE_WINDOW WM_PROTOCOLS WM_TAKE_FOCUS
     _NET_WM_STATE_SKIP_TASKBAR _NET_WM_USER_TIME _NET_WM_WINDOW_TYPE _NET_WM_WINDOW_TYPE_COMBO \
     _NET_WM_WINDOW_TYPE_NORMAL _NET_WORKAREA _XEMBED _XEMBED_INFO";
 
-/// Somebody at the screen.
+/// A simulated user of the screen.
 pub(crate) struct Onlooker {
     connection: RustConnection,
     root: u32,
 }
 
 impl Onlooker {
-    /// At the screen of this name, or the one that `DISPLAY` says.
+    /// A user of the screen with this name, or of the one in `DISPLAY`.
     pub(crate) fn new(display: Option<&str>) -> Self {
         let (connection, screen) = x11rb::connect(display).expect("there is an X server");
         let root = connection.setup().roots[screen].root;
         Self { connection, root }
     }
 
-    /// Names what a window manager would name: some toolkits expect that one is there, and end if it is not.
+    /// Creates the atoms of a window manager: some toolkits expect them and exit if they are missing.
     pub(crate) fn stand_in_for_a_window_manager(&self) {
         for name in NAMES.split_whitespace() {
             self.connection.intern_atom(false, name.as_bytes()).unwrap().reply().unwrap();
         }
     }
 
-    /// Makes a window for the plugin's to lie in, in the upper left corner.
+    /// Creates a window for the plugin's window, in the upper left corner.
     pub(crate) fn make_window(&self) -> u32 {
         let window = self.connection.generate_id().unwrap();
         let visual = self.connection.setup().roots[0].root_visual;
@@ -121,7 +121,7 @@ impl Onlooker {
         window
     }
 
-    /// Blue, green and red of the upper left corner of the screen.
+    /// Blue, green and red of each pixel in the upper left corner of the screen.
     pub(crate) fn pixels(&self, width: u32, height: u32) -> Vec<[u8; 3]> {
         let (width, height) = (width as u16, height as u16);
         let request = self.connection.get_image(ImageFormat::Z_PIXMAP, self.root, 0, 0, width, height, !0);
@@ -129,17 +129,17 @@ impl Onlooker {
         image.data.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
     }
 
-    /// Whether there is more to see in the upper left corner than a few colours.
+    /// Whether the upper left corner shows more than a few colours.
     pub(crate) fn sees_a_picture(&self, width: u32, height: u32) -> bool {
         self.pixels(width, height).into_iter().collect::<BTreeSet<_>>().len() > 16
     }
 
-    /// Drags the mouse from one place to another at once: a window may see all of it between two pictures.
+    /// Drags the mouse in one step, so that a window may see all of it between two frames.
     pub(crate) fn drag(&self, from: [i16; 2], to: [i16; 2]) {
         self.drag_with_pauses(from, to, Duration::ZERO);
     }
 
-    /// Drags the mouse as a hand does, so that a window sees each step by itself.
+    /// Drags the mouse slowly, as a hand does, so that a window sees each step separately.
     pub(crate) fn drag_slowly(&self, from: [i16; 2], to: [i16; 2]) {
         self.drag_with_pauses(from, to, Duration::from_millis(30));
     }
@@ -158,11 +158,11 @@ impl Onlooker {
         self.connection.flush().unwrap();
     }
 
-    /// The window with this title, if it is to be seen.
+    /// Finds the visible window with this title.
     pub(crate) fn find(&self, title: &str) -> Option<u32> {
         let tree = self.connection.query_tree(self.root).unwrap().reply().unwrap();
         tree.children.into_iter().find(|window| {
-            // Windows may go while they are looked at.
+            // Windows may close during the search.
             let name = self.connection.get_property(false, *window, AtomEnum::WM_NAME, AtomEnum::ANY, 0, 64);
             let attributes = self.connection.get_window_attributes(*window);
             let is_seen = attributes.unwrap().reply().is_ok_and(|found| found.map_state == MapState::VIEWABLE);
@@ -170,7 +170,7 @@ impl Onlooker {
         })
     }
 
-    /// Asks a window to close, as its button does.
+    /// Asks a window to close, as its close button does.
     pub(crate) fn close(&self, window: u32) {
         let atom = |name: &[u8]| self.connection.intern_atom(false, name).unwrap().reply().unwrap().atom;
         let data = [atom(b"WM_DELETE_WINDOW"), 0, 0, 0, 0];

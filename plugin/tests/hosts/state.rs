@@ -1,4 +1,4 @@
-//! State: all of it comes back, and the same bytes when nothing has changed.
+//! State: everything is restored, and if nothing has changed, the same bytes are saved.
 
 use crate::host::reference::{At, assert_same_bits, render};
 use crate::host::{Address, Instance, Player, Sent, Timed};
@@ -23,7 +23,7 @@ pub(crate) fn strike() -> (Vec<Timed>, Vec<At>) {
     )
 }
 
-/// Every knob somewhere, as a host's automation or a person would leave it.
+/// Sets every knob to some position, as automation or a user would.
 fn scramble(instance: &mut Instance, seed: u64) {
     let stream = key(seed, 0);
     let changes: Vec<Timed> = instance
@@ -61,7 +61,7 @@ pub(crate) fn what_is_saved_comes_back_to_the_byte() {
     }
 }
 
-/// Through a flush without processing, through processing, in blocks that load before and after activation.
+/// A flush without processing, processing, and loading before and after activation all give the same state.
 pub(crate) fn every_way_to_set_values_leaves_the_same_state() {
     for seed in 0..4 {
         let mut flushed = Instance::new();
@@ -97,7 +97,7 @@ pub(crate) fn modulation_is_not_saved() {
     assert_eq!(player.instance.save(), before);
 }
 
-/// Knobs that modulation holds at an end of their travel go where a state says.
+/// Modulation holds knobs at the ends of their ranges, but a loaded state still sets the knobs themselves.
 pub(crate) fn a_state_loaded_while_all_is_modulated_is_what_is_saved() {
     let parameters = Instance::new().parameters();
     for amount in [1.0, -1.0] {
@@ -115,7 +115,7 @@ pub(crate) fn a_state_loaded_while_all_is_modulated_is_what_is_saved() {
     }
 }
 
-/// A state that is loaded while audio runs is heard by the next note, exactly.
+/// A state that is loaded while audio runs is used exactly by the next note.
 pub(crate) fn a_state_loaded_while_processing_is_heard_exactly() {
     for (name, patch) in patches() {
         let mut player = Instance::new().play(RATE, 480);
@@ -130,7 +130,8 @@ pub(crate) fn a_state_loaded_while_processing_is_heard_exactly() {
     }
 }
 
-/// A value that is set where it already was stays exact; the neighbouring one is what its position means.
+/// Setting a parameter to its present position keeps its exact value; a neighbouring position gives that position's
+/// value.
 pub(crate) fn touching_a_knob_keeps_the_exact_value() {
     for (name, patch) in patches() {
         let mut instance = Instance::new();
@@ -154,7 +155,7 @@ pub(crate) fn streams_may_deliver_a_byte_at_a_time() {
     }
 }
 
-/// A project with a kit comes back to the byte, also with a knob turned.
+/// A project with a kit is restored byte for byte, also with a changed knob.
 pub(crate) fn a_kit_comes_back_with_its_presets() {
     let mut first = Instance::new();
     assert!(first.load(&state_of_kit(&drums())));
@@ -168,7 +169,7 @@ pub(crate) fn a_kit_comes_back_with_its_presets() {
     }
 }
 
-/// The state of every released version still gives the patch that it gave then.
+/// States of every released version still load as the same patch.
 pub(crate) fn states_of_all_versions_load() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/states");
     let mut versions = 0;
@@ -190,7 +191,7 @@ pub(crate) fn states_of_all_versions_load() {
     assert!(versions > 0, "{}: no states", folder.display());
 }
 
-/// A parameter that an older version did not know has its default, whatever it was before.
+/// A parameter that an older version did not have is set to its default, whatever its value was before.
 pub(crate) fn parameters_that_a_state_lacks_have_their_defaults() {
     let mut instance = Instance::new();
     scramble(&mut instance, 1);
@@ -202,7 +203,7 @@ pub(crate) fn parameters_that_a_state_lacks_have_their_defaults() {
     }
 }
 
-/// Saving and loading from another thread than the one that plays, all the while.
+/// Saves and loads on another thread than the one that plays.
 pub(crate) fn two_states_in_turn_while_audio_runs_are_never_mixed() {
     let patches = patches();
     let states = [state(&patches[0].1), state(&patches[1].1)];
@@ -221,7 +222,8 @@ pub(crate) fn two_states_in_turn_while_audio_runs_are_never_mixed() {
             }
             audio
         });
-        // Loads fall before, into and behind blocks: several between two of them, and several blocks between two.
+        // Loads happen before, during and after blocks: several between two blocks, and several blocks between two
+        // loads.
         for round in 0..1_000 {
             let until = played.load(Ordering::Relaxed) + round % 3;
             wait_until("a block", || playing.is_finished() || played.load(Ordering::Relaxed) >= until);
@@ -232,7 +234,7 @@ pub(crate) fn two_states_in_turn_while_audio_runs_are_never_mixed() {
         drop(stops);
         playing.join().unwrap()
     });
-    // What is heard in the end is the last of them.
+    // The last state is the one that is heard in the end.
     let mut player = Player { instance, audio };
     player.render(&[], 64, || 64);
     player.audio.reset();

@@ -1,4 +1,4 @@
-//! The VST3 while an audio thread automates it: its window comes and goes, and so do its instances.
+//! The VST3 while an audio thread automates it: windows open and close, instances are created and released.
 
 use crate::process::{Stops, command, succeeds, wait_until};
 use crate::screen::{Onlooker, Screen};
@@ -11,16 +11,16 @@ use vst3::ComWrapper;
 use vst3::Steinberg::IPlugFrame;
 use vst3::Steinberg::Vst::ParamID;
 
-/// How often the window is opened and closed.
+/// Number of times that the window is opened and closed.
 const WINDOWS: usize = 200;
 
-/// How many instances come and go.
+/// Number of instances that are created and released.
 const INSTANCES: usize = 200;
 
-/// Windows before files and threads are counted: drivers keep what they load with the first.
+/// Windows opened before files and threads are counted: drivers keep what they load with the first windows.
 const WARM_UP: usize = 5;
 
-/// The thread that the wrapper's instances share.
+/// Name of the thread that the wrapper's instances share.
 const WORKER: &str = "bg-worker";
 
 pub(crate) fn the_window_comes_and_goes_while_parameters_are_automated() {
@@ -34,7 +34,7 @@ pub(crate) fn instances_end_while_their_changes_are_told() {
     succeeds(command("endings"));
 }
 
-/// What the processes that these tests start do.
+/// Runs in the processes that these tests start.
 pub(crate) fn work(name: &str) -> ExitCode {
     if name == "storm" {
         windows()
@@ -44,12 +44,12 @@ pub(crate) fn work(name: &str) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The ids of the table's parameters.
+/// The ids of the parameters of the table.
 fn parameters(plugin: &Vst3) -> Vec<ParamID> {
     (0..PARAMS.len() as i32).map(|index| plugin.parameter(index).expect("a parameter of the table").0).collect()
 }
 
-/// Plays on the calling thread until told to stop, with every parameter moving; counts blocks.
+/// Processes on the calling thread until told to stop, with every parameter moving. Counts blocks.
 fn automate(plugin: &Vst3, parameters: &[ParamID], stop: &AtomicBool, blocks: &AtomicUsize) {
     let mut peak = 0.0_f32;
     while !stop.load(Ordering::Relaxed) {
@@ -65,7 +65,7 @@ fn automate(plugin: &Vst3, parameters: &[ParamID], stop: &AtomicBool, blocks: &A
     assert!(peak > 0.0, "notes are heard");
 }
 
-/// Opens the window and closes it, again and again, in all the ways that hosts do.
+/// Opens and closes the window repeatedly, in all the ways in which hosts do it.
 fn windows() {
     let onlooker = Onlooker::new(None);
     let parent = onlooker.make_window();
@@ -87,14 +87,14 @@ fn windows() {
             if time == WARM_UP {
                 held = Some(held_now());
             }
-            // A host without a run loop is rare, and the worker is told of every change while the window is open.
+            // Hosts without a run loop are rare; while the window is open, the worker is then told of every change.
             let has_loop = time % 4 != 3;
             let (before, _) = frame.registered();
             let view = plugin.open_window(if has_loop { &with_loop } else { &without_loop }, parent);
             assert_eq!(frame.registered(), (before + usize::from(has_loop), usize::from(has_loop)), "opening {time}");
             assert!(plugin.load(&states[time % 2]), "opening {time}");
             match time % 10 {
-                // Time to draw.
+                // Long enough to draw.
                 0 => (0..20).for_each(|_| frame.turn(10)),
                 1..4 => {
                     let handled = frame.handled();
@@ -103,10 +103,11 @@ fn windows() {
                         !has_loop || frame.handled() > handled
                     });
                 }
-                // Closed at once, with changes still waiting.
+                // Closed at once, while changes are still waiting.
                 _ => {}
             }
-            // Once in a while a host just lets go of a view. The next window, or the instance's end, clears up.
+            // Sometimes a host releases a view without closing it. The next window, or the end of the instance, cleans
+            // up.
             if time % 10 == 9 {
                 view.close_carelessly()
             } else {
@@ -119,7 +120,7 @@ fn windows() {
         let view = plugin.open_window(&with_loop, parent);
         view.close();
         let held = held.expect("it was counted");
-        // The clipboard's thread ends a little after its window: there may have been one more then, and may be now.
+        // The clipboard's thread ends shortly after its window, so both counts may include one such thread more.
         wait_until(&format!("{held:?} files and threads, as after {WARM_UP} windows, not {:?}", held_now()), || {
             held_now().iter().zip(held).all(|(now, then)| *now <= then)
         });
@@ -134,25 +135,25 @@ fn windows() {
     workers_become(0);
 }
 
-/// Waits until so many workers run: the system takes a moment to forget a thread that has been joined.
+/// Waits until this many workers run: the system needs a moment to remove a thread that has been joined.
 #[track_caller]
 fn workers_become(count: usize) {
     wait_until(&format!("{count} workers"), || threads_called(WORKER) == count);
 }
 
-/// How many files are open, and how many threads run.
+/// Number of open files, and number of running threads.
 fn held_now() -> [usize; 2] {
     ["/proc/self/fd", "/proc/self/task"].map(|folder| std::fs::read_dir(folder).unwrap().count())
 }
 
-/// Releases instances while the worker is still being told of their changes: some alone, some beside others.
+/// Releases instances while the worker still receives their changes: some alone, some while others exist.
 fn endings() {
     let module = Module::open();
     let stays = Vst3::new(&module);
     let parameters = parameters(&stays);
     let mut stays = Some(stays);
     for time in 0..INSTANCES {
-        // Half of them have the worker to themselves, and end it.
+        // Half of them are the only user of the worker, and end it.
         if time == INSTANCES / 2 {
             stays = None;
             workers_become(0);
@@ -160,7 +161,7 @@ fn endings() {
         let plugin = Vst3::new(&module);
         plugin.start();
         std::thread::scope(|scope| {
-            // Several blocks at once fill the worker's list of tasks.
+            // Several blocks in a row fill the worker's task list.
             scope.spawn(|| {
                 for block in 0..time % 40 {
                     Block::process(&plugin, Automation::of(&parameters, block), None);
@@ -171,6 +172,6 @@ fn endings() {
         drop(plugin);
         workers_become(usize::from(stays.is_some()));
     }
-    // Nothing of the library may run now.
+    // From here on, no code of the library may run.
     drop(module);
 }

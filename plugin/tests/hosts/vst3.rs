@@ -1,4 +1,4 @@
-//! The VST3 bundle in two hosts that Python drives: dawdreamer and pedalboard, which are both made with JUCE.
+//! The VST3 bundle in two hosts driven from Python: dawdreamer and pedalboard, both made with JUCE.
 
 use crate::host::bundle;
 use crate::host::reference::{At, assert_same_bits, render};
@@ -17,15 +17,15 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 
-/// The plugin's class, as preset files name it. Pinned: hosts find a song's plugin by it.
+/// The plugin's class id, as in preset files. Pinned: hosts find a song's plugin by it.
 const CLASS: &[u8; 32] = b"537072756E674D617373537072696E67";
 
-/// The virtual environment that `cargo xtask setup` puts the hosts into.
+/// The virtual environment in which `cargo xtask setup` installs the hosts.
 fn environment() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("python")
 }
 
-/// What is missing of the hosts in the versions that are wanted, if they cannot be loaded.
+/// What is missing: hosts that cannot be loaded in the required versions.
 pub(crate) fn missing() -> Option<String> {
     let installed = std::fs::read_to_string(environment().join("requirements.txt"));
     if !installed.is_ok_and(|installed| installed == include_str!("requirements.txt")) {
@@ -50,12 +50,12 @@ fn script(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hosts").join(name)
 }
 
-/// Has a host do something, and gives what it answers.
+/// Makes a host do something and returns its answer.
 #[track_caller]
 fn ask(host: &str, question: &Value) -> Value {
     let mut child = Command::new(python())
         .arg(script(&format!("{host}_host.py")))
-        // Without a display they would use the first one, which may be another test's.
+        // Without this they would use the first display, which may belong to another test.
         .env("DISPLAY", ":none")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -66,11 +66,11 @@ fn ask(host: &str, question: &Value) -> Value {
     let output = child.wait_with_output().unwrap();
     let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     assert!(output.status.success(), "{host}: {}\n{stdout}\n{stderr}", output.status);
-    // Hosts may say other things before.
+    // Hosts may print other lines first.
     serde_json::from_str(stdout.lines().last().unwrap_or_default()).unwrap_or_else(|_| panic!("{host}: {stdout}"))
 }
 
-/// A preset file as VST3 hosts keep them, with a state as CLAP hosts keep them; in a folder.
+/// Writes a preset file in the format of VST3 hosts, from a state in the format of CLAP hosts, into a folder.
 fn preset_file(folder: &Path, name: &str, state: &[u8]) -> PathBuf {
     let state = &state[8..];
     let header = 48_u64;
@@ -89,7 +89,7 @@ fn preset_file(folder: &Path, name: &str, state: &[u8]) -> PathBuf {
     path
 }
 
-/// The samples in a file that a host has written, channel by channel.
+/// The samples in a file written by a host, one vector per channel.
 fn samples(path: &Path) -> Vec<Vec<f32>> {
     let bytes = std::fs::read(path).unwrap();
     let samples: Vec<f32> =
@@ -97,7 +97,7 @@ fn samples(path: &Path) -> Vec<Vec<f32>> {
     samples.chunks(samples.len() / 2).map(<[f32]>::to_vec).collect()
 }
 
-/// The value that a position in VST3's range 0–1 means.
+/// The value for a position in VST3's range 0–1.
 fn value_at(info: &ParamInfo, position: f64) -> f32 {
     match info.unit {
         Unit::Count | Unit::Choice => info.clamp(info.min + (info.max - info.min) * position as f32),
@@ -118,7 +118,7 @@ pub(crate) fn every_parameter_can_be_set_and_read() {
             for one in tried {
                 let (position, found) = (one[0].as_f64().unwrap(), one[1].as_f64().unwrap());
                 let value = value_at(info, position);
-                // Hosts give back what was set, before or after it went to the nearest step.
+                // Hosts return the value that was set, either before or after rounding to the nearest step.
                 let step = f64::from((value - info.min) / (info.max - info.min));
                 let is_step = matches!(info.unit, Unit::Count | Unit::Choice) && (found - step).abs() < 1e-6;
                 assert!((found - position).abs() < 1e-6 || is_step, "{host}: {} at {position} is {found}", info.id);
@@ -126,7 +126,7 @@ pub(crate) fn every_parameter_can_be_set_and_read() {
             }
         }
         if host == "dawdreamer" {
-            // The wrapper adds 130 parameters a MIDI channel, without which bend, wheel and pedals would not arrive.
+            // For each MIDI channel the wrapper adds 130 parameters, which bend, wheel and pedals need.
             assert_eq!(answer[1], PARAMS.len() + 16 * 130);
             assert_eq!(answer[2], 0, "latency");
             assert!(rows.iter().all(|row| row[2] == true), "all can be automated");
@@ -138,22 +138,23 @@ pub(crate) fn every_parameter_can_be_set_and_read() {
     }
 }
 
-/// A MIDI file in a VST3 host, with a preset that holds the patch: the bits of `sprung render`, if controllers come
-/// where the host lets them come. VST3 hands controllers over as parameters, and JUCE, which both hosts are made with,
-/// gives each parameter one value a block, at its first frame; notes and their pressure lie at their own frames.
+/// A MIDI file in a VST3 host, with a preset that contains the patch: the same bits as from `sprung render`, with
+/// controllers moved to the frames at which the host sends them. VST3 passes controllers as parameters, and JUCE, with
+/// which both hosts are made, gives each parameter one value per block, at its first frame. Notes and their pressure
+/// have their own frames.
 pub(crate) fn one_channel_has_the_bits_of_the_command() {
     for (name, patch) in patches() {
         assert_bits_of_the_command(name, &phrase::messages(), &state(&patch), &Kit::of_patch(&patch), &[1, 64, 480]);
     }
 }
 
-/// The same of a kit that a project keeps.
+/// The same for a kit in a project.
 pub(crate) fn a_kit_has_the_bits_of_the_command() {
     let drums = drums();
     assert_bits_of_the_command("drums", &phrase::kit_messages(), &state_of_kit(&drums), &drums.kit(), &[64]);
 }
 
-/// Plays messages with a state in both hosts, in dawdreamer in blocks of these lengths.
+/// Plays messages with a state in both hosts; in dawdreamer with these block lengths.
 fn assert_bits_of_the_command(name: &str, messages: &[(u64, [u8; 3])], state: &[u8], kit: &Arc<Kit>, blocks: &[u64]) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("phrase.mid");
@@ -191,12 +192,12 @@ pub(crate) fn what_is_saved_comes_back() {
     }
 }
 
-/// What dawdreamer gives for the parameters of the table, without those that stand for controllers.
+/// Dawdreamer's values of the parameters of the table, without those that stand for controllers.
 fn values_of_table(values: &Value) -> Value {
     values.as_array().unwrap()[..PARAMS.len()].into()
 }
 
-/// A parameter moved by the host's automation: as the engine's own events at the frames at which the host sends them.
+/// A parameter moved by the host's automation: the same as the engine's own events at the frames used by the host.
 pub(crate) fn automation_has_the_bits_of_the_engine() {
     let block = 512;
     let folder = tempfile::tempdir().unwrap();
@@ -213,7 +214,7 @@ pub(crate) fn automation_has_the_bits_of_the_engine() {
             json!(["automate", bundle::vst3(), "", param as usize, values, path, SAMPLE_RATE, FRAMES, audio]);
         ask("dawdreamer", &question);
         let mut song = vec![At(3, 0, EventKind::NoteOn { key: 57, detune: 0.0, velocity: 100.0 / 127.0, id: None })];
-        // What is set while nothing sounds holds at once.
+        // What is set while nothing sounds takes effect at once.
         let first = info.denormalise(positions[0].into());
         let mut last = Some(first);
         for frame in (0..FRAMES).step_by(block) {

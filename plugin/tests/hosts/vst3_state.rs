@@ -1,4 +1,4 @@
-//! What projects made with the VST3 keep: the plugin's class, its parameters' ids, and states of every version.
+//! What VST3 projects contain: the plugin's class id, its parameters' ids, and states of every version.
 
 use crate::patches::own_part_of;
 use crate::vst3_host::{Module, Vst3};
@@ -6,13 +6,13 @@ use sprung::params::PARAMS;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
 
-/// The number by which VST3 projects know a parameter: of its id in the table. Pinned.
+/// The number that identifies a parameter in VST3 projects, from its id in the table. Pinned.
 fn number(id: &str) -> u32 {
     id.bytes().fold(0_u32, |sum, byte| sum.wrapping_mul(31).wrapping_add(byte.into())) & (u32::MAX >> 1)
 }
 
 pub(crate) fn parameters_have_the_numbers_of_their_ids() {
-    // `Vst3::new` asks for the class by its pinned id.
+    // `Vst3::new` requests the class by its pinned id.
     let plugin = Vst3::new(&Module::open());
     for (index, info) in (0..).zip(PARAMS) {
         let expected = Some((number(info.id), info.name.to_owned()));
@@ -41,13 +41,13 @@ pub(crate) fn states_of_all_versions_load() {
         let (plugin, state) = (Vst3::new(&module), std::fs::read(&path).unwrap());
         assert!(plugin.load(&state), "{}", path.display());
         for info in PARAMS {
-            // A knob may have been left where its value alone would not put it.
+            // A knob may have been saved at a position other than the one that its value alone would give.
             let kept = own_part_of(&state)["positions"][info.id].as_f64();
             let expected = kept.unwrap_or_else(|| info.normalise(patch.get(info.param)));
             let position = plugin.position(number(info.id));
             assert!((position - expected).abs() < 1e-6, "{}: {} is at {position}", path.display(), info.id);
         }
-        // What is saved has the patch to the bit.
+        // The saved state contains the patch to the bit.
         let saved = own_part_of(&plugin.save());
         let found = Preset::parse(saved["preset"].as_str().unwrap(), "the saved state").unwrap().patch;
         assert_eq!(found, patch, "{}", path.display());

@@ -1,4 +1,4 @@
-//! The window in a host's own: opened and closed again and again, resized, drawn, touched, while audio runs or not.
+//! The plugin's window inside a host's window: opened, closed, resized, drawn and used, with and without audio.
 
 use crate::host::{Address, Instance, Player, Sent};
 use crate::patches::patch_in;
@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How often the window is opened and closed.
+/// Number of times that the window is opened and closed.
 const TIMES: usize = 50;
 
 pub(crate) fn opens_and_closes_fifty_times() {
@@ -29,7 +29,7 @@ fn on_a_screen(work: &str) {
     succeeds(command);
 }
 
-/// What the processes that these tests start do.
+/// Runs in the processes that these tests start.
 pub(crate) fn work(name: &str) -> ExitCode {
     let parent = Parent::new();
     let mut instance = Instance::new();
@@ -61,7 +61,7 @@ pub(crate) fn work(name: &str) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Opens, waits for a picture, touches, resizes and closes; every other time at once.
+/// Opens the window, waits for a picture, uses the mouse, resizes and closes; every second time closes at once.
 fn open_and_close(instance: &mut Instance, parent: &Parent) {
     let parameters = instance.parameters();
     turn_something(instance, parent);
@@ -76,7 +76,7 @@ fn open_and_close(instance: &mut Instance, parent: &Parent) {
             editor.resize(instance, if time % 4 == 0 { [700, 500] } else { [1_000, 720] });
             (0..20).for_each(|round| editor.touch(round));
         }
-        // What another thread or the host changes is shown, too: state, values, modulation.
+        // Changes by another thread or by the host are shown too: state, values, modulation.
         let state = instance.save();
         assert!(instance.load(&state));
         if !instance.clack.is_active() {
@@ -90,7 +90,7 @@ fn open_and_close(instance: &mut Instance, parent: &Parent) {
     }
 }
 
-/// Drags across one line of the window after another until a value has changed.
+/// Drags the mouse across the window, line by line, until a value has changed.
 fn turn_something(instance: &mut Instance, parent: &Parent) {
     let before = patch_in(&instance.save());
     let editor = Editor::open(instance, parent);
@@ -108,14 +108,14 @@ fn turn_something(instance: &mut Instance, parent: &Parent) {
     editor.close(instance);
 }
 
-/// A window of the host's that the plugin's lies in.
+/// A window of the host that contains the plugin's window.
 pub(crate) struct Parent {
     onlooker: Onlooker,
     window: u32,
 }
 
 impl Parent {
-    /// A window on the screen that `DISPLAY` says.
+    /// A window on the screen given by `DISPLAY`.
     pub(crate) fn new() -> Self {
         let onlooker = Onlooker::new(None);
         let window = onlooker.make_window();
@@ -130,7 +130,7 @@ pub(crate) struct Editor<'a> {
 }
 
 impl<'a> Editor<'a> {
-    /// Opens the window as a host does.
+    /// Opens the window in the same way as a host.
     #[allow(unsafe_code)]
     pub(crate) fn open(instance: &mut Instance, parent: &'a Parent) -> Self {
         let handle = instance.clack.plugin_handle();
@@ -142,7 +142,7 @@ impl<'a> Editor<'a> {
         assert!((100..4_000).contains(&size.width) && (100..4_000).contains(&size.height), "{size:?}");
         // SAFETY: the parent outlives the editor, which borrows it.
         unsafe { gui.set_parent(&handle, Window::from_x11_handle(parent.window.into())) }.expect("it takes a parent");
-        // Not every plugin needs to be told; none may fail.
+        // Not every plugin needs this call, but no plugin may fail because of it.
         let _ = gui.show(&handle);
         Self { parent, gui }
     }
@@ -159,7 +159,7 @@ impl<'a> Editor<'a> {
         [size.width, size.height]
     }
 
-    /// Waits for a picture with more to it than one colour.
+    /// Waits for a picture with more than one colour.
     fn wait_until_drawn(&self, instance: &mut Instance) {
         let [width, height] = self.size(instance);
         wait_until("a picture", || {
@@ -178,7 +178,7 @@ impl<'a> Editor<'a> {
         assert_eq!((found.width, found.height), (size.width, size.height));
     }
 
-    /// Drags the mouse across the window, in another line each time.
+    /// Drags the mouse across the window, along a different line in each round.
     pub(crate) fn touch(&self, round: usize) {
         let y = 60 + (round * 37 % 400) as i16;
         self.parent.onlooker.drag([200, y], [200 + (round * 53 % 300) as i16, y]);

@@ -44,7 +44,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     deliveries.finish(figure, |out| out.write_all(csv(&animation).as_bytes()), &text)
 }
 
-/// One row per mass and frame.
+/// One row for each mass and frame.
 fn csv(animation: &Animation) -> String {
     let mut csv = String::from("mass,t_s,x_m,v_m_per_s\n");
     for track in &animation.tracks {

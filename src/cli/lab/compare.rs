@@ -60,7 +60,7 @@ fn table(comparison: &Comparison) -> String {
     aligned(&rows)
 }
 
-/// What a run does, in a word.
+/// The behaviour of a run in one word.
 fn verdict(comparison: &Comparison, run: &Trajectory) -> &'static str {
     let (size, swell) = (comparison.size(), comparison.swell(run));
     if run.worst_error <= 1e-9 * size {

@@ -1,4 +1,4 @@
-//! What the lab's commands write: a figure, a table of numbers as CSV, and one as text.
+//! Writes the outputs of the lab's commands: a figure, a table of numbers as CSV, and a table as text.
 
 use super::super::interrupt;
 use super::super::terminal::{complain_lines, print};
@@ -22,19 +22,19 @@ pub(super) struct Files {
     force: bool,
 }
 
-/// Outputs that are open and not yet written: what is in the way is found before the work begins.
+/// Outputs that are open but not written yet, so that problems are found before the work begins.
 pub(super) struct Deliveries {
     csv: Option<Output>,
     figure: Option<(Output, String)>,
-    /// Outputs that are written, and get their names when all are.
+    /// Outputs that are written. They are renamed when all are complete.
     written: Vec<Output>,
     to_stdout: bool,
     force: bool,
 }
 
 impl Files {
-    /// Opens the outputs. An error for a figure whose name does not end in one of `formats`, and for what cannot be
-    /// written.
+    /// Opens the outputs. Returns an error if the figure's name does not end in one of `formats`, or if an output
+    /// cannot be written.
     pub(super) fn open(&self, formats: &[&str]) -> Result<Deliveries> {
         if self.csv.is_some() && self.csv == self.output {
             return Err(Error::value("--csv", "is the same file as --output: expected two"));
@@ -53,13 +53,13 @@ impl Files {
 }
 
 fn create(target: &Target, force: bool) -> Result<Output> {
-    // The lab reads no files.
+    // The lab has no input files.
     let output = Output::create(target, force, &Inputs::default())?;
     interrupt::remove(&output);
     Ok(output)
 }
 
-/// What a file's name ends in.
+/// The extension of a file's name, if it is one of `formats`.
 fn format_of(path: &Path, formats: &[&str]) -> Result<String> {
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
     if formats.contains(&extension.as_str()) {
@@ -70,17 +70,17 @@ fn format_of(path: &Path, formats: &[&str]) -> Result<String> {
 }
 
 impl Deliveries {
-    /// Format of the figure that is wanted.
+    /// Format of the requested figure.
     pub(super) fn format(&self) -> Option<&str> {
         self.figure.as_ref().map(|(_, format)| format.as_str())
     }
 
-    /// Whether a CSV is wanted.
+    /// Whether CSV was requested.
     pub(super) fn wants_csv(&self) -> bool {
         self.csv.is_some()
     }
 
-    /// Opens and writes one more file. It gets its name with the others, in [`Deliveries::finish`].
+    /// Opens and writes an additional file. It is renamed with the others in [`Deliveries::finish`].
     pub(super) fn add(&mut self, path: PathBuf, write: impl FnOnce(&mut Output) -> Result<()>) -> Result<()> {
         let mut output = create(&Target::Path(path), self.force)?;
         write(&mut output)?;
@@ -88,7 +88,8 @@ impl Deliveries {
         Ok(())
     }
 
-    /// Writes figure and CSV, each only if wanted, and says `text`: on stdout, or on stderr if the CSV goes there.
+    /// Writes the figure and the CSV if they were requested, and prints `text`: to stdout, or to stderr if the CSV goes
+    /// to stdout.
     pub(super) fn finish(
         self,
         figure: impl FnOnce(&str) -> Result<Vec<u8>>,
@@ -103,7 +104,7 @@ impl Deliveries {
         }
         if let Some(mut output) = self.csv {
             match write(&mut output, csv) {
-                // A reader that has gone away, as `head` does, has what it wanted.
+                // A reader such as `head` may close the pipe when it has enough. That is no error.
                 Err(Error::Io { source, .. }) if self.to_stdout && source.kind() == ErrorKind::BrokenPipe => (),
                 written => written?,
             }
@@ -127,7 +128,7 @@ fn write(output: &mut Output, contents: impl FnOnce(&mut dyn Write) -> io::Resul
     written.map_err(|error| Error::io(output.name(), error))
 }
 
-/// A picture in the format of that name.
+/// Draws a picture in the format with this name.
 pub(super) fn drawn(picture: &impl Picture, format: &str) -> Result<Vec<u8>> {
     if format == "png" { figure::png(picture) } else { figure::svg(picture).map(String::into_bytes) }
 }

@@ -39,7 +39,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let methods = args.methods.named()?;
     let mut deliveries = args.files.open(&["svg", "png"])?;
     let rate = f64::from(args.rate);
-    // All that can fail for the values given fails before a directory is made.
+    // Check all values before the directory is made.
     let mut sounds = Vec::new();
     for method in &methods {
         sounds.push(listen(*method, args.frequency, args.t60, args.seconds, rate)?);

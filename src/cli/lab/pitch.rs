@@ -28,7 +28,7 @@ pub(super) struct Args {
     files: Files,
 }
 
-/// Points of a curve.
+/// Number of points of a curve.
 const POINTS: usize = 300;
 
 pub(super) fn run(args: &Args) -> Result<()> {
@@ -82,7 +82,7 @@ fn decay(note: &Note) -> String {
     }
 }
 
-/// To one decimal, with its sign; 0 where that is all there is.
+/// A number with one decimal and its sign; 0 if it rounds to 0.
 fn signed(value: f64) -> String {
     if value.abs() < 0.05 { "0".to_owned() } else { format!("{value:+.1}").replace('-', "−") }
 }

@@ -27,7 +27,7 @@ pub(super) struct Args {
     files: Files,
 }
 
-/// Damping ratios that the table is made for.
+/// Damping ratios of the table.
 const ZETAS: [f64; 4] = [0.0, 0.1, 0.5, 1.0];
 
 pub(super) fn run(args: &Args) -> Result<()> {

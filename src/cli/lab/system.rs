@@ -1,4 +1,4 @@
-//! The options that describe what is integrated, and how.
+//! The options for the system that is integrated, and for the methods.
 
 use super::super::quantity;
 use super::super::terminal::complain;
@@ -53,7 +53,7 @@ pub(super) struct SystemArgs {
 }
 
 impl SystemArgs {
-    /// The system and its start. An error that names the option whose value cannot be.
+    /// The system and its initial state. Errors name the option with the invalid value.
     pub(super) fn build(&self) -> Result<(System, State)> {
         let spring = match self.spring {
             Law::Linear => Spring::Linear,
@@ -84,7 +84,7 @@ pub(super) struct MethodArgs {
 }
 
 impl MethodArgs {
-    /// The methods named, in that order and each once.
+    /// The methods that the user named, in that order, each once.
     pub(super) fn named(&self) -> Result<Vec<Method>> {
         if self.is_all() {
             return Ok(Method::ALL.to_vec());
@@ -99,12 +99,12 @@ impl MethodArgs {
         Ok(methods)
     }
 
-    /// The methods named, of which `all` leaves out, with a note, those that cannot integrate the system.
+    /// The methods that the user named. For `all`, methods that cannot integrate the system are left out, with a note.
     pub(super) fn for_system(&self, system: &System, steps: &[f64]) -> Result<Vec<Method>> {
         let mut methods = self.named()?;
         if self.is_all() {
             methods.retain(|method| {
-                // A step that is wrong for all is told later, as an error.
+                // A step that is invalid for every method is reported later, as an error.
                 let refused = steps.iter().filter(|h| **h > 0.0).find_map(|h| method.integrator(system, *h).err());
                 if let Some(error) = &refused {
                     complain("note", format!("without {}: {error}", method.key()));

@@ -1,6 +1,6 @@
-//! Tables as text: the first column to the left, the others to the right.
+//! Tables as text: the first column is aligned left, the others right.
 
-/// Rows of cells, the heads first, with two spaces between columns.
+/// Formats rows of cells, the headings first, with two spaces between columns.
 pub(super) fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|c| c.chars().count()).max();

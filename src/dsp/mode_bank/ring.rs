@@ -1,10 +1,11 @@
-//! The table form of a bank: freely ringing modes, sixteen frames at a time.
+//! Renders with tables: freely ringing modes, sixteen frames at a time.
 //!
-//! Sixteen frames of a mode are `P·x + Q·y`: lanes are frames and not modes, so neither does a frame wait for the one
-//! before nor are many lanes added up. Two things double the speed, for loads are what limits it: each table is read
-//! once for the two windows of a tick, and even lanes sum `P·x`, odd ones `Q·y`, so that a state is loaded once for
-//! all of its frames as a pair. The order of every sum is frozen: even and odd modes apart, the shares of both
-//! coordinates apart, then modes and then shares. Modes at rest add `+0` and can be left out without changing a bit.
+//! Sixteen frames of a mode are `P·x + Q·y`. Lanes are frames and not modes, so a frame does not wait for the one
+//! before, and the lanes need not be added up. Loads from memory limit the speed, and two measures double it: each
+//! table is read once for both windows of a tick, and even lanes sum `P·x` while odd lanes sum `Q·y`, so that a state
+//! is loaded once, as a pair, for all of its frames. The order of every sum is frozen: even and odd modes separately,
+//! the parts of both coordinates separately; then the modes are added, then the parts. Modes at rest add `+0`, so
+//! leaving them out changes no bit.
 
 use super::MAX_MODES;
 use super::rows::{Form, Modes, Output, Row, State};
@@ -13,7 +14,7 @@ use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::Vector;
 
-/// The output of the live modes over one control tick, by their tables; `end` becomes the state after it.
+/// The output of the live modes over one control tick, from their tables. Writes the state after the tick to `end`.
 pub(super) struct Ring<'a> {
     pub(super) form: Form,
     pub(super) table: &'a mut Table,
@@ -72,7 +73,7 @@ fn store_pairs<V: Vector>(
 }
 
 impl Turn {
-    /// A window on from the state of one vector of modes.
+    /// The state of one vector of modes after a window.
     #[inline(always)]
     fn apply<V: Vector>(&self, proof: V::Proof, at: usize, (x, y): (V, V)) -> (V, V) {
         let (real, real_rest): (V, V) = (self.real.at(proof, at), self.real_rest.at(proof, at));
@@ -83,7 +84,7 @@ impl Turn {
     }
 }
 
-/// The sum of the first `2 · twos` modes over two windows.
+/// The sum of the first `2 · twos` modes over both windows.
 #[inline(always)]
 fn sum_windows<V: Vector>(
     proof: V::Proof,
@@ -94,7 +95,7 @@ fn sum_windows<V: Vector>(
 ) {
     let (taps, twos) = (taps.as_chunks::<2>().0, twos.min(MAX_MODES / 2));
     let (first, second) = (pairs.0[0].as_chunks::<2>().0, pairs.0[1].as_chunks::<2>().0);
-    // Lanes are half as many frames; two vectors at a time.
+    // A vector holds half as many frames as it has lanes; two vectors at a time.
     let mut lane = 0;
     while lane < 2 * WINDOW {
         let mut sums = [[[V::splat(proof, 0.0); 2]; 2]; 2];

@@ -1,10 +1,10 @@
-//! The tables of the time-parallel form: what a mode's state gives over the next sixteen frames, and the state then.
+//! The tables of freely ringing modes: a state's displacement over the next sixteen frames, and the state after them.
 //!
-//! A mode that rings freely is a point that turns: `x = A sin φ` and, a quarter turn ahead, `y = A cos φ`. One frame
-//! multiplies `y + ix` by `z = r e^(iθ)`, so `n` frames on the displacement is `Re zⁿ · x + Im zⁿ · y`. In these
-//! coordinates a rounding error of the coefficients is one of pitch or decay of the same relative size, wherever the
-//! pitch lies; powers of the step's own matrix, in `x` and `v`, were out by up to 37 % of T60 near half the sample
-//! rate, and with the diagonal kept apart from 1 still by 0.2 % at 22 kHz.
+//! A freely ringing mode is a point that turns: `x = A sin φ` and, a quarter period later, `y = A cos φ`. One frame
+//! multiplies `y + ix` by `z = r e^(iθ)`, so after `n` frames the displacement is `Re zⁿ · x + Im zⁿ · y`. In these
+//! coordinates, a rounding error of the coefficients is an error of pitch or decay of the same relative size, at every
+//! pitch. Powers of the step's own matrix, in `x` and `v`, had errors of up to 37 % of T60 near half the sample rate,
+//! and still 0.2 % at 22 kHz when the diagonal was stored as a difference from 1.
 
 use super::MAX_MODES;
 use super::rows::{Row, Wide};
@@ -12,16 +12,16 @@ use super::tuning::{below_top, expm1_of_radius, sin_to_right_angle};
 use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::Vector;
 
-/// Frames that a table covers. Frozen: bits depend on it. Two of them are a control tick.
+/// Frames that a table covers; two windows are a control tick. Frozen: bits depend on it.
 pub(super) const WINDOW: usize = 16;
 
-/// The displacement `j + 1` frames on is `taps[2j]·x + taps[2j+1]·y`.
+/// The displacement after `j + 1` frames is `taps[2j]·x + taps[2j+1]·y`.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Taps(pub(super) [f32; 2 * WINDOW]);
 
-/// How far a window turns each mode: real and imaginary part of `z¹⁶`, each as the sum of two numbers. With one, T60
-/// is out by up to 0.1 % at 20 s and 192 kHz.
+/// How far a window turns each mode: real and imaginary part of `z¹⁶`, each as the sum of two numbers. With one number
+/// each, T60 would be wrong by up to 0.1 % at 20 s and 192 kHz.
 #[derive(Clone, Debug)]
 pub(super) struct Turn {
     pub(super) real: Row,
@@ -30,17 +30,17 @@ pub(super) struct Turn {
     pub(super) imaginary_rest: Row,
 }
 
-/// Both coordinates of each mode side by side, at the start of each window of a tick.
+/// Both coordinates of each mode as a pair, at the start of each window of a tick.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Pairs(pub(super) [[[f32; 2]; MAX_MODES]; 2]);
 
-/// Tables of every mode of a bank.
+/// The tables of all modes of a bank.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
     pub(super) taps: [Taps; MAX_MODES],
     pub(super) turn: Turn,
-    /// States of the tick, times the gains to the left and to the right.
+    /// The states of the tick, times the left and the right gains.
     pub(super) pairs: [Pairs; 2],
 }
 
@@ -52,7 +52,7 @@ impl Table {
     };
 }
 
-/// Makes the tables of the first `len` modes at a pitch ratio. Those beyond are left alone.
+/// Makes the tables of the first `len` modes at a pitch ratio. Does not touch the others.
 pub(super) struct Build<'a> {
     pub(super) table: &'a mut Table,
     pub(super) ln_radius: &'a Wide,
@@ -92,7 +92,7 @@ impl Kernel for Build<'_> {
     }
 }
 
-/// A number as the sum of two in single precision.
+/// A number as the sum of two single-precision numbers.
 #[inline(always)]
 fn halves(value: f64) -> (f32, f32) {
     let nearest = value as f32;
@@ -119,8 +119,8 @@ mod tests {
     use libm::{atan2, log, pow};
     use std::f64::consts::PI;
 
-    /// Pitch and decay that follow from the rounded matrix, against those asked for, over everything that a voice can
-    /// ask for: 8 Hz up, at 8 to 192 kHz, T60 up to 60 s.
+    /// Compares pitch and decay of the rounded tables with the requested ones, over everything that a voice can
+    /// request: from 8 Hz up, at 8 to 192 kHz, T60 up to 60 s.
     #[test]
     fn windows_keep_pitch_and_decay() {
         let stream = key(17, 0);
@@ -130,10 +130,10 @@ mod tests {
         for case in 0..20_000 {
             let rate = [8_000.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0][(case % 5) as usize];
             let frequency = 8.0 * pow(0.49 * rate / 8.0, unit(3 * case));
-            // A mode that dies within a period has no pitch to speak of.
+            // A mode that decays within one period has no measurable pitch.
             let t60 = (0.01 * pow(6_000.0, unit(3 * case + 1))).max(1.0 / frequency);
             let ln_radius = [LN_MINUS_60_DB / (t60 * rate); MAX_MODES];
-            // Half of it by the ratio.
+            // Half the angle comes from here, the other half from the ratio of 2.
             let half_angle = [0.5 * PI * frequency / rate; MAX_MODES];
             let build = Build { table: &mut table, ln_radius: &ln_radius, half_angle: &half_angle, ratio: 2.0, len: 1 };
             build.run::<Scalar>(());

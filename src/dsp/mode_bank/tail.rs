@@ -3,13 +3,13 @@
 use super::ModeBank;
 use libm::{ceil, exp, log};
 
-/// Newton's method starts at most this many times over; it needs about five.
+/// Maximum number of Newton steps; about five are usual.
 const MOST_STEPS: usize = 50;
 
-/// No answer is longer than this: 40 years at 768 kHz.
+/// Upper limit of every answer: 40 years at 768 kHz.
 const LONGEST_FRAMES: f64 = 1e15;
 
-/// Squared amplitudes of up to `N` modes, and the logarithms of what a frame leaves of them. Real-time safe.
+/// Squared amplitudes of up to `N` modes, and the logarithms of their ratios per frame. Real-time safe.
 pub(in crate::dsp) struct Energies<const N: usize> {
     energy: [f64; N],
     rate: [f64; N],
@@ -17,10 +17,10 @@ pub(in crate::dsp) struct Energies<const N: usize> {
 }
 
 impl<const N: usize> Energies<N> {
-    /// Of no mode yet.
+    /// Without any mode.
     pub(in crate::dsp) const NONE: Self = Self { energy: [0.0; N], rate: [0.0; N], len: 0 };
 
-    /// Adds a mode, if there is room.
+    /// Adds a mode. Does nothing if there is no room.
     pub(in crate::dsp) fn add(&mut self, energy: f64, rate: f64) {
         if self.len < N {
             (self.energy[self.len], self.rate[self.len]) = (energy, rate);
@@ -28,9 +28,11 @@ impl<const N: usize> Energies<N> {
         }
     }
 
-    /// Frames until they add up to less than `total`. Takes an exponential a mode for each of about five steps.
+    /// Frames until the sum of the squared amplitudes falls below `total`. Takes one exponential per mode for each of
+    /// about five steps.
     ///
-    /// The logarithm of a sum of exponentials is convex, so Newton's method from now never oversteps.
+    /// The logarithm of a sum of exponentials is convex, so Newton's method starting at time 0 never goes past the
+    /// answer.
     pub(in crate::dsp) fn frames_until(&self, total: f64) -> u64 {
         let target = log(total);
         let mut time = 0.0;
@@ -56,7 +58,7 @@ impl<const N: usize> Energies<N> {
         whole_frames(time)
     }
 
-    /// At most how many frames that takes once `more` energy, wherever it goes, has been added.
+    /// Upper bound of [`Energies::frames_until`] after `more` energy has been added, whichever modes get it.
     pub(in crate::dsp) fn frames_until_at_most(&self, total: f64, more: f64) -> u64 {
         let slowest = self.rate.iter().take(self.len).copied().fold(f64::NEG_INFINITY, f64::max);
         let energy = more + self.energy.iter().take(self.len).sum::<f64>();
@@ -69,9 +71,9 @@ fn whole_frames(time: f64) -> u64 {
 }
 
 impl ModeBank {
-    /// Hands the squared amplitude of each mode, and the logarithm of what a frame leaves of it, to `each`.
+    /// Calls `each` for every mode with its squared amplitude and the logarithm of that amplitude's ratio per frame.
     pub(in crate::dsp) fn tell_energies(&self, mut each: impl FnMut(f64, f64)) {
-        // In a tick that is rendered by tables the state is that of its start.
+        // In a tick that is rendered by tables, the state is that at the start of the tick.
         let passed = self.frames_since() as f64;
         for m in 0..self.len {
             let (energy, rate) = (f64::from(self.mass(m).1), 2.0 * self.ln_radius[m]);

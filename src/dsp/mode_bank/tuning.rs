@@ -1,4 +1,4 @@
-//! What a bank does at control ticks, for all modes at once: tuning, lines of pitch, and the energy that is left.
+//! The work of a bank at control ticks, for all modes at once: tuning, lines of pitch, and the remaining energy.
 
 use super::MAX_MODES;
 use super::rows::{Modes, Row, State, Wide};
@@ -7,24 +7,24 @@ use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::{LANES, Partial, Vector};
 use std::f64::consts::PI;
 
-/// Modes up to this angle per sample sound at full level; from here to π they fade out, and beyond they are silent.
+/// Modes up to this angle per sample sound at full level. From here to π they fade out; above π they are silent.
 pub(super) const TOP_ANGLE: f64 = 0.98 * PI;
 
-/// What the coefficients of each mode are made from.
+/// The data from which the coefficients of each mode are computed.
 #[derive(Clone, Debug)]
 pub(super) struct Tuning {
-    /// Half the angle per sample at a pitch ratio of 1, which may be beyond what can sound.
+    /// Half the angle per sample at a pitch ratio of 1. It may be too high to sound.
     half_angle: Row,
-    /// The greatest of them.
+    /// The largest of these.
     highest: f32,
     /// `1 − r`.
     loss: Row,
-    /// `r`, and that of the coefficients: they differ from a change of damping until the next line.
+    /// `r`, and the `r` of the present coefficients. They differ between a change of damping and the next line.
     radius: Wide,
     damped_radius: Wide,
     /// `1 − radius / damped_radius`.
     shrink: Row,
-    /// The state of unit amplitude that a displacement at rest gives.
+    /// The state of unit amplitude in which the mass is displaced and at rest.
     pub(super) pull_x: Row,
     pub(super) pull_y: Row,
 }
@@ -41,15 +41,15 @@ impl Tuning {
         pull_y: Row::ZERO,
     };
 
-    /// Whether a pitch ratio takes any mode to where it is not heard at full level.
+    /// Whether a pitch ratio makes any mode so high that it sounds below full level.
     pub(super) fn fades(&self, ratio: f64) -> bool {
         self.highest * ratio as f32 > (0.5 * TOP_ANGLE) as f32
     }
 }
 
-/// Takes over the logarithm of each mode's radius (at least [`super::LEAST_LN_RADIUS`]) and half its angle.
+/// Sets the tuning from the logarithm of each mode's radius (at least [`super::LEAST_LN_RADIUS`]) and half its angle.
 ///
-/// Plain double precision without a branch: vectorised by the compiler, 1e−12 from the exact values, in a fifth of the
+/// Plain double precision without branches, vectorised by the compiler. The error is within 1e−12, in a fifth of the
 /// time of `libm`'s exponential and sine.
 pub(super) struct Tune<'a> {
     pub(super) tuning: &'a mut Tuning,
@@ -73,8 +73,8 @@ impl Kernel for Tune<'_> {
             tuning.loss.0[m] = loss as f32;
             tuning.half_angle.0[m] = half_angle[m] as f32;
 
-            // A mass displaced by sin θ / ω has unit amplitude; see `Coefficients::energy`. Where it is a frame on,
-            // x (1 − ω²), is Re z · x + Im z · y.
+            // A mass displaced by sin θ / ω has unit amplitude; see `Coefficients::energy`. Its displacement one frame
+            // later is x (1 − ω²) and also Re z · x + Im z · y, which gives y.
             let half_chord = sin_to_right_angle(below_top(half_angle[m]));
             let chord2 = half_chord * half_chord;
             let zeta = loss * (2.0 - loss);
@@ -86,56 +86,58 @@ impl Kernel for Tune<'_> {
     }
 }
 
-/// Sends the modes on straight lines to where a pitch ratio wants them, from where they are on the line before.
+/// Starts straight lines of the coefficients, from their present values to those of a pitch ratio.
 ///
-/// A line between two points of the unit disk stays inside it, so that no mass gains energy whatever its pitch does.
-/// But the chord is shorter than the arc: at the share `t` of a line that turns by `Δθ` in all, a frame leaves
-/// `√(1 − 4 t (1−t) sin²(Δθ/2))` of what it would on the arc. What the line before has lost so is given back here, by
-/// the first terms of a series all of whose terms are positive: always a little less than was lost.
+/// A line between two points of the unit disk stays inside it, so no mass gains energy however its pitch moves. But the
+/// chord is shorter than the arc: at the share `t` of a line that turns by `Δθ` in total, the amplitude after a frame
+/// is `√(1 − 4 t (1−t) sin²(Δθ/2))` times what it would be on the arc. The loss of the line before is given back here,
+/// by the first terms of a series whose terms are all positive: always slightly less than was lost.
 ///
-/// Damping acts at once: the coefficients are multiplied by the new radius over the old, which leaves the angle alone.
+/// Damping acts at once: the coefficients are multiplied by the new radius over the old one, which does not change the
+/// angle.
 pub(super) struct Aim<'a> {
     pub(super) tuning: &'a mut Tuning,
     pub(super) modes: &'a mut Modes,
     pub(super) state: &'a mut State,
     pub(super) ratio: f32,
-    /// Frames of the line before that have passed, and how many there are left of it.
+    /// Frames of the line before that have been rendered, and frames that remain of it.
     pub(super) passed: usize,
     pub(super) left: usize,
-    /// What they have lost, if it is to be given back.
+    /// The loss in the rendered frames, if it is to be given back.
     pub(super) lost: Option<ChordLoss>,
     /// Whether damping has changed.
     pub(super) damped: bool,
-    /// The share of the way that a frame takes, or none to be there at once.
+    /// The share of the line that each frame advances, or `None` to jump to its end.
     pub(super) per_frame: Option<f32>,
-    /// Gains to the left and to the right at full level, if some modes are at the top of the spectrum or leave it.
+    /// Gains at full level, left and right, if some modes fade at the top of the spectrum or have just stopped fading.
     pub(super) fade: Option<&'a [Row; 2]>,
-    /// Modes from here on are at rest: they are put where the line ends.
+    /// Modes from this index on are at rest: they are put at the end of the line.
     pub(super) live: usize,
     pub(super) len: usize,
 }
 
-/// Frames for which the coefficients on a line stay the same: two operations a mode less in three frames of four.
-/// Frozen: bits depend on it.
+/// Number of frames for which the coefficients on a line stay the same: this saves two operations per mode in three
+/// frames of four. Frozen: bits depend on it.
 pub(super) const STAIR: usize = 4;
 
-/// Where on a line of `frames` frames the coefficients of the next frame lie once `passed` have passed: in the middle of
-/// its stair, of which the last ends with the line. And how many frames, that one included, have them.
+/// The position of the next frame's coefficients on a line of `frames` frames after `passed` frames: the middle of the
+/// frame's stair (the last stair ends with the line). Also returns how many frames, this one included, have these
+/// coefficients.
 #[inline(always)]
 pub(super) const fn stair(passed: usize, frames: usize) -> (f32, usize) {
-    // Beyond the end of the line nothing moves.
+    // After the end of the line nothing moves.
     let passed = if passed < frames { passed } else { frames - 1 };
     let first = passed - passed % STAIR;
     let last = if first + STAIR < frames { first + STAIR } else { frames };
     (0.5 * (first + 1 + last) as f32, last - passed)
 }
 
-/// The logarithm of what part of a line has lost to the arc, as a polynomial in the squared step `q` of the line:
-/// `first · q + second · q²`.
+/// The logarithm of the loss on a part of a line compared with the arc, as a polynomial in the squared step `q` of the
+/// line: `first · q + second · q²`.
 ///
-/// Over frames that lie at `v` of the `K` frames of the line, with `t = v/K` and `|Δz|² = K² q = 4 r² sin²(Δθ/2)`, the
-/// sum of `−½ ln(1 − 4 t (1−t) sin²(Δθ/2))` begins with `½ q Σ v (K−v) + ¼ q² Σ v² (K−v)²`. All terms that are left out,
-/// and `r² < 1`, make the true loss larger.
+/// For frames at position `v` of the `K` frames of the line, with `t = v/K` and `|Δz|² = K² q = 4 r² sin²(Δθ/2)`, the
+/// sum of `−½ ln(1 − 4 t (1−t) sin²(Δθ/2))` begins with `½ q Σ v (K−v) + ¼ q² Σ v² (K−v)²`. The omitted terms, and `r²
+/// < 1`, make the true loss larger.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ChordLoss {
     first: f32,
@@ -143,7 +145,7 @@ pub(super) struct ChordLoss {
 }
 
 impl ChordLoss {
-    /// Over the first `passed` of the `frames` frames of a line.
+    /// The loss over the first `passed` of the `frames` frames of a line.
     pub(super) fn new(passed: usize, frames: usize) -> Self {
         const TICK: ChordLoss = ChordLoss::over(CONTROL_FRAMES, CONTROL_FRAMES);
         if (passed, frames) == (CONTROL_FRAMES, CONTROL_FRAMES) { TICK } else { Self::over(passed, frames) }
@@ -190,7 +192,7 @@ impl Kernel for Aim<'_> {
             let wanted = tuning.half_angle.at::<V>(proof, at).mul(V::splat(proof, ratio));
             let half = wanted.min(top);
             let (sin, cos) = (sine::<V>(proof, half), cosine::<V>(proof, half));
-            // sin² + cos² − 1: how much too long the turn is by rounding, which would change the decay.
+            // sin² + cos² − 1: the rounding error of the turn's squared length, which would change the decay.
             let excess = sin.mul_add(sin, cos.mul_add(cos, V::splat(proof, -1.0)));
             let two_sin = sin.add(sin);
             let two_sin = two_sin.neg_mul_add(excess, two_sin);
@@ -220,8 +222,9 @@ impl Kernel for Aim<'_> {
                     let mut alpha: V = passed.mul_add(alpha_step, modes.alpha.at(proof, at));
                     let mut beta: V = passed.mul_add(beta_step, modes.beta.at(proof, at));
                     if broken_off {
-                        // In the midst of the chord the point lies inside the circle, by the factor √(1 − p (K−p) q): the
-                        // next line is to start on it. Again by the first terms of a series, all of them positive.
+                        // In the middle of the chord the point lies inside the circle, by the factor √(1 − p (K−p) q).
+                        // The next line must start on the circle. Again by the first terms of a series whose terms are
+                        // all positive.
                         let step2 = alpha_step.mul_add(alpha_step, beta_step.mul(beta_step));
                         let inside = step2.mul(lift);
                         let more = inside.mul(inside.mul_add(V::splat(proof, 0.375), V::splat(proof, 0.5)));
@@ -255,7 +258,7 @@ impl Kernel for Aim<'_> {
     }
 }
 
-/// Adds up the squared amplitudes of the live modes, in units of [`UNIT`]², and sets to rest those below [`REST`].
+/// Adds up the squared amplitudes of the live modes, in units of [`UNIT`]², and sets those below [`REST`] to rest.
 pub(super) struct Settle<'a> {
     pub(super) state: &'a mut State,
     pub(super) live: usize,
@@ -276,7 +279,7 @@ impl Kernel for Settle<'_> {
             let energy = scaled_x.mul(scaled_x).add(scaled_y.mul(scaled_y));
             let lane = &mut total.0[at % LANES..];
             V::load(proof, lane).add(energy).store(lane);
-            // 1 for a mode that rings and 0 for one that does not.
+            // 1 for a mode that rings and 0 for one at rest.
             let above = energy.sub(V::splat(proof, (REST / UNIT) * (REST / UNIT))).mul(V::splat(proof, 1e30));
             let rings = above.max(V::splat(proof, 0.0)).mul(V::splat(proof, 1e30)).min(V::splat(proof, 1.0));
             x.mul(rings).store(&mut state.x.0[at..]);
@@ -289,13 +292,13 @@ impl Kernel for Settle<'_> {
     }
 }
 
-/// Amplitudes are counted in units of this, so that the squares of the smallest that matter are normal numbers.
+/// Unit of amplitudes, so that the squares of the smallest relevant ones are normal numbers.
 pub(super) const UNIT: f32 = 1.0 / (1_u64 << 40) as f32;
 
-/// A mode with less amplitude than this is set to rest before it can become denormal.
+/// A mode with a smaller amplitude is set to rest before it can become denormal.
 const REST: f32 = 1e-20;
 
-/// Half an angle, at most that of the top of the spectrum.
+/// Half an angle, limited to that at the top of the spectrum.
 #[inline(always)]
 pub(super) fn below_top(half_angle: f64) -> f64 {
     let top = 0.5 * TOP_ANGLE;
@@ -305,10 +308,10 @@ pub(super) fn below_top(half_angle: f64) -> f64 {
 /// `r − 1` from `ln r`, for −1.8 ≤ ln r ≤ 0.
 #[inline(always)]
 pub(super) fn expm1_of_radius(ln_radius: f64) -> f64 {
-    // From a quarter of it by (1+u)² − 1 = u (2+u), twice: no digit is lost for r close to 1.
+    // Computed for a quarter of `ln r`; then (1+u)² − 1 = u (2+u), twice. No digit is lost for r close to 1.
     let y = 0.25 * ln_radius;
     let mut sum = 1.0;
-    // The series of (e^y − 1)/y. The first term left out is below 1e−16 of the sum.
+    // The series of (e^y − 1)/y. The first omitted term is below 1e−16 of the sum.
     for n in [13.0, 12.0, 11.0, 10.0, 9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0] {
         sum = 1.0 + sum * y * (1.0 / n);
     }
@@ -317,7 +320,7 @@ pub(super) fn expm1_of_radius(ln_radius: f64) -> f64 {
     u * (2.0 + u)
 }
 
-/// `sin x` for 0 ≤ x ≤ π/2, by its series, within 5e−15.
+/// `sin x` for 0 ≤ x ≤ π/2, from its series, with an error below 5e−15.
 #[inline(always)]
 pub(super) fn sin_to_right_angle(x: f64) -> f64 {
     let x2 = x * x;
@@ -328,7 +331,7 @@ pub(super) fn sin_to_right_angle(x: f64) -> f64 {
     sum * x
 }
 
-/// `sin x` for 0 ≤ x ≤ π/2 in single precision: the series to x¹¹, within 1.3e−7.
+/// `sin x` for 0 ≤ x ≤ π/2 in single precision: the series up to x¹¹, with an error below 1.3e−7.
 #[inline(always)]
 fn sine<V: Vector>(proof: V::Proof, x: V) -> V {
     let x2 = x.mul(x);
@@ -339,8 +342,8 @@ fn sine<V: Vector>(proof: V::Proof, x: V) -> V {
     sum.mul(x2).mul_add(x, x)
 }
 
-/// `cos x` for 0 ≤ x < π/2 in single precision: the series to x¹², within 1.3e−7. (`√(1 − sin²)` costs more: a vector
-/// square root takes as long as twenty multiplications.)
+/// `cos x` for 0 ≤ x < π/2 in single precision: the series up to x¹², with an error below 1.3e−7. (`√(1 − sin²)` would
+/// cost more: a vector square root takes as long as twenty multiplications.)
 #[inline(always)]
 fn cosine<V: Vector>(proof: V::Proof, x: V) -> V {
     let x2 = x.mul(x);
@@ -351,7 +354,7 @@ fn cosine<V: Vector>(proof: V::Proof, x: V) -> V {
     sum
 }
 
-/// How much of modes with these half angles is heard: all up to [`TOP_ANGLE`], nothing from π on.
+/// Level factor of modes with these half angles: 1 up to [`TOP_ANGLE`], 0 from π on.
 #[inline(always)]
 fn audible<V: Vector>(proof: V::Proof, half_angle: V) -> V {
     let below = V::splat(proof, (0.5 * PI) as f32).sub(half_angle);

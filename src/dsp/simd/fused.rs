@@ -1,26 +1,26 @@
-//! Fused multiplication for CPUs without an instruction for it: `a · b + c` in single precision, rounded once.
+//! Emulates `a · b + c` in single precision, rounded once, for CPUs without fused multiplication.
 //!
-//! A product of two numbers of single precision is exact in double precision: 48 bits of 53, and never too small or
-//! too large. So `a · b + c` in double precision is the exact sum `e` rounded once, to `s`; the result is `s` rounded
-//! to single precision. Call a *midpoint* what lies halfway between two neighbouring numbers of single precision, or
-//! where rounding begins to give infinity: midpoints are numbers of double precision. Rounding is monotone, so `s` lies
-//! below a midpoint only if `e` does, and above one only if `e` does. Hence, **unless `s` is a midpoint itself, `s`
-//! rounds to what `e` rounds to.** If it is one, `e` may lie beside it, and which side decides.
+//! A product of two single-precision numbers is exact in double precision: 48 bits of 53, and never too small or too
+//! large. So `a · b + c` in double precision is the exact sum `e` rounded once, to `s`. The result here is `s` rounded
+//! to single precision. A *midpoint* is a number halfway between two neighbouring single-precision numbers, or the
+//! number from which rounding gives infinity; midpoints are double-precision numbers. Rounding is monotone, so `s` lies
+//! below a midpoint only if `e` does, and above one only if `e` does. Hence, **unless `s` is a midpoint itself, `s` and
+//! `e` round to the same number.** If `s` is a midpoint, `e` may lie on either side of it, and the side decides.
 //!
-//! Midpoints are told by their bits. From 2⁻¹²⁶ on, a number of single precision has 23 of the 52 bits of the fraction,
-//! so that the 29 lowest bits of a midpoint are 100…0. Below, where single precision has a fixed step, everything but
-//! zero counts as one here. Infinities and what is not a number never do: their lowest bits are zeros. Random
-//! sums are midpoints once in 2²⁹ times, so that looking for them in a whole vector and repairing the rare find costs
-//! little; zeros, of which banks are full, cost no more than others.
+//! Midpoints are recognised by their bits. From 2⁻¹²⁶ on, a single-precision number has 23 of the 52 bits of the
+//! fraction, so the 29 lowest bits of a midpoint are 100…0. Below 2⁻¹²⁶, where single precision has a fixed step, every
+//! sum but zero is treated as a midpoint. Infinities and NaN are never treated as midpoints: their lowest bits are
+//! zeros. Only one random sum in 2²⁹ is a midpoint, so it costs little to look for midpoints in a whole vector and to
+//! repair the few that are found. Zeros, which are frequent in banks, cost no more than other numbers.
 
-/// The lowest bits of a double that single precision has no room for, and what they are in a midpoint.
+/// The lowest bits of a double, for which single precision has no room, and their value in a midpoint.
 pub(super) const LOST: u64 = (1 << 29) - 1;
 pub(super) const HALF: u64 = 1 << 28;
 
-/// The bits of 2⁻¹²⁶, the least number that single precision has at full precision.
+/// The bits of 2⁻¹²⁶, the smallest normal number of single precision.
 pub(super) const LEAST_NORMAL: u64 = (1023 - 126) << 52;
 
-/// Whether the target has an instruction for it, which is then the way.
+/// Whether the target has an instruction for fused multiplication, which is then used.
 const HAS_INSTRUCTION: bool =
     cfg!(any(target_feature = "fma", target_arch = "aarch64", all(target_arch = "riscv64", target_feature = "f")));
 
@@ -46,28 +46,28 @@ pub(super) fn fused(a: [f32; 4], b: [f32; 4], c: [f32; 4]) -> [f32; 4] {
 /// Whether a sum may be a midpoint.
 #[inline(always)]
 fn may_be_midpoint(sum: f64) -> bool {
-    // Halves of 32 bits, which every CPU compares.
+    // As two numbers of 32 bits, which every CPU can compare.
     let (low, high) = (sum.to_bits() as u32, (sum.to_bits() >> 32) as u32);
     let shift = LOST.count_ones();
     let (half, magnitude) = (low << (32 - shift), high << 1);
-    // Less one, zero is the greatest of all.
+    // After subtracting 1, zero becomes the largest number.
     (half == (HALF as u32) << (32 - shift)) | (magnitude.wrapping_sub(1) < ((LEAST_NORMAL >> 32) as u32 * 2) - 1)
 }
 
-/// `a · b + c` rounded once, number by number, whatever the sums are.
+/// `a · b + c` rounded once, number by number; correct for all sums, midpoints included.
 #[cold]
 #[inline(never)]
 pub(super) fn repaired(a: [f32; 4], b: [f32; 4], c: [f32; 4]) -> [f32; 4] {
     std::array::from_fn(|l| rounded_to_odd(a[l], b[l], c[l]) as f32)
 }
 
-/// `a · b + c` rounded to odd: of the two doubles around an inexact sum, the one whose last bit is 1. No midpoint is
-/// such a one, so it lies on the side of every midpoint on which the exact sum does (Boldo and Melquiond 2008, "Emulation
-/// of a FMA and correctly rounded sums").
+/// `a · b + c` rounded to odd: of the two doubles around an inexact sum, the one whose last bit is 1. No midpoint has a
+/// last bit of 1, so the result lies on the same side of every midpoint as the exact sum (Boldo and Melquiond 2008,
+/// "Emulation of a FMA and correctly rounded sums").
 fn rounded_to_odd(a: f32, b: f32, c: f32) -> f64 {
     let (product, c) = (f64::from(a) * f64::from(b), f64::from(c));
     let sum = product + c;
-    // Knuth's TwoSum: what rounding took away. Not a number where the sum is infinite, which is then right as it is.
+    // Knuth's TwoSum: the rounding error of the sum. NaN if the sum is infinite; the sum is then correct as it is.
     let part = sum - product;
     let error = (product - (sum - part)) + (c - part);
     let bits = sum.to_bits();
@@ -87,7 +87,7 @@ mod tests {
     use crate::dsp::random::key;
     use crate::dsp::simd::vector::{Scalar, Vector};
 
-    /// What a vector makes of `a · b + c` and of `c − a · b`.
+    /// The results of a vector type for `a · b + c` and for `c − a · b`.
     fn both<V: Vector<Proof = ()>>(a: &[f32], b: &[f32], c: &[f32]) -> [[f32; 4]; 2] {
         let mut results = [[0.0; 4]; 2];
         let load = |from| V::load((), from);
@@ -127,14 +127,14 @@ mod tests {
             key(11, self.0)
         }
 
-        /// Any number of single precision at all; every fourth time, one with few bits, which makes ties likely.
+        /// Any single-precision bit pattern; every fourth one has few bits, which makes midpoints likely.
         fn number(&mut self) -> f32 {
             let bits = self.next();
             let mask = if bits >> 62 == 0 { u32::MAX << (bits >> 32 & 31) } else { u32::MAX };
             f32::from_bits(bits as u32 & mask)
         }
 
-        /// A number of a magnitude from 2^`low` up, below 2^`high`.
+        /// A number whose magnitude is at least 2^`low` and below 2^`high`.
         fn between(&mut self, low: i32, high: i32) -> f32 {
             let exponent = low + (self.next() % (high - low) as u64) as i32;
             let number = f32::from_bits(0x3f80_0000 | (self.next() as u32 & 0x807f_ffff));
@@ -142,7 +142,7 @@ mod tests {
         }
     }
 
-    /// `SPRUNG_FUSED_CASES` asks for more sums.
+    /// Number of random sums; the environment variable `SPRUNG_FUSED_CASES` changes it.
     fn cases() -> u64 {
         std::env::var("SPRUNG_FUSED_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(1_000_000)
     }
@@ -153,7 +153,7 @@ mod tests {
         for n in 0..cases() / 4 {
             let mut four = |which: u64| -> [f32; 4] {
                 std::array::from_fn(|_| match n % 4 {
-                    // Every pattern of bits there is; magnitudes that meet each other; what kernels have; around 2⁻¹²⁶.
+                    // All bit patterns; similar magnitudes; the magnitudes in kernels; magnitudes around 2⁻¹²⁶.
                     0 => bits.number(),
                     1 => bits.between(-20, 20),
                     2 => bits.between(-10, 1),
@@ -167,12 +167,12 @@ mod tests {
         }
     }
 
-    /// Exact sums on a midpoint, and beside one by less than double precision can tell.
+    /// Exact sums on a midpoint, and beside one by less than double precision can resolve.
     #[test]
     fn sums_beside_midpoints_round_once() {
         let mut bits = Bits(1 << 40);
         for n in 0..cases() / 100 {
-            // Of all magnitudes, and every other time around 2⁻¹²⁶ and below.
+            // All magnitudes; every second time, magnitudes around 2⁻¹²⁶ and below.
             let mask = if n % 2 == 0 { u32::MAX } else { 0x80ff_ffff };
             let c: [f32; 4] = std::array::from_fn(|_| f32::from_bits(bits.number().to_bits() & mask));
             // Half a step, as a product of two numbers.

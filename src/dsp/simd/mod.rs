@@ -1,7 +1,7 @@
-//! Vector instructions: which levels of them the CPU has, and work that is written once and run with the best.
+//! Vector instructions: detects which levels the CPU has, and runs kernels, written once, with the best of them.
 //!
-//! `vector` says what work may ask of a CPU; `sse2`, `x86` and `neon` have the instructions. They are the only unsafe
-//! code of the crate. `fused` is fused multiplication for CPUs without an instruction for it.
+//! `vector` defines the operations that kernels may use; `sse2`, `x86` and `neon` implement them and contain the only
+//! unsafe code of the crate. `fused` emulates fused multiplication for CPUs without an instruction for it.
 
 mod fused;
 #[cfg(target_arch = "aarch64")]
@@ -30,15 +30,15 @@ use x86::{Avx2, Avx512, HasAvx2, HasAvx512};
 /// A level of vector instructions. All give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
-    /// One number at a time, on any CPU.
+    /// Plain Rust without vector instructions, on any CPU.
     Scalar,
-    /// x86-64, four numbers, fused multiplication emulated.
+    /// x86-64: four numbers, fused multiplication emulated.
     Sse2,
-    /// x86-64 since 2013: eight numbers, fused.
+    /// x86-64 since 2013: eight numbers, fused multiplication.
     Avx2,
-    /// x86-64 servers since 2017, some desktops: sixteen numbers.
+    /// x86-64 servers since 2017 and some desktops: sixteen numbers.
     Avx512,
-    /// AArch64: four numbers, fused.
+    /// AArch64: four numbers, fused multiplication.
     Neon,
 }
 
@@ -46,7 +46,7 @@ impl Level {
     /// Every level, slowest first.
     pub const ALL: [Level; 5] = [Level::Scalar, Level::Sse2, Level::Avx2, Level::Avx512, Level::Neon];
 
-    /// The name by which the environment variable `SPRUNG_SIMD` asks for the level.
+    /// The level's name, as in the environment variable `SPRUNG_SIMD`.
     pub fn name(self) -> &'static str {
         match self {
             Level::Scalar => "scalar",
@@ -62,8 +62,8 @@ impl Level {
         Instructions::detect(self).is_some()
     }
 
-    /// The level that banks made from now on use: the one last forced, else the one that `SPRUNG_SIMD` named when
-    /// this was first asked, else the fastest that the CPU has. Not for the audio thread, when first asked.
+    /// The level that new banks use: the one last forced, else the one that `SPRUNG_SIMD` named when this was first
+    /// called, else the fastest that the CPU has. The first call is not real-time safe.
     pub fn current() -> Level {
         static DETECTED: OnceLock<Level> = OnceLock::new();
         let forced = FORCED.load(Ordering::Relaxed);
@@ -77,8 +77,8 @@ impl Level {
         })
     }
 
-    /// Makes banks made from now on use this level; returns whether the CPU has it. For tests and measurements: the
-    /// sound is the same.
+    /// Makes new banks use this level, and returns whether the CPU has it. For tests and measurements: the sound is the
+    /// same.
     pub fn force(self) -> bool {
         let available = self.is_available();
         if available {
@@ -88,20 +88,21 @@ impl Level {
     }
 }
 
-/// Index in [`Level::ALL`] of the level that [`Level::force`] set; beyond it if none was.
+/// Index in [`Level::ALL`] of the level that [`Level::force`] set; `u8::MAX` if none was set.
 static FORCED: AtomicU8 = AtomicU8::new(u8::MAX);
 
-/// Work that is written once for all vectors.
+/// Work that is written once for all vector types.
 pub(in crate::dsp) trait Kernel {
-    /// What it comes to.
+    /// The result of the work.
     type Output;
 
-    /// Does the work. Implementers are `#[inline(always)]`, as is all that they call: what is not inlined into a
-    /// function of [`Instructions::run`] is compiled without the level's instructions, and is several times as slow.
+    /// Does the work. Implementations, and all functions that they call, are `#[inline(always)]`: what is not inlined
+    /// into a function of [`Instructions::run`] is compiled without the level's instructions, and is several times
+    /// slower.
     fn run<V: Vector>(self, proof: V::Proof) -> Self::Output;
 }
 
-/// A level that this CPU has, with the proof of it.
+/// A level that this CPU has, with the proof that it has it.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::dsp) enum Instructions {
     Scalar,
@@ -116,12 +117,12 @@ pub(in crate::dsp) enum Instructions {
 }
 
 impl Instructions {
-    /// Those of [`Level::current`].
+    /// The instructions of [`Level::current`].
     pub(in crate::dsp) fn current() -> Self {
         Self::detect(Level::current()).unwrap_or(Self::Scalar)
     }
 
-    /// Those of a level, if the CPU has it.
+    /// The instructions of a level, if the CPU has it.
     fn detect(level: Level) -> Option<Self> {
         match level {
             Level::Scalar => Some(Self::Scalar),
@@ -140,7 +141,7 @@ impl Instructions {
         }
     }
 
-    /// Their level.
+    /// The level of these instructions.
     pub(in crate::dsp) fn level(self) -> Level {
         match self {
             Self::Scalar => Level::Scalar,
@@ -155,7 +156,7 @@ impl Instructions {
         }
     }
 
-    /// Runs a kernel that is compiled for them.
+    /// Runs a kernel, compiled for these instructions.
     #[inline]
     pub(in crate::dsp) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {

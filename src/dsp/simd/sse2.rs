@@ -1,20 +1,21 @@
-//! Vectors of SSE2, which has no fused multiplication: every number is kept in double precision.
+//! Vectors for SSE2, which has no fused multiplication: every number is stored in double precision.
 //!
-//! A fused multiplication is then one of double precision, an addition and a rounding to single precision
-//! (`super::fused` says when that is right), and its operands need no converting. Sums, differences and products of single
-//! precision may be rounded to double precision first: it has more than twice as many bits.
+//! Fused multiplication is then a double-precision multiplication, an addition, and a rounding to single precision
+//! (`super::fused` explains when this is correct). Its operands need no conversion. Sums, differences and products of
+//! single-precision numbers may be rounded to double precision first, because double precision has more than twice as
+//! many bits.
 //!
-//! SAFETY, throughout: SSE2 belongs to x86-64.
+//! SAFETY, throughout: every x86-64 CPU has SSE2.
 
 use super::fused::{HALF, LEAST_NORMAL, LOST, repaired};
 use super::vector::Vector;
 use std::arch::x86_64::*;
 
-/// Four numbers of single precision, in double precision.
+/// Four single-precision numbers, stored in double precision.
 #[derive(Clone, Copy)]
 pub(super) struct Sse2([__m128d; 2]);
 
-/// The same operation on both halves.
+/// Applies the same operation to both halves.
 macro_rules! halves {
     ($half:ident => $result:expr) => {{
         let of = |$half: usize| {
@@ -106,26 +107,27 @@ impl Vector for Sse2 {
 }
 
 impl Sse2 {
-    /// In single precision.
+    /// Converted to single precision.
     #[inline(always)]
     fn narrow(self) -> __m128 {
         // SAFETY: see the top of the file.
         unsafe { _mm_movelh_ps(_mm_cvtpd_ps(self.0[0]), _mm_cvtpd_ps(self.0[1])) }
     }
 
-    /// Rounded to single precision.
+    /// Rounded to single precision, but stored in double precision.
     #[inline(always)]
     fn rounded(self) -> Self {
         Self([rounded(self.0[0]), rounded(self.0[1])])
     }
 
-    /// Whether any of these sums may be a midpoint (`super::fused`). A branch for all four: it is hardly ever taken.
+    /// Whether any of these sums may be a midpoint (`super::fused`). One branch for all four, as it is hardly ever
+    /// taken.
     #[inline(always)]
     fn may_be_midpoints(self) -> bool {
         const MAX: i32 = i32::MAX;
-        // SSE2 compares signed numbers of 32 bits. Of each half of a double, all bits flipped but for the sign, the
-        // values that are looked for become the greatest: that one midpoint; all below 2⁻¹²⁶, with zero beyond them,
-        // where it overflows and is the least.
+        // SSE2 compares signed numbers of 32 bits. In each half of a double, all bits but the sign are inverted. Then
+        // the wanted values become the largest: the lowest bits of a midpoint, and everything below 2⁻¹²⁶. Zero would
+        // be even larger, but there the addition overflows and makes it the smallest.
         const OFFSET: [i32; 2] = [MAX - (LOST - HALF) as i32, 1];
         const BOUND: [i32; 2] = [MAX - 1, MAX - (LEAST_NORMAL >> 32) as i32 + 1];
         // SAFETY: see the top of the file.
@@ -139,7 +141,7 @@ impl Sse2 {
         }
     }
 
-    /// `self · factor + term`, whatever the sums are.
+    /// `self · factor + term`, correct for all sums, midpoints included.
     #[cold]
     #[inline(always)]
     fn repaired(self, factor: Self, term: Self) -> Self {
@@ -151,14 +153,14 @@ impl Sse2 {
     }
 }
 
-/// In double precision.
+/// Converted to double precision.
 #[inline(always)]
 fn wide(four: __m128) -> [__m128d; 2] {
     // SAFETY: see the top of the file.
     unsafe { [_mm_cvtps_pd(four), _mm_cvtps_pd(_mm_movehl_ps(four, four))] }
 }
 
-/// Rounded to single precision.
+/// Rounded to single precision, but stored in double precision.
 #[inline(always)]
 fn rounded(two: __m128d) -> __m128d {
     // SAFETY: see the top of the file.

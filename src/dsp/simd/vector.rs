@@ -1,40 +1,40 @@
-//! What the kernels ask of a CPU: a few operations on a vector of single-precision numbers, each rounded exactly.
+//! The operations that kernels may use: on vectors of single-precision numbers, each correctly rounded.
 
 use super::fused::fused;
 
-/// Modes whose partial sums are kept side by side. Frozen, like everything that an order of summation depends on.
+/// Number of partial sums of modes that are kept side by side. Frozen, since the order of summation depends on it.
 pub(in crate::dsp) const LANES: usize = 16;
 
-/// The partial sums of one frame: lane `l` has those of the modes `m` with `m mod 16 = l`.
+/// The partial sums of one frame: lane `l` sums the modes `m` with `m mod 16 = l`.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(in crate::dsp) struct Partial(pub(in crate::dsp) [f32; LANES]);
 
 /// A vector of 1 to [`LANES`] single-precision numbers.
 ///
-/// Every operation is one that IEEE 754 defines to the bit, so all implementers give the same.
+/// IEEE 754 defines every operation to the bit, so all implementations give the same result.
 ///
-/// The functions that make a vector ask for a proof that this CPU has the instructions. Only detection hands out
-/// proofs, so whoever holds a vector or a proof may execute them, and the operations are safe.
+/// The functions that make a vector take a proof that this CPU has the instructions. Only detection creates proofs, so
+/// code that holds a vector or a proof may execute the instructions, and the operations are safe.
 pub(in crate::dsp) trait Vector: Copy {
-    /// Exists only where the CPU has the instructions.
+    /// A value of this type exists only if the CPU has the instructions.
     type Proof: Copy;
-    /// How many numbers.
+    /// Number of lanes.
     const WIDTH: usize;
-    /// How many vectors of each group of modes are stepped at once where the coefficients stand still.
+    /// How many vectors of each group of modes are stepped at once while the coefficients do not move.
     const SIDE_BY_SIDE: usize = 1;
 
     /// `value` in every lane.
     fn splat(proof: Self::Proof, value: f32) -> Self;
     /// The first numbers of `from`.
     fn load(proof: Self::Proof, from: &[f32]) -> Self;
-    /// `pair` over and over.
+    /// `pair`, repeated to fill the vector.
     fn splat_pair(proof: Self::Proof, pair: &[f32; 2]) -> Self;
     /// Writes to the first numbers of `to`.
     fn store(self, to: &mut [f32]);
-    /// Writes the lanes of `self` and `other` in turn: twice as many numbers.
+    /// Writes the lanes of `self` and `other` alternately: twice as many numbers.
     fn store_pairs(self, other: Self, to: &mut [f32]);
-    /// The sums of neighbouring lanes, of `self` and then of `other`.
+    /// The sums of neighbouring lanes, first of `self`, then of `other`.
     fn add_pairs(self, other: Self) -> Self;
     /// `self + other`.
     fn add(self, other: Self) -> Self;
@@ -42,23 +42,23 @@ pub(in crate::dsp) trait Vector: Copy {
     fn sub(self, other: Self) -> Self;
     /// `self · other`.
     fn mul(self, other: Self) -> Self;
-    /// The lesser; the arguments are numbers.
+    /// The smaller value; neither argument may be NaN.
     fn min(self, other: Self) -> Self;
-    /// The greater; the arguments are numbers.
+    /// The larger value; neither argument may be NaN.
     fn max(self, other: Self) -> Self;
     /// `self · factor + term`, rounded once.
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// `term − self · factor`, rounded once.
     fn neg_mul_add(self, factor: Self, term: Self) -> Self;
 
-    /// Adds up the partial sums of each frame, by halves: lane `l` and `l + 8`, then `l + 4`, `l + 2`, `l + 1`.
+    /// Adds up the partial sums of each frame, by halves: lanes `l` and `l + 8`, then `l + 4`, `l + 2`, `l + 1`.
     #[inline(always)]
     fn sum_lanes(_: Self::Proof, frames: &[Partial], sums: &mut [f32]) {
         sum_frames(frames, sums);
     }
 }
 
-/// [`Vector::sum_lanes`] in any CPU's terms.
+/// [`Vector::sum_lanes`] without vector instructions.
 #[inline(always)]
 pub(in crate::dsp) fn sum_frames(frames: &[Partial], sums: &mut [f32]) {
     for (Partial(p), sum) in frames.iter().zip(sums) {
@@ -73,7 +73,7 @@ pub(in crate::dsp) fn sum_frames(frames: &[Partial], sums: &mut [f32]) {
     }
 }
 
-/// Four numbers in plain Rust: for CPUs without a kernel of their own, and the reference for those with one.
+/// Four numbers in plain Rust: for CPUs without a kernel of their own, and as the reference for the others.
 #[derive(Clone, Copy)]
 pub(in crate::dsp) struct Scalar([f32; 4]);
 

@@ -1,7 +1,7 @@
-//! Vectors of x86-64 with fused multiplication: AVX2 with FMA, AVX-512.
+//! Vectors for x86-64 CPUs with fused multiplication: AVX2 with FMA, and AVX-512.
 //!
-//! SAFETY, throughout: a vector is made only with a proof, and a proof only where the CPU was found to have the
-//! instructions; so an operation on a vector, or with a proof, may execute them.
+//! SAFETY, throughout: making a vector requires a proof, and a proof exists only if the CPU was found to have the
+//! instructions. So an operation on a vector, or with a proof, may execute them.
 
 use super::vector::{LANES, Partial, Vector};
 use std::arch::x86_64::*;
@@ -11,24 +11,24 @@ use std::arch::x86_64::*;
 pub(in crate::dsp) struct HasAvx2(());
 
 impl HasAvx2 {
-    /// The proof, if the CPU has them.
+    /// Returns the proof if the CPU has AVX2 and FMA.
     pub(super) fn detect() -> Option<Self> {
         (is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")).then_some(Self(()))
     }
 }
 
-/// Proof that this CPU has AVX-512F, and AVX2 and FMA as well.
+/// Proof that this CPU has AVX-512F, and also AVX2 and FMA.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::dsp) struct HasAvx512(HasAvx2);
 
 impl HasAvx512 {
-    /// The proof, if the CPU has them.
+    /// Returns the proof if the CPU has AVX-512F, AVX2 and FMA.
     pub(super) fn detect() -> Option<Self> {
         HasAvx2::detect().filter(|_| is_x86_feature_detected!("avx512f")).map(Self)
     }
 }
 
-/// The operations that are one instruction of the same form on every level.
+/// The operations that are a single instruction of the same form on both levels.
 macro_rules! common {
     ($proof:ty, $width:literal, $load:ident, $store:ident, $splat:ident, $add:ident, $sub:ident, $mul:ident, $min:ident,
      $max:ident) => {
@@ -43,13 +43,13 @@ macro_rules! common {
         #[inline(always)]
         fn load(_: $proof, from: &[f32]) -> Self {
             let from = &from[..$width];
-            // SAFETY: see the top of the file; the slice has as many numbers as are read, and no alignment is asked for.
+            // SAFETY: see the top of the file; the slice has as many numbers as are read; no alignment is required.
             Self(unsafe { $load(from.as_ptr()) })
         }
         #[inline(always)]
         fn store(self, to: &mut [f32]) {
             let to = &mut to[..$width];
-            // SAFETY: see the top of the file; the slice has as many numbers as are written, and no alignment is asked for.
+            // SAFETY: see the top of the file; the slice has as many numbers as are written; no alignment is required.
             unsafe { $store(to.as_mut_ptr(), self.0) }
         }
         #[inline(always)]
@@ -85,7 +85,7 @@ macro_rules! common {
 pub(super) struct Avx2(__m256);
 
 impl Vector for Avx2 {
-    // Eight vectors in sixteen registers: waiting costs more than reading constants from memory.
+    // Eight vectors in sixteen registers: waiting for results costs more than reading constants from memory.
     const SIDE_BY_SIDE: usize = 2;
     common!(
         HasAvx2,
@@ -213,21 +213,21 @@ impl Vector for Avx512 {
     }
 }
 
-/// Lanes `l` and `l + 8`.
+/// The sums of lanes `l` and `l + 8`.
 #[inline(always)]
 fn halves(_: HasAvx2, row: &Partial) -> __m256 {
     // SAFETY: see the top of the file; both halves of the row have eight numbers.
     unsafe { _mm256_add_ps(_mm256_loadu_ps(row.0.as_ptr()), _mm256_loadu_ps(row.0[LANES / 2..].as_ptr())) }
 }
 
-/// Lanes `l` and `l + 2` of each half of `a` and `b`.
+/// The sums of lanes `l` and `l + 2` of each half of `a` and `b`.
 #[inline(always)]
 fn quarters(_: HasAvx2, a: __m256, b: __m256) -> __m256 {
     // SAFETY: see the top of the file.
     unsafe { _mm256_add_ps(_mm256_shuffle_ps::<0b01_00_01_00>(a, b), _mm256_shuffle_ps::<0b11_10_11_10>(a, b)) }
 }
 
-/// [`Vector::sum_lanes`] for eight frames at a time: 4.5 shuffles a frame less than one frame at a time.
+/// [`Vector::sum_lanes`] for eight frames at a time, which saves 4.5 shuffles per frame.
 #[inline(always)]
 fn sum_lanes_avx2(proof: HasAvx2, frames: &[Partial], sums: &mut [f32]) {
     let (eights, rest) = frames.as_chunks::<8>();
@@ -235,11 +235,11 @@ fn sum_lanes_avx2(proof: HasAvx2, frames: &[Partial], sums: &mut [f32]) {
     for (rows, sums) in eights.iter().zip(sums) {
         // SAFETY: see the top of the file; every row has sixteen numbers and `sums` eight.
         unsafe {
-            // (row 0, row 4) and so on, so that the last step leaves the rows in order.
+            // Pairs such as (row 0, row 4), so that the last step leaves the rows in order.
             let mut fours = [_mm256_setzero_ps(); 4];
             for i in 0..4 {
                 let (a, b) = (halves(proof, &rows[i]), halves(proof, &rows[i + 4]));
-                // Lanes l and l + 4 of both rows, side by side.
+                // Lanes l and l + 4 of both rows.
                 let low = _mm256_permute2f128_ps::<0x20>(a, b);
                 fours[i] = _mm256_add_ps(low, _mm256_permute2f128_ps::<0x31>(a, b));
             }

@@ -20,6 +20,7 @@ use std::f64::consts::{PI, TAU};
 ///
 /// let mut reverb = ModalReverb::new(Resonator::new(&sheet, Decay { low: 3.0, high: 1.0 }, 48_000.0));
 /// reverb.set_mix(0.3);
+/// reverb.reset();
 /// let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
 /// left[0] = 1.0;
 /// reverb.process(&mut left, &mut right);

@@ -1,4 +1,4 @@
-//! Choke groups across channels: what each part of an ensemble knows of the kits of the others.
+//! Choke groups across channels: what each part of an ensemble needs to know about the kits of the others.
 
 use crate::engine::Synth;
 use crate::engine::note::nearest_key;
@@ -6,10 +6,10 @@ use crate::params::Param;
 use crate::sound::{Kit, Tuning};
 use std::sync::Arc;
 
-/// What a part plays, kept between chunks.
+/// What a part plays, copied between chunks.
 pub(super) struct Playing {
     kit: Arc<Kit>,
-    /// The choke group of the kit's parameters.
+    /// The value of the kit's choke group parameter.
     choke: f32,
 }
 
@@ -19,7 +19,8 @@ impl Playing {
         Self { kit: kit.clone(), choke: kit.values().get(Param::Choke) }
     }
 
-    /// Takes over what a synth plays. Real-time safe if somebody keeps the kit before.
+    /// Copies what a synth plays. Real-time safe as long as someone else holds the previous kit, so that it is not
+    /// freed here.
     pub(super) fn follow(&mut self, synth: &Synth) {
         if !Arc::ptr_eq(&self.kit, synth.kit()) {
             self.kit = synth.kit().clone();
@@ -40,17 +41,17 @@ pub(super) struct ChokeGroups<'a> {
 }
 
 impl<'a> ChokeGroups<'a> {
-    /// Those of a kit with its initial parameters.
+    /// The choke groups of a kit with its initial parameters.
     pub(super) fn of_kit(kit: &'a Kit) -> Self {
         Self { kit, choke: kit.values().get(Param::Choke) }
     }
 
-    /// The parameter for the choke group has a new value.
+    /// Sets the choke group parameter.
     pub(super) fn set(&mut self, value: f32) {
         self.choke = Param::Choke.info().clamp(value);
     }
 
-    /// The choke group of a key; 0 for one that is silent.
+    /// The choke group of a key; 0 if the key is silent.
     pub(super) fn of_key(&self, key: u8, tuning: &Tuning) -> u8 {
         let pad = self.kit.tuned_pad(nearest_key(key), tuning);
         pad.map_or(0, |(pad, ..)| self.kit.choke(pad, self.choke))

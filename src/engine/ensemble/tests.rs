@@ -1,4 +1,4 @@
-//! An ensemble beside a single synth: channels, keys, zones and lengths of blocks.
+//! An ensemble compared with a single synth: channels, keys, zones and block lengths.
 
 use super::Ensemble;
 use crate::engine::{Event, EventKind, Notes, Synth};
@@ -17,7 +17,7 @@ fn off(channel: u8, key: u8) -> Event {
     Event { frame: 0, channel, kind: EventKind::NoteOff { key, velocity: 0.5, id: None } }
 }
 
-/// What a synth and an ensemble make of the events, each a block of its own.
+/// The output of a synth and of an ensemble for the same events, each event in a block of its own.
 fn both(events: &[Event]) -> [Vec<f32>; 2] {
     let patch = Patch::default().with(Param::Release, 0.01);
     let mut synth = Synth::new(48_000.0, 0);
@@ -65,7 +65,7 @@ fn the_members_of_a_zone_play_on_their_master_s_instrument() {
         let rest = [pressure(first), off(first, 57), control(master, 64, 127), off(second, 60), on(second, 60)];
         let events: Vec<Event> = zone.into_iter().chain(notes).chain(rest).collect();
         let [alone, mixed] = both(&events);
-        // Seeds differ by channel, but nothing here is random.
+        // Seeds differ between channels, but nothing in this patch is random.
         assert!(alone == mixed, "{master}");
         assert!(alone.iter().any(|sample| sample.abs() > 0.01), "it sounds");
     }
@@ -87,7 +87,7 @@ fn channels_keep_what_they_hold_when_a_zone_is_made_or_dissolved() {
         .chain(zone(1600, 0))
         .chain([note(1600, 2, 59), note(2000, 3, 62)])
         .collect();
-    // Short, so that what was struck before a zone is over when its channel moves on.
+    // A short release, so that notes struck before a zone change have ended before their channel gets another owner.
     let patch = Patch::default().with(Param::Release, 0.005).with(Param::Limiter, 0.0);
     let mut synth = Synth::new(48_000.0, 0);
     synth.set_patch(&patch);
@@ -105,7 +105,8 @@ fn channels_keep_what_they_hold_when_a_zone_is_made_or_dissolved() {
             mixed.0.extend(left);
             mixed.1.extend(right);
         }
-        // In one synth, an event on one channel makes the notes of others set out anew for the same place.
+        // In a single synth, an event on one channel restarts the parameter ramps of notes on other channels, towards
+        // the same targets. So the outputs differ slightly.
         let worst = |one: &[f32], other: &[f32]| {
             one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max)
         };
@@ -149,7 +150,7 @@ fn of_sides_that_differ_in_length_the_shorter_counts() {
             assert!(side[frames..].iter().all(|sample| *sample == 9.0), "the rest stays as it was");
         }
         assert!(frames == 0 || left[..frames].iter().any(|sample| sample.abs() > 0.01), "it sounds");
-        // The next block goes on where this one has ended.
+        // The next block continues where this one ended.
         let (mut rest, mut whole) = (([0.0; 300], [0.0; 300]), ([0.0; 400], [0.0; 400]));
         synth.process(&[], &mut rest.0, &mut rest.1);
         let mut other = Synth::new(48_000.0, 0);

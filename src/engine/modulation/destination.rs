@@ -1,17 +1,17 @@
-//! A parameter that routes lead to: what uses it, and how its value moves along the knob.
+//! A parameter that routes modulate: which part of the engine uses it, and how an offset changes its value.
 
 use super::link::Mover;
 use crate::dsp::power_of_two;
 use crate::params::{Change, Curve, Param};
 
-/// A parameter that routes lead to.
+/// A parameter that routes modulate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Destination {
     pub(crate) param: Param,
     pub(crate) target: Target,
     min: f32,
     max: f32,
-    /// The parameter's range, or how often its ends are doubled.
+    /// Width of the range: in the parameter's unit, or in octaves if its knob is logarithmic.
     span: f32,
     is_logarithmic: bool,
 }
@@ -19,11 +19,11 @@ pub(crate) struct Destination {
 /// Which part of the engine uses a destination.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
-    /// The next strike.
+    /// Used when a note is struck.
     Strike,
-    /// What sounding voices follow.
+    /// Used by sounding voices at each control tick.
     Control,
-    /// The rate of an oscillator.
+    /// The rate of an oscillator, by index.
     Lfo(u8),
 }
 

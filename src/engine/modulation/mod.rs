@@ -1,8 +1,9 @@
-//! What moves parameters away from their values: the host, for the instrument and for single notes, and the routes of the sound.
+//! Modulation: offsets that the host sets for the instrument or for single notes, and the routes of the sound.
 //!
-//! `note` has what a host moves for one note. `bus` has the routes: each is a `link` to a `destination`. `lfo` and
-//! `envelope` are two kinds of source, `moving` those of them that a voice has, `settings` what they and the routes follow.
-//! `modulators` has all sources of a voice: at each control tick they are read and destinations get their values.
+//! `note` holds the host's offsets for one note. `bus` holds the routes; each is a `link` to a `destination`. `lfo` and
+//! `envelope` are the two kinds of source that change with time; `moving` holds those of one voice. `settings` holds
+//! the parameter values that sources and routes use. `modulators` joins all this for one voice: at each control tick it
+//! reads the sources and computes the destinations' values.
 
 mod bus;
 mod destination;
@@ -21,7 +22,8 @@ pub(crate) use modulators::{Modulators, Positions, Struck};
 pub(crate) use note::{NoteModulation, modulated, moved};
 pub(crate) use settings::{Settings, SharedLfos};
 
-/// Rounds a second of what lasts a note value, at a tempo in beats per second, or has its own `rate`.
+/// Rate in Hz of an oscillator whose cycle lasts a note value, at a tempo in beats per second; `rate` if
+/// synchronisation is off.
 pub(crate) fn rate_at(value: NoteValue, rate: f64, beat_rate: f64) -> f64 {
     let beats = match value {
         NoteValue::Off => return rate,

@@ -1,4 +1,4 @@
-//! Parameters that a host moves away from their values: for the whole instrument, and for single notes.
+//! Parameter offsets that a host sets, for the whole instrument and for single notes.
 
 use crate::dsp::ramp::Ramp;
 use crate::params::{Change, PARAM_COUNT, PARAMS, Param, Values};
@@ -17,7 +17,7 @@ pub(crate) fn moved(param: Param, value: f32, offset: f32) -> f32 {
     info.denormalise(info.normalise(value) + f64::from(offset))
 }
 
-/// How many parameters sounding notes follow.
+/// How many parameters sounding notes follow while they sound.
 const FOLLOWED: usize = {
     let (mut index, mut count) = (0, 0);
     while index < PARAM_COUNT {
@@ -27,7 +27,7 @@ const FOLLOWED: usize = {
     count
 };
 
-/// The offsets of one note, and the values that they lead to. Real-time safe.
+/// The parameter offsets of one note, and the smoothed values that result. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NoteModulation {
     moved: [Option<Moved>; FOLLOWED],
@@ -36,16 +36,16 @@ pub(crate) struct NoteModulation {
 #[derive(Clone, Copy, Debug)]
 struct Moved {
     param: Param,
-    /// None once the note follows the instrument again.
+    /// None once the note follows the instrument's value again.
     offset: Option<f32>,
     value: Ramp,
 }
 
 impl NoteModulation {
-    /// No offset.
+    /// A note without offsets.
     pub(crate) const NONE: Self = Self { moved: [None; FOLLOWED] };
 
-    /// Whether there is none.
+    /// Whether no offset was ever set for the note.
     pub(crate) fn is_none(&self) -> bool {
         self.moved[0].is_none()
     }
@@ -59,13 +59,14 @@ impl NoteModulation {
         }
     }
 
-    /// Forgets all offsets: the note follows the instrument from the next [`NoteModulation::aim`].
+    /// Drops all offsets: from the next [`NoteModulation::aim`] the note follows the instrument.
     pub(crate) fn let_go(&mut self) {
         self.moved.iter_mut().flatten().for_each(|moved| moved.offset = None);
     }
 
-    /// Heads for what the offsets make of the values of `base`, or for those of `played`, the instrument as it is
-    /// modulated; at once if the note has not sounded yet.
+    /// Starts a ramp to the target of each parameter that has or had an offset: its value in `base` plus the offset,
+    /// or, if the offset was dropped, its value in `played` (the instrument with its own modulation). With `at_once`,
+    /// for a note that has not sounded yet, the value jumps.
     pub(crate) fn aim(&mut self, base: &Values, played: &Values, sample_rate: f64, at_once: bool) {
         for moved in self.moved.iter_mut().flatten() {
             let target = match moved.offset {
@@ -80,12 +81,12 @@ impl NoteModulation {
         }
     }
 
-    /// The value of a parameter `frames` frames from now, if the note has an offset for it.
+    /// The value of a parameter `frames` frames from now; none if the note never had an offset for it.
     pub(crate) fn after(&self, param: Param, frames: u32) -> Option<f32> {
         self.moved.iter().flatten().find(|moved| moved.param == param).map(|moved| moved.value.after(frames))
     }
 
-    /// Lets `frames` frames pass.
+    /// Advances the ramps by `frames` frames.
     pub(crate) fn advance(&mut self, frames: u32) {
         self.moved.iter_mut().map_while(Option::as_mut).for_each(|moved| moved.value.advance(frames));
     }

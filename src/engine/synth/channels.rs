@@ -4,16 +4,16 @@ use crate::engine::channel::{Channel, Wheels};
 use crate::engine::midi::{controller, seven_bits};
 use crate::engine::zones::{MEMBER_BEND_RANGE, Zones};
 
-/// Controllers of all channels, and which of them MPE zones bind together. Real-time safe.
+/// The controllers of all channels, and the MPE zones. Real-time safe.
 pub(super) struct Channels {
     channels: [Channel; 16],
     zones: Zones,
-    /// Frames until the gains of all channels have arrived.
+    /// Frames until the gains of all channels have reached their targets.
     gains_moving: u32,
 }
 
 impl Channels {
-    /// Channels as after power-on, without zones.
+    /// All channels in their power-on state, without zones.
     pub(super) fn new(sample_rate: f64) -> Self {
         Self { channels: [Channel::new(sample_rate); 16], zones: Zones::default(), gains_moving: 0 }
     }
@@ -22,28 +22,28 @@ impl Channels {
         &self.channels[usize::from(channel)]
     }
 
-    /// The master of the zone that a channel is a member of.
+    /// The master channel of the zone that a channel is a member of.
     fn master_of(&self, channel: u8) -> Option<&Channel> {
         self.zones.master_of(channel).map(|master| self.of(master))
     }
 
-    /// What a note on a channel follows of it and of the master of its zone.
+    /// The controllers that a note on a channel follows: those of the channel, and those of its zone's master.
     pub(super) fn wheels(&self, channel: u8) -> Wheels<'_> {
         Wheels { channel: self.of(channel), master: self.master_of(channel) }
     }
 
-    /// Brightness of a channel and the master of its zone, −0.5 to 0.5.
+    /// Brightness of a channel plus that of its zone's master, −0.5 to 0.5.
     pub(super) fn brightness(&self, channel: u8) -> f32 {
         let of_master = self.master_of(channel).map_or(0.0, |master| master.brightness);
         (self.of(channel).brightness + of_master).clamp(-0.5, 0.5)
     }
 
-    /// Whether the soft pedal of a channel or of the master of its zone is down.
+    /// Whether the soft pedal of a channel or of its zone's master is down.
     pub(super) fn is_soft(&self, channel: u8) -> bool {
         self.of(channel).soft || self.master_of(channel).is_some_and(|master| master.soft)
     }
 
-    /// The channels that a message on `channel` is for: itself, and its members if it is a master.
+    /// The channels that a message on `channel` affects: itself, and the members of its zone if it is a master.
     pub(super) fn reach(&self, channel: u8) -> impl Iterator<Item = u8> + use<> {
         self.zones.reach(channel)
     }
@@ -58,11 +58,12 @@ impl Channels {
         self.channels[usize::from(channel)].pressure = pressure;
     }
 
-    /// Takes in a controller at a value 0–1. Gives the number of members if it is a message to configure the zone of
-    /// this channel.
+    /// Handles a controller at a value 0–1. Returns the number of members if the message configures this channel's
+    /// zone.
     pub(super) fn control(&mut self, channel: u8, number: u8, value: f32) -> Option<u8> {
         for reached in self.zones.reach(channel) {
-            // Wheels and pressure of a master act beside those of its members; its reset is for them as well.
+            // Notes combine the master's wheels and pressure with their own, so these stay separate. Only a reset goes
+            // to members.
             if reached == channel || number == controller::RESET {
                 self.channels[usize::from(reached)].control(number, value);
             }
@@ -77,7 +78,7 @@ impl Channels {
         (number == controller::DATA && sender.awaits_zone()).then(|| seven_bits(value))
     }
 
-    /// Makes `members` channels the zone of a master. Gives the channels that have another master than before.
+    /// Makes a zone of a master and `members` channels. Returns the channels whose master has changed.
     pub(super) fn configure_zone(&mut self, master: u8, members: u8) -> impl Iterator<Item = u8> + use<> {
         let before = self.zones;
         self.zones.configure(master, members);
@@ -90,18 +91,18 @@ impl Channels {
         moved
     }
 
-    /// What a channel holds, and for how many frames gains still slide.
+    /// The controllers of a channel, and the number of frames until all gains have reached their targets.
     pub(super) fn channel(&self, channel: u8) -> (Channel, u32) {
         (*self.of(channel), self.gains_moving)
     }
 
-    /// Takes over what a channel of another synth held.
+    /// Sets the controllers of a channel to those of another synth's.
     pub(super) fn set_channel(&mut self, channel: u8, (held, gains_moving): (Channel, u32)) {
         self.channels[usize::from(channel)] = held;
         self.gains_moving = self.gains_moving.max(gains_moving);
     }
 
-    /// Lets `frames` frames pass.
+    /// Advances the gains by `frames` frames.
     pub(super) fn advance(&mut self, frames: u32) {
         if self.gains_moving > 0 {
             self.channels.iter_mut().for_each(|channel| channel.advance(frames));

@@ -1,11 +1,11 @@
-//! What a synth does at MIDI controllers and MPE configuration messages.
+//! How a synth responds to MIDI controllers and MPE configuration messages.
 
 use super::Synth;
 use crate::engine::channel::Channel;
 use crate::engine::midi::controller;
 
 impl Synth {
-    /// Takes in a controller at a value 0–1.
+    /// Handles a controller at a value 0–1.
     pub(super) fn control(&mut self, channel: u8, number: u8, value: f32) {
         for reached in self.channels.reach(channel) {
             self.control_voices(reached, number, value >= 0.5);
@@ -19,7 +19,7 @@ impl Synth {
         }
     }
 
-    /// Pedals and mode messages, which are for the notes of a channel.
+    /// Handles pedals and mode messages, which concern the notes of a channel.
     fn control_voices(&mut self, channel: u8, number: u8, down: bool) {
         match number {
             controller::SUSTAIN => self.manager.sustain(channel, down),
@@ -41,7 +41,7 @@ impl Synth {
         self.manager.sostenuto(channel, false);
     }
 
-    /// Hands the notes of a channel its brightness.
+    /// Passes a channel's brightness on to its notes.
     fn brighten(&mut self, channel: u8) {
         let brightness = self.channels.brightness(channel);
         self.manager.brighten(channel, brightness);
@@ -50,22 +50,22 @@ impl Synth {
         }
     }
 
-    /// Takes in an MPE configuration message: `members` channels are of the zone of a master.
+    /// Handles an MPE configuration message: a zone with a master channel and a number of member channels.
     pub(in crate::engine) fn configure_zone(&mut self, master: u8, members: u8) {
         self.needs_control = true;
-        // A channel that changes masters starts anew: what the last one held is let go.
+        // A channel whose master changes starts again without notes held by keys or pedals.
         for channel in self.channels.configure_zone(master, members) {
             self.manager.all_notes_off(channel);
             self.lift_pedals(channel);
         }
     }
 
-    /// What a channel holds, and for how many frames gains still slide.
+    /// The controllers of a channel, and the number of frames until all gains have reached their targets.
     pub(in crate::engine) fn channel(&self, channel: u8) -> (Channel, u32) {
         self.channels.channel(channel)
     }
 
-    /// Takes over what a channel of another synth held.
+    /// Sets the controllers of a channel to those of another synth's.
     pub(in crate::engine) fn set_channel(&mut self, channel: u8, held: (Channel, u32)) {
         self.channels.set_channel(channel, held);
     }

@@ -1,4 +1,4 @@
-//! The instruments of a kit, one for each sound, and what they share: parameters, modulation by the host and tuning.
+//! The instruments of a kit, one for each sound, and their common parameters, host modulation and tuning.
 
 use crate::engine::instrument::Instrument;
 use crate::engine::modulation::{modulated, moved};
@@ -13,22 +13,22 @@ use std::sync::Arc;
 /// Tempo before it is set, in beats per second: MIDI's 120 beats per minute.
 pub(super) const DEFAULT_BEAT_RATE: f64 = 2.0;
 
-/// A kit that is played. Real-time safe once made, except where noted.
+/// The kit that a synth plays. Real-time safe once made, except where noted.
 pub(super) struct Instruments {
-    /// One for each sound of the kit: dropped before the kit, which has a handle of each sound.
+    /// One for each sound of the kit. This field must be dropped before the kit, which also holds each sound.
     instruments: Vec<Instrument>,
     kit: Arc<Kit>,
     /// The parameters of the whole kit as they were set.
     values: Values,
-    /// How far the host's modulation moves each parameter away from its value, in knob travel.
+    /// Offsets of the parameters by the host's modulation, in knob travel.
     offsets: [f32; PARAM_COUNT],
-    /// For sounds without a tuning of their own.
+    /// Used for sounds without a tuning of their own.
     tuning: Tuning,
     sample_rate: f64,
     seed: u64,
-    /// Serial number of the first instrument's patch; those of the others follow it.
+    /// Serial number of the first instrument's patch; the others have the numbers after it.
     first_patch: u32,
-    /// Counts the bodies.
+    /// Number of bodies so far.
     bodies: u32,
 }
 
@@ -52,7 +52,7 @@ impl Instruments {
         instruments
     }
 
-    /// The same kit at another sample rate, with its parameters, its tuning and as much room for other kits. Allocates.
+    /// The same kit at another sample rate, with its parameters, tuning and reserved room. Allocates.
     pub(super) fn at_rate(&self, sample_rate: f64) -> Self {
         let mut other = Self::new(sample_rate, self.seed, self.kit.clone());
         (other.values, other.tuning) = (self.values, self.tuning);
@@ -61,12 +61,12 @@ impl Instruments {
         other
     }
 
-    /// Makes room for kits of up to so many sounds. Allocates.
+    /// Makes room for kits of up to `sounds` sounds. Allocates.
     pub(super) fn reserve(&mut self, sounds: usize) {
         self.instruments.reserve(sounds.saturating_sub(self.instruments.len()));
     }
 
-    /// Forgets modulation and tempo; the kit, its parameters and the tuning stay.
+    /// Resets modulation and tempo. The kit, its parameters and the tuning stay.
     pub(super) fn reset(&mut self) {
         self.offsets = [0.0; PARAM_COUNT];
         let rates = [self.sample_rate, DEFAULT_BEAT_RATE];
@@ -78,8 +78,8 @@ impl Instruments {
         self.number();
     }
 
-    /// Plays another kit, from frame `clock`. Real-time safe if there is room for its sounds and somebody keeps the kit
-    /// before.
+    /// Plays another kit from frame `clock` on. Real-time safe if there is room for its sounds and someone else holds
+    /// the previous kit.
     pub(super) fn set_kit(&mut self, kit: &Arc<Kit>, clock: u64) {
         let (sounds, before) = (kit.sounds(), self.instruments.len());
         let keeps_last_pitch = kit.is_single() && self.kit.is_single();
@@ -93,14 +93,14 @@ impl Instruments {
             let instrument = Instrument::new(sound.clone(), rates, self.seed, &self.offsets, clock);
             self.instruments.push(instrument);
         }
-        // Only now: until here, the kit before has kept the sounds that were let go of.
+        // Last, since the previous kit has to hold the sounds that were dropped above: nothing may be freed here.
         self.kit = kit.clone();
         self.values = *kit.values();
         self.first_patch = self.first_patch.wrapping_add(before as u32);
         self.number();
     }
 
-    /// Gives each instrument the serial numbers that the notes of its sound have.
+    /// Gives each instrument new serial numbers, which the notes of its sound will carry.
     fn number(&mut self) {
         for (instrument, patch) in self.instruments.iter_mut().zip(0_u32..) {
             self.bodies = self.bodies.wrapping_add(1);
@@ -134,7 +134,7 @@ impl Instruments {
         &self.values
     }
 
-    /// A parameter of the kit where the host's modulation has moved it.
+    /// The value of a kit's parameter, with the host's modulation.
     pub(super) fn modulated(&self, param: Param) -> f32 {
         modulated(&self.values, param, self.offsets[param as usize])
     }
@@ -143,24 +143,24 @@ impl Instruments {
         self.first_patch
     }
 
-    /// The first instrument, the only one of a kit of one sound.
+    /// The first instrument, which is the only one if the kit has one sound.
     pub(super) fn first(&self) -> &Instrument {
         &self.instruments[0]
     }
 
-    /// The instrument that a note was started with, if its sound is still played.
+    /// The instrument that a note was started with; none if its sound was replaced.
     pub(super) fn of_note(&self, note: &Note) -> Option<&Instrument> {
         self.instruments.get(note.patch.wrapping_sub(self.first_patch) as usize)
     }
 
-    /// The instrument of a key's pad; none for a key that is silent.
+    /// The instrument of a key's pad; none if the key is silent.
     pub(super) fn of_key(&self, key: u8) -> Option<&Instrument> {
         let (pad, ..) = self.kit.tuned_pad(key, &self.tuning)?;
         self.instruments.get(pad.sound)
     }
 
-    /// Completes a note that starts at frame `clock` with what its pad and its sound say, and gives the instrument that
-    /// plays it, with its parameters at this frame; none for a key that is silent.
+    /// Completes a note that starts at frame `clock` with the values of its pad and sound. Returns its instrument, with
+    /// the parameters of this frame; none if the key is silent.
     pub(super) fn start(&mut self, note: &mut Note, clock: u64) -> Option<&mut Instrument> {
         let choke = self.modulated(Param::Choke);
         let (pad, pitch, detune) = self.kit.tuned_pad(note.key, &self.tuning)?;
@@ -181,30 +181,31 @@ impl Instruments {
         self.update(param, clock);
     }
 
-    /// Sets all parameters of the kit at once, without slopes, at frame `clock`. Modulation stays.
+    /// Sets all parameters of the kit at once, without smoothing, at frame `clock`. Modulation stays.
     pub(super) fn set_values(&mut self, values: &Values, clock: u64) {
         self.values = *values;
         for instrument in &mut self.instruments {
-            // Until now, shared oscillators have had the rate before.
+            // Shared oscillators must first advance to this frame with the old rate.
             instrument.move_shared(clock, 0);
             instrument.begin_at(value_of_sound(&self.kit, values), &self.offsets);
         }
         self.number();
     }
 
-    /// Moves a parameter of the kit by an offset in knob travel, at frame `clock`.
+    /// Sets the modulation offset of a kit's parameter in knob travel, at frame `clock`.
     pub(super) fn modulate(&mut self, param: Param, offset: f32, clock: u64) {
         self.offsets[param as usize] = offset;
         self.update(param, clock);
     }
 
-    /// Hands the instruments a parameter that has a new value or offset.
+    /// Passes a parameter whose value or offset has changed on to the instruments.
     fn update(&mut self, param: Param, clock: u64) {
         let value_of_sound = value_of_sound(&self.kit, &self.values);
         for instrument in &mut self.instruments {
             let value = value_of_sound(param, instrument.sound.patch().get(param));
             instrument.set(param, value, self.offsets[param as usize], clock);
-            // Voices that sound cannot change these without a click: notes from now on have bodies of their own.
+            // A sounding voice cannot change these without a click, so later notes have new bodies and never share its
+            // voice.
             if matches!(param, Param::Coefficients | Param::Width) {
                 self.bodies = self.bodies.wrapping_add(1);
                 instrument.body_serial = self.bodies;
@@ -220,24 +221,24 @@ impl Instruments {
         }
     }
 
-    /// Reads at frame `clock` what voices follow until the next control tick, `to_tick` frames later.
+    /// Computes at frame `clock` the values that voices use until the next control tick, `to_tick` frames later.
     pub(super) fn control(&mut self, clock: u64, to_tick: u32) {
         for instrument in &mut self.instruments {
             instrument.look_ahead(clock, to_tick);
         }
     }
 
-    /// Lets `frames` frames pass.
+    /// Advances parameter smoothing by `frames` frames.
     pub(super) fn advance(&mut self, frames: u32) {
         self.instruments.iter_mut().for_each(|instrument| instrument.smoother.advance(frames));
     }
 
-    /// The most that a note of the kit takes from the pool.
+    /// The most that a note of any sound of the kit takes from the pool.
     pub(super) fn footprint(&self) -> Footprint {
         self.instruments.iter().map(SynthVoice::footprint).fold(Footprint::NONE, Footprint::max)
     }
 
-    /// The most that a note of another kit would take.
+    /// The most that a note of any sound of another kit would take from the pool.
     pub(super) fn footprint_of(&self, kit: &Kit) -> Footprint {
         let offset = self.offsets[Param::Unison as usize];
         let footprints = kit.sounds().iter().map(|sound| {
@@ -248,8 +249,9 @@ impl Instruments {
     }
 }
 
-/// What a sound's own value of a parameter becomes while those of its kit have `values`. A single sound has the kit's
-/// value; each of several is as many knob travels away from its own as the kit's value is from the default.
+/// Returns a function from a parameter and a sound's own value to the sound's value while the kit's parameters have
+/// `values`. A single sound has the kit's value. With several sounds, each is as far from its own value, in knob
+/// travel, as the kit's value is from the default.
 fn value_of_sound<'a>(kit: &'a Kit, values: &'a Values) -> impl Fn(Param, f32) -> f32 + 'a {
     move |param, own| {
         let (info, value) = (param.info(), values.get(param));

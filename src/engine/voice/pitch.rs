@@ -1,4 +1,4 @@
-//! Where the pitch of a note lies and how it moves: key, tuning, glide, sweep, bend and vibrato.
+//! The pitch of a note: key, tuning, glide, sweep, bend and vibrato.
 
 use super::clock::Clock;
 use super::key_tracking::KeyTracking;
@@ -17,32 +17,33 @@ use std::f64::consts::TAU;
 /// The pitch of a voice. Real-time safe.
 pub(super) struct Pitch {
     tracking: KeyTracking,
-    /// Pitch of the note and the patch's transposition that the bank is tuned to, in semitones.
+    /// Pitch of the note and transposition of the patch, both in semitones. The bank is tuned to their sum and
+    /// `detune`.
     note: f64,
     tune: f64,
-    /// How far a unison voice lies from that, in semitones.
+    /// Detuning of a unison voice in semitones.
     detune: f64,
-    /// The last offset from that pitch in semitones, and its ratio.
+    /// The last offset from the pitch that the bank is tuned to, in semitones, and its frequency ratio.
     offset: f64,
     ratio: f64,
     glide: Glide,
-    /// Age of the voice at which the glide has started.
+    /// Frames since the last strike when the glide started.
     glide_start: u64,
     sweep: SweepEnvelope,
-    /// Share of the vibrato's round that has passed, and seconds in which it fades in.
+    /// Phase of the vibrato, 0–1 of a cycle, and its fade-in time in seconds.
     vibrato_phase: f64,
     vibrato_delay: f64,
 }
 
-/// What moves the pitch of a note besides its patch.
+/// What changes the pitch of a note besides its patch.
 pub(super) struct Bends<'a> {
     pub(super) wheels: Wheels<'a>,
-    /// Semitones that the note alone has been told.
+    /// The note expression for tuning, in semitones.
     pub(super) tuning: f64,
 }
 
 impl Pitch {
-    /// Of a voice that has had no note.
+    /// The pitch of a voice before its first note.
     pub(super) fn new() -> Self {
         Self {
             tracking: KeyTracking::FULL,
@@ -59,7 +60,7 @@ impl Pitch {
         }
     }
 
-    /// Reads how the patch's modes lie and follow the key.
+    /// Reads key tracking, unison detuning and the modes' frequency ratios from the patch.
     pub(super) fn read(&mut self, values: &StruckValues, unison: Unison, bank: &mut Cells) {
         self.tracking = KeyTracking::new(|param| values.get(param));
         self.detune = unison.position() * values.get(Param::UnisonDetune) * 0.01;
@@ -69,12 +70,12 @@ impl Pitch {
         }
     }
 
-    /// Takes the pitch of `note`.
+    /// Sets the pitch and the transposition to those of `note`.
     fn place(&mut self, note: &Note, controls: &Controls) {
         (self.note, self.tune) = (self.tracking.pitch(note), controls.tune);
     }
 
-    /// Starts the first note of a voice, sliding from the pitch of the note before.
+    /// Starts the first note of a voice, with a glide from the pitch of the note before.
     pub(super) fn start(&mut self, note: &Note, controls: &Controls, last_pitch: Option<f64>) {
         self.place(note, controls);
         let from = last_pitch.unwrap_or(self.note) - self.note;
@@ -82,32 +83,34 @@ impl Pitch {
         (self.offset, self.ratio, self.glide_start, self.vibrato_phase) = (0.0, 1.0, 0, 0.0);
     }
 
-    /// The pitch where it is in its slide, in semitones on the MIDI scale.
+    /// The present pitch during a glide, in semitones on the MIDI scale.
     pub(super) fn now(&self, clock: &Clock) -> f64 {
         self.note + self.glide.at(clock.seconds(clock.age - self.glide_start))
     }
 
-    /// Slides from a pitch, in semitones on the MIDI scale, to that of `note`; `is_legato` if another key is down.
+    /// Starts a glide from a pitch, in semitones on the MIDI scale, to that of `note`. `is_legato` says that another
+    /// key is down.
     pub(super) fn slide(&mut self, from: f64, note: &Note, controls: &Controls, is_legato: bool, clock: &Clock) {
         self.place(note, controls);
         self.glide = self.tracking.glide(from - self.note, is_legato);
         self.glide_start = clock.age;
     }
 
-    /// Starts the sweep of a strike and the delay of the vibrato.
+    /// Starts the sweep of a strike and the fade-in of the vibrato.
     pub(super) fn strike(&mut self, values: &StruckValues) {
         let [depth, time] = [Param::Sweep, Param::SweepTime].map(|param| values.get(param));
         self.sweep = SweepEnvelope::new(depth, time, values.share(Param::SweepCurve));
         self.vibrato_delay = values.get(Param::VibratoDelay);
     }
 
-    /// The age of the voice starts again, and with it the glide; the vibrato keeps its phase.
+    /// Prepares for a strike, which sets the voice's age to 0: the glide starts there too, and the vibrato keeps its
+    /// phase.
     pub(super) fn restart(&mut self, vibrato_rate: f64, passed: f64) {
         self.vibrato_phase += vibrato_rate * passed;
         self.glide_start = 0;
     }
 
-    /// Lets time pass for the vibrato.
+    /// Advances the vibrato by `passed` seconds, at a rate in Hz.
     pub(super) fn advance(&mut self, vibrato_rate: f64, passed: f64) {
         self.vibrato_phase += vibrato_rate * passed;
         self.vibrato_phase -= floor(self.vibrato_phase);
@@ -123,22 +126,22 @@ impl Pitch {
         frequency_from_key(self.note + self.tune + self.detune, self.tracking.a4_hz)
     }
 
-    /// The pitch ratio that was last aimed at.
+    /// The frequency ratio that was computed last.
     pub(super) fn ratio(&self) -> f64 {
         self.ratio
     }
 
-    /// Finds the ratio by which the pitch will be away, `ahead` frames from now, from where the bank was tuned.
+    /// Computes the ratio of the pitch `ahead` frames from now to the pitch that the bank is tuned to.
     pub(super) fn aim(&mut self, controls: &Controls, bends: &Bends, clock: &Clock, ahead: usize) -> f64 {
         let offset = self.offset_after(controls, bends, clock, ahead);
         if offset != self.offset {
-            // It seldom changes.
+            // Only if it has changed, which is seldom, since the ratio is slow to compute.
             (self.offset, self.ratio) = (offset, ratio_from_semitones(offset));
         }
         self.ratio
     }
 
-    /// The same in semitones.
+    /// As [`Pitch::aim`], in semitones.
     fn offset_after(&self, controls: &Controls, bends: &Bends, clock: &Clock, ahead: usize) -> f64 {
         let age = clock.age + ahead as u64;
         let fade = if self.vibrato_delay > 0.0 { (clock.seconds(age) / self.vibrato_delay).min(1.0) } else { 1.0 };

@@ -1,11 +1,11 @@
-//! What a strike reads of the instrument.
+//! The parameter values that a strike reads.
 
 use crate::engine::instrument::Instrument;
 use crate::engine::modulation::{Modulators, Struck};
 use crate::engine::note::Note;
 use crate::params::Param;
 
-/// Tells the modulators of a strike, the `first` of the voice or a later one.
+/// Gives the modulators a strike: the `first` of the voice, or a later one.
 pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modulators, note: &Note, first: bool) {
     let (pitch, seed, serial) = (instrument.pitch(note), instrument.seed, note.serial);
     let struck = Struck { velocity: note.velocity, pitch, seed, serial };
@@ -13,7 +13,7 @@ pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modula
     modulators.strike(&struck, positions, settings, shared, |param| modulated.get(param), first);
 }
 
-/// The values that the parameters have for one strike: the instrument's, moved by the voice's routes.
+/// The parameter values of one strike: the instrument's, modulated by the voice's routes.
 #[derive(Clone, Copy)]
 pub(super) struct StruckValues<'a> {
     pub(super) instrument: &'a Instrument,
@@ -26,12 +26,12 @@ impl StruckValues<'_> {
         self.modulators.struck_value(param, |param| self.instrument.modulated.get(param)).into()
     }
 
-    /// The same where the instrument has a parameter at `value`, as while it slides.
+    /// As [`StruckValues::get`], for an instrument's value that is still being smoothed and now is `value`.
     pub(super) fn moved(&self, param: Param, value: f64) -> f64 {
         self.modulators.struck_value(param, |_| value as f32).into()
     }
 
-    /// Of a parameter that is in per cent, as a share of 1.
+    /// A parameter in per cent, as a fraction of 1.
     pub(super) fn share(&self, param: Param) -> f64 {
         self.get(param) * 0.01
     }

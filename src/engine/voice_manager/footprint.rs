@@ -1,33 +1,33 @@
-//! How much of a pool something takes.
+//! A number of voices and cells: what a note needs, or what a pool has.
 
 use std::ops::{Add, AddAssign, Sub, SubAssign};
 
-/// How many voices and cells something takes.
+/// A number of voices and a number of cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Footprint {
     /// Voices.
     pub voices: usize,
-    /// Cells of all of them together.
+    /// Cells of all these voices together.
     pub cells: usize,
 }
 
 impl Footprint {
-    /// Nothing.
+    /// No voices and no cells.
     pub const NONE: Self = Self { voices: 0, cells: 0 };
 
-    /// Whether there is enough of both in `room`.
+    /// Whether `room` has enough of both.
     pub fn fits(self, room: Self) -> bool {
         self.voices <= room.voices && self.cells <= room.cells
     }
 
-    /// The greater number of each.
+    /// The larger of each of the two numbers.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
         Self { voices: self.voices.max(other.voices), cells: self.cells.max(other.cells) }
     }
 
-    /// How much of a pool of this size may be taken by notes that are not fading. The rest, a quarter, is for those that
-    /// make room for others.
+    /// The part of a pool of this size that notes may use as long as they do not fade. The rest, a quarter, is for
+    /// stolen notes while they fade out.
     #[must_use]
     pub fn for_sounding(self) -> Self {
         Self { voices: self.voices - self.voices / 4, cells: self.cells - self.cells / 4 }

@@ -1,10 +1,10 @@
-//! The keys that are down in a monophonic mode, for the voice to return to.
+//! The keys that are down in a monophonic mode, so that the voice can return to them.
 
 use crate::engine::note::Note;
 use crate::params::Priority;
 
 impl Priority {
-    /// Whether a note is played rather than an earlier one.
+    /// Whether `note` sounds rather than `earlier`.
     pub(super) fn prefers(self, note: &Note, earlier: &Note) -> bool {
         match self {
             Self::Last => true,
@@ -14,7 +14,7 @@ impl Priority {
     }
 }
 
-/// Most keys that are remembered.
+/// Maximum number of keys that are remembered.
 const MAX_HELD_KEYS: usize = 32;
 
 /// Notes whose keys are down, oldest first. Real-time safe.
@@ -34,12 +34,12 @@ impl HeldKeys {
         &mut self.notes[..self.len]
     }
 
-    /// The note that has to be taken out before another can be added.
+    /// The oldest note, if it has to be taken out before another can be added.
     pub(super) fn surplus(&self) -> Option<Note> {
         (self.len == MAX_HELD_KEYS).then(|| self.notes[0])
     }
 
-    /// Adds the newest, if there is room.
+    /// Adds the newest note. Does nothing if there is no room.
     pub(super) fn push(&mut self, note: Note) {
         if let Some(free) = self.notes.get_mut(self.len) {
             *free = note;
@@ -47,12 +47,12 @@ impl HeldKeys {
         }
     }
 
-    /// The key that sounds.
+    /// The note that has priority over the others.
     pub(super) fn first(&self, priority: Priority) -> Option<Note> {
         self.as_slice().iter().copied().reduce(|best, note| if priority.prefers(&note, &best) { note } else { best })
     }
 
-    /// Takes out the oldest note that is meant.
+    /// Takes out the oldest note for which `is_meant` is true.
     pub(super) fn take(&mut self, is_meant: impl Fn(&Note) -> bool) -> Option<Note> {
         let index = self.as_slice().iter().position(is_meant)?;
         let note = self.notes[index];

@@ -1,4 +1,4 @@
-//! Voice allocation: polyphony, stealing, re-striking, pedals, choke groups, and finished notes. Knows no DSP.
+//! Voice allocation: polyphony, stealing, re-striking, pedals, choke groups, and finished notes. Contains no DSP.
 
 mod footprint;
 mod held_keys;
@@ -25,7 +25,7 @@ pub use slots::MAX_VOICES;
 use slots::Slots;
 pub use voice::{Unison, Voice};
 
-/// Ended notes that are kept until somebody asks.
+/// Maximum number of ended notes that are kept until the host has collected them.
 pub const MAX_ENDED: usize = 1024;
 
 /// Gives notes voices from a pool. Real-time safe after [`VoiceManager::new`].
@@ -35,17 +35,17 @@ pub struct VoiceManager<V: Voice> {
     polyphony: usize,
     mode: PlayMode,
     priority: Priority,
-    /// The patch of the context: see [`Note::patch`].
+    /// The patch that the context has now: see [`Note::patch`].
     patch: u32,
     /// The keys that are down in a monophonic mode.
     held: HeldKeys,
-    /// Notes that have ended: no voice plays them, and no held key will bring them back.
+    /// Ended notes: no voice plays them and no held key will bring them back. Kept until [`VoiceManager::clear_ended`].
     ended: Vec<Note>,
     peak: usize,
 }
 
 impl<V: Voice> VoiceManager<V> {
-    /// A manager of the voices of a pool. Allocates.
+    /// A manager that takes its voices from a pool. Allocates.
     pub fn new(pool: VoicePool<V>) -> Self {
         Self {
             slots: Slots::new(pool),
@@ -60,7 +60,7 @@ impl<V: Voice> VoiceManager<V> {
         }
     }
 
-    /// Stops everything at once, pedals included.
+    /// Stops all notes at once and lifts all pedals.
     pub fn reset(&mut self) {
         self.slots.reset();
         self.pedals = Pedals::UP;
@@ -69,8 +69,8 @@ impl<V: Voice> VoiceManager<V> {
         self.peak = 0;
     }
 
-    /// Sets how many notes sound at once (1 to [`MAX_VOICES`]) and how they share voices, from the next note on, and
-    /// which patch the context has.
+    /// Sets the maximum number of notes at once (1 to [`MAX_VOICES`]), the mode and the key priority, from the next
+    /// note on, and tells which patch the context has.
     pub fn configure(&mut self, polyphony: usize, mode: PlayMode, priority: Priority, patch: u32) {
         self.priority = priority;
         self.patch = patch;
@@ -81,8 +81,8 @@ impl<V: Voice> VoiceManager<V> {
         self.mode = mode;
     }
 
-    /// The notes that have ended since [`VoiceManager::clear_ended`], in that order: each note once, the first
-    /// [`MAX_ENDED`] of them.
+    /// The notes that have ended since the last [`VoiceManager::clear_ended`], in order of their ends. Each note
+    /// appears once. Notes beyond the first [`MAX_ENDED`] are lost.
     pub fn ended(&self) -> &[Note] {
         &self.ended
     }
@@ -92,12 +92,12 @@ impl<V: Voice> VoiceManager<V> {
         self.ended.clear();
     }
 
-    /// Takes a note that gets no voice: it ends as it begins.
+    /// Reports a note as ended that gets no voice at all.
     pub fn turn_away(&mut self, note: Note) {
         self.retire(note);
     }
 
-    /// The voices that are not free, in their fixed order, and the note that each plays.
+    /// The voices that play or fade, in an order that is always the same, each with its note.
     pub fn active(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
         self.slots.in_use_mut().iter_mut().flat_map(|slot| {
             let (note, voices) = slot.voices_mut();
@@ -105,22 +105,22 @@ impl<V: Voice> VoiceManager<V> {
         })
     }
 
-    /// The voices that are not free, to look at.
+    /// The voices that play or fade, read-only.
     pub fn sounding_voices(&self) -> impl Iterator<Item = &V> {
         self.slots.in_use().iter().flat_map(Slot::voices)
     }
 
-    /// The voices and cells that no note has.
+    /// The voices and cells that no note uses.
     pub fn pool(&mut self) -> &mut VoicePool<V> {
         self.slots.pool()
     }
 
-    /// Whether every voice is free.
+    /// Whether no voice plays or fades.
     pub fn is_silent(&self) -> bool {
         self.slots.in_use().is_empty()
     }
 
-    /// Most notes that have sounded at once, fading ones not counted.
+    /// The largest number of notes that have sounded at once. Fading notes do not count.
     pub fn peak(&self) -> usize {
         self.peak
     }
@@ -130,7 +130,7 @@ impl<V: Voice> VoiceManager<V> {
         !self.held.as_slice().is_empty() || self.slots.in_use().iter().any(|slot| slot.key_down)
     }
 
-    /// Sets the brightness that held keys of a channel have when the voice returns to them.
+    /// Sets the brightness of a channel's held keys, for when the voice returns to them.
     pub fn brighten(&mut self, channel: u8, brightness: f32) {
         let held = self.held.as_mut_slice().iter_mut().filter(|held| held.channel == channel);
         held.for_each(|held| held.brightness = brightness);
@@ -147,7 +147,7 @@ impl<V: Voice> VoiceManager<V> {
         self.slots.shrink();
     }
 
-    /// Silences a note at once.
+    /// Silences a note at once, without a fade.
     fn cut_off(&mut self, index: usize) {
         self.free(index);
         self.slots.shrink();
@@ -158,7 +158,7 @@ impl<V: Voice> VoiceManager<V> {
         self.retire(note);
     }
 
-    /// A voice or a held key has let go of a note: it has ended, unless another voice or key still has it.
+    /// A slot or a held key has given up a note: the note has ended, unless another slot or held key still has it.
     fn retire(&mut self, note: Note) {
         let has_note = |slot: &Slot<V>| !slot.is_free() && slot.note.serial == note.serial;
         let is_held = self.held.as_slice().iter().any(|held| held.serial == note.serial);
@@ -167,7 +167,7 @@ impl<V: Voice> VoiceManager<V> {
         }
     }
 
-    /// Stops waiting for the keys of the notes that `which` chooses.
+    /// Removes from the held keys those that `which` selects. Their notes end unless they sound.
     fn forget(&mut self, which: impl Fn(&Note) -> bool) {
         while let Some(note) = self.held.take(&which) {
             self.retire(note);

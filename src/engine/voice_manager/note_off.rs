@@ -1,4 +1,4 @@
-//! What ends notes: keys that come up, pedals, mode messages, choke groups and hosts.
+//! Events that end notes: key releases, pedals, mode messages, choke groups, and hosts.
 
 use super::VoiceManager;
 use super::slot::Slot;
@@ -7,7 +7,8 @@ use crate::engine::note::Notes;
 use crate::params::PlayMode;
 
 impl<V: Voice> VoiceManager<V> {
-    /// The keys of these notes come up.
+    /// Releases the keys of these notes, at a velocity 0–1. In a monophonic mode the voice returns to a key that is
+    /// still down.
     pub fn note_off(&mut self, context: &V::Context, notes: Notes, velocity: f32) {
         if self.mode != PlayMode::Poly && self.return_to_held(context, &notes) {
             return;
@@ -28,26 +29,26 @@ impl<V: Voice> VoiceManager<V> {
         self.pedals.sostenuto(channel, down, self.slots.in_use_mut());
     }
 
-    /// Controller 123: every key of the channel comes up.
+    /// All notes off (controller 123): releases every key of the channel. Pedals still hold notes.
     pub fn all_notes_off(&mut self, channel: u8) {
         self.forget(|held| held.channel == channel);
         self.slots.on_channel(channel).for_each(|slot| slot.key_down = false);
         self.pedals.release_unheld(channel, self.slots.in_use_mut());
     }
 
-    /// Controller 120: the channel is silenced.
+    /// All sound off (controller 120): fades out all notes of the channel.
     pub fn all_sound_off(&mut self, channel: u8) {
         self.forget(|held| held.channel == channel);
         self.slots.on_channel(channel).filter(|slot| slot.is_sounding()).for_each(Slot::fade);
     }
 
-    /// Silences these notes.
+    /// Fades out these notes.
     pub fn silence(&mut self, notes: Notes) {
         self.forget(|held| notes.include(held));
         self.slots.in_use_mut().iter_mut().filter(|slot| slot.is_one_of(&notes)).for_each(Slot::fade);
     }
 
-    /// Silences the notes of a choke group (0 is none).
+    /// Fades out the notes of a choke group. Group 0 has no notes.
     pub fn choke(&mut self, group: u8) {
         self.slots.sounding().filter(|slot| group != 0 && slot.note.choke == group).for_each(Slot::fade);
     }

@@ -1,4 +1,4 @@
-//! Keys that go down: choke groups, strikes on sounding keys, new notes and those stolen for them.
+//! Note on: choke groups, strikes on keys that sound already, new notes, and voice stealing.
 
 use super::VoiceManager;
 use super::footprint::Footprint;
@@ -8,7 +8,7 @@ use crate::engine::note::Note;
 use crate::params::PlayMode;
 
 impl<V: Voice> VoiceManager<V> {
-    /// What a note would take from the pool: nothing if it takes over the voices of another.
+    /// What a note would take from the pool. Nothing if it takes over the voices of another note.
     pub fn need(&self, context: &V::Context, note: &Note) -> Footprint {
         let taken_over = match self.mode {
             PlayMode::Poly => self.slot_to_restrike(note).is_some(),
@@ -17,7 +17,7 @@ impl<V: Voice> VoiceManager<V> {
         if taken_over { Footprint::NONE } else { V::footprint(context) }
     }
 
-    /// A key goes down. Returns whether its note sounds: if not, another key has priority, and this one waits.
+    /// Plays a note. Returns false if another key has priority in a monophonic mode: the note then waits.
     pub fn note_on(&mut self, context: &V::Context, note: Note) -> bool {
         let is_poly = self.mode == PlayMode::Poly;
         if !is_poly && !self.takes_priority(note) {
@@ -51,13 +51,13 @@ impl<V: Voice> VoiceManager<V> {
         }
     }
 
-    /// The slot of the note that a polyphonic one strikes again: one on the same key, with the same body.
+    /// The slot that a polyphonic note strikes again: its note has the same key, channel and body.
     fn slot_to_restrike(&self, note: &Note) -> Option<usize> {
         let same = |slot: &Slot<V>| slot.is_on(note.channel, note.key) && slot.note.body == note.body;
         self.slots.in_use().iter().position(same)
     }
 
-    /// Fades the note that will be missed least: one on the same key, else the quietest, of equals the oldest.
+    /// Fades one note: preferably one on the same key, else the quietest; if several are equal, the oldest.
     fn steal(&mut self, note: &Note) {
         let rank = |slot: &Slot<V>| (!slot.is_on(note.channel, note.key), slot.energy(), slot.note.serial);
         let victim = self.slots.sounding().min_by(|a, b| {
@@ -69,15 +69,15 @@ impl<V: Voice> VoiceManager<V> {
         }
     }
 
-    /// Starts a note in a free slot. If so many notes were stolen within a few milliseconds that no slot is free, the
-    /// quietest of those that fade is cut off.
+    /// Starts a note in a free slot. If no slot is free, since many notes were stolen within a few milliseconds, the
+    /// quietest fading note is cut off.
     pub(super) fn start(&mut self, context: &V::Context, note: Note) {
         let index = self.slots.first_free().or_else(|| {
             let (index, _) = self.slots.quietest(Slot::is_fading)?;
             self.free(index);
             Some(index)
         });
-        // The owner of the pool has made room, so a note always starts.
+        // The pool's owner has made room before, so `start` succeeds. If it does not, the note ends at once.
         if !index.is_some_and(|index| self.slots.start(index, context, note)) {
             self.retire(note);
         }

@@ -3,7 +3,7 @@
 use super::slot::{Slot, State};
 use super::voice::Voice;
 
-/// Release velocity of notes that a pedal or a mode message lets go of.
+/// Release velocity of notes that end because of a pedal or a mode message.
 const MIDDLE_VELOCITY: f32 = 0.5;
 
 /// Which pedals are down. Real-time safe.
@@ -21,15 +21,15 @@ impl Pedals {
         self.sustain[usize::from(channel)]
     }
 
-    /// The sustain pedal moves.
+    /// Sets the sustain pedal. When it goes up, notes whose keys are up are released.
     pub(super) fn sustain<V: Voice>(&mut self, channel: u8, down: bool, slots: &mut [Slot<V>]) {
         self.sustain[usize::from(channel)] = down;
         self.release_unheld(channel, slots);
     }
 
-    /// The sostenuto pedal moves: going down, it catches the notes whose keys are down.
+    /// Sets the sostenuto pedal: when it goes down, it holds the notes whose keys are down.
     pub(super) fn sostenuto<V: Voice>(&mut self, channel: u8, down: bool, slots: &mut [Slot<V>]) {
-        // Pedals that send positions repeat themselves; only going down catches notes.
+        // A pedal that sends positions repeats the message. Only the first one on the way down may hold notes.
         if std::mem::replace(&mut self.sostenuto[usize::from(channel)], down) == down {
             return;
         }

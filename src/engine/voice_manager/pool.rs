@@ -1,4 +1,4 @@
-//! Voices and cells that nobody plays: taken by notes that start, given back when they are over.
+//! Voices and cells that no note uses: notes take them when they start and give them back when they are over.
 
 use super::footprint::Footprint;
 use super::voice::Voice;
@@ -10,12 +10,12 @@ pub struct VoicePool<V: Voice> {
 }
 
 impl<V: Voice> VoicePool<V> {
-    /// An empty pool with places for `capacity`. Allocates.
+    /// An empty pool with room for `capacity`. Allocates.
     pub fn empty(capacity: Footprint) -> Self {
         Self { voices: Vec::with_capacity(capacity.voices), cells: Vec::with_capacity(capacity.cells) }
     }
 
-    /// A pool of so many voices and cells, made by `voice` and `cell`. Allocates.
+    /// A pool with `capacity` voices and cells, made by `voice` and `cell`. Allocates.
     pub fn full(capacity: Footprint, voice: impl Fn() -> V, cell: impl Fn() -> V::Cell) -> Self {
         let mut pool = Self::empty(capacity);
         pool.voices.extend((0..capacity.voices).map(|_| Box::new(voice())));
@@ -23,18 +23,18 @@ impl<V: Voice> VoicePool<V> {
         pool
     }
 
-    /// What is free.
+    /// The number of free voices and cells.
     pub fn free(&self) -> Footprint {
         Footprint { voices: self.voices.len(), cells: self.cells.len() }
     }
 
-    /// Moves up to `some` to another pool, which must have places for them.
+    /// Moves up to `some` voices and cells to another pool, which must have room for them.
     pub fn lend(&mut self, other: &mut Self, some: Footprint) {
         move_last(&mut self.voices, &mut other.voices, some.voices);
         move_last(&mut self.cells, &mut other.cells, some.cells);
     }
 
-    /// A voice with so many cells, if there are enough.
+    /// Takes a voice with this many cells out of the pool, if there are enough.
     pub(super) fn take(&mut self, cells: usize) -> Option<Box<V>> {
         if self.cells.len() < cells {
             return None;
@@ -44,7 +44,7 @@ impl<V: Voice> VoicePool<V> {
         Some(voice)
     }
 
-    /// Takes a voice back that is silent, and its cells.
+    /// Puts a silent voice and its cells back.
     pub(super) fn give_back(&mut self, mut voice: Box<V>) {
         while let Some(cell) = voice.take_cell() {
             self.cells.push(cell);

@@ -1,20 +1,20 @@
-//! What gives way when a pool runs short: the notes that will be missed least, over all managers that share it.
+//! Voice stealing if a pool runs short: it fades the quietest notes of all managers that share the pool.
 
 use super::VoiceManager;
 use super::footprint::Footprint;
 use super::slot::Slot;
 use super::voice::Voice;
 
-/// Whether a note that takes `need` can start in a pool of size `capacity`, of which `free` is free, without any other
-/// giving way for it.
+/// Whether a note that needs `need` can start without stealing, in a pool of size `capacity` of which `free` is free.
 pub fn has_room(capacity: Footprint, free: Footprint, need: Footprint) -> bool {
     (capacity - free + need).fits(capacity.for_sounding())
 }
 
-/// Makes room in a pool of size `capacity` for a note that takes `need`. Notes that sound fade until they leave a quarter
-/// of the pool to those that fade; and while that is not enough, fading ones are cut off. The quietest go first.
+/// Makes room for a note that needs `need` in a pool of size `capacity`. First, sounding notes are faded until those
+/// that remain leave a quarter of the pool to fading ones. If that does not free enough, fading notes are cut off. In
+/// both cases the quietest go first.
 ///
-/// It is decided by the state at this frame alone.
+/// The choice depends only on the state at this frame, so it is the same for all block sizes.
 pub fn make_room<P, V: Voice>(
     players: &mut [P],
     manager: impl Fn(&mut P) -> &mut VoiceManager<V>,
@@ -41,13 +41,13 @@ pub fn make_room<P, V: Voice>(
     }
 }
 
-/// A note that gives way: its player, and its slot there.
+/// A note that is stolen: the index of its player, and its slot there.
 struct Victim {
     player: usize,
     slot: usize,
 }
 
-/// The quietest note of those that `includes` chooses. Of equals, the first player's and its oldest.
+/// The quietest note of those that `includes` selects. If several are equal: of the first player, the oldest.
 fn quietest<P, V: Voice>(
     players: &mut [P],
     manager: impl Fn(&mut P) -> &mut VoiceManager<V>,

@@ -1,4 +1,4 @@
-//! A note that sounds, with its voices; or the place for one.
+//! A slot: place for one note and its voices. It is free, or its note is held, released or fading out.
 
 use super::footprint::Footprint;
 use super::pool::VoicePool;
@@ -19,7 +19,7 @@ pub(super) enum State {
 
 pub(super) struct Slot<V> {
     voices: Vec<Box<V>>,
-    /// Of all voices.
+    /// Number of cells of all its voices together.
     cells: usize,
     pub(super) note: Note,
     pub(super) state: State,
@@ -54,7 +54,7 @@ impl<V: Voice> Slot<V> {
         self.is_sounding() && notes.include(&self.note)
     }
 
-    /// What the note takes; nothing if there is none.
+    /// The voices and cells that the note uses; none if the slot is free.
     pub(super) fn footprint(&self) -> Footprint {
         Footprint { voices: self.voices.len(), cells: self.cells }
     }
@@ -67,7 +67,8 @@ impl<V: Voice> Slot<V> {
         (&self.note, self.voices.iter_mut().map(|voice| &mut **voice))
     }
 
-    /// Starts a note in a free slot with voices from the pool. Returns whether there were enough.
+    /// Starts a note in a free slot with voices from the pool. Returns false, and changes nothing, if the pool has too
+    /// few.
     pub(super) fn start(
         &mut self,
         pool: &mut VoicePool<V>,
@@ -89,25 +90,25 @@ impl<V: Voice> Slot<V> {
         true
     }
 
-    /// Strikes the note's voices again for another note; returns the one that it had.
+    /// Strikes the slot's voices again for another note. Returns the note before.
     pub(super) fn restrike(&mut self, context: &V::Context, note: Note) -> Note {
         self.voices.iter_mut().for_each(|voice| voice.restrike(context, &note));
         self.hold(note)
     }
 
-    /// Moves the note's voices to another note.
+    /// Moves the slot's voices to the pitch of another note, without a strike.
     pub(super) fn retune(&mut self, context: Option<&V::Context>, note: &Note) {
         self.voices.iter_mut().for_each(|voice| voice.retune(context, note));
     }
 
-    /// Gives the slot a note whose key is down; returns the one that it had.
+    /// Gives the slot a note whose key is down. Returns the note before.
     pub(super) fn hold(&mut self, note: Note) -> Note {
         self.state = State::Held;
         self.key_down = true;
         self.set_note(note)
     }
 
-    /// Gives the slot another note; returns the one that it had. A sostenuto pedal holds notes of its own channel only.
+    /// Gives the slot another note. Returns the note before. A sostenuto pedal holds notes of its own channel only.
     pub(super) fn set_note(&mut self, note: Note) -> Note {
         self.sostenuto &= note.channel == self.note.channel;
         std::mem::replace(&mut self.note, note)
@@ -127,7 +128,7 @@ impl<V: Voice> Slot<V> {
         }
     }
 
-    /// How loud the note is.
+    /// How loud the note is: the sum over its voices, in the unit of [`Voice::energy`].
     pub(super) fn energy(&self) -> f64 {
         self.voices().map(V::energy).sum()
     }

@@ -6,22 +6,22 @@ use super::slot::Slot;
 use super::voice::Voice;
 use crate::engine::note::Note;
 
-/// Most notes that sound at once.
+/// Maximum number of notes that sound at once.
 pub const MAX_VOICES: usize = 64;
 
-/// Slots for stolen notes that still fade: enough for all notes to be stolen at once.
+/// Slots for stolen notes while they fade out: enough if all notes are stolen at once.
 const FADING_NOTES: usize = MAX_VOICES;
 
-/// A slot for each note. Real-time safe once made.
+/// All slots of a voice manager. Real-time safe once made.
 pub(super) struct Slots<V: Voice> {
     slots: Vec<Slot<V>>,
-    /// Slots from here on are free.
+    /// All slots from this index on are free.
     used: usize,
     pool: VoicePool<V>,
 }
 
 impl<V: Voice> Slots<V> {
-    /// Free slots, for voices of this pool. Allocates.
+    /// Free slots, which take their voices from this pool. Allocates.
     pub(super) fn new(pool: VoicePool<V>) -> Self {
         let slots = std::iter::repeat_with(Slot::new).take(MAX_VOICES + FADING_NOTES).collect();
         Self { slots, used: 0, pool }
@@ -33,7 +33,7 @@ impl<V: Voice> Slots<V> {
         self.used = 0;
     }
 
-    /// The voices and cells that no note has.
+    /// The voices and cells that no note uses.
     pub(super) fn pool(&mut self) -> &mut VoicePool<V> {
         &mut self.pool
     }
@@ -43,22 +43,22 @@ impl<V: Voice> Slots<V> {
         &self.slots[..self.used]
     }
 
-    /// As [`Slots::in_use`], to change.
+    /// As [`Slots::in_use`], mutable.
     pub(super) fn in_use_mut(&mut self) -> &mut [Slot<V>] {
         &mut self.slots[..self.used]
     }
 
-    /// Those in use whose notes sound.
+    /// The slots in use whose notes sound and do not fade out.
     pub(super) fn sounding(&mut self) -> impl Iterator<Item = &mut Slot<V>> {
         self.in_use_mut().iter_mut().filter(|slot| slot.is_sounding())
     }
 
-    /// Those in use whose notes are, or were last, on a channel.
+    /// The slots in use whose present or last note is on a channel.
     pub(super) fn on_channel(&mut self, channel: u8) -> impl Iterator<Item = &mut Slot<V>> {
         self.in_use_mut().iter_mut().filter(move |slot| slot.note.channel == channel)
     }
 
-    /// How many notes sound.
+    /// Number of notes that sound and do not fade out.
     pub(super) fn count_sounding(&self) -> usize {
         self.in_use().iter().filter(|slot| slot.is_sounding()).count()
     }
@@ -68,7 +68,7 @@ impl<V: Voice> Slots<V> {
         self.slots.iter().position(Slot::is_free)
     }
 
-    /// Starts a note in a free slot. Returns whether the pool had enough voices and cells.
+    /// Starts a note in a free slot. Returns whether the pool had enough voices and cells for it.
     pub(super) fn start(&mut self, index: usize, context: &V::Context, note: Note) -> bool {
         let is_started = self.slots[index].start(&mut self.pool, V::footprint(context), context, note);
         if is_started {
@@ -77,21 +77,22 @@ impl<V: Voice> Slots<V> {
         is_started
     }
 
-    /// Silences a note at once and gives its voices back; returns the note.
+    /// Silences a note at once and gives its voices back. Returns the note.
     pub(super) fn free(&mut self, index: usize) -> Note {
         let slot = &mut self.slots[index];
         slot.free(&mut self.pool);
         slot.note
     }
 
-    /// Leaves out the free slots behind the last that is not free.
+    /// Moves `used` back behind the last slot that is not free.
     pub(super) fn shrink(&mut self) {
         while self.used > 0 && self.slots[self.used - 1].is_free() {
             self.used -= 1;
         }
     }
 
-    /// The quietest note of those that `includes` chooses, and how loud it is; of equals the oldest.
+    /// The slot and the energy of the quietest note among those that `includes` selects; if several are equal, the
+    /// oldest.
     pub(super) fn quietest(&self, includes: impl Fn(&Slot<V>) -> bool) -> Option<(usize, f64)> {
         let chosen = self.in_use().iter().enumerate().filter(|(_, slot)| includes(slot));
         let ranked = chosen.map(|(index, slot)| (index, slot.energy(), slot.note.serial));
@@ -99,7 +100,7 @@ impl<V: Voice> Slots<V> {
         least.map(|(index, energy, _)| (index, energy))
     }
 
-    /// What the notes take from the pool that `includes` chooses.
+    /// The voices and cells that the notes selected by `includes` use.
     pub(super) fn footprint(&self, includes: impl Fn(&Slot<V>) -> bool) -> Footprint {
         let chosen = self.in_use().iter().filter(|slot| includes(slot));
         chosen.map(Slot::footprint).fold(Footprint::NONE, |sum, one| sum + one)

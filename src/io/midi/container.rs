@@ -1,26 +1,26 @@
-//! The chunks of a MIDI file: its header and the bytes of its tracks, bare or inside a RIFF file (RMID).
+//! The chunks of a MIDI file: its header and its tracks' bytes, in a plain file or inside a RIFF file (RMID).
 
 use midly::Header;
 
-/// A MIDI file taken apart. Nothing within the tracks has been looked at.
+/// The chunks of a MIDI file. The contents of the tracks have not been examined.
 pub(super) struct Container<'a> {
     pub(super) header: Header,
-    /// The tracks that are there; no more are looked for than the header declares.
+    /// The tracks, at most as many as the header declares.
     pub(super) tracks: Vec<Track<'a>>,
-    /// What had to be repaired, if that was allowed.
+    /// Descriptions of the repairs.
     pub(super) repairs: Vec<String>,
 }
 
 /// The bytes of a track.
 pub(super) struct Track<'a> {
     pub(super) bytes: &'a [u8],
-    /// Where they start in the file.
+    /// Position of the first byte in the file.
     pub(super) start: usize,
-    /// How many there should be: more than there are if the file breaks off.
+    /// Number of bytes according to the header. If the file is cut off, `bytes` has fewer.
     pub(super) promised: usize,
 }
 
-/// What people take for a MIDI file, by its first bytes.
+/// Other kinds of files that users may confuse with MIDI files, by their first bytes.
 const OTHERS: [(&[u8], &str); 9] = [
     (b"RF64", "a WAV sound file"),
     (b"RIFF", "a RIFF file without a song"),
@@ -34,7 +34,7 @@ const OTHERS: [(&[u8], &str); 9] = [
 ];
 
 impl<'a> Container<'a> {
-    /// Takes a file apart. Where `lenient` allows it, sizes and numbers of tracks that are wrong are repaired.
+    /// Splits a file into its chunks. If `lenient` is true, wrong sizes and track counts are repaired.
     pub(super) fn open(file: &'a [u8], lenient: bool) -> Result<Self, String> {
         let mut repairs = Vec::new();
         let mut repair = |fault: String| {
@@ -51,7 +51,7 @@ impl<'a> Container<'a> {
             Some(chunk) if chunk.bytes.len() == chunk.promised => read_header(song, chunk.bytes)?,
             _ => return Err("not a whole MIDI file: it breaks off in its header".to_owned()),
         };
-        // A file that declares no tracks is one whose writer did not come back to fill in the number.
+        // If a file declares no tracks, its writer was interrupted before it could fill in the number.
         let wanted = if declared == 0 { usize::MAX } else { declared };
         let mut tracks = Vec::new();
         while tracks.len() < wanted
@@ -74,7 +74,7 @@ impl<'a> Container<'a> {
     }
 }
 
-/// From the song's header to the end of the song's bytes in the file.
+/// The bytes of the song in the file, from its header on.
 fn song_in<'a>(file: &'a [u8], repair: &mut impl FnMut(String) -> Result<(), String>) -> Result<&'a [u8], String> {
     if file.starts_with(b"MThd") {
         return Ok(file);
@@ -92,17 +92,17 @@ fn song_in<'a>(file: &'a [u8], repair: &mut impl FnMut(String) -> Result<(), Str
             if chunk.promised == 0 {
                 repair("an RMID file whose song has the size 0".to_owned())?;
             }
-            // Where the song ends follows from its own chunks.
+            // The end of the song follows from its own chunks.
             let song = &file[start..];
             return if song.starts_with(b"MThd") { Ok(song) } else { Err("an RMID file without a song".to_owned()) };
         }
-        // Chunks of RIFF files start at even places.
+        // Chunks of RIFF files start at even positions.
         at += chunk.promised % 2;
     }
     Err("an RMID file without a song".to_owned())
 }
 
-/// What a file is that holds no song.
+/// Describes a file that contains no song.
 fn describe(file: &[u8]) -> String {
     if file.is_empty() {
         return "an empty file".to_owned();
@@ -116,7 +116,7 @@ fn describe(file: &[u8]) -> String {
     let start = &file[..file.len().min(512)];
     let text = start.utf8_chunks().next().is_some_and(|chunk| {
         let valid = chunk.valid();
-        // A character may be cut at the end.
+        // The last character may be incomplete.
         valid.len() + 4 > start.len() && !valid.chars().any(|c| c.is_control() && !c.is_whitespace())
     });
     if text { "a text file".to_owned() } else { "not a MIDI file".to_owned() }
@@ -128,7 +128,7 @@ fn read_header(song: &[u8], data: &[u8]) -> Result<(Header, usize), String> {
         let meaning = if kind == 2 { " (independent patterns)" } else { "" };
         return Err(format!("a MIDI file of type {kind}{meaning}: expected type 0 or 1"));
     }
-    // An upper byte of 0x80 would overflow inside midly, which negates it as an i8.
+    // midly negates this byte as an `i8`, which overflows for 0x80.
     let frames_per_second = data[4].wrapping_neg();
     if data[4] >= 0x80 && !matches!(frames_per_second, 24 | 25 | 29 | 30) {
         let expected = "expected 24, 25, 29 or 30 SMPTE frames per second";
@@ -151,7 +151,7 @@ impl<'a> Chunk<'a> {
     }
 }
 
-/// The chunk at `at`, which moves on to the next one; none where the file ends before a chunk's bytes start.
+/// The chunk at position `at`, which then moves to the next chunk. None if the file ends before the chunk's contents.
 fn next_chunk<'a>(file: &'a [u8], at: &mut usize, length: fn([u8; 4]) -> u32) -> Option<Chunk<'a>> {
     let (id, rest) = file.get(*at..)?.split_first_chunk::<4>()?;
     let (size, rest) = rest.split_first_chunk::<4>()?;

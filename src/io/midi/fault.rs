@@ -1,34 +1,34 @@
-//! What is wrong with an event that midly refuses: for messages, and for the repairs of lenient reading.
+//! Finds out why midly rejects an event, for error messages and for the repairs of lenient reading.
 
 /// Why an event cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fault {
-    /// The time before it takes more than four bytes.
+    /// The time before the event has more than four bytes.
     LongTime,
-    /// The track ends within it.
+    /// The track ends inside the event.
     CutOff,
-    /// It has no status byte, and no running status holds.
+    /// The event has no status byte, and there is no running status.
     NoStatus,
-    /// Its status byte has no place in a file.
+    /// The status byte is not allowed in a file.
     Status(u8),
     /// A channel message has a data byte above 127.
     Data(u8),
-    /// A meta event is complete, but its contents cannot be.
+    /// A meta event is complete, but its contents are invalid.
     Meta(u8),
 }
 
-/// A fault and where it leaves the track.
+/// A fault, and where the track continues.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Found<'a> {
     pub(super) fault: Fault,
-    /// Ticks before the event, as far as they can be read.
+    /// Ticks before the event, if they can be read.
     pub(super) delta: u32,
-    /// What follows the event, where its length is known.
+    /// The bytes after the event, if its length is known.
     pub(super) after: Option<&'a [u8]>,
 }
 
 impl Fault {
-    /// Looks for the fault of the event that `bytes` start with. `running` is the running status.
+    /// Finds the fault of the event at the start of `bytes`. `running` is the running status.
     pub(super) fn find(bytes: &[u8], running: Option<u8>) -> Found<'_> {
         let Some((delta, event)) = variable_length(bytes) else {
             let fault = if bytes.len() < 4 { Self::CutOff } else { Self::LongTime };
@@ -48,7 +48,7 @@ impl Fault {
                 }
                 _ => found(Self::CutOff),
             },
-            // Their data are not looked at, so what can be wrong is their length.
+            // Their data are not checked, so only their length can be wrong.
             0xf0 | 0xf7 => found(Self::CutOff),
             _ => found(Self::Status(status)),
         }
@@ -76,7 +76,8 @@ impl std::fmt::Display for Fault {
     }
 }
 
-/// A number of variable length (at most four bytes) and what follows it; none if it is longer or cut off.
+/// Reads a number of variable length (at most four bytes). Returns it and the bytes after it; none if it is longer or
+/// cut off.
 fn variable_length(bytes: &[u8]) -> Option<(u32, &[u8])> {
     let length = 1 + bytes.iter().take(4).position(|byte| *byte < 0x80)?;
     let (number, rest) = bytes.split_at(length);
@@ -112,7 +113,7 @@ mod tests {
             assert!(events.next().is_some_and(|event| event.is_err()), "{bytes:?}: midly reads it");
             assert_eq!(Fault::find(bytes, running), Found { fault, delta, after: None }, "{bytes:?}");
         }
-        // 30 frames of 24 a second, a key signature without its mode.
+        // A frame number of 30 at 24 frames per second, and a key signature without its mode.
         for meta in [&[7, 0xff, 0x54, 5, 0, 0, 0, 30, 0, 9, 9][..], &[7, 0xff, 0x59, 1, 3, 9, 9]] {
             assert!(EventIter::new(meta).next().is_some_and(|event| event.is_err()), "{meta:?}: midly reads it");
             let expected = Found { fault: Fault::Meta(meta[2]), delta: 7, after: Some(&[9, 9][..]) };

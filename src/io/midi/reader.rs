@@ -1,4 +1,4 @@
-//! The events of tracks, by tick, and what is wrong with those that cannot be read.
+//! Reads the events of tracks by tick, and repairs or reports those that cannot be read.
 
 use super::container::Track;
 use super::fault::{Fault, Found};
@@ -10,13 +10,13 @@ use midly::num::u4;
 use midly::{EventIter, MetaMessage, MidiMessage, Timing, TrackEvent, TrackEventKind};
 use std::fmt;
 
-/// Most events that a song can have: 32 bytes of memory each.
+/// Maximum number of events in a song. Each takes 32 bytes of memory.
 pub const MAX_EVENTS: usize = 8_000_000;
 
-/// Kinds of faults that lenient reading repairs in a file, a track each; a file with more is not meant to be one.
+/// Maximum number of repairs, counted by kind and track. A file with more is probably no MIDI file.
 const MOST_REPAIRS: usize = 1000;
 
-/// What the tracks so far have in them.
+/// The contents of the tracks that were read so far.
 pub(super) struct TrackReader {
     /// Tick, channel and event.
     pub(super) events: Vec<(u64, u8, EventKind)>,
@@ -28,18 +28,18 @@ pub(super) struct TrackReader {
     lenient: bool,
 }
 
-/// A fault that was repaired, once or several times in a track.
+/// A fault that was repaired, one or more times in a track.
 pub(super) struct Repair {
     track: usize,
     fault: String,
-    /// What was done about it.
+    /// How it was repaired.
     remedy: &'static str,
-    /// Where it was first.
+    /// Where it first occurred.
     place: String,
     times: usize,
 }
 
-/// Where an event is: the number of its track, its tick, and its first byte in the file.
+/// The position of an event: its track number, its tick, and its first byte in the file.
 #[derive(Clone, Copy)]
 struct Spot {
     track: usize,
@@ -61,12 +61,12 @@ impl TrackReader {
         Self { events, tempos, last_tick: 0, repairs, bars: Bars::new(timing), lenient }
     }
 
-    /// Reads the track of this number. An error names the place.
+    /// Reads the track with this number. Errors name the position.
     pub(super) fn read(&mut self, track: &Track, number: usize) -> Result<(), String> {
         let whole = track.bytes.len() == track.promised;
         let mut tick = 0u64;
         let mut events = EventIter::new(track.bytes);
-        // The status byte of the last channel message: where reading is lenient, it holds beyond meta events.
+        // Status byte of the last channel message. In lenient reading, it stays valid after meta events.
         let mut status = None;
         while let (rest, running, Some(event)) = (events.unread(), events.running_status(), events.next()) {
             let spot = |tick| Spot { track: number, tick, byte: track.start + track.bytes.len() - rest.len() };
@@ -110,7 +110,7 @@ impl TrackReader {
         Ok(())
     }
 
-    /// Takes in an event. True if it ends the track.
+    /// Handles an event. Returns true if it ends the track.
     fn take(&mut self, event: TrackEvent, spot: Spot) -> Result<bool, String> {
         let tick = spot.tick;
         match event.kind {
@@ -131,7 +131,7 @@ impl TrackReader {
         Ok(false)
     }
 
-    /// Notes a repair; an error where reading is strict.
+    /// Records a repair. In strict reading, returns an error instead.
     fn repair(&mut self, spot: Spot, fault: &str, remedy: &'static str) -> Result<(), String> {
         if !self.lenient {
             return Err(self.refused(spot, fault));
@@ -160,7 +160,7 @@ impl TrackReader {
     }
 }
 
-/// The channel and event of a message: what its bytes mean, as they would come from a port.
+/// The channel and event of a message, converted as if its bytes came from a MIDI port.
 fn translate(channel: u4, message: MidiMessage) -> Option<(u8, EventKind)> {
     let mut bytes = [0; 3];
     LiveEvent::Midi { channel, message }.write_std(&mut bytes[..]).ok()?;

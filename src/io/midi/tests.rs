@@ -1,4 +1,4 @@
-//! Tests of the MIDI reader, on files that midly's writer and a few bytes by hand make.
+//! Tests of the MIDI reader with files from midly's writer and with files written by hand.
 
 use super::*;
 use midly::{Format, Fps, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, TrackEvent, TrackEventKind};
@@ -56,13 +56,13 @@ fn every_message_becomes_an_event() {
 fn tempo_changes_hold_across_tracks() {
     let tempo = vec![meta(0, MetaMessage::Tempo(1_000_000.into())), meta(480, MetaMessage::Tempo(250_000.into()))];
     let notes = vec![midi(0, 0, on(60, 1)), midi(480, 0, on(61, 1)), midi(480, 0, on(62, 1))];
-    // The tempo track comes last: what counts is when, not where.
+    // The tempo track comes last: only the ticks matter, not the order of tracks.
     let song = song(BEATS, &[notes, tempo]);
     let (tempos, notes): (Vec<SongEvent>, Vec<_>) =
         song.events.iter().partition(|event| matches!(event.kind, EventKind::Tempo(_)));
     assert_eq!(notes.iter().map(|event| event.seconds).collect::<Vec<_>>(), [0.0, 1.0, 1.25]);
     assert_eq!(notes.iter().map(|event| event.frame(44_100.0)).collect::<Vec<_>>(), [0, 44_100, 55_125]);
-    // The engine hears of each tempo, before the notes of its time.
+    // The engine receives each tempo before the notes at the same time.
     assert_eq!(
         tempos.iter().map(|event| (event.seconds, event.kind)).collect::<Vec<_>>(),
         [(0.0, EventKind::Tempo(60.0)), (1.0, EventKind::Tempo(240.0))]
@@ -161,7 +161,7 @@ fn unfit_files_are_refused_with_a_reason() {
     }
 }
 
-/// A file of one track of these bytes, 96 ticks a beat.
+/// A file with one track of these bytes and 96 ticks per beat.
 fn raw(track: &[u8]) -> Vec<u8> {
     let length = (track.len() as u32).to_be_bytes();
     [b"MThd\0\0\0\x06\0\0\0\x01\0\x60MTrk", &length[..], track].concat()
@@ -177,7 +177,7 @@ fn keys(song: &Song) -> Vec<u8> {
 
 #[test]
 fn lenient_reading_repairs_what_it_knows_and_says_so() {
-    // A title, then a note without its status byte; a bar of 3/4 later, two more after SysEx.
+    // A title, and a note without its status byte; one bar of 3/4 later two more such notes, after SysEx.
     let running: &[u8] = &[
         0, 0xff, 0x58, 4, 3, 2, 24, 8, 0, 0x90, 60, 100, 0, 0xff, 3, 1, b'x', 0x60, 61, 100, 0, 0xf0, 1, 0xf7, 0x60,
         62, 100, 0, 0xff, 0x2f, 0,
@@ -273,7 +273,7 @@ fn a_title_that_looks_like_a_header_is_a_title() {
     let title = b"MThd\0\0\0\x06\0\x01\0\x01\x80\x60";
     let track = [&[0, 0xff, 3, title.len() as u8][..], title, &[0, 0x90, 60, 100]].concat();
     assert_eq!(keys(&Song::parse(&raw(&track), "x").unwrap()), [60]);
-    // Between tracks it is one.
+    // Between tracks it is an error.
     let mut bytes = raw(&[0, 0x90, 60, 100]);
     bytes[11] = 2;
     bytes.extend(title);
@@ -322,7 +322,7 @@ proptest! {
         framed.extend((bytes.len() as u32).to_be_bytes());
         framed.extend(&bytes);
         let _ = Song::parse(&framed, "x");
-        // One wrong byte in a good file.
+        // A valid file with one wrong byte.
         let mut good = file(Format::Parallel, BEATS, &[vec![midi(3, 0, on(60, 1)), meta(1, MetaMessage::Tempo(7.into()))]]);
         let at = at.index(good.len());
         good[at] = byte;

@@ -1,11 +1,11 @@
-//! What is written is read back, by hound and by hand.
+//! Files that were written are read back with hound and by hand.
 
 use super::*;
 use std::io::{Cursor, Read};
 
 const FORMATS: [SampleFormat; 3] = [SampleFormat::Int16, SampleFormat::Int24, SampleFormat::Float32];
 
-/// A pipe: what is written stays written.
+/// A pipe, which cannot seek.
 #[derive(Default)]
 struct Pipe<'a>(Option<&'a mut Vec<u8>>);
 
@@ -103,12 +103,12 @@ fn dither_is_triangular_seeded_and_its_own_in_each_channel() {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let product = |a: &[f64], b: &[f64]| mean(&a.iter().zip(b).map(|(a, b)| a * b).collect::<Vec<_>>());
     assert!((mean(&left) - 0.25).abs() < 0.02, "the signal survives below a step");
-    // TPDF's point: the error's power is 1/4 step² (rounding 1/12, noise 1/6) whatever the signal.
+    // The property of TPDF: the error's power is 1/4 step² (rounding 1/12, noise 1/6), independent of the signal.
     assert!((product(&left, &left) - 0.0625 - 0.25).abs() < 0.02, "{}", product(&left, &left));
     assert!((product(&left, &right) + 0.0625).abs() < 0.02, "{}", product(&left, &right));
 }
 
-/// The chunks of a RIFF or RF64 file: their names and the lengths of their contents.
+/// The chunks of a RIFF or RF64 file: their names and lengths.
 fn chunks(file: &mut (impl Read + Seek)) -> Vec<(String, u64)> {
     let mut chunks = Vec::new();
     let (end, mut at) = (file.seek(SeekFrom::End(0)).unwrap(), 12);
@@ -137,7 +137,7 @@ fn a_file_beyond_4_gib_is_rf64() {
         let mut file = tempfile::tempfile().unwrap();
         let mut writer = WavWriter::new(&mut file, "x", format, None, None).unwrap();
         writer.write(&[0.25], &[0.25]).unwrap();
-        // A hole, which reads as zeros and takes no room.
+        // A hole in a sparse file: it reads as zeros and takes no disk space.
         let hole = 1_431_655_730;
         writer.out.seek(SeekFrom::Current(3 * hole)).unwrap();
         writer.frames += hole as u64;

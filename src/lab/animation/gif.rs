@@ -1,4 +1,4 @@
-//! The animation as a GIF: each frame drawn as a figure, and of each only what has changed stored.
+//! The animation as a GIF: each frame is drawn as a figure, and only its changed rectangle is stored.
 
 use super::{Animation, Track, coils, share};
 use crate::error::{Error, Result};
@@ -15,10 +15,10 @@ const WIDTH: u32 = 780;
 const WALL: i32 = 196;
 const TRACK: (f64, f64) = (236.0, 640.0);
 const PLANE: (i32, i32) = (700, 56);
-/// Shades of each colour, down to white, that soft edges are drawn in.
+/// Number of shades from each colour to white, which draw soft edges.
 const SHADES: usize = 24;
 
-/// One frame.
+/// One frame of the animation, as a figure.
 struct Scene<'a> {
     animation: &'a Animation,
     frame: usize,
@@ -77,7 +77,7 @@ fn faded(RGBColor(r, g, b): RGBColor, white: f64) -> RGBColor {
     RGBColor(mix(r), mix(g), mix(b))
 }
 
-/// The GIF file, which runs for ever.
+/// Makes the GIF file. It repeats for ever.
 pub fn gif(animation: &Animation) -> Result<Vec<u8>> {
     let failed = |error: ::gif::EncodingError| Error::format("animation", error.to_string());
     let (width, height) = Scene { animation, frame: 0 }.size();
@@ -89,7 +89,7 @@ pub fn gif(animation: &Animation) -> Result<Vec<u8>> {
     let mut shown = 0_u64;
     for frame in 0..animation.len() {
         let pixels = palette.indexed(&crate::figure::rgb(&Scene { animation, frame })?);
-        // Delays are whole hundredths of a second: what one frame is short of, the next makes up for.
+        // Delays are whole hundredths of a second. Each frame ends at a rounded total time, so errors do not add up.
         let until = ((frame + 1) as f64 * 100.0 / animation.rate).round() as u64;
         let (left, top, w, h) = changed(&previous, &pixels, width as usize);
         let mut part = Vec::with_capacity(w * h);
@@ -98,7 +98,7 @@ pub fn gif(animation: &Animation) -> Result<Vec<u8>> {
         }
         encoder
             .write_frame(&Frame {
-                // No frame of the format lasts longer than 655.35 s.
+                // The format's maximum duration of a frame is 655.35 s.
                 delay: u16::try_from(until - shown).unwrap_or(u16::MAX),
                 left: left as u16,
                 top: top as u16,
@@ -114,7 +114,7 @@ pub fn gif(animation: &Animation) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The smallest rectangle that holds all pixels that differ, as left, top, width and height; at least one pixel.
+/// The smallest rectangle that contains all changed pixels, as left, top, width and height; at least one pixel.
 fn changed(before: &[u8], after: &[u8], width: usize) -> (usize, usize, usize, usize) {
     if before.len() != after.len() {
         return (0, 0, width, after.len() / width);
@@ -126,7 +126,7 @@ fn changed(before: &[u8], after: &[u8], width: usize) -> (usize, usize, usize, u
     if left == width { (0, 0, 1, 1) } else { (left, top, right - left + 1, bottom - top + 1) }
 }
 
-/// Every colour of the figures in shades down to white.
+/// Every colour of the figures, in shades down to white.
 struct Palette {
     colours: Vec<[u8; 3]>,
     found: HashMap<[u8; 3], u8>,
@@ -170,7 +170,7 @@ mod tests {
     use super::super::tests::comparison;
     use super::*;
 
-    /// Number of frames, their delays added up, and how many of them are narrower than the picture.
+    /// Number of frames, sum of their delays, and how many of them are narrower than the picture.
     fn read(animation: &Animation) -> (usize, u64, usize) {
         let bytes = gif(animation).unwrap();
         let mut options = ::gif::DecodeOptions::new();

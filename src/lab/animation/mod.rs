@@ -1,4 +1,4 @@
-//! The masses moving side by side with their phase planes, frame by frame: as SVG, HTML or GIF.
+//! Animates the masses side by side with their phase planes, frame by frame: as SVG, HTML or GIF.
 
 pub mod gif;
 pub mod svg;
@@ -8,22 +8,22 @@ use super::system::State;
 use crate::error::{Error, Result};
 use std::ops::Range;
 
-/// Frames that an animation has at most.
+/// Maximum number of frames of an animation.
 pub const MOST_FRAMES: usize = 3000;
 
 /// One mass.
 pub struct Track {
-    /// Method, or the truth.
+    /// The name of the method, or of the true motion.
     pub title: &'static str,
-    /// Place among the colours; none for the truth.
+    /// Index of its colour; `None` for the true motion.
     pub series: Option<usize>,
     /// State at each frame.
     pub frames: Vec<State>,
-    /// States on the way, for the phase plane.
+    /// States between the frames, for the phase plane.
     pub path: Vec<State>,
 }
 
-/// All masses, the truth first.
+/// All masses; the true motion first.
 pub struct Animation {
     /// The masses from top to bottom.
     pub tracks: Vec<Track>,
@@ -31,15 +31,15 @@ pub struct Animation {
     pub rate: f64,
     /// Step in seconds.
     pub h: f64,
-    /// Positions that are on the page.
+    /// Range of positions that fits on the page.
     pub x: Range<f64>,
-    /// Velocities that are on the page.
+    /// Range of velocities that fits on the page.
     pub v: Range<f64>,
 }
 
 impl Animation {
-    /// The first step size of a comparison, at `rate` frames per second. An error for a rate that is not positive, and
-    /// for more than [`MOST_FRAMES`].
+    /// Animates the first step size of a comparison at `rate` frames per second. Returns an error if the rate is not
+    /// positive, and for more than [`MOST_FRAMES`].
     pub fn new(comparison: &Comparison, rate: f64) -> Result<Self> {
         let end = comparison.setup.end;
         if !(rate > 0.0 && rate <= 50.0) {
@@ -77,7 +77,7 @@ impl Animation {
         Ok(Self { tracks, rate, h, x: range(|state| state.x), v: range(|state| state.v) })
     }
 
-    /// Frames of each track.
+    /// Number of frames of each track.
     pub fn len(&self) -> usize {
         self.tracks.first().map_or(0, |track| track.frames.len())
     }
@@ -87,19 +87,19 @@ impl Animation {
         self.len() == 0
     }
 
-    /// Where a position is between the edges of the page, from 0 to 1, and whether it is on the page at all.
+    /// Where a position lies between the edges of the page, from 0 to 1, and whether it is on the page at all.
     pub fn place(&self, x: f64) -> (f64, bool) {
         share(x, &self.x)
     }
 }
 
-/// Where a value is in a range, from 0 to 1, and whether it is in it at all.
+/// Where a value lies in a range, from 0 to 1, and whether it is in the range at all.
 fn share(value: f64, range: &Range<f64>) -> (f64, bool) {
     let share = (value - range.start) / (range.end - range.start);
     (share.clamp(0.0, 1.0), (0.0..=1.0).contains(&share))
 }
 
-/// The state at a fractional index, on the straight line between its neighbours; the last one after the end.
+/// The state at a fractional index, on the straight line between its neighbours; after the end, the last state.
 fn between(states: &[State], place: f64) -> State {
     let n = place as usize;
     let (Some(a), Some(b)) = (states.get(n), states.get(n + 1)) else {
@@ -109,7 +109,7 @@ fn between(states: &[State], place: f64) -> State {
     State { x: a.x + part * (b.x - a.x), v: a.v + part * (b.v - a.v) }
 }
 
-/// The points of a spring's coils from 0 to `length`, around 0, with loops of `size`.
+/// The points of a spring's coils from 0 to `length`, around 0, with loops of size `size`.
 fn coils(length: f64, size: f64) -> Vec<(f64, f64)> {
     const COILS: i32 = 14;
     let side = |n: i32| if n == 0 || n == COILS { 0.0 } else { size * f64::from(1 - 2 * (n % 2)) };

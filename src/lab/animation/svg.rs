@@ -1,4 +1,4 @@
-//! The animation as an SVG that moves by itself (SMIL), and as a page around it with a button to hold it.
+//! The animation as a self-moving SVG (SMIL), and as a page around it with a pause button.
 
 use super::{Animation, Track, coils, share};
 use crate::figure::number::short;
@@ -7,12 +7,12 @@ use std::fmt::Write;
 const ROW: f64 = 76.0;
 const HEAD: f64 = 44.0;
 const WIDTH: f64 = 960.0;
-/// Where the wall is that the springs hang on, and how far the masses can go.
+/// Position of the wall from which the springs hang, and how far the masses can move.
 const WALL: f64 = 210.0;
 const TRACK: (f64, f64) = (260.0, 760.0);
 /// Left edge and size of the phase planes.
 const PLANE: (f64, f64) = (830.0, 66.0);
-/// Length at which a spring is drawn before it is scaled.
+/// Length of a spring as drawn, before it is scaled.
 const SPRING: f64 = 100.0;
 
 const STYLE: &str = "\
@@ -41,7 +41,7 @@ pub fn svg(animation: &Animation) -> String {
     svg + "</svg>\n"
 }
 
-/// A page with the SVG and a button. A reader who has asked for less motion starts it by hand.
+/// A page with the SVG and a button. If the reader has requested reduced motion, it only starts by hand.
 pub fn html(animation: &Animation) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

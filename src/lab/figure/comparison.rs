@@ -1,4 +1,4 @@
-//! Trajectories against the truth, their differences, phase planes and energies: a row per method.
+//! Draws trajectories against the true motion, their differences, phase planes and energies: one row per method.
 
 use super::super::comparison::Comparison;
 use super::super::energy::Energy;
@@ -16,11 +16,11 @@ pub struct ComparisonFigure<'a>(pub &'a Comparison);
 
 /// Height of a method's row in pixels.
 const ROW: u32 = 230;
-/// States of a run that are drawn at most.
+/// Maximum number of drawn states of a run.
 const MOST_POINTS: usize = 5000;
 /// Height of the title and legend.
 const HEAD: u32 = 74;
-/// Energies beyond this multiple of the greatest true one are off the panel.
+/// Energies above this multiple of the largest true energy are outside the panel.
 const ENERGY_SPAN: f64 = 2.5;
 
 const TRUTH: Stroke = Stroke { colour: colour::INK, width: 1, dashed: false };
@@ -56,7 +56,7 @@ impl Picture for ComparisonFigure<'_> {
     }
 }
 
-/// Colour of the `n`-th step size.
+/// The stroke of the `n`-th step size.
 fn step_stroke(n: usize) -> Stroke {
     let (colour, dashed) = colour::series(n);
     Stroke { colour, width: 2, dashed }
@@ -119,17 +119,17 @@ fn over_time(states: &[State], h: f64, value: impl Fn(&State) -> f64) -> Vec<(f6
     states.iter().enumerate().step_by(stride).map(|(n, state)| (n as f64 * h, value(state))).collect()
 }
 
-/// Every how many of a run's states are drawn.
+/// Only every n-th state of a run is drawn: returns this n.
 fn stride(states: usize) -> usize {
     states.div_ceil(MOST_POINTS).max(1)
 }
 
-/// Velocity to the right and position upward, so that positions line up with those of the trajectory beside it.
+/// Velocity to the right and position upwards, so that positions line up with the trajectory beside it.
 fn plane(states: &[State]) -> Vec<(f64, f64)> {
     states.iter().step_by(stride(states.len())).map(|state| (state.v, state.x)).collect()
 }
 
-/// The range of some values with a share of it added at either end; never empty.
+/// The range of some values, extended by a share of its length at either end; never empty.
 fn span(values: impl Iterator<Item = f64>, share: f64) -> Range<f64> {
     let (low, high) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));

@@ -1,4 +1,4 @@
-//! Error against step size on logarithmic axes, with the fitted orders.
+//! Draws error against step size on logarithmic axes, with the fitted orders.
 
 use super::super::convergence::Convergence;
 use super::{legend, stroke};
@@ -10,9 +10,9 @@ use plotters::prelude::*;
 /// The figure of some methods' convergence.
 pub struct ConvergenceFigure<'a>(pub &'a [Convergence]);
 
-/// Lines that show what an order looks like.
+/// Guide lines with the slope of an order.
 const GUIDE: Stroke = Stroke { colour: RGBColor(170, 170, 178), width: 1, dashed: true };
-/// Errors below this are drawn at it: an error of 0 has no logarithm.
+/// Smaller errors are drawn at this value, because an error of 0 has no logarithm.
 const LEAST: f64 = 1e-17;
 
 impl Picture for ConvergenceFigure<'_> {
@@ -40,7 +40,7 @@ impl Picture for ConvergenceFigure<'_> {
         };
         let mut chart = panel.draw(&plot)?;
         for power in [1.0, 2.0, 4.0] {
-            // What the order would look like, through the longest step.
+            // The slope of this order, through the longest step.
             let top = panel.y.range.end - 0.5 * power;
             let guide: Vec<_> = [right, left].iter().map(|x| (*x, top + power * (x - right))).collect();
             line(&mut chart, &guide, GUIDE)?;

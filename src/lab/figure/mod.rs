@@ -11,14 +11,14 @@ use crate::figure::panel::Stroke;
 use crate::figure::{Area, Drawn, colour, text};
 use plotters::prelude::*;
 
-/// The stroke of a method: its own in every figure.
+/// The stroke of a method, the same in every figure.
 fn stroke(method: Method) -> Stroke {
     let index = Method::ALL.iter().position(|other| *other == method).unwrap_or(0);
     let (colour, dashed) = colour::series(index);
     Stroke { colour, width: 2, dashed }
 }
 
-/// Draws what each stroke stands for, one below the other.
+/// Draws the strokes with their names, one below the other.
 fn legend<B: DrawingBackend>(area: &Area<B>, entries: &[(Stroke, String)], (x, y): (i32, i32)) -> Drawn<B> {
     for (n, (stroke, label)) in entries.iter().enumerate() {
         let y = y + 24 * n as i32;

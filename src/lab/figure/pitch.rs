@@ -1,4 +1,4 @@
-//! Error of pitch and decay against frequency: what each method would sound like out of tune.
+//! Draws error of pitch and decay against frequency.
 
 use super::super::method::Method;
 use super::super::pitch::{Note, Outcome};
@@ -8,11 +8,11 @@ use crate::figure::{Area, Drawn, Picture, text};
 use libm::{ceil, floor, log10};
 use plotters::prelude::*;
 
-/// Each method's notes over frequency, all of one −60 dB time.
+/// Each method's notes over frequency, all with the same −60 dB time.
 pub struct PitchFigure<'a> {
-    /// One list per method, of rising frequency.
+    /// One list per method, in order of frequency.
     pub notes: &'a [Vec<Note>],
-    /// Hz.
+    /// Sample rate in Hz.
     pub sample_rate: f64,
 }
 
@@ -97,7 +97,7 @@ pub fn csv<'a>(notes: impl Iterator<Item = &'a Note>) -> String {
     csv
 }
 
-/// The notes of `methods` at each of `frequencies`.
+/// The notes of each of `methods` at all `frequencies`.
 pub fn notes(methods: &[Method], frequencies: &[f64], t60: f64, sample_rate: f64) -> crate::Result<Vec<Vec<Note>>> {
     let play = |method: &Method| {
         frequencies.iter().map(|frequency| super::super::pitch::play(*method, *frequency, t60, sample_rate)).collect()

@@ -1,4 +1,4 @@
-//! The waveform of each method, and where the limiter took hold.
+//! Draws the waveform of each method, and the time at which the limiter first acted.
 
 use super::super::sound::Sound;
 use super::stroke;
@@ -9,15 +9,15 @@ use plotters::prelude::*;
 
 /// The figure of some sounds.
 pub struct SoundFigure<'a> {
-    /// One strip each.
+    /// One strip for each sound.
     pub sounds: &'a [Sound],
-    /// Hz.
+    /// Sample rate in Hz.
     pub sample_rate: f64,
-    /// What was struck.
+    /// Title of the figure, which says what was struck.
     pub title: &'a str,
 }
 
-/// Columns of pixels that a waveform is drawn in.
+/// Number of pixel columns of a waveform.
 const COLUMNS: usize = 1000;
 
 impl Picture for SoundFigure<'_> {

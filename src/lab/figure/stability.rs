@@ -1,4 +1,4 @@
-//! The region in which each method stays bounded, as found by running it, with the line that theory gives.
+//! Draws the region in which each method stays bounded when it is run, with the limit according to theory.
 
 use super::super::method::Method;
 use super::super::stability::{Cell, theory};
@@ -7,7 +7,7 @@ use crate::figure::panel::{Axis, Panel, Stroke, line};
 use crate::figure::{Area, Drawn, Picture, text};
 use plotters::prelude::*;
 
-/// A method's cells over the plane of step and damping, at each of which it has been run.
+/// A method's cells over the plane of step and damping. The method has been run at each cell.
 pub struct Region {
     /// The method.
     pub method: Method,
@@ -54,7 +54,7 @@ fn panel<B: DrawingBackend>(area: &Area<B>, region: &Region) -> Drawn<B> {
     };
     let mut chart = panel.draw(area)?;
     for cells in &region.rows {
-        // Neighbours of the same kind are one rectangle: smaller files, no seams.
+        // Neighbouring cells of the same kind are drawn as one rectangle: the file is smaller and there are no seams.
         for stretch in cells.chunk_by(|a, b| a.bounded == b.bounded).filter(|stretch| stretch[0].bounded) {
             let (from, to) = (stretch[0], stretch[stretch.len() - 1]);
             let low = (from.zeta - 0.5 * rise).max(y.start);
@@ -70,7 +70,7 @@ fn panel<B: DrawingBackend>(area: &Area<B>, region: &Region) -> Drawn<B> {
     line(&mut chart, &limits, THEORY)
 }
 
-/// One row per method, damping ratio and step; the growth is empty where the method refuses the step.
+/// One row per method, damping ratio and step; the growth is empty if the method refuses the step.
 pub fn csv(regions: &[Region]) -> String {
     let mut csv = String::from("method,zeta,omega_h,growth_neper_per_step,bounded,theory_limit\n");
     for region in regions {

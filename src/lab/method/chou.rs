@@ -1,14 +1,14 @@
 //! Chou's damped springs with a target, semi-implicit and implicit. First order.
 //!
 //! Source: A. Chou (2015), "Precise Control over Numeric Springing", as listed in "I turned jiggle physics code into a
-//! synthesizer". A force `f(t)` is a target that moves: `target + f/k`.
+//! synthesizer". A force `f(t)` is treated as a moving target: `target + f/k`.
 
 use super::integrator::Integrator;
 use crate::error::Result;
 use crate::lab::system::{State, System};
 use libm::sqrt;
 
-/// A spring as Chou writes it: damping ratio `ζ` and undamped angular frequency `ω`.
+/// A spring in Chou's form: damping ratio `ζ` and undamped angular frequency `ω`.
 pub(super) struct Spring {
     system: System,
     zeta: f64,
@@ -17,7 +17,7 @@ pub(super) struct Spring {
 }
 
 impl Spring {
-    /// An error without a spring: `ω` would be 0 and `ζ` infinite.
+    /// Returns an error without a spring, since `ω` would be 0 and `ζ` infinite.
     pub(super) fn new(system: &System, h: f64) -> Result<Self> {
         let omega = system.omega()?;
         let zeta = 0.5 * system.damping / sqrt(system.stiffness * system.mass);
@@ -64,7 +64,7 @@ mod tests {
     use crate::lab::method::Method;
     use crate::lab::system::Force;
 
-    /// In physical units Chou's springs are symplectic and implicit Euler, damping, target and force included.
+    /// In physical units, Chou's springs are symplectic Euler and implicit Euler, also with damping, target and force.
     #[test]
     fn they_are_the_euler_methods_in_other_units() {
         let force = Force { amplitude: 3.0, frequency: 1.2, phase: 0.4 };

@@ -1,17 +1,17 @@
-//! The exact exponential map: the closed form's transition over one step, applied again and again.
+//! The exact exponential map: applies the closed form's transition over one step again and again.
 //!
-//! Exact but for rounding; a force is taken at the middle of the step, which makes that part second order.
+//! Exact except for rounding. A force is evaluated at the middle of the step, which makes its part second order.
 
 use super::integrator::Integrator;
 use crate::error::Result;
 use crate::lab::closed_form::{ClosedForm, Transition};
 use crate::lab::system::{Force, State, System};
 
-/// `y⁺ = e^(Ah) y`, plus what the force at `t + h/2` would add if it were constant over the step.
+/// `y⁺ = e^(Ah) y`, plus the effect of the force at `t + h/2` as if it were constant during the step.
 pub(super) struct Exponential {
     system: System,
     transition: Transition,
-    /// Displacement and velocity from rest under a force of 1 N over one step.
+    /// Displacement and velocity after one step from rest under a force of 1 N.
     response: (f64, f64),
     h: f64,
 }

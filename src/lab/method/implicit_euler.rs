@@ -1,12 +1,12 @@
-//! Implicit (backward) Euler: position and velocity both from the new state. First order; shrinks at any step.
+//! Implicit (backward) Euler: position and velocity both from the new state. First order; shrinks with any step.
 
 use super::integrator::Integrator;
 use crate::error::{Error, Result};
 use crate::lab::system::{State, System};
 
-/// Newton steps after which a nonlinear solve is given up.
+/// Maximum number of Newton steps of a nonlinear solution.
 const ITERATIONS: usize = 50;
-/// Change of the velocity, relative to its size, at which a nonlinear solve is done.
+/// A nonlinear solution is accepted when the relative change of the velocity is below this.
 const TOLERANCE: f64 = 1e-14;
 
 /// `y⁺ = y + h f(y⁺, t + h)`.
@@ -16,7 +16,7 @@ pub(super) struct ImplicitEuler {
 }
 
 impl ImplicitEuler {
-    /// The solution of a linear spring: `v⁺ (1 + h c/m + h² k/m) = v + h (f − k d)/m`.
+    /// The solution for a linear spring: `v⁺ (1 + h c/m + h² k/m) = v + h (f − k d)/m`.
     fn closed(&self, State { x, v }: State, t: f64) -> State {
         let Self { system, h } = self;
         let pull = system.spring_force(x) + system.force.at(t + h);

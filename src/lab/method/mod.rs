@@ -1,4 +1,4 @@
-//! The methods: what each is called, how accurate it is, where it comes from, and what it can integrate.
+//! The methods: their names, accuracy and sources, and what they can integrate.
 
 mod chou;
 mod explicit_euler;
@@ -19,24 +19,24 @@ pub use integrator::Integrator;
 /// How fast a method's error falls as the step shrinks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// As this power of the step.
+    /// In proportion to this power of the step.
     Power(u8),
-    /// There is none beyond rounding, of a linear spring without a force.
+    /// No error except rounding, for a linear spring without a force.
     Exact,
 }
 
 /// A way to integrate a mass on a spring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Method {
-    /// Both from the old state.
+    /// Position and velocity both from the old state.
     ExplicitEuler,
-    /// Both from the new state.
+    /// Position and velocity both from the new state.
     ImplicitEuler,
     /// Velocity from the old position, position from the new velocity.
     SymplecticEuler,
     /// Position from the old velocity, velocity from the new position.
     SymplecticEulerPositionFirst,
-    /// Mean of the slopes at both ends of an explicit Euler step.
+    /// The mean of the slopes at both ends of an explicit Euler step.
     Heun,
     /// The classical fourth-order Runge–Kutta method.
     RungeKutta4,
@@ -44,7 +44,7 @@ pub enum Method {
     ChouSemiImplicit,
     /// Chou's implicit spring.
     ChouImplicit,
-    /// The synth's step with the coefficients it was first published with.
+    /// The synth's step with the coefficients of its first publication.
     SynthSeed,
     /// The synth's step with exact coefficients.
     SynthExact,
@@ -71,7 +71,7 @@ impl Method {
         Self::Exponential,
     ];
 
-    /// Name on the command line, in tables and of files.
+    /// Its name on the command line, in tables and in file names.
     pub fn key(self) -> &'static str {
         match self {
             Self::ExplicitEuler => "explicit-euler",
@@ -89,7 +89,7 @@ impl Method {
         }
     }
 
-    /// Name in figures.
+    /// Its name in figures.
     pub fn title(self) -> &'static str {
         match self {
             Self::ExplicitEuler => "explicit Euler",
@@ -141,7 +141,7 @@ impl Method {
         }
     }
 
-    /// The method of that name. An error that offers the closest one.
+    /// The method with this name. For an unknown name, the error suggests the closest one.
     pub fn from_key(key: &str) -> Result<Self> {
         Self::ALL.into_iter().find(|method| method.key() == key).ok_or_else(|| {
             let keys = Self::ALL.map(Self::key);
@@ -150,7 +150,7 @@ impl Method {
         })
     }
 
-    /// The method with steps of `h` seconds. An error where it cannot integrate this system.
+    /// The method with steps of `h` seconds. Returns an error if it cannot integrate this system.
     pub fn integrator(self, system: &System, h: f64) -> Result<Box<dyn Integrator>> {
         system.validate()?;
         if !(h > 0.0 && h.is_finite()) {
@@ -214,7 +214,7 @@ mod tests {
         }
     }
 
-    /// One step of h = 0.1 from (0.5, 0.2) of k = 50, m = 1, worked out by hand.
+    /// One step of h = 0.1 from (0.5, 0.2) with k = 50, m = 1, computed by hand.
     #[test]
     fn first_steps_are_those_of_the_formulas() {
         let system = System::linear(1.0, 50.0, 0.0).unwrap();

@@ -31,7 +31,7 @@ impl Integrator for RungeKutta4 {
 mod tests {
     use super::*;
 
-    /// On a linear spring the step is the Taylor series of the exponential map up to h⁴.
+    /// For a linear spring, the step is the Taylor series of the exponential map up to h⁴.
     #[test]
     fn a_step_is_the_taylor_polynomial() {
         let (h, omega2) = (0.1_f64, 50.0_f64);

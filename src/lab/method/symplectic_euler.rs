@@ -1,6 +1,6 @@
 //! Symplectic (semi-implicit) Euler, both orders: first order, but the energy stays within a bound below ω·h = 2.
 //!
-//! The two are adjoint: each is the other run backwards. They keep not `½ m v² + ½ k x²` but that `∓ ½ h k x v`.
+//! The two are adjoint: each is the other run backwards. They do not preserve `½ m v² + ½ k x²` but that `∓ ½ h k x v`.
 
 use super::integrator::Integrator;
 use crate::error::Result;
@@ -12,7 +12,7 @@ pub(super) struct VelocityFirst {
     pub(super) h: f64,
 }
 
-/// `x⁺ = x + h v`, then `v⁺ = v + h a(x⁺, v, t + h)`: what the mass-spring notebook's "explicit" listing does.
+/// `x⁺ = x + h v`, then `v⁺ = v + h a(x⁺, v, t + h)`: the step that the mass-spring notebook lists as "explicit".
 pub(super) struct PositionFirst {
     pub(super) system: System,
     pub(super) h: f64,

@@ -1,7 +1,7 @@
-//! The synth's own step, `v −= v·ζ + x·ω²; x += v`, fed with the coefficients of the seed or with exact ones.
+//! The synth's own step, `v −= v·ζ + x·ω²; x += v`, with the coefficients of the seed or with exact ones.
 //!
-//! The oscillator counts time in samples and its velocity is not the mass's: the state is taken over into its units
-//! before each step and back after it, so that it can be laid beside the other methods.
+//! The oscillator counts time in samples, and its velocity is not that of the mass. So the state is converted to the
+//! oscillator's units before each step and back after it, and can be compared with the other methods.
 
 use super::integrator::Integrator;
 use crate::dsp::{Coefficients, HarmonicOscillator};
@@ -10,7 +10,7 @@ use crate::lab::closed_form::Transition;
 use crate::lab::system::{State, System};
 use std::f64::consts::TAU;
 
-/// The oscillator with the change of units around it: its velocity is `a d + b v`.
+/// The oscillator and the conversion of units: its velocity is `a d + b v`.
 pub(super) struct SynthStep {
     system: System,
     mass: HarmonicOscillator<f64>,
@@ -19,13 +19,14 @@ pub(super) struct SynthStep {
     /// Velocity in m/s that a force of 1 N adds in a step.
     kick: f64,
     h: f64,
-    /// Whether the force acts in two halves, before and after the step (second order), or at once (first).
+    /// Whether half of the force acts before and half after the step (second order), or all of it at once (first
+    /// order).
     halves: bool,
 }
 
 impl SynthStep {
-    /// Coefficients as first published, in single precision, of the undamped frequency `ω/2π` and the −60 dB time of
-    /// `λ̄`. First order. An error without a spring: there is no frequency to ask for.
+    /// Coefficients as first published, in single precision, from the undamped frequency `ω/2π` and the −60 dB time of
+    /// `λ̄`. First order. Returns an error without a spring, because there is no frequency.
     pub(super) fn seed(system: &System, h: f64) -> Result<Self> {
         let frequency = system.omega()? / TAU;
         let decay_frames = -crate::dsp::coefficients::LN_MINUS_60_DB / (system.decay_rate() * h);
@@ -34,13 +35,13 @@ impl SynthStep {
         Ok(Self { system: *system, mass, a: 0.0, b: h, kick: h / system.mass, h, halves: false })
     }
 
-    /// Exact coefficients. An error where the step is a whole number of half periods: the samples of the displacement
-    /// then say nothing of the velocity.
+    /// Exact coefficients. Returns an error if the step is a whole number of half periods, because the samples of the
+    /// displacement then contain no information about the velocity.
     pub(super) fn exact(system: &System, h: f64) -> Result<Self> {
         let transition = Transition::over(system, h);
         let coefficients = Coefficients::mass_spring(system.mass, system.damping, system.stiffness, 0.0, 0.0, h);
         let keep = 1.0 - coefficients.zeta;
-        // From where one step leads, x₁ = x₀ (1−ω²) + u₀ (1−ζ), to the oscillator's velocity u₀.
+        // One step leads to x₁ = x₀ (1−ω²) + u₀ (1−ζ). Solved for the oscillator's velocity u₀.
         let (from_position, _) = transition.apply(1.0, 0.0);
         let b = transition.reach / keep;
         if !b.is_finite() {
@@ -76,7 +77,7 @@ impl Integrator for SynthStep {
 mod tests {
     use super::*;
 
-    /// The lab's steps in physical units are the samples that the instrument plays.
+    /// The lab's steps, in physical units, are the samples that the instrument plays.
     #[test]
     fn it_is_the_oscillator_sample_for_sample() {
         let (frequency, t60, rate) = (440.0, 0.5, 48_000.0);

@@ -1,7 +1,8 @@
-//! Störmer–Verlet in kick–drift–kick form. Second order; the best known of its cost: one force per step, no drift.
+//! Störmer–Verlet in kick–drift–kick form. Second order; best of its cost: one force per step, no drift of energy.
 //!
-//! With damping this is the scheme of Brünger, Brooks & Karplus (1984): the first half kick takes the damper's force
-//! from the velocity before it, the second from that after it. It equals central differences; its limit stays ω·h = 2.
+//! With damping this is the scheme of Brünger, Brooks & Karplus (1984): the first half kick uses the damper's force
+//! from the velocity before it, the second the force from the velocity after it. It equals central differences, and its
+//! limit is still ω·h = 2.
 
 use super::integrator::Integrator;
 use crate::error::Result;

@@ -1,4 +1,4 @@
-//! A comparison as one HTML file that works offline: charts with toggles, an animated mass per method, tables.
+//! Writes a comparison as one HTML file that works offline: interactive charts, an animated mass per method, tables.
 
 use super::comparison::Comparison;
 use super::energy::Energy;
@@ -12,15 +12,15 @@ const PAGE: &str = include_str!("report.html");
 const STYLE: &str = include_str!("report.css");
 const SCRIPT: &str = include_str!("report.js");
 
-/// States of one run that the page holds at most; longer runs are thinned out.
+/// Maximum number of states of one run in the page; longer runs are thinned out.
 const MOST_POINTS: usize = 2000;
-/// Methods that are shown at first: one that explodes, shrinks, drifts, is good enough, is exact.
+/// Methods shown at first: one each that explodes, shrinks, drifts, is accurate enough, and is exact.
 const SHOWN: [Method; 5] =
     [Method::ExplicitEuler, Method::ImplicitEuler, Method::SymplecticEuler, Method::RungeKutta4, Method::SynthExact];
 
-/// The page.
+/// Makes the page.
 pub fn html(comparison: &Comparison) -> String {
-    // One pass over the page, so that what is put in is never searched for further places.
+    // One pass over the template, so that inserted text is never searched for placeholders.
     let mut out = String::new();
     let mut rest = PAGE;
     while let Some((before, after)) = rest.split_once("{{") {
@@ -29,7 +29,7 @@ pub fn html(comparison: &Comparison) -> String {
         out += &match name {
             "style" => STYLE.to_owned(),
             "script" => SCRIPT.to_owned(),
-            // A "</script>" inside would end it.
+            // A "</script>" in the data would end the script.
             "data" => data(comparison).to_string().replace('<', "\\u003c"),
             "summary" => summary(comparison),
             "methods" => checkboxes(comparison),
@@ -71,7 +71,7 @@ fn summary(comparison: &Comparison) -> String {
     text
 }
 
-/// Every how many of a run's states are in the page.
+/// Only every n-th state of a run is in the page: returns this n.
 fn stride(run: &Trajectory) -> usize {
     run.states.len().div_ceil(MOST_POINTS).max(1)
 }
@@ -136,7 +136,7 @@ fn sources(comparison: &Comparison) -> String {
     comparison.setup.methods.iter().map(row).collect()
 }
 
-/// What the script draws.
+/// The data that the script draws.
 fn data(comparison: &Comparison) -> Value {
     let system = &comparison.setup.system;
     let energy = |state: &State| Energy::of(system, *state).total();
@@ -183,7 +183,7 @@ fn states(states: &[State], h: f64, stride: usize, energy: &impl Fn(&State) -> f
     })
 }
 
-/// Six significant digits: more than a chart shows. Null where it is not a number.
+/// Rounded to six significant digits, more than a chart shows. Null if the value is not finite.
 fn rounded(value: f64) -> Value {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { json!(0) } else { Value::Null };

@@ -1,4 +1,4 @@
-//! What the view shows, and what keys do to it.
+//! The state of the view, and how keys change it.
 
 use super::desk::Desk;
 use super::keyboard::Keyboard;
@@ -13,20 +13,20 @@ use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How long a message stays.
+/// How long a message is shown.
 const MESSAGE: Duration = Duration::from_secs(8);
 
-/// What is left of a meter after a tenth of a second.
+/// Fraction of a meter's level that remains after a tenth of a second.
 const FALL: f32 = 0.7;
 
-/// Which list is to be seen.
+/// The list that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum List {
     Presets,
     Parameters,
 }
 
-/// What is being typed.
+/// What the user is typing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Typing {
     Nothing,
@@ -36,7 +36,7 @@ pub(super) enum Typing {
     Value(String),
 }
 
-/// What a channel plays, and its parameters.
+/// The kit of a channel, and its parameters.
 pub(super) struct Playing {
     pub(super) name: String,
     pub(super) kit: Arc<Kit>,
@@ -46,7 +46,7 @@ pub(super) struct Playing {
 
 impl Playing {
     fn new(kit: &Arc<Kit>, program: Option<u8>) -> Self {
-        // What comes from files must not steer the terminal.
+        // Text from files must not control the terminal.
         Self { name: printable(kit.name()).into_owned(), kit: kit.clone(), values: *kit.values(), program }
     }
 }
@@ -56,7 +56,7 @@ pub(super) struct App {
     pub(super) status: Arc<Status>,
     pub(super) keyboard: Keyboard,
     kits: KitSender,
-    /// Those of the factory, as they were set on the command line.
+    /// Kits of the factory presets, with the parameters from the command line.
     programs: Vec<Arc<Kit>>,
     playing: Vec<Playing>,
     pub(super) channel: u8,
@@ -76,7 +76,7 @@ pub(super) struct App {
 impl App {
     pub(super) fn new(desk: Desk) -> Self {
         let Desk { device, status, keys, kits, kit, channels, programs } = desk;
-        // Nor must what comes from devices.
+        // Nor must text from devices.
         let device = printable(&device).into_owned();
         let mut playing: Vec<Playing> = (0..16).map(|_| Playing::new(&kit, None)).collect();
         channels.iter().for_each(|(channel, kit)| playing[usize::from(*channel)] = Playing::new(kit, None));
@@ -102,7 +102,7 @@ impl App {
         }
     }
 
-    /// Tells something for a while.
+    /// Shows a message for some time.
     pub(super) fn tell(&mut self, message: String) {
         self.message = Some((printable(&message).into_owned(), Instant::now()));
     }
@@ -136,7 +136,7 @@ impl App {
         PARAMS.iter().filter(matches).collect()
     }
 
-    /// The chosen row of the list, if it has any.
+    /// The selected row of the list; none if the list is empty.
     pub(super) fn selected(&self) -> Option<usize> {
         let rows = self.rows();
         (rows > 0).then(|| self.selected[self.list as usize].min(rows - 1))
@@ -149,7 +149,7 @@ impl App {
         }
     }
 
-    /// Lets time pass: meters fall, notes end, programs of the song are noticed.
+    /// Updates the state: meters fall, notes end, and program changes of the song are shown.
     pub(super) fn tick(&mut self, now: Instant) {
         self.keyboard.tick(now);
         self.message.take_if(|(_, since)| since.elapsed() > MESSAGE);
@@ -171,7 +171,7 @@ impl App {
         }
     }
 
-    /// A key of the computer.
+    /// Handles a key of the computer's keyboard.
     pub(super) fn key(&mut self, event: KeyEvent, now: Instant) {
         if event.kind == KeyEventKind::Release {
             if let KeyCode::Char(character) = event.code {
@@ -270,7 +270,7 @@ impl App {
         self.parameters().get(row).copied()
     }
 
-    /// Turns the knob of the chosen parameter: by a step, or a fiftieth or five-hundredth of its way.
+    /// Changes the selected parameter: by one step, or by a fiftieth or five-hundredth of its knob travel.
     fn nudge(&mut self, direction: f64, fine: bool) {
         let Some(info) = self.parameter() else { return };
         let value = self.playing().values.get(info.param);

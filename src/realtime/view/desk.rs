@@ -1,23 +1,23 @@
-//! What the view shows and what it plays on.
+//! The data that the view shows, and the senders through which it plays.
 
 use crate::realtime::{KitSender, LiveSender, Status};
 use crate::sound::Kit;
 use std::sync::Arc;
 
-/// What the view shows and what it plays on.
+/// The data that the view shows, and the senders through which it plays.
 pub struct Desk {
     /// The device, as text.
     pub device: String,
-    /// What the audio thread tells.
+    /// State that the audio thread reports.
     pub status: Arc<Status>,
-    /// Takes notes and parameters.
+    /// Receives notes and parameters.
     pub keys: LiveSender,
-    /// Takes presets.
+    /// Receives kits.
     pub kits: KitSender,
-    /// What every channel starts with that is not among `channels`.
+    /// The initial kit of the channels that are not in `channels`.
     pub kit: Arc<Kit>,
-    /// What single channels, 0–15, start with.
+    /// Initial kits of single channels, 0–15.
     pub channels: Vec<(u8, Arc<Kit>)>,
-    /// What program changes choose from, in the order of the factory presets.
+    /// The kits that program changes select, in the order of the factory presets.
     pub programs: Vec<Arc<Kit>>,
 }

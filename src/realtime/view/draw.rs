@@ -1,4 +1,4 @@
-//! The picture: what is where on the screen, large or small.
+//! Draws the view: the layout of the screen, for small and large terminals.
 
 use super::app::{App, Typing};
 use super::keyboard::character;
@@ -10,7 +10,7 @@ use ratatui::style::{Color, Style, Stylize};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Clear, Paragraph};
 
-/// Lowest level that a meter shows, in dB.
+/// Lowest level of a meter in dB.
 const LOWEST: f64 = -48.0;
 
 const HELP: &str = "\
@@ -90,7 +90,7 @@ fn meter(name: &str, peak: f32, frame: &mut Frame, area: Rect) {
     frame.render_widget(Line::from(vec![Span::raw(format!("{name} ")), bar, rest, Span::raw(number)]), area);
 }
 
-/// A piano from the lowest key of the computer's keyboard on, as far as there is room.
+/// Draws piano keys from the lowest key of the computer's keyboard on, as many as there is room for.
 fn keys(app: &App, frame: &mut Frame, area: Rect) {
     let lowest = app.keyboard.lowest();
     let down = app.status.telemetry().keys(app.channel);

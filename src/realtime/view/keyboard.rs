@@ -4,17 +4,16 @@ use crate::engine::EventKind;
 use crate::realtime::LiveSender;
 use std::time::{Duration, Instant};
 
-/// Keys of the lower row with the upper row's octave above, in semitones from the lower C.
+/// The lower and the upper row of keys, an octave apart, in semitones above the lower C.
 const PIANO: [(&str, u8); 2] = [("zsxdcvgbhnjm", 0), ("q2w3er5t6y7ui9o0p", 12)];
 
-/// How long a note is held where the terminal does not tell when a key comes up: until this long after its last
-/// repetition.
+/// How long a note is held after the last repetition of its key, if the terminal does not report key releases.
 const HOLD: Duration = Duration::from_millis(600);
 
 /// MIDI key of the lower C in octave 0.
 const LOWEST_C: i32 = 12;
 
-/// Semitones above the lower C of a key of the computer, if it is one of the piano.
+/// The note of a computer key, in semitones above the lower C; none if the key has no note.
 fn semitone(character: char) -> Option<u8> {
     PIANO.iter().find_map(|(row, offset)| {
         let place = row.chars().position(|key| key == character)?;
@@ -22,7 +21,7 @@ fn semitone(character: char) -> Option<u8> {
     })
 }
 
-/// The key of the computer that plays a semitone above the lower C.
+/// The computer key of a note, which is given in semitones above the lower C.
 pub(super) fn character(semitone: u8) -> Option<char> {
     let [(lower, _), (upper, _)] = PIANO;
     let place = usize::from(semitone);
@@ -36,12 +35,12 @@ struct Down {
     until: Option<Instant>,
 }
 
-/// What is held down, and where on the piano the computer's keys are.
+/// The notes that are held, and the octave of the computer's keyboard.
 pub(super) struct Keyboard {
     sender: LiveSender,
-    /// The terminal tells when keys come up.
+    /// Whether the terminal reports key releases.
     pub(super) releases: bool,
-    /// 0–8: the lower C is that of this octave.
+    /// Octave of the lower C, 0–8.
     pub(super) octave: i32,
     /// 1–127.
     pub(super) velocity: i32,
@@ -58,12 +57,12 @@ impl Keyboard {
         (LOWEST_C + 12 * self.octave) as u8
     }
 
-    /// Plays the note of a character; false if it has none.
+    /// Plays the note of a character. Returns false if it has none.
     pub(super) fn press(&mut self, character: char, channel: u8, now: Instant) -> bool {
         let Some(semitone) = semitone(character) else { return false };
         let until = (!self.releases).then_some(now + HOLD);
         if let Some(down) = self.down.iter_mut().find(|down| down.character == character) {
-            // A key that repeats is held.
+            // The key repeats because it is held down.
             down.until = until;
             return true;
         }
@@ -76,22 +75,22 @@ impl Keyboard {
         true
     }
 
-    /// A key of the computer comes up.
+    /// Handles the release of a computer key.
     pub(super) fn release(&mut self, character: char) {
         self.let_go(|down| down.character == character);
     }
 
-    /// Lets go of the notes whose time is over.
+    /// Releases the notes whose time is over.
     pub(super) fn tick(&mut self, now: Instant) {
         self.let_go(|down| down.until.is_some_and(|until| until <= now));
     }
 
-    /// Sends something else than a note.
+    /// Sends an event that is not a note.
     pub(super) fn send(&mut self, channel: u8, kind: EventKind) {
         self.sender.send_now(channel, kind);
     }
 
-    /// Lets go of everything, on all channels.
+    /// Releases and silences everything, on all channels.
     pub(super) fn panic(&mut self) {
         self.down.clear();
         self.sender.release_all();

@@ -1,4 +1,4 @@
-//! The preset browser and the parameters.
+//! Draws the list of presets and the list of parameters.
 
 use super::app::{App, List, Typing};
 use ratatui::Frame;
@@ -7,7 +7,7 @@ use ratatui::style::{Modifier, Style, Stylize};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, List as Rows, ListState};
 
-/// Draws the list that is chosen, its search in the title.
+/// Draws the list that is shown, with its search text in the title.
 pub(super) fn draw(app: &App, frame: &mut Frame, area: Rect) {
     let title = match (app.list, &app.typing, app.search()) {
         (_, Typing::Search, search) => format!(" /{search}▏"),

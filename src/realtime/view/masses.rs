@@ -1,4 +1,4 @@
-//! The masses on their springs.
+//! Draws the masses on their springs.
 
 use crate::engine::Snapshot;
 use crate::units::db_from_gain;
@@ -6,10 +6,10 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Style};
 
-/// Energy at which a mass is no longer lit, in dB.
+/// Energy in dB at which a mass is drawn darkest.
 const DARKEST: f64 = -60.0;
 
-/// Draws a mass for each of the first modes: high or low as it is displaced, bright as it has energy.
+/// Draws a mass for each of the first modes: its height shows the displacement, its brightness the energy.
 pub(super) fn draw(snapshot: &Snapshot, modes: usize, frame: &mut Frame, area: Rect) {
     if area.is_empty() || modes == 0 {
         return;
@@ -20,7 +20,7 @@ pub(super) fn draw(snapshot: &Snapshot, modes: usize, frame: &mut Frame, area: R
     for (m, mass) in snapshot.masses.iter().enumerate().take(shown) {
         let x = area.x + ((2 * m + 1) * usize::from(area.width) / (2 * shown)) as u16;
         let level = (db_from_gain(f64::from(mass.energy).sqrt()) / -DARKEST + 1.0).clamp(0.0, 1.0);
-        // The cube root leaves small movements to be seen.
+        // The cube root makes small displacements visible.
         let height = libm::cbrtf(mass.displacement.clamp(-1.0, 1.0));
         let row = (rest - height * rest).round() as u16;
         let light = (70.0 + 185.0 * level) as u8;

@@ -1,4 +1,4 @@
-//! A terminal to play from: what sounds, what can be chosen, and the computer's keyboard as a piano.
+//! A terminal interface to play from: it shows what sounds, lists presets and parameters, and turns keys into notes.
 
 mod app;
 mod desk;
@@ -18,11 +18,11 @@ use std::time::{Duration, Instant};
 
 pub use desk::Desk;
 
-/// Time between two pictures, and the longest that a key waits to be looked at by anything but its note.
+/// Time between two frames of the screen. A computer key may wait this long for effects other than its note.
 const FRAME: Duration = Duration::from_millis(33);
 
-/// Shows the view until the user leaves it or `stop` says so. `poll` is called all the while and gives what there is
-/// to tell.
+/// Shows the view until the user leaves it or `stop` returns true. `poll` is called regularly and returns messages to
+/// show.
 ///
 /// # Errors
 /// [`Error::Io`] if the terminal cannot be used.

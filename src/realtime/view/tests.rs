@@ -1,4 +1,4 @@
-//! The view on a screen that is only memory.
+//! Tests of the view on a screen in memory.
 
 use super::app::{App, List, Typing};
 use super::{Desk, draw};
@@ -12,7 +12,7 @@ use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The view of a player that runs when it is told to.
+/// A view with a player that runs only when [`Stand::play`] is called.
 struct Stand {
     app: App,
     player: Player,
@@ -53,7 +53,7 @@ impl Stand {
         text.chars().for_each(|character| self.press(KeyCode::Char(character)));
     }
 
-    /// Plays a tenth of a second, so that all that was sent is heard.
+    /// Plays a tenth of a second, so that every event that was sent is played.
     fn play(&mut self) {
         self.app.tick(Instant::now());
         for _ in 0..10 {
@@ -153,7 +153,7 @@ fn a_parameter_is_turned_typed_and_reset() {
     stand.press(KeyCode::Enter);
     assert_eq!((value(&stand), &stand.app.typing), (0.02, &Typing::Nothing));
     assert!(stand.screen(80, 24).contains("release: 99 is out of range"));
-    // A note that is let go with it is silent at once.
+    // A note that is released together with it is silent at once.
     stand.type_text("z");
     stand.play();
     stand.app.tick(Instant::now() + Duration::from_secs(1));

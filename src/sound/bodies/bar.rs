@@ -1,4 +1,4 @@
-//! Bars: free at both ends as mallet instruments have them, plain or tuned by undercutting, and clamped at one end.
+//! Bars: with free ends, as in mallet instruments, plain or tuned by undercutting; and clamped at one end.
 
 use super::material::Material;
 use super::partial::{Pair, Partial};
@@ -15,14 +15,15 @@ pub(super) enum Ends {
     Clamped,
 }
 
-/// The `k`-th wave number times length of a uniform bar, `k` from 1: the roots of `cos β cosh β = ±1`, plus for a free bar and
-/// minus for a clamped one (Euler 1744; Fletcher and Rossing, "The Physics of Musical Instruments", chapter 2).
+/// Wave number times length, `β`, of the `k`-th mode of a uniform bar, `k` from 1: the roots of `cos β cosh β = ±1`,
+/// with plus for a free bar and minus for a clamped one (Euler 1744; Fletcher and Rossing, "The Physics of Musical
+/// Instruments", chapter 2).
 pub(super) fn wave_number(ends: Ends, k: usize) -> f64 {
     let (sign, start) = match ends {
         Ends::Free => (1.0, (k as f64 + 0.5) * PI),
         Ends::Clamped => (-1.0, (k as f64 - 0.5) * PI),
     };
-    // Newton on cos β − ± 1/cosh β: from these starts, which the roots approach, it needs five steps at most.
+    // Newton's method on cos β ∓ 1/cosh β. From these starting values, close to the roots, it needs at most five steps.
     let mut beta = start;
     for _ in 0..8 {
         let decay = exp(-beta);
@@ -33,12 +34,12 @@ pub(super) fn wave_number(ends: Ends, k: usize) -> f64 {
     beta
 }
 
-/// The shape of that mode at `x`, with mean square 1: `cosh βx ± cos βx − σ (sinh βx ± sin βx)`, with the large terms of
-/// the hyperbolic functions taken out, which would cancel.
+/// The shape of this mode at `x`, with mean square 1: `cosh βx ± cos βx − σ (sinh βx ± sin βx)`. The large parts of the
+/// hyperbolic functions, which would cancel, are removed first.
 pub(super) fn shape(ends: Ends, beta: f64, x: f64) -> f64 {
     let (sign, e) = (if ends == Ends::Free { 1.0 } else { -1.0 }, exp(-beta));
     let (sin_b, cos_b) = (sin(beta), cos(beta));
-    // σ − 1 and σ are of size 1; σ − 1 multiplies e^(βx), which is at most e^β, so it is kept times e^β.
+    // σ is about 1, and e^(βx), which is up to e^β, is multiplied by σ − 1. So σ − 1 is stored times e^β.
     let (numerator, denominator) = match ends {
         Ends::Free => (cos_b - sin_b - e, 1.0 - e * e - 2.0 * e * sin_b),
         Ends::Clamped => (cos_b + sin_b + e, 1.0 + e * e + 2.0 * e * cos_b),
@@ -50,7 +51,7 @@ pub(super) fn shape(ends: Ends, beta: f64, x: f64) -> f64 {
         + sign * (cos(beta * x) - sigma * sin(beta * x))
 }
 
-/// A uniform bar: frequencies as `β²`.
+/// The modes of a uniform bar: frequencies in proportion to `β²`.
 pub(super) fn partials(ends: Ends, count: usize) -> Vec<Partial> {
     let first = wave_number(ends, 1);
     (1..=count).map(|k| wave_number(ends, k)).map(|beta| partial(ends, beta, beta * beta / (first * first))).collect()
@@ -60,10 +61,11 @@ fn partial(ends: Ends, beta: f64, ratio: f64) -> Partial {
     Partial::new(ratio, Pair::Directions, move |at| shape(ends, beta, at.x))
 }
 
-/// A free bar undercut so that its first modes have the ratios `tuned`; those above go on from the last as a uniform bar's.
+/// A free bar, undercut so that its first modes have the ratios `tuned`. Above them, ratios grow as in a uniform bar.
 ///
-/// Marimba 1 : 4 : 10, vibraphone 1 : 4 : 10 and xylophone 1 : 3 : 6 are what makers tune to (Fletcher and Rossing, chapter
-/// 19; Bork 1995). The rest of the law meets the 16.3 : 24.2 : 33.5 measured on a marimba (in the same chapter) within 3 %. Shapes are the uniform bar's: undercutting moves their nodes a little.
+/// Makers tune a marimba to 1 : 4 : 10, a vibraphone to 1 : 4 : 10 and a xylophone to 1 : 3 : 6 (Fletcher and Rossing,
+/// chapter 19; Bork 1995). The ratios above are within 3 % of those measured on a marimba, 16.3 : 24.2 : 33.5 (same
+/// chapter). The shapes are those of a uniform bar: undercutting moves the nodes only slightly.
 pub(super) fn tuned(tuned: &[f64], count: usize) -> Vec<Partial> {
     let (last, last_beta) = (tuned[tuned.len() - 1], wave_number(Ends::Free, tuned.len()));
     let ratio = |k: usize, beta: f64| tuned.get(k - 1).copied().unwrap_or(last * beta * beta / (last_beta * last_beta));
@@ -73,12 +75,12 @@ pub(super) fn tuned(tuned: &[f64], count: usize) -> Vec<Partial> {
         .collect()
 }
 
-/// Of a flat bar: `f₁ = β₁² / (2π L²) · √(E/ρ) · h/√12` (Fletcher and Rossing, chapter 2).
+/// Frequency in Hz of a flat bar: `f₁ = β₁² / (2π L²) · √(E/ρ) · h/√12` (Fletcher and Rossing, chapter 2).
 pub(super) fn frequency(ends: Ends, size: &Size, material: &Material) -> f64 {
     bending(wave_number(ends, 1), size, material, size.thickness / 12.0_f64.sqrt())
 }
 
-/// Of a mode with this `β` on a bar with this radius of gyration.
+/// Frequency in Hz of the mode `β` of a bar with the radius of gyration `gyration` in metres.
 pub(super) fn bending(beta: f64, size: &Size, material: &Material, gyration: f64) -> f64 {
     beta * beta / (2.0 * PI * size.length * size.length) * material.bar_speed() * gyration
 }

@@ -1,11 +1,11 @@
-//! Beds: modes so dense that only their statistics are heard: a drum's shell, a box, a snare's wires, a cymbal's wash, breath.
+//! Beds: dense modes, known only by their statistics, for a drum's shell, a box, snare wires, a cymbal's wash, breath.
 
 use super::partial::{Pair, Partial};
 use crate::dsp::random::{key, uniform};
 use libm::{cos, exp, log, pow, sin};
 use std::f64::consts::{PI, SQRT_2};
 
-/// Which bed it is: its name, its starting values and its material.
+/// The kind of bed, which sets its name, starting values and material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BedKind {
     /// A drum's shell: a wooden cylinder.
@@ -14,28 +14,30 @@ pub enum BedKind {
     Box,
     /// The wires below a snare drum.
     Wires,
-    /// A cymbal's or gong's wash.
+    /// The wash of a cymbal or gong.
     Wash,
-    /// Air that rushes: breath, wind, a room's tail.
+    /// The noise of moving air: breath, wind, the tail of a room.
     Air,
 }
 
-/// A law for the density of modes over frequency. Their T60 follows the material's loss, their level the body's tilt.
+/// A law for the density of modes over frequency. T60s follow from the material's loss, and levels from the body's
+/// tilt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bed {
-    /// Its name.
+    /// The kind of bed.
     pub kind: BedKind,
     /// The lowest and the highest mode, as multiples of the body's frequency.
     pub low: f64,
     /// See `low`.
     pub high: f64,
-    /// Modes per hertz grow as frequency to this power: −1 as many in each octave, −½ a bar, 0 a plate or a string, 1 a membrane
-    /// or a shallow space, 2 a room (Weyl 1912; Kuttruff, "Room Acoustics", chapter 3).
+    /// The number of modes per hertz is proportional to frequency to this power: −1 is the same number in each octave,
+    /// −½ a bar, 0 a plate or a string, 1 a membrane or a shallow space, 2 a room (Weyl 1912; Kuttruff, "Room
+    /// Acoustics", chapter 3).
     pub density: f64,
 }
 
 impl Bed {
-    /// The bed with its starting values, which are ours.
+    /// The bed with its starting values, which are our own choice.
     pub const fn new(kind: BedKind) -> Self {
         let (low, high, density) = match kind {
             BedKind::Shell => (1.0, 14.0, -0.5),
@@ -48,9 +50,9 @@ impl Bed {
     }
 }
 
-/// `count` modes, one at random within each of `count` shares of the law's integral: the modes of real plates and rooms
-/// keep such distances, since they repel each other. A shape is a plane wave of random direction and phase, as many as
-/// which make a mode of an irregular body (Berry 1977), with `k ∝ √f` as waves of bending have it.
+/// Divides the integral of the density law into `count` equal parts and places one mode at random in each: the modes of
+/// real plates and rooms also keep such distances. A shape is a plane wave of random direction and phase, with `k ∝ √f`
+/// as in bending waves; many such waves make up a mode of an irregular body (Berry 1977).
 pub(super) fn partials(bed: &Bed, seed: u64, count: usize) -> Vec<Partial> {
     let (low, high) = (bed.low.min(bed.high), bed.high.max(bed.low));
     let partial = |n: usize| {
@@ -66,9 +68,9 @@ pub(super) fn partials(bed: &Bed, seed: u64, count: usize) -> Vec<Partial> {
     (0..count).map(partial).collect()
 }
 
-/// Where the integral of `f^(power − 1)` from `low` has this share of that up to `high`.
+/// The `f` at which the integral of `f^(power − 1)` from `low` has reached this share of the integral up to `high`.
 fn quantile(low: f64, high: f64, power: f64, share: f64) -> f64 {
-    // Both forms are the same at power 0, which the first cannot compute near there.
+    // Both formulas are equal at power 0, near which the second one loses its digits.
     let octaves = log(high / low);
     if (power * octaves).abs() < 1e-6 {
         return low * exp(octaves * share);

@@ -8,7 +8,7 @@ use super::size::Size;
 use libm::pow;
 use std::f64::consts::SQRT_2;
 
-/// Ratios to the prime and numbers of nodal diameters of a church bell's partials, hum to (9,1): measured
+/// Partials of a church bell, from the hum to (9,1), as measured: ratios to the prime, and numbers of nodal diameters
 /// (Rossing and Perrin 1987; Fletcher and Rossing, "The Physics of Musical Instruments", table 21.1).
 const CHURCH: [(f64, u32); 12] = [
     (0.5, 2),
@@ -25,10 +25,11 @@ const CHURCH: [(f64, u32); 12] = [
     (8.215, 9),
 ];
 
-/// A church bell: what is measured, and above it two series by Chladni's law `f = c (m + b)^p` (Perrin, Charnley, Banu and
-/// Rossing 1985, who show that bells follow it): that of the nominal's group, `0.3831 (m − 0.920)^1.468` from `m = 10` on,
-/// fitted to the measured ones, and a second through 2.514 with the same law, `(m − 0.398)`.
-/// All shapes are `cos m θ` round the bell, with the same height at the sound bow, where clappers strike.
+/// A church bell: the measured partials and, above them, two series by Chladni's law `f = c (m + b)^p`, which bells
+/// follow (Perrin, Charnley, Banu and Rossing 1985). The first is that of the nominal's group, `0.3831 (m −
+/// 0.920)^1.468` from `m = 10` on, fitted to the measured partials. The second goes through 2.514 with the same law and
+/// `(m − 0.398)`. All shapes are `cos m θ` round the bell, with the same height at the sound bow, where clappers
+/// strike.
 pub(super) fn church(count: usize) -> Vec<Partial> {
     const POWER: f64 = 1.468;
     let ring = |ratio: f64, m: u32| Partial::new(ratio, Pair::Diameters(m), |_| SQRT_2);
@@ -42,16 +43,16 @@ pub(super) fn church(count: usize) -> Vec<Partial> {
     all
 }
 
-/// A hand bell: the ring's law from its second mode on, which founders tune to the twelfth, 1 : 3 (Rossing and Sathoff
-/// 1980; Fletcher and Rossing, chapter 21).
+/// A hand bell: the ratios of a ring, except that founders tune the second mode to the twelfth, 1 : 3. Higher modes
+/// keep their ratios to the second (Rossing and Sathoff 1980; Fletcher and Rossing, chapter 21).
 pub(super) fn hand(count: usize) -> Vec<Partial> {
     let above = 3.0 / bowl::ring_ratio(3);
     let ratio = |m: u32| if m == 2 { 1.0 } else { above * bowl::ring_ratio(m) };
     (2..2 + count as u32).map(|m| Partial::new(ratio(m), Pair::Diameters(m), |_| SQRT_2)).collect()
 }
 
-/// A tubular bell: a free bar whose fourth, fifth and sixth modes, near 2 : 3 : 4, are heard as a tone an octave below the
-/// fourth (Rossing 1976; Fletcher and Rossing, chapter 19), which is the pitch here.
+/// A tubular bell: a free bar. Its fourth, fifth and sixth modes are near 2 : 3 : 4 and are heard as a tone an octave
+/// below the fourth (Rossing 1976; Fletcher and Rossing, chapter 19). That tone is the pitch here.
 pub(super) fn tubular(count: usize) -> Vec<Partial> {
     let fourth = bar::wave_number(Ends::Free, 4);
     (1..=count)
@@ -63,7 +64,7 @@ pub(super) fn tubular(count: usize) -> Vec<Partial> {
         .collect()
 }
 
-/// Of a tubular bell with a thin wall and `thickness` across: its radius of gyration is `d/√8`.
+/// Pitch in Hz of a tubular bell with a thin wall and the diameter `d = thickness`: its radius of gyration is `d/√8`.
 pub(super) fn frequency(size: &Size, material: &Material) -> f64 {
     0.5 * bar::bending(bar::wave_number(Ends::Free, 4), size, material, size.thickness / 8.0_f64.sqrt())
 }

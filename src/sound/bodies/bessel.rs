@@ -1,18 +1,19 @@
-//! Bessel functions beyond `libm`'s, and their zeros.
+//! Bessel functions that `libm` does not have, and zeros of Bessel functions.
 
 use super::roots;
 use libm::{exp, jn};
 
-/// The zeros of `J_m` up to `limit`.
+/// All zeros of `J_m` up to `limit`.
 ///
-/// Neighbouring zeros are more than 3 apart (those of `J_0` the least: 3.115), and the first lies above `m`.
+/// Neighbouring zeros are more than 3 apart (the smallest distance is 3.115, for `J_0`), and the first one is above
+/// `m`.
 pub(super) fn zeros_below(m: u32, limit: f64) -> Vec<f64> {
     roots::all(|x| jn(m as i32, x), f64::from(m).max(1.0), limit, 1.5)
 }
 
-/// `I_{n+1}(x) / I_n(x)` for `x > 0`: Gauss's continued fraction `1/(2(n+1)/x + 1/(2(n+2)/x + …))`, from its end.
+/// `I_{n+1}(x) / I_n(x)` for `x > 0`: Gauss's continued fraction `1/(2(n+1)/x + 1/(2(n+2)/x + …))`, computed backwards.
 pub(super) fn i_ratio(n: u32, x: f64) -> f64 {
-    // The terms beyond do not matter to the last bit: the ratio falls off from order x on.
+    // Later terms do not change even the last bit: above order x the ratio falls quickly.
     let last = n + 40 + 2 * (x as u32);
     (n + 1..=last).rev().fold(0.0, |ratio, order| 1.0 / (2.0 * f64::from(order) / x + ratio))
 }
@@ -25,7 +26,8 @@ pub(super) fn i_relative(n: u32, x: f64, r: f64) -> f64 {
     i_scaled(n, x * r) * exp(x * r - x) / i_scaled(n, x)
 }
 
-/// `e^−x I_n(x)`: Miller's backward recurrence, scaled by `I_0 + 2 (I_1 + I_2 + …) = e^x` (Abramowitz and Stegun 9.6.37).
+/// `e^−x I_n(x)`: Miller's backward recurrence, scaled by `I_0 + 2 (I_1 + I_2 + …) = e^x` (Abramowitz and Stegun
+/// 9.6.37).
 fn i_scaled(n: u32, x: f64) -> f64 {
     if x <= 0.0 {
         return if n == 0 { 1.0 } else { 0.0 };
@@ -48,7 +50,7 @@ fn i_scaled(n: u32, x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Abramowitz and Stegun, tables 9.5 and 9.8.
+    /// Compares with Abramowitz and Stegun, tables 9.5 and 9.8.
     #[test]
     fn tables_are_met() {
         for (m, n, zero) in [(0, 1, 2.4048255577), (1, 1, 3.8317059702), (2, 3, 11.6198411721), (8, 1, 12.2250922640)] {

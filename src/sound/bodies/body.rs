@@ -1,4 +1,4 @@
-//! A body: a model with all that makes it this one.
+//! A body: a model with its size or pitch, its material, and everything else that determines its modes.
 
 use super::mass;
 use super::material::{LN_1000, Loss, Material};
@@ -6,35 +6,35 @@ use super::model::Model;
 use super::partial::Point;
 use super::size::Size;
 
-/// Frequency of a body that nobody has tuned: C4.
+/// Default frequency of a body in Hz: C4.
 pub const DEFAULT_FREQUENCY: f64 = 261.625_565_300_598_6;
 
 /// Lowest and highest frequency of a body, in Hz.
 pub(super) const FREQUENCY_RANGE: (f64, f64) = (1.0, 20_000.0);
 
-/// Shortest and longest T60 that a mode is given, in seconds.
+/// Shortest and longest T60 of a mode, in seconds. Others are clamped.
 pub const T60_RANGE: (f64, f64) = (0.001, 60.0);
 
-/// Lowest and highest ratio of a mode: those of a patch's. What lies outside is left out.
+/// Lowest and highest ratio of a mode, the same as in a patch. Modes outside this range are left out.
 pub const RATIO_RANGE: (f64, f64) = (0.01, 1000.0);
 
-/// What a body's frequency comes from.
+/// What determines the frequency of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pitch {
-    /// It is said, in Hz. For a body that follows the keys, at this frequency its decays are computed.
+    /// A given frequency in Hz. For a body that follows the keys, its decays are computed at this frequency.
     Frequency(f64),
-    /// It follows from size and material. Models without a size sound at [`DEFAULT_FREQUENCY`].
+    /// The frequency follows from size and material. Models without a size have [`DEFAULT_FREQUENCY`].
     Size(Size),
 }
 
-/// A body. What is out of [`super::FIELDS`]' range counts as the nearest value in it.
+/// A body. Numbers outside the ranges in [`super::FIELDS`] are clamped when they are used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// What kind of body it is.
+    /// The kind of body.
     pub model: Model,
-    /// Its frequency, or size.
+    /// Its frequency or size.
     pub pitch: Pitch,
-    /// What it is made of.
+    /// The material it is made of.
     pub material: Material,
     /// All losses are multiplied by this.
     pub damping: f64,
@@ -44,38 +44,39 @@ pub struct Body {
     pub pickup: Point,
     /// Where it is joined to another body.
     pub joint: Point,
-    /// Stiffness B: a ratio `r` becomes `r √((1 + B r²) / (1 + B))`, which leaves the pitch alone. For whole multiples this is
-    /// the stiff string's `n √(1 + B n²)` (Fletcher 1964).
+    /// Stiffness B: a ratio `r` becomes `r √((1 + B r²) / (1 + B))`, which does not change the pitch. For integer
+    /// ratios this is the stiff string's `n √(1 + B n²)` (Fletcher 1964).
     pub inharmonicity: f64,
-    /// Distance in cents of the two modes of a pair, which beat: a round body's that are turned against each other, or two
-    /// directions of movement of a string or bar. At 0 pairs are one mode. Plates, tubes and beds have no pairs.
+    /// Distance in cents of the two modes of a pair, which then beat. In a round body these are the same mode turned by
+    /// half a lobe; in a string or bar, two directions of movement. At 0, a pair is one mode. Plates, tubes and beds
+    /// have no pairs.
     pub split: f64,
-    /// How far from its law each mode may be, in cents, at random. The mode that is the pitch stays where it is.
+    /// Largest random deviation of each mode from its law, in cents. The mode that sets the pitch does not move.
     pub spread: f64,
-    /// Tilt of the levels, in dB an octave above the body's frequency.
+    /// Tilt of the levels, in dB per octave above the body's frequency.
     pub tilt: f64,
-    /// How far from the middle each mode may be panned, at random; 1 is hard left and right. The lowest stays in the middle.
+    /// Largest random pan of each mode; 1 is hard left or right. The lowest mode stays in the middle.
     pub pan: f64,
-    /// Share of the excitation that is the strike or pluck; the rest is the noise burst.
+    /// Share of the excitation that is the strike or pluck; the rest is a noise burst.
     pub strike_share: f64,
-    /// Whether keys tune it. If not, it sounds at its own frequency whatever is played.
+    /// Whether keys set the pitch. If not, the body sounds at its own frequency for every key.
     pub follows_key: bool,
-    /// Most modes, 1 to [`super::MAX_MODES`]; the two of a pair count as two.
+    /// Maximum number of modes, 1 to [`super::MAX_MODES`]; a split pair counts as two.
     pub modes: usize,
-    /// Seed of all that is at random.
+    /// Seed of all random numbers.
     pub seed: u64,
 }
 
 impl Body {
-    /// A body of this model with its own material, at C4, struck and heard where most modes sound. Allocates nothing.
+    /// A body of this model with its usual material, at C4, struck and heard where most modes sound. Allocates nothing.
     pub fn new(model: Model) -> Self {
         let material = *model.material();
         let [strike, pickup, joint] = match model {
-            // Along both sides, and not at an edge, which may be a node.
+            // Inside along both sides: an edge may be a node.
             Model::Plate { .. } => [(0.7, 0.4), (0.9, 0.45), (0.95, 0.4)],
-            // At the rim, where high modes are.
+            // At the rim, where high modes move most.
             Model::Bowl | Model::Glass { .. } => [(0.98, 0.0), (0.98, 0.05), (0.98, 0.0)],
-            // Not at the end of a string, which is still.
+            // Not at the very end, where a string does not move.
             _ => [(0.7, 0.0), (0.9, 0.05), (0.95, 0.0)],
         };
         let point = |(x, y)| Point { x, y };
@@ -99,7 +100,7 @@ impl Body {
         }
     }
 
-    /// A mass in kg with a damper in N·s/m on a spring in N/m; none if it does not ring.
+    /// A mass in kg with a damper in N·s/m on a spring in N/m; `None` if it does not ring.
     pub fn from_spring(mass: f64, damping: f64, stiffness: f64) -> Option<Self> {
         let (frequency, t60) = mass::ringing(mass, damping, stiffness)?;
         let mut body = Self::new(Model::Mass);
@@ -108,7 +109,7 @@ impl Body {
         Some(body)
     }
 
-    /// Its size, if its frequency follows from that.
+    /// Its size, if its frequency follows from the size.
     pub fn size(&self) -> Option<Size> {
         match self.pitch {
             Pitch::Size(size) => Some(size),

@@ -1,4 +1,4 @@
-//! Round plates, thin ones (Kirchhoff): simply supported, or free at the rim as a gong or a cymbal is.
+//! Thin round plates (Kirchhoff): simply supported, or free at the rim like a gong or a cymbal.
 
 use super::bessel::{i_ratio, i_relative};
 use super::material::Material;
@@ -16,7 +16,7 @@ struct Mode {
     lambda: f64,
 }
 
-/// `J_n`, `J_n′` and `J_{n+1}` at λ, and `I_n′` and `I_{n+1}` where `I_n` is 1.
+/// `J_n`, `J_n′` and `J_{n+1}` at λ, and `I_n′` and `I_{n+1}` scaled so that `I_n` is 1.
 struct Values {
     j: f64,
     dj: f64,
@@ -32,21 +32,21 @@ impl Values {
         Self { j, dj: slope * j - j_next, j_next, di: slope + i_next, i_next }
     }
 
-    /// Bending moment at a free rim: that of the `J` part and of the `I` part.
+    /// Bending moment at a free rim: the moment of the `J` part and that of the `I` part.
     fn moments(&self, n: u32, lambda: f64, poisson: f64) -> (f64, f64) {
         let (n2, l2, side) = (f64::from(n * n), lambda * lambda, 1.0 - poisson);
         (l2 * self.j + side * (lambda * self.dj - n2 * self.j), l2 - side * (lambda * self.di - n2))
     }
 
-    /// Shear at a free rim, likewise.
+    /// Shear at a free rim, in the same form.
     fn shears(&self, n: u32, lambda: f64, poisson: f64) -> (f64, f64) {
         let (n2, l3, side) = (f64::from(n * n), lambda * lambda * lambda, 1.0 - poisson);
         (l3 * self.dj + side * n2 * (lambda * self.dj - self.j), l3 * self.di - side * n2 * (lambda * self.di - 1.0))
     }
 }
 
-/// Zero at the frequencies. Supported: `J_{n+1}/J_n + I_{n+1}/I_n = 2λ/(1−ν)` (Leissa, "Vibration of Plates" (1969),
-/// chapter 2). Free: moments and shears vanish together (the same chapter; Itao and Crandall 1979).
+/// A function that is zero at the frequencies. Supported: `J_{n+1}/J_n + I_{n+1}/I_n = 2λ/(1−ν)` (Leissa, "Vibration of
+/// Plates" (1969), chapter 2). Free: moment and shear are both zero (same chapter; Itao and Crandall 1979).
 fn characteristic(edge: Edge, n: u32, lambda: f64, poisson: f64) -> f64 {
     let values = Values::new(n, lambda);
     match edge {
@@ -54,7 +54,7 @@ fn characteristic(edge: Edge, n: u32, lambda: f64, poisson: f64) -> f64 {
         Edge::Free => {
             let (moment_j, moment_i) = values.moments(n, lambda, poisson);
             let (shear_j, shear_i) = values.shears(n, lambda, poisson);
-            // The I parts grow as λ² and λ³: divided by them, all is of the size of J_n.
+            // The I parts grow as λ² and λ³. After this division everything is of the size of J_n.
             (moment_j * shear_i - shear_j * moment_i) / (lambda * lambda * lambda * lambda)
         }
     }
@@ -63,7 +63,7 @@ fn characteristic(edge: Edge, n: u32, lambda: f64, poisson: f64) -> f64 {
 fn modes(edge: Edge, poisson: f64, count: usize) -> Vec<Mode> {
     let below = |limit: f64| {
         let of = |n: u32| {
-            // The movements of a free plate that do not bend it have λ = 0; above, λ exceeds 0.9 n.
+            // A free plate can also move without bending, with λ = 0. All other modes have λ > 0.9 n.
             let start = (0.9 * f64::from(n)).max(1.0);
             let lambdas = roots::all(|lambda| characteristic(edge, n, lambda, poisson), start, limit, 0.75);
             lambdas.into_iter().map(move |lambda| Mode { n, lambda })
@@ -100,7 +100,7 @@ fn partial(edge: Edge, poisson: f64, Mode { n, lambda }: Mode, first: f64) -> Pa
     Partial::new(lambda * lambda / first, pair, move |at| shape(at.x))
 }
 
-/// `f = λ² κ / (2π a²)`.
+/// Lowest frequency in Hz: `f = λ² κ / (2π a²)`.
 pub(super) fn frequency(edge: Edge, size: &Size, material: &Material) -> f64 {
     let lambda = modes(edge, material.poisson, 1)[0].lambda;
     let radius = 0.5 * size.length;

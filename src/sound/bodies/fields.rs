@@ -1,4 +1,4 @@
-//! The numbers of a body in one table: what files and knobs are made from, and what keeps a body within its ranges.
+//! One table of all numbers of a body: files and knobs are built from it, and it keeps bodies within their ranges.
 
 use super::bed::Bed;
 use super::body::{Body, FREQUENCY_RANGE, Pitch};
@@ -6,28 +6,28 @@ use super::model::Model;
 use super::size::Size;
 use super::timpani::Drum;
 
-/// Most modes that a body has.
+/// Maximum number of modes of a body.
 pub const MAX_MODES: usize = 512;
 
 /// One number of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
-    /// What files call it.
+    /// Its name in files.
     pub name: &'static str,
-    /// Its unit, or nothing.
+    /// Its unit, or an empty string.
     pub unit: &'static str,
-    /// Least and greatest value.
+    /// Smallest and largest value.
     pub min: f64,
     /// See `min`.
     pub max: f64,
-    /// Its value; none if a body has no such number, or has none now: a frequency where there is a size.
+    /// Its value; `None` if the body has no such number at present, for example a frequency if it has a size.
     pub get: fn(&Body) -> Option<f64>,
-    /// Sets it. Does nothing if the body's model has no such number; whole numbers are cut.
+    /// Sets the value. Does nothing if the body's model has no such number. Integers drop the fraction.
     pub set: fn(&mut Body, f64),
 }
 
 impl Field {
-    /// The nearest value in range; the least for what is no number.
+    /// The nearest value in range; `min` for NaN.
     pub fn clamp(&self, value: f64) -> f64 {
         if value >= self.min { value.min(self.max) } else { self.min }
     }
@@ -37,18 +37,18 @@ macro_rules! field {
     ($name:literal, $unit:literal, $min:expr, $max:expr, $get:expr, $set:expr) => {
         Field { name: $name, unit: $unit, min: $min, max: $max, get: $get, set: $set }
     };
-    // A plain number of the body.
+    // A number that every body has.
     ($name:literal, $unit:literal, $min:expr, $max:expr, $($place:ident).+) => {
         field!($name, $unit, $min, $max, |body| Some(body.$($place).+), |body, value| body.$($place).+ = value)
     };
-    // One of a size.
+    // A number of the body's size.
     ($name:literal, $unit:literal, $min:expr, $max:expr, size $place:ident) => {
         field!($name, $unit, $min, $max, |body| body.size().map(|size| size.$place), |body, value| {
             let size = body.size().unwrap_or(Size::DEFAULT);
             body.pitch = Pitch::Size(Size { $place: value, ..size });
         })
     };
-    // One that only some models have.
+    // A number that only some models have.
     ($name:literal, $unit:literal, $min:expr, $max:expr, model $model:pat => $place:expr) => {
         field!(
             $name,
@@ -68,7 +68,7 @@ macro_rules! field {
     };
 }
 
-/// All numbers of a body. [`Body::model`], [`Body::follows_key`] and the name of the material are no numbers.
+/// All numbers of a body. Not among them: [`Body::model`], [`Body::follows_key`] and the name of the material.
 pub const FIELDS: &[Field] = &[
     field!(
         "frequency",
@@ -104,7 +104,7 @@ pub const FIELDS: &[Field] = &[
     field!("pan", "", 0.0, 1.0, pan),
     field!("strike_share", "", 0.0, 1.0, strike_share),
     field!("count", "", 1.0, 512.0, |body| Some(body.modes as f64), |body, value| body.modes = value as usize),
-    // Whole numbers up to 2⁵³ have the same value as text, float and integer.
+    // Integers up to 2⁵³ have the same value as text, float and integer.
     field!("seed", "", 0.0, 9_007_199_254_740_992.0, |body| Some(body.seed as f64), |body, value| body.seed =
         value as u64),
     field!("aspect", "", 0.1, 10.0, model Model::Plate { aspect, .. } => aspect),
@@ -118,7 +118,7 @@ pub const FIELDS: &[Field] = &[
     field!("mode_density", "", -1.0, 3.0, model Model::Bed(Bed { density, .. }) => density),
 ];
 
-/// The body with every number in its range.
+/// The body with every number clamped to its range.
 pub(super) fn in_range(body: &Body) -> Body {
     let mut body = body.clone();
     for field in FIELDS {

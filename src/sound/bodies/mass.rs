@@ -8,10 +8,11 @@ pub(super) fn partials() -> Vec<Partial> {
     vec![Partial::new(1.0, Pair::Directions, |_| 1.0)]
 }
 
-/// Frequency in Hz and T60 in seconds of a mass in kg with a damper in N·s/m on a spring in N/m; none if it does not ring.
+/// Frequency in Hz and T60 in seconds of a mass in kg with a damper in N·s/m on a spring in N/m; `None` if it does not
+/// ring.
 ///
-/// `x″ + 2λ x′ + ω₀² x = 0` with `λ = c/2m` and `ω₀² = k/m` rings at `√(ω₀² − λ²)` while it falls as `e^(−λ t)`; at and
-/// beyond critical damping it does not ring, and a mode cannot stand for it.
+/// `x″ + 2λ x′ + ω₀² x = 0` with `λ = c/2m` and `ω₀² = k/m` rings at `√(ω₀² − λ²)` and decays as `e^(−λ t)`. At
+/// critical damping and above it does not ring, so a mode cannot represent it.
 pub fn ringing(mass: f64, damping: f64, stiffness: f64) -> Option<(f64, f64)> {
     let lambda = damping / (2.0 * mass);
     let omega2 = stiffness / mass - lambda * lambda;

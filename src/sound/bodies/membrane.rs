@@ -18,14 +18,14 @@ pub(super) struct Mode {
 }
 
 impl Mode {
-    /// The lowest `count` modes, pairs counted once.
+    /// The lowest `count` modes; a pair counts as one.
     pub(super) fn lowest(count: usize) -> Vec<Mode> {
         let below = |limit: f64| {
-            // j_m1 is above m, so there are none with more diameters.
+            // j_m1 is above m, so modes with more diameters are above the limit.
             let of = |m: u32| zeros_below(m, limit).into_iter().map(move |k| Mode { m, k });
             (0..=limit as u32).flat_map(of).collect()
         };
-        // By Weyl's law there are about k²/8 below k.
+        // By Weyl's law there are about k²/8 modes below k.
         lowest_below(count, 4.0 + (8.0 * count as f64).sqrt(), |mode: &Mode| mode.k, below)
     }
 
@@ -33,7 +33,8 @@ impl Mode {
         if self.m == 0 { Pair::Single } else { Pair::Diameters(self.m) }
     }
 
-    /// `√2 J_m(k r) / |J_{m+1}(k)|`, for `m = 0` without the root: mean square 1 over the disk with the factor `cos m θ`.
+    /// `√2 J_m(k r) / |J_{m+1}(k)|`, for `m = 0` without the root: together with the factor `cos m θ`, its mean square
+    /// over the disk is 1.
     pub(super) fn shape(self) -> impl Fn(Point) -> f64 + 'static {
         let m = self.m as i32;
         let scale = if m == 0 { 1.0 } else { SQRT_2 } / jn(m + 1, self.k).abs();
@@ -41,12 +42,13 @@ impl Mode {
     }
 }
 
-/// Frequencies as the zeros of the Bessel functions, from `J_01` (Rayleigh, "The Theory of Sound", §200 to §206).
+/// Frequencies in proportion to the zeros of the Bessel functions; `J_01` has ratio 1 (Rayleigh, "The Theory of Sound",
+/// §200 to §206).
 pub(super) fn partials(count: usize) -> Vec<Partial> {
     Mode::lowest(count).into_iter().map(|mode| Partial::new(mode.k / J_01, mode.pair(), mode.shape())).collect()
 }
 
-/// `f_01 = j_01 / (π d) · √(T / (ρ h))`.
+/// Lowest frequency in Hz: `f_01 = j_01 / (π d) · √(T / (ρ h))`.
 pub(super) fn frequency(size: &Size, material: &Material) -> f64 {
     J_01 / (PI * size.length) * (size.tension / (material.density * size.thickness)).sqrt()
 }

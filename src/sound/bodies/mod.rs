@@ -1,9 +1,9 @@
-//! Bodies as physics describes them: what strings, bars, heads, plates, bells, tubes, glasses and denser things ring with.
+//! Bodies as physics describes them: strings, bars, drum heads, plates, bells, tubes, glasses, and dense beds of modes.
 //!
-//! A [`Body`] is a [`Model`] with its size or pitch, its material, the places where it is struck and heard, and what makes it
-//! irregular; [`Body::modes`] says which modes that gives: frequencies, T60s, and mode shapes at those places, whose product
-//! is the level. All of it is made off the audio thread, from exactly rounded operations and `libm` in a frozen order: the
-//! same body has the same bits everywhere. Each model's file names where its law is from.
+//! A [`Body`] is a [`Model`] with its size or pitch, its material, the places where it is struck and heard, and its
+//! irregularities. [`Body::modes`] computes its modes: frequencies, T60s, and the mode shapes at those places, whose
+//! product is the level. This runs off the audio thread. It uses exactly rounded operations and `libm` in a frozen
+//! order, so the same body has the same bits everywhere. Each model's file names the source of its law.
 //!
 //! | file | holds |
 //! |---|---|

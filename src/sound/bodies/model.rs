@@ -1,4 +1,4 @@
-//! The models by name: what each gives, and what stands for it until it is set.
+//! The models by name: the modes and the frequency of each, and their starting values.
 
 use super::bar::{self, Ends};
 use super::bed::{self, Bed, BedKind};
@@ -13,61 +13,64 @@ use std::sync::Arc;
 /// One mode of [`Model::Custom`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CustomMode {
-    /// Frequency as a multiple of the body's.
+    /// Frequency as a multiple of the body's frequency.
     pub ratio: f64,
-    /// Level; negative turns the phase round.
+    /// Level; a negative level inverts the phase.
     pub level: f64,
-    /// T60 as a multiple of what the material gives at its frequency.
+    /// T60 as a multiple of the material's T60 at this frequency.
     pub decay: f64,
 }
 
-/// What kind of body it is. Its frequency is that of the mode with ratio 1: the lowest, unless said here.
+/// The kind of body. Its frequency is that of the mode with ratio 1. This is the lowest mode, unless stated otherwise
+/// below.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Model {
     /// A single mass. No size, no places.
     Mass,
-    /// A string. Places: `x` along it. Size: length, thickness (diameter), tension; its stiffness follows too.
+    /// A string. Places: `x` along it. Size: length, thickness (diameter), tension; the size also determines its
+    /// stiffness.
     String,
     /// A uniform bar with free ends: a glockenspiel's. Places: `x` along it. Size: length and thickness.
     FreeBar,
-    /// A bar tuned 1 : 4 : 10. Places as a free bar's; no size.
+    /// A bar tuned 1 : 4 : 10. Places: as for a free bar; no size.
     Marimba,
-    /// Likewise, of metal.
+    /// Like [`Model::Marimba`], but of metal.
     Vibraphone,
-    /// A bar tuned 1 : 3 : 6. Likewise.
+    /// A bar tuned 1 : 3 : 6. Places: as for a free bar; no size.
     Xylophone,
     /// A bar clamped at `x = 0`: a kalimba's, a music box's, an electric piano's. Size: length and thickness.
     Tine,
     /// A round membrane. Places: `x` from centre to rim, `y` round it. Size: length (diameter), thickness, tension.
     Membrane,
-    /// A kettledrum. Its frequency is that of mode (1,1); (0,1) lies below. Places as a membrane's. Size: tension only.
+    /// A kettledrum. Its frequency is that of mode (1,1); mode (0,1) is lower. Places: as for a membrane. Size: tension
+    /// only.
     Timpani(Drum),
     /// A rectangular plate. Places: `x` and `y` along its sides. Size: length along `x`, and thickness.
     Plate {
         /// How its edge is held.
         edge: Edge,
-        /// The side along `x` over that along `y`.
+        /// Length of the side along `x` over that along `y`.
         aspect: f64,
     },
-    /// A round plate. Places as a membrane's. Size: length (diameter) and thickness.
+    /// A round plate. Places: as for a membrane. Size: length (diameter) and thickness.
     Disc {
         /// How its rim is held.
         edge: Edge,
     },
     /// A church bell. Its frequency is that of the prime, an octave above the hum. Places: `y` round it; no size.
     ChurchBell,
-    /// A hand bell. Likewise, from its lowest mode.
+    /// A hand bell. Its frequency is that of its lowest mode. Places: `y` round it; no size.
     HandBell,
-    /// A tubular bell. Its frequency is what is heard, an octave below its fourth mode. Places: `x` along it. Size: length
-    /// and thickness (outer diameter).
+    /// A tubular bell. Its frequency is the pitch that is heard, an octave below its fourth mode. Places: `x` along it.
+    /// Size: length and thickness (outer diameter).
     TubularBell,
     /// Air in a tube with open ends. Places: `x` along it. Size: length and thickness (bore).
     OpenTube,
-    /// Air in a tube stopped at `x = 0`. Likewise.
+    /// Air in a tube closed at `x = 0`. Places and size: as for an open tube.
     StoppedTube,
-    /// Air in a cone, stopped at its narrow end `x = 0`. Size: length and thickness (diameter at the mouth).
+    /// Air in a cone, closed at its narrow end `x = 0`. Size: length and thickness (diameter at the mouth).
     Cone {
-        /// The length cut off at the apex over the length that is there.
+        /// The length that is cut off at the apex over the remaining length.
         truncation: f64,
     },
     /// A wine glass. Places: `x` from foot to rim, `y` round it. Size: length (diameter) and thickness (of the wall).
@@ -77,15 +80,15 @@ pub enum Model {
     },
     /// A singing bowl. Places: `x` from the bottom to the rim, `y` round it; no size.
     Bowl,
-    /// Dense modes known by their statistics. Places: `x` and `y` on something flat; no size.
+    /// Dense modes, known only by their statistics. Places: `x` and `y` on a flat surface; no size.
     Bed(Bed),
-    /// Modes as they are given. No size, no places.
+    /// A given list of modes. No size, no places.
     Custom(Arc<[CustomMode]>),
 }
 
 impl Model {
-    /// One of each model with its starting values, and what presets call it. [`Model::Custom`] is not among them: a preset's
-    /// `modes` are that.
+    /// One of each model with its starting values, and its name in presets. [`Model::Custom`] is not among them:
+    /// presets write it as a list of `modes`.
     pub const ALL: &[(&str, Model)] = &[
         ("mass", Model::Mass),
         ("string", Model::String),
@@ -115,12 +118,12 @@ impl Model {
         ("air", Model::Bed(Bed::new(BedKind::Air))),
     ];
 
-    /// The model of this name, with its starting values.
+    /// Finds the model with this name, with its starting values.
     pub fn find(id: &str) -> Option<&'static Model> {
         Self::ALL.iter().find(|(name, _)| *name == id).map(|(_, model)| model)
     }
 
-    /// What presets call it, whatever its values.
+    /// Its name in presets, whatever its values.
     pub fn id(&self) -> &'static str {
         Self::ALL.iter().find(|(_, model)| model.is_same_kind(self)).map_or("custom", |(id, _)| id)
     }
@@ -134,7 +137,7 @@ impl Model {
         }
     }
 
-    /// What it is made of until something else is said.
+    /// The material of a new body of this model.
     pub fn material(&self) -> &'static Material {
         let id = match self {
             Self::String => "wire",
@@ -158,7 +161,8 @@ impl Model {
         Material::find(id).expect("every model's material is in the table")
     }
 
-    /// The lowest `count` resonances of a body of this frequency, in ascending order; fewer where there are no more.
+    /// The lowest `count` resonances of a body with this frequency in Hz, in ascending order; fewer if there are no
+    /// more.
     pub(super) fn partials(&self, frequency: f64, material: &Material, seed: u64, count: usize) -> Vec<Partial> {
         match self {
             Self::Mass => mass::partials(),
@@ -184,7 +188,7 @@ impl Model {
         }
     }
 
-    /// The frequency in Hz that a size gives; none for models that have no size.
+    /// The frequency in Hz that follows from a size; `None` for models without a size.
     pub fn frequency(&self, size: &Size, material: &Material) -> Option<f64> {
         Some(match self {
             Self::String => string::frequency(size, material),
@@ -211,7 +215,8 @@ impl Model {
         })
     }
 
-    /// Inharmonicity that a size gives besides [`super::Body::inharmonicity`]: that of a string's stiffness.
+    /// Inharmonicity that follows from a size, in addition to [`super::Body::inharmonicity`]: that of a string's
+    /// stiffness.
     pub(super) fn inharmonicity(&self, size: &Size, material: &Material) -> f64 {
         if *self == Self::String { string::inharmonicity(size, material) } else { 0.0 }
     }

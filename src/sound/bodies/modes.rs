@@ -1,4 +1,4 @@
-//! The modes of a body: what a model gives, with all that makes it this body.
+//! Computes the modes of a body from the resonances of its model and from the body's own numbers.
 
 use super::body::{Body, RATIO_RANGE, T60_RANGE};
 use super::fields;
@@ -15,38 +15,38 @@ use std::f64::consts::PI;
 pub struct BodyMode {
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Frequency over the body's.
+    /// Frequency as a multiple of the body's frequency.
     pub ratio: f64,
     /// T60 in seconds.
     pub t60: f64,
-    /// The mode shape where the body is struck. Shapes belong to modes that have the mass of the whole body.
+    /// The mode shape where the body is struck. Shapes are scaled so that every mode has the mass of the whole body.
     pub strike: f64,
-    /// The mode shape where it is heard.
+    /// The mode shape where the body is heard.
     pub pickup: f64,
-    /// The mode shape where it is joined to another body.
+    /// The mode shape where the body is joined to another body.
     pub joint: f64,
-    /// `strike · pickup`, tilted; of a custom mode its own level, tilted.
+    /// `strike · pickup`, with the tilt applied; for a custom mode its own level, with the tilt applied.
     pub level: f64,
     /// −1 (left) to 1 (right).
     pub pan: f64,
 }
 
-/// The mode that the body's pitch is said of.
+/// Whether the mode with this ratio is the one that sets the body's pitch.
 fn is_pitch(ratio: f64) -> bool {
     (ratio - 1.0).abs() < 1e-9
 }
 
-/// Which number of a mode's stream is for what; a bed's own come before.
+/// Indices into the random numbers of a mode. Those that a bed uses itself come before.
 const SPREAD: u64 = 10;
 const AXIS: u64 = 11;
 const PAN: u64 = 12;
 
 impl Body {
-    /// Its modes in ascending order of frequency, one at least. Not fit for the audio thread: it allocates, and takes up to some
+    /// The modes in ascending order of frequency; at least one. Not real-time safe: it allocates, and takes up to some
     /// tens of milliseconds.
     ///
-    /// Modes are kept however weak they are, so that a place moves levels and nothing else; and however high, since the bank
-    /// fades those at the top of the spectrum.
+    /// Weak modes are kept, so that moving a place changes only levels. High modes are kept too, because the bank fades
+    /// those at the top of the spectrum.
     pub fn modes(&self) -> Vec<BodyMode> {
         let body = fields::in_range(self);
         let frequency = body.frequency();
@@ -77,15 +77,15 @@ impl Body {
         modes
     }
 
-    /// Adds a resonance's mode, or both of a pair.
+    /// Adds the mode of a resonance, or both modes of a pair.
     fn push(&self, partial: &Partial, ratio: f64, frequency: f64, random: &Random, modes: &mut Vec<BodyMode>) {
-        // An imperfection has an axis on which one mode of a pair has its lobe and the other its node; without one, the strike
-        // chooses it.
+        // The body's imperfection has an axis: one mode of a pair has a lobe there and the other a node. Without a
+        // split, the strike chooses the axis.
         let split = self.split > 0.0 && partial.pair != Pair::Single && self.modes > 1;
         let axis = match (partial.pair, split) {
             (Pair::Diameters(_), true) => 0.5 * random.number(AXIS),
             (Pair::Diameters(_), false) => self.strike.y,
-            // About half way between the two directions, so that both are heard.
+            // About half way between the two directions, so that both modes are heard.
             _ => 0.125 + 0.0625 * random.number(AXIS),
         };
         let cents = if split { 0.5 * self.split } else { 0.0 };
@@ -118,21 +118,21 @@ impl Body {
     fn ring_time(&self, partial: &Partial, frequency: f64) -> f64 {
         let rate = self.material.loss.rate(frequency) * partial.loss_factor + partial.radiation;
         let t60 = LN_1000 / (self.damping * rate);
-        // A rate of 0 rings longest.
+        // With a rate of 0, the T60 is the longest possible.
         if t60 < T60_RANGE.1 { t60.max(T60_RANGE.0) } else { T60_RANGE.1 }
     }
 }
 
-/// The mode whose ratio is nearest to 1 by interval: the one that the body's pitch is said of.
+/// The mode whose ratio is nearest to 1 as an interval: the one that sets the body's pitch.
 pub(super) fn pitch_mode(modes: &[BodyMode]) -> Option<&BodyMode> {
     modes.iter().min_by(|a, b| log(a.ratio).abs().total_cmp(&log(b.ratio).abs()))
 }
 
-/// The random numbers of one resonance.
+/// The stream of random numbers of one resonance.
 struct Random(u64);
 
 impl Random {
-    /// Uniform over −1 to 1.
+    /// The random number with this index: uniform from −1 to 1.
     fn number(&self, which: u64) -> f64 {
         f64::from(uniform(self.0, which))
     }

@@ -1,9 +1,9 @@
-//! What a model of a body gives: resonances with their mode shapes.
+//! The result of every model: resonances with their mode shapes.
 
-/// A place on a body, where it is struck, heard or joined to another.
+/// A place on a body, where it is struck, heard or joined to another body.
 ///
-/// What `x` and `y` mean stands in the description of each [`super::Model`]: along a string, bar or tube `x` runs from one
-/// end to the other; on a round body `x` runs from the centre (0) to the rim (1) and `y` round it, in turns.
+/// [`super::Model`] explains `x` and `y` for each model. Along a string, bar or tube, `x` runs from one end to the
+/// other. On a round body, `x` runs from the centre (0) to the rim (1) and `y` round it, in turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// 0 to 1.
@@ -12,33 +12,36 @@ pub struct Point {
     pub y: f64,
 }
 
-/// How a resonance comes in two.
+/// Whether a resonance is one mode or a pair of modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pair {
-    /// It is one.
+    /// One mode.
     Single,
-    /// Two directions of movement of one shape.
+    /// A pair: two directions of movement with the same shape.
     Directions,
-    /// A round body's modes with this many nodal diameters (at least 1): one is the other turned by half a lobe.
+    /// A pair in a round body, with this many nodal diameters (at least 1): the second mode is the first turned by half
+    /// a lobe.
     Diameters(u32),
 }
 
-/// A mode shape: its value at a place. Round bodies leave out the factor `cos(m (θ − θ₀))` of [`Pair::Diameters`].
+/// A mode shape: its value at a place. The shapes of round bodies do not include the factor `cos(m (θ − θ₀))` of
+/// [`Pair::Diameters`].
 ///
-/// The mean of its square over the body, weighted by mass and with that factor, is 1. So all modes have the mass of the
-/// whole body, and `shape(struck) · shape(heard)` is the velocity that an impulse gives each, up to one factor for all.
+/// The mean of its square over the body, weighted by mass and including that factor, is 1. So every mode has the mass
+/// of the whole body, and `shape(struck) · shape(heard)` is the velocity after an impulse, up to a factor that all
+/// modes share.
 pub(super) type Shape = Box<dyn Fn(Point) -> f64>;
 
 /// One resonance of a model.
 pub(super) struct Partial {
-    /// Frequency as a multiple of the body's.
+    /// Frequency as a multiple of the body's frequency.
     pub(super) ratio: f64,
     pub(super) pair: Pair,
-    /// The material's loss rate is multiplied by this.
+    /// Factor of the material's loss rate.
     pub(super) loss_factor: f64,
-    /// Loss rate besides the material's, in 1/s: sound radiated.
+    /// Loss rate in addition to the material's, in 1/s: radiated sound.
     pub(super) radiation: f64,
-    /// Level besides that of its shape.
+    /// Factor of the level, in addition to the shape.
     pub(super) gain: f64,
     pub(super) shape: Shape,
 }
@@ -49,16 +52,17 @@ impl Partial {
     }
 }
 
-/// The lowest `count` of `items` by `frequency`; equal ones stay in their order.
+/// The `count` items with the lowest `frequency`. Items with equal frequencies keep their order.
 pub(super) fn lowest<T>(mut items: Vec<T>, count: usize, frequency: impl Fn(&T) -> f64) -> Vec<T> {
     items.sort_by(|a, b| frequency(a).total_cmp(&frequency(b)));
     items.truncate(count);
     items
 }
 
-/// Calls `below` with ever higher limits until it gives at least `count` items, and keeps the lowest of them.
+/// Calls `below` with higher and higher limits until it gives at least `count` items, and keeps the lowest of them.
 ///
-/// `below(limit)` lists all modes up to a limit: in two dimensions it is not known beforehand which those are.
+/// `below(limit)` lists all modes up to a limit. In two dimensions, it is not known beforehand which modes are the
+/// lowest.
 pub(super) fn lowest_below<T>(
     count: usize,
     start: f64,

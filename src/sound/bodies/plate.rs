@@ -1,4 +1,4 @@
-//! Rectangular plates, thin ones (Kirchhoff): simply supported all round, or free.
+//! Thin rectangular plates (Kirchhoff): simply supported on all sides, or free.
 
 use super::bar::{self, Ends};
 use super::material::Material;
@@ -10,21 +10,21 @@ use std::f64::consts::PI;
 /// How the edge of a plate is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
-    /// It cannot move, but can turn: a hinge all round.
+    /// It cannot move but it can turn: a hinge on all sides.
     Supported,
-    /// It is free: a gong, a cymbal, a sheet that hangs.
+    /// It is free: a gong, a cymbal, a hanging sheet.
     Free,
 }
 
-/// A mode with `m` half waves, or nodal lines, along x and `n` along y; `k2` is its frequency where a mode (1,0) of a
-/// simply supported plate would have 1.
+/// A mode with `m` half waves, or nodal lines, along x and `n` along y. `k2` is its frequency in units in which the
+/// mode (1,0) of a simply supported plate would have 1.
 struct Mode {
     m: usize,
     n: usize,
     k2: f64,
 }
 
-/// `aspect` is the length along x over that along y.
+/// `aspect` is the length along x over the length along y.
 pub(super) fn partials(edge: Edge, aspect: f64, poisson: f64, count: usize) -> Vec<Partial> {
     let modes = modes(edge, aspect, poisson, count);
     let first = modes[0].k2;
@@ -47,7 +47,8 @@ fn modes(edge: Edge, aspect: f64, poisson: f64, count: usize) -> Vec<Mode> {
     let first = if edge == Edge::Supported { 1 } else { 0 };
     let below = |limit: f64| {
         let mut modes = Vec::new();
-        // A free plate's (m,n) lies above (m−½)², that of its shorter modes alone; and in y likewise.
+        // The mode (m,n) of a free plate is above (m−½)², the value for bending along x alone; the same applies along
+        // y.
         let most = |factor: f64| (limit.sqrt() / factor) as usize + 1;
         for m in first..=most(1.0) {
             for n in first..=most(aspect) {
@@ -59,16 +60,16 @@ fn modes(edge: Edge, aspect: f64, poisson: f64, count: usize) -> Vec<Mode> {
         }
         modes
     };
-    // Below a limit there are about π/4 · limit / aspect.
+    // Below a limit there are about π/4 · limit / aspect modes.
     lowest_below(count, 2.0 + 1.3 * aspect * count as f64, |mode: &Mode| mode.k2, below)
 }
 
 /// Supported: `m² + (n·aspect)²` (Navier 1823; Leissa, "Vibration of Plates" (1969), chapter 4).
 ///
-/// Free: Rayleigh's method with the shapes of free bars (Warburton 1954; Leissa, chapter 4):
-/// `G_m⁴ + (aspect·G_n)⁴ + 2 aspect² (ν H_m H_n + (1−ν) J_m J_n)`, squared. A square plate's first
-/// modes come out 5 % and 13 % high, 8 % low and 4 % high against Leissa's 13.49, 19.79, 24.43 and 35.02, since true shapes
-/// mix (2,0) with (0,2); away from the square they mix less.
+/// Free: Rayleigh's method with the shapes of free bars (Warburton 1954; Leissa, chapter 4). The square of the
+/// frequency number is `G_m⁴ + (aspect·G_n)⁴ + 2 aspect² (ν H_m H_n + (1−ν) J_m J_n)`. For a square plate, compared
+/// with Leissa's 13.49, 19.79, 24.43 and 35.02, the first modes are 5 % and 13 % too high, 8 % too low and 4 % too
+/// high, because true shapes mix (2,0) with (0,2). Plates that are not square mix them less.
 fn frequency_number(edge: Edge, m: usize, n: usize, aspect: f64, poisson: f64) -> f64 {
     if edge == Edge::Supported {
         let (x, y) = (m as f64, aspect * n as f64);
@@ -80,7 +81,8 @@ fn frequency_number(edge: Edge, m: usize, n: usize, aspect: f64, poisson: f64) -
     (bent + 2.0 * a2 * (poisson * hx * hy + (1.0 - poisson) * jx * jy)).sqrt()
 }
 
-/// `G`, `H` and `J` of a line that moves as a whole, turns, or bends as a free bar with `m` nodes.
+/// `G`, `H` and `J` along one side: for a plate that moves as a whole (`m` = 0), turns (1), or bends as a free bar with
+/// `m` nodes.
 fn warburton(m: usize) -> [f64; 3] {
     match m {
         0 => [0.0, 0.0, 0.0],
@@ -118,7 +120,7 @@ impl Line {
     }
 }
 
-/// `f = κ π/2 · k2 / L²`, L being the side along x.
+/// Lowest frequency in Hz: `f = κ π/2 · k2 / L²`, where `L` is the side along x.
 pub(super) fn frequency(edge: Edge, aspect: f64, size: &Size, material: &Material) -> f64 {
     let first = modes(edge, aspect, material.poisson, 1)[0].k2;
     material.plate_stiffness(size.thickness) * 0.5 * PI * first / (size.length * size.length)

@@ -1,9 +1,9 @@
-//! Roots of functions: every step is an exactly rounded operation, so that they have the same bits on every machine.
+//! Roots of functions. Every step is an exactly rounded operation, so the bits are the same on every machine.
 
-/// A root of `f` between `low` and `high`, where its signs must differ.
+/// A root of `f` between `low` and `high`, where `f` must have different signs.
 ///
-/// Ridders, "A new algorithm for computing a single root of a real continuous function" (1979): as quick as Newton's
-/// method, and never outside the bracket. It ends where a step changes nothing but the last bits.
+/// Ridders, "A new algorithm for computing a single root of a real continuous function" (1979): as fast as Newton's
+/// method, but never outside the bracket. It ends when a step changes only the last bits.
 pub(super) fn between(f: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
     let (mut low, mut high) = (low, high);
     let (mut f_low, mut f_high) = (f(low), f(high));
@@ -14,11 +14,11 @@ pub(super) fn between(f: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
         return high;
     }
     let mut last = f64::NAN;
-    // Each step halves the bracket at least: 64 close any.
+    // Each step at least halves the bracket, so 64 steps are always enough.
     for _ in 0..64 {
         let middle = 0.5 * (low + high);
         let f_middle = f(middle);
-        // Of two values with unlike signs the product is negative, so this is a real number, and not 0.
+        // The two values have different signs, so their product is negative, and this root is real and not 0.
         let scale = (f_middle * f_middle - f_low * f_high).sqrt();
         let toward = if f_low > f_high { f_middle } else { -f_middle };
         let root = middle + (middle - low) * (toward / scale);
@@ -45,7 +45,7 @@ pub(super) fn between(f: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
     last
 }
 
-/// All roots of `f` from `from` to `to`, if no two are closer than `step`.
+/// All roots of `f` from `from` to `to`. No two roots may be closer than `step`.
 pub(super) fn all(f: impl Fn(f64) -> f64, from: f64, to: f64, step: f64) -> Vec<f64> {
     let mut roots = Vec::new();
     let (mut left, mut f_left) = (from, f(from));

@@ -1,6 +1,6 @@
-//! Dimensions of a body, from which its pitch follows.
+//! The dimensions of a body, from which its pitch follows.
 
-/// What a body measures. What each number means for a model stands with [`super::Model`].
+/// The dimensions of a body. [`super::Model`] explains what each number means for each model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Size {
     /// Length of a string, bar, tube, or of a plate's side; diameter of a round body. In metres.
@@ -12,6 +12,6 @@ pub struct Size {
 }
 
 impl Size {
-    /// A string of half a metre, from which files and knobs depart.
+    /// A string of half a metre: the starting values in files and on knobs.
     pub const DEFAULT: Size = Size { length: 0.5, thickness: 1e-3, tension: 1000.0 };
 }

@@ -6,8 +6,8 @@ use super::size::Size;
 use libm::sin;
 use std::f64::consts::{PI, SQRT_2};
 
-/// Whole multiples, with shapes `√2 sin(n π x)`. Its stiffness is the law that all bodies have
-/// ([`super::Body::inharmonicity`]), which was found for strings.
+/// Integer ratios, with shapes `√2 sin(n π x)`. Its stiffness is applied by the law for all bodies
+/// ([`super::Body::inharmonicity`]), which is that of strings.
 pub(super) fn partials(count: usize) -> Vec<Partial> {
     let partial = |n: usize| {
         let n = n as f64;
@@ -16,7 +16,7 @@ pub(super) fn partials(count: usize) -> Vec<Partial> {
     (1..=count).map(partial).collect()
 }
 
-/// `f₁ = √(T/μ) / 2L` without stiffness, with `μ = ρ π d²/4` (Mersenne 1636, Taylor 1713).
+/// Lowest frequency in Hz without stiffness: `f₁ = √(T/μ) / 2L`, with `μ = ρ π d²/4` (Mersenne 1636, Taylor 1713).
 pub(super) fn frequency(size: &Size, material: &Material) -> f64 {
     (size.tension / mass_per_length(size, material)).sqrt() / (2.0 * size.length)
 }
@@ -37,7 +37,7 @@ mod tests {
 
     #[test]
     fn a_piano_string_has_the_pitch_and_stiffness_of_its_size() {
-        // C4 of a grand piano (Fletcher and Rossing, chapter 12): about 62 cm, 1 mm, 670 N.
+        // C4 of a grand piano (Fletcher and Rossing, chapter 12): about 62 cm long, 1 mm thick, 670 N.
         let size = Size { length: 0.62, thickness: 1.0e-3, tension: 670.0 };
         let wire = Material::find("wire").unwrap();
         assert!((frequency(&size, wire) - 265.8).abs() < 0.2);

@@ -1,18 +1,19 @@
-//! Bodies as the mode tables that patches have.
+//! Converts a body into the mode table of a patch.
 
 use super::body::Body;
 use super::modes::{BodyMode, pitch_mode};
 use crate::patch::{MAX_MODES, Mode, ModeTable};
 
-/// Modes this much weaker than all together (−120 dB) are left out: no place in the sum of a sound would hear them.
+/// Modes with less than this share of the sum of all levels (−120 dB) are left out, because they are inaudible.
 const INAUDIBLE: f64 = 1e-6;
 
 impl Body {
-    /// Its modes as a patch has them: ratios to the played note, levels whose sizes add up to 1, and decays as multiples of
-    /// the T60 of the mode that is its pitch ([`Body::t60`]), which belongs in the patch's `decay`. Allocates.
+    /// The mode table of a patch: ratios to the played note, levels whose absolute values add up to 1, and decays as
+    /// multiples of the T60 of the mode that sets the pitch ([`Body::t60`]). That T60 belongs in the patch's `decay`.
+    /// Allocates.
     ///
-    /// A table knows ratios only. For a body that does not follow the keys ([`Body::follows_key`]), whoever plays it has to
-    /// have every key sound the body's own [`Body::frequency`], at which the ratios are its frequencies.
+    /// The table contains only ratios. For a body that does not follow the keys ([`Body::follows_key`]), the caller
+    /// must make every key sound at the body's own [`Body::frequency`], so that the ratios give the body's frequencies.
     pub fn table(&self) -> ModeTable {
         let modes = self.most(MAX_MODES).modes();
         let t60 = pitch_mode(&modes).map_or(1.0, |mode| mode.t60);
@@ -26,18 +27,18 @@ impl Body {
             strike: within(3, self.strike_share),
             pan: within(4, mode.pan),
         };
-        // A body struck or heard at a node of all its modes is silent.
+        // A body that is struck or heard at a node of all its modes is silent.
         let audible = |mode: &&BodyMode| sum > 0.0 && mode.level.abs() >= INAUDIBLE * sum;
         let table: Vec<Mode> = modes.iter().filter(audible).map(mode).collect();
         if table.is_empty() { ModeTable::new(&[Mode { level: 0.0, ..Mode::UNIT }]) } else { ModeTable::new(&table) }
     }
 
-    /// The T60 in seconds of the mode that is its pitch. Allocates.
+    /// The T60 in seconds of the mode that sets the pitch. Allocates.
     pub fn t60(&self) -> f64 {
         pitch_mode(&self.most(MAX_MODES).modes()).map_or(1.0, |mode| mode.t60)
     }
 
-    /// The body with no more modes than these.
+    /// The body with at most this many modes.
     fn most(&self, modes: usize) -> Body {
         Body { modes: self.modes.min(modes), ..self.clone() }
     }

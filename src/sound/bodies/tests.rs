@@ -1,13 +1,13 @@
-//! What holds for every body, whatever its numbers.
+//! Properties that hold for every body, whatever its numbers.
 
 use super::*;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-/// Any body: numbers from all over their ranges, a third of them at an end.
+/// Random bodies: each number from its whole range, a third of the numbers at an end of the range.
 fn bodies() -> impl Strategy<Value = Body> {
     let number = prop_oneof![2 => 0.0..=1.0, 1 => prop_oneof![Just(0.0), Just(1.0)]];
-    // Most sizes and constants span decades: their logarithm is what is drawn.
+    // Most sizes and constants span decades, so their logarithms are drawn.
     let value = |field: &Field, share: f64| {
         let low = if field.max / field.min.max(1e-9) > 1e3 { field.min.max(field.max * 1e-9) } else { 0.0 };
         if low > 0.0 { low * libm::pow(field.max / low, share) } else { field.min + share * (field.max - field.min) }
@@ -39,7 +39,7 @@ fn check(body: &Body) -> Result<(), TestCaseError> {
             "{:?}",
             mode
         );
-        // No shape with mean square 1 is this large anywhere but where a body has next to no mass.
+        // No shape with mean square 1 is larger than this, except where a body has almost no mass.
         prop_assert!(mode.strike.abs() < 1e4, "{mode:?}");
     }
     let table = body.table();
@@ -68,7 +68,7 @@ fn every_model_gives_as_many_modes_as_there_are() {
             for split in [0.0, 5.0] {
                 let body = Body { modes, split, ..Body::new(model.clone()) };
                 check(&body).unwrap_or_else(|error| panic!("{id} {modes} {split}: {error}"));
-                // Bars' and rings' ratios reach 1,000 first; a mass has but one.
+                // Ratios of bars and rings exceed 1,000 before that; a mass has only one mode.
                 assert!(
                     body.modes().len() == modes || modes > 15 || *model == Model::Mass,
                     "{id}: {} of {modes}",
@@ -121,7 +121,7 @@ fn a_pair_is_its_mode_divided() {
 
 #[test]
 fn the_pitch_is_where_it_is_said_to_be() {
-    // A tubular bell is heard where it has no mode, a bed at no pitch.
+    // A tubular bell is heard at a pitch where it has no mode, and a bed has no pitch.
     let pitched = |model: &Model| !matches!(model, Model::Bed(_) | Model::TubularBell);
     for (id, model) in Model::ALL.iter().filter(|(_, model)| pitched(model)) {
         let body = Body { inharmonicity: 1e-3, spread: 50.0, ..Body::new(model.clone()) };
@@ -150,7 +150,7 @@ fn a_mass_on_a_spring_is_a_body() {
         (mode.frequency - 99_999_f64.sqrt() / (2.0 * std::f64::consts::PI)).abs() < 1e-9
             && (mode.t60 - LN_1000).abs() < 1e-9
     );
-    // Without a damper it rings for as long as modes may; a size it does not have leaves it at C4.
+    // Without a damper it rings for the longest T60. A size, which a mass does not have, leaves the frequency at C4.
     assert_eq!(Body::from_spring(1.0, 0.0, 1e6).unwrap().modes()[0].t60, T60_RANGE.1);
     let sized = Body { pitch: Pitch::Size(Size::DEFAULT), ..Body::new(Model::Mass) };
     assert_eq!(sized.frequency(), DEFAULT_FREQUENCY);
@@ -183,7 +183,7 @@ fn digest(bodies: impl IntoIterator<Item = Body>) -> u64 {
     hash
 }
 
-/// Samples come from these numbers: the same on every machine and in every build.
+/// Samples depend on these numbers, so they must be the same on every machine and in every build.
 #[test]
 fn bits_are_pinned() {
     let grid = Model::ALL.iter().flat_map(|(_, model)| {

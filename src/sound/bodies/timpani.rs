@@ -1,4 +1,4 @@
-//! A kettledrum: a membrane that carries air on both sides, with a kettle below that encloses some of it.
+//! A kettledrum: a membrane that moves the air on both sides, above a kettle that encloses some of it.
 
 use super::membrane::Mode;
 use super::partial::{Pair, Partial, Point};
@@ -10,10 +10,10 @@ use std::f64::consts::PI;
 const AIR: f64 = 1.204;
 const SOUND: f64 = 343.2;
 
-/// Modes with no nodal diameter that the kettle's air couples; those above are hardly moved by it.
+/// Number of modes without nodal diameters that the kettle's air couples. It hardly affects higher ones.
 const ROUND: usize = 24;
 
-/// What a kettledrum measures.
+/// The dimensions of a kettledrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drum {
     /// Radius of the head in metres.
@@ -29,7 +29,7 @@ impl Drum {
     pub const DEFAULT: Drum = Drum { radius: 0.328, density: 0.262, volume: 0.14 };
 }
 
-/// One mode on its way: with `ω²`, in 1/s², and how it is made of the membrane's modes.
+/// One mode during the computation: its `ω²` in 1/s², and the membrane modes it consists of, with their shares.
 struct Loaded {
     omega2: f64,
     parts: Vec<(f64, Mode)>,
@@ -37,22 +37,24 @@ struct Loaded {
 
 /// The drum whose mode (1,1), which is heard as its pitch, has this frequency in Hz.
 ///
-/// Air that moves with a mode is mass: with `Φ(κ)` the mode's spectrum over wave numbers κ, each side adds `ρ ∫|Φ|² dκ` to
-/// the head's `σ ∫|Φ|² κ dκ` (a baffled head that is slow against sound; Morse and Ingard, "Theoretical Acoustics" (1968), by
-/// Parseval's theorem). Of a mode `(m,n)`, `Φ` is `k J_{m+1}(k) J_m(κ)/(k² − κ²)`.
-/// The kettle's air is a spring `ρ c²/V` against volume, which joins all modes without nodal diameter: an equation of
-/// rank one, solved exactly. Inside, their even part is that spring, so they carry the mass of one side only.
-/// Sound that leaves is the part of `Φ` below `ω/c`: it damps (0,1) in a tenth of a second and leaves (3,1) ringing.
+/// Air that moves with a mode adds mass. With `Φ(κ)` as the mode's spectrum over wave numbers κ, each side adds `ρ
+/// ∫|Φ|² dκ` to the head's `σ ∫|Φ|² κ dκ` (a baffled head whose waves are slower than sound; Morse and Ingard,
+/// "Theoretical Acoustics" (1968), by Parseval's theorem). For a mode `(m,n)`, `Φ` is `k J_{m+1}(k) J_m(κ)/(k² − κ²)`.
+/// The kettle's air is a spring `ρ c²/V` against changes of volume. It couples all modes without nodal diameters: an
+/// equation of rank one, solved exactly. Inside the kettle this spring replaces the air's mass for these modes, so they
+/// carry the mass of one side only.
+/// The part of `Φ` below `ω/c` leaves as sound: it damps (0,1) within a tenth of a second, while (3,1) keeps ringing.
 /// At 150 Hz the ratios are 0.90 : 1 : 1.46 : 1.90 : 2.34 : 2.76; measured are 0.85 : 1 : 1.51 : 1.99 : 2.44 : 2.89
-/// (Rossing 1982). The rest is the head's stiffness, and a rim without a baffle (Christian, Davis, Tubis, Anderson, Mills
-/// and Rossing 1984, who solve the drum in full): an inharmonicity of 0.02 takes (2,1) to (4,1) to 1.48 : 1.95 : 2.44.
+/// (Rossing 1982). The difference comes from the head's stiffness and from a rim without a baffle (Christian, Davis,
+/// Tubis, Anderson, Mills and Rossing 1984, who solve the full drum): an inharmonicity of 0.02 moves (2,1) to (4,1) to
+/// 1.48 : 1.95 : 2.44.
 pub(super) fn partials(drum: &Drum, frequency: f64, count: usize) -> Vec<Partial> {
     let load = AIR * drum.radius / drum.density;
     let mut modes = Mode::lowest(count.max(2));
     modes.truncate(count);
     let mut masses = Masses::default();
     let mut mass = |mode: Mode| 1.0 + load * masses.air(mode) * if mode.m == 0 { 1.0 } else { 2.0 };
-    // The square of the wave's speed over the radius that gives (1,1) its frequency.
+    // The square of (wave speed over radius) that gives (1,1) its frequency.
     let pitch = Mode { m: 1, k: J_11 };
     let omega = 2.0 * PI * frequency;
     let speed2 = omega * omega * mass(pitch) / (J_11 * J_11);
@@ -88,13 +90,13 @@ fn partial(ratio: f64, parts: Vec<(f64, Mode)>) -> Partial {
     Partial::new(ratio, pair, move |at: Point| shapes.iter().map(|(share, shape)| share * shape(at)).sum())
 }
 
-/// Air that moves with modes: `2k² ∫ J_m(κ)²/(k² − κ²)² dκ`, in units of ρ · radius / σ for each side.
+/// Mass of the air that moves with modes: `2k² ∫ J_m(κ)²/(k² − κ²)² dκ`, in units of ρ · radius / σ for each side.
 ///
-/// The integrand is even, entire and of exponential type 2, so that its sum over whole κ *is* the integral
-/// (Poisson's summation formula: the next terms of it vanish for steps below π).
+/// The integrand is even, entire and of exponential type 2, so its sum over integer κ is exactly the integral
+/// (Poisson's summation formula: the other terms are zero for steps below π).
 #[derive(Default)]
 struct Masses {
-    /// `J_m(κ)²` at κ = 0, 1, 2 …, for each m met so far.
+    /// `J_m(κ)²` at κ = 0, 1, 2 …, for each m used so far.
     squares: Vec<Vec<f64>>,
 }
 
@@ -118,14 +120,15 @@ impl Masses {
     }
 }
 
-/// Joins modes by one spring that acts on their volume: `1 = γ Σ b_i² / (ω² − ω_i²)`, with one root above each `ω_i²`.
+/// Couples modes by one spring that acts on their volume: `1 = γ Σ b_i² / (ω² − ω_i²)`, with one root above each
+/// `ω_i²`.
 fn on_a_spring(modes: Vec<Loaded>, stiffness: f64) -> Vec<Loaded> {
     let (joined, mut out): (Vec<_>, Vec<_>) = {
         let mut modes = modes;
         let rest = modes.split_off(modes.len().min(ROUND));
         (modes, rest)
     };
-    // The mean displacement of a shape with mean square 1 is ±2/k, that of its part in the same measure.
+    // The mean displacement of a shape with mean square 1 is ±2/k; each part of a mode contributes its share of this.
     let volume = |mode: &Loaded| mode.parts.iter().map(|(share, part)| share * sign(*part) * 2.0 / part.k).sum::<f64>();
     let b: Vec<f64> = joined.iter().map(volume).collect();
     let highest = stiffness * b.iter().map(|b| b * b).sum::<f64>();
@@ -166,13 +169,13 @@ fn on_a_spring(modes: Vec<Loaded>, stiffness: f64) -> Vec<Loaded> {
     out
 }
 
-/// The sign of `J_{m+1}(k)`: of the shape's mean, and of its spectrum at κ = 0.
+/// The sign of `J_{m+1}(k)`, which is the sign of the shape's mean and of its spectrum at κ = 0.
 fn sign(mode: Mode) -> f64 {
     if jn(mode.m as i32 + 1, mode.k) < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// What leaves as sound: `2 ∫ |Φ|² κ dκ / √(u² − κ²)` from 0 to `u = ω·radius/c`, which is `2 ∫ |Φ|² dz` over
-/// `z = √(u² − κ²)`, by Simpson's rule.
+/// The radiated sound: `2 ∫ |Φ|² κ dκ / √(u² − κ²)` from 0 to `u = ω·radius/c`, which equals `2 ∫ |Φ|² dz` over `z =
+/// √(u² − κ²)`, by Simpson's rule.
 fn radiated(parts: &[(f64, Mode)], u: f64) -> f64 {
     let Some((_, Mode { m, .. })) = parts.first() else { return 0.0 };
     let spectrum = |kappa: f64| -> f64 {
@@ -188,13 +191,13 @@ fn radiated(parts: &[(f64, Mode)], u: f64) -> f64 {
     2.0 * u / (3.0 * steps as f64) * (0..=steps).map(term).sum::<f64>()
 }
 
-/// `J_m(κ) / (k² − κ²)`, `j` being `J_m(κ)`, also where both vanish.
+/// `J_m(κ) / (k² − κ²)`, where `j` is `J_m(κ)`; also correct where both are zero.
 fn over_gap(j: f64, Mode { m, k }: Mode, kappa: f64) -> f64 {
     let gap = k * k - kappa * kappa;
     if gap.abs() < 1e-6 * k * k { jn(m as i32 + 1, k) / (2.0 * k) } else { j / gap }
 }
 
-/// `f_11` of a drum with this tension in N/m.
+/// Frequency in Hz of the mode (1,1) of a drum with this tension in N/m.
 pub(super) fn frequency(drum: &Drum, tension: f64) -> f64 {
     let mass = 1.0 + 2.0 * AIR * drum.radius / drum.density * Masses::default().air(Mode { m: 1, k: J_11 });
     J_11 / (2.0 * PI * drum.radius) * (tension / (drum.density * mass)).sqrt()

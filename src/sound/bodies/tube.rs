@@ -1,4 +1,4 @@
-//! Air in tubes: open at both ends, stopped at one, and conical.
+//! Air in tubes: open at both ends, closed at one end, and conical.
 
 use super::partial::{Pair, Partial};
 use super::roots;
@@ -9,10 +9,10 @@ use std::f64::consts::{PI, SQRT_2};
 /// Speed of sound in air of 20 °C, in m/s.
 const SOUND: f64 = 343.2;
 
-/// What an open end adds to the length, in radii (Levine and Schwinger 1948).
+/// Length that an open end adds to a tube, in radii (Levine and Schwinger 1948).
 const OPEN_END: f64 = 0.6133;
 
-/// Open at both ends: whole multiples, and the pressure `sin n π x`.
+/// Open at both ends: integer ratios, with pressure shapes `sin n π x`.
 pub(super) fn open(count: usize) -> Vec<Partial> {
     let partial = |n: usize| {
         let n = n as f64;
@@ -21,7 +21,7 @@ pub(super) fn open(count: usize) -> Vec<Partial> {
     (1..=count).map(partial).collect()
 }
 
-/// Stopped at `x = 0`: odd multiples, and the pressure `cos (n − ½) π x`.
+/// Closed at `x = 0`: odd ratios, with pressure shapes `cos (n − ½) π x`.
 pub(super) fn stopped(count: usize) -> Vec<Partial> {
     let partial = |n: usize| {
         let odd = 2.0 * n as f64 - 1.0;
@@ -30,10 +30,12 @@ pub(super) fn stopped(count: usize) -> Vec<Partial> {
     (1..=count).map(partial).collect()
 }
 
-/// A cone, stopped at its narrow end `x = 0` and open at its mouth, of which `truncation` of its length is cut off at the apex.
+/// A cone, closed at its narrow end `x = 0` and open at its mouth. `truncation` is the length cut off at the apex over
+/// the rest.
 ///
-/// Spherical waves `sin k(L−x) / (x₀+x)`, which stop at `x = 0` where `tan kL = −k x₀` (Fletcher and Rossing,
-/// chapter 8): whole multiples for a whole cone (0), and towards the stopped tube's odd ones as it grows.
+/// Spherical waves `sin k(L−x) / (x₀+x)`; the closed end at `x = 0` requires `tan kL = −k x₀` (Fletcher and Rossing,
+/// chapter 8). Ratios are integers for a complete cone (0) and approach the closed tube's odd ones as `truncation`
+/// grows.
 pub(super) fn cone(truncation: f64, count: usize) -> Vec<Partial> {
     let first = cone_root(truncation, 1);
     (1..=count)
@@ -46,7 +48,7 @@ pub(super) fn cone(truncation: f64, count: usize) -> Vec<Partial> {
             let scale = (volume / mean).sqrt();
             let shape = move |x: f64| {
                 let from_apex = t + x;
-                // At the apex of a whole cone the quotient has a limit: u, up to a sign.
+                // At the apex of a complete cone the quotient has a limit: u, up to a sign.
                 if from_apex > 1e-9 { sin(u * (1.0 - x)) / from_apex } else { -u * cos(u) }
             };
             Partial::new(u / first, Pair::Single, move |at| scale * shape(at.x))
@@ -60,17 +62,17 @@ fn cone_root(truncation: f64, n: usize) -> f64 {
     if truncation == 0.0 { top } else { roots::between(|u| sin(u) + truncation * u * cos(u), top - 0.5 * PI, top) }
 }
 
-/// Of a tube of this length and bore, with the correction of two open ends.
+/// Lowest frequency in Hz of a tube of this length and bore, with the end correction of both open ends.
 pub(super) fn open_frequency(size: &Size) -> f64 {
     SOUND / (2.0 * (size.length + OPEN_END * size.thickness))
 }
 
-/// Likewise with one.
+/// The same for one open end.
 pub(super) fn stopped_frequency(size: &Size) -> f64 {
     SOUND / (4.0 * (size.length + 0.5 * OPEN_END * size.thickness))
 }
 
-/// Of a cone with this length and diameter at the mouth.
+/// Lowest frequency in Hz of a cone with this length and diameter at the mouth.
 pub(super) fn cone_frequency(truncation: f64, size: &Size) -> f64 {
     cone_root(truncation, 1) * SOUND / (2.0 * PI * (size.length + 0.5 * OPEN_END * size.thickness))
 }

@@ -1,4 +1,4 @@
-//! Complex numbers, of the four operations that are exactly rounded on every machine.
+//! Complex numbers, with only those operations that are exactly rounded on every machine.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -35,7 +35,7 @@ impl Complex {
         Self::new(self.re * by, self.im * by)
     }
 
-    /// The square root with a real part that is not negative.
+    /// The square root whose real part is not negative.
     pub(super) fn sqrt(self) -> Self {
         let norm = self.norm();
         let re = (0.5 * (norm + self.re.abs())).sqrt();

@@ -1,23 +1,25 @@
-//! Two bodies joined at a point by a spring and a damper, solved exactly: together they are one set of modes again.
+//! Two bodies joined at a point by a spring and a damper, solved exactly. The result is one set of modes again.
 //!
-//! A string on a soundboard, a bar over a tube, a head on a shell. Each body is given by its modes when it is free. The
-//! joint pulls both towards each other with `K` times the distance of the two points plus `R` times its rate. The pair
-//! then has as many modes as both bodies had, each heard on both of them, and a bank of modes plays it at no extra
-//! cost: beating pairs, a long and a short decay, and bodies that damp strings at their own resonances come by themselves.
+//! Examples: a string on a soundboard, a bar over a tube, a head on a shell. Each body is given by its modes when it is
+//! free. The joint pulls both bodies towards each other with a force of `K` times the distance of the two points plus
+//! `R` times the rate of change of this distance. The joined pair has as many modes as both bodies together, and each
+//! mode is heard on both bodies. A bank of modes plays it at no extra cost. Beating pairs, a short decay followed by a
+//! long one, and bodies that damp strings at their own resonances result without further rules.
 //!
-//! Seen as functions of frequency, the joined bodies are those of Woodhouse, "On the synthesis of guitar plucks"
-//! (Acta Acustica united with Acustica 90, 2004); here their poles and residues are found, without
-//! approximating the damping. The joint changes the diagonal system of all free modes by a matrix of rank one, so the
-//! poles are the roots of a secular equation (Golub, "Some modified matrix eigenvalue problems", SIAM Review 15, 1973),
-//! with a complex frequency where Golub has a real one. `system` has the equation, `start` the guesses, `poles` the
-//! iteration, and a mode's shapes are the residues by the formula of Sherman and Morrison (1950).
+//! As functions of frequency, the joined bodies are those of Woodhouse, "On the synthesis of guitar plucks" (Acta
+//! Acustica united with Acustica 90, 2004). Here their poles and residues are computed, without approximating the
+//! damping. The joint changes the diagonal system of all free modes by a matrix of rank one, so the poles are the roots
+//! of a secular equation (Golub, "Some modified matrix eigenvalue problems", SIAM Review 15, 1973), with complex
+//! frequencies instead of Golub's real ones. `system` contains the equation, `start` the first guesses, `poles` the
+//! iteration. The shapes of a mode are the residues, by the formula of Sherman and Morrison (1950).
 //!
-//! Poles and residues are within 1e−14 of a computation in 50 digits (*`tests/coupled_reference.rs`*), however close two
-//! poles are, for every place is kept as its distance from the nearest free pole (Gu & Eisenstat, "A stable and efficient
-//! algorithm for the rank-one modification of the symmetric eigenproblem", SIAM J. Matrix Anal. Appl. 15, 1994).
+//! Poles and residues agree within 1e−14 with a computation in 50 digits (*`tests/coupled_reference.rs`*), however
+//! close two poles are. For this, every place in the complex plane is stored as its distance from the nearest free pole
+//! (Gu & Eisenstat, "A stable and efficient algorithm for the rank-one modification of the symmetric eigenproblem",
+//! SIAM J. Matrix Anal. Appl. 15, 1994).
 //!
-//! All of it runs off the audio thread, and allocates. It needs additions, multiplications, divisions and square roots
-//! only, in a fixed order: the bits are the same on every machine. The time grows with the square of the number of
+//! All of this allocates and runs off the audio thread. It uses only additions, multiplications, divisions and square
+//! roots, in a fixed order, so the bits are the same on every machine. The time grows with the square of the number of
 //! modes: about 1.5 ms for 64 + 64, 5 ms for 128 + 128 and 0.1 s for 512 + 512.
 
 mod complex;
@@ -36,32 +38,33 @@ use crate::error::{Error, Result};
 use poles::Pair;
 use system::{Law, System};
 
-/// What joins two bodies at a point.
+/// The joint between two bodies at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Joint {
-    /// A spring of `stiffness` in N/m and, beside it, a damper of `damping` in N s/m. Both zero: no joint.
+    /// A spring of `stiffness` in N/m and, parallel to it, a damper of `damping` in N s/m. If both are zero, there is
+    /// no joint.
     Spring {
         /// Zero or more.
         stiffness: f64,
         /// Zero or more.
         damping: f64,
     },
-    /// The two points move as one. There is one mode less.
+    /// The two points move together. The pair has one mode fewer.
     Rigid,
 }
 
-/// Beyond this many times what the bodies themselves oppose to it, a joint cannot be told from a rigid one.
+/// A joint that is stronger than the bodies' own resistance by this factor is treated as rigid.
 const RIGID: f64 = 1e40;
 
-/// The modes of two bodies, joined where [`BodyMode::joint`] tells. In the order of their frequencies.
+/// The modes of two bodies that are joined at the points of [`BodyMode::joint`], in the order of their frequencies.
 ///
-/// No mode grows, and none that rings decays more slowly than the slowest of the free ones. With `Σ` over all modes, a blow
-/// starts with no displacement (`Σ cosine = 0`) and with the velocity that the free bodies would have. If the damper makes
-/// two poles almost the same, their amplitudes are large and nearly cancel at first.
+/// No mode grows, and no ringing mode decays more slowly than the slowest free mode. Summed over all modes, the motion
+/// after a strike starts with no displacement (`Σ cosine = 0`) and with the velocity that the free bodies would have.
+/// If the damper makes two poles almost equal, their amplitudes are large and nearly cancel at first.
 ///
 /// # Errors
 ///
-/// [`Error::Value`] for a number that is out of range, and if the poles could not be found.
+/// [`Error::Value`] for a number that is out of range, and if the poles were not found.
 pub fn joined(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<Vec<CoupledMode>> {
     first.iter().chain(second).try_for_each(BodyMode::check)?;
     let law = law(first, second, joint)?;
@@ -76,12 +79,13 @@ pub fn joined(first: &[BodyMode], second: &[BodyMode], joint: Joint) -> Result<V
     Ok(modes)
 }
 
-/// How much softer the joint is for the first guesses, and what it is multiplied by. The first attempt nearly always
-/// succeeds. With very strong damping the poles can run in a circle, and others do not. Where two poles are all but the
-/// same, as in critical damping, their motion is not two damped sinusoids, and the joint is changed by a millionth.
+/// Attempts: the factor by which the joint is softer for the first guesses, and the factor of the joint itself. The
+/// first attempt nearly always succeeds. With very strong damping, the iteration from some guesses can cycle, and other
+/// guesses help. If two poles are almost equal, as in critical damping, the motion is not a sum of two damped
+/// sinusoids; then the joint is changed by a millionth.
 const ATTEMPTS: [(f64, f64); 5] = [(1.0, 1.0), (4.0, 1.0), (0.25, 1.0), (1.0, 1.0 + 1e-6), (16.0, 1.0 + 2e-6)];
 
-/// Displacements at the start as a share of all amplitudes: those of well separated poles are below 1e−11.
+/// Limit of the initial displacement as a share of all amplitudes. With well separated poles it is below 1e−11.
 const AT_REST: f64 = 1e-9;
 
 fn solve(first: &[BodyMode], second: &[BodyMode], law: Law, ease: f64) -> Option<Vec<CoupledMode>> {
@@ -101,8 +105,8 @@ fn solve(first: &[BodyMode], second: &[BodyMode], law: Law, ease: f64) -> Option
     start_at_rest(&modes).then_some(modes)
 }
 
-/// Whether no blow displaces anything at once, as must be: if it does, or an amplitude is not finite, then two poles are
-/// so nearly the same that the amplitudes have lost their digits.
+/// Whether no strike causes a displacement at once, as physics requires. If one does, or if an amplitude is not finite,
+/// two poles are so close that the amplitudes have lost their digits.
 fn start_at_rest(modes: &[CoupledMode]) -> bool {
     let both = [[1.0, 0.0], [0.0, 1.0]];
     let (mut most, mut size) = (0.0_f64, 0.0);
@@ -118,7 +122,7 @@ fn start_at_rest(modes: &[CoupledMode]) -> bool {
     size < f64::INFINITY && most <= AT_REST * size
 }
 
-/// The modes of two bodies that do not act on each other. In the order of their frequencies.
+/// The modes of two bodies that do not act on each other, in the order of their frequencies.
 ///
 /// # Errors
 ///
@@ -138,12 +142,13 @@ pub fn apart(first: &[BodyMode], second: &[BodyMode]) -> Result<Vec<CoupledMode>
     Ok(modes)
 }
 
-/// The modes of two bodies of which the first drives the second one way: the force on the second is `stiffness` in N/m
-/// times the displacement of the first at the joint. In the order of their frequencies.
+/// The modes of two bodies of which the first drives the second, but not the reverse. The force on the second is
+/// `stiffness` in N/m times the displacement of the first at the joint. In the order of their frequencies.
 ///
-/// A chain of two sets of modes is one set of modes too, by partial fractions. Where the bodies have the same pole, the
-/// two partials differ in sign and nearly cancel at first: then the second body's mode is moved up by 0.0015 times
-/// the faster decay rate (0.3 cents at 440 Hz and a T60 of 20 ms), so that amplitudes stay within single precision.
+/// By partial fractions, a chain of two sets of modes is one set of modes too. If a mode of each body has the same
+/// pole, their partials have opposite signs and nearly cancel at first. Then the second body's mode is moved up by
+/// 0.0015 times the faster decay rate (0.3 cents at 440 Hz and a T60 of 20 ms), so that the amplitudes stay within
+/// single precision.
 ///
 /// # Errors
 ///

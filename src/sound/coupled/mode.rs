@@ -1,14 +1,14 @@
-//! Modes: those of a free body, those of two bodies together, and what is heard of them.
+//! The modes of a free body, the modes of two joined bodies, and the damped sinusoids that are heard.
 
 use super::complex::Complex;
 use crate::error::{Error, Result};
 
-/// One mode of a free body. Shapes are those of a modal mass of 1 kg; see [`BodyMode::with_mass`].
+/// One mode of a free body. The shapes are for a modal mass of 1 kg; see [`BodyMode::with_mass`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMode {
-    /// Frequency at which it rings, in radians per second: `2π f`. (The undamped one is `√(ω² + σ²)`.)
+    /// Angular frequency at which it rings, in radians per second: `2π f`. (Without damping it would be `√(ω² + σ²)`.)
     pub angular_frequency: f64,
-    /// How fast it decays, in nepers per second: `ln 1000 / T60`.
+    /// Decay rate in nepers per second: `ln 1000 / T60`.
     pub decay_rate: f64,
     /// Mode shape where the other body is joined.
     pub joint: f64,
@@ -26,7 +26,7 @@ impl BodyMode {
         Self { joint: self.joint * scale, strike: self.strike * scale, pickup: self.pickup * scale, ..self }
     }
 
-    /// An error that names what is out of range.
+    /// Returns an error that names the first number that is out of range.
     pub(super) fn check(&self) -> Result<()> {
         let refused = |name, value: f64, wanted| Err(Error::value(name, format!("{value} is not {wanted}")));
         if !(1e-3..=1e9).contains(&self.angular_frequency) {
@@ -44,33 +44,33 @@ impl BodyMode {
     }
 }
 
-/// One mode of two bodies that act on each other: a damped sinusoid, with complex mode shapes.
+/// One mode of two bodies that act on each other: a damped sinusoid with complex mode shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoupledMode {
-    /// Frequency at which it rings, in radians per second. Zero for an overdamped motion, a plain exponential, which only
-    /// a joint with strong damping brings about.
+    /// Angular frequency at which it rings, in radians per second. Zero for an overdamped motion, a plain exponential,
+    /// which occurs only with strong damping in the joint.
     pub angular_frequency: f64,
-    /// How fast it decays, in nepers per second: never negative.
+    /// Decay rate in nepers per second; never negative.
     pub decay_rate: f64,
-    /// Mode shapes where the first and the second body are struck.
+    /// Mode shapes where the first body and the second body are struck.
     pub strike: [Complex; 2],
-    /// Mode shapes where they are heard, scaled so that `strike · pickup` is the complex amplitude.
+    /// Mode shapes where the two bodies are heard, scaled so that `strike · pickup` is the complex amplitude.
     pub pickup: [Complex; 2],
 }
 
-/// A damped sinusoid's two parts: at the time `t` in seconds, `e^(−σt) (cosine · cos ωt + sine · sin ωt)`.
+/// The two parts of a damped sinusoid: at time `t` in seconds it is `e^(−σt) (cosine · cos ωt + sine · sin ωt)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Partial {
-    /// What it starts with.
+    /// The value at the start.
     pub cosine: f64,
-    /// What it has a quarter turn later.
+    /// The value a quarter period later, without decay.
     pub sine: f64,
 }
 
 impl CoupledMode {
-    /// A mode of one body that does not act on the other.
+    /// A mode of one body on which the other does not act.
     pub(super) fn free(frequency: f64, rate: f64, strike: [f64; 2], pickup: [f64; 2]) -> Self {
-        // The response of displacement is sin(ωt)/ω.
+        // The displacement after an impulse is sin(ωt)/ω.
         Self {
             angular_frequency: frequency,
             decay_rate: rate,
@@ -79,16 +79,16 @@ impl CoupledMode {
         }
     }
 
-    /// The mode's part of the displacement that is heard after a strike with a momentum of 1 N s.
+    /// The contribution of this mode to the displacement that is heard after a strike with a momentum of 1 N s.
     ///
-    /// `struck` is how much of the strike each body gets, and `heard` how much of each is heard: `[1.0, 0.0]` for the
-    /// first alone.
+    /// `struck` is the share of the strike that each body gets, and `heard` is the gain with which each body is heard:
+    /// `[1.0, 0.0]` for the first body alone.
     pub fn displacement(&self, struck: [f64; 2], heard: [f64; 2]) -> Partial {
         let amplitude = self.amplitude(struck, heard);
         Partial { cosine: amplitude.re, sine: -amplitude.im }
     }
 
-    /// The same of the velocity that is heard.
+    /// The same for the velocity that is heard.
     pub fn velocity(&self, struck: [f64; 2], heard: [f64; 2]) -> Partial {
         let pole = Complex::new(-self.decay_rate, self.angular_frequency);
         let amplitude = self.amplitude(struck, heard) * pole;

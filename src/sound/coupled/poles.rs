@@ -1,37 +1,38 @@
-//! The poles of two joined bodies, all at once, by Aberth's iteration on the secular equation.
+//! Computes all poles of two joined bodies together, by Aberth's iteration on the secular equation.
 //!
-//! Aberth ("Iteration methods for finding all zeros of a polynomial simultaneously", Math. Comp. 27, 1973) improves a guess
-//! of each zero of a polynomial `N` by `1/(N′/N − Σ 1/(s − s_k))`, the sum over the guesses of all others: cubically, and
-//! without finding a zero twice. Bini & Robol ("Solving secular and polynomial equations", J. Comput. Appl. Math. 272,
-//! 2014) apply it to secular equations. Here `N = F Π q_k` is real, so each guess stands for its conjugate too. Real poles
-//! come in pairs as well: near the real axis a whole quadratic factor is improved at once, to the one that has the values
-//! of `N` over all other factors, as Kerner (Numer. Math. 8, 1966) does for single zeros.
+//! Aberth ("Iteration methods for finding all zeros of a polynomial simultaneously", Math. Comp. 27, 1973) improves a
+//! guess of each zero of a polynomial `N` by `1/(N′/N − Σ 1/(s − s_k))`, where the sum is over the guesses of all other
+//! zeros. It converges cubically and finds no zero twice. Bini & Robol ("Solving secular and polynomial equations", J.
+//! Comput. Appl. Math. 272, 2014) apply it to secular equations. Here `N = F Π q_k` is real, so each guess also stands
+//! for its conjugate. Real poles come in pairs as well: near the real axis a whole quadratic factor is improved at
+//! once, to the quadratic that has the values of `N` divided by all other factors. Kerner (Numer. Math. 8, 1966) does
+//! so for single zeros.
 
 use super::complex::Complex;
 use super::system::{Place, System};
 
-/// Two poles.
+/// Two poles, which are found together.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Pair {
     /// A pole above the real axis, and its conjugate.
     Conjugate(Place),
-    /// Two real poles, and by which share of themselves the last step has moved them.
+    /// Two real poles, and the relative change of each in the last step.
     Real([f64; 2], [f64; 2]),
 }
 
-/// Sweeps after which other guesses are better: four to seven are usual.
+/// Maximum number of sweeps before other guesses are tried; four to seven are usual.
 const MOST_SWEEPS: usize = 60;
 
-/// Differences of this size are rounding errors.
+/// Relative differences of this size are rounding errors.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Real poles are as good as found when they move by less than this share: each step squares it.
+/// Real poles are found when their relative change is below this: each further step squares it.
 const SETTLED: f64 = 1e-13;
 
-/// Real poles that move by less than this share will stay real.
+/// Real poles whose relative change is below this will stay real.
 const NEARLY_SETTLED: f64 = 1e-9;
 
-/// All poles of a system, from a guess of each pair; `None` if they were not found.
+/// All poles of a system, starting from a guess of each pair; `None` if they were not found.
 pub(super) fn find(system: &System, guesses: Vec<Place>) -> Option<Vec<Pair>> {
     let mut pairs: Vec<Pair> = guesses.into_iter().map(Pair::Conjugate).collect();
     let mut found = vec![false; pairs.len()];
@@ -52,8 +53,8 @@ pub(super) fn find(system: &System, guesses: Vec<Place>) -> Option<Vec<Pair>> {
     None
 }
 
-/// Two real poles that are to become conjugates cannot if they belong to different pairs, each with a pole that has
-/// settled. So the settled ones become a pair, and the others another.
+/// Two real poles that should become a conjugate pair cannot do so if they belong to different pairs, each with a pole
+/// that has settled. So the two settled poles are made one pair, and the other two another.
 fn exchange(pairs: &mut [Pair], found: &[bool]) {
     let mut open: Option<(usize, usize)> = None;
     for j in (0..pairs.len()).filter(|j| !found[*j]) {
@@ -73,7 +74,7 @@ fn exchange(pairs: &mut [Pair], found: &[bool]) {
     }
 }
 
-/// One step of a pole above the real axis, and whether it was the last.
+/// One step of a pole above the real axis. Returns whether it was the last.
 fn step_conjugate(system: &System, pairs: &[Pair], j: usize, place: Place) -> (Pair, bool) {
     let (value, s) = (system.value(place), place.s);
     if value.h.norm() <= ROUNDING * value.size {
@@ -86,7 +87,7 @@ fn step_conjugate(system: &System, pairs: &[Pair], j: usize, place: Place) -> (P
             slope = slope - derivative * factor.reciprocal();
         }
     }
-    // Less its own conjugate: 1 / (s − s̄).
+    // Without the contribution of its own conjugate: 1 / (s − s̄).
     slope.im += 0.5 / s.im;
     let step = slope.reciprocal();
     if s.im - step.im > 0.25 * s.im {
@@ -96,7 +97,7 @@ fn step_conjugate(system: &System, pairs: &[Pair], j: usize, place: Place) -> (P
             step.norm2() <= ROUNDING * ROUNDING * offset.norm2(),
         );
     }
-    // The quadratic s² + b s + c that has the value of N over all other factors.
+    // The quadratic s² + b s + c that has the value of N divided by all other factors.
     let value = over_others(system, pairs, j, place, value.h);
     let b = value.im / s.im - 2.0 * s.re;
     let c = value.re - (s.re * s.re - s.im * s.im) - b * s.re;
@@ -120,7 +121,7 @@ fn ring(system: &System, b: f64, discriminant: f64) -> Pair {
     Pair::Conjugate(system.nearest(system.place(0, s - system.pole(0))))
 }
 
-/// One step of two real poles, and whether it was the last.
+/// One step of two real poles. Returns whether it was the last.
 fn step_real(system: &System, pairs: &[Pair], j: usize, poles: [f64; 2]) -> (Pair, bool) {
     let [near, mut far] = poles;
     if near == far {
@@ -141,27 +142,27 @@ fn step_real(system: &System, pairs: &[Pair], j: usize, poles: [f64; 2]) -> (Pai
         return (Pair::Real(poles, [0.0; 2]), true);
     }
     let to = roots(b, c, discriminant);
-    // Each beside the one that it comes from.
+    // In an order in which each new pole is next to its old one.
     let to = if (poles[0] < poles[1]) == (to[0] < to[1]) { to } else { [to[1], to[0]] };
     let moves = [0, 1].map(|k| (to[k] - poles[k]).abs() / to[k].abs());
     (Pair::Real(to, moves), moves.iter().all(|moved| *moved <= SETTLED))
 }
 
-/// The two real roots of a quadratic, neither by a difference of nearly equal numbers.
+/// The two real roots of a quadratic, computed without subtracting nearly equal numbers.
 fn roots(b: f64, c: f64, discriminant: f64) -> [f64; 2] {
     let root = discriminant.sqrt();
     let far = -0.5 * (b + if b < 0.0 { -root } else { root });
     [if far == 0.0 { 0.0 } else { c / far }, far]
 }
 
-/// The place of a real pole.
+/// The place of a pole on the real axis.
 pub(super) fn on_axis(system: &System, s: f64) -> Place {
     let s = Complex::new(s, 0.0);
     let Place { origin, .. } = system.nearest(system.place(0, s - system.pole(0)));
     Place { origin, offset: s - system.pole(origin), s }
 }
 
-/// `(s − a)(s − b)` of a pair of poles, and its derivative.
+/// `(s − a)(s − b)` for a pair of poles, and its derivative.
 fn factor(system: &System, place: Place, pair: &Pair) -> (Complex, Complex) {
     let (one, other) = match *pair {
         Pair::Conjugate(pole) => {
@@ -173,12 +174,12 @@ fn factor(system: &System, place: Place, pair: &Pair) -> (Complex, Complex) {
             (Complex::new(s.re - poles[0], s.im), Complex::new(s.re - poles[1], s.im))
         }
     };
-    // Two guesses in one place: any push apart will do.
+    // If two guesses coincide, any value that moves them apart will do.
     let product = one * other;
     if product.norm2() == 0.0 { (Complex::new(1.0, 0.0), Complex::ZERO) } else { (product, one + other) }
 }
 
-/// `N` over the factors of all other pairs, from `H`.
+/// `N` divided by the factors of all other pairs, computed from `H`.
 fn over_others(system: &System, pairs: &[Pair], j: usize, place: Place, h: Complex) -> Complex {
     let mut product = h.scale(1.0 / system.leading());
     for k in 0..system.len() {

@@ -1,9 +1,9 @@
-//! One body drives the other and feels nothing of it.
+//! Two bodies in series: the first drives the second, but the second does not act on the first.
 
 use super::complex::Complex;
 use super::mode::{BodyMode, CoupledMode};
 
-/// Poles of the two bodies nearer to each other than this share of the faster decay are moved apart.
+/// Poles of the two bodies are moved apart if their distance is below this share of the faster decay rate.
 const APART: f64 = 1e-3;
 
 pub(super) fn modes(first: &[BodyMode], second: &[BodyMode], stiffness: f64) -> Vec<CoupledMode> {
@@ -38,11 +38,11 @@ fn transfer(modes: &[BodyMode], s: Complex, shape: impl Fn(&BodyMode) -> f64) ->
     })
 }
 
-/// The second body's modes, each at least [`APART`] from each of the first's.
+/// The second body's modes, each moved to a distance of at least [`APART`] from each mode of the first.
 fn moved_apart(first: &[BodyMode], second: &[BodyMode]) -> Vec<BodyMode> {
     let apart = |mode: &BodyMode| {
         let mut mode = *mode;
-        // Upwards past one after another: as often as there are modes to pass.
+        // Moves upwards past one mode after another, at most once for each mode of the first body.
         for _ in 0..=first.len() {
             let least = |other: &BodyMode| {
                 let rate = mode.decay_rate.max(other.decay_rate);

@@ -1,17 +1,17 @@
-//! First guesses of the poles: those of a joint without losses, and their damping to first order.
+//! First guesses of the poles: the poles of a joint without losses, with damping to first order.
 
 use super::complex::Complex;
 use super::system::{Place, System};
 
-/// A guess for each pair of poles. They interlace with the undamped frequencies, so no two are the same. `ease` makes the
-/// joint softer for the guess.
+/// A guess for each pair of poles. The guesses interlace with the undamped frequencies, so no two are equal. `ease` is
+/// the factor by which the joint is softer for the guesses.
 pub(super) fn guesses(system: &System, ease: f64) -> Vec<Place> {
     let gaps = system.len().saturating_sub(1);
     let within = (0..gaps).map(|j| {
         let gap = square_gap(system, j + 1, j);
         guess(system, j, root_in_gap(system, ease, j, gap), gap)
     });
-    // A rigid joint takes one degree of freedom away.
+    // A rigid joint removes one degree of freedom.
     let last = (!system.law.rigid && !system.frequency.is_empty())
         .then(|| guess(system, gaps, root_above(system, ease), f64::INFINITY));
     within.chain(last).collect()
@@ -27,14 +27,15 @@ fn square_gap(system: &System, j: usize, k: usize) -> f64 {
     (frequency[j] - frequency[k]) * (frequency[j] + frequency[k]) + (rate[j] - rate[k]) * (rate[j] + rate[k])
 }
 
-/// One over the joint's stiffness at an undamped frequency whose square is given, its damping counted as stiffness.
+/// The inverse of the joint's stiffness at an undamped frequency with this square; its damping counts as stiffness.
 fn compliance(system: &System, square: f64) -> f64 {
     let law = &system.law;
     if law.rigid { 0.0 } else { 1.0 / (law.stiffness * law.stiffness + law.damping * law.damping * square).sqrt() }
 }
 
-/// The root between two neighbouring frequencies, above the lower one, taking all other modes as they are in the middle
-/// (Li, "Solving secular equations stably and efficiently", LAPACK Working Note 89, 1994).
+/// The root between two neighbouring frequencies, as a distance above the lower one. The contributions of all other
+/// modes are taken in the middle of the gap (Li, "Solving secular equations stably and efficiently", LAPACK Working
+/// Note 89, 1994).
 fn root_in_gap(system: &System, ease: f64, j: usize, gap: f64) -> f64 {
     let middle = 0.5 * gap;
     let mut rest = ease * compliance(system, square(system, j) + middle);
@@ -49,7 +50,7 @@ fn root_in_gap(system: &System, ease: f64, j: usize, gap: f64) -> f64 {
     if (0.0..=gap).contains(&found) { found } else { middle }
 }
 
-/// The root above all frequencies, from the highest, by bisection.
+/// The root above all frequencies, as a distance from the highest, by bisection.
 fn root_above(system: &System, ease: f64) -> f64 {
     let top = system.len() - 1;
     let is_below = |above: f64| {
@@ -75,17 +76,18 @@ fn root_above(system: &System, ease: f64) -> f64 {
     high
 }
 
-/// The place that belongs to an undamped root so far above the square of frequency `j`.
+/// The place of an undamped root whose square is larger than that of frequency `j` by `above`.
 fn guess(system: &System, j: usize, above: f64, gap: f64) -> Place {
     let (origin, shift) = if above <= 0.5 * gap { (j, above) } else { (j + 1, above - gap) };
     let frequency = system.frequency[origin];
     let square = frequency * frequency + shift;
     let rise =
         if square > 0.01 * frequency * frequency { shift / (square.sqrt() + frequency) } else { -0.9 * frequency };
-    // The damping of each mode, weighted by its share in the joint motion, and the joint's own.
+    // The damping of each mode, weighted by its share in the motion at the joint, and the damping of the joint itself.
     let (mut mass, mut damping) = (0.0, 0.0);
     for k in 0..system.len() {
-        // From the nearer end, or the difference of two close frequencies would be lost.
+        // Measured from the nearer end of the gap; otherwise the difference of two close frequencies would lose its
+        // digits.
         let distance = square_gap(system, k, origin) - shift;
         let share = system.weight[k] / (distance * distance);
         if share.is_finite() {

@@ -1,13 +1,13 @@
-//! Two bodies and their joint as one rank-one change of a diagonal system, and its secular equation.
+//! Two bodies and their joint as a rank-one change of a diagonal system, and its secular equation.
 //!
-//! With `q_k(s) = (s − p_k)(s − p̄_k)` for each mode of both bodies and `c_k` its shape at the joint, negative in the second
-//! body, the joined bodies obey `(diag q_k(s) + β(s) c cᵀ) x = force`. So their poles are the zeros of
+//! Let `q_k(s) = (s − p_k)(s − p̄_k)` for each mode of both bodies, and `c_k` its shape at the joint, negative for the
+//! second body. Then the joined bodies obey `(diag q_k(s) + β(s) c cᵀ) x = force`. So their poles are the zeros of
 //! `F(s) = α + β(s) Σ c_k² / q_k(s)`, where `α = 1` and `β = K + R s`, or `α = 0` and `β = 1` for a rigid joint.
 
 use super::complex::Complex;
 use super::mode::{BodyMode, CoupledMode};
 
-/// How the two bodies are joined, made ready to be computed with.
+/// The law of the joint in the form that the equation needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Law {
     pub(super) rigid: bool,
@@ -16,7 +16,7 @@ pub(super) struct Law {
 }
 
 impl Law {
-    /// The joint with both its numbers multiplied.
+    /// The joint with stiffness and damping multiplied by `by`.
     pub(super) fn scaled(self, by: f64) -> Self {
         Self { stiffness: self.stiffness * by, damping: self.damping * by, ..self }
     }
@@ -34,14 +34,14 @@ impl Law {
     }
 }
 
-/// A place in the complex plane, told from the pole of a mode nearby: so that the difference from any pole is known to
-/// nearly all its digits, however close the two are (Gu & Eisenstat 1994 do so on the real line).
+/// A place in the complex plane, stored relative to the pole of a nearby mode. So its difference from any pole is known
+/// to nearly all digits, however close the two are (Gu & Eisenstat 1994 do so on the real line).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) origin: usize,
-    /// From the origin's pole.
+    /// Difference from the pole of mode `origin`.
     pub(super) offset: Complex,
-    /// From zero.
+    /// Absolute value `s`.
     pub(super) s: Complex,
 }
 
@@ -58,15 +58,16 @@ pub(super) struct System {
     pickup: Vec<[f64; 2]>,
 }
 
-/// What is needed of the secular equation at a [`Place`], relative to its origin's `q`: it stays finite there.
+/// The secular equation at a [`Place`], multiplied by the `q` of its origin, so that it stays finite there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Value {
     /// `H = F q` and its derivative.
     pub(super) h: Complex,
     pub(super) derivative: Complex,
-    /// The sum of the magnitudes of the terms of `H`: its rounding error is a small multiple of the last bit of it.
+    /// The sum of the magnitudes of the terms of `H`. The rounding error of `H` is a few units in the last place of
+    /// this sum.
     pub(super) size: f64,
-    /// `Σ q_k′/q_k` over all modes but the origin.
+    /// `Σ q_k′/q_k` over all modes except the origin.
     pub(super) others: Complex,
 }
 
@@ -79,12 +80,13 @@ struct Loose {
     pickup: [f64; 2],
 }
 
-/// Shapes at the joint smaller than this share of the largest change nothing, and so do pulls that are so weak beside a
-/// mode's own: their square is far below the last digit of the closest two frequencies.
+/// A shape at the joint changes nothing if it is smaller than this share of the largest one. The same applies to a pull
+/// that is this weak compared with a mode's own. The square of such a number is far below the last digit of the closest
+/// two frequencies.
 const NEGLIGIBLE: f64 = 1e-36;
 
 impl System {
-    /// Joins two bodies, and gives the modes besides that the joint does not move.
+    /// Joins two bodies. Also returns the modes that the joint does not move.
     pub(super) fn new(first: &[BodyMode], second: &[BodyMode], law: Law) -> (Self, Vec<CoupledMode>) {
         let one = first.iter().map(|mode| Loose {
             frequency: mode.angular_frequency,
@@ -135,12 +137,12 @@ impl System {
         Complex::new(-self.rate[k], self.frequency[k])
     }
 
-    /// `p_j − p_k`, exact but for one rounding of each part.
+    /// `p_j − p_k`, exact except for one rounding of each part.
     pub(super) fn between(&self, j: usize, k: usize) -> Complex {
         Complex::new(self.rate[k] - self.rate[j], self.frequency[j] - self.frequency[k])
     }
 
-    /// The place that is so far from a pole.
+    /// The place at this offset from a pole.
     pub(super) fn place(&self, origin: usize, offset: Complex) -> Place {
         Place { origin, offset, s: self.pole(origin) + offset }
     }
@@ -155,7 +157,7 @@ impl System {
         if self.law.rigid { self.weight.iter().sum() } else { 1.0 }
     }
 
-    /// The same place, told from the nearest pole.
+    /// The same place, relative to the nearest pole.
     pub(super) fn nearest(&self, place: Place) -> Place {
         let mut best = place;
         let mut least = place.offset.norm2();
@@ -205,7 +207,7 @@ impl System {
         }
     }
 
-    /// The mode of a pole that has been found: `rings` unless the pole is real.
+    /// The mode of a found pole. `rings` is false for a real pole.
     pub(super) fn mode(&self, place: Place, rings: bool, rate: f64) -> CoupledMode {
         let (q, _) = self.q(place, place.origin);
         // Σ shape · c_k / q_k, times the origin's q.
@@ -227,7 +229,7 @@ impl System {
     }
 }
 
-/// Rotates modes with the same pole until the joint moves only one of them (Bunch, Nielsen & Sorensen, "Rank-one
+/// Rotates modes that have the same pole until the joint moves only one of them (Bunch, Nielsen & Sorensen, "Rank-one
 /// modification of the symmetric eigenproblem", Numer. Math. 31, 1978).
 fn deflate(modes: &mut [Loose]) {
     for k in 1..modes.len() {

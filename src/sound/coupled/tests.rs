@@ -1,4 +1,4 @@
-//! Laws that joined bodies keep.
+//! Physical laws that joined bodies must obey.
 
 use super::*;
 
@@ -40,8 +40,8 @@ impl Chance {
             .collect()
     }
 
-    /// Two bodies, some of whose modes have nearly or exactly the same frequency, and a joint from next to nothing to
-    /// next to rigid.
+    /// Two bodies, in which some modes have nearly or exactly the same frequency, and a joint from almost zero to
+    /// almost rigid.
     fn pair(&mut self) -> ([Vec<BodyMode>; 2], Joint) {
         let rate = [0.0, 1.0, 50.0, 1000.0, 30_000.0][(self.bits() % 5) as usize];
         let [one, other] = [(); 2].map(|()| {
@@ -69,13 +69,12 @@ impl Chance {
     }
 }
 
-/// What the mode shapes of both bodies come to: `Σ f(mode, sign)`, the sign that of the second body's displacement at the
-/// joint.
+/// A sum over the mode shapes of both bodies: `Σ f(mode, sign)`, where `sign` is negative for the second body.
 fn total([first, second]: &[Vec<BodyMode>; 2], of: impl Fn(&BodyMode, f64) -> f64) -> f64 {
     first.iter().map(|mode| of(mode, 1.0)).chain(second.iter().map(|mode| of(mode, -1.0))).sum()
 }
 
-/// Asserts that cosines add up to what they are to, within `1e−10` of the magnitudes.
+/// Asserts that the cosines add up to `expected`, within `1e−10` of their magnitudes.
 #[track_caller]
 fn assert_sum(parts: impl Iterator<Item = Partial>, expected: f64, context: &str) {
     let (sum, size) = parts
@@ -90,7 +89,8 @@ fn joined_bodies_keep_the_sum_rules_and_never_grow() {
         let modes = joined(&bodies[0], &bodies[1], joint).unwrap();
         let context = format!("case {case}, {joint:?}");
         let both = [1.0, 1.0];
-        // A blow moves nothing at once, and gives each point its momentum: what a rigid joint allows of it.
+        // A strike moves nothing at once, and gives each point its momentum, less the part that a rigid joint does not
+        // allow.
         let weight = total(&bodies, |mode, _| mode.joint * mode.joint);
         let taken = total(&bodies, |mode, sign| sign * mode.strike * mode.joint)
             * total(&bodies, |mode, sign| sign * mode.pickup * mode.joint)
@@ -101,7 +101,7 @@ fn joined_bodies_keep_the_sum_rules_and_never_grow() {
         let expected = if is_rigid { struck - taken } else { struck };
         assert_sum(modes.iter().map(|mode| mode.displacement(both, both)), 0.0, &context);
         assert_sum(modes.iter().map(|mode| mode.velocity(both, both)), expected, &context);
-        // The divergence is that of all dampers.
+        // The divergence must be that of all dampers.
         if let Joint::Spring { damping, .. } = joint
             && !is_rigid
         {
@@ -120,8 +120,8 @@ fn joined_bodies_keep_the_sum_rules_and_never_grow() {
     }
 }
 
-/// Displacements and velocities, by mode of the free bodies, after a blow on both: from the joined modes, heard at one free
-/// mode at a time.
+/// Displacements and velocities of the modes of the free bodies after a strike on both bodies. Computed from the joined
+/// modes, heard at one free mode at a time.
 fn motion(bodies: &[Vec<BodyMode>; 2], joint: Joint, t: f64) -> Vec<[f64; 2]> {
     let mut places = Vec::new();
     for (body, k) in (0..2).flat_map(|body| (0..bodies[body].len()).map(move |k| (body, k))) {
@@ -146,7 +146,7 @@ fn motion(bodies: &[Vec<BodyMode>; 2], joint: Joint, t: f64) -> Vec<[f64; 2]> {
     places
 }
 
-/// Kinetic energy, and that in the springs, of bodies and joint.
+/// Kinetic energy, and the energy in the springs of bodies and joint.
 fn energy(bodies: &[Vec<BodyMode>; 2], joint: Joint, motion: &[[f64; 2]]) -> f64 {
     let modes = bodies[0].iter().map(|mode| (mode, 1.0)).chain(bodies[1].iter().map(|mode| (mode, -1.0)));
     let (mut sum, mut apart) = (0.0, 0.0);
@@ -201,7 +201,7 @@ fn a_joint_of_nothing_gives_both_bodies_back() {
             assert_eq!(found.displacement([1.0, 1.0], [only[1], only[0]]), Partial::default());
         }
     }
-    // The same in the limit, and the other limit.
+    // The same at both limits: almost no joint, and an almost rigid one.
     for (weak, strong) in [(1e-12, 1e25), (1e-30, 1e60)] {
         let nearly = joined(&first, &second, Joint::Spring { stiffness: weak, damping: weak }).unwrap();
         let rigid = joined(&first, &second, Joint::Rigid).unwrap();
@@ -224,14 +224,15 @@ fn two_equal_oscillators_split_into_sum_and_difference() {
     assert!((frequencies[1] - 11e6_f64.sqrt()).abs() < 1e-9);
     let across: Vec<f64> = modes.iter().map(|mode| mode.velocity([1.0, 0.0], [0.0, 1.0]).cosine).collect();
     assert!((across[0] - 0.5).abs() < 1e-14 && (across[1] + 0.5).abs() < 1e-14, "{across:?}");
-    // A rigid joint leaves the sum alone; a heavy damper makes a pair of overdamped modes of the difference.
+    // A rigid joint does not change the sum of the two; a strong damper makes a pair of overdamped modes from the
+    // difference.
     assert_eq!(joined(&[mode], &[mode], Joint::Rigid).unwrap().len(), 1);
     let overdamped = joined(&[mode], &[mode], Joint::Spring { stiffness: 0.0, damping: 1e4 }).unwrap();
     let rates: Vec<f64> = overdamped[..2].iter().map(|mode| mode.decay_rate).collect();
     let root = (1e8_f64 - 9e6).sqrt();
     assert!(overdamped[..2].iter().all(|mode| mode.angular_frequency == 0.0), "{overdamped:?}");
     assert!((rates[0] / (1e4 - root) - 1.0).abs() < 1e-12 && (rates[1] / (1e4 + root) - 1.0).abs() < 1e-12);
-    // Critically damped: the double pole is given as two that nearly cancel, x = t e^(−3000 t) / 2 of the difference.
+    // Critically damped: the double pole becomes two poles that nearly cancel, x = t e^(−3000 t) / 2 of the difference.
     let critical = joined(&[mode], &[mode], Joint::Spring { stiffness: 0.0, damping: 3e3 }).unwrap();
     let t = 1e-3;
     let heard = critical.iter().map(|mode| {
@@ -277,7 +278,7 @@ fn bodies_in_series_are_the_product_of_their_responses() {
         })
         .sum();
     assert!((transformed / expected - 1.0).abs() < 1e-4, "{transformed} for {expected}");
-    // Two modes with one pole nearly cancel, but not so much that single precision would hear it.
+    // Two modes with the same pole nearly cancel, but not so much that single precision would be audible.
     let largest = |partial: Partial| partial.cosine.abs().max(partial.sine.abs());
     let alone = first[2].strike * first[2].joint * second[3].joint * second[3].pickup * stiffness
         / (2.0 * first[2].angular_frequency * first[2].angular_frequency * first[2].decay_rate);
@@ -299,7 +300,7 @@ fn what_is_out_of_range_is_refused_by_name() {
     assert_eq!(mode.with_mass(4.0).strike, 0.5);
 }
 
-/// FNV-1a over the bits of everything: the same on every machine.
+/// FNV-1a hash over all bits, which must be the same on every machine.
 #[test]
 fn bits_are_frozen() {
     let mut hash = 0xCBF2_9CE4_8422_2325_u64;

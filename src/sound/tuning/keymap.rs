@@ -1,4 +1,4 @@
-//! Scala's keyboard mappings (`.kbm`): which key plays which degree of a scale, and at what frequency.
+//! Scala's keyboard mappings (`.kbm`): which key plays which degree of a scale, and the frequency of one key.
 //!
 //! Format: <http://www.huygens-fokker.org/scala/help.htm#mappings>.
 
@@ -9,32 +9,34 @@ use crate::units::{note_name, split_quantity};
 use std::io::Read;
 use std::ops::RangeInclusive;
 
-/// Which keys play which degrees of a scale, and where its pitch comes from.
+/// Which keys play which degrees of a scale, and the reference pitch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keymap {
-    /// Keys after which the pattern repeats; 0 where each key is the next degree of the scale.
+    /// Number of keys after which the pattern repeats; 0 if each key plays the next degree of the scale.
     size: i32,
-    /// The keys that are mapped; those outside are silent.
+    /// The keys that are mapped. Others are silent.
     keys: RangeInclusive<u8>,
     /// The key of the pattern's first entry.
     middle: u8,
-    /// The key whose frequency is given.
+    /// The key that has the reference frequency.
     reference: u8,
-    /// In Hz; none where the patch's A4 says it.
+    /// Reference frequency in Hz; none if it follows from the frequency that the patch gives A4.
     frequency: Option<f64>,
-    /// The degree that is as far above degree 0 as each pattern is above the one before; 0 is the scale's last.
+    /// The degree whose interval lies between two repetitions of the pattern; 0 stands for the last degree of the
+    /// scale.
     octave: i32,
-    /// Degrees of the pattern's keys, none for a key that is unmapped. Keys at its end may be left out.
+    /// Degrees of the pattern's keys, none for an unmapped key. Keys at the end of the pattern may be missing:
+    /// unmapped.
     degrees: Vec<Option<i32>>,
 }
 
 impl Keymap {
-    /// What is played without a file: degree 0 on key 60 (C4), each key the next degree, and key 69 (A4) at the
-    /// frequency that the patch gives A4. Scala's own default differs only in fixing that at 440 Hz.
+    /// The mapping without a file: degree 0 on key 60 (C4), each key plays the next degree, and key 69 (A4) has the
+    /// frequency that the patch gives A4. Scala's own default is the same with A4 fixed at 440 Hz.
     pub const LINEAR: Self =
         Self { size: 0, keys: 0..=127, middle: 60, reference: 69, frequency: None, octave: 0, degrees: Vec::new() };
 
-    /// Reads a keyboard mapping file. Errors call it `origin`.
+    /// Reads a keyboard mapping file. `origin` names it in errors.
     ///
     /// # Errors
     /// [`crate::Error::Io`] if it cannot be read; [`crate::Error::Format`] if it is larger than 1 MiB, and as
@@ -47,7 +49,7 @@ impl Keymap {
     ///
     /// # Errors
     /// [`crate::Error::Format`] that names `origin`, the line, what is wrong with it, and what would be right. The
-    /// reference key must be one that the pattern maps: an unmapped key has no pitch to set the others by.
+    /// pattern must map the reference key: the pitches of all other keys depend on it.
     pub fn parse(text: &str, origin: &str) -> Result<Self> {
         let mut lines = Lines::new(text, origin);
         let size_line = lines.demand("the size of the map")?;
@@ -70,7 +72,7 @@ impl Keymap {
         for line in entries.by_ref().take(size as usize) {
             degrees.push(degree(&line)?);
         }
-        // Words may follow the map. Another entry would mean that its size is wrong.
+        // Text may follow the map. Another entry would mean that the map's size is wrong.
         if let Some(line) = entries.find(|line| degree(line).is_ok()) {
             return Err(line.error(format!(
                 "{} is an entry too many: expected the {size} that line {} says, or more there",
@@ -90,12 +92,12 @@ impl Keymap {
         Ok(keymap)
     }
 
-    /// The key that the other keys are tuned by, and its frequency in Hz; none where the patch's A4 says it.
+    /// The reference key, and its frequency in Hz; none if that follows from the patch's A4.
     pub(super) fn reference(&self) -> (u8, Option<f64>) {
         (self.reference, self.frequency)
     }
 
-    /// How far a key is above the reference key, in semitones; none if it is unmapped.
+    /// Interval from the reference key to a key, in semitones; none if the key is unmapped.
     pub(super) fn interval_from_reference(&self, scale: &Scale, key: u8) -> Option<f64> {
         let above_middle = |key: u8| {
             let (patterns, degree) = self.place(key)?;
@@ -105,7 +107,7 @@ impl Keymap {
         if self.keys.contains(&key) { Some(above_middle(key)? - above_middle(self.reference)?) } else { None }
     }
 
-    /// How many patterns a key is above the middle one, and its degree there; none if the pattern leaves it unmapped.
+    /// How many patterns a key is above the middle key, and its degree; none if the pattern does not map it.
     fn place(&self, key: u8) -> Option<(i32, i32)> {
         let steps = i32::from(key) - i32::from(self.middle);
         if self.size == 0 {
@@ -116,13 +118,13 @@ impl Keymap {
     }
 }
 
-/// A whole number from 0.
+/// Reads a whole number that is at least 0.
 fn whole(line: &Line, what: &str, expected: &str) -> Result<i32> {
     let number = line.word().parse().ok().filter(|number: &i32| *number >= 0);
     number.ok_or_else(|| line.error(format!("{} is not {what}: expected {expected}", line.quote())))
 }
 
-/// The MIDI key in the next line.
+/// Reads the MIDI key in the next line.
 fn key<'a>(lines: &mut Lines<'a>, what: &str) -> Result<(u8, Line<'a>)> {
     let line = lines.demand(what)?;
     match line.word().parse() {
@@ -131,14 +133,14 @@ fn key<'a>(lines: &mut Lines<'a>, what: &str) -> Result<(u8, Line<'a>)> {
     }
 }
 
-/// A frequency in Hz.
+/// Reads a frequency in Hz.
 fn frequency(line: &Line) -> Result<f64> {
     let frequency = split_quantity(line.text).filter(|(hz, rest)| *hz > 0.0 && ends_number(rest));
     let wrong = || line.error(format!("{} is not a frequency: expected Hz above 0 (440.0)", line.quote()));
     frequency.map(|(hz, _)| hz).ok_or_else(wrong)
 }
 
-/// An entry of the map: a degree, or none for `x`.
+/// Reads an entry of the map: a degree, or none for `x`.
 fn degree(line: &Line) -> Result<Option<i32>> {
     if line.word().eq_ignore_ascii_case("x") {
         return Ok(None);
@@ -154,7 +156,7 @@ mod tests {
         Keymap::parse(&format!("{size}\n50\n70\n60\n60\n256.0 Hz\n{octave}\n{entries}"), "a").unwrap()
     }
 
-    /// Semitones from key 60 of the keys from 58 on, on a scale of 200, 400, 700 and 1200 cents.
+    /// Intervals from key 60 in semitones, for the keys from 58 on, in a scale of 200, 400, 700 and 1200 cents.
     fn intervals(keymap: &Keymap) -> Vec<Option<f64>> {
         let scale = Scale::parse("\n4\n200.\n400.\n700.\n2/1", "a").unwrap();
         (58..=65).map(|key| keymap.interval_from_reference(&scale, key)).collect()

@@ -1,15 +1,16 @@
-//! The lines of a Scala file that count, and messages that say which of them is wrong.
+//! The lines of a Scala file without its comments, and errors that name the line.
 
 use crate::error::{Error, Result};
 use std::io::Read;
 
-/// Largest file that is read, in bytes: far more than any scale that can be played.
+/// Maximum size of a file in bytes: far more than any playable scale needs.
 const MAX_FILE_SIZE: u64 = 1 << 20;
 
-/// Longest piece of a line that a message quotes, in characters.
+/// Maximum length of a quotation in an error message, in characters.
 const MAX_QUOTE: usize = 40;
 
-/// Reads a file as UTF-8, or else as ISO 8859-1, which Scala's archive is written in: there, every byte is a character.
+/// Reads a file as UTF-8, or, if it is not UTF-8, as ISO 8859-1 (used in Scala's archive), where every byte is a
+/// character.
 pub(super) fn read(reader: impl Read, origin: &str) -> Result<String> {
     let mut bytes = Vec::new();
     reader.take(MAX_FILE_SIZE + 1).read_to_end(&mut bytes).map_err(|source| Error::io(origin, source))?;
@@ -19,16 +20,16 @@ pub(super) fn read(reader: impl Read, origin: &str) -> Result<String> {
     Ok(String::from_utf8(bytes).unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect()))
 }
 
-/// A line, without the space around it.
+/// A line without leading and trailing space.
 pub(super) struct Line<'a> {
     origin: &'a str,
-    /// Counted from 1, comments included.
+    /// Line number from 1, counting comments.
     pub(super) number: usize,
     pub(super) text: &'a str,
 }
 
 impl<'a> Line<'a> {
-    /// What is wrong with the line, and what would be right.
+    /// An error about this line.
     pub(super) fn error(&self, message: impl Into<String>) -> Error {
         Error::format(format!("{}:{}", self.origin, self.number), message)
     }
@@ -38,7 +39,7 @@ impl<'a> Line<'a> {
         self.text.split_whitespace().next().unwrap_or("")
     }
 
-    /// The line as messages quote it.
+    /// The line as error messages quote it.
     pub(super) fn quote(&self) -> String {
         match self.text.char_indices().nth(MAX_QUOTE) {
             Some((end, _)) => format!("‘{}…’", &self.text[..end]),
@@ -51,12 +52,12 @@ impl<'a> Line<'a> {
 pub(super) struct Lines<'a> {
     origin: &'a str,
     lines: std::str::Split<'a, char>,
-    /// Lines handed out, comments included.
+    /// Number of lines read so far, counting comments.
     count: usize,
 }
 
 impl<'a> Lines<'a> {
-    /// The lines of `text`, however it ends them: as Unix, Windows or, of old, the Macintosh do.
+    /// The lines of `text`, with line ends of Unix, Windows or the old Macintosh.
     pub(super) fn new(text: &'a str, origin: &'a str) -> Self {
         let end = if text.contains('\n') { '\n' } else { '\r' };
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -66,7 +67,7 @@ impl<'a> Lines<'a> {
     /// The next line that is not blank.
     ///
     /// # Errors
-    /// If the file ends before it: then it lacks what is `expected`.
+    /// If the file ends before it. The error says that `expected` is missing.
     pub(super) fn demand(&mut self, expected: &str) -> Result<Line<'a>> {
         let found = self.find(|line| !line.text.is_empty());
         let end = Line { origin: self.origin, number: self.count, text: "" };
@@ -88,8 +89,8 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// Whether what follows a number cannot be meant as a part of it: text and comments may follow, but in `701,955`,
-/// `7\12` and `1e3` more digits do.
+/// Whether a number ends where `rest` begins. Text and comments may follow it, but in `701,955`, `7\12` and `1e3` more
+/// digits follow, so the number was not read as it was meant.
 pub(super) fn ends_number(rest: &str) -> bool {
     let attached = rest.split(|c: char| c.is_whitespace() || c == '!').next().unwrap_or("");
     !attached.contains(|c: char| c.is_ascii_digit())

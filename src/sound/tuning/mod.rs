@@ -1,9 +1,9 @@
-//! Microtonal tuning: a pitch for each MIDI key, made from Scala's files.
+//! Microtonal tuning: a pitch for each MIDI key, read from Scala's files.
 //!
-//! The readers are our own. The crate `tune` (0.37) reads both formats, but puts a map's first entry on the reference
-//! key instead of the middle one (key 69 of twelve equal steps with A4 = 440 Hz becomes 261.6 Hz), refuses an empty
-//! description and ISO 8859-1, takes 1/0 for a pitch, and hands out intervals only after arithmetic with the system's
-//! logarithm, whose bits differ between machines.
+//! We read the files with our own code. The crate `tune` (0.37) reads both formats, but puts a map's first entry on the
+//! reference key instead of the middle one (with twelve equal steps and A4 = 440 Hz, key 69 becomes 261.6 Hz). It
+//! rejects an empty description and ISO 8859-1, accepts the pitch 1/0, and gives intervals only after computing with
+//! the system's logarithm, whose bits differ between machines.
 
 mod keymap;
 mod lines;
@@ -16,27 +16,27 @@ use crate::error::Result;
 use crate::units::{key_from_frequency, ratio_from_semitones};
 use std::ops::RangeInclusive;
 
-/// MIDI keys.
+/// Number of MIDI keys.
 const KEYS: usize = 128;
 
-/// Pitches in semitones on the MIDI scale that a tuning may give: those of all keys detuned by up to 128 semitones. A
-/// key beyond them (0.005 Hz, 20 MHz) could not be heard and is unmapped.
+/// Range of a tuning's pitches, in semitones on the MIDI scale: those of all keys, detuned by up to 128 semitones. A
+/// key outside it (below 0.005 Hz, above 20 MHz) could not be heard and counts as unmapped.
 const PITCHES: RangeInclusive<f64> = -128.0..=255.0;
 
-/// Frequency of A4 that [`PITCHES`] count from, in Hz.
+/// Frequency of A4 in Hz, for the check against [`PITCHES`].
 const A4_HZ: f64 = 440.0;
 
 /// The pitch that a tuning gives a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pitch {
-    /// Semitones on the MIDI scale, on which A4 is 69 and the patch says how many Hz that is.
+    /// Semitones on the MIDI scale: A4 is 69, and the patch sets its frequency.
     Semitones(f64),
-    /// A frequency in Hz, whatever the patch says of A4.
+    /// A frequency in Hz, independent of the patch's A4.
     Hertz(f64),
 }
 
 impl Pitch {
-    /// Semitones on the MIDI scale whose A4 (69) is at `a4_hz`.
+    /// The pitch in semitones on a MIDI scale whose A4 (69) is at `a4_hz`.
     pub fn semitones(self, a4_hz: f64) -> f64 {
         match self {
             Self::Semitones(semitones) => semitones,
@@ -52,7 +52,7 @@ impl Pitch {
 pub struct Tuning([Option<Pitch>; KEYS]);
 
 impl Tuning {
-    /// Twelve equal steps an octave, with the patch's A4 on key 69: what plays unless another tuning is set.
+    /// Twelve equal steps per octave, with the patch's A4 on key 69. It is used unless another tuning is set.
     pub const EQUAL: Self = {
         let (mut pitches, mut key) = ([None; KEYS], 0);
         while key < KEYS {
@@ -62,7 +62,7 @@ impl Tuning {
         Self(pitches)
     };
 
-    /// The tuning of a scale on the keys that `keymap` says; [`Keymap::LINEAR`] where there is no file.
+    /// The tuning of a scale with a keyboard mapping; [`Keymap::LINEAR`] if there is no file.
     pub fn new(scale: &Scale, keymap: &Keymap) -> Self {
         Self(std::array::from_fn(|key| {
             let above_reference = keymap.interval_from_reference(scale, key as u8)?;
@@ -75,18 +75,18 @@ impl Tuning {
         }))
     }
 
-    /// The tuning that a Scala scale (`.scl`) gives on the keys that a keyboard mapping (`.kbm`) says. Without one,
-    /// degree 0 is on key 60, each key is the next degree, and key 69 has the frequency that the patch gives A4.
+    /// The tuning of a Scala scale (`.scl`) with a keyboard mapping (`.kbm`). Without a mapping, degree 0 is on key 60,
+    /// each key plays the next degree, and key 69 has the frequency that the patch gives A4.
     ///
     /// # Errors
-    /// As [`Scale::parse`] and [`Keymap::parse`], which call the texts `scale` and `keymap`.
+    /// As [`Scale::parse`] and [`Keymap::parse`], with the origins `scale` and `keymap`.
     pub fn from_scala(scl: &str, kbm: Option<&str>) -> Result<Self> {
         let scale = Scale::parse(scl, "scale")?;
         let keymap = kbm.map_or(Ok(Keymap::LINEAR), |kbm| Keymap::parse(kbm, "keymap"))?;
         Ok(Self::new(&scale, &keymap))
     }
 
-    /// The pitch of a key, none if it is unmapped or not a MIDI key. Real-time safe.
+    /// The pitch of a key; none if it is unmapped or not a MIDI key. Real-time safe.
     pub fn pitch(&self, key: u8) -> Option<Pitch> {
         self.0.get(usize::from(key)).copied().flatten()
     }
@@ -126,7 +126,7 @@ mod tests {
     fn what_could_not_be_heard_is_unmapped() {
         let tuning = Tuning::from_scala("\n1\n10/1\n", None).unwrap();
         let mapped: Vec<u8> = (0..128).filter(|key| tuning.pitch(*key).is_some()).collect();
-        // A decade a key: 440 Hz, and what lies between 0.005 Hz and 20 MHz.
+        // Each key is a decade above the one before: 440 Hz, and all that lie between 0.005 Hz and 20 MHz.
         assert_eq!(mapped, (65..=73).collect::<Vec<_>>());
         let digits = "9".repeat(300);
         assert!(Tuning::from_scala(&format!("\n1\n{digits}.\n"), None).unwrap().pitch(70).is_none());

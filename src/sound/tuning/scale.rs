@@ -1,4 +1,4 @@
-//! Scala's scale files (`.scl`): the intervals of a scale, which repeat at its last one.
+//! Scala's scale files (`.scl`): the intervals of a scale, which repeats after the last one.
 //!
 //! Format: <http://www.huygens-fokker.org/scala/scl_format.html>.
 
@@ -7,15 +7,15 @@ use crate::error::Result;
 use crate::units::semitones_from_ratio;
 use std::io::Read;
 
-/// A scale: how far each of its notes is above degree 0.
+/// A scale: the interval from degree 0 to each of its degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
-    /// Degrees 1 and up, in semitones above degree 0. The last is the period: an octave, a tritave or any other.
+    /// Intervals of degrees 1 and up, in semitones. The last is the period, such as an octave.
     intervals: Vec<f64>,
 }
 
 impl Scale {
-    /// Reads a scale file. Errors call it `origin`.
+    /// Reads a scale file. `origin` names it in errors.
     ///
     /// # Errors
     /// [`crate::Error::Io`] if it cannot be read; [`crate::Error::Format`] if it is larger than 1 MiB, and as
@@ -24,13 +24,14 @@ impl Scale {
         Self::parse(&lines::read(reader, origin)?, origin)
     }
 
-    /// Reads the text of a scale file: a description, the number of notes, and as many pitches, as ratios or in cents.
+    /// Reads the text of a scale file: a description, the number of notes, and that many pitches, as ratios or in
+    /// cents.
     ///
     /// # Errors
     /// [`crate::Error::Format`] that names `origin`, the line, what is wrong with it, and what would be right.
     pub fn parse(text: &str, origin: &str) -> Result<Self> {
         let mut lines = Lines::new(text, origin);
-        // The description, of which an empty line may be all.
+        // The first line is the description, which may be empty.
         lines.next();
         let count_line = lines.demand("the number of notes")?;
         let count: usize = count_line.word().parse().map_err(|_| {
@@ -42,7 +43,7 @@ impl Scale {
             let line = lines.demand(&format!("pitch {number} of the {count} that line {} says", count_line.number))?;
             intervals.push(interval(&line)?);
         }
-        // Words may follow the scale. Another pitch would mean that the number of notes is wrong, and the period too.
+        // Text may follow the scale. Another pitch would mean that the number of notes, and so the period, is wrong.
         match lines.find(|line| interval(line).is_ok()) {
             Some(line) => Err(line.error(format!(
                 "{} is a pitch too many: expected the {count} that line {} says, or more there",
@@ -53,12 +54,12 @@ impl Scale {
         }
     }
 
-    /// The highest degree, at which the scale repeats; 0 for a scale of degree 0 alone.
+    /// The last degree, after which the scale repeats; 0 if degree 0 is the only one.
     pub(super) fn last_degree(&self) -> i32 {
         self.intervals.len() as i32
     }
 
-    /// How far a degree is above degree 0, in semitones. Degrees below 0 and above the last continue the scale.
+    /// Interval from degree 0 to a degree, in semitones. Degrees below 0 and above the last continue the scale.
     pub(super) fn interval(&self, degree: i32) -> f64 {
         let Some(period) = self.intervals.last() else { return 0.0 };
         let (times, rest) = (degree.div_euclid(self.last_degree()), degree.rem_euclid(self.last_degree()));
@@ -67,7 +68,7 @@ impl Scale {
     }
 }
 
-/// The interval in semitones that a line gives: cents if there is a point in the number, or else a ratio.
+/// The interval of a line in semitones: cents if its number has a point, else a ratio.
 fn interval(line: &Line) -> Result<f64> {
     let wrong = |what: &str| {
         let expected = "expected a ratio of whole numbers from 1 (3/2, 2) or cents with a point (701.955, 100.)";

@@ -1,24 +1,24 @@
-//! What criterion has measured: the fastest sample of each bench, as elements a second.
+//! Reads criterion's results: the fastest sample of each bench, as elements per second.
 //!
-//! Other work on the machine only ever adds to a time, so the fastest is the nearest to what the code takes.
+//! Other work on the machine can only make a sample slower, so the fastest sample is closest to the true cost.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Elements a second by the full name of the bench.
+/// Elements per second, by the full name of the bench.
 pub(super) struct Measured(BTreeMap<String, f64>);
 
 impl Measured {
-    /// Reads all results under criterion's folder.
+    /// Reads all results in criterion's folder.
     pub(super) fn read(folder: &Path) -> Result<Self, String> {
         let mut rates = BTreeMap::new();
         gather(folder, &mut rates)?;
         Ok(Self(rates))
     }
 
-    /// Elements a second of a bench, if it ran.
+    /// Elements per second of a bench; `None` if it did not run.
     pub(super) fn rate(&self, name: &str) -> Option<f64> {
         self.0.get(name).copied()
     }
@@ -29,7 +29,7 @@ fn gather(folder: &Path, rates: &mut BTreeMap<String, f64>) -> Result<(), String
     for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         if path.join("benchmark.json").is_file() {
-            // `base` has what was measured the last time.
+            // `base` contains the results of the run before.
             if path.ends_with("new") {
                 let read = |name: &str| fs::read_to_string(path.join(name)).map_err(failed);
                 let result = result(&read("benchmark.json")?, &read("sample.json")?);
@@ -43,7 +43,7 @@ fn gather(folder: &Path, rates: &mut BTreeMap<String, f64>) -> Result<(), String
     Ok(())
 }
 
-/// The name of a bench and its fastest rate, from criterion's two files.
+/// The name of a bench and its fastest rate, from two of criterion's files.
 fn result(benchmark: &str, sample: &str) -> Option<(String, f64)> {
     let (benchmark, sample): (Value, Value) =
         (serde_json::from_str(benchmark).ok()?, serde_json::from_str(sample).ok()?);

@@ -1,4 +1,4 @@
-//! `cargo xtask bench-table`: runs the benches and the peers, and writes what they come to into `benches/README.md`.
+//! `cargo xtask bench-table`: runs the benches and the peers, and writes the results into `benches/README.md`.
 
 mod measured;
 mod peers;
@@ -14,15 +14,15 @@ const DOCUMENT: &str = "benches/README.md";
 const BEGIN: &str = "<!-- measured: begin -->";
 const END: &str = "<!-- measured: end -->";
 
-/// What the peers that are compiled here are compiled for: the level AVX2.
+/// Compiler flags for the peers that are compiled here: the level AVX2.
 const FLAGS: &str = "-C target-cpu=x86-64-v3";
 
-/// Runs everything and writes the tables; with `again`, of what was measured the last time.
+/// Runs everything and writes the tables. With `again`, runs nothing and uses the results of the last run.
 pub(crate) fn run(again: bool) -> Result<(), String> {
     let criterion = root().join("target/criterion-table");
     let peers_table = root().join("target/peers/peers.tsv");
     if !again {
-        // What is there may be of benches that are no more.
+        // Old results may be of benches that no longer exist.
         let _ = fs::remove_dir_all(&criterion);
         let folder = peers_table.parent().expect("the path has a folder");
         fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
@@ -59,14 +59,14 @@ fn succeed(mut command: Command) -> Result<(), String> {
     if status.success() { Ok(()) } else { Err("the benches failed".to_owned()) }
 }
 
-/// The document with something else between the marks.
+/// The document with new text between the marks; `None` if the marks are missing.
 fn replace(document: &str, tables: &str) -> Option<String> {
     let (before, rest) = document.split_once(BEGIN)?;
     let (_, after) = rest.split_once(END)?;
     Some(format!("{before}{BEGIN}\n{tables}{END}{after}"))
 }
 
-/// The CPU's name, where the system tells it.
+/// The CPU's name, if the system provides it.
 fn cpu() -> String {
     let told = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = told.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));

@@ -1,20 +1,20 @@
-//! Rows of `benches/peers/run.sh`.
+//! Reads the output of `benches/peers/run.sh`.
 
-/// A peer, as far as it could be measured.
+/// A peer with its result.
 #[derive(Debug, PartialEq)]
 pub(super) struct Peer {
     pub(super) name: String,
     pub(super) version: String,
-    /// `avx2`, `native` for all that the CPU has, or `packaged` for what Debian's archive has.
+    /// `avx2`, `native` for everything that the CPU has, or `packaged` for the build in Debian's archive.
     pub(super) instructions: String,
-    /// 10⁹ modes × samples a second; none where modes are not what it has.
+    /// 10⁹ modes × samples per second; `None` for a peer that does not compute modes.
     pub(super) giga: Option<f64>,
-    /// Times real time, or why it was not measured.
+    /// Speed relative to real time, or why it was not measured.
     pub(super) remark: String,
 }
 
 impl Peer {
-    /// Reads the script's lines.
+    /// Parses the script's output.
     pub(super) fn parse(lines: &str) -> Result<Vec<Peer>, String> {
         let peer = |line: &str| {
             let fields: Vec<&str> = line.split('\t').collect();

@@ -1,4 +1,4 @@
-//! The library below the wrapper's window: a window that has been closed is gone, its thread and all that it held.
+//! Edits of the library below the wrapper's window: a closed window ends its thread and frees everything it held.
 
 use super::edit::{Edit, edit};
 
@@ -7,9 +7,10 @@ const EVENT_LOOP: &str = "src/platform/x11/event_loop.rs";
 const WINDOW_THREAD: &str = "src/platform/x11/window_thread.rs";
 
 pub(super) const EDITS: &[Edit] = &[
-    // Closing asks the window's thread to end, then to show the window, and waits for the thread only if it has answered.
-    // A thread that ended first is not waited for: it takes OpenGL down beside the next window's, or while the host
-    // unloads the plugin. Nor may a panic of that thread be passed on: CLAP's calls end the host then.
+    // Closing first asks the window's thread to end and then asks it to show the window; it waits for the thread only
+    // if the thread has answered. If the thread has already ended, it is not waited for: it then closes OpenGL while
+    // the next window opens, or while the host unloads the plugin. A panic of that thread must not be passed on either,
+    // because in a CLAP call it ends the host.
     edit(
         WINDOW_THREAD,
         "        if let Err(e) = self.run_until_closed() {
@@ -23,7 +24,7 @@ pub(super) const EDITS: &[Edit] = &[
         }
 ",
     ),
-    // A loop forgets what was asked before it began. Whoever closes a window so early waits for its thread, too.
+    // An event loop forgets requests made before it starts. When a window is closed so early, also wait for its thread.
     edit(
         EVENT_LOOP,
         "    fn handle_idle(&mut self) {
@@ -36,8 +37,8 @@ pub(super) const EDITS: &[Edit] = &[
 
 ",
     ),
-    // libEGL keeps something for every thread that uses it. As libglvnd 1.6 has it, what tidies that up when a thread
-    // ends stays registered after the library was unloaded, which takes one of the process's 1,024 keys each time.
+    // libEGL keeps data for every thread that uses it. In libglvnd 1.6, the function that frees this data when a thread
+    // ends stays registered after the library was unloaded, and each time uses up one of the process's 1,024 keys.
     edit(
         EGL,
         "    _library: Library,

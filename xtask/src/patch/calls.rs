@@ -1,10 +1,10 @@
-//! The host's calls and calls to the host: nothing is borrowed while the host runs, and no index is one too large.
+//! Edits of calls between host and plugin: nothing stays borrowed while the host runs, and indices are checked.
 
 use super::edit::{CONTEXT, Edit, INNER, WRAPPER, edit};
 
 pub(super) const EDITS: &[Edit] = &[
-    // The host's handler is called from the window's thread as well. It is borrowed no longer than it takes to copy the
-    // pointer, and a thread that sets it waits for that instead of panicking.
+    // The host's handler is also called from the window's thread. It is borrowed only while the pointer is copied, and
+    // a thread that sets the handler waits for that instead of panicking.
     edit(
         INNER,
         "#[cfg(feature = \"editor\")]
@@ -39,7 +39,7 @@ use parking_lot::RwLock;
         times: 3,
     },
     edit(WRAPPER, "*self.inner.component_handler.borrow_mut() =", "*self.inner.component_handler.write() ="),
-    // One past the last parameter is none.
+    // The index one past the last parameter must give no parameter.
     edit(
         WRAPPER,
         "if param_index < 0 || param_index > unsafe { self.getParameterCount() } {",

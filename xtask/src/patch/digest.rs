@@ -1,10 +1,10 @@
-//! Digests: whether a source is the one that corrections were made for, and made with.
+//! Digests, which show whether a source is the one for which, and with which, the corrections were made.
 
 use sha2::{Digest as _, Sha256};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The digest of all files in a package's folder with their paths, but for what cargo adds when it unpacks them.
+/// The digest of all files in a package's folder with their paths, except the files that cargo adds when unpacking.
 pub(super) fn of_folder(folder: &Path) -> Result<String, String> {
     let mut files = Vec::new();
     list(folder, &mut files)?;
@@ -27,7 +27,7 @@ pub(super) fn of_folder(folder: &Path) -> Result<String, String> {
     Ok(hex(sum))
 }
 
-/// The digest of texts in their order.
+/// The digest of several texts in order.
 pub(super) fn of_texts(texts: impl Iterator<Item = String>) -> String {
     let mut sum = Sha256::new();
     texts.for_each(|text| sum.update(text));

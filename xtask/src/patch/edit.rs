@@ -1,14 +1,14 @@
-//! What a correction is: a piece of text in place of another.
+//! A correction: replaces one piece of text by another.
 
-/// A piece of text in place of another.
+/// Replaces a piece of text by another.
 pub(super) struct Edit {
-    /// The file in the package.
+    /// Path of the file in the package.
     pub(super) file: &'static str,
-    /// What is there.
+    /// The old text.
     pub(super) old: &'static str,
-    /// What comes in its place.
+    /// The new text.
     pub(super) new: &'static str,
-    /// How often it is there. Any other number means that the source is not what the edit was written for.
+    /// How often the old text occurs. Any other number means that the edit was written for a different source.
     pub(super) times: usize,
 }
 
@@ -18,7 +18,7 @@ pub(super) const VIEW: &str = "src/wrapper/vst3/view.rs";
 pub(super) const WORKER: &str = "src/event_loop/background_thread.rs";
 pub(super) const WRAPPER: &str = "src/wrapper/vst3/wrapper.rs";
 
-/// An edit of something that is there once.
+/// An edit of a text that occurs once.
 pub(super) const fn edit(file: &'static str, old: &'static str, new: &'static str) -> Edit {
     Edit { file, old, new, times: 1 }
 }

@@ -1,7 +1,7 @@
-//! `cargo xtask patch`: packages of the plugin's, as crates.io has them but for the corrections in this folder.
+//! `cargo xtask patch`: writes packages used by the plugin, as on crates.io but with the corrections in this folder.
 //!
-//! They keep the wrapper's VST3 from ending its host and from leaving file descriptors behind, and see to it that a
-//! window is gone once it is closed. ARCHITECTURE.md, “Around the wrapper”, tells the faults in the words of a report.
+//! The corrections keep the wrapper's VST3 from crashing its host and from leaking file descriptors, and make sure that
+//! a closed window is gone. ARCHITECTURE.md, “Around the wrapper”, describes each fault as in a bug report.
 
 mod baseview;
 mod calls;
@@ -17,14 +17,14 @@ use edit::Edit;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A package that is corrected.
+/// A package with corrections.
 struct Package {
     name: &'static str,
-    /// The version that the corrections are for.
+    /// The version for which the corrections were made.
     version: &'static str,
-    /// The SHA-256 of that version's files, as [`digest::of_folder`] reckons it.
+    /// The SHA-256 of that version's files, as computed by [`digest::of_folder`].
     source: &'static str,
-    /// The corrections, fault by fault.
+    /// The corrections, grouped by fault.
     edits: &'static [&'static [Edit]],
 }
 
@@ -43,17 +43,18 @@ const PACKAGES: [Package; 2] = [
     },
 ];
 
-/// Where plugin/Cargo.toml looks for the packages. The folder's name is in cargo's message if they are not there.
+/// The folder in which plugin/Cargo.toml expects the packages. If it is missing, its name in cargo's error message
+/// tells what to run.
 const PLACE: &str = "target/run-cargo-xtask-patch";
 
-/// A file beside the patched source, with the digest of what it was made with.
+/// A file next to the patched source that contains the digest of everything it was made from.
 const STAMP: &str = "made-with";
 
-/// Writes the patched packages to where the plugin's workspace expects them, unless they are there already.
+/// Writes the patched packages to the place where the plugin's workspace expects them, unless they are there already.
 ///
 /// # Errors
-/// If the plugin asks for another version than the corrections were made for, if the source of that version cannot be
-/// had or is not the one that they were made for, or if it cannot be written.
+/// If the plugin requires another version than the corrections were made for, if the source of that version cannot be
+/// fetched or differs from the one they were made for, or if the result cannot be written.
 pub(crate) fn run() -> Result<(), String> {
     let manifest = read(&root().join("plugin/Cargo.toml"))?;
     PACKAGES.iter().try_for_each(|package| package.patch(&manifest))
@@ -82,7 +83,7 @@ impl Package {
         make_folder_of(&place)?;
         replace(&place, |aside| {
             copy(&source, aside)?;
-            // Files of the registry may be read-only; those that are edited are written anew.
+            // Files of the registry may be read-only, so edited files are created anew.
             for file in self.files() {
                 let path = aside.join(file);
                 let text = self.apply(file, &read(&path)?)?;
@@ -95,7 +96,7 @@ impl Package {
         Ok(())
     }
 
-    /// Whether the plugin asks for the version that the corrections are for.
+    /// Checks that the plugin requires the version for which the corrections were made.
     fn check_version(&self, manifest: &str) -> Result<(), String> {
         let Self { name, version, .. } = self;
         let manifest: toml::Table = manifest.parse().map_err(|error| format!("plugin/Cargo.toml: {error}"))?;
@@ -111,10 +112,11 @@ impl Package {
         ))
     }
 
-    /// The folder in which cargo keeps the registry's source of the package, fetched if need be.
+    /// The folder in which cargo keeps the registry's source of the package. Fetches the source if necessary.
     fn source(&self) -> Result<PathBuf, String> {
         let Self { name, version, .. } = self;
-        // A package that depends on this one and nothing else, with the plugin's own versions of all below.
+        // A package that depends only on this one, with the versions of all further dependencies from the plugin's lock
+        // file.
         let folder = root().join(PLACE).join("fetch");
         let manifest = format!(
             "[package]\nname = \"fetch\"\nedition = \"2024\"\n[workspace]\n[lib]\npath = \"lib.rs\"\n[dependencies]\n\
@@ -145,7 +147,7 @@ impl Package {
         self.edits.iter().copied().flatten()
     }
 
-    /// The files that are edited, each once.
+    /// The files that have edits, each once.
     fn files(&self) -> Vec<&'static str> {
         let mut files: Vec<_> = self.edits().map(|edit| edit.file).collect();
         files.sort_unstable();
@@ -153,7 +155,7 @@ impl Package {
         files
     }
 
-    /// A file of the package with its corrections.
+    /// The text of a file of the package with its corrections.
     fn apply(&self, file: &str, text: &str) -> Result<String, String> {
         let mut text = text.to_owned();
         for Edit { old, new, times, .. } in self.edits().filter(|edit| edit.file == file) {
@@ -220,7 +222,7 @@ mod tests {
         assert!(message.contains(edit::WORKER) && message.contains("0 times in place of 1"), "{message}");
     }
 
-    /// The plugin is a workspace of its own and cannot inherit: what both have must be the same.
+    /// The plugin is a workspace of its own and cannot inherit settings: those in both manifests must be the same.
     #[test]
     fn both_workspaces_agree() {
         let manifest = |path: &str| read(&root().join(path)).unwrap().parse::<toml::Table>().unwrap();

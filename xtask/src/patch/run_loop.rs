@@ -1,9 +1,9 @@
-//! The handler on the host's run loop: taken away again, with its file descriptors.
+//! Edits of the handler on the host's run loop: it is removed again, and its file descriptors are closed.
 
 use super::edit::{Edit, VIEW, WRAPPER, edit};
 
 pub(super) const EDITS: &[Edit] = &[
-    // The old view is dropped after the lock: dropping it calls the host.
+    // The old view is dropped after the lock is released, because dropping it calls the host.
     edit(
         WRAPPER,
         "                *self.inner.plug_view.write() = Some(view);
@@ -12,9 +12,10 @@ pub(super) const EDITS: &[Edit] = &[
                 drop(previous);
 ",
     ),
-    // The handler no longer holds a reference to itself, which kept it alive for ever. It is taken off the run loop
-    // while a reference is left, since hosts may count references in that call. Without file descriptors, or if the host
-    // does not take it, there is none, and changes of parameters are not shown until the window redraws.
+    // The handler no longer holds a reference to itself, which kept it alive for ever. It is removed from the run loop
+    // while another reference still exists, since hosts may count references during that call. If there are no file
+    // descriptors, or if the host refuses the handler, there is no handler, and changes of parameters are shown only
+    // when the window redraws.
     edit(
         VIEW,
         "    pub fn new(inner: Weak<WrapperInner<P>>, run_loop: ComPtr<IRunLoop>) -> ComWrapper<Self> {

@@ -1,10 +1,11 @@
-//! The window: no thread but the one that opened it ever borrows it.
+//! Edits of the window: only the thread that opened it ever borrows it.
 
 use super::edit::{Edit, INNER, VIEW, edit};
 
 pub(super) const EDITS: &[Edit] = &[
-    // The window is reached through `open_window()` alone, from the thread that opened it. On any other thread a mere
-    // borrow would clash with `attached()` and `removed()`, which panic then, within a call of the host's.
+    // The window is accessed only through `open_window()`, from the thread that opened it. On any other thread even a
+    // shared borrow could collide with `attached()` and `removed()`, which would then panic within a call from the
+    // host.
     edit(
         INNER,
         "    /// The host's [`IComponentHandler`] instance, if passed through
@@ -106,7 +107,7 @@ pub(super) const EDITS: &[Edit] = &[
                         .host_main_thread_callback(&editor_window.window)
 "#,
     ),
-    // The window as above.
+    // The same for the window.
     edit(
         VIEW,
         "            && let Some(editor_window) = inner.editor_window.borrow().as_ref()

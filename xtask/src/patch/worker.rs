@@ -1,9 +1,9 @@
-//! The worker thread that all instances share, and the end of an instance.
+//! Edits of the worker thread that all instances share, and of the end of an instance.
 
 use super::edit::{Edit, WORKER, WRAPPER, edit};
 
 pub(super) const EDITS: &[Edit] = &[
-    // The worker is shared by all instances: a task of one that is gone must not end it.
+    // The worker is shared by all instances, so a task of an instance that no longer exists must not end it.
     edit(
         WORKER,
         r#"                    nice_trace!(
@@ -15,8 +15,8 @@ pub(super) const EDITS: &[Edit] = &[
         r#"                    nice_trace!("Received a new task but the executor is no longer alive");
 "#,
     ),
-    // A worker that has the last reference to itself cannot wait for its own end: it ends when the channel is
-    // disconnected, which follows. And a worker that has ended already is no reason to panic within `release()`.
+    // A worker that holds the last reference to itself cannot wait for its own end. It ends when the channel is
+    // disconnected, which happens next. A worker that has already ended is no reason to panic within `release()`.
     edit(
         WORKER,
         r#"        self.tasks_sender
@@ -38,8 +38,9 @@ pub(super) const EDITS: &[Edit] = &[
         }
 "#,
     ),
-    // The instance ends on the thread that releases it, not on a worker that still has a task of its: hosts may unload
-    // the library right afterwards. A window that the host has forgotten is closed while its thread can still ask.
+    // The instance ends on the thread that releases it, not on a worker that still has one of its tasks: hosts may
+    // unload the library right afterwards. If the host has forgotten to close the window, it is closed while its thread
+    // can still use the instance.
     edit(
         WRAPPER,
         "    inner: Arc<WrapperInner<P>>,

@@ -1,11 +1,11 @@
-//! "Groove": eight bars for drums, every drum a channel.
+//! "Groove": eight bars for drums; every drum has its own channel.
 
 use super::score::{Part, file};
 
-/// Beats by which the second of two sixteenths comes late.
+/// Delay in beats of the second of two sixteenths.
 const SWING: f64 = 0.045;
 
-/// A bar of sixteenths: a digit is a ninth of full velocity, a dot a rest.
+/// A bar of sixteenths: a digit is the velocity in ninths of the maximum, a dot is a rest.
 fn bar(part: &mut Part, bar: u32, key: u8, pattern: &str) {
     for (step, strength) in pattern.chars().filter(|c| *c != ' ').enumerate() {
         if let Some(strength) = strength.to_digit(10) {
@@ -42,7 +42,7 @@ pub(super) fn compose() -> Result<Vec<u8>, String> {
     for n in [0, 2, 4, 6] {
         bar(&mut closed, n, 60, "7.4. 7.43 7.4. 7.4.");
     }
-    // The closed hats that follow cut the open ones off.
+    // The closed hats that follow cut off the open ones.
     for n in [1, 5] {
         bar(&mut closed, n, 60, "7.4. 7.4. 7.43 7.4.");
         bar(&mut open, n, 60, ".... .... .... ...6");
@@ -60,7 +60,7 @@ pub(super) fn compose() -> Result<Vec<u8>, String> {
         bar(&mut clap, n, 60, ".... 6... .... 7...");
     }
 
-    // Bar four: a fill down the toms.
+    // Bar four: a fill on the toms.
     bar(&mut kick, 3, 60, "8... ..6. 7... 7...");
     bar(&mut closed, 3, 60, "7.4. 7... .... ....");
     bar(&mut snare, 3, 60, "..2. 8.45 .... ....");
@@ -68,7 +68,7 @@ pub(super) fn compose() -> Result<Vec<u8>, String> {
     bar(&mut high, 3, 60, ".... .... ..67 ....");
     bar(&mut low, 3, 65, ".... .... .... 8.6.");
     bar(&mut low, 3, 60, ".... .... .... ..78");
-    // Bar eight: a longer one, and the end.
+    // Bar eight: a longer fill, and the end.
     bar(&mut kick, 7, 60, "8... 7... 7... ....");
     bar(&mut snare, 7, 60, "6345 .... .... ....");
     bar(&mut high, 7, 65, ".... 8.67 .... ....");

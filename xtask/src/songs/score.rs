@@ -1,4 +1,4 @@
-//! Parts written in beats, and the standard MIDI file that they make.
+//! Parts written in beats, and the standard MIDI file made from them.
 
 use midly::num::{u4, u7, u15, u24, u28};
 use midly::{Format, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, Track, TrackEvent, TrackEventKind};
@@ -21,19 +21,20 @@ pub(super) mod controller {
     pub(super) const RPN: u8 = 101;
 }
 
-/// One player: a track of its own on a channel of its own.
+/// One player, with a track and a channel of its own.
 pub(super) struct Part {
     name: &'static str,
     channel: u8,
     bend_range: f64,
-    /// How far notes stray from their beat, in beats, and from their velocity, in per cent.
+    /// Maximum random deviation of notes from their beat, in beats, and from their velocity, in per cent.
     looseness: (f64, f64),
-    /// Tick, rank among the events of a tick (note-offs first, note-ons last), event.
+    /// Tick, rank within the tick (note-offs first, note-ons last), and event.
     events: Vec<(u32, u8, MidiMessage)>,
 }
 
 impl Part {
-    /// A part that plays a factory preset at a volume (controller 7) and a position (controller 10, 64 in the middle).
+    /// A part that plays a factory preset, with a volume (controller 7) and a pan position (controller 10, 64 is the
+    /// middle).
     pub(super) fn new(name: &'static str, channel: u8, preset: &str, volume: u8, pan: u8) -> Result<Self, String> {
         let program = Preset::factory().iter().position(|factory| factory.name == preset);
         let program = program.ok_or_else(|| format!("there is no factory preset ‘{preset}’"))?;
@@ -44,7 +45,7 @@ impl Part {
         Ok(part)
     }
 
-    /// Lets notes stray by up to `beats` and by up to `percent` of their velocity, the same way each time.
+    /// Lets notes deviate by up to `beats`, and by up to `percent` of their velocity, in the same way each time.
     pub(super) fn loosen(mut self, beats: f64, percent: f64) -> Self {
         self.looseness = (beats, percent);
         self
@@ -66,17 +67,17 @@ impl Part {
         self.add(beat + length, 0, MidiMessage::NoteOff { key, vel: u7::new(64) });
     }
 
-    /// Notes struck together.
+    /// Several notes struck together.
     pub(super) fn chord(&mut self, beat: f64, length: f64, keys: &[u8], velocity: u8) {
         keys.iter().for_each(|key| self.note(beat, length, *key, velocity));
     }
 
-    /// A controller takes a value.
+    /// Sets a controller to a value.
     pub(super) fn control(&mut self, beat: f64, controller: u8, value: u8) {
         self.add(beat, 2, MidiMessage::Controller { controller: u7::new(controller), value: u7::new(value) });
     }
 
-    /// A controller moves evenly between two values, in steps of a sixteenth of a beat.
+    /// Moves a controller evenly between two values, in steps of a sixteenth of a beat.
     pub(super) fn ramp(&mut self, controller: u8, from: (f64, u8), to: (f64, u8)) {
         sixteenths(from.0, to.0, |beat, progress| {
             let value = f64::from(from.1) + (f64::from(to.1) - f64::from(from.1)) * progress;
@@ -84,13 +85,13 @@ impl Part {
         });
     }
 
-    /// The sustain pedal goes down at `beat` and up at the end of `length`.
+    /// Presses the sustain pedal at `beat` and releases it after `length` beats.
     pub(super) fn pedal(&mut self, beat: f64, length: f64) {
         self.control(beat, controller::PEDAL, 127);
         self.control(beat + length, controller::PEDAL, 0);
     }
 
-    /// Sets the range of the pitch wheel in semitones, by registered parameter 0.
+    /// Sets the range of the pitch wheel in semitones, with registered parameter 0.
     pub(super) fn bend_range(&mut self, semitones: u8) {
         self.bend_range = f64::from(semitones);
         for (controller, value) in [
@@ -105,7 +106,7 @@ impl Part {
         }
     }
 
-    /// The pitch wheel moves evenly between two pitches in semitones.
+    /// Moves the pitch wheel evenly between two pitches in semitones.
     pub(super) fn bend(&mut self, from: (f64, f64), to: (f64, f64)) {
         let range = self.bend_range;
         sixteenths(from.0, to.0, |beat, progress| {
@@ -122,7 +123,7 @@ impl Part {
     }
 }
 
-/// Calls `at` with a beat and the share of the way gone, on every sixteenth of a beat and at the end.
+/// Calls `at` with a beat and the share of the way passed, on every sixteenth of a beat and at the end.
 fn sixteenths(from: f64, to: f64, mut at: impl FnMut(f64, f64)) {
     let steps = ((to - from) * 16.0 + 0.5).max(1.0) as u32;
     for step in 0..=steps {
@@ -135,7 +136,7 @@ fn ticks(beat: f64) -> u32 {
     (beat * f64::from(TICKS) + 0.5) as u32
 }
 
-/// A named track of events at their ticks.
+/// A track with this name, with events at their ticks.
 fn timed(name: &'static str, events: impl Iterator<Item = (u32, TrackEventKind<'static>)>) -> Track<'static> {
     let event = |delta, kind| TrackEvent { delta: u28::new(delta), kind };
     let mut track = vec![event(0, TrackEventKind::Meta(MetaMessage::TrackName(name.as_bytes())))];

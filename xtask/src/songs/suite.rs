@@ -3,10 +3,10 @@
 use super::score::{Part, controller, file};
 use sprung::units::key_from_note_name;
 
-/// A bar's harmony: the bass, and a voicing of five notes around middle C, upwards.
+/// The harmony of a bar: the bass note, and a voicing of five notes around middle C, from low to high.
 type Chord = (u8, [u8; 5]);
 
-/// Bars 1–8, in D minor: chords over a still bass, for the marimba to turn over.
+/// Bars 1–8, in D minor: chords over a slow bass, which the marimba plays broken.
 const FIRST: [Chord; 8] = [
     (38, [57, 62, 64, 65, 69]), // Dm9
     (38, [57, 62, 64, 65, 72]), // Dm9, the seventh on top
@@ -18,7 +18,7 @@ const FIRST: [Chord; 8] = [
     (45, [57, 62, 64, 67, 73]), // A7, its fourth held against the third
 ];
 
-/// Bars 9–16: the bass walks, the lead sings.
+/// Bars 9–16: the bass moves, and the lead plays the melody.
 const SECOND: [Chord; 8] = [
     (38, [57, 62, 64, 65, 69]), // Dm9
     (40, [55, 60, 62, 64, 67]), // C ⁄ E
@@ -44,7 +44,7 @@ const THIRD: [Chord; 10] = [
     (38, [57, 62, 64, 66, 74]), // D with the ninth
 ];
 
-/// The lead, a line per bar from bar 9 on: notes, `-` for a rest, and their lengths in eighths.
+/// The melody, one line per bar from bar 9 on: notes, `-` for a rest, each with its length in eighths.
 const MELODY: [&str; 18] = [
     "A4 3 D5 1 E5 2 F5 2",
     "E5 4 C5 2 D5 2",
@@ -67,7 +67,7 @@ const MELODY: [&str; 18] = [
     "D5 8",
 ];
 
-/// First beats of the sections, and of the last two bars.
+/// First beats of the sections and of the last two bars.
 const SECOND_AT: f64 = 32.0;
 const THIRD_AT: f64 = 64.0;
 const CLOSE_AT: f64 = 96.0;
@@ -92,7 +92,7 @@ pub(super) fn compose() -> Result<Vec<u8>, String> {
     file("Suite", &tempo(), parts)
 }
 
-/// 92, slower through bar 16, then 112, and slower through the last two bars.
+/// Tempo: 92, slower through bar 16, then 112, and slower through the last two bars.
 fn tempo() -> Vec<(f64, f64)> {
     let mut tempo = vec![(0.0, 92.0)];
     tempo.extend((0..8u32).map(|n| (60.0 + 0.5 * f64::from(n), 88.0 - 4.5 * f64::from(n))));
@@ -106,7 +106,7 @@ fn bars() -> impl Iterator<Item = (f64, &'static Chord)> {
     FIRST.iter().chain(&SECOND).chain(&THIRD).enumerate().map(|(bar, chord)| (bar as f64 * 4.0, chord))
 }
 
-/// Broken chords in eighths, three, three and two; in sixteenths' company they rest in bars 9–16's second halves.
+/// Broken chords in eighths, with accents in groups of three, three and two; quieter in bars 9–16.
 fn marimba() -> Result<Part, String> {
     let mut part = Part::new("Marimba", 0, "Marimba", 112, 46)?.loosen(0.01, 8.0);
     const TURN: [usize; 8] = [0, 2, 4, 1, 3, 4, 2, 3];
@@ -117,14 +117,14 @@ fn marimba() -> Result<Part, String> {
             part.note(at + step as f64 * 0.5, 0.4, chord[*note], accent - quieter);
         }
     }
-    // The last chord, rolled upwards.
+    // The last chord, arpeggiated upwards.
     for (n, key) in [50, 57, 62, 66, 69, 74, 78].into_iter().enumerate() {
         part.note(END - 4.0 + n as f64 * 0.12, 2.0, key, 80);
     }
     Ok(part)
 }
 
-/// Chords on the pedal, lifted just before the next.
+/// Chords with the pedal, which is lifted just before the next chord.
 fn vibraphone() -> Result<Part, String> {
     let mut part = Part::new("Vibraphone", 1, "Vibraphone", 104, 80)?.loosen(0.01, 6.0);
     for (at, (_, chord)) in bars() {
@@ -141,8 +141,8 @@ fn vibraphone() -> Result<Part, String> {
     Ok(part)
 }
 
-/// The melody: struck anew each bar, slurred within it, for a struck mass fades. Phrases start from below, and long
-/// notes take vibrato from the wheel.
+/// The melody: struck again in each bar and slurred within it, because a struck mass decays. Phrases begin with a bend
+/// from below, and long notes have vibrato from the wheel.
 fn lead() -> Result<Part, String> {
     let mut part = Part::new("Lead", 2, "Sine Lead", 108, 64)?;
     part.bend_range(4);
@@ -166,7 +166,7 @@ fn lead() -> Result<Part, String> {
         rested = key.is_none();
         at = end;
     }
-    // The last note of bar 15 leans up a tone and back.
+    // The last note of bar 15 bends up a tone and back.
     part.bend((59.0, 0.0), (59.5, 2.0));
     part.bend((59.5, 2.0), (59.9, 0.0));
     part.ramp(controller::EXPRESSION, (SECOND_AT, 100), (48.0, 122));
@@ -174,7 +174,7 @@ fn lead() -> Result<Part, String> {
     Ok(part)
 }
 
-/// Roots: whole notes, then the figure of a slow dance.
+/// Root notes: first whole notes, then the rhythm of a slow dance.
 fn bass() -> Result<Part, String> {
     let mut part = Part::new("Bass", 3, "Sub Bass", 85, 64)?;
     for (at, (root, _)) in bars().filter(|(at, _)| *at >= 8.0) {
@@ -190,7 +190,7 @@ fn bass() -> Result<Part, String> {
     Ok(part)
 }
 
-/// Answers to the marimba on the off-beats, from bar 5.
+/// Answers the marimba on the off-beats, from bar 5.
 fn string() -> Result<Part, String> {
     let mut part = Part::new("String", 4, "Plucked String", 104, 88)?.loosen(0.015, 9.0);
     for (at, (root, chord)) in bars().filter(|(at, _)| (16.0..CLOSE_AT).contains(at)) {
@@ -205,7 +205,7 @@ fn string() -> Result<Part, String> {
     Ok(part)
 }
 
-/// A distant bell opens the two minor sections.
+/// A distant bell opens the two sections in minor.
 fn bell() -> Result<Part, String> {
     let mut part = Part::new("Bell", 5, "Church Bell", 84, 30)?;
     for (beat, velocity) in [(0.0, 84), (8.0, 70), (32.0, 80)] {
@@ -214,7 +214,7 @@ fn bell() -> Result<Part, String> {
     Ok(part)
 }
 
-/// Breath under the second section, and under the last bars.
+/// Breath noise under the second section and under the last bars.
 fn swell() -> Result<Part, String> {
     let mut part = Part::new("Swell", 6, "Swell", 98, 64)?;
     part.ramp(controller::EXPRESSION, (SECOND_AT, 70), (THIRD_AT, 115));
@@ -224,7 +224,7 @@ fn swell() -> Result<Part, String> {
     Ok(part)
 }
 
-/// An octave above the marimba in the third section, in broken threes against its two.
+/// An octave above the marimba in the third section: broken chords in groups of three against the marimba's two.
 fn kalimba() -> Result<Part, String> {
     let mut part = Part::new("Kalimba", 7, "Kalimba", 94, 34)?.loosen(0.012, 9.0);
     for (at, (_, chord)) in bars().filter(|(at, _)| (THIRD_AT..CLOSE_AT).contains(at)) {
@@ -236,7 +236,7 @@ fn kalimba() -> Result<Part, String> {
     Ok(part)
 }
 
-/// A roll on A that grows through the slow bar, and a D to end it.
+/// A roll on A that grows louder through the slow bar, and a D at its end.
 fn timpani() -> Result<Part, String> {
     let mut part = Part::new("Timpani", 8, "Timpani", 96, 70)?;
     for n in 0..16u8 {

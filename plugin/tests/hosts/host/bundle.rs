@@ -1,9 +1,10 @@
-//! The plugin as hosts find it: the library that cargo built beside this test, in the folders that each format wants.
+//! The plugin as hosts find it: the library that cargo built, in the folder layout of each format.
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// Environment variable: a folder with `Sprung.clap` and `Sprung.vst3` to test in place of the library beside this test.
+/// Environment variable: a folder with the `Sprung.clap` and `Sprung.vst3` to test instead of the library from this
+/// build.
 const BUNDLES: &str = "SPRUNG_BUNDLES";
 
 /// `Sprung.clap`.
@@ -23,15 +24,16 @@ pub(crate) fn vst3_library() -> PathBuf {
     vst3().join("Contents").join(architecture()).join("Sprung.so")
 }
 
-/// Whether the bundles to test were given.
+/// Whether the bundles to test were given by [`BUNDLES`].
 pub(crate) fn are_given() -> bool {
     std::env::var_os(BUNDLES).is_some()
 }
 
-/// Where the bundles are, once something has asked for them.
+/// The folder of the bundles, once it has been determined.
 static FOLDER: OnceLock<PathBuf> = OnceLock::new();
 
-/// Where the bundles are: a folder of this process's own under the target directory, made on first use.
+/// The folder of the bundles. If none was given: a folder of this process under the target directory, made on first
+/// use.
 fn folder() -> &'static Path {
     FOLDER.get_or_init(|| match std::env::var_os(BUNDLES) {
         Some(folder) => folder.into(),
@@ -39,7 +41,7 @@ fn folder() -> &'static Path {
     })
 }
 
-/// Lays the library out as bundles, once for all processes that this test starts.
+/// Copies the library into bundles, once for this process and all processes that it starts.
 fn assemble() -> PathBuf {
     let library = library();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("bundles-{}", std::process::id()));
@@ -51,19 +53,19 @@ fn assemble() -> PathBuf {
     folder
 }
 
-/// Takes the bundles away again, if they were made.
+/// Removes the bundles if this process made them.
 pub(crate) fn remove() {
     if let Some(folder) = FOLDER.get().filter(|_| !are_given()) {
         let _ = std::fs::remove_dir_all(folder);
     }
 }
 
-/// A command's environment, so that a process which it starts tests the same bundles.
+/// The environment variable of a command, so that the started process tests the same bundles.
 pub(crate) fn environment() -> (&'static str, &'static Path) {
     (BUNDLES, folder())
 }
 
-/// The dynamic library that cargo built with this test.
+/// The dynamic library that cargo built together with this test.
 fn library() -> PathBuf {
     let test = std::env::current_exe().unwrap();
     let library = test.with_file_name("libsprung_plugin.so");

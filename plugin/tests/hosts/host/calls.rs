@@ -1,4 +1,4 @@
-//! What the plugin asks of its host, counted.
+//! Counts the requests of the plugin to its host.
 
 use clack_extensions::gui::{GuiSize, HostGui, HostGuiImpl};
 use clack_extensions::latency::{HostLatency, HostLatencyImpl};
@@ -28,22 +28,22 @@ impl HostHandlers for Host {
     }
 }
 
-/// Calls that may come from any thread.
+/// Requests that may come from any thread.
 pub(crate) struct Calls {
-    /// The thread that the instance lives on.
+    /// The main thread of the instance.
     main: ThreadId,
-    /// Whether this host has the extension that tells threads apart.
+    /// Whether this host has CLAP's thread-check extension.
     tells_threads: bool,
-    /// A call on the main thread is wanted.
+    /// Whether the plugin has requested a call on the main thread.
     pub(crate) callback: AtomicBool,
-    /// Restarts asked for.
+    /// Number of requested restarts.
     pub(crate) restarts: AtomicU32,
-    /// Parameter flushes asked for.
+    /// Number of requested parameter flushes.
     pub(crate) flushes: AtomicU32,
 }
 
 impl Calls {
-    /// Nothing asked yet; made on the main thread.
+    /// No requests yet. To be called on the main thread.
     pub(crate) fn new(tells_threads: bool) -> Self {
         Self {
             main: std::thread::current().id(),
@@ -55,12 +55,12 @@ impl Calls {
     }
 }
 
-/// Calls that come on the main thread only.
+/// Requests that only come from the main thread.
 #[derive(Default)]
 pub(crate) struct MainThreadCalls {
-    /// Rescans of parameters asked for.
+    /// Number of requested rescans of parameters.
     pub(crate) rescans: Cell<u32>,
-    /// Changes of the latency told.
+    /// Number of reported latency changes.
     pub(crate) latencies: Cell<u32>,
 }
 

@@ -8,7 +8,7 @@ use clack_host::events::{EventFlags, EventHeader};
 use clack_host::prelude::*;
 use clack_host::utils::{BeatTime, SecondsTime};
 
-/// Channel, key and note id of a note, or of the notes that an event is for, where −1 is any.
+/// Channel, key and note id of a note, or of all notes that match; −1 matches any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Address {
     pub(crate) channel: i16,
@@ -16,7 +16,7 @@ pub(crate) struct Address {
     pub(crate) id: i32,
 }
 
-/// Something that a host sends.
+/// An event that a host sends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Sent {
     /// A note with a velocity of 0–1.
@@ -24,21 +24,21 @@ pub(crate) enum Sent {
     Off(Address, f64),
     Choke(Address),
     Express(Address, NoteExpressionType, f64),
-    /// A parameter's value: its knob's position, or a step.
+    /// A parameter's value: the position of its knob, or a step.
     Value(ClapId, f64),
-    /// The same bytes as [`Sent::Value`], but of a namespace that is not CLAP's.
+    /// The same bytes as [`Sent::Value`], but in a namespace that is not CLAP's.
     Foreign(ClapId, f64),
-    /// What to add to a parameter for the notes of an address.
+    /// An offset of a parameter for all notes that match an address.
     Modulate(ClapId, Address, f64),
     /// A MIDI message.
     Midi([u8; 3]),
-    /// A message of MIDI 2.0, which nobody asked for.
+    /// A MIDI 2.0 message, which the plugin has not requested.
     Midi2([u32; 4]),
-    /// The tempo in beats a minute.
+    /// The tempo in beats per minute.
     Tempo(f64),
 }
 
-/// Something that a host sends at a frame.
+/// An event with its frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Timed {
     pub(crate) frame: u64,
@@ -56,7 +56,7 @@ impl Address {
         Self { channel, key, id }
     }
 
-    /// Whichever note has this id.
+    /// All notes with this id.
     pub(crate) fn id(id: i32) -> Self {
         Self { channel: -1, key: -1, id }
     }
@@ -73,12 +73,12 @@ impl From<Pckn> for Address {
 }
 
 impl Sent {
-    /// This at a frame of the song.
+    /// This event at a frame of the song.
     pub(crate) fn at(self, frame: u64) -> Timed {
         Timed { frame, sent: self }
     }
 
-    /// Appends this to the events of a block.
+    /// Appends this event to the events of a block.
     pub(crate) fn push(self, time: u32, buffer: &mut EventBuffer) {
         match self {
             Sent::On(address, velocity) => buffer.push(&NoteOnEvent::new(time, address.pckn(), velocity)),
@@ -99,15 +99,15 @@ impl Sent {
     }
 }
 
-/// An event moved out of CLAP's namespace.
+/// Moves an event out of CLAP's namespace.
 #[allow(unsafe_code)]
 fn foreign(mut event: ParamValueEvent) -> ParamValueEvent {
-    // SAFETY: nobody reads it here as what it no longer is; whoever gets it has to look at the namespace first.
+    // SAFETY: nothing here reads the event with its old type, and a receiver must check the namespace first.
     unsafe { event.as_raw_mut() }.header.space_id = 0xB33F;
     event
 }
 
-/// A transport that plays at a tempo and tells nothing else.
+/// A transport that plays at a tempo and contains no other information.
 pub(crate) fn transport(time: u32, tempo: f64) -> TransportEvent {
     TransportEvent {
         header: EventHeader::new_core(time, EventFlags::empty()),

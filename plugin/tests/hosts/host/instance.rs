@@ -1,4 +1,4 @@
-//! One instance of the plugin, on the thread that made it: parameters, state, activation.
+//! One instance of the plugin, on the thread that created it: parameters, state, activation.
 
 use super::calls::{Calls, Host, MainThreadCalls};
 use super::{Timed, bundle};
@@ -21,7 +21,7 @@ pub(crate) struct Parameter {
     pub(crate) default: f64,
 }
 
-/// An instance that is not being played, or whose audio is elsewhere.
+/// An instance that is not processing, or whose audio part is on another thread.
 pub(crate) struct Instance {
     pub(crate) clack: PluginInstance<Host>,
 }
@@ -34,12 +34,12 @@ pub(crate) fn open() -> PluginEntry {
 }
 
 impl Instance {
-    /// A new instance in a host that tells threads apart.
+    /// A new instance in a host with the thread-check extension.
     pub(crate) fn new() -> Self {
         Self::of(&open(), true)
     }
 
-    /// A new instance from a file that is already open.
+    /// A new instance from a library that is already open.
     pub(crate) fn of(entry: &PluginEntry, tells_threads: bool) -> Self {
         let factory = entry.get_factory::<PluginFactory>().expect("the file has plugins");
         let id: &CStr = factory.plugin_descriptor(0).and_then(|descriptor| descriptor.id()).expect("it has one");
@@ -54,7 +54,8 @@ impl Instance {
         Self { clack: clack.expect("the plugin can be instantiated") }
     }
 
-    /// Runs what the plugin has asked to be run on the main thread; fails if it has asked for what it never needs.
+    /// Makes the calls on the main thread that the plugin has requested. Fails if it requested something it never
+    /// needs.
     #[track_caller]
     pub(crate) fn run_callbacks(&mut self) {
         if self.clack.access_shared_handler(|calls| calls.callback.swap(false, Ordering::Acquire)) {
@@ -65,12 +66,12 @@ impl Instance {
         assert_eq!(self.clack.access_handler(|calls| calls.latencies.get()), 0, "the latency does not change");
     }
 
-    /// Flushes that the plugin has asked for since this was asked last.
+    /// Number of flushes that the plugin has requested since the last call of this method.
     pub(crate) fn flushes(&self) -> u32 {
         self.clack.access_shared_handler(|calls| calls.flushes.swap(0, Ordering::Relaxed))
     }
 
-    /// Rescans of the parameters' values that the plugin has asked for since this was asked last.
+    /// Number of rescans of parameter values that the plugin has requested since the last call of this method.
     pub(crate) fn rescans(&self) -> u32 {
         self.clack.access_handler(|calls| calls.rescans.take())
     }
@@ -97,13 +98,13 @@ impl Instance {
             .collect()
     }
 
-    /// The host's id of the parameter with an id of the table.
+    /// The host's id of a parameter of the table.
     pub(crate) fn id(&mut self, param: sprung::params::Param) -> ClapId {
         let name = param.info().name;
         self.parameters().iter().find(|parameter| parameter.name == name).unwrap_or_else(|| panic!("no ‘{name}’")).id
     }
 
-    /// The value that the plugin gives for a parameter.
+    /// The plugin's current value of a parameter.
     pub(crate) fn value(&mut self, id: ClapId) -> Option<f64> {
         let handle = self.clack.plugin_handle();
         let params: PluginParams = handle.get_extension().expect("there are parameters");
@@ -119,14 +120,14 @@ impl Instance {
         Some(std::str::from_utf8(text).expect("text is UTF-8").to_owned())
     }
 
-    /// The value of a text that somebody typed.
+    /// The value that the plugin reads from typed text.
     pub(crate) fn parse(&mut self, id: ClapId, text: &str) -> Option<f64> {
         let handle = self.clack.plugin_handle();
         let params: PluginParams = handle.get_extension().expect("there are parameters");
         params.text_to_value(&handle, id, &CString::new(text).unwrap())
     }
 
-    /// Hands over parameter changes while the plugin does not process.
+    /// Sends parameter changes while the plugin does not process.
     pub(crate) fn flush(&mut self, events: &[Timed]) {
         let mut buffer = EventBuffer::new();
         events.iter().for_each(|timed| timed.sent.push(0, &mut buffer));
@@ -144,7 +145,7 @@ impl Instance {
         bytes
     }
 
-    /// Loads a state; says whether the plugin took it.
+    /// Loads a state. Returns whether the plugin accepted it.
     pub(crate) fn load(&mut self, bytes: &[u8]) -> bool {
         let handle = self.clack.plugin_handle();
         let state: PluginState = handle.get_extension().expect("there is state");
@@ -153,7 +154,7 @@ impl Instance {
         taken
     }
 
-    /// Loads a state whose bytes come a few at a time, as streams may deliver them.
+    /// Loads a state through a stream that delivers only a few bytes at a time.
     pub(crate) fn load_in_pieces(&mut self, bytes: &[u8], piece: usize) -> bool {
         let handle = self.clack.plugin_handle();
         let state: PluginState = handle.get_extension().expect("there is state");
@@ -161,7 +162,7 @@ impl Instance {
     }
 }
 
-/// A reader that hands out at most a few bytes at a time.
+/// A reader that returns only a few bytes at a time.
 struct Pieces<'a> {
     bytes: &'a [u8],
     piece: usize,

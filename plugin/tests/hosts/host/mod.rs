@@ -1,4 +1,4 @@
-//! A CLAP host made with clack, in which every test plays.
+//! A CLAP host made with clack, used by every test.
 
 pub(crate) mod bundle;
 mod calls;

@@ -1,4 +1,4 @@
-//! An instance that is processing: events in, audio and ended notes out, in blocks of any size.
+//! An instance that is processing: receives events, returns audio and ended notes, in blocks of any size.
 
 use super::Timed;
 use super::calls::Host;
@@ -10,43 +10,43 @@ use clack_host::events::event_types::NoteEndEvent;
 use clack_host::events::io::{OutputEventBuffer, TryPushError};
 use clack_host::prelude::*;
 
-/// A note that the plugin says has ended.
+/// A note that the plugin has reported as ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Ended {
-    /// From the start of the song.
+    /// Frames since the start of the song.
     pub(crate) frame: u64,
     pub(crate) note: Address,
 }
 
-/// What came of a song.
+/// The result of playing a song.
 #[derive(Debug, Default)]
 pub(crate) struct Rendered {
-    /// The channels of the output.
+    /// One vector of samples for each output channel.
     pub(crate) channels: Vec<Vec<f32>>,
     pub(crate) ended: Vec<Ended>,
 }
 
-/// The audio side of an instance: it may move to a thread of its own.
+/// The audio part of an instance. It may move to another thread.
 pub(crate) struct Audio {
     processor: StartedPluginAudioProcessor<Host>,
     inputs: Vec<Vec<f32>>,
     outputs: Vec<Vec<f32>>,
     input_ports: AudioPorts,
     output_ports: AudioPorts,
-    /// Whether the input is handed over in the memory of the output.
+    /// Whether the input is passed in the memory of the output.
     in_place: bool,
     sent_back: Ends,
     /// Frames since processing started.
     clock: u64,
 }
 
-/// An instance and its audio, on one thread.
+/// An instance and its audio part, on one thread.
 pub(crate) struct Player {
     pub(crate) instance: Instance,
     pub(crate) audio: Audio,
 }
 
-/// Keeps the plugin's NOTE_END events, as many as it has room for, without allocating.
+/// Stores the plugin's NOTE_END events up to its capacity, without allocating.
 struct Ends {
     notes: Vec<(u32, Address)>,
 }
@@ -70,19 +70,19 @@ impl Instance {
 }
 
 impl Player {
-    /// Activates an instance for blocks of up to `max_block` frames and starts it.
+    /// Activates an instance for blocks of up to `max_block` frames and starts processing.
     pub(crate) fn new(mut instance: Instance, sample_rate: f64, max_block: u32) -> Self {
         let audio = Audio::new(&mut instance, sample_rate, max_block);
         Self { instance, audio }
     }
 
-    /// Stops and deactivates, and gives the instance back.
+    /// Stops processing, deactivates the instance and returns it.
     pub(crate) fn stop(mut self) -> Instance {
         self.instance.clack.deactivate(self.audio.processor.stop_processing());
         self.instance
     }
 
-    /// Plays a song of `frames` frames in blocks of the lengths that `block` gives.
+    /// Plays `frames` frames of a song in blocks whose lengths `block` returns.
     pub(crate) fn render(&mut self, song: &[Timed], frames: usize, mut block: impl FnMut() -> usize) -> Rendered {
         let mut rendered = Rendered { channels: vec![Vec::new(); self.audio.outputs.len()], ended: Vec::new() };
         let mut events = EventBuffer::new();
@@ -134,13 +134,13 @@ impl Audio {
         }
     }
 
-    /// From now on the input lies in the memory of the output, and is noise.
+    /// From now on, the input is noise in the memory of the output.
     pub(crate) fn work_in_place(&mut self) {
         assert_eq!(self.inputs.len(), self.outputs.len(), "in place, there are as many inputs as outputs");
         self.in_place = true;
     }
 
-    /// Fills the input bus with something loud.
+    /// Fills the input bus with loud noise.
     pub(crate) fn feed_noise(&mut self) {
         for (channel, seed) in self.inputs.iter_mut().zip(1_u64..) {
             for (sample, n) in channel.iter_mut().zip(0..) {
@@ -157,11 +157,11 @@ impl Audio {
         self.outputs[0].len()
     }
 
-    /// Processes the next `frames` frames. Does not allocate by itself.
+    /// Processes the next `frames` frames. Does not itself allocate.
     #[allow(unsafe_code)]
     pub(crate) fn process(&mut self, events: &EventBuffer, frames: usize) -> ProcessStatus {
         self.sent_back.notes.clear();
-        // What the plugin leaves unwritten must show.
+        // Samples that the plugin does not write must be noticed.
         let unwritten = if self.in_place { 0.9 } else { f32::NAN };
         self.outputs.iter_mut().for_each(|channel| channel[..frames].fill(unwritten));
         let mut outputs = self.output_ports.with_output_buffers([AudioPortBuffer {
@@ -174,7 +174,7 @@ impl Audio {
         let inputs = if self.inputs.is_empty() {
             InputAudioBuffers::empty()
         } else if self.in_place {
-            // SAFETY: the buffers are those of the output, which outlive this call and have `frames` frames.
+            // SAFETY: the buffers are those of the output. They outlive this call and have `frames` frames.
             unsafe { InputAudioBuffers::from_raw_buffers(&same_memory, frames as u32) }
         } else {
             self.input_ports.with_input_buffers([AudioPortBuffer {
@@ -201,14 +201,14 @@ impl Audio {
         status.expect("processing succeeds")
     }
 
-    /// The tail that the plugin tells.
+    /// The tail length that the plugin reports.
     pub(crate) fn tail(&mut self) -> TailLength {
         let handle = self.processor.plugin_handle();
         let tail: PluginTail = handle.get_extension().expect("there is a tail");
         tail.get(&handle)
     }
 
-    /// Silences the plugin as hosts do between songs.
+    /// Resets the plugin, as hosts do between songs.
     pub(crate) fn reset(&mut self) {
         self.processor.reset();
         self.clock = 0;

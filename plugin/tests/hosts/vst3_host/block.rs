@@ -1,4 +1,4 @@
-//! A block that the audio thread has processed: automation and a note in, samples out.
+//! A block for the audio thread: automation and a note in, samples out.
 
 use super::{FRAMES, Vst3};
 use std::ptr::null_mut;
@@ -10,7 +10,7 @@ use vst3::Steinberg::Vst::{
 use vst3::Steinberg::{kInvalidArgument, kNotImplemented, kResultOk, tresult};
 use vst3::{Class, ComPtr, ComWrapper};
 
-/// One parameter's points in a block.
+/// The points of one parameter in a block.
 struct Queue {
     id: ParamID,
     points: Vec<(i32, ParamValue)>,
@@ -33,7 +33,7 @@ impl IParamValueQueueTrait for Queue {
         let Some(point) = usize::try_from(index).ok().and_then(|index| self.points.get(index)) else {
             return kInvalidArgument;
         };
-        // SAFETY: the caller has room for both.
+        // SAFETY: the caller provides memory for both.
         unsafe { (*frame, *value) = *point };
         kResultOk
     }
@@ -43,11 +43,11 @@ impl IParamValueQueueTrait for Queue {
     }
 }
 
-/// A block's automation: several parameters, each with its points.
+/// The automation of a block: several parameters, each with its points.
 pub(crate) struct Automation(Vec<ComPtr<IParamValueQueue>>);
 
 impl Automation {
-    /// Each parameter at two frames, where no earlier block had it.
+    /// Two points for each parameter, at the first and the middle frame. Its position changes with every point.
     pub(crate) fn of(parameters: &[ParamID], block: usize) -> Self {
         let queue = |(index, id): (usize, &ParamID)| {
             let value = |step: usize| ((block * 2 + step + index) % 97) as f64 / 96.0;
@@ -76,7 +76,7 @@ impl IParameterChangesTrait for Automation {
     }
 }
 
-/// A note that starts with the block.
+/// A note that starts at the first frame of the block.
 struct Note(i16);
 
 impl Class for Note {
@@ -93,7 +93,7 @@ impl IEventListTrait for Note {
             return kInvalidArgument;
         }
         let note = NoteOnEvent { channel: 0, pitch: self.0, tuning: 0.0, velocity: 0.8, length: 0, noteId: -1 };
-        // SAFETY: zeros are a value of the type, and the caller has room for it.
+        // SAFETY: all zeros are a valid value of the type, and the caller provides memory for it.
         unsafe {
             *event = std::mem::zeroed();
             (*event).r#type = EventTypes_::kNoteOnEvent as u16;
@@ -107,11 +107,11 @@ impl IEventListTrait for Note {
     }
 }
 
-/// A processed block's samples, left and right.
+/// The samples of a processed block, left and right.
 pub(crate) struct Block(pub(crate) [[f32; FRAMES]; 2]);
 
 impl Block {
-    /// Has the plugin process a block.
+    /// Makes the plugin process a block.
     pub(crate) fn process(plugin: &Vst3, automation: Automation, key: Option<i16>) -> Self {
         let mut samples = [[0.0; FRAMES]; 2];
         let mut channels = samples.each_mut().map(|channel| channel.as_mut_ptr());
@@ -136,7 +136,7 @@ impl Block {
             outputEvents: null_mut(),
             processContext: null_mut(),
         };
-        // SAFETY: all that is pointed at lives through the call.
+        // SAFETY: everything that is pointed to lives until the call returns.
         assert_eq!(unsafe { plugin.processor.process(&raw mut data) }, kResultOk);
         Self(samples)
     }

@@ -1,4 +1,4 @@
-//! What holds a plugin's window in the host, with a run loop that counts who is on it, or without one.
+//! The frame around a plugin's window in the host: with a run loop that counts its handlers, or without one.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -11,7 +11,7 @@ use vst3::Steinberg::{
 };
 use vst3::{Class, ComPtr, ComRef};
 
-/// A frame with a run loop. It holds references to its handlers, as the format's own example does.
+/// A frame with a run loop. It holds references to its handlers, as the example in the SDK does.
 #[derive(Default)]
 pub(crate) struct Frame {
     handlers: Mutex<Vec<(ComPtr<IEventHandler>, FileDescriptor)>>,
@@ -24,28 +24,28 @@ impl Class for Frame {
 }
 
 impl Frame {
-    /// How many handlers have come, and how many are there.
+    /// How many handlers have been registered in total, and how many are registered now.
     pub(crate) fn registered(&self) -> (usize, usize) {
         (self.registered.load(Ordering::Relaxed), self.handlers.lock().unwrap().len())
     }
 
-    /// How often a handler was called.
+    /// How often handlers have been called.
     pub(crate) fn handled(&self) -> usize {
         self.handled.load(Ordering::Relaxed)
     }
 
-    /// Calls the handlers whose file descriptors have something to read, within so many milliseconds.
+    /// Calls the handlers whose file descriptors become readable within this many milliseconds.
     pub(crate) fn turn(&self, milliseconds: i32) {
         let handlers = self.handlers.lock().unwrap().clone();
         let mut polled: Vec<_> =
             handlers.iter().map(|(_, fd)| libc::pollfd { fd: *fd, events: libc::POLLIN, revents: 0 }).collect();
-        // SAFETY: the list lives through the call and is as long as it says.
+        // SAFETY: the list lives until the call returns and has the given length.
         unsafe { libc::poll(polled.as_mut_ptr(), polled.len() as libc::nfds_t, milliseconds) };
         for ((handler, fd), poll) in handlers.iter().zip(&polled) {
             assert_eq!(poll.revents & libc::POLLNVAL, 0, "file descriptor {fd} is closed and still on the run loop");
             if poll.revents != 0 {
                 self.handled.fetch_add(1, Ordering::Relaxed);
-                // SAFETY: this list has a reference to the handler.
+                // SAFETY: this list holds a reference to the handler.
                 unsafe { handler.onFDIsSet(*fd) };
             }
         }
@@ -54,7 +54,7 @@ impl Frame {
 
 impl IRunLoopTrait for Frame {
     unsafe fn registerEventHandler(&self, handler: *mut IEventHandler, fd: FileDescriptor) -> tresult {
-        // SAFETY: the plugin gives a handler, or null.
+        // SAFETY: the plugin passes a handler or null.
         let Some(handler) = (unsafe { ComRef::from_raw(handler) }) else { return kInvalidArgument };
         self.registered.fetch_add(1, Ordering::Relaxed);
         self.handlers.lock().unwrap().push((handler.to_com_ptr(), fd));
@@ -67,7 +67,7 @@ impl IRunLoopTrait for Frame {
             return kInvalidArgument;
         };
         let removed = handlers.swap_remove(place);
-        // The last reference may go with it, and call back.
+        // This may drop the last reference, which may call back.
         drop(handlers);
         drop(removed);
         kResultOk
@@ -84,12 +84,12 @@ impl IRunLoopTrait for Frame {
 
 impl IPlugFrameTrait for Frame {
     unsafe fn resizeView(&self, view: *mut IPlugView, size: *mut ViewRect) -> tresult {
-        // SAFETY: as the caller's.
+        // SAFETY: the same conditions as for the caller.
         unsafe { resize(view, size) }
     }
 }
 
-/// A frame that offers no run loop.
+/// A frame without a run loop.
 pub(crate) struct FrameWithoutLoop;
 
 impl Class for FrameWithoutLoop {
@@ -98,13 +98,13 @@ impl Class for FrameWithoutLoop {
 
 impl IPlugFrameTrait for FrameWithoutLoop {
     unsafe fn resizeView(&self, view: *mut IPlugView, size: *mut ViewRect) -> tresult {
-        // SAFETY: as the caller's.
+        // SAFETY: the same conditions as for the caller.
         unsafe { resize(view, size) }
     }
 }
 
-/// Grants a view the size that it asks for.
+/// Gives a view the size that it requests.
 unsafe fn resize(view: *mut IPlugView, size: *mut ViewRect) -> tresult {
-    // SAFETY: the plugin gives its view, or null, and a size that lives through the call.
+    // SAFETY: the plugin passes its view or null, and a size that lives until the call returns.
     unsafe { ComRef::from_raw(view).map_or(kInvalidArgument, |view| view.onSize(size)) }
 }

@@ -1,4 +1,4 @@
-//! A VST3 host of our own, for what hosts made by others cannot be told to do: the plugin's C interfaces, called directly.
+//! A VST3 host of our own that calls the plugin's C interfaces directly, for what other hosts cannot be made to do.
 
 #![allow(unsafe_code, non_snake_case, reason = "the format is a C interface, and its names are the format's")]
 
@@ -25,13 +25,13 @@ use vst3::Steinberg::{
 };
 use vst3::{Class, ComPtr, ComWrapper, Interface};
 
-/// Frames a block.
+/// Frames per block.
 pub(crate) const FRAMES: usize = 64;
 
-/// The plugin's class. Pinned: a host finds a project's plugin by it.
+/// The plugin's class id. Pinned: a host finds a project's plugin by it.
 const CLASS: &[u8; 16] = b"SprungMassSpring";
 
-/// The library in the bundle, opened.
+/// The open library of the bundle.
 struct Library(*mut c_void);
 
 // SAFETY: a handle of the system's loader may be used on any thread.
@@ -51,7 +51,7 @@ impl Library {
 
 impl Drop for Library {
     fn drop(&mut self) {
-        // SAFETY: the library has this function, of this type; nothing of the library is used afterwards.
+        // SAFETY: the library has this function with this type, and is not used afterwards.
         unsafe {
             let exit: extern "C" fn() -> bool = std::mem::transmute(self.symbol("ModuleExit"));
             assert!(exit());
@@ -60,7 +60,7 @@ impl Drop for Library {
     }
 }
 
-/// The plugin's factory, and the library for as long as anything of it is in use.
+/// The plugin's factory. The library stays open as long as anything of it is in use.
 pub(crate) struct Module {
     factory: ComPtr<IPluginFactory>,
     library: Arc<Library>,
@@ -69,7 +69,7 @@ pub(crate) struct Module {
 impl Module {
     pub(crate) fn open() -> Self {
         let path = CString::new(bundle::vst3_library().to_str().expect("a path in Unicode")).unwrap();
-        // SAFETY: the bundle's library has these two functions, of these types.
+        // SAFETY: the bundle's library has these two functions with these types.
         unsafe {
             let library = libc::dlopen(path.as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL);
             assert!(!library.is_null(), "{path:?} cannot be loaded");
@@ -84,7 +84,7 @@ impl Module {
     }
 }
 
-/// What the plugin tells of edits in its window.
+/// Receives the plugin's reports of edits in its window.
 struct Handler;
 
 impl Class for Handler {
@@ -109,9 +109,9 @@ impl IComponentHandlerTrait for Handler {
     }
 }
 
-/// An instance of the plugin. What is called on the thread that made it is called on the host's main thread.
+/// An instance of the plugin. The thread that created it is the host's main thread.
 pub(crate) struct Vst3 {
-    // Released in this order, the library last.
+    // Fields are dropped in this order, the library last.
     controller: ComPtr<IEditController>,
     pub(crate) processor: ComPtr<IAudioProcessor>,
     component: ComPtr<IComponent>,
@@ -121,7 +121,7 @@ pub(crate) struct Vst3 {
 impl Vst3 {
     pub(crate) fn new(module: &Module) -> Self {
         let mut component = null_mut();
-        // SAFETY: what is asked for is what the pointer is for; the handler is counted by the plugin.
+        // SAFETY: each pointer is for the interface that is requested; the plugin holds a reference to the handler.
         unsafe {
             let result = module.factory.createInstance(
                 CLASS.as_ptr().cast(),
@@ -139,7 +139,7 @@ impl Vst3 {
         }
     }
 
-    /// Ready to process blocks of [`FRAMES`].
+    /// Makes the plugin ready to process blocks of [`FRAMES`].
     pub(crate) fn start(&self) {
         let mut setup = ProcessSetup {
             processMode: ProcessModes_::kRealtime as i32,
@@ -147,7 +147,7 @@ impl Vst3 {
             maxSamplesPerBlock: FRAMES as i32,
             sampleRate: 48_000.0,
         };
-        // SAFETY: the calls come in the format's order, with a setup that lives through its call.
+        // SAFETY: the calls are in the order that the format requires, and the setup lives until its call returns.
         unsafe {
             assert_eq!(self.processor.setupProcessing(&raw mut setup), kResultOk);
             for (media, direction) in
@@ -160,20 +160,20 @@ impl Vst3 {
         }
     }
 
-    /// No longer ready to process.
+    /// Ends processing.
     pub(crate) fn stop(&self) {
-        // SAFETY: the calls come in the format's order.
+        // SAFETY: the calls are in the order that the format requires.
         unsafe {
             assert_eq!(self.processor.setProcessing(0), kResultOk);
             assert_eq!(self.component.setActive(0), kResultOk);
         }
     }
 
-    /// Id, title and flags of the parameter at an index, if there is one.
+    /// Id and title of the parameter at an index; `None` if there is none.
     pub(crate) fn parameter(&self, index: i32) -> Option<(ParamID, String)> {
-        // SAFETY: zeros are a value of the type, which is a plain record of C.
+        // SAFETY: all zeros are a valid value of the type, a plain C struct.
         let mut info: ParameterInfo = unsafe { std::mem::zeroed() };
-        // SAFETY: the record lives through the call.
+        // SAFETY: the struct lives until the call returns.
         if unsafe { self.controller.getParameterInfo(index, &raw mut info) } != kResultOk {
             return None;
         }
@@ -181,38 +181,38 @@ impl Vst3 {
         Some((info.id, String::from_utf16(&title).unwrap()))
     }
 
-    /// How many parameters there are, with those that stand for controllers.
+    /// Number of parameters, including those that stand for controllers.
     pub(crate) fn parameter_count(&self) -> i32 {
-        // SAFETY: the call has no conditions.
+        // SAFETY: the call has no preconditions.
         unsafe { self.controller.getParameterCount() }
     }
 
-    /// Where a parameter stands, 0–1.
+    /// The position of a parameter, 0–1.
     pub(crate) fn position(&self, id: ParamID) -> f64 {
-        // SAFETY: the call has no conditions.
+        // SAFETY: the call has no preconditions.
         unsafe { self.controller.getParamNormalized(id) }
     }
 
-    /// Loads a state; whether the plugin took it.
+    /// Loads a state. Returns whether the plugin accepted it.
     pub(crate) fn load(&self, state: &[u8]) -> bool {
         let stream = ComWrapper::new(Stream::new(state.to_vec()));
         let stream = stream.to_com_ptr::<IBStream>().unwrap();
-        // SAFETY: the stream lives through the call.
+        // SAFETY: the stream lives until the call returns.
         unsafe { self.component.setState(stream.as_ptr()) == kResultOk }
     }
 
-    /// The state as a project keeps it.
+    /// The state as it is saved in a project.
     pub(crate) fn save(&self) -> Vec<u8> {
         let stream = ComWrapper::new(Stream::new(Vec::new()));
         let pointer = stream.to_com_ptr::<IBStream>().unwrap();
-        // SAFETY: the stream lives through the call.
+        // SAFETY: the stream lives until the call returns.
         assert_eq!(unsafe { self.component.getState(pointer.as_ptr()) }, kResultOk);
         stream.bytes()
     }
 
-    /// Opens the window in one of the host's.
+    /// Opens the plugin's window inside a window of the host.
     pub(crate) fn open_window(&self, frame: &ComPtr<IPlugFrame>, parent: u32) -> View {
-        // SAFETY: the frame and the parent outlive the view; the calls come in the format's order.
+        // SAFETY: frame and parent outlive the view; the calls are in the order that the format requires.
         unsafe {
             let view = ComPtr::from_raw(self.controller.createView(c"editor".as_ptr())).expect("a view");
             assert_eq!(view.setFrame(frame.as_ptr()), kResultOk);
@@ -225,7 +225,7 @@ impl Vst3 {
 
 impl Drop for Vst3 {
     fn drop(&mut self) {
-        // SAFETY: this comes before the last release.
+        // SAFETY: this is called before the last reference is released.
         unsafe {
             self.controller.setComponentHandler(null_mut());
             self.component.terminate();
@@ -233,30 +233,30 @@ impl Drop for Vst3 {
     }
 }
 
-/// The plugin's window, open.
+/// The plugin's open window.
 pub(crate) struct View(ComPtr<IPlugView>);
 
 impl View {
-    /// Closes the window as hosts do.
+    /// Closes the window as most hosts do.
     pub(crate) fn close(self) {
-        // SAFETY: the calls come in the format's order.
+        // SAFETY: the calls are in the order that the format requires.
         unsafe {
             assert_eq!(self.0.removed(), kResultOk, "the window closes");
             assert_eq!(self.0.setFrame(null_mut()), kResultOk);
         }
     }
 
-    /// Closes the window and lets go of it without taking the frame away, as careless hosts do.
+    /// Closes the window and releases it without removing the frame, as careless hosts do.
     pub(crate) fn close_carelessly(self) {
         // SAFETY: the view is attached.
         assert_eq!(unsafe { self.0.removed() }, kResultOk, "the window closes");
     }
 }
 
-/// How many threads of this process have this name.
+/// Number of threads of this process with this name.
 pub(crate) fn threads_called(name: &str) -> usize {
     let tasks = std::fs::read_dir("/proc/self/task").unwrap();
-    // Threads may end while they are counted.
+    // Threads may end during the count.
     let names = tasks.filter_map(|task| std::fs::read_to_string(task.unwrap().path().join("comm")).ok());
     names.filter(|found| found.trim() == name).count()
 }

@@ -1,11 +1,11 @@
-//! A state in memory, as a stream.
+//! A stream over a state in memory.
 
 use std::ffi::c_void;
 use std::sync::Mutex;
 use vst3::Class;
 use vst3::Steinberg::{IBStream, IBStream_::IStreamSeekMode_, IBStreamTrait, kInvalidArgument, kResultOk, tresult};
 
-/// Bytes, and the place in them.
+/// The bytes, and the read or write position.
 pub(super) struct Stream(Mutex<(Vec<u8>, usize)>);
 
 impl Class for Stream {
@@ -26,7 +26,7 @@ impl IBStreamTrait for Stream {
     unsafe fn read(&self, buffer: *mut c_void, wanted: i32, read: *mut i32) -> tresult {
         let (bytes, place) = &mut *self.0.lock().unwrap();
         let count = (wanted.max(0) as usize).min(bytes.len() - *place);
-        // SAFETY: the caller has room for as many bytes as it wants, and for their number if it asks for it.
+        // SAFETY: the caller provides memory for the requested bytes, and for their number unless that pointer is null.
         unsafe {
             std::ptr::copy_nonoverlapping(bytes[*place..].as_ptr(), buffer.cast::<u8>(), count);
             if let Some(read) = read.as_mut() {
@@ -39,7 +39,8 @@ impl IBStreamTrait for Stream {
 
     unsafe fn write(&self, buffer: *mut c_void, count: i32, written: *mut i32) -> tresult {
         let (bytes, place) = &mut *self.0.lock().unwrap();
-        // SAFETY: the caller has as many bytes as it says, and room for their number if it asks for it.
+        // SAFETY: the caller provides the given number of bytes, and memory for their number unless that pointer is
+        // null.
         unsafe {
             bytes.truncate(*place);
             bytes.extend_from_slice(std::slice::from_raw_parts(buffer.cast::<u8>(), count.max(0) as usize));
@@ -60,7 +61,7 @@ impl IBStreamTrait for Stream {
             _ => return kInvalidArgument,
         };
         *place = (from + offset).clamp(0, bytes.len() as i64) as usize;
-        // SAFETY: the caller has room for the place if it asks for it.
+        // SAFETY: the caller provides memory for the position unless the pointer is null.
         if let Some(result) = unsafe { result.as_mut() } {
             *result = *place as i64;
         }

@@ -1,20 +1,20 @@
-//! A voice that makes no sound and writes down what it is told.
+//! A voice for tests: it makes no sound and logs the calls that it receives.
 
 use crate::engine::note::Note;
 use crate::engine::voice_manager::{Footprint, Unison, Voice};
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// What voices were told, in that order.
+/// The calls that the voices received, in order.
 pub(super) type Log = Rc<RefCell<Vec<String>>>;
 
-/// What the instrument plays now: the number of its patch.
+/// The present state of the instrument: the number of its patch, and its unison voices.
 pub(super) struct FakeInstrument {
     pub(super) patch: u32,
     pub(super) unison: usize,
 }
 
-/// A voice that writes down what it is told, and that refuses to read another patch than its own.
+/// A voice that logs its calls, and that refuses to read another patch than the one it was started with.
 pub(super) struct FakeVoice {
     log: Log,
     cells: usize,
