@@ -4,7 +4,6 @@ use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_
 use sprung::io::Song;
 use sprung::preset::Preset;
 use sprung::render::{Job, Options, Tail, on_threads};
-use sprung::sound::Tuning;
 use std::time::Duration;
 
 fn render(criterion: &mut Criterion) {
@@ -12,8 +11,7 @@ fn render(criterion: &mut Criterion) {
     let song = Song::read(std::fs::File::open(file).unwrap(), file).unwrap();
     let programs: Vec<_> = Preset::factory().iter().map(Preset::kit).collect();
     let options = Options { sample_rate: 48_000, seed: 0, block: 4096, tail: Tail::None };
-    let job =
-        Job { song: &song, kit: &programs[0], channels: &[], programs: &programs, tuning: &Tuning::EQUAL, options };
+    let job = Job { programs: &programs, ..Job::new(&song, &programs[0], options) };
     let mut group = criterion.benchmark_group("suite.mid");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(job.song_frames()));
     for threads in [1, 2] {

@@ -2,7 +2,7 @@
 
 mod chord;
 
-use chord::{Chord, FRAMES, moving, patch};
+use chord::{Chord, FRAMES, moving, patch, routed};
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use sprung::dsp::Level;
 use sprung::engine::{Ensemble, Synth};
@@ -15,7 +15,8 @@ fn levels() -> impl Iterator<Item = Level> {
     Level::ALL.into_iter().filter(|level| level.force())
 }
 
-/// Sixteen notes of 64 modes: struck in one block, ringing, and with bend, vibrato and sweep moving.
+/// Sixteen notes of 64 modes: struck in one block; ringing; with bend, vibrato and sweep; and with sixteen routes as
+/// well.
 fn chords(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("synth");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(FRAMES as u64));
@@ -32,7 +33,12 @@ fn chords(criterion: &mut Criterion) {
                 (0..iterations).map(struck).sum()
             });
         });
-        for (name, patch, bent) in [("ringing", patch(VOICES), false), ("moving", moving(patch(VOICES)), true)] {
+        let works = [
+            ("ringing", patch(VOICES), false),
+            ("moving", moving(patch(VOICES)), true),
+            ("routed", routed(patch(VOICES)), true),
+        ];
+        for (name, patch, bent) in works {
             let mut chord = Chord::new(&patch, VOICES);
             group.bench_function(BenchmarkId::new(level.name(), name), |bencher| {
                 bencher.iter(|| chord.process(bent));
@@ -42,7 +48,7 @@ fn chords(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// From one note to all that there can be.
+/// From one note to the maximum number.
 fn voices(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("voices");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(FRAMES as u64));
@@ -54,7 +60,7 @@ fn voices(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Nothing to do.
+/// Silence.
 fn idle(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("idle");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(FRAMES as u64));

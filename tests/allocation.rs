@@ -1,4 +1,4 @@
-//! The audio thread never allocates, and neither does measuring: both under an allocator that forbids it.
+//! The audio thread never allocates, and neither does the loudness meter: tested with an allocator that forbids it.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synth};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
 
-/// Every kind of event, on every channel, stealing and choking all the while.
+/// Every kind of event, on every channel, with constant stealing and choking.
 fn storm(block: u32) -> Vec<Event> {
     let mut events = vec![];
     for n in 0..96_u32 {
@@ -22,6 +22,7 @@ fn storm(block: u32) -> Vec<Event> {
         for kind in [
             EventKind::NoteOn { key, detune: 0.1, velocity: value, id: NoteId::new(n as i32) },
             EventKind::NoteOff { key: key - 5, velocity: value, id: None },
+            EventKind::Strike { key: key + 3, contact: Sound::new(Patch::default()).strike(value, value, value) },
             EventKind::PitchBend(value),
             EventKind::ChannelPressure(value),
             EventKind::PolyPressure { key, pressure: value },
@@ -66,11 +67,11 @@ fn processing_does_not_allocate() {
     let mut synth = Synth::new(48_000.0, 1);
     for events in &blocks {
         assert_no_alloc(|| {
-            synth.process(events, &mut left, &mut right);
+            synth.process_with_input(events, &[0.1; 480], &mut left, &mut right);
             std::hint::black_box((synth.tail_frames(), synth.ended()));
         });
     }
-    // More than the pool has, so that notes of all channels give way.
+    // More voices than the pool has, so that notes on all channels are stolen.
     let mut large = Patch::default().with(Param::Decay, 10.0);
     large.modes = ModeTable::new(&[Mode::UNIT; MAX_MODES]);
     let mut ensemble = Ensemble::new(48_000.0, 1, &large, &[]);
@@ -80,7 +81,7 @@ fn processing_does_not_allocate() {
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
 }
 
-/// Ten minutes: a list of gating blocks would outgrow what it sets out with.
+/// Ten minutes: a growing list of gating blocks would exceed its initial capacity.
 #[test]
 fn measuring_keeps_nothing_that_grows() {
     let mut meter = Meter::new(8000, 1).unwrap();
@@ -98,7 +99,7 @@ fn the_ban_bites() {
     assert_ne!(violation_count(), 0);
 }
 
-/// A thousand kits a second of audio, each made while it plays and thrown away when another has taken its place.
+/// A thousand kits per second of audio, each created during playing and dropped when the next one replaces it.
 #[test]
 fn kits_come_and_go_without_allocating_or_freeing() {
     let shelf = Shelf::default();
@@ -138,6 +139,50 @@ fn kits_come_and_go_without_allocating_or_freeing() {
     assert!(most <= 18, "{most} kits are kept for 16 channels");
     drop(ensemble);
     assert_eq!(shelf.collect(), 0);
+    assert_eq!(violation_count(), 0, "allocations on the audio thread");
+}
+
+/// Bodies of the space and all that is behind the voices are exchanged and moved while they ring.
+#[test]
+fn spaces_come_and_go_without_allocating() {
+    let shelf = Shelf::default();
+    let rows: Vec<_> = PARAMS.iter().filter(|info| info.param.is_behind_voices()).collect();
+    let kits: Vec<Arc<Kit>> = (0..8)
+        .map(|n| {
+            let mut patch = modes(n).with(Param::Gain, 0.0);
+            for info in &rows {
+                patch.set(info.param, info.denormalise((n as f64 * 0.37 + 0.3).fract()));
+            }
+            Kit::of_patch(&patch.with(Param::Space, (n % 4) as f32))
+        })
+        .collect();
+    kits.iter().for_each(|kit| shelf.keep(kit));
+    let mut synth = Synth::new(48_000.0, 1);
+    synth.reserve_space();
+    // From here on somebody keeps each kit.
+    synth.set_kit(&kits[7]);
+    let (mut left, mut right) = ([0.0; 64], [0.0; 64]);
+    let mut loudest = 0.0_f32;
+    for n in 0..240_usize {
+        let strike = EventKind::NoteOn { key: (30 + n * 7 % 60) as u8, detune: 0.0, velocity: 0.8, id: None };
+        let info = rows[n * 5 % rows.len()];
+        let value = info.denormalise((n as f64 * 0.23).fract());
+        let events = [strike, EventKind::Param { param: info.param, value }].map(|kind| Event {
+            frame: (n % 50) as u32,
+            channel: 0,
+            kind,
+        });
+        assert_no_alloc(|| {
+            if n % 30 == 7 {
+                synth.set_kit(&kits[n / 30]);
+            }
+            synth.process(&events, &mut left, &mut right);
+            std::hint::black_box((synth.tail_frames(), synth.is_silent()));
+        });
+        loudest = left.iter().fold(loudest, |peak, sample| peak.max(sample.abs()));
+    }
+    assert_no_alloc(|| synth.reset());
+    assert!(loudest > 0.1, "something sounded");
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
 }
 

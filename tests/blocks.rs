@@ -1,4 +1,4 @@
-//! The same bits, ended notes and tails into whatever blocks frames are divided: random sounds, events, rates, divisions.
+//! Samples, ended notes and tails do not depend on the division into blocks: random sounds, events, rates, divisions.
 
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -19,18 +19,18 @@ const FRAMES: usize = 9_600;
 const CASES: u32 = 64;
 const RATES: [f64; 8] = [1_000.0, 8_000.0, 22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0, 768_000.0];
 
-/// What is played, and how the ensemble and the blocks divide it.
+/// What is played, and how the ensemble and the blocks divide the frames.
 #[derive(Clone, Debug)]
 struct Case {
     sample_rate: f64,
     seed: u64,
     kit: Arc<Kit>,
     programs: Vec<Arc<Kit>>,
-    /// In the order of their frames.
+    /// In order of their frames.
     events: Vec<Event>,
-    /// Lengths of blocks, over and over.
+    /// Lengths of blocks, repeated in a cycle.
     blocks: Vec<usize>,
-    /// Frames that the ensemble mixes at a time.
+    /// Number of frames that the ensemble mixes at a time.
     chunk: usize,
 }
 
@@ -48,7 +48,7 @@ fn any_patch() -> impl Strategy<Value = Patch> {
         },
     );
     let routes = prop::collection::vec((route, -60.0..60.0f32), 0..6);
-    // Half of the parameters keep their defaults: all of them at random are seldom loud for long.
+    // Half of the parameters keep their defaults, because sounds with only random parameters are rarely loud for long.
     let position = prop::option::of(0.0..1.0f64);
     (
         prop_oneof![9 => prop::collection::vec(mode.clone(), 1..20), 1 => prop::collection::vec(mode, 65..150)],
@@ -70,7 +70,7 @@ fn any_patch() -> impl Strategy<Value = Patch> {
         })
 }
 
-/// One sound on all keys, or several on some of them.
+/// One sound on all keys, or several sounds on some of the keys.
 fn any_kit() -> impl Strategy<Value = Arc<Kit>> {
     let pad = (0..4usize, prop::option::of(30.0..90.0f64), -20.0..6.0f32, -1.0..1.0f32, prop::option::of(0..3u8))
         .prop_map(|(sound, pitch, gain_db, pan, choke)| Pad { pitch, gain_db, pan, choke, ..Pad::of(sound) });
@@ -86,7 +86,7 @@ fn any_channel() -> impl Strategy<Value = u8> + Clone {
     select(vec![0, 0, 0, 0, 1, 1, 2, 9, 15])
 }
 
-/// Few, so that events meet the notes that they are for.
+/// Only few keys, so that events often match sounding notes.
 fn any_key() -> impl Strategy<Value = u8> + Clone {
     36..60u8
 }
@@ -113,6 +113,10 @@ fn any_kind() -> impl Strategy<Value = EventKind> {
     prop_oneof![
         10 => (any_key(), -0.5..0.5f32, 0.2..1.0f32, any_id())
             .prop_map(|(key, detune, velocity, id)| EventKind::NoteOn { key, detune, velocity, id }),
+        2 => (any_key(), unit.clone(), unit.clone(), unit.clone()).prop_map(|(key, material, position, impulse)| {
+            let contact = Sound::new(Patch::default()).strike(material, position, impulse);
+            EventKind::Strike { key, contact }
+        }),
         4 => (any_key(), unit.clone(), any_id())
             .prop_map(|(key, velocity, id)| EventKind::NoteOff { key, velocity, id }),
         1 => (any_key(), unit.clone()).prop_map(|(key, pressure)| EventKind::PolyPressure { key, pressure }),
@@ -134,18 +138,18 @@ fn any_kind() -> impl Strategy<Value = EventKind> {
     ]
 }
 
-/// A controller with a value as MIDI counts it.
+/// A controller with a MIDI value.
 fn control(channel: u8, controller: u8, value: u8) -> (u8, EventKind) {
     (channel, EventKind::Control { controller, value: f32::from(value) / 127.0 })
 }
 
-/// What happens at one frame: an event, a MIDI message, or a registered parameter, which takes several messages.
+/// Events at one frame: a single event, a MIDI message, or a registered parameter, which takes several messages.
 fn any_group() -> impl Strategy<Value = Vec<(u8, EventKind)>> {
     prop_oneof![
         12 => (any_channel(), any_kind()).prop_map(|one| vec![one]),
         4 => (0x80..0xF0u8, 0..128u8, 0..128u8)
             .prop_map(|(status, first, second)| parse_message(&[status, first, second]).into_iter().collect()),
-        // 0 is the bend range, 6 the number of members of an MPE zone.
+        // 0 is the bend range, 6 is the number of members of an MPE zone.
         1 => (select(vec![0, 1, 15]), select(vec![0, 6]), 0..16u8).prop_map(|(channel, number, value)| {
             vec![control(channel, 101, 0), control(channel, 100, number), control(channel, 6, value)]
         }),
@@ -179,14 +183,14 @@ fn any_case() -> impl Strategy<Value = Case> {
     )
 }
 
-/// Something that plays blocks.
+/// A synth or an ensemble.
 trait Plays {
     fn play(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]);
-    /// Adds what is known after a block besides its sound.
+    /// Records what is known after a block apart from its samples.
     fn note(&mut self, is_last: bool, about: &mut About);
 }
 
-/// What was told of a render: notes that ended, by their serial numbers, and the tail after the last block.
+/// What a render reports: ended notes, by their serial numbers, and the tail after the last block.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct About {
     ended: BTreeSet<(u64, Option<NoteId>, u8, u8)>,
@@ -221,14 +225,14 @@ impl Plays for Ensemble {
     }
 }
 
-/// Renders in blocks of these lengths, over and over; the samples' bits and what was told.
+/// Renders in blocks of these lengths, repeated in a cycle. Returns the bits of the samples and the reports.
 fn render(player: &mut impl Plays, events: &[Event], blocks: &[usize]) -> ([Vec<u32>; 2], About) {
-    // Anything but zero: what a block leaves unwritten has to show.
+    // Not zero, so that samples which a block does not write are noticed.
     let [mut left, mut right] = [(); 2].map(|()| vec![f32::NAN; FRAMES]);
     let (mut start, mut rest, mut about) = (0, events, About::default());
     for length in blocks.iter().cycle() {
         let end = FRAMES.min(start + length);
-        // A block without frames brings what happens at its place.
+        // A block without frames receives the events at its position.
         let now = rest.partition_point(|event| (event.frame as usize) < end.max(start + 1));
         let inside: Vec<Event> =
             rest[..now].iter().map(|event| Event { frame: event.frame - start as u32, ..*event }).collect();
@@ -243,12 +247,12 @@ fn render(player: &mut impl Plays, events: &[Event], blocks: &[usize]) -> ([Vec<
     ([left, right].map(|channel| channel.into_iter().map(f32::to_bits).collect()), about)
 }
 
-/// The first frame in which one of the channels differs.
+/// The first frame that differs in one of the channels.
 fn first_difference(whole: &[Vec<u32>; 2], parts: &[Vec<u32>; 2]) -> Option<usize> {
     (0..FRAMES).find(|frame| (0..2).any(|side| whole[side][*frame] != parts[side][*frame]))
 }
 
-/// Whether it sounds; an error if blocks make a difference.
+/// Returns whether the case sounds, or an error if the blocks make a difference.
 fn check(case: &Case) -> Result<bool, TestCaseError> {
     let synth = || {
         let mut synth = Synth::new(case.sample_rate, case.seed);
@@ -278,7 +282,7 @@ fn check(case: &Case) -> Result<bool, TestCaseError> {
 #[test]
 fn blocks_make_no_difference() {
     let sounding = Cell::new(0);
-    // Shrinking a case for minutes makes it no clearer.
+    // Shrinking a case for minutes does not make it clearer.
     let config = ProptestConfig { cases: CASES, max_shrink_iters: 256, ..ProptestConfig::default() };
     let result = TestRunner::new(config).run(&any_case(), |case| {
         let sounds = check(&case)?;
@@ -291,7 +295,7 @@ fn blocks_make_no_difference() {
     assert!(sounding.get() > CASES / 2, "only {} of {CASES} cases sounded", sounding.get());
 }
 
-/// A number for each kind of event. A new kind does not compile before it has one here.
+/// A number for each kind of event. A new kind does not compile until it has a number here.
 fn number(kind: EventKind) -> usize {
     match kind {
         EventKind::NoteOn { .. } => 0,
@@ -308,10 +312,11 @@ fn number(kind: EventKind) -> usize {
         EventKind::Tempo(_) => 11,
         EventKind::Choke { .. } => 12,
         EventKind::Program(_) => 13,
+        EventKind::Strike { .. } => 14,
     }
 }
 
-const KINDS: usize = 14;
+const KINDS: usize = 15;
 
 #[test]
 fn every_kind_of_event_comes_up() {

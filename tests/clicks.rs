@@ -1,4 +1,4 @@
-//! Nothing clicks: the largest jump between two samples stays within that of the undisturbed sound plus −60 dBFS.
+//! Nothing clicks: the largest step between two samples is at most that of the undisturbed sound plus −60 dBFS.
 
 mod events;
 
@@ -9,7 +9,7 @@ use sprung::patch::{Mode, ModeTable, Patch};
 
 const RATE: f64 = 48_000.0;
 const FRAMES: usize = 24_000;
-/// −60 dBFS.
+/// −60 dBFS, the allowed increase.
 const ALLOWANCE: f32 = 0.001;
 
 fn pedal(frame: u32, controller: u8, value: f32) -> Event {
@@ -24,33 +24,34 @@ fn largest_jump(patch: &Patch, programs: &[Patch], events: &[Event]) -> f32 {
     jump(&sound)
 }
 
-/// The largest jump between two samples of one channel, in a sound that both channels have.
+/// The largest step between two samples of a channel; the sound must be in both channels.
 fn jump(sound: &[Vec<f32>; 2]) -> f32 {
     for channel in sound {
         assert!(channel.iter().any(|sample| sample.abs() > 0.01), "something sounds on either channel");
     }
     let jumps = sound.iter().flat_map(|channel| channel.windows(2)).map(|pair| (pair[1] - pair[0]).abs());
-    // A NaN is a jump as well; `max` alone would pass over it.
+    // A NaN counts as a step; `max` alone would ignore it.
     jumps.fold(0.0, |most, jump| if jump.is_nan() { f32::INFINITY } else { f32::max(most, jump) })
 }
 
-/// The sounds that the disturbances are tried on: a sine, a mallet of several modes on the right and on the left, a kick
-/// that sweeps.
+/// The sounds for the tests: a sine, a mallet instrument whose modes are panned right and left, and a kick drum with a
+/// sweep.
 fn patches() -> [(&'static str, Patch); 3] {
-    // The limiter answers to what is loud, disturbed or not.
+    // The limiter would react to loud parts, whether disturbed or not.
     let sine = Patch::default().with(Param::Decay, 3.0).with(Param::Gain, 0.0).with(Param::Limiter, 0.0);
-    let mut mallet = sine.clone().with(Param::Exciter, 1.0).with(Param::Hardness, 60.0);
+    let mut mallet = sine.clone().with(Param::MalletPulse, 1.0).with(Param::MalletHardness, 60.0);
     let modes = [(1.0, 0.6, 0.7), (3.93, 0.25, -0.9), (9.6, 0.1, 0.4), (17.0, 0.05, -0.2)];
     mallet.modes = ModeTable::new(&modes.map(|(ratio, level, pan)| Mode { ratio, level, pan, ..Mode::UNIT }));
     let kick = sine.clone().with(Param::Sweep, 24.0).with(Param::SweepTime, 0.08).with(Param::Decay, 0.5);
     [("sine", sine), ("mallet", mallet), ("kick", kick)]
 }
 
-/// What a program change changes to: other modes, elsewhere between left and right, quieter and struck otherwise.
+/// The sound after a program change: other modes, panned differently, quieter and with another strike.
 fn program() -> Patch {
     let mut patch = Patch::default()
         .with(Param::Gain, -12.0)
-        .with(Param::Exciter, 2.0)
+        .with(Param::MalletLevel, -60.0)
+        .with(Param::PluckLevel, 0.0)
         .with(Param::Decay, 0.5)
         .with(Param::Limiter, 0.0);
     let modes = [(1.0, 0.5, -0.8), (2.76, 0.3, 0.9), (5.4, 0.2, -0.3)];
@@ -58,8 +59,8 @@ fn program() -> Patch {
     patch
 }
 
-/// Compares the jumps of `disturbed` to those of `undisturbed`, both made for a key and a moment, on every patch,
-/// several keys, and moments all round the phase.
+/// Compares the steps of `disturbed` with those of `undisturbed`. Both are functions of a key and a time, and are tried
+/// for every patch, several keys, and times at all phases.
 fn check(
     change: impl Fn(Patch) -> Patch,
     undisturbed: impl Fn(u8, u32) -> Vec<Event>,
@@ -68,7 +69,7 @@ fn check(
     check_against(change, |key, moment| [undisturbed(key, moment)], disturbed);
 }
 
-/// As [`check`], with several undisturbed sounds, of which the one with the largest jump counts.
+/// Like [`check`], with several undisturbed sounds, of which the one with the largest step counts.
 fn check_against<const N: usize>(
     change: impl Fn(Patch) -> Patch,
     undisturbed: impl Fn(u8, u32) -> [Vec<Event>; N],
@@ -102,7 +103,7 @@ fn stealing_every_voice_at_once_does_not_click() {
     let patch = patches()[0].1.clone().with(Param::Voices, 64.0).with(Param::Gain, -24.0);
     let chord = |frame, channel| (20..84).map(move |key| Event { channel, ..on(frame, key) });
     let events: Vec<Event> = chord(0, 0).chain(chord(4800, 1)).collect();
-    // On an ensemble, each channel has 64 voices of its own; on a synth, the second chord steals all of the first.
+    // On an ensemble, each channel has its own 64 voices; on a synth, the second chord steals all voices of the first.
     let undisturbed = largest_jump(&patch, &[], &events);
     let mut synth = Synth::new(RATE, 1);
     synth.set_patch(&patch);
@@ -121,14 +122,14 @@ fn choking_does_not_click() {
 
 #[test]
 fn striking_a_sounding_note_does_not_click() {
-    // Undisturbed are two masses of one pitch struck at once: a swept sound takes what still rings up with it.
+    // Undisturbed means two masses of the same pitch struck together: a sweep also moves what still rings.
     let other = |frame, key| Event { channel: 1, ..on(frame, key) };
     check(|patch| patch, |key, _| vec![on(0, key), other(0, key)], |key, moment| vec![on(0, key), on(moment, key)]);
 }
 
 #[test]
 fn retuning_and_bending_do_not_click() {
-    // Undisturbed is the upper of the two pitches, struck twice: on the way, modes can come to move in step.
+    // Undisturbed means the higher of the two pitches, struck twice: during the glide, modes can come into phase.
     let upper = |key| vec![on(0, key + 7), Event { channel: 1, ..on(0, key + 7) }];
     for glide in [0.0, 0.05] {
         check(
@@ -177,7 +178,7 @@ fn changing_the_preset_does_not_click() {
 fn a_note_of_another_preset_does_not_click() {
     let program = |frame| event(frame, EventKind::Program(0));
     let other = |event| Event { channel: 1, ..event };
-    // Beside the note that sounds, on its own key, and in its place where there is but one voice.
+    // Next to the sounding note, on the same key, and replacing it if there is only one voice.
     for (interval, voices) in [(7, 16.0), (0, 16.0), (7, 1.0), (0, 1.0)] {
         for later in [0, 37] {
             check(
@@ -224,7 +225,7 @@ fn turning_volume_gain_and_decay_does_not_click() {
 
 #[test]
 fn panning_does_not_click() {
-    // Undisturbed are the sound in the middle and the sound on that side, where it is louder.
+    // Undisturbed are the sound in the middle and, where it is louder, the sound on that side.
     for value in [0.1, 0.9] {
         let pan = |frame| event(frame, EventKind::Control { controller: 10, value });
         check_against(

@@ -1,4 +1,4 @@
-//! The engine as its users see it: any event, any time, any rate.
+//! The engine through its public interface: any event, any time, any sample rate.
 
 use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param};
@@ -81,7 +81,8 @@ fn a_note_starts_at_its_frame() {
 
 #[test]
 fn reset_and_prepare_bring_back_the_beginning() {
-    let patch = Patch::default().with(Param::Exciter, 3.0).with(Param::Vibrato, 50.0);
+    let patch =
+        Patch::default().with(Param::MalletLevel, -60.0).with(Param::NoiseReach, 100.0).with(Param::Vibrato, 50.0);
     let events = [on(10, 60, 1.0), on(700, 64, 0.4), off(900, 60), event(950, EventKind::PitchBend(0.5))];
     let mut synth = Synth::new(48_000.0, 1);
     synth.set_patch(&patch);
@@ -111,7 +112,7 @@ fn a_synth_falls_silent_by_itself_and_stays_silent() {
     synth.process(&[on(0, 60, 1.0)], &mut left, &mut right);
     assert!(synth.is_silent());
     let end = left.iter().rposition(|sample| *sample != 0.0).unwrap();
-    // −120 dBFS is two T60s, of 4,800 frames each, after a peak that the gain has brought down 6 dB.
+    // The gain lowers the peak by 6 dB; from there, −120 dBFS is two T60s of 4,800 frames away.
     assert!((9_400..=9_700).contains(&end), "{end}");
     assert!(left[end].abs() < 1e-6);
 }
@@ -159,7 +160,7 @@ fn rms(samples: &[f32]) -> f32 {
     (samples.iter().map(|sample| sample * sample).sum::<f32>() / samples.len() as f32).sqrt()
 }
 
-/// Periods of the lowest mode in a stretch of samples.
+/// Number of periods of the lowest mode in some samples.
 fn periods(samples: &[f32]) -> usize {
     samples.windows(2).filter(|pair| pair[0] < 0.0 && pair[1] >= 0.0).count()
 }
@@ -194,7 +195,7 @@ fn a_changed_patch_is_heard_by_a_note_that_strikes_again() {
 
 #[test]
 fn a_touch_takes_nothing_from_the_stroke_before() {
-    let soft = Patch::default().with(Param::Exciter, 1.0).with(Param::Hardness, 0.0);
+    let soft = Patch::default().with(Param::MalletPulse, 1.0).with(Param::MalletHardness, 0.0);
     let (alone, _) = render(&soft, &[on(0, 48, 1.0)], 9600);
     let (touched, _) = render(&soft, &[on(0, 48, 1.0), on(240, 48, 0.01)], 9600);
     assert!(rms(&touched) > 0.99 * rms(&alone), "{} {}", rms(&touched), rms(&alone));
@@ -224,8 +225,8 @@ fn a_sweep_from_beyond_the_spectrum_arrives() {
     }
 }
 
-/// A held key that takes the voice back after a change of patch is played by the patch that the voice was started with:
-/// its ratios, decay, tracking and tuning, not those of the new one.
+/// After a change of patch, a held key that takes back the voice is played with the patch of the voice's start: its
+/// ratios, decay, tracking and tuning, not those of the new patch.
 #[test]
 fn a_voice_returns_to_a_held_key_in_its_own_patch() {
     let first = Patch::default().with(Param::Decay, 20.0).with(Param::Limiter, 0.0);
@@ -248,7 +249,7 @@ fn a_voice_returns_to_a_held_key_in_its_own_patch() {
     }
 }
 
-/// Values that are all set at once in silence are heard as if they had always been there, and modulation stays.
+/// Values that are all set at once during silence sound as if they had always been set, and modulation is kept.
 #[test]
 fn values_set_at_once_have_no_slopes() {
     let mut values = Preset::find("Marimba").unwrap().patch.values;
@@ -270,7 +271,7 @@ fn values_set_at_once_have_no_slopes() {
     assert_eq!(found[..4800], expected[9600..14_400]);
 }
 
-/// The left side of what a synth plays.
+/// The left channel of what a synth plays.
 fn played(synth: &mut Synth, events: &[Event]) -> Vec<f32> {
     let (mut left, mut right) = (vec![0.0; 14_400], vec![0.0; 14_400]);
     synth.process(events, &mut left, &mut right);

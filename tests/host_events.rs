@@ -1,4 +1,4 @@
-//! What plugin hosts and MPE controllers ask of the engine: expressions, modulation, ended notes, tails.
+//! What plugin hosts and MPE controllers need from the engine: expressions, modulation, ended notes, tails.
 
 use proptest::prelude::*;
 use sprung::dsp::CONTROL_FRAMES;
@@ -43,7 +43,7 @@ fn render(patch: &Patch, events: &[Event], frames: usize) -> [Vec<f32>; 2] {
     [left, right]
 }
 
-/// A sine that hardly decays, at full level and as it is.
+/// A sine that hardly decays, at full level and without further processing.
 fn sine() -> Patch {
     Patch::default().with(Param::Decay, 60.0).with(Param::Gain, 0.0).with(Param::Limiter, 0.0)
 }
@@ -106,7 +106,7 @@ fn wildcards_choose_notes() {
     }
 }
 
-/// Spectral centroid over the harmonics of a note, in harmonics.
+/// Spectral centroid over the harmonics of a note, as a harmonic number.
 fn centroid(samples: &[f32], frequency: f64, harmonics: usize) -> f64 {
     let (mut sum, mut weighted) = (0.0, 0.0);
     for harmonic in 1..=harmonics {
@@ -155,7 +155,7 @@ fn a_note_with_an_offset_of_its_own_heeds_no_other() {
         (&both[..], 220),
         (&[both[0], both[1], modulate(RATE as u32, None, Param::Tune, 0.0)], 220),
         (&[both[0], modulate(0, Some(2), Param::Tune, 0.5)], 220),
-        // The offset goes with the parameter's value.
+        // The offset is added to the parameter's value, also when that changes later.
         (
             &[
                 both[0],
@@ -186,7 +186,7 @@ fn a_note_follows_its_patch_while_another_body_is_made_ready() {
 
 #[test]
 fn mpe_members_bend_by_48_semitones_and_their_master_bends_all() {
-    // Registered parameter 6 on channel 1: fifteen members.
+    // Registered parameter 6 on channel 1: a zone with fifteen members.
     let zone = [control(0, 101, 0), control(0, 100, 6), control(0, 6, 15)];
     let bend = |channel, value| Event { frame: 0, channel, kind: EventKind::PitchBend(value) };
     for (events, expected) in [
@@ -200,7 +200,7 @@ fn mpe_members_bend_by_48_semitones_and_their_master_bends_all() {
         let [left, _] = render(&sine(), &all, 2 * RATE);
         assert!(periods(&left[RATE - 1..]).abs_diff(expected) <= 1, "{events:?}: {}", periods(&left[RATE - 1..]));
     }
-    // The master's pedal holds its members' notes, until the zone is dissolved.
+    // The master channel's pedal holds the notes of its members until the zone is dissolved.
     let dissolve = control(0, 6, 0);
     let pedal = |events: &[Event]| {
         let off = EventKind::NoteOff { key: 57, velocity: 0.5, id: None };
@@ -269,7 +269,7 @@ proptest! {
     }
 }
 
-/// Renders until silence; the frame at which it came.
+/// Renders until silence and returns the frame at which it begins.
 fn frames_to_silence(synth: &mut Synth) -> u64 {
     let (mut left, mut right) = ([0.0; CONTROL_FRAMES], [0.0; CONTROL_FRAMES]);
     let mut frames = 0;
@@ -278,7 +278,7 @@ fn frames_to_silence(synth: &mut Synth) -> u64 {
         frames += 1;
         assert!(frames < 4_000_000);
     }
-    // Silence is noticed with the first frame of it.
+    // The first silent frame is included in `frames`.
     frames - 1
 }
 
@@ -289,7 +289,7 @@ fn tails_are_told_exactly() {
         let patch = preset.patch.clone().with(Param::Decay, preset.patch.get(Param::Decay).min(1.0));
         for off in [false, true] {
             let mut synth = synth(&patch);
-            // Beyond the longest exciter.
+            // Longer than the longest exciter.
             let (mut left, mut right) = (vec![0.0; 60_017], vec![0.0; 60_017]);
             let release = EventKind::Release { notes: Notes::default(), velocity: 0.5 };
             let events = [on(0, 0, 60, 1), on(8_000, 0, 67, 2), event(59_000, release)];
@@ -323,10 +323,12 @@ fn a_tail_is_told_of_what_cannot_be_heard_yet_and_of_what_was_retuned() {
 
 #[test]
 fn a_tail_told_during_a_strike_is_never_too_short() {
-    for (exciter, time) in [(0.0, 0.1), (1.0, 0.1), (3.0, 0.5)] {
+    for (pulse, mallet, reach, time) in [(0.0, 0.0, 0.0, 0.1), (1.0, 0.0, 0.0, 0.1), (0.0, -60.0, 100.0, 0.5)] {
         let patch = Patch::default()
-            .with(Param::Exciter, exciter)
-            .with(Param::Hardness, 0.0)
+            .with(Param::MalletPulse, pulse)
+            .with(Param::MalletLevel, mallet)
+            .with(Param::NoiseReach, reach)
+            .with(Param::MalletHardness, 0.0)
             .with(Param::NoiseTime, time)
             .with(Param::Decay, 0.2);
         let mut synth = synth(&patch);
@@ -334,13 +336,16 @@ fn a_tail_told_during_a_strike_is_never_too_short() {
         synth.process(&[on(0, 0, 60, 1)], &mut left, &mut right);
         let told = synth.tail_frames();
         let found = frames_to_silence(&mut synth);
-        assert!(told + 1 >= found && told < found + 2 * RATE as u64, "{exciter}: {told} told, {found} found");
+        assert!(
+            told + 1 >= found && told < found + 2 * RATE as u64,
+            "{pulse}, {mallet}, {reach}: {told} told, {found} found"
+        );
     }
 }
 
 #[test]
 fn a_note_that_never_ends_has_an_endless_tail() {
-    // The original formula rounds so little damping to none.
+    // The original formula rounds such a small damping to zero.
     let endless = Mode { ratio: 0.25, decay: 10.0, ..Mode::UNIT };
     let short = Mode { ratio: 2.0, decay: 0.01, ..Mode::UNIT };
     for modes in [&[endless][..], &[endless, short]] {
@@ -351,7 +356,7 @@ fn a_note_that_never_ends_has_an_endless_tail() {
         let (mut left, mut right) = (vec![0.0; 4800], vec![0.0; 4800]);
         for events in [&[on(0, 0, 110, 1)][..], &[]] {
             events.iter().for_each(|event| synth.handle(event));
-            // While the strike is still to come, and long after it.
+            // Before the strike, and long after it.
             assert!(synth.tail_frames() > 1 << 49, "{} frames", synth.tail_frames());
             synth.process(&[], &mut left, &mut right);
         }

@@ -1,4 +1,4 @@
-//! The limiter: what passes unchanged, how high the waveform between samples comes, and how the gain moves.
+//! The limiter: what passes unchanged, the highest level between samples, and how the gain moves.
 //!
 //! True peaks are measured by `ebur128`.
 
@@ -11,21 +11,21 @@ use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::preset::Preset;
 use sprung::render::{Job, Options, Tail};
-use sprung::sound::{Kit, Tuning};
+use sprung::sound::Kit;
 use sprung::units::{db_from_gain, gain_from_db};
 use std::f64::consts::TAU;
 
-/// What passes bit for bit stays below this, in dBFS true peak.
+/// True peak in dBFS up to which signals pass bit for bit.
 const TRANSPARENT: f64 = -1.0;
 
-/// What the limiter guarantees, in dBFS true peak.
+/// Highest true peak in dBFS that the limiter guarantees.
 const HIGHEST: f64 = -0.3;
 
 const RATES: [u32; 6] = [22_050, 44_100, 48_000, 88_200, 96_000, 192_000];
 
 type Stereo = [Vec<f32>; 2];
 
-/// True peak in dBFS. Silence follows, so that the last points between samples count.
+/// True peak in dBFS. Silence is appended, so that the last points between samples count.
 fn true_peak(rate: u32, [left, right]: &Stereo) -> f64 {
     let mut meter = EbuR128::new(2, rate, Mode::TRUE_PEAK).unwrap();
     meter.add_frames_planar_f32(&[left, right]).unwrap();
@@ -40,7 +40,7 @@ fn limited(rate: u32, stereo: &Stereo) -> Stereo {
     [left, right]
 }
 
-/// The same on the left, and at half the level on the right.
+/// A stereo signal whose right channel has half the level of the left.
 fn stereo(samples: impl Iterator<Item = f64>) -> Stereo {
     let left: Vec<f32> = samples.map(|sample| sample as f32).collect();
     let right = left.iter().map(|sample| 0.5 * sample).collect();
@@ -61,7 +61,7 @@ fn noise(mut state: u64) -> impl Iterator<Item = f64> {
 
 const FRAMES: usize = 4800;
 
-/// Signals of full scale that ask most of a limiter. Frequencies are those of the sample rate.
+/// Full-scale signals that are most difficult for a limiter. Frequencies are relative to the sample rate.
 fn adversaries() -> Vec<(String, Stereo)> {
     let mut signals = Vec::new();
     for period in [1, 2, 3, 4, 5, 7, 11, 50, 240] {
@@ -81,7 +81,7 @@ fn adversaries() -> Vec<(String, Stereo)> {
     signals
 }
 
-/// White noise that dies away.
+/// White noise that decays.
 fn burst(seed: u64) -> Stereo {
     stereo(noise(seed).enumerate().map(|(n, sample)| sample * libm::exp(-(n as f64) / 1000.0)).take(FRAMES))
 }
@@ -92,7 +92,7 @@ fn a_true_peak_below_the_threshold_passes_bit_for_bit() {
         let bursts = (0..4).map(|seed| (format!("burst {seed}"), burst(seed)));
         for (name, signal) in adversaries().into_iter().chain(bursts) {
             let signal = scaled(&signal, gain_from_db(TRANSPARENT - 0.001 - true_peak(rate, &signal)));
-            // From 96 kHz on the meter looks at fewer points; the limiter looks at as many as below.
+            // From 96 kHz on, the meter evaluates fewer points between samples than the limiter does.
             let signal = scaled(&signal, gain_from_db(f64::min(0.0, TRANSPARENT - true_peak(48_000, &signal))));
             assert!(limited(rate, &signal) == signal, "{name} at {rate} Hz");
         }
@@ -104,7 +104,7 @@ fn a_true_peak_above_it_is_brought_down() {
     let mut high = Vec::new();
     for rate in RATES {
         for (name, signal) in adversaries() {
-            // A sine of full scale at a quarter of the sample rate can have all samples below the threshold.
+            // A full-scale sine at a quarter of the sample rate can have all of its samples below the threshold.
             for (gain_db, highest) in [(0.0, -0.2), (3.0, HIGHEST), (20.0, HIGHEST)] {
                 let peak = true_peak(rate, &limited(rate, &scaled(&signal, gain_from_db(gain_db))));
                 if peak > highest {
@@ -116,8 +116,8 @@ fn a_true_peak_above_it_is_brought_down() {
     assert!(high.is_empty(), "\n{}", high.join("\n"));
 }
 
-/// Noise up to half the sample rate may turn round between two samples that are both below the threshold: nothing
-/// without latency can know. Once a sample has exceeded the threshold, it is bounded like everything.
+/// Noise up to half the sample rate may have a peak between two samples that are both below the threshold: no limiter
+/// without latency can know it. After a sample has exceeded the threshold, noise is limited like everything else.
 #[test]
 fn white_noise_may_exceed_full_scale_once() {
     for seed in 0..40 {
@@ -129,7 +129,7 @@ fn white_noise_may_exceed_full_scale_once() {
     }
 }
 
-/// Gain of each frame that is loud enough to tell.
+/// The gain of each frame that is loud enough to measure it; `None` for the others.
 fn gains(before: &[f32], after: &[f32]) -> Vec<Option<f64>> {
     let gain = |(before, after): (&f32, &f32)| (before.abs() > 1e-3).then(|| f64::from(*after) / f64::from(*before));
     before.iter().zip(after).map(gain).collect()
@@ -144,7 +144,7 @@ fn steady_tones_are_not_distorted() {
             let settled: Vec<f64> = gains(&tone[0], &left).split_off(24_000).into_iter().flatten().collect();
             let (least, most) =
                 settled.iter().fold((1.0, 0.0), |(a, b), gain| (f64::min(a, *gain), f64::max(b, *gain)));
-            // The peaks that are looked at lie differently in each period: 0.01 dB.
+            // The measured points of the peaks differ from period to period: 0.01 dB.
             assert!(most < 1.0 && most / least < 1.001_2, "{frequency} Hz, {level:.2}: {least} to {most}");
             assert!(left.iter().zip(&right).all(|(left, right)| 0.5 * left == *right), "the sides are linked");
         }
@@ -162,14 +162,14 @@ fn the_gain_falls_at_once_holds_and_rises_without_haste() {
     let [left, _] = limited(48_000, &signal);
     assert!(left[..burst.start] == signal[0][..burst.start], "unchanged before");
     let gains: Vec<f64> = gains(&signal[0], &left).split_off(burst.end).into_iter().flatten().collect();
-    // 46 of 48 frames of a period are loud enough to tell.
+    // 46 of the 48 frames of a period are loud enough to measure.
     let at = |milliseconds: usize| gains[milliseconds * 46];
     assert!((at(0) - 0.4025).abs() < 0.005, "{}", at(0));
     assert!((at(25) / at(0) - 1.0).abs() < 1e-5, "held: {}", at(25));
     let decibels: Vec<f64> = gains.iter().map(|gain| db_from_gain(*gain)).collect();
     for pair in decibels.windows(2) {
         let rise = pair[1] - pair[0];
-        // Three frames lie between two of these at most.
+        // Between two measured frames are at most three frames.
         assert!((-1e-4..0.15 / 48.0 * 3.0).contains(&rise), "{rise} dB in a frame or three");
     }
     assert!(decibels[46 * 100] < -2.5 && decibels[46 * 350] > -0.5, "{} {}", decibels[4600], decibels[46 * 350]);
@@ -209,18 +209,8 @@ fn a_rendered_chord_stays_below_full_scale_and_tells_how_much_was_lowered() {
     let song = Song::chord(&[60.0, 64.0, 67.0, 72.0], 1.0, 0.5);
     let render = |patch: &Patch| {
         let options = Options { sample_rate: 48_000, seed: 0, block: 512, tail: Tail::None };
-        let (mut sound, job) = (
-            [vec![], vec![]],
-            Job {
-                song: &song,
-                kit: &Kit::of_patch(patch),
-                channels: &[],
-                programs: &[],
-                tuning: &Tuning::EQUAL,
-                options,
-            },
-        );
-        let rendered = job.render(|left, right| {
+        let mut sound = [vec![], vec![]];
+        let rendered = Job::new(&song, &Kit::of_patch(patch), options).render(|left, right| {
             sound[0].extend(left);
             sound[1].extend(right);
             Ok(())
@@ -239,7 +229,7 @@ fn a_rendered_chord_stays_below_full_scale_and_tells_how_much_was_lowered() {
             assert!(sound == off, "{}: {unlimited:.2} dBFS passes", preset.name);
         } else if unlimited > 0.0 {
             let lowered = db_from_gain(work.least_gain);
-            // A first peak is cut off, and only the later ones are lowered.
+            // A first peak is clipped, and only the later peaks are lowered by the gain.
             assert!(lowered < -0.9 && lowered > -unlimited - 2.5, "{}: {unlimited:.2} {lowered:.2}", preset.name);
             assert!(work.frames > 100, "{}: {}", preset.name, work.frames);
         }
@@ -305,7 +295,7 @@ fn switching_is_heard_at_once_but_not_as_a_click() {
     let [with, without] = [events, chord(1.0)].map(|events| play(48_000, &patch, &events, 2.5));
     let off = play(48_000, &patch.with(Param::Limiter, 0.0), &chord(1.0), 2.5);
     assert!(with[0][..24_000] == without[0][..24_000] && with[0][24_000..] != without[0][24_000..]);
-    // The gain rises as after a last peak.
+    // The gain rises as it does after a last peak.
     let gains: Vec<f64> = gains(&off[0], &with[0]).split_off(24_000).into_iter().flatten().collect();
     assert!(gains.windows(2).all(|pair| (-1e-4..1e-3).contains(&(pair[1] - pair[0]))));
     assert_eq!(gains.last(), Some(&1.0));
@@ -346,7 +336,7 @@ fn what_is_not_finite_does_not_come_out() {
             assert!(finite(&left) && finite(&right), "{bad} at {at}");
             assert!((left[47_999] - 0.1).abs() < 1e-3, "{bad}: it goes on");
         }
-        // What became 0 is told: the limiter must not hide a defect.
+        // Samples set to 0 are counted, because the limiter must not hide a defect.
         assert_eq!(limiter.work().non_finite, if bad.is_finite() { 0 } else { 10 }, "{bad}");
     }
 }
@@ -371,7 +361,7 @@ proptest! {
         while start < left.len() {
             let end = left.len().min(start + blocks.next().unwrap());
             let (left, right) = (&mut left[start..end], &mut right[start..end]);
-            // As an engine that knows of silence does.
+            // As an engine does that detects silence.
             if !limiter.is_idle() || left.iter().chain(&*right).any(|sample| *sample != 0.0) {
                 limiter.process(true, left, right);
             }

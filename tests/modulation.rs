@@ -1,4 +1,4 @@
-//! What routes do to a note: every source and kind of destination, heard.
+//! Audible effects of routes on a note: every source, and every kind of destination.
 
 use sprung::engine::{Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param, Param::*};
@@ -23,7 +23,8 @@ fn control(frame: u32, controller: u8, value: f32) -> Event {
     event(frame, EventKind::Control { controller, value })
 }
 
-/// A long note of one mass, at full level whatever the velocity, with routes: source, destination, per cent of travel.
+/// A patch for a long note of one mass, at full level for every velocity. Routes are source, destination, amount in per
+/// cent.
 fn patch(routes: &[(Source, Param, f32)]) -> Patch {
     let mut patch = Patch::default().with(Decay, 60.0).with(Velocity, 0.0).with(Limiter, 0.0).with(Release, 60.0);
     for (place, (source, destination, amount)) in routes.iter().enumerate() {
@@ -42,13 +43,13 @@ fn render(patch: &Patch, seed: u64, events: &[Event], frames: usize) -> Vec<f32>
     left
 }
 
-/// Largest magnitude of 100 ms from a time on.
+/// Peak of 100 ms, starting at a time in seconds.
 fn peak(sound: &[f32], seconds: f64) -> f32 {
     let start = (seconds * RATE) as usize;
     sound[start..start + 4800].iter().fold(0.0, |peak, sample| peak.max(sample.abs()))
 }
 
-/// Frequency of 100 ms from a time on, by the first and last upward zero crossing.
+/// Frequency of 100 ms, starting at a time in seconds, from the first and the last upward zero crossing.
 fn frequency(sound: &[f32], seconds: f64) -> f64 {
     let start = (seconds * RATE) as usize;
     let part = &sound[start..start + 4800];
@@ -66,7 +67,7 @@ fn assert_near(found: f64, expected: f64, tolerance: f64) {
     assert!((found / expected - 1.0).abs() < tolerance, "{found}, not {expected}");
 }
 
-/// How far a source moves the gain of a note, in dB: 12 dB by a sixth of the knob.
+/// Checks how far a source moves the gain of a note, in dB: a sixth of the knob's range is 12 dB.
 #[track_caller]
 fn assert_moves_gain(source: Source, events: &[Event], expected_db: f64) {
     let frames = 24_000;
@@ -98,7 +99,7 @@ fn sources_of_the_strike_and_the_hand_move_a_gain() {
         (Source::Macro3, vec![on(0, 60, 1.0), event(9600, EventKind::Param { param: Macro3, value: 25.0 })], 3.0),
         (Source::Envelope1, vec![on(0, 60, 1.0)], 6.0),
     ] {
-        // Vibrato by wheel and pressure would not change levels, but crossings of the two would differ.
+        // Vibrato from wheel and pressure would not change levels, but it would shift the zero crossings.
         assert_moves_gain(source, &events, expected);
     }
 }
@@ -106,7 +107,7 @@ fn sources_of_the_strike_and_the_hand_move_a_gain() {
 #[test]
 fn an_oscillator_at_the_vibrato_s_rate_and_depth_is_a_vibrato() {
     let vibrato = patch(&[]).with(Vibrato, 96.0).with(VibratoRate, 6.0);
-    // 96 cents are 1 % of the travel of `tune`.
+    // 96 cents are 1 % of the range of `tune`.
     let routed = patch(&[(Source::Lfo1, Tune, 1.0)]).with(Lfo1Rate, 6.0);
     let events = [on(100, 69, 1.0)];
     let (expected, found) = (render(&vibrato, 0, &events, 48_000), render(&routed, 0, &events, 48_000));
@@ -116,7 +117,7 @@ fn an_oscillator_at_the_vibrato_s_rate_and_depth_is_a_vibrato() {
 
 #[test]
 fn a_tempo_sets_the_rate_and_a_fade_lets_it_begin_slowly() {
-    // A square that lasts a beat: up for half a beat, down for the other half.
+    // A square wave with a period of one beat: up for half a beat, then down.
     let square = patch(&[(Source::Lfo2, Tune, 10.0)]).with(Lfo2Sync, 4.0).with(Lfo2Shape, 3.0);
     let sound = render(&square, 0, &[event(0, EventKind::Tempo(60.0)), on(0, 69, 1.0)], 96_000);
     let (up, down) = (440.0 * libm::exp2(9.6 / 12.0), 440.0 * libm::exp2(-9.6 / 12.0));
@@ -146,14 +147,14 @@ fn an_envelope_follows_the_key() {
 
 #[test]
 fn what_a_strike_reads_is_moved_by_what_it_knows() {
-    // Velocity makes the sweep: 15 semitones at full velocity.
+    // The velocity sets the sweep: 15 semitones at full velocity.
     let routed = patch(&[(Source::Velocity, Sweep, 12.5)]).with(SweepTime, 0.2);
     for velocity in [0.25, 1.0] {
         let plain = patch(&[]).with(SweepTime, 0.2).with(Sweep, 15.0 * velocity);
         let events = [on(0, 60, velocity)];
         assert!(render(&routed, 0, &events, 9600) == render(&plain, 0, &events, 9600), "{velocity}");
     }
-    // As do the modulators' own times.
+    // The same for the times of the modulators.
     let envelope = |amount| patch(&[(Source::Velocity, Envelope1Hold, amount), (Source::Envelope1, Tune, 12.5)]);
     let plain = envelope(0.0).with(Envelope1Hold, 5.0);
     assert!(render(&envelope(50.0), 0, &[on(0, 60, 1.0)], 48_000) == render(&plain, 0, &[on(0, 60, 1.0)], 48_000));
@@ -178,9 +179,9 @@ fn routes_scale_each_other() {
         let sound = render(patch, 0, &[full, control(0, 1, wheel), on(0, 57, 1.0)], 20_000);
         12.0 * libm::log2(frequency(&sound, 0.2) / 220.0)
     };
-    // Vibrato by the wheel would blur what is measured.
+    // Vibrato from the wheel would disturb the measurement.
     by_wheel.set(Route14, 0.0);
-    // Half of the travel of an amount is from 12.5 % to −87.5 %.
+    // An amount of 12.5 % moved down by half of its range is −87.5 %.
     assert!((pitch(&by_wheel, 0.0) - 12.0).abs() < 0.01);
     assert!((pitch(&by_wheel, 0.125) - 0.0).abs() < 0.01);
     let mut scaled = patch(&[(Source::Macro1, Tune, 12.5)]).with(Route14, 0.0);
@@ -198,7 +199,7 @@ fn a_shared_oscillator_is_the_same_for_all_notes() {
         let late = render(&patch.clone().with(Voices, 1.0), 0, &[on(0, 45, 1.0), on(14_400, 57, 1.0)], 48_000);
         let early = render(&patch, 0, &[on(0, 57, 1.0)], 48_000);
         let ratio = frequency(&late, 0.6) / frequency(&early, 0.6);
-        // Within 100 ms of a rise by 10 semitones a second, crossings are counted from one period or the next.
+        // The pitch rises by 10 semitones per second, so within 100 ms the zero crossings depend slightly on the phase.
         assert_eq!((ratio - 1.0).abs() < 4e-3, same, "{ratio}");
     }
 }
@@ -251,8 +252,18 @@ fn a_level_starts_where_its_modulation_starts() {
 }
 
 #[test]
+fn a_decay_that_moves_only_in_the_first_tick_stays_there() {
+    // From a T60 of about 7 s to one of 30 ms, shortly after the strike and before it.
+    let falls = patch(&[(Source::Lfo1, Decay, 30.0)]).with(Decay, 0.5).with(Lfo1Shape, 3.0).with(Lfo1Rate, 0.1);
+    let [late, early] =
+        [49.999, 50.001].map(|phase| render(&falls.clone().with(Lfo1Phase, phase), 0, &[on(0, 60, 1.0)], 24_000));
+    assert!(peak(&early, 0.0) > 0.1 && peak(&early, 0.1) < 1e-3, "{}", peak(&early, 0.1));
+    assert!(peak(&late, 0.1) < 1e-3, "{}", peak(&late, 0.1));
+}
+
+#[test]
 fn a_brightness_does_not_read_a_strike_again() {
-    // The envelope is at 0 at the strike: nothing that the strike has read moves later.
+    // The envelope is 0 at the strike; its later movement does not affect what was read at the strike.
     let routed = patch(&[(Source::Envelope1, Tilt, 50.0)]).with(Envelope1Attack, 0.1);
     let events = [on(0, 60, 1.0), control(12_000, 74, 0.2)];
     assert!(render(&routed, 0, &events, 24_000) == render(&patch(&[]), 0, &events, 24_000));
@@ -280,8 +291,9 @@ fn what_a_host_moves_of_a_sounding_note_slides_all_the_way() {
     assert_near(pitch(&turned, later(Route1, 0.0625)), 2.0, 1e-4);
 }
 
-/// A sound for which every quantity matters in one of four forms: all sources are routed somewhere.
-fn busy(exciter: f32) -> Patch {
+/// A sound for which every quantity matters in one of four forms: all sources are routed somewhere. The forms are moved by
+/// an impulse, by a mallet's contact, by a pluck, and by noise and a bow.
+fn busy(form: usize) -> Patch {
     let pitch = [
         Source::Lfo1,
         Source::Lfo2,
@@ -303,7 +315,13 @@ fn busy(exciter: f32) -> Patch {
     let modes = [1.0, 2.3, 3.9].map(|ratio| Mode { ratio, pan: ratio - 2.0, strike: 0.5, ..Mode::UNIT });
     patch.modes = ModeTable::new(&modes);
     for (param, value) in [
-        (Exciter, exciter),
+        (MalletPulse, if form == 1 { 1.0 } else { 0.0 }),
+        (MalletHardness, 20.0),
+        (MalletLevel, if form < 2 { 0.0 } else { -60.0 }),
+        (PluckLevel, if form == 2 { 0.0 } else { -60.0 }),
+        (NoiseReach, if form == 3 { 80.0 } else { 0.0 }),
+        (NoiseHits, 2.0),
+        (BowLevel, if form == 3 { -12.0 } else { -60.0 }),
         (Velocity, 50.0),
         (Sweep, 12.0),
         (SweepTime, 0.2),
@@ -337,15 +355,17 @@ fn every_quantity_can_be_moved_and_is_heard() {
         event(4000, EventKind::PitchBend(0.5)),
         event(28_000, EventKind::NoteOff { key: 64, velocity: 0.9, id: None }),
     ];
-    let deaf = PARAMS.iter().filter(|info| info.is_modulatable() && info.param != Route16).filter(|info| {
-        (0..4).all(|exciter| {
-            let plain = busy(exciter as f32).with(Macro1, 100.0).with(Route16, -25.0);
+    // Without sound that comes in, its level is not heard.
+    let heard = PARAMS.iter().filter(|info| info.is_modulatable() && ![Route16, InputLevel].contains(&info.param));
+    let deaf = heard.filter(|info| {
+        (0..4).all(|form| {
+            let plain = busy(form).with(Macro1, 100.0).with(Route16, -25.0);
             let mut moved = plain.clone();
             let route =
                 Route { source: Source::Macro1, destination: info.param, response: Response::Linear, scale: None };
             moved.routes.set(15, Some(route));
             let frames = 40_000;
-            // Down, or up for what is at its least.
+            // Moves the parameter down, or up if it is at its minimum.
             render(&plain, 0, &events, frames) == render(&moved, 0, &events, frames)
                 && render(&plain, 0, &events, frames) == render(&moved.with(Route16, 25.0), 0, &events, frames)
         })

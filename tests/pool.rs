@@ -1,4 +1,4 @@
-//! The pool of voices: sixteen channels that want more of it than there is, and bodies of many cells.
+//! The voice pool: sixteen channels that need more voices than there are, and bodies with many cells.
 
 use sprung::engine::ensemble::Part;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
@@ -9,7 +9,7 @@ use sprung::sound::Kit;
 const RATE: f64 = 48_000.0;
 const FRAMES: usize = 14_400;
 
-/// A body of so many modes that rings long.
+/// A body with this many modes that rings for long.
 fn patch(modes: usize) -> Patch {
     let share = 1.0 / modes as f32;
     let mode = |m: usize| Mode {
@@ -28,7 +28,7 @@ fn on(frame: u32, channel: u8, key: u8, velocity: f32) -> Event {
     Event { frame, channel, kind: EventKind::NoteOn { key, detune: 0.0, velocity, id: None } }
 }
 
-/// Notes on all channels, more and more of them, with programs of other sizes, choke groups and some that are let go.
+/// More and more notes on all channels, with programs of other sizes, choke groups and some releases.
 fn storm() -> Vec<Event> {
     let mut events = vec![];
     for n in 0..700_u32 {
@@ -50,7 +50,7 @@ fn storm() -> Vec<Event> {
     events
 }
 
-/// The parts in reverse, or by two threads.
+/// Plays the parts in reverse order, or on two threads.
 fn one_by_one(parts: &mut [Part], play: &(dyn Fn(&mut Part) + Sync)) {
     parts.iter_mut().rev().for_each(play);
 }
@@ -72,7 +72,7 @@ fn render(ensemble: &mut Ensemble, events: &[Event], block: usize, each: Each) -
         let end = FRAMES.min(start + block);
         let (now, later) = rest.split_at(rest.partition_point(|event| (event.frame as usize) < end));
         let here: Vec<Event> = now.iter().map(|event| Event { frame: event.frame - start as u32, ..*event }).collect();
-        ensemble.process_by(each, &here, &mut left[start..end], &mut right[start..end]);
+        ensemble.process_by(each, &here, &[], &mut left[start..end], &mut right[start..end]);
         rest = later;
     }
     left.into_iter().chain(right).map(f32::to_bits).collect()
@@ -97,7 +97,7 @@ fn an_exhausted_pool_gives_the_same_bits_however_frames_are_divided() {
     }
 }
 
-/// Fewer notes sound than were struck, and those that do are not the quietest.
+/// Fewer notes sound than were struck, and those that sound are not the quietest.
 #[test]
 fn the_quietest_of_all_channels_give_way() {
     let mut ensemble = Ensemble::new(RATE, 0, &patch(MAX_MODES), &[]);
@@ -107,7 +107,7 @@ fn the_quietest_of_all_channels_give_way() {
     assert_eq!(ensemble.snapshot().voices, 48, "a pool of 384 cells for notes that do not fade");
     let more: Vec<_> = (48..68).map(|n| on(0, n % 16, 30 + n, 0.9)).collect();
     ensemble.process(&more, &mut left, &mut right);
-    // Those that gave way have faded.
+    // The stolen notes have faded out.
     assert_eq!(ensemble.snapshot().voices, 48);
     let energy = ensemble.snapshot().masses[0].energy;
     let mut loud = Ensemble::new(RATE, 0, &patch(MAX_MODES), &[]);
@@ -127,14 +127,14 @@ fn a_used_ensemble_plays_as_a_new_one() {
     render(&mut used, &silence, 480, one_by_one);
     assert!(used.is_silent());
     let mut fresh = Ensemble::new(RATE, 5, &patch(100), &[]);
-    // The clocks of both stand at a tick, and the sound has nothing random.
+    // The clocks of both ensembles are at a control tick, and the sound has no random part.
     (0..16).for_each(|channel| used.set_kit(channel, &Kit::of_patch(&patch(300))));
     (0..16).for_each(|channel| fresh.set_kit(channel, &Kit::of_patch(&patch(300))));
     let notes: Vec<_> = (0..30).map(|n| on(u32::from(n) * 333, n % 16, 40 + n, 0.7)).collect();
     assert!(render(&mut used, &notes, 480, one_by_one) == render(&mut fresh, &notes, 480, one_by_one));
 }
 
-/// One voice of 512 modes against eight synths with a cell each.
+/// One voice of 512 modes, compared with eight synths with one cell each.
 #[test]
 fn a_voice_of_512_modes_is_the_sum_of_eight_of_64() {
     let whole = patch(MAX_MODES);
@@ -166,7 +166,7 @@ fn a_synth_steals_when_its_own_pool_is_exhausted() {
     let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
     let events: Vec<_> = (0..60).map(|n| on(u32::from(n), 0, 30 + n, 0.5)).collect();
     synth.process(&events, &mut left, &mut right);
-    // 192 cells.
+    // That is 192 cells.
     assert_eq!(synth.voices_used(), 24);
     let mut reported: Vec<u64> = synth.ended().iter().map(|note| note.serial).collect();
     reported.sort_unstable();

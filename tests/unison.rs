@@ -1,4 +1,4 @@
-//! Unison voices, and how notes slide: against single notes that are tuned alike.
+//! Unison voices and glides, compared with single notes that have the same tuning.
 
 use sprung::engine::{Event, EventKind, Snapshot, Synth};
 use sprung::params::Param;
@@ -75,12 +75,13 @@ fn unison_has_the_energy_of_one_voice_whatever_its_phases() {
         snapshot.masses[0].energy
     };
     for coefficients in [0.0, 1.0] {
-        for exciter in [0.0, 2.0] {
-            let patch = patch().with(Param::Exciter, exciter).with(Param::Coefficients, coefficients);
+        for [mallet, pluck] in [[0.0, -60.0], [-60.0, 0.0]] {
+            let levelled = patch().with(Param::MalletLevel, mallet).with(Param::PluckLevel, pluck);
+            let patch = levelled.with(Param::Coefficients, coefficients);
             let one = energy(&patch);
             for count in 2..=8 {
                 let share = energy(&patch.clone().with(Param::Unison, count as f32)) / one;
-                assert!((share - 1.0).abs() < 0.03, "{count} by exciter {exciter}, law {coefficients}: {share}");
+                assert!((share - 1.0).abs() < 0.03, "{count} by mallet {mallet}, law {coefficients}: {share}");
             }
         }
     }
@@ -103,7 +104,7 @@ fn a_unison_note_ends_once_and_counts_as_one() {
     assert!(synth.is_silent());
 }
 
-/// Frames of the whole period about a frame: how far two zero crossings lie apart there.
+/// Length in frames of the period around a frame: the distance of two zero crossings there.
 fn period(samples: &[f32], at: usize) -> f64 {
     let crosses = |i: &usize| samples[*i] < 0.0 && samples[i + 1] >= 0.0;
     let exact = |i: usize| i as f64 + f64::from(samples[i] / (samples[i] - samples[i + 1]));
@@ -121,7 +122,7 @@ fn slides_last_as_long_as_they_are_told() {
     let choice = |param: Param, name: &str| param.info().parse(name).unwrap();
     let only = patch.clone().with(Param::GlideWhen, choice(Param::GlideWhen, "legato"));
     let rate = patch.clone().with(Param::GlideBy, choice(Param::GlideBy, "rate"));
-    // A quarter of a second after the second note, or half of one: two octaves up.
+    // A glide of two octaves: it takes a quarter of a second, or half a second at a constant rate.
     for (name, patch, events, octaves) in [
         ("time", &patch, &legato[..], [1.0, 2.0]),
         ("time, apart", &patch, &apart, [1.0, 2.0]),

@@ -1,14 +1,15 @@
-//! Chords on a synth: what the benches of whole instruments time.
+//! Chords on a synth, which the benches of whole instruments time.
 
 use sprung::dsp::mode_bank::MAX_MODES;
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::Param;
+use sprung::patch::routes::{Route, Routes, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
 
-/// Frames of a block, as a host with little latency has them.
+/// Frames of a block, typical of a host with low latency.
 pub(crate) const FRAMES: usize = 64;
 
-/// Sound after which a chord is struck anew: long before its modes have died and are spared.
+/// After this many frames a chord is struck again, long before its modes have died away and become cheaper.
 const LASTS: usize = 8 * 48_000;
 
 /// A patch of 64 modes, for up to `voices` notes.
@@ -19,12 +20,28 @@ pub(crate) fn patch(voices: usize) -> Patch {
     patch
 }
 
-/// Vibrato and a long sweep on every voice; the bend comes from [`Chord::process`].
+/// Adds vibrato and a long sweep to every voice; the bend comes from [`Chord::process`].
 pub(crate) fn moving(patch: Patch) -> Patch {
     patch.with(Param::Vibrato, 30.0).with(Param::Sweep, 12.0).with(Param::SweepTime, 10.0)
 }
 
-/// A synth on which a chord rings.
+/// [`moving`] with sixteen routes instead of those of a new patch. Their sources are three oscillators and two
+/// envelopes that move during every note.
+pub(crate) fn routed(patch: Patch) -> Patch {
+    let mut patch = moving(patch).with(Param::Envelope1Attack, 20.0).with(Param::Envelope2Decay, 60.0);
+    patch.routes = Routes::NONE;
+    let sources = [Source::Lfo1, Source::Lfo2, Source::Lfo3, Source::Envelope1, Source::Envelope2];
+    let destinations = [Param::Tune, Param::Gain, Param::Pan, Param::Vibrato, Param::VibratoRate, Param::Fine];
+    for place in 0..16 {
+        let route = Route::linear(sources[place % sources.len()], destinations[place % destinations.len()]);
+        let scale = (place % 4 == 3).then_some(sources[(place + 1) % sources.len()]);
+        patch.routes.set(place, Some(Route { scale, ..route }));
+        patch = patch.with(amount_param(place), 1.0 + place as f32 * 0.1);
+    }
+    patch
+}
+
+/// A synth that plays a chord.
 pub(crate) struct Chord {
     synth: Synth,
     strikes: Vec<Event>,
@@ -34,7 +51,7 @@ pub(crate) struct Chord {
 }
 
 impl Chord {
-    /// A chord of so many notes, which has just been struck.
+    /// A chord of this many notes, struck just now.
     pub(crate) fn new(patch: &Patch, voices: usize) -> Self {
         let mut synth = Synth::new(48_000.0, 1);
         synth.set_patch(patch);
@@ -50,17 +67,17 @@ impl Chord {
         chord
     }
 
-    /// All notes, in the first block after a reset.
+    /// Strikes all notes, in the first block after a reset.
     pub(crate) fn strike(&mut self) {
         self.synth.process(&self.strikes, &mut self.left, &mut self.right);
     }
 
-    /// Silence.
+    /// Silences the synth.
     pub(crate) fn reset(&mut self) {
         self.synth.reset();
     }
 
-    /// The next block; `bent`, with the wheel somewhere else.
+    /// The next block. If `bent`, the pitch wheel has moved.
     pub(crate) fn process(&mut self, bent: bool) {
         self.frames += FRAMES;
         if self.frames > LASTS {

@@ -1,17 +1,17 @@
-//! Struck banks at work: what the benches time and `cargo xtask callgrind` counts.
+//! Struck banks at work, which the benches time and whose instructions `cargo xtask callgrind` counts.
 
 use sprung::dsp::CONTROL_FRAMES;
-use sprung::dsp::exciter::{Drive, Exciter};
+use sprung::dsp::exciter::{BurstSetup, Drive, Exciter, Stroke};
 use sprung::dsp::mode_bank::{ExcitationGains, MAX_MODES, ModeBank, ModeSetup};
 
-/// What a bank can be busy with.
+/// The kinds of work of a bank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Work {
-    /// Rings freely, by tables.
+    /// Rings freely, rendered by tables.
     Ringing,
-    /// Swept to another pitch at every control tick.
+    /// Moves to another pitch at every control tick.
     Modulated,
-    /// Under a burst of noise.
+    /// Driven by a noise burst.
     Driven,
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct StruckBank {
 }
 
 impl StruckBank {
-    /// A bank of at most [`MAX_MODES`] modes that has got used to its work.
+    /// A bank of at most [`MAX_MODES`] modes, after some ticks of this work.
     pub(crate) fn new(modes: usize, work: Work) -> Self {
         let mut bank = ModeBank::new(48_000.0);
         let mode = |m: usize| ModeSetup { frequency: 100.0 + 310.0 * m as f64, t60: 10_000.0, left: 1.0, right: 1.0 };
@@ -45,28 +45,29 @@ impl StruckBank {
             bank.set_excitation_gains(m, ExcitationGains { push: 1.0, noise: 1.0, ..ExcitationGains::default() })
         });
         let mut strike = Drive::NONE;
-        strike.pulse[0] = 1.0;
+        strike.push[0] = 1.0;
         bank.sweep_to(1.0, CONTROL_FRAMES);
         bank.render(Some(&strike), CONTROL_FRAMES);
 
         let (mut burst, mut noise) = (Exciter::REST, Drive::NONE);
         // So faint that the masses do not run away, however long it lasts.
-        burst.strike(0.0, 1, 1e-6, u32::MAX, 7);
+        let noise_setup = BurstSetup { force: 1e-6, frames: u32::MAX, key: 7, ..BurstSetup::NONE };
+        burst.strike(&Stroke { noise: noise_setup, ..Stroke::NONE }, 48_000.0);
         burst.fill(CONTROL_FRAMES, &mut noise);
         let mut struck = Self { bank, work, noise, ticks: 0 };
-        // Tables are made once a bank has rung freely for a while.
+        // Tables are only made after a bank has rung freely for a while.
         (0..20).for_each(|_| _ = struck.tick());
         struck
     }
 
-    /// As many modes as that, in banks of at most [`MAX_MODES`].
+    /// This many modes, in banks of at most [`MAX_MODES`].
     pub(crate) fn many(modes: usize, work: Work) -> Vec<Self> {
         let whole = (0..modes / MAX_MODES).map(|_| Self::new(MAX_MODES, work));
         let rest = modes % MAX_MODES;
         whole.chain((rest > 0).then(|| Self::new(rest, work))).collect()
     }
 
-    /// A control tick of work.
+    /// One control tick of work.
     pub(crate) fn tick(&mut self) -> f32 {
         self.ticks += 1;
         let ratio = if self.work == Work::Modulated { 1.0 + 0.001 * (self.ticks % 7) as f64 } else { 1.0 };

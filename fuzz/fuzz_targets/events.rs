@@ -10,6 +10,8 @@ mod bound;
 mod case;
 #[path = "../../tests/storm/check.rs"]
 mod check;
+#[path = "../../tests/storm/noise.rs"]
+mod noise;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     if let Err(failure) = check::check(&case::decode(bytes)) {

@@ -1,4 +1,4 @@
-//! The audio thread: follows the parameters, hands over events at their frames, renders.
+//! The audio thread: it follows the parameters, passes events on at their frames, and renders.
 
 use crate::events::translate;
 use crate::loaded::Loaded;
@@ -13,45 +13,46 @@ use sprung::units::mono_from_stereo;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Frames that are rendered at a time where the output is mono.
+/// Frames rendered at a time if the output is mono.
 const MONO_FRAMES: usize = 256;
 
-/// Events that the wrapper hands over in a block without allocating. A host may send all of VST3's 2,080 controllers at
-/// once, several times a block.
+/// Events that the wrapper can pass on in a block without allocating. A host may send all of VST3's 2,080 controllers
+/// at once, several times in a block.
 pub(crate) const EVENT_CAPACITY: usize = 8192;
 
-/// Most voices that there ever are.
+/// Maximum number of voices.
 pub(crate) const MAX_VOICES: u32 = sprung::engine::voice_manager::MAX_VOICES as u32;
 
-/// A synth that plays what the host says. Real-time safe once built.
+/// A synth that a host plays. Real-time safe once built.
 pub(crate) struct Live {
     synth: Synth,
-    /// What is played, and what positions are compared with. `SprungParams` has a handle as well, so that this one is
-    /// never the last; it keeps the kit that the synth has.
+    /// The sound that is played, with its positions. `SprungParams` also refers to it, so that it is never freed here.
+    /// It keeps the synth's kit alive.
     loaded: Arc<Loaded>,
-    /// Where the knobs stood last.
+    /// The knob positions in the last block.
     positions: [f32; PARAM_COUNT],
-    /// How far modulation of the whole instrument turned them last.
+    /// Offsets of the knobs by modulation of the whole instrument, in the last block.
     offsets: [f32; PARAM_COUNT],
     tempo: Option<f64>,
-    /// How many voices the host believes there are.
+    /// Number of voices that was last reported to the host.
     voices: u32,
     tail: Tail,
-    /// How many of the notes that the synth says have ended the host has been told of.
+    /// How many of the synth's ended notes have been reported to the host.
     told: usize,
-    /// Events that the wrapper has handed over with the part of a block before theirs.
+    /// Events that the wrapper has passed on too early, with the part of the block before theirs.
     early: Vec<NoteEvent<()>>,
-    /// What the instrument is rendered into when the host has one channel for it.
+    /// Buffers for the instrument's stereo output if the host has only one channel for it.
     stereo: [[f32; MONO_FRAMES]; 2],
 }
 
 impl Live {
-    /// For a sample rate, and a host that plays in real time or renders to a file. Allocates.
+    /// For a sample rate in Hz; `offline` if the host renders to a file. Allocates.
     pub(crate) fn new(sample_rate: f64, offline: bool, params: &SprungParams) -> Self {
         let loaded = params.loaded();
         let mut synth = Synth::new(sample_rate, loaded.seed);
-        // So that any kit finds room on the audio thread.
+        // So that every kit has room on the audio thread.
         synth.reserve(KEYS);
+        synth.reserve_space();
         synth.set_kit(&loaded.kit);
         synth.set_values(&loaded.values);
         let mut live = Self {
@@ -70,7 +71,7 @@ impl Live {
         live
     }
 
-    /// Silences everything, and starts anew with the sound as it is now.
+    /// Silences everything, and restarts with the present sound.
     pub(crate) fn reset(&mut self, params: &SprungParams) {
         self.follow(params);
         self.synth.reset();
@@ -78,19 +79,19 @@ impl Live {
         self.early.clear();
     }
 
-    /// Takes over what has changed of the sound and its knobs. While another thread writes, all stays as it was until
-    /// the next block.
+    /// Applies changes of the sound, of the knobs, and of the modulation of the whole instrument. While another thread
+    /// is writing, everything stays as it was until the next block.
     fn follow(&mut self, params: &SprungParams) {
-        let Some(Look { positions, news }) = params.look(&self.loaded) else { return };
+        let Some(Look { positions, offsets, news }) = params.look(&self.loaded) else { return };
         let before = std::mem::replace(&mut self.positions, positions);
         let moved = |index: usize| positions[index].to_bits() != before[index].to_bits();
-        // While nothing sounds, values need no slope: what a host sets before it plays holds from the first note on.
-        // Of a kit that has just been loaded nothing sounds either.
+        // While nothing sounds, values change without smoothing, so that what a host sets before it plays is valid from
+        // the first note on. Nothing sounds of a new kit either.
         let at_once = news.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
         if let Some(loaded) = news {
             self.synth.set_seed(loaded.seed);
             self.synth.set_kit(&loaded.kit);
-            // Only now: until here, it has kept the kit before.
+            // Last, since the previous `loaded` has kept the previous kit alive until here.
             self.loaded = loaded;
         }
         if at_once {
@@ -104,17 +105,15 @@ impl Live {
                 }
             }
         }
-    }
-
-    /// Takes over how far the whole instrument is modulated, and the tempo.
-    fn follow_host(&mut self, params: &SprungParams, tempo: Option<f64>) {
-        for (index, info) in PARAMS.iter().enumerate() {
-            let offset = params.knobs()[index].offset();
-            if offset != self.offsets[index] {
-                self.offsets[index] = offset;
+        for ((info, offset), before) in PARAMS.iter().zip(offsets).zip(std::mem::replace(&mut self.offsets, offsets)) {
+            if offset != before {
                 self.handle(0, EventKind::Modulate { id: None, param: info.param, offset });
             }
         }
+    }
+
+    /// Applies the song's tempo.
+    fn follow_tempo(&mut self, tempo: Option<f64>) {
         if let Some(tempo) = tempo
             && self.tempo != Some(tempo)
         {
@@ -128,16 +127,18 @@ impl Live {
         self.synth.handle(&Event { frame: 0, channel, kind });
     }
 
-    /// Renders a block over `outputs`, one channel or two.
+    /// Renders a block and overwrites `outputs`, one channel or two. `input` is the incoming sound: empty, or one
+    /// sample per frame.
     pub(crate) fn process<P: Plugin<SysExMessage = ()>>(
         &mut self,
         params: &SprungParams,
+        input: &[f32],
         outputs: &mut [&mut [f32]],
         context: &mut impl ProcessContext<P>,
     ) -> ProcessStatus {
         self.follow(params);
-        self.follow_host(params, context.transport().tempo);
-        // A mode that changes lets go of the keys that wait.
+        self.follow_tempo(context.transport().tempo);
+        // A change of the play mode may have ended notes that were waiting for a key.
         self.tell(0, context);
         let voices = self.synth.values().get(Param::Voices) as u32;
         if voices != self.voices {
@@ -153,22 +154,22 @@ impl Live {
         self.early.clear();
         while let Some(event) = context.next_event() {
             let at = (event.timing() as usize).max(frame);
-            // The wrapper divides blocks at parameter changes, and hands events of the change's own frame over with
-            // the part before. At one frame, parameters always come first, wherever the host's blocks end.
+            // The wrapper splits blocks at parameter changes, and passes events at the frame of the change with the
+            // part before. Keep them: at the same frame, parameters always come first, wherever the host's blocks end.
             if at >= frames && self.early.len() < self.early.capacity() {
                 self.early.push(event);
                 continue;
             }
             let at = at.min(frames);
-            self.render(outputs, frame..at, context);
+            self.render(input, outputs, frame..at, context);
             frame = at;
             self.take(&event, frame, context);
         }
-        self.render(outputs, frame..frames, context);
+        self.render(input, outputs, frame..frames, context);
         self.tail.status(&mut self.synth, frames)
     }
 
-    /// Takes in one event at a frame of the block.
+    /// Handles one event at a frame of the block.
     fn take<P: Plugin<SysExMessage = ()>>(
         &mut self,
         event: &NoteEvent<()>,
@@ -181,9 +182,10 @@ impl Live {
         }
     }
 
-    /// Renders the frames at a range of the outputs, and tells the host which notes have ended.
+    /// Renders a range of the outputs, and reports the notes that ended to the host.
     fn render<P: Plugin<SysExMessage = ()>>(
         &mut self,
+        input: &[f32],
         outputs: &mut [&mut [f32]],
         frames: Range<usize>,
         context: &mut impl ProcessContext<P>,
@@ -192,17 +194,19 @@ impl Live {
             return;
         }
         let last = frames.end - 1;
+        let input = &input[frames.start.min(input.len())..frames.end.min(input.len())];
         match outputs {
             [left, right, ..] => {
-                self.synth.process(&[], &mut left[frames.clone()], &mut right[frames]);
+                self.synth.process_with_input(&[], input, &mut left[frames.clone()], &mut right[frames]);
                 self.told = 0;
                 self.tell(last, context);
             }
             [mono] => {
-                for part in mono[frames].chunks_mut(MONO_FRAMES) {
+                let inputs = input.chunks(MONO_FRAMES).chain(std::iter::repeat(&[][..]));
+                for (part, input) in mono[frames].chunks_mut(MONO_FRAMES).zip(inputs) {
                     let [left, right] = &mut self.stereo;
                     let (left, right) = (&mut left[..part.len()], &mut right[..part.len()]);
-                    self.synth.process(&[], left, right);
+                    self.synth.process_with_input(&[], input, left, right);
                     for ((mono, left), right) in part.iter_mut().zip(left).zip(right) {
                         *mono = mono_from_stereo(*left, *right);
                     }
@@ -214,12 +218,12 @@ impl Live {
         }
     }
 
-    /// Tells the host at a frame of the block which notes have ended since it was last told.
+    /// Reports to the host, at a frame of the block, the notes that have ended since the last report.
     fn tell<P: Plugin<SysExMessage = ()>>(&mut self, frame: usize, context: &mut impl ProcessContext<P>) {
         let ended = self.synth.ended();
         for note in ended.get(self.told..).unwrap_or_default() {
             let voice_id = note.id.map_or(VoiceID::Wildcard, |id| VoiceID::ID(id.number()));
-            // A host that takes no events, or no more of them, does without.
+            // Ignore it if the host accepts no events, or no more of them.
             let _ = context.try_send_event(NoteEvent::VoiceTerminated {
                 timing: frame as u32,
                 voice_id,

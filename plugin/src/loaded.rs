@@ -1,25 +1,25 @@
-//! The sound that was loaded last, exactly, with the knob positions that belong to its values, shared by a handle.
+//! The sound that was loaded last, with exact values and their knob positions, shared between threads.
 
 use sprung::params::{PARAM_COUNT, PARAMS, Values};
 use sprung::sound::Kit;
 use std::array::from_fn;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
-/// A kit with the value of each parameter and the knob position that belongs to it. Never changed once it is shared.
+/// A kit, with the value of each parameter and the knob position of that value. Never changed after it is shared.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Loaded {
     pub(crate) kit: Arc<Kit>,
     /// The parameters of the whole kit.
     pub(crate) values: Values,
-    /// Where the host's knobs stand while these values hold.
+    /// The host's knob positions that belong to these values.
     pub(crate) positions: [f32; PARAM_COUNT],
-    /// What randomness starts from.
+    /// Seed of all random numbers.
     pub(crate) seed: u64,
 }
 
 impl Loaded {
-    /// The value of the parameter at `index` of the table with its knob at `position`: the one that was loaded where it
-    /// belongs to the position, else what the position means. Real-time safe.
+    /// The value of the parameter at `index` of the table, for a knob position: exactly the loaded value if the knob is
+    /// at its position, else the value of the position. Real-time safe.
     pub(crate) fn value(&self, index: usize, position: f32) -> f32 {
         let info = &PARAMS[index];
         if position.to_bits() == self.positions[index].to_bits() {
@@ -29,7 +29,7 @@ impl Loaded {
         }
     }
 
-    /// As [`Loaded::value`], of all parameters. Real-time safe.
+    /// As [`Loaded::value`], for all parameters. Real-time safe.
     pub(crate) fn values_at(&self, positions: &[f32; PARAM_COUNT]) -> Values {
         let mut values = self.values;
         for (index, info) in PARAMS.iter().enumerate() {
@@ -39,17 +39,18 @@ impl Loaded {
     }
 }
 
-/// Where a knob stands for each value.
+/// The knob positions of these values.
 pub(crate) fn positions_of(values: &Values) -> [f32; PARAM_COUNT] {
     from_fn(|index| PARAMS[index].normalise(values.get(PARAMS[index].param)) as f32)
 }
 
-/// Where the audio thread finds what was loaded last. It only ever tries: while another thread is here, it goes on with
-/// what it has until the next block.
+/// The place where the audio thread finds the sound that was loaded last. It never waits: if another thread is using
+/// the slot, it continues with its present sound until the next block.
 ///
-/// Nobody waits at the mutex, not even a writer, who tries again. So whoever leaves has nobody to wake up, and the audio
-/// thread makes no system call. Who writes keeps a handle of what it replaces for as long as others have it: see
-/// [`retire`].
+/// No thread blocks on the mutex: writers try again until they get it. So nobody has to be woken up when it is
+/// unlocked, and the audio thread makes no system call. A writer keeps a reference to each sound on a shelf. The audio
+/// thread takes references only from the slot, so it never returns to a sound that it has dropped, and it never drops
+/// the last reference.
 pub(crate) struct Slot(Mutex<Arc<Loaded>>);
 
 impl Slot {
@@ -57,7 +58,7 @@ impl Slot {
         Self(Mutex::new(loaded))
     }
 
-    /// Replaces what is here, with `meanwhile` run before anybody else may look. Not for the audio thread.
+    /// Replaces the contents. `meanwhile` runs before any other thread can look at them. Not for the audio thread.
     pub(crate) fn put(&self, loaded: Arc<Loaded>, meanwhile: impl FnOnce()) {
         let mut slot = loop {
             match self.enter() {
@@ -69,8 +70,8 @@ impl Slot {
         meanwhile();
     }
 
-    /// Runs `read` with what is here, unless another thread is. What `read` looks at belongs together if writers change it
-    /// within [`Slot::put`]. Real-time safe if `read` is.
+    /// Runs `read` with the contents, unless another thread is using the slot. `read` sees consistent data if writers
+    /// change it only inside [`Slot::put`]. Real-time safe if `read` is.
     pub(crate) fn read<T>(&self, read: impl FnOnce(&Arc<Loaded>) -> T) -> Option<T> {
         self.enter().map(|slot| read(&slot))
     }
@@ -84,18 +85,13 @@ impl Slot {
     }
 }
 
-/// Frees of what was loaded before all that nobody else has. The audio thread takes handles only of what is in the
-/// slot, so what it has let go of it does not take again, and it never has the last handle. Not for the audio thread.
-pub(crate) fn retire(kept: &mut Vec<Arc<Loaded>>) {
-    kept.retain(|loaded| Arc::strong_count(loaded) > 1);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use sprung::params::Param;
     use sprung::patch::Patch;
     use sprung::preset::Preset;
+    use sprung::sound::Shelf;
     use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
     use std::time::{Duration, Instant};
 
@@ -108,10 +104,12 @@ mod tests {
     fn a_reader_gets_what_belongs_together_or_nothing_and_frees_nothing() {
         let both = ["Church Bell", "Kick"].map(|name| &Preset::find(name).unwrap().patch);
         let first = Arc::new(loaded(both[0], 0));
-        // Beside the slot, as knobs are.
+        // Data beside the slot, as the knobs are.
         let (slot, beside) = (Slot::new(first.clone()), AtomicU64::new(0));
         let done = AtomicBool::new(false);
-        let mut kept = vec![first];
+        let shelf = Shelf::default();
+        shelf.keep(&first);
+        drop(first);
         let mut most = 0;
         std::thread::scope(|scope| {
             let reader = scope.spawn(|| {
@@ -134,22 +132,20 @@ mod tests {
                     break;
                 }
                 let next = Arc::new(loaded(both[number as usize % 2], number));
-                kept.push(next.clone());
+                shelf.keep(&next);
                 slot.put(next, || beside.store(number, Ordering::Relaxed));
-                retire(&mut kept);
-                most = most.max(kept.len());
+                most = most.max(shelf.collect());
             }
             assert_eq!(reader.join().unwrap(), 1_000);
         });
         assert!(most <= 3, "{most} were kept at once");
-        retire(&mut kept);
-        assert_eq!(kept.len(), 1, "what is in the slot stays");
+        assert_eq!(shelf.collect(), 1, "what is in the slot stays");
         slot.read(|_| assert!(slot.read(|_| ()).is_none(), "two at once"));
     }
 
     #[test]
     fn a_knob_that_comes_back_has_the_exact_value_again() {
-        // A value of its own on a knob whose position as f32 would not give it back.
+        // A value that its knob's position, as an `f32`, would not give back.
         let mut loaded = loaded(&Patch::default().with(Param::Decay, 0.123_456_79), 0);
         let index = Param::Decay as usize;
         let position = loaded.positions[index];

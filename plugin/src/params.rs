@@ -1,22 +1,23 @@
-//! The host's parameters, made from the engine's table, and what a project keeps besides them.
+//! The host's parameters, made from the engine's table, and the rest of an instance's shared state.
 
 #![allow(unsafe_code, reason = "the wrapper takes parameters as pointers and has no safe way to set several at once")]
 
-use crate::loaded::{Loaded, Slot, retire};
+use crate::loaded::{Loaded, Slot};
 use crate::state::{self, Read, State};
 use nice_plug::prelude::*;
 use nice_plug_core::params::InternalParamMut;
 use sprung::params::{Change, PARAM_COUNT, PARAMS, ParamInfo, Unit};
 use sprung::preset::Playable;
+use sprung::sound::Shelf;
 use std::array::from_fn;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A host's parameter.
 pub(crate) enum Knob {
-    /// The knob's position, 0–1: the wrapper's own curves would not give the engine's values.
+    /// The knob's position, 0–1. The wrapper's own curves would not give the engine's values.
     Continuous(FloatParam),
-    /// A count, or the number of a choice.
+    /// A count, or the index of a choice.
     Stepped(IntParam),
 }
 
@@ -37,7 +38,7 @@ impl Knob {
         Self::Continuous(if smoothed { knob.with_poly_modulation_id(info.param as u32) } else { knob })
     }
 
-    /// How far the knob is turned, 0–1, without modulation. Real-time safe.
+    /// The knob's position 0–1, without modulation. Real-time safe.
     pub(crate) fn position(&self) -> f32 {
         match self {
             Self::Continuous(knob) => knob.unmodulated_normalized_value(),
@@ -45,9 +46,10 @@ impl Knob {
         }
     }
 
-    /// How far modulation of the whole instrument turns it beyond that. Real-time safe.
+    /// Offset of the knob by modulation of the whole instrument. Real-time safe.
     pub(crate) fn offset(&self) -> f32 {
-        // The position first: the wrapper writes it last. If it changes in between, the sum is where the knob goes.
+        // Read the position first, since the wrapper writes it last. If it changes in between, position plus offset is
+        // still the new modulated position.
         let position = self.position();
         match self {
             Self::Continuous(knob) => knob.modulated_normalized_value() - position,
@@ -55,7 +57,7 @@ impl Knob {
         }
     }
 
-    /// Turns the knob without telling the host. Real-time safe.
+    /// Sets the knob without telling the host. Real-time safe.
     pub(crate) fn turn(&self, position: f32) {
         match self {
             Self::Continuous(knob) => turn(knob, position, self.offset()),
@@ -64,8 +66,8 @@ impl Knob {
     }
 }
 
-/// Turns a knob that modulation has moved by `offset`. The wrapper keeps no value that modulation leaves where it was,
-/// at the end of the travel: then the knob is turned without modulation, which is put back as far as it was heard.
+/// Sets a knob that modulation has moved by `offset`. The wrapper ignores a new value if the modulated value does not
+/// change, at the end of the range: then the knob is set without modulation, and the modulation is applied again.
 fn turn<P: Param + InternalParamMut>(knob: &P, position: f32, offset: f32)
 where
     P::Plain: PartialEq,
@@ -82,32 +84,34 @@ where
     }
 }
 
-/// What the audio thread sees at one look.
+/// The data that the audio thread reads in one look.
 pub(crate) struct Look {
     pub(crate) positions: [f32; PARAM_COUNT],
-    /// What has been loaded since.
+    /// Offsets of the knobs by modulation of the whole instrument.
+    pub(crate) offsets: [f32; PARAM_COUNT],
+    /// The sound, if a new one was loaded.
     pub(crate) news: Option<Arc<Loaded>>,
 }
 
-/// What is kept beside the knobs and not for the audio thread.
+/// State that the audio thread does not use.
 struct Kept {
-    /// Presets or kit as they were loaded.
+    /// The preset or kit as it was loaded.
     playable: Playable,
     /// Width and height of the window.
     window: [u32; 2],
-    /// What was not understood of it, one line each.
+    /// What was not understood of the last state, one line each.
     complaints: Arc<[String]>,
-    /// What was loaded last, which is what is in the slot.
+    /// The sound that was loaded last, which is also in the slot.
     loaded: Arc<Loaded>,
-    /// What the audio thread may still have of what was loaded before, and the last as well.
-    may_sound: Vec<Arc<Loaded>>,
+    /// All sounds that the audio thread may still refer to, including the last one.
+    may_sound: Shelf<Loaded>,
 }
 
-/// All that the threads of one instance share: parameters, what was loaded, and what is written beside it.
+/// The state that the threads of one instance share: parameters, the loaded sound, and the rest.
 pub(crate) struct SprungParams {
     knobs: Vec<Knob>,
     slot: Slot,
-    /// Held while something is loaded or the whole is read; never by the audio thread.
+    /// Locked while something is loaded or the whole state is read; never by the audio thread.
     kept: Mutex<Kept>,
 }
 
@@ -118,7 +122,8 @@ impl Default for SprungParams {
         let State { playable, positions, window, .. } = state;
         let knobs: Vec<Knob> = PARAMS.iter().map(Knob::new).collect();
         knobs.iter().zip(positions).for_each(|(knob, position)| knob.turn(position));
-        let may_sound = vec![loaded.clone()];
+        let may_sound = Shelf::default();
+        may_sound.keep(&loaded);
         let kept = Kept { playable, window, complaints: Arc::new([]), loaded: loaded.clone(), may_sound };
         Self { knobs, slot: Slot::new(loaded), kept: Mutex::new(kept) }
     }
@@ -134,12 +139,12 @@ impl SprungParams {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What is played is called so. Not for the audio thread.
+    /// The name of the preset or kit. Not for the audio thread.
     pub(crate) fn name(&self) -> String {
         self.kept().playable.name().to_owned()
     }
 
-    /// Calls what is played so. Not for the audio thread.
+    /// Renames the preset or kit. Not for the audio thread.
     pub(crate) fn rename(&self, name: String) {
         match &mut self.kept().playable {
             Playable::Preset(preset) => preset.name = name,
@@ -152,18 +157,18 @@ impl SprungParams {
         self.kept().window
     }
 
-    /// Keeps the width and height of the window. Not for the audio thread.
+    /// Stores the width and height of the window. Not for the audio thread.
     pub(crate) fn set_window(&self, window: [u32; 2]) {
         self.kept().window = window;
     }
 
-    /// What was not understood of the state that was loaded last, one line each. Not for the audio thread.
+    /// What was not understood of the last state, one line each. Not for the audio thread.
     pub(crate) fn complaints(&self) -> Arc<[String]> {
         self.kept().complaints.clone()
     }
 
-    /// Takes over a sound, its knobs and what is written beside it, all at once. Not for the audio thread: makes the
-    /// sound, and frees what is no longer played. The host does not hear of it.
+    /// Loads a sound, its knob positions and the rest, all at once. Not for the audio thread: it makes the sound and
+    /// frees those that are no longer played. Does not tell the host.
     pub(crate) fn load(&self, Read { state, complaints }: Read) {
         let loaded = Arc::new(state.loaded());
         let mut kept = self.kept();
@@ -171,16 +176,16 @@ impl SprungParams {
         kept.window = state.window;
         kept.complaints = complaints.into();
         kept.loaded = loaded.clone();
-        kept.may_sound.push(loaded.clone());
+        kept.may_sound.keep(&loaded);
         self.slot.put(loaded, || {
             for (knob, position) in self.knobs.iter().zip(state.positions) {
                 knob.turn(position);
             }
         });
-        retire(&mut kept.may_sound);
+        kept.may_sound.collect();
     }
 
-    /// All as it is now. Not for the audio thread.
+    /// The whole present state. Not for the audio thread.
     pub(crate) fn state(&self) -> State {
         let kept = self.kept();
         let positions: [f32; PARAM_COUNT] = from_fn(|index| self.knobs[index].position());
@@ -192,22 +197,23 @@ impl SprungParams {
         State { playable, values, positions, seed: kept.loaded.seed, window: kept.window }
     }
 
-    /// What was loaded last. Not for the audio thread.
+    /// The sound that was loaded last. Not for the audio thread.
     pub(crate) fn loaded(&self) -> Arc<Loaded> {
         self.kept().loaded.clone()
     }
 
-    /// Where the knobs stand and, unless `known` is still what was loaded last, what is. `None` while another thread
-    /// writes. Real-time safe.
+    /// The knob positions, their offsets, and the sound if it is another one than `known`. `None` while another thread
+    /// is writing. Real-time safe.
     pub(crate) fn look(&self, known: &Arc<Loaded>) -> Option<Look> {
         self.slot.read(|loaded| Look {
             positions: from_fn(|index| self.knobs[index].position()),
+            offsets: from_fn(|index| self.knobs[index].offset()),
             news: (!Arc::ptr_eq(known, loaded)).then(|| loaded.clone()),
         })
     }
 }
 
-// SAFETY: the pointers are to knobs in a vector that is neither changed nor moved out of while `self` lives.
+// SAFETY: the pointers refer to knobs in a vector that is neither changed nor moved while `self` lives.
 unsafe impl Params for SprungParams {
     fn param_map(&self) -> Vec<(String, ParamPtr, String)> {
         let pointer = |knob: &Knob| match knob {
@@ -223,7 +229,7 @@ unsafe impl Params for SprungParams {
     }
 
     fn deserialize_fields(&self, fields: &BTreeMap<String, String>) {
-        // What is no state at all has been taken out before.
+        // Anything that is not a state has been removed before.
         if let Some(Ok(read)) = fields.get(state::FIELD).map(|json| State::parse(json)) {
             read.complaints
                 .iter()
@@ -284,7 +290,7 @@ mod tests {
             (Row::Decay, "1.5", "1.5 s"),
             (Row::Tuning, "A4", "440 Hz"),
             (Row::Gain, "-12 dB", "-12 dB"),
-            (Row::Exciter, "Pluck", "pluck"),
+            (Row::MalletPulse, "Contact", "contact"),
             (Row::Voices, "8", "8"),
         ] {
             let position = match &params.knobs()[row as usize] {

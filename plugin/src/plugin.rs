@@ -1,4 +1,4 @@
-//! What hosts are told of the instrument, and their calls.
+//! The description of the instrument for hosts, and the calls that they make.
 
 use crate::editor::SprungEditor;
 use crate::live::{EVENT_CAPACITY, Live, MAX_VOICES};
@@ -6,17 +6,18 @@ use crate::params::{Knob, SprungParams};
 use crate::state;
 use nice_plug::prelude::*;
 use sprung::params::PARAMS;
+use sprung::units::mono_from_stereo;
 use std::sync::Arc;
 
-/// The instrument as the wrapper sees it.
+/// The instrument as the wrapper uses it.
 #[derive(Default)]
 pub struct Sprung {
     params: Arc<SprungParams>,
-    /// There while the plugin is active.
+    /// Exists while the plugin is active.
     live: Option<Live>,
 }
 
-/// The layout of so many output channels, with or without an input.
+/// A layout with this many output channels, with or without an input.
 const fn layout(name: &'static str, channels: u32, inputs: &'static [std::num::NonZeroU32]) -> AudioIOLayout {
     AudioIOLayout {
         main_input_channels: None,
@@ -41,7 +42,7 @@ impl Plugin for Sprung {
         layout("Stereo with exciter input", 2, STEREO_IN),
         layout("Mono with exciter input", 1, STEREO_IN),
     ];
-    // Bend, pedals and the wheel come only with all controllers.
+    // Bend, pedals and the modulation wheel only arrive if all controllers are requested.
     const MIDI_INPUT: MidiConfig = MidiConfig::MidiCCs;
     const SAMPLE_ACCURATE_AUTOMATION: bool = true;
     const INPUT_EVENT_CAPACITY: usize = EVENT_CAPACITY;
@@ -82,17 +83,32 @@ impl Plugin for Sprung {
     fn process(
         &mut self,
         buffer: &mut Buffer,
-        _aux: &mut AuxiliaryBuffers,
+        aux: &mut AuxiliaryBuffers,
         context: &mut impl ProcessContext<Self>,
     ) -> ProcessStatus {
         match &mut self.live {
-            Some(live) => live.process(&self.params, buffer.as_slice(), context),
+            Some(live) => live.process(&self.params, mono_input(aux), buffer.as_slice(), context),
             None => ProcessStatus::Error("processing before activation"),
         }
     }
 
     fn deactivate(&mut self) {
         self.live = None;
+    }
+}
+
+/// What comes in on *Exciter in*, the mean of its channels: nothing if the host has no such port. The wrapper's buffers are
+/// copies, so that the first channel can take the mean.
+fn mono_input<'a>(aux: &'a mut AuxiliaryBuffers) -> &'a [f32] {
+    match aux.inputs.first_mut().map(|input| input.as_slice()) {
+        Some([left, right, ..]) => {
+            for (left, right) in left.iter_mut().zip(right.iter()) {
+                *left = mono_from_stereo(*left, *right);
+            }
+            left
+        }
+        Some([mono]) => mono,
+        Some([]) | None => &[],
     }
 }
 
@@ -123,7 +139,7 @@ impl ClapPlugin for Sprung {
 }
 
 impl Vst3Plugin for Sprung {
-    // In every project that uses the plugin: never to be changed, and CLAP_ID no more.
+    // Stored in every project that uses the plugin, as is CLAP_ID: neither may ever change.
     const VST3_CLASS_ID: [u8; 16] = *b"SprungMassSpring";
     const VST3_SUBCATEGORIES: &'static [Vst3SubCategory] =
         &[Vst3SubCategory::Instrument, Vst3SubCategory::Synth, Vst3SubCategory::Drum];
@@ -134,7 +150,7 @@ mod tests {
     use super::*;
     use serde_json::{Value, json};
 
-    /// VST3 hosts may read the file in place of loading the library.
+    /// VST3 hosts may read this file instead of loading the library.
     #[test]
     fn moduleinfo_says_what_the_shell_is_made_with() {
         let info: Value = serde_json::from_str(include_str!("../moduleinfo.json")).unwrap();

@@ -7,7 +7,7 @@ use libm::{acos, atan2, exp, hypot, log, sincos, sqrt};
 use std::f64::consts::PI;
 
 /// ln 1000: the decay exponent of 60 dB.
-const LN_60_DB: f64 = 6.907_755_278_982_137;
+pub(super) const LN_60_DB: f64 = 6.907_755_278_982_137;
 /// Samples after which the recurrence for `zⁿ` starts from an exact power again.
 const ANCHOR: usize = 1024;
 /// Samples that a blind start looks at: seven cycles of 20 Hz at 192 kHz.

@@ -3,9 +3,12 @@
 //! For tests, documentation and people; nothing here is real-time safe, and no sample that the engine makes depends
 //! on it.
 
+pub mod alignment;
+pub mod comparison;
 pub mod damped_sine;
 pub mod diff;
 pub mod digest;
 pub mod figure;
 pub mod level;
+pub mod modes;
 pub mod spectrum;

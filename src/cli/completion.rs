@@ -1,4 +1,4 @@
-//! `sprung completions`: what a shell offers when Tab is pressed. The shell's script asks this program each time.
+//! `sprung completions`: completions for shells. The shell's script calls this program each time that Tab is pressed.
 
 use super::terminal::print;
 use clap_complete::engine::{ValueCompleter, complete};
@@ -22,7 +22,7 @@ pub(super) struct Args {
     shell: Shell,
 }
 
-/// The environment variable that holds the shell's name when its script asks.
+/// The environment variable by which a shell's script asks for completions. It contains the shell's name.
 const VARIABLE: &str = "SPRUNG_COMPLETE";
 
 const SHELLS: Shells<'_> = Shells(&[
@@ -43,13 +43,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
     print(&String::from_utf8_lossy(&script))
 }
 
-/// Answers a shell's script about a command; false if none asks.
+/// Answers a completion request of a shell's script. Returns false if there is none.
 pub(super) fn answer(command: fn() -> clap::Command) -> clap::error::Result<bool> {
     let folder = std::env::current_dir().ok();
     CompleteEnv::with_factory(command).var(VARIABLE).shells(SHELLS).try_complete(std::env::args_os(), folder.as_deref())
 }
 
-/// Factory presets, whatever the case, and preset files.
+/// Completes factory presets, ignoring case, and preset files.
 pub(super) fn presets(typed: &OsStr) -> Vec<CompletionCandidate> {
     let start = typed.to_string_lossy().to_lowercase();
     let names = Preset::factory().iter().filter(|preset| preset.name.to_lowercase().starts_with(&start));
@@ -64,7 +64,7 @@ pub(super) fn presets(typed: &OsStr) -> Vec<CompletionCandidate> {
     candidates
 }
 
-/// `id=` of each parameter, and `id=choice` once a parameter with choices is named.
+/// Completes `id=` for each parameter, and `id=choice` after the name of a parameter with choices.
 pub(super) fn settings(typed: &OsStr) -> Vec<CompletionCandidate> {
     let typed = typed.to_string_lossy();
     let candidates: Vec<(String, &str)> = match typed.split_once('=') {
@@ -78,13 +78,13 @@ pub(super) fn settings(typed: &OsStr) -> Vec<CompletionCandidate> {
     matching.map(|(value, help)| CompletionCandidate::new(value).help(Some(help.to_owned().into()))).collect()
 }
 
-/// Candidates for an option that also takes other values.
+/// Candidates for an option that also accepts other values.
 pub(super) fn among(values: &'static [&'static str]) -> clap_complete::ArgValueCandidates {
     clap_complete::ArgValueCandidates::new(|| values.iter().map(CompletionCandidate::new).collect())
 }
 
-/// Bash breaks words at `=` before it asks, replaces only what follows the last one, and takes what it is given as
-/// typed. clap's own adapter does not know that: `--set exciter=` and names with spaces come to nothing.
+/// Bash splits words at `=` before it asks, replaces only the text after the last `=`, and inserts candidates
+/// literally. clap's own adapter does not handle this: `--set mode=` and names with spaces are not completed.
 struct Bash;
 
 const BASH_SCRIPT: &str = r#"_sprung() {
@@ -121,7 +121,7 @@ impl EnvCompleter for Bash {
         let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
         let (whole, kept) = joined(&words, index);
         let at = whole.len() - 1;
-        // Within a quote that is still open, what is given is taken literally.
+        // Inside a quotation that is still open, the candidate is inserted literally.
         let is_quoted = words.get(index).is_some_and(|word| word.starts_with(['"', '\'']));
         for candidate in complete(command, whole.into_iter().map(OsString::from).collect(), at, folder)? {
             let value = candidate.get_value().to_string_lossy();
@@ -132,8 +132,7 @@ impl EnvCompleter for Bash {
     }
 }
 
-/// The words up to the one at `index`, joined at `=` again and without their quotes, and how much of the last one
-/// bash keeps, in bytes.
+/// The words up to `index`, joined at `=` again and without quotes, and how many bytes of the last word bash keeps.
 fn joined(words: &[String], index: usize) -> (Vec<String>, usize) {
     let (mut whole, mut kept, mut after_equals) = (vec![String::new()], 0, false);
     for (n, word) in words.iter().take(index + 1).enumerate() {
@@ -182,8 +181,8 @@ mod tests {
     fn words_are_joined_and_quoted_as_bash_does() {
         let words = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
         for (typed, index, expected, kept) in [
-            (&["s", "--set", "exciter", "=", "pl"][..], 4, &["s", "--set", "exciter=pl"][..], 8),
-            (&["s", "--set", "exciter", "="], 3, &["s", "--set", "exciter="], 8),
+            (&["s", "--set", "mode", "=", "mo"][..], 4, &["s", "--set", "mode=mo"][..], 5),
+            (&["s", "--set", "mode", "="], 3, &["s", "--set", "mode="], 5),
             (&["s", "--set", "a", "=", "1", "--set", "b"], 6, &["s", "--set", "a=1", "--set", "b"], 0),
             (&["s", "--set", "a", "=", "--json"], 2, &["s", "--set", "a"], 0),
             (&["s", "--preset", "Church\\ B", "--json"], 2, &["s", "--preset", "Church B"], 0),

@@ -1,6 +1,8 @@
-//! The command line: one file a subcommand.
+//! The command line. Each subcommand has a file of its own.
 
+mod analyze;
 mod completion;
+mod diff;
 mod interrupt;
 mod lab;
 mod manual;
@@ -10,6 +12,7 @@ mod play;
 mod presets;
 mod progress;
 mod quantity;
+mod recording;
 mod render;
 mod song;
 mod sound;
@@ -43,6 +46,8 @@ Examples:
   sprung render --note C2 --preset Kick -o kick.wav
   sprung presets list
   sprung params
+  sprung analyze strike.wav
+  sprung diff before.wav after.wav
   sprung lab compare -o report.html
 
 Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.";
@@ -70,6 +75,12 @@ enum Command {
     /// Print the table of parameters
     #[command(after_help = parameters::EXAMPLES)]
     Params(parameters::Args),
+    /// Take the recording of a strike apart into its modes
+    #[command(after_help = analyze::EXAMPLES)]
+    Analyze(analyze::Args),
+    /// Compare two sound files
+    #[command(after_help = diff::EXAMPLES)]
+    Diff(diff::Args),
     /// Compare ways to integrate a mass on a spring
     #[command(after_help = lab::EXAMPLES)]
     Lab(lab::Args),
@@ -88,6 +99,8 @@ pub(crate) fn run() -> ExitCode {
         Err(error) => return usage::refuse(error, &Cli::command()),
     }
     match Cli::try_parse() {
+        // That it is different is no error.
+        Ok(Cli { command: Command::Diff(args) }) => diff::run(&args),
         Ok(cli) => finish(execute(&cli.command)),
         // `--help` and `--version` are no errors, and go to stdout.
         Err(error) if !error.use_stderr() => finish(checked(error.print().and_then(|()| std::io::stdout().flush()))),
@@ -108,6 +121,8 @@ fn execute(command: &Command) -> Result<()> {
         )),
         Command::Presets(args) => presets::run(args),
         Command::Params(args) => parameters::run(args),
+        Command::Analyze(args) => analyze::run(args),
+        Command::Diff(_) => unreachable!("it has exit codes of its own"),
         Command::Lab(args) => lab::run(args),
         Command::Completions(args) => completion::run(args),
         Command::Man(args) => manual::run(args, Cli::command()),
@@ -133,7 +148,7 @@ mod tests {
         Cli::command().debug_assert();
     }
 
-    /// The arguments of a shell's simple command: split at spaces outside quotes, up to a pipe or redirection.
+    /// Splits a simple shell command into arguments: at spaces outside quotes, up to a pipe or redirection.
     fn words(line: &str) -> Vec<String> {
         let mut words = Vec::new();
         for (index, part) in line.split(['"', '\'']).enumerate() {
@@ -155,6 +170,8 @@ mod tests {
             parameters::EXAMPLES,
             #[cfg(feature = "realtime")]
             play::EXAMPLES,
+            analyze::EXAMPLES,
+            diff::EXAMPLES,
             lab::EXAMPLES,
             manual::EXAMPLES,
             completion::EXAMPLES,

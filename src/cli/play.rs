@@ -1,4 +1,4 @@
-//! `sprung play`: the instrument live, on a sound device.
+//! `sprung play`: plays the instrument live on a sound device.
 
 use super::song::SongArgs;
 use super::sound::{SoundArgs, Sounds};
@@ -26,7 +26,7 @@ Examples:
   sprung play --host jack --midi-in Keystation --headless
   sprung play --list";
 
-/// How often devices, ports and the recording are looked after.
+/// Time between two checks of devices, ports and the recording.
 const POLL: Duration = Duration::from_millis(20);
 
 #[derive(clap::Args)]
@@ -81,7 +81,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if let Some(song) = &song {
         args.reading.warn_of_programs(song, args.sound.asked_for(&sounds), &sounds.programs);
         args.sound.tuning.warn_of_unmapped(song, &sounds.tuning);
-        SoundArgs::warn_of_missing_pads(song, &sounds, args.reading.programs(&sounds.programs));
+        SoundArgs::warn_of_silence(song, &sounds, args.reading.programs(&sounds.programs));
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;
@@ -131,12 +131,12 @@ fn list() -> Result<()> {
     print(&format!("{}MIDI\n{ports}", device::list()))
 }
 
-/// Says something on stderr.
+/// Prints a line on stderr.
 fn say(line: &str) {
     complain_lines(&format!("sprung: {}\n", printable(line)));
 }
 
-/// Live input from outside.
+/// The source of live MIDI input.
 enum MidiIn {
     None,
     Ports(MidiPorts),
@@ -166,13 +166,13 @@ impl MidiIn {
     }
 }
 
-/// A recording and whether its early end has been told.
+/// A recording, and whether its early end was reported.
 struct Take {
     recording: Recording,
     told: bool,
 }
 
-/// Everything that plays.
+/// Everything that is playing.
 struct Stage {
     session: Session,
     midi: MidiIn,
@@ -182,7 +182,7 @@ struct Stage {
 }
 
 impl Stage {
-    /// Looks after everything; gives what there is to tell.
+    /// Checks devices, ports and the recording. Returns messages for the user.
     fn poll(&mut self) -> Vec<String> {
         let mut news: Vec<String> = self.session.poll().into_iter().collect();
         news.extend(self.midi.poll());
@@ -213,7 +213,7 @@ impl Stage {
         news.and(ended)
     }
 
-    /// Lets the notes go, ends the stream and completes the recording.
+    /// Releases the notes, ends the stream and completes the recording.
     fn finish(self, mut closing: LiveSender) -> Result<()> {
         let Self { session, recording, status, midi, .. } = self;
         let sample_rate = session.sample_rate();

@@ -1,4 +1,4 @@
-//! Values as options give them: ranges, units and pairs, with errors that say what would be right.
+//! Parses option values: ranges, units and pairs, with errors that say what would be right.
 
 use sprung::io::SampleFormat;
 use sprung::params::retired::Retired;
@@ -7,7 +7,7 @@ use sprung::render::{Level, SAMPLE_RATES, Tail};
 use sprung::units::{split_quantity, with_decimal_point};
 use std::ops::RangeInclusive;
 
-/// Longest held note and longest tail, in seconds.
+/// Maximum length of notes and tails, in seconds.
 const LONGEST: f64 = 86_400.0;
 
 fn in_range(value: f64, range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
@@ -18,7 +18,7 @@ fn in_range(value: f64, range: RangeInclusive<f64>, unit: &str) -> Result<f64, S
     }
 }
 
-/// A number with one of the units, or without any if `""` is one.
+/// Parses a number with one of the units. The unit may be missing if `""` is one of them.
 fn quantity(text: &str, units: &[(&str, f64)], expected: &str) -> Result<f64, String> {
     let quantity = split_quantity(text).and_then(|(value, suffix)| {
         let scale = units.iter().find(|(name, _)| name.eq_ignore_ascii_case(suffix));
@@ -30,7 +30,7 @@ fn quantity(text: &str, units: &[(&str, f64)], expected: &str) -> Result<f64, St
     })
 }
 
-/// A quantity in a range.
+/// Parses a quantity and checks its range.
 fn number(text: &str, units: &[(&str, f64)], range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     let value = quantity(text, units, &format!("{} to {}{unit}", range.start(), range.end()))?;
     in_range(value, range, unit)
@@ -38,12 +38,12 @@ fn number(text: &str, units: &[(&str, f64)], range: RangeInclusive<f64>, unit: &
 
 const HERTZ: [(&str, f64); 4] = [("", 1.0), ("Hz", 1.0), ("k", 1e3), ("kHz", 1e3)];
 
-/// A frequency or rate of any size in Hz: `440`, `44.1k`, `48 kHz`.
+/// Parses a frequency or rate in Hz, of any size: `440`, `44.1k`, `48 kHz`.
 pub(super) fn hertz(text: &str) -> Result<f64, String> {
     quantity(text, &HERTZ, "Hz, as in 440 or 44.1k")
 }
 
-/// A whole number.
+/// Returns a parser of whole numbers in a range.
 pub(super) fn whole<T: TryFrom<u64>>(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<T, String> + Clone {
     move |text| {
         let expected = format!("expected {} to {}", range.start(), range.end());
@@ -53,12 +53,12 @@ pub(super) fn whole<T: TryFrom<u64>>(range: RangeInclusive<u64>) -> impl Fn(&str
     }
 }
 
-/// A sample rate in Hz: `48000`, `44100Hz`, `44.1k`, `48 kHz`.
+/// Parses a sample rate in Hz: `48000`, `44100Hz`, `44.1k`, `48 kHz`.
 pub(super) fn rate(text: &str) -> Result<u32, String> {
     let (low, high) = SAMPLE_RATES.into_inner();
     let rate = number(text, &HERTZ, f64::from(low)..=f64::from(high), " Hz")?;
     let whole = rate.round();
-    // 1e-6 Hz are for what decimal fractions of a kHz lose in binary.
+    // 1e-6 Hz allow for the rounding of decimal fractions of a kHz in binary.
     if (rate - whole).abs() < 1e-6 {
         Ok(whole as u32)
     } else {
@@ -81,6 +81,11 @@ pub(super) fn tail(text: &str) -> Result<Tail, String> {
 
 pub(super) fn gain_db(text: &str) -> Result<f64, String> {
     number(text, &[("", 1.0), ("dB", 1.0)], -120.0..=120.0, " dB")
+}
+
+/// A level of error in dBFS.
+pub(super) fn tolerance_db(text: &str) -> Result<f64, String> {
+    number(text, &[("", 1.0), ("dB", 1.0), ("dBFS", 1.0)], -300.0..=0.0, " dBFS")
 }
 
 pub(super) fn level(text: &str) -> Result<Level, String> {
@@ -109,12 +114,13 @@ pub(super) fn bits(text: &str) -> Result<SampleFormat, String> {
     }
 }
 
-/// A note as `--note` takes it. Where frequencies lie depends on the patch, so only the form is checked here.
+/// Checks the form of a note for `--note`. Which key a frequency is depends on the patch, so the note stays a text
+/// here.
 pub(super) fn note(text: &str) -> Result<String, String> {
     sprung::units::parse_key(text, f64::from(Param::Tuning.info().default)).map(|_| text.to_owned())
 }
 
-/// `channel=name`: a channel from 1 to 16, given from 0, and a preset or kit.
+/// Parses `channel=name`: a channel from 1 to 16, returned from 0, and the name of a preset or kit.
 pub(super) fn channel(text: &str) -> Result<(u8, String), String> {
     let expected = "expected CHANNEL=NAME, as in 10=drums.toml";
     let (channel, name) = text.split_once('=').filter(|(_, name)| !name.trim().is_empty()).ok_or(expected)?;
@@ -122,7 +128,7 @@ pub(super) fn channel(text: &str) -> Result<(u8, String), String> {
     Ok((number - 1, name.to_owned()))
 }
 
-/// `id=value`, the value as the parameter table reads it.
+/// Parses `id=value`, with the value in the form that the parameter table defines.
 pub(super) fn setting(text: &str) -> Result<(Param, f32), String> {
     let (id, value) = text.split_once('=').ok_or("expected ID=VALUE, as in decay=0.5")?;
     let id = id.trim();
@@ -138,7 +144,7 @@ pub(super) fn setting(text: &str) -> Result<(Param, f32), String> {
 }
 
 fn no_parameter(id: &str) -> String {
-    // The name that a window shows may have been meant.
+    // The user may have typed the name that windows show.
     let named = PARAMS.iter().find(|info| info.name.eq_ignore_ascii_case(id)).map(|info| format!("‘{}’", info.id));
     match named.or_else(|| sprung::error::nearest(id, PARAMS.iter().map(|info| info.id))) {
         Some(near) => format!("there is no parameter ‘{id}’; the nearest is {near}"),
@@ -172,7 +178,7 @@ mod tests {
         assert_eq!(gain_db("-3 dB"), Ok(-3.0));
         assert_eq!(level("peak=-1"), Ok(Level::Peak(-1.0)));
         assert_eq!(level("lufs=-14 LUFS"), Ok(Level::Loudness(-14.0)));
-        assert_eq!(setting("exciter=pluck"), Ok((Param::Exciter, 2.0)));
+        assert_eq!(setting("mallet_pulse=contact"), Ok((Param::MalletPulse, 1.0)));
         assert_eq!(setting("decay = 250 ms"), Ok((Param::Decay, 0.25)));
         assert_eq!(channel("10=a=b.toml"), Ok((9, "a=b.toml".to_owned())));
     }

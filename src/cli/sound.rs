@@ -1,4 +1,4 @@
-//! The sounds that a command plays with: presets and kits, settings on top of them, the tuning, and the seed.
+//! The sounds that a command plays: presets and kits, parameter settings, the tuning, and the seed.
 
 use super::terminal::complain;
 use super::tuning::TuningArgs;
@@ -9,7 +9,9 @@ use sprung::io::{Inputs, Song};
 use sprung::params::Param;
 use sprung::preset::{Playable, Preset};
 use sprung::sound::{Kit, Tuning};
+use sprung::units::note_name;
 use sprung::{Error, Result};
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::{OsStr, OsString};
 use std::sync::Arc;
 
@@ -34,15 +36,15 @@ pub(super) struct SoundArgs {
     pub(super) seed: u64,
 }
 
-/// The sounds, as they were set.
+/// The sounds, with the parameters that the user has set.
 pub(super) struct Sounds {
-    /// What every channel starts with that is not among `channels`.
+    /// The initial kit of the channels that are not in `channels`.
     pub(super) kit: Arc<Kit>,
-    /// What single channels, from 0, start with.
+    /// Initial kits of single channels, from 0.
     pub(super) channels: Vec<(u8, Arc<Kit>)>,
-    /// The factory's sounds, in the order of their program numbers.
+    /// Kits of the factory presets, in the order of their program numbers.
     pub(super) programs: Vec<Arc<Kit>>,
-    /// The pitches of the keys.
+    /// The tuning of the keys.
     pub(super) tuning: Tuning,
 }
 
@@ -62,34 +64,50 @@ impl SoundArgs {
         Ok(Sounds { kit, channels, programs, tuning: self.tuning.read(inputs)? })
     }
 
-    /// What each channel was asked to play: nothing where neither it nor all of them were given anything.
+    /// The kit that the user chose for each channel; none if neither a preset for all channels nor one for this channel
+    /// was given.
     pub(super) fn asked_for<'a>(&self, sounds: &'a Sounds) -> [Option<&'a Arc<Kit>>; 16] {
         let mut asked = [self.preset.is_some().then_some(&sounds.kit); 16];
         sounds.channels.iter().for_each(|(channel, kit)| asked[usize::from(*channel)] = Some(kit));
         asked
     }
 
-    /// Warns of notes on keys that their kits have no pad for; `programs` are those that program changes choose from.
-    pub(super) fn warn_of_missing_pads(song: &Song, sounds: &Sounds, programs: &[Arc<Kit>]) {
+    /// Warns of channels that were given a sound but have no events, and of notes on keys without a pad in their kit.
+    /// `programs` are the kits that program changes select. Notes are not enough to tell that a channel is used: those of
+    /// an MPE zone are on other channels than their master's.
+    pub(super) fn warn_of_silence(song: &Song, sounds: &Sounds, programs: &[Arc<Kit>]) {
         let mut playing = [&sounds.kit; 16];
         sounds.channels.iter().for_each(|(channel, kit)| playing[usize::from(*channel)] = kit);
-        let (mut all, mut silent) = (0, 0);
+        let (mut is_used, mut all) = ([false; 16], 0);
+        let (mut silent, mut keys) = (0, BTreeMap::<u8, BTreeSet<u8>>::new());
         for event in &song.events {
-            let Some(playing) = playing.get_mut(usize::from(event.channel)) else { continue };
+            let channel = usize::from(event.channel);
+            let Some(playing) = playing.get_mut(channel) else { continue };
+            is_used[channel] = true;
             match event.kind {
                 EventKind::Program(number) => *playing = programs.get(usize::from(number)).unwrap_or(playing),
                 EventKind::NoteOn { key, .. } => {
                     all += 1;
-                    silent += usize::from(playing.pad(key).is_none());
+                    if playing.pad(key).is_none() {
+                        silent += 1;
+                        keys.entry(event.channel).or_default().insert(key);
+                    }
                 }
                 _ => {}
             }
         }
+        for (channel, _) in sounds.channels.iter().filter(|(channel, _)| !is_used[usize::from(*channel)]) {
+            complain("warning", format_args!("--channel {0}: the song has nothing on channel {0}", channel + 1));
+        }
         if silent > 0 {
-            complain(
-                "warning",
-                format_args!("{silent} of {all} notes are silent: their kits have no pad on their keys"),
-            );
+            let list = |(channel, keys): (&u8, &BTreeSet<u8>)| {
+                let names: Vec<_> = keys.iter().map(|key| note_name(*key)).collect();
+                format!("channel {}: {}", channel + 1, names.join(" "))
+            };
+            let where_to = keys.iter().map(list).collect::<Vec<_>>().join("; ");
+            let message =
+                format!("{silent} of {all} notes are silent: their kits have no pad on their keys ({where_to})");
+            complain("warning", message);
         }
     }
 

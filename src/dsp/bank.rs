@@ -1,19 +1,20 @@
-//! The bank that a voice plays, of either law.
+//! The mode bank of a voice, with exact tuning or with the original formulas.
 
-use super::exciter::Drive;
+use super::exciter::{Bow, Drive};
 use super::mode_bank::{ExcitationGains, ModeSetup};
 use super::{ClassicBank, ModeBank};
 
-/// Which formulas turn pitch and decay into coefficients.
+/// Selects the formulas that turn pitch and decay into coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
-    /// Tuning and decay are exact, and so are bends; amplitudes do not depend on the pitch.
+    /// Tuning and decay are exact, also during pitch bends; amplitudes do not depend on the pitch.
     Exact,
-    /// The original formulas ([`super::Coefficients::seed`]), clamped short of exploding.
+    /// The original formulas ([`super::Coefficients::seed`]), with the sweep kept below the value at which they are
+    /// unstable.
     Classic,
 }
 
-/// A bank of modes. Every method is that of [`ModeBank`]. Real-time safe.
+/// A bank of modes with either law. Every method does what the method of [`ModeBank`] does. Real-time safe.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant, reason = "both are large, and a voice has one of them without allocating")]
 pub enum Bank {
@@ -23,7 +24,7 @@ pub enum Bank {
     Classic(ClassicBank),
 }
 
-/// The same call on either bank.
+/// Makes the same call on either bank.
 macro_rules! either {
     ($self:expr, $bank:ident => $call:expr) => {
         match $self {
@@ -39,7 +40,7 @@ impl Bank {
         Self::Exact(ModeBank::new(sample_rate))
     }
 
-    /// An empty bank.
+    /// An empty bank with this law.
     fn of(law: Law, sample_rate: f64) -> Self {
         match law {
             Law::Exact => Self::new(sample_rate),
@@ -47,7 +48,7 @@ impl Bank {
         }
     }
 
-    /// Turns the bank into an empty one of another law; leaves it as it is if it has that law.
+    /// Replaces the bank by an empty one with another law. Does nothing if the bank has this law already.
     pub fn set_law(&mut self, law: Law, sample_rate: f64) {
         match (law, &*self) {
             (Law::Exact, Self::Exact(_)) | (Law::Classic, Self::Classic(_)) => {}
@@ -75,6 +76,13 @@ impl Bank {
         either!(self, bank => bank.set_excitation_gains(m, gains));
     }
 
+    /// See [`ModeBank::set_bow_weight`]. The original formulas know no bow.
+    pub fn set_bow_weight(&mut self, m: usize, weight: f32) {
+        if let Self::Exact(bank) = self {
+            bank.set_bow_weight(m, weight);
+        }
+    }
+
     /// See [`ModeBank::set_t60`].
     pub fn set_t60(&mut self, m: usize, t60: f64) {
         either!(self, bank => bank.set_t60(m, t60));
@@ -98,6 +106,14 @@ impl Bank {
     /// See [`ModeBank::render`].
     pub fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
         either!(self, bank => bank.render(drive, frames))
+    }
+
+    /// See [`ModeBank::render_bowed`]. The original formulas know no bow.
+    pub fn render_bowed(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
+        match self {
+            Self::Exact(bank) => bank.render_bowed(drive, bow, frames),
+            Self::Classic(bank) => bank.render(drive, frames),
+        }
     }
 
     /// See [`ModeBank::mass`].

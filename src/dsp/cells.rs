@@ -1,18 +1,18 @@
-//! The body of one voice: a bank of 64 modes, or several side by side where a body has more.
+//! The modes of one voice: a bank of 64 modes, or several such banks for a body with more modes.
 
 use super::CONTROL_FRAMES;
 use super::bank::{Bank, Law};
-use super::exciter::Drive;
+use super::exciter::{Bow, Drive};
 use super::mode_bank::tail::Energies;
 use super::mode_bank::{ExcitationGains, MAX_MODES, ModeSetup};
 
-/// Most cells that one voice plays.
+/// Maximum number of cells of one voice.
 pub const MAX_CELLS: usize = 8;
 
-/// A bank, and what a voice keeps of each of its modes.
+/// A bank, with the frequency ratio and decay scale of each of its modes.
 pub struct Cell {
     bank: Bank,
-    /// Frequency of each mode as a multiple of the note's, and T60 as a multiple of the decay.
+    /// Frequency of each mode as a multiple of the note's frequency, and its T60 as a multiple of the note's decay.
     ratios: [f64; MAX_MODES],
     t60_scales: [f64; MAX_MODES],
 }
@@ -24,26 +24,26 @@ impl Cell {
     }
 }
 
-/// The cells that a voice has. Modes are numbered through all of them, and energies are added up in that order. Cells are
-/// handed over, never copied: nothing but [`Cell::new`] allocates, and everything is real-time safe.
+/// The cells of one voice. Modes are numbered consecutively through all cells, and energies are added up in that order.
+/// Cells are moved between owners, never copied: only [`Cell::new`] allocates, and everything else is real-time safe.
 pub struct Cells {
     cells: [Option<Box<Cell>>; MAX_CELLS],
-    /// Modes of all cells.
+    /// Number of modes of all cells together.
     len: usize,
-    /// The sum of several cells.
+    /// The summed output of several cells.
     sum: [[f32; CONTROL_FRAMES]; 2],
 }
 
 impl Cells {
-    /// No cell yet.
+    /// Without any cell.
     pub const EMPTY: Self = Self { cells: [const { None }; MAX_CELLS], len: 0, sum: [[0.0; CONTROL_FRAMES]; 2] };
 
-    /// How many cells so many modes take.
+    /// How many cells this number of modes needs.
     pub fn count_for(modes: usize) -> usize {
         modes.div_ceil(MAX_MODES).clamp(1, MAX_CELLS)
     }
 
-    /// Adds a cell; gives it back if there are [`MAX_CELLS`].
+    /// Adds a cell. Returns it if there are [`MAX_CELLS`] already.
     pub fn add(&mut self, cell: Box<Cell>) -> Option<Box<Cell>> {
         let len = cell.bank.len();
         match self.cells.iter_mut().find(|place| place.is_none()) {
@@ -55,7 +55,7 @@ impl Cells {
         }
     }
 
-    /// Takes the last cell out.
+    /// Removes the last cell and returns it.
     pub fn take(&mut self) -> Option<Box<Cell>> {
         let cell = self.cells.iter_mut().rev().find_map(Option::take)?;
         self.len -= cell.bank.len();
@@ -70,18 +70,18 @@ impl Cells {
         self.cells.iter_mut().map_while(Option::as_deref_mut)
     }
 
-    /// Frequency of each mode as a multiple of the note's: to be written before [`Cells::load`].
+    /// Frequency of each mode as a multiple of the note's frequency. Write these before [`Cells::load`].
     pub fn ratios_mut(&mut self) -> impl Iterator<Item = &mut f64> {
         self.iter_mut().flat_map(|cell| &mut cell.ratios)
     }
 
-    /// T60 of each mode as a multiple of the decay: to be written before [`Cells::load`].
+    /// T60 of each mode as a multiple of the note's decay. Write these before [`Cells::load`].
     pub fn t60_scales_mut(&mut self) -> impl Iterator<Item = &mut f64> {
         self.iter_mut().flat_map(|cell| &mut cell.t60_scales)
     }
 
-    /// Fills the cells with modes at rest, made by `setup` of each of `modes`, its ratio and its T60's scale. Whatever a
-    /// cell played before leaves no trace.
+    /// Fills the cells with modes at rest: `setup` makes each of them from an item of `modes`, the mode's ratio and its
+    /// T60 scale. Nothing remains of what a cell played before.
     pub fn load<T>(
         &mut self,
         law: Law,
@@ -97,14 +97,15 @@ impl Cells {
         self.len = self.iter().map(|cell| cell.bank.len()).sum();
     }
 
-    /// As [`super::ModeBank::retune`]: `tuning` makes frequency and T60 of a mode's ratio and its T60's scale.
+    /// Like [`super::ModeBank::retune`]: `tuning` computes a mode's frequency in Hz and its T60 in seconds from its
+    /// ratio and its T60 scale.
     pub fn retune(&mut self, tuning: impl Fn(f64, f64) -> (f64, f64) + Copy) {
         for Cell { bank, ratios, t60_scales } in self.iter_mut() {
             bank.retune(ratios.iter().zip(t60_scales).map(|(ratio, scale)| tuning(*ratio, *scale)));
         }
     }
 
-    /// As [`super::ModeBank::set_t60`], for all modes: `t60` makes it of a mode's scale.
+    /// Like [`super::ModeBank::set_t60`], for all modes: `t60` computes the T60 in seconds from a mode's T60 scale.
     pub fn damp(&mut self, t60: impl Fn(f64) -> f64) {
         for Cell { bank, t60_scales, .. } in self.iter_mut() {
             (0..bank.len()).for_each(|m| bank.set_t60(m, t60(t60_scales[m])));
@@ -121,30 +122,42 @@ impl Cells {
         self.len() == 0
     }
 
-    /// As [`super::ModeBank::set_excitation_gains`]; a mode that there is not is left out.
+    /// Like [`super::ModeBank::set_excitation_gains`]. Does nothing if there is no mode `m`.
     pub fn set_excitation_gains(&mut self, m: usize, gains: ExcitationGains) {
         if let Some(Some(cell)) = self.cells.get_mut(m / MAX_MODES) {
             cell.bank.set_excitation_gains(m % MAX_MODES, gains);
         }
     }
 
-    /// As [`super::ModeBank::sweep_to`].
+    /// Like [`super::ModeBank::sweep_to`].
     pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
         self.iter_mut().for_each(|cell| cell.bank.sweep_to(ratio, frames));
     }
 
-    /// As [`super::ModeBank::jump_to`].
+    /// Like [`super::ModeBank::jump_to`].
     pub fn jump_to(&mut self, ratio: f64) {
         self.iter_mut().for_each(|cell| cell.bank.jump_to(ratio));
     }
 
-    /// As [`super::ModeBank::render`]; all cells are driven alike.
-    pub fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
+    /// Sets the weights of the first [`MAX_MODES`] modes under a bow, scaled so that their squares add up to 1: further
+    /// modes are not bowed. `weight` makes one of the number of a mode.
+    pub fn set_bow_weights(&mut self, weight: impl Fn(usize) -> f64) {
+        let Some(Cell { bank, .. }) = self.iter_mut().next() else { return };
+        let mut weights = [0.0; MAX_MODES];
+        let weights = &mut weights[..bank.len()];
+        weights.iter_mut().enumerate().for_each(|(m, place)| *place = weight(m));
+        let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
+        let scale = if squares > 0.0 { 1.0 / libm::sqrt(squares) } else { 0.0 };
+        weights.iter().enumerate().for_each(|(m, weight)| bank.set_bow_weight(m, (weight * scale) as f32));
+    }
+
+    /// As [`super::ModeBank::render_bowed`]; all cells are driven alike, and the first is bowed.
+    pub fn render(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
         let Self { cells, sum, .. } = self;
         let frames = frames.min(CONTROL_FRAMES);
         let (first, rest) = cells.split_at_mut(1);
         let mut rest = rest.iter_mut().map_while(Option::as_deref_mut).peekable();
-        let first = first.iter_mut().flatten().map(|cell| cell.bank.render(drive, frames)).next();
+        let first = first.iter_mut().flatten().map(|cell| cell.bank.render_bowed(drive, bow, frames)).next();
         let Some(first) = first else { return sum.each_ref().map(|side| &side[..frames]) };
         if rest.peek().is_none() {
             return first;
@@ -158,24 +171,24 @@ impl Cells {
         sum.each_ref().map(|side| &side[..frames])
     }
 
-    /// As [`super::ModeBank::mass`], of the first [`MAX_MODES`] modes or fewer.
+    /// Like [`super::ModeBank::mass`], for the modes of the first cell: at most [`MAX_MODES`].
     pub fn masses(&self) -> impl Iterator<Item = (f32, f32)> {
         let bank = self.iter().next().map(|cell| &cell.bank);
         bank.into_iter().flat_map(|bank| (0..bank.len()).map(|m| bank.mass(m)))
     }
 
-    /// As [`super::ModeBank::settle`].
+    /// Like [`super::ModeBank::settle`].
     pub fn settle(&mut self) -> f64 {
         self.iter_mut().map(|cell| cell.bank.settle()).sum()
     }
 
-    /// Frames until the squared amplitudes of all modes add up to less than `total`, if nothing damps them anew. Takes
-    /// some microseconds.
+    /// Frames until the sum of the squared amplitudes of all modes falls below `total`, if their damping does not
+    /// change. Takes some microseconds.
     pub fn frames_until(&self, total: f64) -> u64 {
         self.energies().frames_until(total)
     }
 
-    /// At most how many frames that takes once `more` energy, wherever it goes, has been added.
+    /// Upper bound of [`Cells::frames_until`] after `more` energy has been added, whichever modes get it.
     pub fn frames_until_at_most(&self, total: f64, more: f64) -> u64 {
         self.energies().frames_until_at_most(total, more)
     }

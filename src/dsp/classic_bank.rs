@@ -1,4 +1,4 @@
-//! Up to 64 masses with the original formulas, stepped one by one as they were written: kept for their sound.
+//! Up to 64 masses with the original formulas, stepped one by one as in the original: kept for their sound.
 
 use super::coefficients::Coefficients;
 use super::exciter::Drive;
@@ -8,37 +8,40 @@ use super::{CONTROL_FRAMES, HarmonicOscillator};
 use libm::{cosf, sinf};
 use std::f64::consts::PI;
 
-/// How far below the angle at which it explodes the step is kept.
+/// The step is unstable above a certain angle. The angle is kept below this share of it.
 const MARGIN: f64 = 0.99;
 
 /// A mode with less energy than this (an amplitude of 1e−20) is set to rest before it can become denormal.
 const REST_ENERGY: f64 = 1e-40;
 
-/// A strike at the highest pitch gives seven times the amplitude asked for. A mode that rings louder than this many times
-/// what strikes have asked for is brought back to that at the next control tick.
+/// With the original formulas, a strike at the highest pitch gives seven times the requested amplitude. A mode that
+/// rings louder than this many times the amplitude that strikes have requested is scaled back to that at the next
+/// control tick.
 const MOST_GAIN: f64 = 8.0;
 
-/// A bank of [`HarmonicOscillator`]s with [`Coefficients::seed`], the sweep used as the pitch ratio. Real-time safe.
+/// A bank of [`HarmonicOscillator`]s with [`Coefficients::seed`]; the sweep sets the pitch ratio. Real-time safe.
 ///
-/// Each operation is one of the listing's, in its order. Two things are added, and change no bit of a sound that does
-/// not run away: the sweep is held below where the step explodes, at every change of damping as well as of pitch; and
-/// what a moving sweep has pumped into a mode beyond 8 times what strikes have asked for is taken out again.
+/// Each operation is one of the original listing, in its order. Two protections are added; they change no bit of a
+/// sound that stays stable. First, the sweep is kept below the value at which the step becomes unstable, whenever
+/// damping or pitch changes. Second, a moving sweep can add energy to a mode: what exceeds 8 times the amplitude that
+/// strikes have requested is removed.
 #[derive(Clone, Debug)]
 pub struct ClassicBank {
     sample_rate: f64,
     len: usize,
     modes: [Mode; MAX_MODES],
-    /// Pitch ratio at which the sweeps are, or at which they are to arrive.
+    /// Pitch ratio of the sweeps, or their target while they move.
     ratio: f64,
-    /// Frequencies or T60s have changed since the sweeps set out.
+    /// Frequencies or T60s have changed since the last [`ClassicBank::sweep_to`].
     retuned: bool,
-    /// Frames until the next control tick, and those of the line of sweeps that ends there; 0 for none.
+    /// Frames until the next control tick, and the length in frames of the straight line of the sweeps that ends there;
+    /// 0 if they do not move.
     until_tick: usize,
     line_frames: usize,
     output: [[f32; CONTROL_FRAMES]; 2],
 }
 
-/// One mass, and what moves it.
+/// One mass and its excitation gains.
 #[derive(Clone, Copy, Debug)]
 struct Mode {
     mass: HarmonicOscillator<f32>,
@@ -48,14 +51,14 @@ struct Mode {
     t60: f64,
     left: f32,
     right: f32,
-    /// Velocity per unit of pulse, displacement per unit of pulse, velocity per unit of noise.
-    push: f32,
-    pull: f32,
+    /// Velocity and displacement per unit of push and per unit of pull, velocity per unit of noise.
+    push: [f32; 2],
+    pull: [f32; 2],
     noise: f32,
     gains: ExcitationGains,
-    /// Velocity that rings with the amplitude 1, by the formulas.
+    /// Velocity that gives amplitude 1, by the original formulas.
     unit_push: f32,
-    /// Amplitude that strikes have asked for, less what has decayed since.
+    /// Amplitude that strikes have requested, reduced by the decay since then.
     asked: f64,
 }
 
@@ -68,15 +71,15 @@ impl Mode {
         t60: 1.0,
         left: 1.0,
         right: 1.0,
-        push: 0.0,
-        pull: 0.0,
+        push: [0.0; 2],
+        pull: [0.0; 2],
         noise: 0.0,
         gains: ExcitationGains { push: 0.0, pull: 0.0, noise: 0.0, phase: 0.0 },
         unit_push: 0.0,
         asked: 0.0,
     };
 
-    /// The coefficients of the mode's frequency and T60.
+    /// Computes the coefficients from the mode's frequency and T60.
     fn tune(&mut self, sample_rate: f64) {
         let rate = sample_rate as f32;
         let frames = (self.t60 * sample_rate) as f32;
@@ -85,7 +88,7 @@ impl Mode {
         let c = Coefficients::seed(self.frequency.min(highest) as f32, frames, 1.0, rate);
         self.mass.damp(&c);
         self.unit_push = c.v0 as f32;
-        // What is still to come of a force is in velocities of this tuning.
+        // The gains are velocities for these coefficients, so the rest of a running pulse needs new ones.
         self.set_excitation_gains(self.gains);
         self.sweep = self.sweep.min(self.highest_sweep());
     }
@@ -95,14 +98,14 @@ impl Mode {
         (limit(zeta) / libm::sqrt(omega2)) as f32
     }
 
-    /// The coefficients at the present sweep.
+    /// The coefficients at the present sweep value.
     fn swept(&self) -> Coefficients {
         let c = self.mass.coefficients();
         let sweep = f64::from(self.sweep);
         Coefficients { omega2: c.omega2 * sweep * sweep, v0: c.v0 * sweep, ..c }
     }
 
-    /// The squared amplitude at which the mass rings at the present sweep.
+    /// The squared amplitude at which the mass rings at the present sweep value.
     fn energy(&self) -> f64 {
         let swept = self.swept();
         let Coefficients { zeta, omega2, x0: x, v0: v } = swept;
@@ -113,23 +116,24 @@ impl Mode {
         if discriminant > 1e-12 && keep > 0.0 {
             form * keep / discriminant
         } else {
-            // Over-damped: no ringing, but still something that moves.
+            // Over-damped: the mass does not ring, but it still moves.
             x * x + v * v / omega2.max(1e-12)
         }
     }
 
-    /// The logarithm of what a frame leaves of the energy: the square of the larger root of the step.
+    /// The natural logarithm of the energy ratio per frame: the energy decays with the square of the larger eigenvalue
+    /// of the step.
     fn energy_rate(&self) -> f64 {
         let Coefficients { zeta, omega2, .. } = self.swept();
         let keep = 1.0 - zeta;
         let half_trace = 0.5 * (1.0 + keep - omega2);
         let discriminant = half_trace * half_trace - keep;
-        // A mode without a memory has no logarithm: what is left after a frame is not heard.
+        // With `keep` = 0 the logarithm would be infinite. Anything this small is inaudible after one frame.
         let keep = keep.max(1e-30);
         if discriminant > 0.0 { 2.0 * libm::log(half_trace.abs() + libm::sqrt(discriminant)) } else { libm::log(keep) }
     }
 
-    /// Takes out what a moving sweep has pumped in. `frames` have passed since the last time.
+    /// Removes the energy that a moving sweep has added. `frames` have passed since the last call.
     fn bound(&mut self, frames: usize) {
         let most = MOST_GAIN * self.asked;
         let energy = self.energy();
@@ -141,19 +145,22 @@ impl Mode {
         self.asked *= libm::exp(0.5 * self.energy_rate().min(0.0) * frames as f64);
     }
 
-    /// Takes over what drives the mode.
+    /// Sets how strongly pulse and noise excite the mode.
     fn set_excitation_gains(&mut self, gains: ExcitationGains) {
         self.gains = gains;
-        let (mut push, mut pull) = (gains.push, gains.pull);
-        if gains.phase != 0.0 {
+        let turned = |velocity: f32, displacement: f32| {
+            if gains.phase == 0.0 {
+                return [velocity * self.unit_push, displacement];
+            }
             let (sin, cos) = (sinf(gains.phase), cosf(gains.phase));
-            (push, pull) = (push * cos - pull * sin, pull * cos + push * sin);
-        }
-        (self.push, self.pull, self.noise) = (push * self.unit_push, pull, gains.noise * self.unit_push);
+            [(velocity * cos - displacement * sin) * self.unit_push, displacement * cos + velocity * sin]
+        };
+        (self.push, self.pull) = (turned(gains.push, 0.0), turned(0.0, gains.pull));
+        self.noise = gains.noise * self.unit_push;
     }
 }
 
-/// Largest `ω` (times sweep) of the step: it explodes where `ω² = 4 − 2ζ`.
+/// Largest `ω` (times sweep): the step becomes unstable where `ω² = 4 − 2ζ`.
 fn limit(zeta: f64) -> f64 {
     MARGIN * libm::sqrt(4.0 - 2.0 * zeta)
 }
@@ -177,7 +184,7 @@ impl ClassicBank {
         &mut self.modes[..self.len]
     }
 
-    /// As [`super::ModeBank::load`].
+    /// Like [`super::ModeBank::load`].
     pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
         self.len = 0;
         for (mode, ModeSetup { frequency, t60, left, right }) in self.modes.iter_mut().zip(modes) {
@@ -198,19 +205,19 @@ impl ClassicBank {
         self.len == 0
     }
 
-    /// As [`super::ModeBank::set_excitation_gains`].
+    /// Like [`super::ModeBank::set_excitation_gains`].
     pub fn set_excitation_gains(&mut self, m: usize, gains: ExcitationGains) {
         self.tune();
         self.modes[m].set_excitation_gains(gains);
     }
 
-    /// As [`super::ModeBank::set_t60`].
+    /// Like [`super::ModeBank::set_t60`].
     pub fn set_t60(&mut self, m: usize, t60: f64) {
         self.modes[m].t60 = t60;
         self.retuned = true;
     }
 
-    /// As [`super::ModeBank::retune`].
+    /// Like [`super::ModeBank::retune`].
     pub fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
         let before: [f64; MAX_MODES] = std::array::from_fn(|m| self.modes[m].mass.coefficients().omega2);
         for (mode, tuning) in self.modes().iter_mut().zip(modes) {
@@ -219,7 +226,7 @@ impl ClassicBank {
         self.retuned = true;
         self.tune();
         for (mode, before) in self.modes().iter_mut().zip(before) {
-            // Sweep times ω, and velocity times sweep, are what was before.
+            // Keep sweep · ω and velocity · sweep as they were, so that pitch and amplitude do not jump.
             let stretch = libm::sqrtf((mode.mass.coefficients().omega2 / before) as f32);
             mode.sweep = (mode.sweep / stretch).min(mode.highest_sweep());
             mode.mass.v *= stretch;
@@ -234,7 +241,7 @@ impl ClassicBank {
         }
     }
 
-    /// As [`super::ModeBank::sweep_to`].
+    /// Like [`super::ModeBank::sweep_to`].
     pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
         let passed = self.line_frames.saturating_sub(self.until_tick);
         self.modes().iter_mut().for_each(|mode| mode.bound(passed));
@@ -245,7 +252,7 @@ impl ClassicBank {
         self.aim(if arrived { None } else { Some(1.0 / frames as f32) });
     }
 
-    /// As [`super::ModeBank::jump_to`].
+    /// Like [`super::ModeBank::jump_to`].
     pub fn jump_to(&mut self, ratio: f64) {
         self.tune();
         (self.ratio, self.until_tick, self.line_frames) = (ratio, 0, 0);
@@ -263,21 +270,23 @@ impl ClassicBank {
         }
     }
 
-    /// As [`super::ModeBank::render`].
+    /// Like [`super::ModeBank::render`].
     pub fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
         let frames = frames.min(CONTROL_FRAMES);
         let drive = drive.unwrap_or(&Drive::NONE);
         let area = |force: &[f32]| force[..frames].iter().map(|force| f64::from(force.abs())).sum::<f64>();
-        let (pulse, noise) = (area(&drive.pulse), area(&drive.noise));
+        let [pushed, pulled, burst] = [&drive.push, &drive.pull, &drive.noise].map(|force| area(force));
         let mut sums = [[Partial([0.0; LANES]); CONTROL_FRAMES]; 2];
         let [left, right] = &mut sums;
         for (m, mode) in self.modes[..self.len].iter_mut().enumerate() {
-            let ExcitationGains { push, pull, noise: by_noise, .. } = mode.gains;
-            mode.asked += pulse * f64::from(push.abs() + pull.abs()) + noise * f64::from(by_noise.abs());
+            let ExcitationGains { push, pull, noise, .. } = mode.gains;
+            mode.asked +=
+                pushed * f64::from(push.abs()) + pulled * f64::from(pull.abs()) + burst * f64::from(noise.abs());
             for i in 0..frames {
                 mode.sweep += mode.sweep_step;
-                mode.mass.v += drive.pulse[i] * mode.push + drive.noise[i] * mode.noise;
-                mode.mass.x += drive.pulse[i] * mode.pull;
+                let (push, pull) = (drive.push[i], drive.pull[i]);
+                mode.mass.v += push * mode.push[0] + pull * mode.pull[0] + drive.noise[i] * mode.noise;
+                mode.mass.x += push * mode.push[1] + pull * mode.pull[1];
                 let heard = mode.mass.step_with_sweep(mode.sweep);
                 left[i].0[m % LANES] += heard * mode.left;
                 right[i].0[m % LANES] += heard * mode.right;
@@ -291,12 +300,12 @@ impl ClassicBank {
         [&left[..frames], &right[..frames]]
     }
 
-    /// As [`super::ModeBank::mass`].
+    /// Like [`super::ModeBank::mass`].
     pub fn mass(&self, m: usize) -> (f32, f32) {
         (self.modes[m].mass.x, self.modes[m].energy() as f32)
     }
 
-    /// As [`super::ModeBank::settle`].
+    /// Like [`super::ModeBank::settle`].
     pub fn settle(&mut self) -> f64 {
         let mut total = 0.0;
         for mode in self.modes() {
@@ -309,7 +318,7 @@ impl ClassicBank {
         total
     }
 
-    /// As [`super::ModeBank::tell_energies`].
+    /// Like [`super::ModeBank::tell_energies`].
     pub(super) fn tell_energies(&self, mut each: impl FnMut(f64, f64)) {
         self.modes[..self.len].iter().for_each(|mode| each(mode.energy(), mode.energy_rate()));
     }

@@ -1,28 +1,28 @@
-//! The parameters that sounding voices follow, smoothed.
+//! Parameter smoothing, and the parameter values that sounding voices follow.
 
-use super::gain::pan_gains;
+use super::gain::{exciter_gain, pan_gains};
 use super::modulation::{Bus, NoteModulation, Settings, rate_at};
 use crate::dsp::power_of_two;
 use crate::dsp::ramp::Ramp;
 use crate::params::{Choice, NoteValue, PARAM_COUNT, PARAMS, Param, Values};
 use crate::units::gain_from_db;
 
-/// Every parameter on its way to the value it was last given. Real-time safe.
+/// Parameter smoothing: a ramp for each parameter to its last value. Real-time safe.
 pub(crate) struct Smoother {
     sample_rate: f64,
     /// Beats per second.
     beat_rate: f64,
     ramps: [Ramp; PARAM_COUNT],
-    /// Frames until all have arrived.
+    /// Frames until all ramps have reached their targets.
     moving: u32,
-    /// Counts what has been set.
+    /// Number of changes of a parameter or of the tempo so far.
     changes: u32,
-    /// What voices follow once they have.
+    /// The controls after all ramps have ended.
     arrived: Controls,
 }
 
 impl Smoother {
-    /// All at rest at `values`.
+    /// All parameters at `values`, without ramps.
     pub(crate) fn new(sample_rate: f64, values: &Values, beat_rate: f64) -> Self {
         let ramps = std::array::from_fn(|index| Ramp::at_rest(values.get(PARAMS[index].param)));
         let arrived = Controls::new(|param| values.get(param), beat_rate);
@@ -41,7 +41,7 @@ impl Smoother {
         self.beat_rate
     }
 
-    /// Moves one parameter towards a value.
+    /// Starts a parameter's ramp to a value.
     pub(crate) fn set(&mut self, param: Param, value: f32) {
         let ramp = &mut self.ramps[param as usize];
         if let Some(frames) = param.info().smoothing_frames(self.sample_rate)
@@ -54,7 +54,7 @@ impl Smoother {
         }
     }
 
-    /// Lets `frames` frames pass.
+    /// Advances the ramps by `frames` frames.
     pub(crate) fn advance(&mut self, frames: u32) {
         if self.moving > 0 {
             self.ramps.iter_mut().for_each(|ramp| ramp.advance(frames));
@@ -62,7 +62,7 @@ impl Smoother {
         }
     }
 
-    /// What voices follow, `frames` frames from now.
+    /// The controls `frames` frames from now.
     pub(crate) fn after(&self, frames: u32) -> Controls {
         if frames >= self.moving { self.arrived } else { self.at(frames) }
     }
@@ -71,18 +71,19 @@ impl Smoother {
         Controls::new(|param| self.value_after(param, frames), self.beat_rate)
     }
 
-    /// What modulators follow, `frames` frames from now, after what they followed `before`.
+    /// The modulators' settings `frames` frames from now; `before` are the last ones.
     pub(crate) fn settings_after(&self, frames: u32, before: &Settings, bus: &Bus) -> Settings {
         before.next(bus, |param| self.value_after(param, frames), self.beat_rate)
     }
 
-    /// What the modulators of a note follow that has a modulation of its own.
+    /// The modulators' settings for a note with host offsets of its own.
     pub(crate) fn own_settings(&self, own: &NoteModulation, frames: u32, before: &Settings, bus: &Bus) -> Settings {
         let value = |param| own.after(param, frames).unwrap_or_else(|| self.value_after(param, frames));
         before.own(bus, value, self.beat_rate)
     }
 
-    /// How often a parameter or the tempo has been set; none if a parameter will still be sliding `frames` frames from now.
+    /// Number of changes of a parameter or of the tempo so far; none if a ramp will still be running `frames` frames
+    /// from now.
     pub(crate) fn changes(&self, frames: u32) -> Option<u32> {
         (frames >= self.moving).then_some(self.changes)
     }
@@ -92,43 +93,48 @@ impl Smoother {
         self.ramps[param as usize].after(frames)
     }
 
-    /// What a note follows that has a modulation of its own, `frames` frames from now.
+    /// The controls of a note with host offsets of its own, `frames` frames from now.
     pub(crate) fn modulated(&self, modulation: &NoteModulation, frames: u32) -> Controls {
         let value = |param: Param| modulation.after(param, frames);
         Controls::new(|param| value(param).unwrap_or_else(|| self.value_after(param, frames)), self.beat_rate)
     }
 }
 
-/// The live parameters at one instant, in the units that voices use them in.
+/// The parameters that voices follow, at one instant, in the units that voices use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Controls {
-    /// T60 in seconds.
+    /// T60 of a held note in seconds.
     pub(crate) decay: f64,
-    /// T60 in seconds.
+    /// T60 of a released note in seconds.
     pub(crate) release: f64,
     /// Semitones, of `coarse` and `fine` together.
     pub(crate) tune: f64,
     coarse: f32,
     /// Cents.
     fine: f32,
-    /// Semitones: the patch's own, and what routes add to it.
+    /// Vibrato depth in semitones: of the patch, and, in the next field, what routes add to it.
     pub(crate) vibrato: f64,
     pub(crate) added_vibrato: f64,
     /// Hz.
     pub(crate) vibrato_rate: f64,
-    /// The rate is that of a note value.
+    /// Whether the vibrato rate follows the tempo.
     is_synchronised: bool,
-    /// How far the damper is on while the note is held, 0–1.
+    /// How strongly a held note is damped, 0–1.
     pub(crate) damper: f64,
-    /// How higher modes decay faster.
+    /// Exponent by which higher modes decay faster.
     pub(crate) decay_tilt: f64,
     /// Semitones.
     pub(crate) bend_range: f32,
+    /// Speed of the bow, from 0, and how hard it is pressed on, 0–1.
+    pub(crate) bow_speed: f32,
+    pub(crate) bow_force: f32,
+    /// Amplitude ratio of what comes in as sound.
+    pub(crate) input_gain: f32,
     /// Amplitude ratio.
     pub(crate) gain_left: f32,
     /// Amplitude ratio.
     pub(crate) gain_right: f32,
-    /// What both come from: decibels, and per cent from left to right.
+    /// The values that the gains are computed from: decibels, and pan in per cent from −100 (left) to 100 (right).
     gain_db: f32,
     pan: f32,
 }
@@ -152,6 +158,9 @@ impl Controls {
             damper: f64::from(value(Param::Damper)) * 0.01,
             decay_tilt: value(Param::DecayTilt).into(),
             bend_range: value(Param::BendRange),
+            bow_speed: exciter_gain(value(Param::BowLevel).into()) as f32,
+            bow_force: value(Param::BowForce) * 0.01,
+            input_gain: exciter_gain(value(Param::InputLevel).into()) as f32,
             gain_left,
             gain_right,
             gain_db,
@@ -159,8 +168,8 @@ impl Controls {
         }
     }
 
-    /// Puts one parameter at a value that modulation has found. Those that are read elsewhere change nothing here.
-    /// [`Controls::find_gains`] must follow, since level and pan make the gains together.
+    /// Sets the modulated value of one parameter. Ignores parameters that are not part of the controls.
+    /// [`Controls::find_gains`] must follow, since the gains depend on level and pan together.
     pub(crate) fn set(&mut self, param: Param, value: f32) {
         let wide = f64::from(value);
         match param {
@@ -175,13 +184,17 @@ impl Controls {
             Param::Damper => self.damper = wide * 0.01,
             Param::DecayTilt => self.decay_tilt = wide,
             Param::BendRange => self.bend_range = value,
+            Param::BowLevel => self.bow_speed = exciter_gain(wide) as f32,
+            Param::BowForce => self.bow_force = value * 0.01,
+            Param::InputLevel => self.input_gain = exciter_gain(wide) as f32,
             Param::Gain => self.gain_db = value,
             Param::Pan => self.pan = value,
             _ => {}
         }
     }
 
-    /// Finds the gains of a level and a pan that differ from those `before`; `base` has the gains of its own, exactly.
+    /// Computes the gains if level or pan differ from those `before`. If `base` has the same level and pan, its gains
+    /// are copied: they are more exact.
     pub(crate) fn find_gains(&mut self, before: [f32; 2], base: Option<&Self>) {
         let now = self.level_and_pan();
         if now == before {
@@ -196,13 +209,13 @@ impl Controls {
         }
     }
 
-    /// What the gains come from.
+    /// The two values that the gains are computed from.
     pub(crate) fn level_and_pan(&self) -> [f32; 2] {
         [self.gain_db, self.pan]
     }
 }
 
-/// log₂ 10 / 20.
+/// Powers of two per decibel: log₂ 10 / 20.
 const DOUBLINGS_PER_DB: f32 = std::f32::consts::LOG2_10 / 20.0;
 
 fn semitones(coarse: f32, fine: f32) -> f64 {

@@ -1,24 +1,26 @@
-//! What happens to the engine, and at which frame.
+//! The events that the engine handles, and the frames at which they occur.
 
 use super::note::{NoteId, Notes};
 use crate::params::Param;
+use crate::sound::Contact;
 
-/// An event at a frame of the block that it is handed over with.
+/// An event, at a frame of the block that it is passed with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
-    /// Frame within the block; a frame beyond its end is taken as its last.
+    /// Frame within the block. A frame beyond the end counts as the last one.
     pub frame: u32,
-    /// MIDI channel, 0–15; a number above is taken as 15.
+    /// MIDI channel, 0–15. A greater number counts as 15.
     pub channel: u8,
     /// What happens.
     pub kind: EventKind,
 }
 
-/// What happens. Numbers out of range are clamped where they are used, keys and channels as well; NaN counts as zero.
-/// A controller, program or choke group that does not exist changes nothing.
+/// The kind of an event. Values out of range are clamped where they are used, keys and channels too; NaN counts as
+/// zero. A controller, program or choke group that does not exist changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EventKind {
-    /// A key goes down; one that the tuning leaves unmapped starts nothing. Velocity 0 strikes with no force; MIDI's "velocity 0 is a note-off" is the reader's to translate.
+    /// Starts a note. A key that the tuning does not map starts none. Velocity 0 is a strike without force: whoever
+    /// reads MIDI must translate "note on with velocity 0" to a note off.
     NoteOn {
         /// MIDI key, 0–127.
         key: u8,
@@ -29,13 +31,22 @@ pub enum EventKind {
         /// The identifier that the host gives this note.
         id: Option<NoteId>,
     },
-    /// A key comes up.
+    /// Another body hits the object that a key stands for: a note-on by [`Sound::strike`](crate::sound::Sound::strike), whose
+    /// mallet is that body. Noise and pluck, if the sound has them, follow a velocity whose square is the impulse. The key
+    /// counts as down.
+    Strike {
+        /// MIDI key, 0–127.
+        key: u8,
+        /// The hit.
+        contact: Contact,
+    },
+    /// Releases a key.
     NoteOff {
         /// MIDI key, 0–127.
         key: u8,
-        /// 0–1; 0.5 where the controller does not tell.
+        /// 0–1; 0.5 if the controller does not send one.
         velocity: f32,
-        /// Ends the note with this identifier only; none for any on the key.
+        /// Ends only the note with this identifier; if none, all notes on the key.
         id: Option<NoteId>,
     },
     /// Pressure on one key, 0–1.
@@ -45,24 +56,24 @@ pub enum EventKind {
         /// 0–1.
         pressure: f32,
     },
-    /// Keys come up: a note-off as plugin hosts put it.
+    /// Releases notes, as plugin hosts send it.
     Release {
-        /// The notes that the keys belong to.
+        /// The notes to release.
         notes: Notes,
-        /// 0–1; 0.5 where the host does not tell.
+        /// 0–1; 0.5 if the host does not send one.
         velocity: f32,
     },
-    /// Notes are silenced within a few milliseconds.
+    /// Fades out notes within a few milliseconds.
     Silence {
-        /// Which.
+        /// The notes to fade out.
         notes: Notes,
     },
-    /// Notes are told how to sound. It lasts until their next word, and ends when the note leaves its voice: a key that
-    /// a monophonic voice comes back to starts neutral.
+    /// Sets a note expression. It lasts until the next one, and ends when the note leaves its voice: if a monophonic
+    /// voice returns to a held key, that note starts with neutral expressions.
     Express {
-        /// Which.
+        /// The notes that it applies to.
         notes: Notes,
-        /// What is told.
+        /// The expression to set.
         expression: Expression,
         /// In the expression's unit.
         value: f32,
@@ -75,39 +86,40 @@ pub enum EventKind {
     Control {
         /// MIDI controller number.
         controller: u8,
-        /// 0–1, where MIDI says 0–127.
+        /// 0–1, for MIDI's 0–127.
         value: f32,
     },
-    /// A parameter takes a new value, in the table's unit.
+    /// Sets a parameter.
     Param {
-        /// Which.
+        /// The parameter.
         param: Param,
-        /// In the table's unit.
+        /// In the unit of the parameter table.
         value: f32,
     },
-    /// A parameter is moved away from its value, by an offset in knob travel (−1 to 1, see
+    /// Modulates a parameter: an offset from its value in knob travel (−1 to 1, see
     /// [`crate::params::ParamInfo::normalise`]).
     Modulate {
-        /// The sounding note that is meant, which then heeds its own offset only; none for the whole instrument. A
-        /// note can be modulated in the parameters that it follows while it sounds ([`crate::params::Change::Smoothed`]).
+        /// The sounding note to modulate; none for the whole instrument. A note with an offset of its own ignores the
+        /// instrument's. Notes can be modulated in parameters that they follow while they sound
+        /// ([`crate::params::Change::Smoothed`]).
         id: Option<NoteId>,
-        /// Which.
+        /// The parameter.
         param: Param,
-        /// Knob travel.
+        /// Offset in knob travel.
         offset: f32,
     },
-    /// Beats per minute, on all channels.
+    /// Sets the tempo in beats per minute, on all channels.
     Tempo(f32),
-    /// All notes of a choke group are silenced (sent between the channels of an ensemble).
+    /// Silences all notes of a choke group (sent between the channels of an ensemble).
     Choke {
         /// 1–16; 0 silences nothing.
         group: u8,
     },
-    /// The channel changes to the program of this number (acted on by the ensemble; a single synth ignores it).
+    /// Selects a program for the channel. An ensemble handles it; a single synth ignores it.
     Program(u8),
 }
 
-/// What a note can be told while it sounds: the expressions of CLAP and VST3, and MIDI's polyphonic pressure.
+/// The note expressions: those of CLAP and VST3, and MIDI's polyphonic pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expression {
     /// Offset in semitones, −128 to 128.
@@ -116,14 +128,14 @@ pub enum Expression {
     Volume,
     /// −1 (left) to 1 (right).
     Pan,
-    /// 0–1; acts as the channel's pressure does, where it is the greater.
+    /// 0–1. The greater of it and the channel's pressure counts.
     Pressure,
-    /// 0–1, neutral at 0.5: the source `timbre` of routes. By those of a new patch it tilts the strike by up to 12 dB per
-    /// octave either way, and below 0.5 it damps the higher modes of what sounds.
+    /// 0–1, neutral at 0.5: the source `timbre` of routes. The routes of a new patch tilt the strike's spectrum by up
+    /// to 12 dB per octave in either direction, and below 0.5 damp the higher modes while they sound.
     Brightness,
-    /// 0–1; acts as the modulation wheel does, where it is the greater.
+    /// 0–1. The greater of it and the modulation wheel counts.
     Vibrato,
-    /// 0–1: swells as controller 11 does.
+    /// 0–1, acts as controller 11 (expression) does.
     Swell,
 }
 
@@ -133,12 +145,12 @@ impl Expression {
         [Self::Tuning, Self::Volume, Self::Pan, Self::Pressure, Self::Brightness, Self::Vibrato, Self::Swell];
 }
 
-/// A number, 0 where there is none.
+/// The value, or 0 if it is NaN.
 pub(super) fn finite(value: f32) -> f32 {
     if value.is_nan() { 0.0 } else { value }
 }
 
-/// A number from 0 to 1.
+/// The value clamped to 0–1, or 0 if it is NaN.
 pub(super) fn unit(value: f32) -> f32 {
     finite(value).clamp(0.0, 1.0)
 }

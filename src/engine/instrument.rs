@@ -1,4 +1,4 @@
-//! One sound of the kit that a synth plays: its live values, and what moves them for all of its notes.
+//! One sound of the kit that a synth plays: its present parameters, and the modulation that all its notes share.
 
 use super::controls::{Controls, Smoother};
 use super::modulation::{Bus, Positions, Settings, SharedLfos, modulated};
@@ -8,49 +8,50 @@ use crate::params::{PARAM_COUNT, PARAMS, Param, Values};
 use crate::sound::Sound;
 use std::sync::Arc;
 
-/// What voices read of their sound, when a note starts and while it is played. Real-time safe once built, as far as
-/// handles of sounds are kept elsewhere.
+/// What voices read of their sound, when a note starts and while it plays. Real-time safe once built, as long as the
+/// sounds are also held elsewhere, so that none is freed here.
 pub(crate) struct Instrument {
-    /// Whose modes and routes are played.
+    /// The sound whose modes and routes are played.
     pub(crate) sound: Arc<Sound>,
     /// Its parameters as they were set.
     pub(crate) values: Values,
-    /// Where modulation has moved them: what is played.
+    /// The parameters with the host's modulation: these are played.
     pub(crate) modulated: Values,
-    /// Counts the sounds of a synth: a voice that was started by another cannot read this one.
+    /// Serial number of the sound. A voice that was started with another number must not read this instrument.
     pub(crate) patch_serial: u32,
-    /// Counts the bodies: a voice keeps the one that it was started with.
+    /// Serial number of the body. A voice keeps the body that it was started with.
     pub(crate) body_serial: u32,
     pub(crate) sample_rate: f64,
     pub(crate) seed: u64,
     pub(crate) smoother: Smoother,
-    /// Live parameters at this frame, when a note starts.
+    /// Smoothed parameters at the frame at which a note starts.
     pub(crate) controls: Controls,
-    /// Live parameters at the next control tick, and a count of how often they have changed.
+    /// Smoothed parameters at the next control tick, and, in the next field, how often they have changed.
     pub(crate) next_controls: Controls,
     pub(crate) controls_serial: u32,
-    /// Pitch of the note before, in semitones, to glide from.
+    /// Pitch of the previous note in semitones, for the glide.
     pub(crate) last_pitch: Option<f64>,
     /// The routes of the sound.
     pub(crate) bus: Bus,
-    /// What modulators follow.
+    /// Parameter values for the modulators.
     pub(crate) settings: Settings,
-    /// Oscillators that all voices can follow, at the last control tick.
+    /// Oscillators that all voices can share, at frame `shared_clock`.
     pub(crate) shared: SharedLfos,
-    /// Positions of the controllers on the channel of the next note.
+    /// Controller positions on the channel of the next note.
     pub(crate) positions: Positions,
-    /// A sound since the start has had routes.
+    /// Whether any sound so far has had routes.
     has_routes: bool,
-    /// Changes of the smoother that the next controls and the settings have, if they have arrived.
+    /// The smoother's change count that `next_controls`, and in the next field `settings`, were computed with; none
+    /// while a ramp is running.
     controls_changes: Option<u32>,
     settings_changes: Option<u32>,
-    /// The frame at which the shared oscillators are.
+    /// Frame to which the shared oscillators have advanced.
     shared_clock: u64,
 }
 
 impl Instrument {
-    /// An instrument at frame `clock`, with its parameters moved by `offsets` in knob travel, and serial numbers to be
-    /// given.
+    /// An instrument at frame `clock`, with parameters modulated by `offsets` in knob travel. Its serial numbers are
+    /// set later.
     pub(crate) fn new(
         sound: Arc<Sound>,
         [sample_rate, beat_rate]: [f64; 2],
@@ -87,43 +88,47 @@ impl Instrument {
         }
     }
 
-    /// Plays another sound, at the same tempo, with its parameters moved by `offsets` in knob travel. Shared oscillators
-    /// go on.
+    /// Switches to another sound at the same tempo, with parameters modulated by `offsets` in knob travel. Shared
+    /// oscillators continue.
     pub(crate) fn play(&mut self, sound: &Arc<Sound>, offsets: &[f32; PARAM_COUNT]) {
         self.sound = sound.clone();
-        self.values = sound.patch().values;
-        self.modulated = all_modulated(&self.values, offsets);
         self.bus = Bus::new(&sound.patch().routes);
         self.has_routes |= !self.bus.is_empty();
-        // Voices of the sound before keep its controls, so the new ones need no slope.
-        self.smoother = Smoother::new(self.sample_rate, &self.modulated, self.smoother.beat_rate());
-        (self.controls_changes, self.settings_changes) = (None, None);
+        // Voices of the previous sound keep its controls, so the new values need no ramp.
+        self.jump_to(sound.patch().values, offsets);
     }
 
-    /// Takes all parameters to where `value` puts those of the sound, moved by `offsets` in knob travel, at once.
+    /// Sets all parameters at once, without ramps: `value` gives each from the sound's own value, and `offsets`
+    /// modulate them, in knob travel.
     pub(crate) fn begin_at(&mut self, value: impl Fn(Param, f32) -> f32, offsets: &[f32; PARAM_COUNT]) {
+        let mut values = self.sound.patch().values;
         for info in PARAMS {
-            self.values.set(info.param, value(info.param, self.sound.patch().get(info.param)));
+            values.set(info.param, value(info.param, values.get(info.param)));
         }
-        self.modulated = all_modulated(&self.values, offsets);
-        self.smoother = Smoother::new(self.sample_rate, &self.modulated, self.smoother.beat_rate());
+        self.jump_to(values, offsets);
         self.controls = self.smoother.after(0);
+    }
+
+    /// Sets all parameters at once, without ramps.
+    fn jump_to(&mut self, values: Values, offsets: &[f32; PARAM_COUNT]) {
+        (self.values, self.modulated) = (values, all_modulated(&values, offsets));
+        self.smoother = Smoother::new(self.sample_rate, &self.modulated, self.smoother.beat_rate());
         (self.controls_changes, self.settings_changes) = (None, None);
     }
 
-    /// Sets a parameter that is moved by an offset in knob travel, at frame `clock`.
+    /// Sets a parameter and its modulation offset in knob travel, at frame `clock`.
     pub(crate) fn set(&mut self, param: Param, value: f32, offset: f32, clock: u64) {
         self.values.set(param, value);
         let value = modulated(&self.values, param, offset);
         self.modulated.set(param, value);
-        // Until now, shared oscillators have had the rate before.
+        // Shared oscillators must first advance to this frame with the old rate.
         self.move_shared(clock, 0);
         self.smoother.set(param, value);
     }
 
-    /// Finds what voices follow at the next control tick, which is `ahead` frames after frame `clock`.
+    /// Computes the controls at the next control tick, `ahead` frames after frame `clock`.
     pub(crate) fn look_ahead(&mut self, clock: u64, ahead: u32) {
-        // What slides is read again, until all have arrived.
+        // While a ramp is running, the values are read again at every tick.
         let changes = self.smoother.changes(ahead);
         if changes.is_none() || changes != self.controls_changes {
             self.next_controls = self.smoother.after(ahead);
@@ -133,15 +138,15 @@ impl Instrument {
         self.move_shared(clock, ahead);
     }
 
-    /// Moves the shared oscillators to frame `clock`, and reads what modulators are to follow `ahead` frames from then: if
-    /// there are any routes to follow them.
+    /// Advances the shared oscillators to frame `clock`, and computes the modulators' settings `ahead` frames later.
+    /// Does nothing if no sound has had routes.
     pub(crate) fn move_shared(&mut self, clock: u64, ahead: u32) {
         if !self.has_routes {
             return;
         }
         let seconds = (clock - self.shared_clock) as f64 / self.sample_rate;
         self.shared_clock = clock;
-        // Values that slide are read again, until those that they slide to have been read.
+        // While a ramp is running, the values are read again at every tick.
         let changes = self.smoother.changes(ahead);
         if changes.is_none() || changes != self.settings_changes {
             self.settings = self.smoother.settings_after(ahead, &self.settings, &self.bus);
@@ -150,23 +155,23 @@ impl Instrument {
         self.shared.advance(&self.settings, seconds);
     }
 
-    /// Whether its notes ask where the controllers are.
+    /// Whether any sound so far has had routes, so that notes need controller positions.
     pub(crate) fn has_routes(&self) -> bool {
         self.has_routes
     }
 
-    /// The value of a parameter without the routes' part.
+    /// The value of a parameter without the effect of routes.
     fn value(&self, param: Param) -> f64 {
         self.modulated.get(param).into()
     }
 
-    /// The pitch of a note in semitones on the MIDI scale, tracking included.
+    /// The pitch of a note in semitones on the MIDI scale, with key tracking.
     pub(crate) fn pitch(&self, note: &Note) -> f64 {
         KeyTracking::new(|param| self.value(param)).pitch(note)
     }
 }
 
-/// All values, moved by offsets in knob travel.
+/// All values, modulated by offsets in knob travel.
 fn all_modulated(values: &Values, offsets: &[f32; PARAM_COUNT]) -> Values {
     let mut all = *values;
     for info in PARAMS {

@@ -1,6 +1,6 @@
 //! From events to samples: voices, their manager, the synth, and the ensemble of sixteen channels.
 //!
-//! Knows no files, no command line and no audio device. Everything here is real-time safe once built.
+//! Does not depend on files, the command line or audio devices. Real-time safe once built, except where noted.
 
 mod channel;
 mod controls;
@@ -15,6 +15,7 @@ pub mod midi;
 mod modulation;
 pub mod note;
 pub mod snapshot;
+mod space;
 pub mod synth;
 pub mod telemetry;
 mod voice;

@@ -1,31 +1,33 @@
-//! A note as voices get it, and how events say which notes they mean.
+//! A note as voices receive it, and how events select notes.
 
+use crate::sound::Contact;
 use crate::sound::tuning::Pitch;
 
-/// The identifier that a host gives a note, to tell it from others on its key.
+/// An identifier that a host gives a note, to distinguish it from others on the same key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct NoteId(u32);
 
 impl NoteId {
-    /// That of a number as plugin hosts count them; none for a negative one, which stands for any note. Real-time safe.
+    /// The identifier for a number as plugin hosts send it; none if it is negative, which stands for any note.
+    /// Real-time safe.
     pub fn new(number: i32) -> Option<Self> {
         u32::try_from(number).ok().map(Self)
     }
 
-    /// The number that it was made from. Real-time safe.
+    /// The number of the identifier. Real-time safe.
     pub fn number(self) -> i32 {
         self.0 as i32
     }
 }
 
-/// A note as the manager hands it to a voice.
+/// A note as the manager passes it to a voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Note {
     /// MIDI channel, 0–15.
     pub channel: u8,
     /// MIDI key, 0–127.
     pub key: u8,
-    /// Pitch that the tuning gives the key.
+    /// Pitch of the key in the tuning.
     pub pitch: Pitch,
     /// Offset from that pitch in semitones.
     pub detune: f32,
@@ -35,26 +37,28 @@ pub struct Note {
     pub soft: bool,
     /// Brightness of the channel, −0.5 to 0.5.
     pub brightness: f32,
-    /// The identifier that the host has given it.
+    /// The identifier that the host gave the note, if any.
     pub id: Option<NoteId>,
-    /// Counts the notes of a synth.
+    /// Number of the note among those of its synth.
     pub serial: u64,
-    /// Counts the sounds that a synth has been given.
+    /// Number of the sound among those that its synth has played.
     pub patch: u32,
-    /// Counts the bodies of a synth; notes of different bodies never share a voice.
+    /// Number of the body among those of its synth. Notes with different bodies never share a voice.
     pub body: u32,
     /// Choke group, 0 for none.
     pub choke: u8,
-    /// Amplitude ratio of its pad.
+    /// Amplitude ratio of the pad.
     pub gain: f32,
-    /// Position of its pad, −1 to 1.
+    /// Pan of the pad, −1 (left) to 1 (right).
     pub pan: f32,
-    /// Whether another key was down when it began.
+    /// Whether another key was down when the note began.
     pub is_legato: bool,
+    /// The hit of an outer body that it is, if it is one.
+    pub contact: Option<Contact>,
 }
 
 impl Note {
-    /// What stands where there is no note yet.
+    /// Placeholder where there is no note yet.
     pub(super) const NONE: Self = Self {
         channel: 0,
         key: 0,
@@ -71,14 +75,15 @@ impl Note {
         gain: 1.0,
         pan: 0.0,
         is_legato: false,
+        contact: None,
     };
 }
 
-/// Which notes of a synth an event is for: those that agree in all that is given. The event's own channel plays no
-/// part in a synth; in an ensemble it chooses the synth, as it does for every event.
+/// Selects notes of a synth: those that match every field that is not none. A synth ignores the event's own channel; an
+/// ensemble uses it to choose the synth, as for every event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Notes {
-    /// The host's identifier; a note that was given none agrees with any.
+    /// The host's identifier. A note without one matches any.
     pub id: Option<NoteId>,
     /// MIDI channel, 0–15.
     pub channel: Option<u8>,
@@ -100,12 +105,12 @@ impl Notes {
     }
 }
 
-/// A MIDI channel, 0–15.
+/// Clamps a MIDI channel to 0–15.
 pub(crate) fn nearest_channel(channel: u8) -> u8 {
     channel.min(15)
 }
 
-/// A MIDI key, 0–127.
+/// Clamps a MIDI key to 0–127.
 pub(crate) fn nearest_key(key: u8) -> u8 {
     key.min(127)
 }

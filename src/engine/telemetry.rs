@@ -1,4 +1,4 @@
-//! What sounds, how loudly, and how the audio thread keeps up, for a display to read while it plays.
+//! State that the audio thread publishes for a display: voices, levels, keys, and the processing load.
 
 use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF};
 use super::note::{nearest_channel, nearest_key};
@@ -9,11 +9,11 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU16, AtomicU32, AtomicU64};
 use std::time::Duration;
 
-/// How often the masses are shown, in Hz.
+/// How often per second the masses are published.
 const SNAPSHOT_RATE: f64 = 40.0;
 
-/// Numbers that the audio thread keeps up to date through a [`TelemetryWriter`]. Any thread may read them at any time,
-/// without waiting; each number is whole, but two of them may be of different blocks.
+/// State that the audio thread publishes through a [`TelemetryWriter`]. Any thread may read it at any time without
+/// waiting. Each number is consistent, but two numbers may come from different blocks.
 #[derive(Default)]
 pub struct Telemetry {
     frames: AtomicU64,
@@ -27,31 +27,31 @@ pub struct Telemetry {
     voices: AtomicU32,
     masses: Masses,
     keys: [[AtomicU64; 2]; 16],
-    /// One more than the number of the program that was chosen; 0 for none.
+    /// Number of the selected program plus 1; 0 for none.
     programs: [AtomicU16; 16],
     sounding: AtomicBool,
     watched: AtomicBool,
 }
 
-/// How the audio thread has kept up so far.
+/// The processing load of the audio thread so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load {
     /// Frames played.
     pub frames: u64,
     /// Blocks that the host or device asked for.
     pub blocks: u64,
-    /// Blocks that took longer than they last.
+    /// Blocks whose processing took longer than their duration.
     pub late_blocks: u64,
-    /// Share of the time that was spent on blocks.
+    /// Mean processing time as a fraction of the blocks' duration.
     pub mean_share: f64,
-    /// The largest share of its own time that one block took.
+    /// The largest fraction of its duration that one block took.
     pub worst_share: f64,
-    /// The largest share since this was last asked.
+    /// The largest such fraction since the last call of [`Telemetry::load`].
     pub recent_share: f64,
 }
 
 impl Telemetry {
-    /// How the audio thread has kept up. Meant for one reader: it starts the recent share anew.
+    /// The processing load of the audio thread. Meant for one reader, since it resets the recent share.
     pub fn load(&self) -> Load {
         let (busy, period) = (self.busy_nanos.load(Relaxed), self.period_nanos.load(Relaxed));
         Load {
@@ -69,12 +69,12 @@ impl Telemetry {
         self.frames.load(Relaxed)
     }
 
-    /// The largest absolute samples, left and right, since this was last asked; 1 is full scale. Meant for one reader.
+    /// The largest absolute samples, left and right, since the last call; 1 is full scale. Meant for one reader.
     pub fn take_peaks(&self) -> [f32; 2] {
         self.peaks.each_ref().map(AtomicF32::take)
     }
 
-    /// The voices and masses that sound. From the first call on, the audio thread keeps them up to date.
+    /// The voices and masses that sound. The audio thread publishes them only after the first call.
     pub fn snapshot(&self) -> Snapshot {
         self.watched.store(true, Relaxed);
         let mut snapshot = Snapshot { voices: self.voices.load(Relaxed), ..Snapshot::default() };
@@ -84,13 +84,13 @@ impl Telemetry {
         snapshot
     }
 
-    /// The keys that are down on a MIDI channel, a bit each.
+    /// The keys that are down on a MIDI channel, one bit each.
     pub fn keys(&self, channel: u8) -> u128 {
         let [low, high] = &self.keys[usize::from(nearest_channel(channel))];
         u128::from(low.load(Relaxed)) | u128::from(high.load(Relaxed)) << 64
     }
 
-    /// The program that the last program change chose on a MIDI channel, once one has.
+    /// The program that was last selected on a MIDI channel; none if there was no program change.
     pub fn program(&self, channel: u8) -> Option<u8> {
         let stored = self.programs[usize::from(nearest_channel(channel))].load(Relaxed);
         stored.checked_sub(1).map(|program| program as u8)
@@ -102,7 +102,7 @@ impl Telemetry {
     }
 }
 
-/// The audio thread's end of a [`Telemetry`]: there should be one. All but [`TelemetryWriter::new`] is real-time safe.
+/// The audio thread's side of a [`Telemetry`]: there should be one. All but [`TelemetryWriter::new`] is real-time safe.
 pub struct TelemetryWriter {
     telemetry: Arc<Telemetry>,
     sample_rate: f64,
@@ -110,17 +110,17 @@ pub struct TelemetryWriter {
 }
 
 impl TelemetryWriter {
-    /// What writes to `telemetry` at a sample rate in Hz.
+    /// A writer to `telemetry`, at a sample rate in Hz.
     pub fn new(telemetry: Arc<Telemetry>, sample_rate: f64) -> Self {
         Self { telemetry, sample_rate, frames_to_snapshot: 0.0 }
     }
 
-    /// Notes an event that the engine is handed: keys that go down and up, and programs.
+    /// Records an event that the engine receives: keys that go down and up, and program changes.
     pub fn note_event(&self, event: &Event) {
         let channel = usize::from(nearest_channel(event.channel));
         let keys = &self.telemetry.keys[channel];
         match event.kind {
-            EventKind::NoteOn { key, .. } => {
+            EventKind::NoteOn { key, .. } | EventKind::Strike { key, .. } => {
                 let key = nearest_key(key);
                 keys[usize::from(key >> 6)].fetch_or(1 << (key & 63), Relaxed);
             }
@@ -136,8 +136,8 @@ impl TelemetryWriter {
         }
     }
 
-    /// Notes frames that were rendered, and whether anything sounds after them. `snapshot` is asked 40 times a second
-    /// while somebody looks.
+    /// Records the peaks of rendered frames, and whether the engine is silent after them. `snapshot` is called 40 times
+    /// a second, but only after [`Telemetry::snapshot`] was used once.
     pub fn note_sound(&mut self, left: &[f32], right: &[f32], is_silent: bool, snapshot: impl FnOnce() -> Snapshot) {
         let telemetry = &*self.telemetry;
         for (kept, samples) in telemetry.peaks.iter().zip([left, right]) {
@@ -157,7 +157,7 @@ impl TelemetryWriter {
         }
     }
 
-    /// Notes that a block of so many frames is done, and how long it took.
+    /// Records that a block of `frames` frames was processed, and how long that took.
     pub fn note_block(&self, frames: usize, busy: Duration) {
         let telemetry = &*self.telemetry;
         let period = Duration::from_secs_f64(frames as f64 / self.sample_rate);
@@ -182,7 +182,7 @@ impl Default for Masses {
     }
 }
 
-/// A float that threads share, by its bits.
+/// A float that threads share, stored as its bits.
 #[derive(Default)]
 struct AtomicF32(AtomicU32);
 
@@ -195,12 +195,13 @@ impl AtomicF32 {
         self.0.store(value.to_bits(), Relaxed);
     }
 
-    /// Keeps the greater of two numbers that are not negative: their bits are in the order of the numbers.
+    /// Stores the greater of the two values. Both must be at least 0: then their bits have the same order as the
+    /// values.
     fn raise_to(&self, value: f32) {
         self.0.fetch_max(value.to_bits(), Relaxed);
     }
 
-    /// The number, which becomes 0.
+    /// Returns the value and resets it to 0.
     fn take(&self) -> f32 {
         f32::from_bits(self.0.swap(0, Relaxed))
     }

@@ -1,4 +1,4 @@
-//! Files: MIDI songs in, WAV sound out, and the care with which outputs appear on disk.
+//! Files: reads MIDI songs and recordings, writes WAV sound, and replaces output files only when they are complete.
 
 #[cfg(feature = "render")]
 mod bars;
@@ -13,6 +13,8 @@ mod riff;
 mod room;
 pub mod song;
 mod song_cursor;
+#[cfg(feature = "recordings")]
+pub mod sound_file;
 pub mod target;
 #[cfg(feature = "render")]
 mod tempo;

@@ -44,16 +44,20 @@ macro_rules! choices {
 }
 
 choices! {
-    /// What moves the masses.
-    Exciter {
+    /// How long a mallet's force lasts.
+    MalletPulse {
         /// One sample.
         Impulse "impulse",
-        /// A mallet's force pulse.
-        Strike "strike",
-        /// A displacement that is let go.
-        Pluck "pluck",
-        /// A burst of noise.
-        Noise "noise",
+        /// As long as the mallet touches the body.
+        Contact "contact",
+    }
+
+    /// How a burst of noise falls.
+    NoiseDecay {
+        /// By the square of what is left of its time.
+        Quadratic "quadratic",
+        /// By 60 dB in its time.
+        Exponential "exponential",
     }
 
     /// What a release does.
@@ -106,6 +110,44 @@ choices! {
         Time "time",
         /// Each octave of it.
         Rate "rate",
+    }
+
+    /// What sympathetic strings are tuned to.
+    StringsTuning {
+        /// Each key of two octaves.
+        Chromatic "chromatic",
+        /// A major chord over three octaves.
+        Major "major",
+        /// A minor chord over three octaves.
+        Minor "minor",
+        /// Fifths, one upon the other.
+        Fifths "fifths",
+    }
+
+    /// The body that reverberates.
+    Space {
+        /// Nothing.
+        None "none",
+        /// A sheet of metal.
+        Plate "plate",
+        /// A tank of springs.
+        Spring "spring",
+        /// A small room.
+        Room "room",
+    }
+
+    /// What plates and springs are made of.
+    SpaceMaterial {
+        /// Cold-rolled.
+        Steel "steel",
+        /// Aluminium.
+        Aluminium "aluminium",
+        /// Gold foil.
+        Gold "gold",
+        /// With a fifth of tin.
+        Bronze "bronze",
+        /// Window glass.
+        Glass "glass",
     }
 
     /// Whether the limiter works.
@@ -184,25 +226,33 @@ mod tests {
 
     #[test]
     fn every_choice_is_its_value_and_its_name() {
-        check::<Exciter>();
+        check::<MalletPulse>();
+        check::<NoiseDecay>();
         check::<NoteOff>();
         check::<Coefficients>();
         check::<PlayMode>();
         check::<Priority>();
         check::<GlideWhen>();
         check::<GlideBy>();
+        check::<StringsTuning>();
+        check::<Space>();
+        check::<SpaceMaterial>();
         check::<Limiter>();
         check::<Shape>();
         check::<Scope>();
         check::<NoteValue>();
         let lists = [
-            Exciter::NAMES,
+            MalletPulse::NAMES,
+            NoiseDecay::NAMES,
             NoteOff::NAMES,
             Coefficients::NAMES,
             PlayMode::NAMES,
             Priority::NAMES,
             GlideWhen::NAMES,
             GlideBy::NAMES,
+            StringsTuning::NAMES,
+            Space::NAMES,
+            SpaceMaterial::NAMES,
             Limiter::NAMES,
             Shape::NAMES,
             Scope::NAMES,

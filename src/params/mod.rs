@@ -92,12 +92,14 @@ mod output;
 mod pitch;
 pub mod retired;
 mod routes;
+mod space;
 mod text;
 mod values;
 mod voices;
 
 pub use choice::{
-    Choice, Coefficients, Exciter, GlideBy, GlideWhen, Limiter, NoteOff, NoteValue, PlayMode, Priority, Scope, Shape,
+    Choice, Coefficients, GlideBy, GlideWhen, Limiter, MalletPulse, NoiseDecay, NoteOff, NoteValue, PlayMode, Priority,
+    Scope, Shape, Space, SpaceMaterial, StringsTuning,
 };
 pub use values::Values;
 
@@ -141,16 +143,22 @@ macro_rules! table {
 use Change::{AtOnce, NextNote, Smoothed};
 use {
     body::body, control::control, envelope::envelope, exciter::exciter, lfo::lfo, macros::macros, output::output,
-    pitch::pitch, routes::routes, voices::voices,
+    pitch::pitch, routes::routes, space::space, voices::voices,
 };
 
 // Each adds its rows to those before it and hands them on.
-exciter! { {} body pitch control lfo envelope macros routes voices output table }
+exciter! { {} body pitch control lfo envelope macros routes voices space output table }
 
 impl Param {
     /// This parameter's row of the table.
     pub fn info(self) -> &'static ParamInfo {
         &PARAMS[self as usize]
+    }
+
+    /// Whether it is one of what is behind the voices, which a kit has once for all of its sounds: strings, tremolo, drive,
+    /// tone, space, width. Real-time safe.
+    pub const fn is_behind_voices(self) -> bool {
+        Self::StringsLevel as usize <= self as usize && self as usize <= Self::StereoWidth as usize
     }
 
     /// The parameter with this id.

@@ -2,11 +2,12 @@
 
 use super::{Change, Curve, Param, ParamInfo, Unit};
 
-/// A parameter that a route does the work of now.
+/// A parameter that a route or others do the work of now.
 #[derive(Debug)]
 pub struct Retired {
-    /// The row that it had; `param` is the one that the route moves.
-    pub(crate) row: ParamInfo,
+    id: &'static str,
+    /// The row that it had, if a route replaces it; `param` is the one that the route moves.
+    pub(crate) row: Option<ParamInfo>,
     /// What replaces it, for messages.
     pub replacement: &'static str,
 }
@@ -14,36 +15,41 @@ pub struct Retired {
 impl Retired {
     /// The one with this id.
     pub fn from_id(id: &str) -> Option<&'static Retired> {
-        RETIRED.iter().find(|retired| retired.row.id == id)
+        RETIRED.iter().find(|retired| retired.id == id)
     }
 
     /// The id that it had.
     pub fn id(&self) -> &'static str {
-        self.row.id
+        self.id
     }
 
     /// That it is retired, and what replaces it.
     pub fn message(&self) -> String {
-        format!("‘{}’ is retired: {} replaces it", self.row.id, self.replacement)
+        format!("‘{}’ is retired: {} replaces it", self.id, self.replacement)
     }
 }
 
 macro_rules! retired {
-    ($($param:ident $id:literal, $unit:ident $min:literal..$max:literal = $default:literal, $replacement:literal;)*) => {
+    ($($other:literal: $by:literal;)* by routes: $($param:ident $id:literal, $unit:ident $min:literal..$max:literal = $default:literal, $replacement:literal;)*) => {
         /// All retired parameters.
-        pub static RETIRED: &[Retired] = &[$(Retired {
-            row: ParamInfo {
+        pub static RETIRED: &[Retired] = &[$(Retired { id: $other, row: None, replacement: $by },)* $(Retired {
+            id: $id,
+            row: Some(ParamInfo {
                 param: Param::$param, id: $id, name: $id, section: "", unit: Unit::$unit, min: $min, max: $max,
                 default: $default, curve: Curve::Linear, change: Change::NextNote, is_fixed: true, choices: &[],
                 help: "",
-            },
+            }),
             replacement: $replacement,
         },)*];
     };
 }
 
 retired! {
-    Hardness "hardness_velocity", Percent 0.0..100.0 = 0.0, "a route from velocity to hardness";
+    "exciter": "a level for each exciter";
+    "hardness": "mallet_hardness or pluck_hardness";
+    "position": "pluck_position";
+    by routes:
+    MalletHardness "hardness_velocity", Percent 0.0..100.0 = 0.0, "a route from velocity to hardness";
     Sweep "sweep_velocity", Percent 0.0..100.0 = 0.0, "a route from velocity to sweep";
     Decay "decay_key", Percent -100.0..100.0 = 0.0, "a route from key to decay";
     Release "release_velocity", Percent 0.0..100.0 = 0.0, "a route from release_velocity to release";
@@ -60,7 +66,7 @@ mod tests {
     #[test]
     fn retired_ids_are_pinned_and_no_parameter_has_one() {
         let ids: Vec<_> = RETIRED.iter().map(Retired::id).collect();
-        let pinned = "hardness_velocity sweep_velocity decay_key release_velocity wheel_vibrato pressure_vibrato \
+        let pinned = "exciter hardness position hardness_velocity sweep_velocity decay_key release_velocity wheel_vibrato pressure_vibrato \
             pressure_damping";
         assert_eq!(ids, pinned.split_whitespace().collect::<Vec<_>>());
         assert!(ids.iter().all(|id| Param::from_id(id).is_none()));

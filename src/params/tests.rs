@@ -7,7 +7,11 @@ use proptest::prelude::*;
 #[test]
 fn ids_are_pinned() {
     let ids: Vec<_> = PARAMS.iter().map(|info| info.id).collect();
-    let pinned = "exciter hardness position noise_level noise_time velocity \
+    let pinned = "mallet_level mallet_pulse mallet_hardness mallet_mass mallet_speed mallet_key mallet_velocity \
+        pluck_level pluck_hardness pluck_position pluck_width pluck_velocity \
+        noise_level noise_reach noise_time noise_decay noise_attack noise_colour noise_hits noise_spacing noise_velocity \
+        bow_level bow_force bow_position bow_slip bow_velocity input_level \
+        velocity vary_position vary_hardness vary_modes \
         decay release damper note_off decay_tilt tilt stretch width coefficients \
         tune fine tuning key_track sweep sweep_time sweep_curve \
         vibrato vibrato_rate vibrato_delay vibrato_sync glide glide_when glide_by \
@@ -22,7 +26,11 @@ fn ids_are_pinned() {
         macro1 macro2 macro3 macro4 macro5 macro6 macro7 macro8 \
         route1 route2 route3 route4 route5 route6 route7 route8 \
         route9 route10 route11 route12 route13 route14 route15 route16 \
-        voices mode priority unison unison_detune unison_spread unison_phase choke gain pan limiter";
+        voices mode priority unison unison_detune unison_spread unison_phase choke \
+        strings_level strings_tuning strings_tune strings_low_decay strings_high_decay \
+        tremolo_depth tremolo_rate tremolo_stereo drive tone_low tone_high \
+        space space_size space_material space_low_decay space_high_decay space_pre_delay space_mix stereo_width \
+        gain pan limiter";
     assert_eq!(ids, pinned.split_whitespace().collect::<Vec<_>>());
 }
 

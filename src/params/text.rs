@@ -112,7 +112,7 @@ mod tests {
             (Param::Width, "50 %", 50.0),
             (Param::Sweep, "2 oct", 24.0),
             (Param::Vibrato, "1 st", 100.0),
-            (Param::Exciter, "Pluck", 2.0),
+            (Param::MalletPulse, "Contact", 1.0),
             (Param::Voices, "8", 8.0),
         ] {
             assert_eq!(param.info().parse(text), Ok(value), "{text}");

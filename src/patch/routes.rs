@@ -1,10 +1,11 @@
-//! Routes: which source moves which parameter, and how.
+//! Routes: which source modulates which parameter, and with which response.
 //!
-//! How far is the value of the parameter `route1` to `route16`, so that a host can automate it and a route can move it.
+//! The amount of each route is a parameter, `route1` to `route16`, so that hosts can automate it and routes can
+//! modulate it.
 
 use crate::params::{PARAMS, Param};
 
-/// Most routes of a sound.
+/// Maximum number of routes of a sound.
 pub const MAX_ROUTES: usize = 16;
 
 macro_rules! named {
@@ -35,17 +36,17 @@ macro_rules! named {
 }
 
 named! {
-    /// What can move parameters, each note its own. Those of a strike keep their value until the next.
+    /// Modulation sources. Each note has its own values. Sources of a strike keep their value until the next strike.
     Source {
         /// Velocity of the strike, 0–1.
         Velocity "velocity",
-        /// How quickly the key came up, 0–1; 0 until then.
+        /// Release velocity, 0–1; 0 until the key is released.
         ReleaseVelocity "release_velocity",
         /// Semitones above C4 divided by 60, −1 to 1.
         Key "key",
-        /// A random number of the strike, −1 to 1.
+        /// A random number for each strike, −1 to 1.
         Random "random",
-        /// 1 for one strike, −1 for the next.
+        /// Alternates between 1 and −1 from strike to strike.
         Alternation "alternation",
         /// Pressure on the key or channel, 0–1.
         Pressure "pressure",
@@ -59,7 +60,7 @@ named! {
         Breath "breath",
         /// Expression (controller 11), 0–1.
         Expression "expression",
-        /// The first slow oscillator, −1 to 1.
+        /// The first low-frequency oscillator, −1 to 1.
         Lfo1 "lfo1",
         /// The second, −1 to 1.
         Lfo2 "lfo2",
@@ -89,21 +90,21 @@ named! {
 }
 
 named! {
-    /// What a route makes of its source before it counts: 0 stays 0, ±1 stay, and both sides are bent alike.
+    /// The curve that a route applies to its source. It keeps 0 and ±1, and is symmetrical for negative values.
     Response {
-        /// As it is.
+        /// No change.
         Linear "linear",
-        /// Its square: little at first.
+        /// The square: flat near 0.
         Squared "squared",
-        /// Its square root: much at first.
+        /// The square root: steep near 0.
         Root "root",
-        /// `x² (3 − 2x)`: little at both ends.
+        /// `x² (3 − 2x)`: flat near 0 and near 1.
         Smooth "smooth",
     }
 }
 
 impl Response {
-    /// The bent value of a source from −1 to 1. Real-time safe.
+    /// Applies the curve to a source value from −1 to 1. Real-time safe.
     pub fn apply(self, value: f32) -> f32 {
         let magnitude = value.abs();
         match self {
@@ -115,21 +116,21 @@ impl Response {
     }
 }
 
-/// A route: a source that moves a parameter. Its place in [`Routes`] says which parameter has its amount.
+/// A route: a source that modulates a parameter. Its amount is the parameter that belongs to its place in [`Routes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Route {
-    /// What moves it.
+    /// The source.
     pub source: Source,
-    /// What is moved: one that is [`crate::params::ParamInfo::is_modulatable`].
+    /// The parameter that is modulated: [`crate::params::ParamInfo::is_modulatable`] must be true for it.
     pub destination: Param,
-    /// How the source counts.
+    /// The curve that is applied to the source.
     pub response: Response,
-    /// A second source that scales the first.
+    /// A second source, by which the first is multiplied.
     pub scale: Option<Source>,
 }
 
 impl Route {
-    /// A source that moves a parameter in equal steps.
+    /// A route with a linear response and no scale.
     pub const fn linear(source: Source, destination: Param) -> Self {
         Self { source, destination, response: Response::Linear, scale: None }
     }
@@ -140,11 +141,11 @@ impl Route {
 pub struct Routes([Option<Route>; MAX_ROUTES]);
 
 impl Routes {
-    /// No route.
+    /// No routes.
     pub const NONE: Routes = Routes([None; MAX_ROUTES]);
 
-    /// The routes of a new patch, in the last places: the modulation wheel makes vibrato, and brightness tilts the levels
-    /// and the decay of the modes. Their amounts are the defaults of the parameters.
+    /// The routes of a new patch, in the last places: the modulation wheel adds vibrato; brightness tilts the levels
+    /// and the decay of the modes. Their amounts are the default values of the parameters.
     pub const INITIAL: Routes = {
         let mut routes = Routes::NONE;
         routes.0[13] = Some(Route::linear(Source::Wheel, Param::Vibrato));
@@ -158,8 +159,8 @@ impl Routes {
         self.0.get(place).copied().flatten()
     }
 
-    /// Puts a route at a place, or takes away the one that is there. Places beyond the last change nothing, as do
-    /// routes to what cannot be modulated.
+    /// Sets or removes the route at a place. Does nothing if the place does not exist or the destination cannot be
+    /// modulated.
     pub fn set(&mut self, place: usize, route: Option<Route>) {
         let is_allowed = route.is_none_or(|route| route.destination.info().is_modulatable());
         if let Some(slot) = self.0.get_mut(place).filter(|_| is_allowed) {
@@ -173,12 +174,12 @@ impl Routes {
     }
 }
 
-/// The parameter that has the amount of the route at a place, 0 to 15; that of the last beyond them.
+/// The parameter that is the amount of the route at a place, 0 to 15. A greater place counts as 15.
 pub fn amount_param(place: usize) -> Param {
     PARAMS[Param::Route1 as usize + place.min(MAX_ROUTES - 1)].param
 }
 
-/// The place of the route whose amount a parameter is.
+/// The place of the route whose amount this parameter is; none if it is no amount.
 pub fn place_of_amount(param: Param) -> Option<usize> {
     (param as usize).checked_sub(Param::Route1 as usize).filter(|place| *place < MAX_ROUTES)
 }
@@ -217,7 +218,7 @@ mod tests {
     fn what_cannot_be_moved_has_no_route() {
         let route = |destination| Route { source: Source::Lfo1, destination, response: Response::Linear, scale: None };
         let mut routes = Routes::NONE;
-        for param in [Param::Exciter, Param::Voices, Param::Limiter, Param::Glide] {
+        for param in [Param::MalletPulse, Param::Voices, Param::Limiter, Param::Glide] {
             routes.set(0, Some(route(param)));
         }
         assert_eq!(routes, Routes::NONE);

@@ -1,11 +1,11 @@
-//! The TOML of a preset file, read key by key so that every error names its place and what would be right.
+//! Reads and writes the TOML of a preset file, key by key, so that every error names its place and what would be right.
 
 use super::about::{About, about_to_toml};
 use super::complaints::Complaints;
 use super::migration::{self, Replaced};
 use super::value::{check_keys, param_value, table, unexpected};
 use super::{FORMAT_VERSION, Preset};
-use super::{body, routes, tuning};
+use super::{body, one_exciter, routes, tuning};
 use crate::error::Error;
 use crate::params::retired::RETIRED;
 use crate::params::{PARAMS, Param, Unit};
@@ -15,7 +15,7 @@ use toml::{Table, Value};
 
 const KEYS: [&str; 10] = ["format", "name", "author", "tags", "comment", "modes", "body", "routes", "params", "tuning"];
 
-/// Reads as much of a preset as can be; the error is that it is none at all.
+/// Reads as much of a preset as possible. Returns an error only if the text is no preset at all.
 pub(super) fn parse(
     text: &str,
     origin: &str,
@@ -33,7 +33,7 @@ pub(super) fn read(
     if table.contains_key("kit") {
         return Err(format!("this is a kit: expected a preset, which begins with format = {FORMAT_VERSION}"));
     }
-    // The version first: in a newer version's file, other keys may mean something else.
+    // The version comes first, since keys may have another meaning in a file of a newer version.
     let format = match table.get("format") {
         Some(Value::Integer(format @ 1..=FORMAT_VERSION)) => *format,
         Some(Value::Integer(newer)) if *newer > FORMAT_VERSION => {
@@ -46,6 +46,8 @@ pub(super) fn read(
         }
         None => return Err(format!("there is no ‘format’: expected format = {FORMAT_VERSION}")),
     };
+    let levelled = (format < one_exciter::FIRST_WITH_LEVELS).then(|| one_exciter::with_levels(table, complaints));
+    let table = levelled.as_ref().unwrap_or(table);
     check_keys(table, "", &KEYS, complaints);
     let About { name, author, tags, comment } = About::read(table, complaints);
     let mut params = match table.get("params") {
@@ -56,7 +58,7 @@ pub(super) fn read(
             Table::new()
         }
     };
-    let is_old = format < migration::FIRST_WITHOUT_RETIRED;
+    let is_old = format < migration::FIRST_WITH_ROUTES_INSTEAD;
     let mut patch = Patch::default();
     let retired = if is_old { Some(migration::take(&mut params, &mut patch, complaints)) } else { None };
     read_params(&params, &mut patch, complaints);
@@ -101,7 +103,7 @@ fn read_modes(modes: Option<&Value>, complaints: &mut Complaints) -> Vec<Mode> {
     modes.iter().take(MAX_MODES).enumerate().filter_map(mode).collect()
 }
 
-/// A mode, if it has a ratio.
+/// Reads a mode, if it has a ratio.
 fn read_mode(place: &str, mode: &Value, complaints: &mut Complaints) -> Option<Mode> {
     let Value::Table(mode) = mode else {
         complaints.add(unexpected(place, "a mode, { ratio = … }", mode));
@@ -162,8 +164,8 @@ pub(super) fn to_toml(preset: &Preset) -> String {
     out
 }
 
-/// The fields that differ from [`Mode::UNIT`]'s, and the ratio. `{:?}` of an `f32` is the shortest text that reads
-/// back as the same number, and valid TOML.
+/// The ratio, and the fields that differ from [`Mode::UNIT`]. `{:?}` writes an `f32` as the shortest text that reads
+/// back as the same number, and that is valid TOML.
 fn mode_fields(mode: &Mode) -> String {
     let fields = Mode::FIELDS.iter().zip(mode.fields()).zip(Mode::UNIT.fields());
     let written: Vec<String> = fields
@@ -199,7 +201,8 @@ mod tests {
         let mut expected = Patch::default()
             .with(Param::Decay, 0.25)
             .with(Param::Gain, -3.0)
-            .with(Param::Exciter, 2.0)
+            .with(Param::MalletLevel, -60.0)
+            .with(Param::PluckLevel, 0.0)
             .with(Param::Fine, 1.5);
         expected.modes = ModeTable::new(&[Mode { ratio: 2.0, level: -0.5, ..Mode::UNIT }]);
         assert_eq!(preset.patch, expected);
@@ -244,10 +247,10 @@ mod tests {
     #[test]
     fn the_version_comes_before_all_else() {
         for (text, expected) in [
-            ("format = 4\nwarp = 1", "x: format 4 is of a newer version: this one reads up to format = 3"),
-            ("format = 0", "x: format 0 is unknown: this version reads format = 1 to 3"),
-            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1 to 3"),
-            ("name = \"a\"", "x: there is no ‘format’: expected format = 3"),
+            ("format = 5\nwarp = 1", "x: format 5 is of a newer version: this one reads up to format = 4"),
+            ("format = 0", "x: format 0 is unknown: this version reads format = 1 to 4"),
+            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1 to 4"),
+            ("name = \"a\"", "x: there is no ‘format’: expected format = 4"),
             ("format = 1", "x: there is no ‘name’: expected name = \"…\""),
         ] {
             assert_eq!(read_text(text).unwrap_err().to_string(), expected);

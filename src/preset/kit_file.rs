@@ -1,4 +1,4 @@
-//! The TOML of a kit file, read key by key so that every error names its place and what would be right.
+//! Reads and writes the TOML of a kit file, key by key, so that every error names its place and what would be right.
 
 use super::about::{About, about_to_toml, label, toml_string};
 use super::complaints::Complaints;
@@ -16,10 +16,10 @@ use toml::{Table, Value};
 const KEYS: [&str; 7] = ["kit", "name", "author", "tags", "comment", "voices", "keys"];
 const PAD_KEYS: [&str; 7] = ["key", "name", "sound", "pitch", "gain", "pan", "choke"];
 
-/// What finds the presets that a kit names.
+/// Finds the preset with the name that a kit uses.
 type Find<'a> = &'a mut dyn FnMut(&str) -> crate::Result<Preset>;
 
-/// Reads as much of a preset or kit as can be; the error is that it is neither.
+/// Reads as much of a preset or kit as possible. Returns an error only if the text is neither.
 pub(super) fn parse(
     text: &str,
     origin: &str,
@@ -32,6 +32,7 @@ pub(super) fn parse(
     }
     let table = table(text, origin)?;
     let read = match table.get("kit") {
+        None if table.contains_key("keys") => Err(format!("there is no ‘kit’: expected kit = {KIT_VERSION}")),
         None => file::read(&table, complaints, replaced).map(Playable::Preset),
         Some(version) => read(&table, version, find, complaints).map(Playable::Kit),
     };
@@ -71,18 +72,18 @@ fn read(table: &Table, version: &Value, find: Find, complaints: &mut Complaints)
     Ok(kit)
 }
 
-/// Adds a pad to a kit, if it has a key and a sound.
+/// Reads a pad and adds it to the kit, if it has a key and a sound.
 fn read_pad(place: &str, table: &Table, kit: &mut KitPreset, find: Find, complaints: &mut Complaints) {
     let dotted = format!("{place}.");
     check_keys(table, &dotted, &PAD_KEYS, complaints);
     let key = complaints.take(&format!("{dotted}key: "), read_key(table.get("key")));
-    let key = key.filter(|key| match kit.pads.iter().position(|(taken, _)| taken == key) {
-        None => true,
-        Some(other) => {
+    let key = key.filter(|key| {
+        let is_taken = kit.pads.iter().any(|(taken, _)| taken == key);
+        if is_taken {
             let name = note_name(*key);
-            complaints.add(format!("{dotted}key: {name} ({key}) is that of keys[{other}] already: expected another"));
-            false
+            complaints.add(format!("{dotted}key: {name} ({key}) has a pad already: expected another key"));
         }
+        !is_taken
     });
     let sound = complaints.take("", read_sound(place, table, kit, find));
     let a4_hz = sound.map_or(440.0, |sound| f64::from(kit.sounds[sound].1.patch.get(Param::Tuning)));
@@ -100,13 +101,13 @@ fn read_pad(place: &str, table: &Table, kit: &mut KitPreset, find: Find, complai
     }
 }
 
-/// A number that is one of a parameter's values, if there is any.
+/// Reads a number within the range of a parameter, if the key exists.
 fn number(table: &Table, key: &str, param: Param, place: &str, complaints: &mut Complaints) -> Option<f32> {
     let value = table.get(key).map(|value| param_value(param.info(), value)).transpose();
     complaints.take(&format!("{place}{key}: "), value).flatten()
 }
 
-/// Which of the kit's sounds a pad plays; one that the kit has not yet is found and added.
+/// Reads a pad's sound and returns its index in the kit. A preset that is not in the kit yet is found and added.
 fn read_sound(place: &str, table: &Table, kit: &mut KitPreset, find: Find) -> Result<usize, String> {
     let name = match table.get("sound") {
         Some(Value::String(name)) => name,
@@ -121,7 +122,7 @@ fn read_sound(place: &str, table: &Table, kit: &mut KitPreset, find: Find) -> Re
     Ok(kit.sounds.len() - 1)
 }
 
-/// A key as the command reads it: a name or a number.
+/// Reads a key: a note name or a number, as in the command line.
 fn read_key(value: Option<&Value>) -> Result<u8, String> {
     let expected = "expected a note name (\"C2\") or a key from 0 to 127 (36)";
     let key = match value {
@@ -134,7 +135,7 @@ fn read_key(value: Option<&Value>) -> Result<u8, String> {
     key.filter(|key| *key < 128).ok_or_else(|| format!("‘{}’ is no key: {expected}", found()))
 }
 
-/// A pitch as the command reads a note: a key, one between two, or a frequency.
+/// Reads a pitch: a key, a pitch between two keys, or a frequency, as in the command line.
 fn read_pitch(value: &Value, a4_hz: f64) -> Result<f64, String> {
     match value {
         Value::String(text) => parse_key(text, a4_hz),
@@ -153,7 +154,7 @@ fn read_pan(value: Option<&Value>) -> Result<f32, String> {
     if (-1.0..=1.0).contains(&pan) { Ok(pan) } else { Err(format!("{pan} is out of range: expected -1 to 1")) }
 }
 
-/// `{:?}` of a float is the shortest text that reads back as the same number, and valid TOML.
+/// Writes a kit. `{:?}` writes a float as the shortest text that reads back as the same number, and that is valid TOML.
 pub(super) fn to_toml(kit: &KitPreset) -> String {
     let KitPreset { name, author, tags, comment, voices, sounds, pads } = kit;
     let mut out = format!("kit = {KIT_VERSION}\n{}", about_to_toml([name, author, comment], tags));
@@ -256,7 +257,10 @@ mod tests {
             (pad("name = 1"), "x: keys[0].name: expected a text, found integer ‘1’"),
             (pad("name = \" a\""), "x: keys[0].name: expected one line of at most 100 characters"),
             (pad("velocity = 1"), "x: unknown key ‘keys[0].velocity’: expected one of key, name, sound, "),
-            (pad("[[keys]]\nkey = \"C2\"\nsound = \"Kick\""), "x: keys[1].key: C2 (36) is that of keys[0] already"),
+            (
+                pad("[[keys]]\nkey = \"C2\"\nsound = \"Kick\""),
+                "x: keys[1].key: C2 (36) has a pad already: expected another key",
+            ),
         ] {
             let error = parse(&format!("kit = 1\n{body}")).unwrap_err().to_string();
             assert!(error.starts_with(expected), "{error}\nexpected: {expected}");
@@ -265,7 +269,8 @@ mod tests {
             ("kit = 2", "x: kit 2 is of a newer version: this one reads kit = 1"),
             ("kit = \"a\"", "x: kit \"a\" is unknown: this version reads kit = 1"),
             ("kit = 1\nname = ", "x:2:8: not valid TOML: "),
-            ("name = \"a\"", "x: there is no ‘format’: expected format = 3"),
+            ("name = \"a\"", "x: there is no ‘format’: expected format = 4"),
+            ("name = \"a\"\n[[keys]]", "x: there is no ‘kit’: expected kit = 1"),
         ] {
             let error = parse(text).unwrap_err().to_string();
             assert!(error.starts_with(expected), "{error}");

@@ -1,25 +1,25 @@
-//! Presets of formats 1 and 2: what their retired parameters and built-in effects did, routes do.
+//! Converts presets of formats 1 and 2: routes replace retired parameters and effects that used to be built in.
 
 use super::complaints::Complaints;
 use super::value::param_value;
-use crate::params::retired::{RETIRED, Retired};
+use crate::params::retired::RETIRED;
 use crate::params::{Curve, Param, ParamInfo};
 use crate::patch::Patch;
 use crate::patch::routes::{MAX_ROUTES, Route, Routes, Source, amount_param};
 use std::fmt;
 use toml::Table;
 
-/// The first format in which retired parameters are errors.
-pub(super) const FIRST_WITHOUT_RETIRED: i64 = 3;
+/// The first format in which the parameters that routes replace are errors.
+pub(super) const FIRST_WITH_ROUTES_INSTEAD: i64 = 3;
 
-/// A retired parameter that was found in a preset.
+/// A retired parameter that was found in a preset, and its replacement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replaced {
-    /// Its id.
+    /// Id of the retired parameter.
     pub id: &'static str,
-    /// The parameter whose value has changed because a route moves it from another one.
+    /// The parameter whose value was changed too, since the new route modulates it from another base value.
     pub rebased: Option<Param>,
-    /// What replaces it, or why nothing does.
+    /// The replacement, or the reason why there is none.
     what: String,
 }
 
@@ -29,36 +29,48 @@ impl fmt::Display for Replaced {
     }
 }
 
-/// What a route is to do in place of a retired parameter or of a built-in effect.
+/// A route that replaces a retired parameter or a built-in effect.
 struct Work {
     route: Route,
-    /// Knob travel in per cent.
+    /// Amount of the route: knob travel in per cent.
     amount: f64,
-    /// The value from which the destination is moved, if it is another.
+    /// New base value of the destination, if it has to change.
     base: Option<f64>,
-    /// Place that the route has in a new patch.
+    /// The place of this route in a new patch, if a new patch has it.
     place: Option<usize>,
 }
 
-/// Takes the retired parameters out of those of a file, and the routes out of a new patch: the format had none. Returns
-/// the values, and whether the file has them.
+/// Removes the retired parameters from a file's parameters, and the routes from the new patch, since old formats had
+/// none. Returns for each retired parameter its value, and whether the file has it.
 pub(super) fn take(params: &mut Table, patch: &mut Patch, complaints: &mut Complaints) -> Vec<(f32, bool)> {
     patch.routes = Routes::NONE;
     (0..MAX_ROUTES).for_each(|place| patch.set(amount_param(place), 0.0));
-    let value = |row: &ParamInfo| {
+    let mut value = |row: &ParamInfo| {
         let given = params.remove(row.id);
         let read = given.and_then(|value| complaints.take(&format!("params.{}: ", row.id), param_value(row, &value)));
         (read.unwrap_or(row.default), read.is_some())
     };
-    RETIRED.iter().map(|retired| &retired.row).map(value).collect()
+    replaced_by_routes().map(|(row, _)| value(row)).collect()
 }
 
-/// Gives a patch the routes that do what the values of retired parameters did, and what was built in. `params` are the
-/// others in the file.
+/// The rows of the parameters that routes replace, and those routes in words.
+fn replaced_by_routes() -> impl Iterator<Item = (&'static ParamInfo, &'static str)> {
+    RETIRED.iter().filter_map(|retired| Some((retired.row.as_ref()?, retired.replacement)))
+}
+
+/// The parameter that a route moves in place of a retired one.
+fn destination(row: &ParamInfo, patch: &Patch) -> Param {
+    let is_plucked = patch.get(Param::PluckLevel) > Param::PluckLevel.info().min;
+    if row.param == Param::MalletHardness && is_plucked { Param::PluckHardness } else { row.param }
+}
+
+/// Adds routes with the effect that the retired parameters and the built-in effects had. `params` are the file's other
+/// parameters.
 pub(super) fn migrate(retired: &[(f32, bool)], params: &Table, patch: &mut Patch, replaced: &mut dyn FnMut(Replaced)) {
-    for (Retired { row, replacement }, (value, is_given)) in RETIRED.iter().zip(retired) {
+    for ((row, replacement), (value, is_given)) in replaced_by_routes().zip(retired) {
         let work = work(row, f64::from(*value), patch);
-        let rebased = work.base.filter(|base| *base as f32 != patch.get(row.param)).map(|_| row.param);
+        let param = work.route.destination;
+        let rebased = work.base.filter(|base| *base as f32 != patch.get(param)).map(|_| param);
         let is_done = work.amount == 0.0 || add(patch, &work);
         let what = match is_done {
             true if work.amount == 0.0 => "it is 0, and needs nothing in its place".to_owned(),
@@ -77,7 +89,7 @@ pub(super) fn migrate(retired: &[(f32, bool)], params: &Table, patch: &mut Patch
             replaced(Replaced { id, rebased: None, what });
         }
     }
-    // Amounts of places without a route are those of a new patch, unless the file says otherwise.
+    // Amounts of unused routes get the values that they have in a new patch, unless the file sets them.
     for param in (0..MAX_ROUTES).filter(|place| patch.routes.get(*place).is_none()).map(amount_param) {
         if !params.contains_key(param.info().id) {
             patch.values.set(param, param.info().default);
@@ -85,11 +97,11 @@ pub(super) fn migrate(retired: &[(f32, bool)], params: &Table, patch: &mut Patch
     }
 }
 
-/// What does what a value of a retired parameter did.
+/// The route that replaces a retired parameter with this value.
 fn work(row: &ParamInfo, value: f64, patch: &Patch) -> Work {
-    let destination = row.param.info();
-    let before = f64::from(patch.get(row.param));
-    // Knob travel in per cent of a distance: in the parameter's unit, or in octaves where steps are of equal ratio.
+    let param = destination(row, patch);
+    let (destination, before) = (param.info(), f64::from(patch.get(param)));
+    // Knob travel in per cent, for a distance in the parameter's unit, or in octaves if its knob is logarithmic.
     let (min, max) = (f64::from(destination.min), f64::from(destination.max));
     let range = match destination.curve {
         Curve::Linear => max - min,
@@ -97,24 +109,24 @@ fn work(row: &ParamInfo, value: f64, patch: &Patch) -> Work {
     };
     let share = value * 0.01;
     let (source, distance, base, place) = match row.id {
-        // The value at velocity 0 is the base, the rest grows with velocity.
+        // The base is the value at velocity 0; the rest grows with velocity.
         "hardness_velocity" | "sweep_velocity" => {
             (Source::Velocity, before * share, Some(before * (1.0 - share)), None)
         }
-        // One octave of decay for an octave of pitch; the source is ±1 five octaves from the middle.
+        // At 100 %, the decay halves with each octave of pitch. The source is ±1 at five octaves from the middle.
         "decay_key" => (Source::Key, -5.0 * share, None, None),
-        // Twice as long for a velocity of 0, half as long for 1.
+        // At 100 %, twice the time at velocity 0, and half the time at velocity 1.
         "release_velocity" => (Source::ReleaseVelocity, -2.0 * share, Some(before * libm::exp2(share)), None),
         "wheel_vibrato" => (Source::Wheel, value, None, Some(13)),
         _ => (Source::Pressure, value, None, None),
     };
-    Work { route: Route::linear(source, row.param), amount: 100.0 * distance / range, base, place }
+    Work { route: Route::linear(source, param), amount: 100.0 * distance / range, base, place }
 }
 
-/// Adds a route, in its own place if that is free, else in the first that is. Returns whether there was one.
+/// Adds a route, at its own place if that is free, else at the first free place. Returns false if there is none.
 fn add(patch: &mut Patch, work: &Work) -> bool {
     let is_free = |place: &usize| patch.routes.get(*place).is_none();
-    // The places of a new patch's routes are left to them as long as there are others.
+    // Fill the lower places first, so that the places of a new patch's routes stay free for them as long as possible.
     let Some(place) = work.place.filter(is_free).or_else(|| (0..MAX_ROUTES).find(is_free)) else { return false };
     patch.routes.set(place, Some(work.route));
     patch.set(amount_param(place), work.amount as f32);
@@ -127,7 +139,6 @@ fn add(patch: &mut Patch, work: &Work) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::params::PARAMS;
     use crate::preset::Preset;
 
     fn load(text: &str) -> (Patch, Vec<String>) {
@@ -139,7 +150,7 @@ mod tests {
         (preset.patch, told)
     }
 
-    /// What the routes make of a parameter with these sources, by the law of `engine::modulation`.
+    /// The modulated value of a parameter for these source values, computed as in `engine::modulation`.
     fn moved(patch: &Patch, param: Param, sources: &[(Source, f64)]) -> f64 {
         let info = param.info();
         let source = |wanted: Source| sources.iter().find(|(source, _)| *source == wanted).map_or(0.0, |found| found.1);
@@ -170,7 +181,7 @@ mod tests {
         );
         for x in [0.0, 0.25, 1.0] {
             let velocity = [(Source::Velocity, x)];
-            assert_near(moved(&patch, Param::Hardness, &velocity), 54.0 * (1.0 - 0.5 * (1.0 - x)));
+            assert_near(moved(&patch, Param::MalletHardness, &velocity), 54.0 * (1.0 - 0.5 * (1.0 - x)));
             assert_near(moved(&patch, Param::Sweep, &velocity), -26.0 * (1.0 - 0.3 * (1.0 - x)));
             let release = 0.35 * libm::exp2(0.3 * (1.0 - 2.0 * x));
             assert_near(moved(&patch, Param::Release, &[(Source::ReleaseVelocity, x)]), release);
@@ -181,13 +192,13 @@ mod tests {
             let decay = 7.5 * libm::exp2(0.45 * (60.0 - key) / 12.0);
             assert_near(moved(&patch, Param::Decay, &[(Source::Key, (key - 60.0) / 60.0)]), decay);
         }
-        assert_eq!(told.len(), RETIRED.len());
+        assert_eq!(told.len(), replaced_by_routes().count());
         assert_eq!(told[2], "‘decay_key’ is retired: a route from key to decay replaces it");
     }
 
     #[test]
     fn a_preset_that_names_none_has_the_routes_of_a_new_patch() {
-        for format in [1, 2, 3] {
+        for format in [1, 2, 3, 4] {
             let (patch, told) = load(&format!("format = {format}\n"));
             assert_eq!((patch, told), (Patch::default(), vec![]), "format {format}");
         }
@@ -209,6 +220,5 @@ mod tests {
     fn a_retired_parameter_is_an_error_in_the_present_format() {
         let error = Preset::parse("format = 3\nname = \"a\"\n[params]\ndecay_key = 3", "x").unwrap_err().to_string();
         assert_eq!(error, "x: params.decay_key: ‘decay_key’ is retired: a route from key to decay replaces it");
-        assert!(PARAMS.iter().all(|info| Retired::from_id(info.id).is_none()));
     }
 }

@@ -1,4 +1,4 @@
-//! Presets: a patch with its name, author, tags and comment, as a TOML file or built in; and kits, which put them on keys.
+//! Presets and kits: a patch with name, author, tags and comment, as a file or built in, and presets assigned to keys.
 
 mod about;
 mod body;
@@ -10,12 +10,12 @@ mod kit_file;
 mod kit_load;
 mod load;
 mod migration;
+mod one_exciter;
 mod routes;
 mod tuning;
 mod value;
 
 use crate::patch::Patch;
-use crate::sound::kit::{KEYS, Pad};
 use crate::sound::{Kit, Sound};
 use std::sync::Arc;
 
@@ -26,36 +26,36 @@ pub use load::MAX_FILE_SIZE;
 pub use migration::Replaced;
 pub use tuning::OwnTuning;
 
-/// The preset format that this version writes. It reads those before as well: 1 had no routes, and both had parameters
-/// that are retired ([`crate::params::retired`]).
-pub const FORMAT_VERSION: i64 = 3;
+/// The preset format that is written. Older formats are read too: format 1 had no routes, formats 1 and 2 had
+/// parameters that routes replace ([`crate::params::retired`]), and up to format 3 a sound had one exciter by choice.
+pub const FORMAT_VERSION: i64 = 4;
 
-/// A patch and what a person calls it.
+/// A patch with name, author, tags and comment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preset {
-    /// What it is called and found by; never empty.
+    /// Name by which it is listed and found; never empty.
     pub name: String,
-    /// Who made it.
+    /// Author.
     pub author: String,
-    /// Words to search by.
+    /// Words to search for.
     pub tags: Vec<String>,
-    /// What it is and how to play it.
+    /// Description, and how to play it.
     pub comment: String,
     /// The sound.
     pub patch: Patch,
-    /// How it tunes the keys; none for the way of the whole instrument.
+    /// Its own tuning; none for the instrument's.
     pub tuning: Option<OwnTuning>,
 }
 
 impl Preset {
-    /// The sound to play, in its own tuning. Allocates.
+    /// The sound of the preset, with its own tuning if it has one. Allocates.
     pub fn sound(&self) -> Arc<Sound> {
         let tuning = self.tuning.as_ref().map(|own| *own.tuning());
         Arc::new(Sound::new(self.patch.clone()).tuned(tuning))
     }
 
-    /// The kit of this sound alone, under the preset's name. Allocates.
+    /// A kit of this sound alone, with the preset's name. Allocates.
     pub fn kit(&self) -> Arc<Kit> {
-        Arc::new(Kit::new(self.name.clone(), vec![self.sound()], vec![Some(Pad::of(0)); KEYS]))
+        Kit::single(self.name.clone(), self.sound())
     }
 }

@@ -10,12 +10,12 @@ use toml::{Table, Value};
 
 const KEYS: [&str; 6] = ["source", "to", "amount", "response", "scale", "place"];
 
-/// Reads the routes of a file, and their amounts.
+/// Reads the routes of a file with their amounts.
 pub(super) fn read(file: &Table, patch: &mut Patch, complaints: &mut Complaints) {
     let routes = match file.get("routes") {
         None => return,
         Some(_) if file.get("format") == Some(&Value::Integer(1)) => {
-            return complaints.add("routes: a preset of format 1 has none: expected format = 3");
+            return complaints.add("routes: a preset of format 1 has none: expected format = 4");
         }
         Some(Value::Array(routes)) => routes,
         Some(other) => {
@@ -48,7 +48,8 @@ pub(super) fn read(file: &Table, patch: &mut Patch, complaints: &mut Complaints)
     }
 }
 
-/// Reads the amount of the route at a place: in itself or among the parameters, or else it is 0.
+/// Reads the amount of the route with number `place`: from the route, or from the file's parameters; 0 if neither has
+/// it.
 fn read_amount(file: &Table, route: &Table, at: &str, place: usize, patch: &mut Patch, complaints: &mut Complaints) {
     let info = amount_param(place).info();
     let in_params = file.get("params").is_some_and(|params| params.get(info.id).is_some());
@@ -65,7 +66,7 @@ fn read_amount(file: &Table, route: &Table, at: &str, place: usize, patch: &mut 
     }
 }
 
-/// The place that a route asks for, from 0.
+/// Reads the place that a route asks for; returned from 0.
 fn read_place(route: &Table, at: &str) -> Result<Option<usize>, String> {
     let most = MAX_ROUTES as i64;
     match route.get("place") {
@@ -92,7 +93,7 @@ fn read_route(route: &Table, at: &str) -> Result<Route, String> {
     })
 }
 
-/// What a key of a route names, if it is there.
+/// Finds what the text at a key of a route names; none if the key is missing.
 fn named<T>(
     route: &Table,
     at: &str,
@@ -110,13 +111,13 @@ fn named<T>(
     }
 }
 
-/// Whether a parameter is written among the routes: the amount of one that there is.
+/// Whether a parameter is written as part of a route: the amount of a route that exists.
 pub(super) fn writes(patch: &Patch, param: Param) -> bool {
     let is_listed = |place| patch.routes != Routes::INITIAL && patch.routes.get(place).is_some();
     place_of_amount(param).is_some_and(is_listed)
 }
 
-/// Writes the routes, if they are not those of a new patch.
+/// Writes the routes, unless they are those of a new patch.
 pub(super) fn to_toml(patch: &Patch) -> String {
     if patch.routes == Routes::INITIAL {
         return String::new();
@@ -162,7 +163,7 @@ mod tests {
         let mut patch = Patch::default();
         for (place, source, to, response, scale, amount) in [
             (0, Source::Lfo1, Param::Tune, Response::Linear, Some(Source::Wheel), 12.5),
-            (1, Source::Velocity, Param::Hardness, Response::Squared, None, -100.0),
+            (1, Source::Velocity, Param::MalletHardness, Response::Squared, None, -100.0),
             (7, Source::Macro8, Param::Route1, Response::Smooth, None, 0.0),
             (8, Source::Envelope2, Param::Lfo3Rate, Response::Root, Some(Source::Random), 0.1),
         ] {

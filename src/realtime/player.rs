@@ -1,4 +1,4 @@
-//! The audio thread: song, live events and kits in, blocks for the device and the recorder out.
+//! The player on the audio thread: it plays songs, live events and kits into blocks for the device and the recorder.
 
 use super::block_clock::{BlockClock, Moment};
 use super::convert::{DeviceSample, interleave};
@@ -12,45 +12,45 @@ use crate::sound::{Kit, Shelf, Tuning};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::Arc;
 
-/// Frames that are rendered at a time; a longer block of the device is rendered in pieces.
+/// Maximum number of frames rendered at a time. A longer block of the device is rendered in pieces.
 pub const MAX_BLOCK: usize = 4096;
 
-/// Kits that wait for the audio thread to take them.
+/// Maximum number of kits that wait for the audio thread.
 const KIT_CAPACITY: usize = 32;
 
-/// What a player plays, and how.
+/// The settings of a player.
 pub struct Setup<'a> {
     /// Frames per second.
     pub sample_rate: u32,
-    /// Seed of all randomness.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// What every channel starts with that is not among `channels`.
+    /// The initial kit of the channels that are not in `channels`.
     pub kit: &'a Arc<Kit>,
-    /// What single channels, 0–15, start with; the last of several for one channel counts.
+    /// Initial kits of single channels, 0–15. If a channel occurs several times, its last kit is used.
     pub channels: &'a [(u8, Arc<Kit>)],
-    /// What program changes choose from.
+    /// The kits that program changes select.
     pub programs: &'a [Arc<Kit>],
-    /// The pitches of the keys, on all channels.
+    /// The tuning of all channels.
     pub tuning: &'a Tuning,
-    /// Played from the first frame on.
+    /// A song that is played from the first frame on.
     pub song: Option<Song>,
 }
 
-/// Sends kits to a player, and frees them when it has let go of them.
+/// Sends kits to a player, and frees them when the player no longer uses them.
 pub struct KitSender {
     queue: Producer<(u8, Arc<Kit>)>,
     shelf: Shelf,
 }
 
 impl KitSender {
-    /// Plays `kit` on a channel from its next note on; false if too many kits wait already.
+    /// Plays `kit` on a channel from its next note on. Returns false if too many kits are waiting already.
     pub fn send(&mut self, channel: u8, kit: &Arc<Kit>) -> bool {
         self.shelf.keep(kit);
         self.queue.push((channel, kit.clone())).is_ok()
     }
 }
 
-/// Plays on the audio thread. [`Player::fill`] is real-time safe: it allocates nothing, locks nothing, cannot fail.
+/// Plays on the audio thread. [`Player::fill`] is real-time safe: it never allocates, locks or fails.
 pub struct Player {
     ensemble: Ensemble,
     sample_rate: f64,
@@ -65,15 +65,15 @@ pub struct Player {
     tap: Option<Tap>,
     status: Arc<Status>,
     telemetry: TelemetryWriter,
-    /// Frames since the song was over.
+    /// Frames since the end of the song.
     tail: u64,
     ended: bool,
-    /// Keeps the kits that have been sent until the ensemble is gone: fields are dropped in their order.
+    /// Keeps the kits alive that were sent. Fields are dropped in order, so this one must come after the ensemble.
     _shelf: Shelf,
 }
 
 impl Player {
-    /// A player and what sends it kits. Allocates.
+    /// Makes a player, and the sender of its kits. Allocates.
     pub fn new(setup: Setup, inputs: LiveInputs, tap: Option<Tap>, status: Arc<Status>) -> (Self, KitSender) {
         let sample_rate = f64::from(setup.sample_rate);
         let song = setup.song.map(|song| SongCursor::new(song, sample_rate));
@@ -83,7 +83,9 @@ impl Player {
         let ensemble = Ensemble::of_kits(sample_rate, setup.seed, setup.kit, setup.programs.to_vec());
         let channels = setup.channels.iter();
         let mut ensemble = channels.fold(ensemble, |ensemble, (channel, kit)| ensemble.with_kit(*channel, kit));
+        // So that any kit finds room on the audio thread.
         ensemble.reserve(KEYS);
+        ensemble.reserve_space();
         ensemble.set_tuning(setup.tuning);
         let player = Self {
             ensemble,
@@ -134,7 +136,7 @@ impl Player {
         self.telemetry.note_block(frames, moment.now.elapsed());
     }
 
-    /// Renders a piece of a block that starts `start` frames after the block's own start.
+    /// Renders a piece of a block that begins `start` frames after the start of the block.
     fn render(&mut self, start: u32, len: usize) {
         self.events.clear();
         let was_over = self.song.as_ref().is_none_or(SongCursor::is_over);
@@ -202,19 +204,12 @@ mod tests {
         let song = Song::chord(&[60.0, 64.25, 67.0], 0.8, 0.3);
         let options = Options { sample_rate: SETTINGS.0, seed: SETTINGS.1, block: 512, tail: Tail::Auto };
         let mut expected = Vec::new();
-        Job {
-            song: &song,
-            kit: &Kit::of_patch(&short()),
-            channels: &[],
-            programs: &[],
-            tuning: &Tuning::EQUAL,
-            options,
-        }
-        .render(|left, right| {
-            expected.extend(left.iter().zip(right).flat_map(|(left, right)| [*left, *right]));
-            Ok(())
-        })
-        .unwrap();
+        Job::new(&song, &Kit::of_patch(&short()), options)
+            .render(|left, right| {
+                expected.extend(left.iter().zip(right).flat_map(|(left, right)| [*left, *right]));
+                Ok(())
+            })
+            .unwrap();
         for block in [1, 64, 480, 10_000] {
             let (mut player, _, _, status) = player(Some(song.clone()), &short());
             let mut played = Vec::new();
@@ -258,7 +253,7 @@ mod tests {
         assert!(out.iter().all(|sample| sample.abs() < 40), "the patch is a quiet one");
         assert!(!status.is_song_over());
         status.halt_song();
-        // The key of the halted song is still down; its decay ends it.
+        // The key of the halted song is still down, so only its decay ends the note.
         for _ in 0..10_000 {
             player.fill(&mut out, 2, now());
         }

@@ -1,4 +1,4 @@
-//! What there is to render and how, and what it came to.
+//! What to render and how, and the result of a rendering.
 
 use crate::dsp::limiter::Work as LimiterWork;
 use crate::engine::synth::SAMPLE_RATES;
@@ -9,65 +9,73 @@ use crate::sound::{Kit, Tuning};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-/// Lengths that a block can have, in frames.
+/// Range of block lengths, in frames.
 pub const BLOCKS: RangeInclusive<usize> = 1..=65_536;
 
-/// How long rendering goes on after the end of the song.
+/// How long the rendering continues after the end of the song.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tail {
     /// Until nothing sounds.
     Auto,
-    /// Not at all.
+    /// Not at all: the rendering ends with the song.
     None,
     /// For this many seconds.
     Seconds(f64),
 }
 
-/// How to render.
+/// Options of a rendering.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Frames per second, within [`SAMPLE_RATES`].
     pub sample_rate: u32,
-    /// Seed of all randomness.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Frames per block, within [`BLOCKS`]. The samples do not depend on it.
+    /// Frames per block, within [`BLOCKS`]. The samples do not depend on the block length.
     pub block: usize,
-    /// What follows the song.
+    /// What follows after the song.
     pub tail: Tail,
 }
 
-/// What to render: a song, the kits that play it, and how.
+/// A rendering job: a song, the kits that play it, and options.
 #[derive(Clone, Copy, Debug)]
 pub struct Job<'a> {
     /// The events, in order of their times.
     pub song: &'a Song,
-    /// What every channel starts with that is not among `channels`.
+    /// The initial kit of every channel that is not in `channels`.
     pub kit: &'a Arc<Kit>,
-    /// What single channels, 0–15, start with; the last of several for one channel counts.
+    /// Initial kits of single channels, 0–15. If a channel occurs several times, the last one counts.
     pub channels: &'a [(u8, Arc<Kit>)],
-    /// What program changes choose from.
+    /// The kits that program changes select from.
     pub programs: &'a [Arc<Kit>],
     /// The pitches of the keys, on all channels.
     pub tuning: &'a Tuning,
+    /// Sound that comes in with the first frame, at the sample rate of the options: it drives the notes of sounds that have
+    /// a level for it. Empty for none.
+    pub input: &'a [f32],
     /// How.
     pub options: Options,
 }
 
-/// What a rendering came to.
+/// The result of a rendering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rendered {
     /// Length in frames.
     pub frames: u64,
-    /// How much of it is tail, in frames.
+    /// Length of the tail, which is part of `frames`, in frames.
     pub tail_frames: u64,
-    /// Most voices that sounded at once on each channel, added up over channels: at least as many as ever sounded at
-    /// once on all of them together.
+    /// The maximum number of simultaneous voices of each channel, added up over all channels: an upper bound of the
+    /// number of voices that sounded at the same time.
     pub voices_used: usize,
-    /// How much the limiter worked.
+    /// What the limiter has done.
     pub limiter: LimiterWork,
 }
 
-impl Job<'_> {
+impl<'a> Job<'a> {
+    /// A song that one kit plays on all channels, at equal temperament, without program changes and without input.
+    pub fn new(song: &'a Song, kit: &'a Arc<Kit>, options: Options) -> Self {
+        Self { song, kit, channels: &[], programs: &[], tuning: &Tuning::EQUAL, input: &[], options }
+    }
+
     /// Length of the song alone, in frames.
     pub fn song_frames(&self) -> u64 {
         self.song.frames(self.options.sample_rate.into())
@@ -86,7 +94,7 @@ impl Job<'_> {
 }
 
 impl Options {
-    /// Whether it can be rendered so.
+    /// Returns an error if an option is out of range.
     pub(super) fn check(&self) -> Result<()> {
         let range = |name, value: String, low: String, high: String| {
             Err(Error::value(name, format!("{value} is out of range: expected {low} to {high}")))

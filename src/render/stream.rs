@@ -1,4 +1,4 @@
-//! A job under way: the frames that come next, on as many cores as there are channels that sound.
+//! Renders a job block by block, on as many cores as there are channels that sound.
 
 use super::job::{Job, Rendered};
 use crate::engine::{Ensemble, Event};
@@ -6,20 +6,20 @@ use crate::error::Result;
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
-/// From this many frames on, other cores are asked for help: handing work over takes them some microseconds, and so
-/// many frames of a voice or two take some tens.
+/// Other cores are used for blocks of at least this many frames. Handing work to another core takes some microseconds;
+/// rendering this many frames of a voice or two takes some tens of microseconds.
 const SHARED_FRAMES: usize = 512;
 
 impl Job<'_> {
-    /// Renders from the start and hands each block, left and right, to `sink`, whose first error ends it.
-    /// Memory does not grow with the length. The same job gives the same samples each time.
+    /// Renders from the start and hands each block, left and right, to `sink`. The first error of `sink` ends the
+    /// rendering. Memory use does not grow with the length. The same job always gives the same samples.
     ///
-    /// Blocks of 512 frames and more are shared between the threads of the Rayon pool that this is called in (see
-    /// [`on_threads`](super::on_threads)): channels are played side by side, and the next block while `sink` has one.
-    /// The samples do not depend on it, and `sink` gets the blocks in their order.
+    /// Blocks of 512 frames and more are shared between the threads of the current Rayon pool (see
+    /// [`on_threads`](super::on_threads)): channels are rendered in parallel, and the next block is rendered while
+    /// `sink` works on one. The samples do not depend on this, and `sink` receives the blocks in order.
     ///
     /// # Errors
-    /// [`Error::Value`](crate::Error::Value) if an option is out of range; those of `sink`.
+    /// [`Error::Value`](crate::Error::Value) if an option is out of range, and the errors of `sink`.
     pub fn render(&self, mut sink: impl FnMut(&[f32], &[f32]) -> Result<()> + Send) -> Result<Rendered> {
         self.options.check()?;
         let mut stream = Stream::new(self);
@@ -41,12 +41,14 @@ impl Job<'_> {
     }
 }
 
-/// Renders a job from its start, as many frames at a time as there is room for.
+/// Renders a job from its start, as many frames at a time as the slices have room for.
 struct Stream<'a> {
     ensemble: Ensemble,
     song: SongCursor<&'a Song>,
-    /// Events of the frames that are being rendered.
+    /// Events of the frames that are being rendered now.
     events: Vec<Event>,
+    /// What comes in as sound.
+    input: &'a [f32],
     known_frames: Option<u64>,
 }
 
@@ -64,11 +66,13 @@ impl<'a> Stream<'a> {
             ensemble,
             song: SongCursor::new(job.song, sample_rate),
             events: Vec::new(),
+            input: job.input,
             known_frames: job.known_frames(),
         }
     }
 
-    /// Fills both slices, which are of one length, and returns how many frames there were: fewer only at the end.
+    /// Fills both slices, which have the same length, and returns the number of frames. It is smaller than their length
+    /// only at the end.
     fn fill(&mut self, left: &mut [f32], right: &mut [f32]) -> usize {
         let mut filled = 0;
         while filled < left.len()
@@ -81,7 +85,7 @@ impl<'a> Stream<'a> {
         filled
     }
 
-    /// The frame up to which there is sound to come for certain; none at the end.
+    /// The frame up to which the rendering certainly continues; `None` at the end.
     fn next_end(&self) -> Option<u64> {
         let (frame, song_frames) = (self.song.frame(), self.song.song_frames());
         let end = match self.known_frames {
@@ -101,18 +105,20 @@ impl<'a> Stream<'a> {
 
     fn render(&mut self, left: &mut [f32], right: &mut [f32]) {
         self.events.clear();
+        let from = usize::try_from(self.song.frame()).unwrap_or(usize::MAX);
+        let input = self.input.get(from..).unwrap_or(&[]);
         self.song.advance(left.len(), &mut self.events);
         if left.len() < SHARED_FRAMES {
-            self.ensemble.process(&self.events, left, right);
+            self.ensemble.process_with_input(&self.events, input, left, right);
         } else {
-            // One part at a time: of the few that sound, no two should wait for one core.
+            // One part at a time: only few channels sound, and no two of them should wait for the same core.
             let each =
                 |parts: &mut [_], play: &(dyn Fn(&mut _) + Sync)| parts.par_iter_mut().with_max_len(1).for_each(play);
-            self.ensemble.process_by(each, &self.events, left, right);
+            self.ensemble.process_by(each, &self.events, input, left, right);
         }
     }
 
-    /// What it came to, at the end.
+    /// The result, to be called at the end.
     fn rendered(&self) -> Rendered {
         Rendered {
             frames: self.song.frame(),

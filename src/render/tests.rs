@@ -1,4 +1,4 @@
-//! Lengths, tails and threads of renderings.
+//! Tests of lengths, tails and threads of renderings.
 
 use super::{Job, Options, Rendered, Tail, on_threads};
 use crate::engine::EventKind;
@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::io::{Song, SongEvent};
 use crate::params::Param;
 use crate::patch::{Mode, ModeTable, Patch};
-use crate::sound::{Kit, Tuning};
+use crate::sound::Kit;
 
 fn options(sample_rate: u32, block: usize, tail: Tail) -> Options {
     Options { sample_rate, seed: 0, block, tail }
@@ -15,8 +15,7 @@ fn options(sample_rate: u32, block: usize, tail: Tail) -> Options {
 fn render(song: &Song, options: Options) -> (Rendered, Vec<f32>) {
     let patch = Patch::default().with(Param::Decay, 0.2).with(Param::Release, 0.05);
     let mut samples = Vec::new();
-    let job = Job { song, kit: &Kit::of_patch(&patch), channels: &[], programs: &[], tuning: &Tuning::EQUAL, options };
-    let rendered = job
+    let rendered = Job::new(song, &Kit::of_patch(&patch), options)
         .render(|left, right| {
             assert!(left.len() <= options.block && left.len() == right.len());
             samples.extend(left);
@@ -62,28 +61,12 @@ fn an_auto_tail_ends_in_silence_at_a_frame_that_does_not_depend_on_the_block() {
 #[test]
 fn options_out_of_range_and_errors_of_the_sink_end_it() {
     let song = Song::chord(&[60.0], 1.0, 0.125);
-    let patch = Patch::default();
+    let kit = Kit::of_patch(&Patch::default());
     for options in [options(0, 64, Tail::None), options(48_000, 0, Tail::None), options(48_000, 65_537, Tail::None)] {
-        let job = Job {
-            song: &song,
-            kit: &Kit::of_patch(&patch),
-            channels: &[],
-            programs: &[],
-            tuning: &Tuning::EQUAL,
-            options,
-        };
-        assert!(matches!(job.render(|_, _| Ok(())), Err(Error::Value { .. })));
+        assert!(matches!(Job::new(&song, &kit, options).render(|_, _| Ok(())), Err(Error::Value { .. })));
     }
-    let job = Job {
-        song: &song,
-        kit: &Kit::of_patch(&patch),
-        channels: &[],
-        programs: &[],
-        tuning: &Tuning::EQUAL,
-        options: options(48_000, 64, Tail::None),
-    };
     let mut blocks = 0;
-    let result = job.render(|_, _| {
+    let result = Job::new(&song, &kit, options(48_000, 64, Tail::None)).render(|_, _| {
         blocks += 1;
         if blocks == 3 { Err(Error::Interrupted) } else { Ok(()) }
     });
@@ -91,7 +74,7 @@ fn options_out_of_range_and_errors_of_the_sink_end_it() {
     assert_eq!(blocks, 3);
 }
 
-/// Notes on all channels, which change their sounds and choke each other now and then.
+/// Notes on all channels, which sometimes change their sounds and choke each other.
 fn dense_song() -> Song {
     let event = |n: u32| {
         let kind = match n % 8 {
@@ -113,14 +96,8 @@ fn render_on(threads: u16, block: usize, tail: Tail) -> (Rendered, Vec<u32>) {
     let programs = programs.each_ref().map(Kit::of_patch);
     let (song, mut bits) = (dense_song(), Vec::new());
     let options = Options { sample_rate: 48_000, seed: 3, block, tail };
-    let job = Job {
-        song: &song,
-        kit: &Kit::of_patch(&short),
-        channels: &[],
-        programs: &programs,
-        tuning: &Tuning::EQUAL,
-        options,
-    };
+    let kit = Kit::of_patch(&short);
+    let job = Job { programs: &programs, ..Job::new(&song, &kit, options) };
     let sink = |left: &[f32], right: &[f32]| {
         bits.extend(left.iter().zip(right).flat_map(|(left, right)| [left.to_bits(), right.to_bits()]));
         Ok(())

@@ -2,19 +2,18 @@
 
 use super::tuning::Pitch;
 use super::{Sound, Tuning};
-use crate::params::{Param, Values};
+use crate::params::{PARAMS, Param, Values};
 use crate::patch::Patch;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-/// MIDI keys, and most sounds of a kit.
+/// Number of MIDI keys, and maximum number of sounds in a kit.
 pub const KEYS: usize = 128;
 
-/// Gains that a pad can have, in decibels.
+/// Range of a pad's gain, in decibels.
 pub const GAINS_DB: RangeInclusive<f32> = -60.0..=12.0;
 
-/// Pitches that a pad can have, in semitones on the MIDI scale: keys, and frequencies from the subsonic to any sample
-/// rate's limit.
+/// Range of a pad's pitch, in semitones on the MIDI scale: wide enough for every key and every audible frequency.
 pub const PITCHES: RangeInclusive<f64> = -60.0..=200.0;
 
 /// Number of the last choke group.
@@ -23,27 +22,27 @@ pub const CHOKE_GROUPS: u8 = 16;
 /// What a key of a kit plays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pad {
-    /// What it is called, such as “Snare”; empty if it has no name.
+    /// Name of the pad, such as “Snare”; may be empty.
     pub name: String,
-    /// Which of [`Kit::sounds`].
+    /// Index of the sound in [`Kit::sounds`].
     pub sound: usize,
-    /// The key on whose pitch the sound is played, in semitones on the MIDI scale; none for that of the key itself.
+    /// The pitch at which the sound is played, in semitones on the MIDI scale; none for the pitch of the pad's own key.
     pub pitch: Option<f64>,
-    /// Beside the sound's own gain, in decibels.
+    /// Gain in decibels, in addition to the sound's own gain.
     pub gain_db: f32,
-    /// Beside the sound's own, from −1 (left) to 1 (right).
+    /// Pan from −1 (left) to 1 (right), in addition to the sound's own.
     pub pan: f32,
-    /// Pads of a group silence each other; 0 is no group. None for the sound's own.
+    /// Choke group: notes of one group silence each other; 0 is no group. None for the group of the sound.
     pub choke: Option<u8>,
 }
 
 impl Pad {
-    /// A pad that plays a sound by key, at its own level, position and choke group.
+    /// A pad that plays a sound at the pitch of each key, without changes to its gain, pan and choke group.
     pub const fn of(sound: usize) -> Self {
         Self { name: String::new(), sound, pitch: None, gain_db: 0.0, pan: 0.0, choke: None }
     }
 
-    /// Brings numbers out of range to the nearest within, and those that are none to what they are without the pad.
+    /// Clamps values out of range. NaN becomes the neutral value: no gain, centre, the key's own pitch.
     fn confine(&mut self) {
         let within = |value: f32, min: f32, max: f32| if value.is_nan() { 0.0 } else { value.clamp(min, max) };
         self.gain_db = within(self.gain_db, *GAINS_DB.start(), *GAINS_DB.end());
@@ -54,10 +53,12 @@ impl Pad {
     }
 }
 
-/// Sounds, and the keys that play them. Immutable and shared, as [`Sound`] is: one sound is a kit of one.
+/// Sounds, and the keys that play them. Immutable and shared, as [`Sound`] is. A single sound is also a kit.
 ///
-/// A kit of one sound plays with that sound's number of voices, play mode, choke group and limiter. A kit of several
-/// always plays polyphonically, with a number of voices of its own, and asks for the limiter if any of its sounds does.
+/// A kit of one sound has that sound's number of voices, play mode, choke group and limiter. A kit of several is always
+/// polyphonic, with its own number of voices, and its limiter is on if it is on for any of the sounds.
+/// The effects after the voices are shared: a parameter of theirs has the value that all sounds have in common, or else
+/// its default, which is off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kit {
     name: String,
@@ -67,8 +68,9 @@ pub struct Kit {
 }
 
 impl Kit {
-    /// A kit of `sounds` with a pad, or none, for each key from 0. Left out are sounds after the first [`KEYS`], pads
-    /// beyond the last key, and pads without a sound. Without any sound it has the default one, on no key. Allocates.
+    /// A kit of `sounds`, with a pad or none for each key from 0. Ignores sounds after the first [`KEYS`], pads after
+    /// the last key, and pads whose sound does not exist. If there is no sound, the kit has the default sound and no
+    /// pads. Allocates.
     pub fn new(name: String, mut sounds: Vec<Arc<Sound>>, pads: Vec<Option<Pad>>) -> Self {
         sounds.truncate(KEYS);
         let mut pads: Vec<Option<Pad>> = pads.into_iter().take(KEYS).collect();
@@ -85,6 +87,11 @@ impl Kit {
             several => {
                 let mut values = Values::default();
                 values.set(Param::Voices, Param::Voices.info().max);
+                for info in PARAMS.iter().filter(|info| info.param.is_behind_voices()) {
+                    let mut own = several.iter().map(|sound| sound.patch().get(info.param));
+                    let first = own.next().unwrap_or(info.default);
+                    values.set(info.param, if own.all(|value| value == first) { first } else { info.default });
+                }
                 let asks = several.iter().any(|sound| sound.patch().get(Param::Limiter) != 0.0);
                 values.set(Param::Limiter, f32::from(asks));
                 values
@@ -93,17 +100,22 @@ impl Kit {
         Self { name, sounds, pads, values }
     }
 
-    /// The kit of one sound that every key plays at its own pitch. Allocates.
+    /// A kit of one sound, which every key plays at its own pitch. Allocates.
     pub fn of(sound: Arc<Sound>) -> Arc<Self> {
-        Arc::new(Self::new(String::new(), vec![sound], vec![Some(Pad::of(0)); KEYS]))
+        Self::single(String::new(), sound)
     }
 
-    /// [`Kit::of`] the sound of a patch. Allocates.
+    /// As [`Kit::of`], with the sound of a patch. Allocates.
     pub fn of_patch(patch: &Patch) -> Arc<Self> {
         Self::of(Arc::new(Sound::new(patch.clone())))
     }
 
-    /// The kit with a number of voices, 1 to 64: most notes that sound at once. A kit of one sound keeps that sound's.
+    /// As [`Kit::of`], with a name. Allocates.
+    pub fn single(name: String, sound: Arc<Sound>) -> Arc<Self> {
+        Arc::new(Self::new(name, vec![sound], vec![Some(Pad::of(0)); KEYS]))
+    }
+
+    /// The kit with a maximum number of notes at once, 1 to 64. A kit of one sound keeps the number of that sound.
     #[must_use]
     pub fn with_voices(mut self, voices: u8) -> Self {
         if !self.is_single() {
@@ -112,7 +124,7 @@ impl Kit {
         self
     }
 
-    /// What it is called.
+    /// The name of the kit.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -122,13 +134,14 @@ impl Kit {
         &self.sounds
     }
 
-    /// What a key plays; nothing if it is silent. Real-time safe.
+    /// The pad of a key; none if the key is silent. Real-time safe.
     pub fn pad(&self, key: u8) -> Option<&Pad> {
         self.pads.get(usize::from(key))?.as_ref()
     }
 
-    /// The pad that a key plays, its pitch, and an offset from that pitch in semitones; `tuning` is for sounds without one
-    /// of their own. None for a key that is silent, because it has no pad or its pitch no frequency. Real-time safe.
+    /// The pad of a key, its pitch, and an offset from that pitch in semitones. `tuning` is used for sounds without a
+    /// tuning of their own. None if the key is silent, because it has no pad or the tuning does not map its pitch.
+    /// Real-time safe.
     pub(crate) fn tuned_pad(&self, key: u8, tuning: &Tuning) -> Option<(&Pad, Pitch, f32)> {
         let pad = self.pad(key)?;
         let tuning = self.sounds.get(pad.sound)?.tuning().unwrap_or(tuning);
@@ -147,13 +160,13 @@ impl Kit {
         self.sounds.len() == 1
     }
 
-    /// The values that its parameters start with: those of a single sound, and of several the defaults, with the number
-    /// of voices and the limiter of the kit. Real-time safe.
+    /// The initial values of the kit's parameters: those of a single sound; for several, the defaults with the kit's
+    /// number of voices, limiter and effects. Real-time safe.
     pub fn values(&self) -> &Values {
         &self.values
     }
 
-    /// The choke group of a pad while the parameter of the whole kit is at `group`: a single sound follows it.
+    /// The choke group of a pad. `group` is the value of the kit's parameter, which applies to a kit of one sound only.
     /// Real-time safe.
     pub fn choke(&self, pad: &Pad, group: f32) -> u8 {
         let of_sound = || match self.sounds.get(pad.sound) {

@@ -1,22 +1,24 @@
-//! What notes are made from: sounds, bodies that are joined, kits that put sounds on keys, and how the keys are tuned.
+//! Sounds and kits that an engine plays, the bodies and joined bodies they are made of, and the tuning of the keys.
 
 pub mod bodies;
+pub(crate) mod contact;
 pub mod coupled;
 pub mod kit;
 mod shelf;
 pub mod tuning;
 
+pub use contact::Contact;
 pub use kit::{Kit, Pad};
 pub use shelf::Shelf;
 pub use tuning::Tuning;
 
 use crate::patch::Patch;
 
-/// A patch made ready to play: never changed afterwards, and shared by counted handles (`Arc<Sound>`).
+/// A patch made ready to play. It never changes afterwards, and is shared as `Arc<Sound>`.
 ///
-/// An engine plays sounds as parts of a [`Kit`]. What changes modes, routes, tuning or pads is another sound or kit: notes
-/// that ring keep the ones that they were struck with. Values alone move within the engine, by events. Made and freed off
-/// the audio thread: see [`Shelf`].
+/// An engine plays sounds as parts of a [`Kit`]. Other modes, routes, tunings or pads need another sound or kit:
+/// sounding notes keep the one that they were struck with. Only parameter values change inside the engine, by events.
+/// Sounds are made and freed outside the audio thread: see [`Shelf`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sound {
     patch: Patch,
@@ -24,24 +26,24 @@ pub struct Sound {
 }
 
 impl Sound {
-    /// The sound of a patch, on the tuning of the whole instrument. Allocates.
+    /// The sound of a patch, in the tuning of the whole instrument. Allocates.
     pub fn new(patch: Patch) -> Self {
         Self { patch, tuning: None }
     }
 
-    /// The sound with a tuning of its own, which goes before that of the instrument.
+    /// The sound with a tuning of its own, which replaces that of the instrument; none for the instrument's.
     #[must_use]
     pub fn tuned(mut self, tuning: Option<Tuning>) -> Self {
         self.tuning = tuning;
         self
     }
 
-    /// The patch that it was made from.
+    /// The patch of the sound.
     pub fn patch(&self) -> &Patch {
         &self.patch
     }
 
-    /// The tuning of its own.
+    /// The sound's own tuning, if it has one.
     pub fn tuning(&self) -> Option<&Tuning> {
         self.tuning.as_ref()
     }

@@ -1,36 +1,50 @@
-//! Where kits are kept while an engine may have them, so that none is freed on the audio thread.
+//! A place that keeps shared data alive while the audio thread may use it, so that nothing is freed there.
 
 use super::Kit;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Kits that somebody may still play.
+/// Keeps everything that the audio thread may still use: kits, unless `T` is another type.
 ///
-/// An engine lets go of a kit on the audio thread, where nothing may be freed. So whoever hands kits to a running engine
-/// puts them on a shelf first, which keeps a handle of each, and now and then calls [`Shelf::collect`] away from the
-/// audio thread: it frees those that nobody else has. The sounds of a kit need no shelf of their own, because an engine
-/// holds them only while it holds the kit.
+/// An engine drops its reference to a kit on the audio thread, where nothing may be freed. So before a kit is sent to a
+/// running engine, it is put on a shelf, which holds a reference of its own. [`Shelf::collect`], called from time to
+/// time on another thread, frees the kits to which only the shelf still refers. Sounds need no shelf, because an engine
+/// holds them only as long as it holds their kit.
 ///
-/// Clones are the same shelf. The owner of the engine keeps one too, to be dropped after the engine: so the shelf outlives
-/// it. No call is real-time safe; to hold a clone is.
-#[derive(Clone, Debug, Default)]
-pub struct Shelf(Arc<Mutex<Vec<Arc<Kit>>>>);
+/// Clones share one shelf. The owner of the engine holds a clone too and drops it after the engine, so that the shelf
+/// outlives the engine. No method is real-time safe, but holding a clone is.
+#[derive(Debug)]
+pub struct Shelf<T = Kit>(Arc<Mutex<Vec<Arc<T>>>>);
 
-impl Shelf {
-    /// Keeps a kit for as long as anybody else has it, and frees others that nobody has. Allocates, frees and locks.
-    pub fn keep(&self, kit: &Arc<Kit>) {
+impl<T> Default for Shelf<T> {
+    fn default() -> Self {
+        Self(Arc::default())
+    }
+}
+
+impl<T> Clone for Shelf<T> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<T> Shelf<T> {
+    /// Keeps a value as long as anyone else refers to it, and frees those to which nobody else does. Allocates, frees
+    /// and locks.
+    pub fn keep(&self, handle: &Arc<T>) {
         self.collect();
-        let mut kits = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if !kits.iter().any(|kept| Arc::ptr_eq(kept, kit)) {
-            kits.push(kit.clone());
+        let mut handles = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if !handles.iter().any(|kept| Arc::ptr_eq(kept, handle)) {
+            handles.push(handle.clone());
         }
     }
 
-    /// Frees the kits that nobody else has; gives how many are left. Frees and locks.
+    /// Frees the values to which nobody else refers. Returns how many are left. Frees and locks.
     pub fn collect(&self) -> usize {
-        let mut kits = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        // Nobody can take a handle from the last one but this shelf, so a count of one stays one.
-        kits.retain(|kit| Arc::strong_count(kit) > 1);
-        kits.len()
+        let mut handles = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        // If only the shelf refers to a value, no one can make another reference, so a count of 1 cannot grow
+        // meanwhile.
+        handles.retain(|handle| Arc::strong_count(handle) > 1);
+        handles.len()
     }
 }
 

@@ -1,4 +1,4 @@
-//! What ARCHITECTURE.md says of the sources: dependencies point one way, and every file says what it is for.
+//! Checks what ARCHITECTURE.md says about the sources: dependencies point one way, and every file states its purpose.
 
 mod module;
 mod planted;
@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use tree::Tree;
 
-/// What each module of the library may use of it.
+/// For each module of the library, the other modules that it may use.
 const ALLOWED: &[Row] = &[
     ("units", &[]),
     ("error", &[]),
@@ -29,11 +29,14 @@ const ALLOWED: &[Row] = &[
     ("lab", &["dsp", "error", "figure"]),
 ];
 
-/// Crates, and parts of the standard library, that only the named modules may use.
+/// Crates, and parts of the standard library, that only the listed modules may use.
 const OUTSIDE: &[Row] = &[
     ("clap", &["cli"]),
     ("hound", &["io"]),
     ("midly", &["io"]),
+    ("rubato", &["io"]),
+    ("symphonia", &["io"]),
+    ("nalgebra", &["analysis"]),
     ("toml", &["preset", "analysis"]),
     ("plotters", &["figure", "analysis", "lab"]),
     ("ebur128", &["render"]),
@@ -48,13 +51,13 @@ const OUTSIDE: &[Row] = &[
     ("std::thread", &["realtime", "cli"]),
 ];
 
-/// What the plugin must not use: it has no signal processing of its own.
+/// What the plugin must not use, because it has no signal processing of its own.
 const NOT_OF_THE_PLUGIN: &[Row] = &[("sprung::dsp", &[]), ("libm", &[])];
 
-/// Crates that the library needs without any feature: all that the plugin builds of it.
+/// Crates that the library needs without any features, which is how the plugin builds it.
 const ALWAYS_BUILT: &[&str] = &["libm", "same-file", "strsim", "tempfile", "thiserror", "toml", "toml_writer"];
 
-/// Roots of the crates whose files must not import each other.
+/// Root files of the crates whose files must not import each other.
 const CRATES: &[&str] = &[
     "src/lib.rs",
     "src/main.rs",
@@ -111,7 +114,7 @@ fn the_rows_do_not_go_against_the_document() {
     for pair in chains.iter().flat_map(|chain| chain.windows(2)) {
         for (used, user) in pair[0].iter().flat_map(|used| pair[1].iter().map(move |user| (*used, *user))) {
             for name in [used, user] {
-                // The command is a crate of its own, which none of the rows can name.
+                // The command is a crate of its own, so no row can name it.
                 assert!(name == "cli" || ALLOWED.iter().any(|(row, _)| *row == name), "{name} has no row");
             }
             assert!(!rules::reaches(ALLOWED, used, user), "the rows let {used} use {user}");

@@ -1,4 +1,4 @@
-//! Bad input: one message, a non-zero exit, nothing left behind, no panic.
+//! Bad input causes one message and a non-zero exit code, leaves nothing behind, and never panics.
 
 use crate::{Sandbox, end, exists, note_on, song};
 
@@ -10,7 +10,7 @@ fn midi_files() {
     huge.resize(65 << 20, 0);
     let mut claims_too_much = good.clone();
     claims_too_much[18..22].fill(0xff);
-    // A counter through a multiplicative hash: random enough, and the same each time.
+    // A counter with a multiplicative hash: random enough, and always the same.
     let noise: Vec<u8> = (0..5000u32).map(|n| (n.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
     let endless = song(&vec![note_on(0x0fff_ffff, 0, 60); 40]);
     for (name, bytes, message) in [
@@ -47,7 +47,7 @@ fn midi_files() {
 fn presets() {
     let sandbox = Sandbox::new();
     for (body, message) in [
-        ("format = 4", "format 4 is of a newer version: this one reads up to format = 3"),
+        ("format = 5", "format 5 is of a newer version: this one reads up to format = 4"),
         ("name = \"a\"", "there is no ‘format’"),
         ("format = 1\nname = \"a\"\n[params]\ngain = nan", "params.gain: NaN is out of range: expected from -60 dB"),
         ("format = 1\nname = \"a\"\n[params]\ngain = 99", "params.gain: 99 is out of range"),
@@ -123,7 +123,7 @@ fn outputs() {
     sandbox.write("old.wav", "keep me");
     sandbox.fails("render --note 60 -o old.wav", 1, "old.wav: the file exists; add --force");
     assert_eq!(sandbox.read("old.wav"), b"keep me");
-    // A failure after the work has begun leaves an old file alone too.
+    // A failure after the work has begun does not change an old file either.
     sandbox.fails(
         "render --note 60 --length 0.1 --normalize lufs=-14 --set decay=0.005 --force -o old.wav",
         1,

@@ -1,15 +1,15 @@
-//! What bash offers when Tab is pressed: a real one, asked as it asks itself.
+//! Completion in a real bash: checks what it offers when Tab is pressed.
 
 use crate::{Sandbox, exists};
 use sprung::params::PARAMS;
 use sprung::preset::Preset;
 use std::process::Command;
 
-/// Sources the script in an interactive bash, types `line` and a tab, and gives what the line has become.
+/// Loads the script in an interactive bash, types `line` and a tab, and returns the resulting line.
 fn typed(sandbox: &Sandbox, line: &str) -> String {
     let program = assert_cmd::cargo::cargo_bin!("sprung");
     let folder = program.parent().unwrap().display();
-    // A key that writes the line to a file; readline runs it as any other.
+    // Binds a key to a function that writes the line to a file.
     let rc = format!(
         "PATH={folder}:$PATH\nsource <(sprung completions bash)\nbind 'set bell-style none'\n\
          show() {{ printf '%s' \"$READLINE_LINE\" > line; exit; }}\nbind -x '\"\\C-x\": show'\n"
@@ -45,9 +45,9 @@ fn tab_completes_presets_parameters_and_choices() {
         ("sprung render --preset=Church", "sprung render --preset=Church\\ Bell "),
         ("sprung render --preset min", "sprung render --preset mine.toml "),
         ("sprung presets show Church", "sprung presets show Church\\ Bell "),
-        ("sprung render --set exc", "sprung render --set exciter="),
-        ("sprung render --set exciter=pl", "sprung render --set exciter=pluck "),
-        ("sprung render --set=exciter=pl", "sprung render --set=exciter=pluck "),
+        ("sprung render --set note_o", "sprung render --set note_off="),
+        ("sprung render --set note_off=ri", "sprung render --set note_off=ring "),
+        ("sprung render --set=note_off=ri", "sprung render --set=note_off=ring "),
         ("sprung render --note C4 --set mode=leg", "sprung render --note C4 --set mode=legato "),
         ("sprung render --normalize pe", "sprung render --normalize peak="),
         ("sprung render --bits 32", "sprung render --bits 32f "),
@@ -58,7 +58,7 @@ fn tab_completes_presets_parameters_and_choices() {
     }
 }
 
-/// What the program answers to bash's script, whose last word is being typed.
+/// The program's answer to bash's script, where the last word is being typed.
 fn offered(words: &[&str]) -> Vec<String> {
     let output = Command::new(assert_cmd::cargo::cargo_bin!("sprung"))
         .env("SPRUNG_COMPLETE", "bash")

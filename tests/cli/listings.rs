@@ -1,4 +1,4 @@
-//! What the command tells about itself: presets, parameters, manual, completion scripts.
+//! What the command prints about itself: presets, parameters, manual, completion scripts.
 
 use crate::Sandbox;
 use sprung::params::PARAMS;
@@ -18,12 +18,12 @@ fn presets_are_listed_shown_and_checked() {
     assert_eq!(sandbox.succeeds("presets show kick.toml"), kick.as_bytes());
 
     sandbox.write("bad.toml", "format = 1\nname = \"a\"\ncolour = 1");
-    sandbox.write("worse.toml", "format = 4");
+    sandbox.write("worse.toml", "format = 9");
     let stdout = sandbox.succeeds("presets check kick.toml");
     assert_eq!(String::from_utf8(stdout).unwrap(), "kick.toml: ‘Kick’ is in order\n");
     let output = sandbox.sprung("presets check bad.toml kick.toml worse.toml none.toml").assert().code(1);
     let stderr = String::from_utf8(output.get_output().stderr.clone()).unwrap();
-    for message in ["bad.toml: unknown key ‘colour’", "worse.toml: format 4", "none.toml: ", "3 of 4 cannot be used"]
+    for message in ["bad.toml: unknown key ‘colour’", "worse.toml: format 9", "none.toml: ", "3 of 4 cannot be used"]
     {
         assert!(stderr.contains(message), "{message}: {stderr}");
     }
@@ -112,7 +112,7 @@ fn a_reader_that_has_seen_enough_is_no_error() {
     }
 }
 
-/// On Linux alone: other systems have no `/dev/full`.
+/// Only on Linux: other systems have no `/dev/full`.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_behind_stdout_is_an_error() {

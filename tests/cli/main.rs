@@ -1,4 +1,4 @@
-//! The command `sprung` from outside: what it writes, what it says, how it ends.
+//! The command `sprung` as a program: its files, messages and exit codes.
 
 mod bad_input;
 #[cfg(unix)]
@@ -10,6 +10,7 @@ mod lab;
 mod listings;
 mod messages;
 mod outputs;
+mod recordings;
 mod songs;
 mod sound;
 mod tuning;
@@ -20,11 +21,11 @@ use midly::{Format, Header, MetaMessage, MidiMessage, Smf, Timing, TrackEvent, T
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// A program that starts another with signals as they are by default. A suite that runs in the background or under
-/// `nohup` ignores some of them, and its children inherit that.
+/// A program that starts another one with default signal handling. A test suite that runs in the background or under
+/// `nohup` ignores some signals, and its children inherit this.
 pub(crate) const DEFAULT_SIGNALS: [&str; 2] = ["env", "--default-signal=HUP,INT,TERM"];
 
-/// The command, in a directory of its own.
+/// A directory of its own in which the command runs.
 pub(crate) struct Sandbox(TempDir);
 
 impl Sandbox {
@@ -52,19 +53,19 @@ impl Sandbox {
         names
     }
 
-    /// `sprung` with these arguments, split at spaces.
+    /// `sprung` with these arguments, which are split at spaces.
     pub(crate) fn sprung(&self, args: &str) -> Command {
         let mut command = Command::cargo_bin("sprung").unwrap();
         command.current_dir(self.0.path()).args(args.split_whitespace());
         command
     }
 
-    /// Runs the command and expects it to work; gives what it wrote to stdout.
+    /// Runs the command, which must succeed, and returns its stdout.
     pub(crate) fn succeeds(&self, args: &str) -> Vec<u8> {
         self.sprung(args).assert().success().get_output().stdout.clone()
     }
 
-    /// Runs the command and expects one message, this exit code, and no file more or less than before.
+    /// Runs the command, which must print one message, exit with this code, and neither create nor remove a file.
     pub(crate) fn fails(&self, args: &str, code: i32, message: &str) {
         let before = self.files();
         let output = self.sprung(args).assert().code(code).get_output().clone();
@@ -76,7 +77,7 @@ impl Sandbox {
         assert_eq!(self.files(), before, "{args}");
     }
 
-    /// The frames of a WAV file, its samples as they are stored.
+    /// The format and the stored samples of a WAV file.
     pub(crate) fn wav(&self, name: &str) -> Wav {
         Wav::read(&self.read(name))
     }
@@ -85,7 +86,7 @@ impl Sandbox {
 pub(crate) struct Wav {
     pub(crate) spec: hound::WavSpec,
     pub(crate) frames: u32,
-    /// Interleaved; integers scaled to ±1.
+    /// Interleaved samples; integers are scaled to ±1.
     pub(crate) samples: Vec<f64>,
 }
 
@@ -120,7 +121,7 @@ pub(crate) fn end(delta: u32) -> TrackEvent<'static> {
     TrackEvent { delta: u28::new(delta), kind: TrackEventKind::Meta(MetaMessage::EndOfTrack) }
 }
 
-/// A MIDI file of one track and 480 ticks per quarter note, 960 a second.
+/// A MIDI file with one track and 480 ticks per quarter note, 960 per second.
 pub(crate) fn song(events: &[TrackEvent<'static>]) -> Vec<u8> {
     let header = Header::new(Format::SingleTrack, Timing::Metrical(u15::new(480)));
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! What the command's options do to the sound.
+//! The effects of the command's options on the sound.
 
 use crate::{Sandbox, end, midi, note_on, song};
 use midly::MidiMessage;
@@ -11,7 +11,8 @@ fn report(sandbox: &Sandbox, args: &str) -> serde_json::Value {
 fn an_auto_tail_lasts_until_the_sound_has_died() {
     let sandbox = Sandbox::new();
     let report = report(&sandbox, "render --note A4 --length 0.1 --set release=0.5 --set decay=0.5 -o out.wav");
-    // From −6 dBFS to inaudible at 60 dB per 0.5 s: more than half a second, less than two.
+    // The sound decays from −6 dBFS to inaudible by 60 dB per 0.5 s: this takes more than half a second and less than
+    // two.
     let tail = report["tail_seconds"].as_f64().unwrap();
     assert!((0.5..2.0).contains(&tail), "{report}");
     assert_eq!(report["voices_used"], 1);
@@ -28,9 +29,9 @@ fn normalising_hits_its_target() {
     assert!((sandbox.wav("peak.wav").peak() / target - 1.0).abs() < 1e-6);
     assert!((peak["peak_dbfs"].as_f64().unwrap() + 1.0).abs() < 1e-5, "{peak}");
     let loud = report(&sandbox, &format!("{base} --normalize lufs=-14 -o loud.wav"));
-    // Measured before and after, in steps of 0.1 LU.
+    // The level is measured before and after, in steps of 0.1 LU.
     assert!((loud["lufs"].as_f64().unwrap() + 14.0).abs() <= 0.1, "{loud}");
-    // Two passes give the same sound to a pipe.
+    // When the output is a pipe, the two passes give the same sound.
     let piped = sandbox.succeeds(&format!("{base} --normalize lufs=-14 -o -"));
     assert!(piped == sandbox.read("loud.wav"));
 }
@@ -145,7 +146,7 @@ fn program_changes_pick_presets_by_number() {
     let (beyond, stderr) = render("beyond.mid");
     assert!(beyond == init);
     assert_eq!(stderr.matches("warning: channel 10: there is no program 127").count(), 1, "{stderr}");
-    // Settings hold for the presets that a song picks, too.
+    // Settings also apply to the presets that a song selects.
     let (set, _) = render("one.mid --set decay=0.01");
     assert!(set == render("plain.mid --preset kick --set decay=0.01").0 && set != kick);
 }
@@ -154,7 +155,7 @@ fn program_changes_pick_presets_by_number() {
 fn seeds_choose_the_noise() {
     let sandbox = Sandbox::new();
     let render = |args: &str| sandbox.succeeds(&format!("render --note C3 --length 0.1 {args} -o -"));
-    for sound in ["--set exciter=noise", "--bits 16 --dither"] {
+    for sound in ["--set mallet_level=-60 --set noise_reach=100", "--bits 16 --dither"] {
         assert!(render(&format!("{sound} --seed 1")) == render(&format!("{sound} --seed 1")));
         assert!(render(&format!("{sound} --seed 1")) != render(&format!("{sound} --seed 2")), "{sound}");
     }
@@ -182,8 +183,13 @@ fn kits_play_on_all_channels_and_on_one() {
     let short = bytes("--note 60 --preset Kick --set decay=0.05");
     assert!(short != plain && bytes("--note 40 --preset kit.toml --set decay=0.05") == short);
     let told = sandbox.sprung(&format!("{base} --note 40,42 --preset kit.toml")).output().unwrap().stderr;
-    let expected = "warning: 1 of 2 notes are silent: their kits have no pad on their keys";
+    let expected = "warning: 1 of 2 notes are silent: their kits have no pad on their keys (channel 1: F#2)";
     assert!(String::from_utf8_lossy(&told).contains(expected));
+    let told = sandbox.sprung(&format!("{base} --note 60 --channel 10=kit.toml")).output().unwrap().stderr;
+    let expected = "warning: --channel 10: the song has nothing on channel 10";
+    assert!(String::from_utf8_lossy(&told).contains(expected));
+    let told = sandbox.sprung(&format!("{base} --note 40 --channel 1=kit.toml")).output().unwrap().stderr;
+    assert!(!String::from_utf8_lossy(&told).contains("warning"));
     bytes("--note 42 --preset kit.toml");
     assert_eq!(sandbox.wav("out.wav").peak(), 0.0, "a key without a pad is silent");
 
@@ -204,7 +210,7 @@ fn kits_that_do_not_fit_are_refused() {
     ] {
         sandbox.fails(&format!("render --note 60 {args} -o out.wav"), code, message);
     }
-    // What a kit reads must not become its output.
+    // A file that a kit reads must not become its output.
     let mine = sandbox.write("mine.toml", sprung::preset::Preset::find("Kick").unwrap().to_toml());
     std::fs::hard_link(mine, sandbox.path("mine.wav")).unwrap();
     sandbox.write("kit.toml", "kit = 1\nname = \"K\"\nkeys = [{ key = 40, sound = \"mine.toml\" }]");

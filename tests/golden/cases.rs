@@ -1,4 +1,4 @@
-//! The golden cases: every factory preset, every song in `assets/midi`, and what the engine does beside plain notes.
+//! The golden cases: every factory preset, every song in `assets/midi`, and the engine's other features.
 
 use crate::score::Score;
 use sprung::engine::{EventKind, NoteId};
@@ -12,7 +12,7 @@ pub(crate) const INIT: &str = "preset-init";
 
 /// All cases.
 pub(crate) fn all() -> Vec<Score> {
-    // The longest first, so that no core waits for them at the end.
+    // The longest come first, so that no core waits for them at the end.
     let mut cases = crate::songs::all();
     cases.extend(Preset::factory().iter().map(preset));
     cases.extend(engine());
@@ -38,7 +38,7 @@ fn preset(preset: &Preset) -> Score {
     if name == INIT { score.keeping_audio() } else { score }
 }
 
-/// Three masses that differ in everything a mode has.
+/// Three masses that differ in every property of a mode.
 fn trio() -> Patch {
     let modes = ModeTable::new(&[
         Mode { pan: -0.5, ..Mode::UNIT },
@@ -56,13 +56,20 @@ fn engine() -> Vec<Score> {
         line("engine-mono", patch.clone().with(Param::Mode, 1.0).with(Param::Glide, 0.05)),
         line("engine-legato", patch.clone().with(Param::Mode, 2.0).with(Param::Glide, 0.1)).keeping_audio(),
         choking(patch.clone().with(Param::Choke, 1.0)),
-        automation(patch.clone().with(Param::Exciter, 1.0)).keeping_audio(),
-        controllers(patch.clone().with(Param::Exciter, 2.0).with_route(0, Source::Pressure, Param::Damper, 80.0)),
-        noise(patch.clone().with(Param::Exciter, 3.0).with(Param::NoiseTime, 0.3)).keeping_audio(),
+        automation(patch.clone().with(Param::MalletPulse, 1.0)).keeping_audio(),
+        controllers(patch.clone().with(Param::MalletLevel, -60.0).with(Param::PluckLevel, 0.0).with_route(
+            0,
+            Source::Pressure,
+            Param::Damper,
+            80.0,
+        )),
+        noise(patch.clone().with(Param::MalletLevel, -60.0).with(Param::NoiseReach, 100.0).with(Param::NoiseTime, 0.3))
+            .keeping_audio(),
         programs(patch.clone()),
         rate("engine-22050-hz", 22_050.0),
         rate("engine-192-khz", 192_000.0),
         line("engine-classic", patch.clone().with(Param::Coefficients, 1.0)),
+        space(patch),
     ]
 }
 
@@ -92,7 +99,7 @@ fn pedals(patch: Patch) -> Score {
         .control(1.8, 120, 0)
 }
 
-/// Twelve notes on four voices, some of them on one frame.
+/// Twelve notes on four voices, some of them at the same frame.
 fn stealing(patch: Patch) -> Score {
     (0..12).fold(Score::new("engine-stealing", patch, 1.5), |score, note| {
         let index = f64::from(note / 2);
@@ -100,7 +107,7 @@ fn stealing(patch: Patch) -> Score {
     })
 }
 
-/// Overlapping and separate notes of one line.
+/// Overlapping and separate notes of a melody.
 fn line(name: &str, patch: Patch) -> Score {
     Score::new(name, patch, 1.5)
         .on(0.0, 48, 100)
@@ -113,7 +120,7 @@ fn line(name: &str, patch: Patch) -> Score {
         .off(1.1, 50)
 }
 
-/// A group that chokes across channels.
+/// A choke group across channels.
 fn choking(patch: Patch) -> Score {
     let strike = |key: u8| EventKind::NoteOn { key, detune: 0.25, velocity: 0.8, id: NoteId::new(key.into()) };
     Score::new("engine-choking", patch.with(Param::Decay, 2.0), 1.2)
@@ -132,7 +139,7 @@ fn automation(patch: Patch) -> Score {
         (Param::Decay, 0.2),
         (Param::Tune, 7.0),
         (Param::Pan, -60.0),
-        (Param::Hardness, 20.0),
+        (Param::MalletHardness, 20.0),
         (Param::Decay, 4.0),
         (Param::Fine, -50.0),
         (Param::VibratoRate, 9.0),
@@ -166,14 +173,17 @@ fn controllers(patch: Patch) -> Score {
         .off(1.2, 64)
 }
 
-/// Bursts of noise: the second strike of a key draws other noise than the first.
+/// Noise bursts: the second strike of a key uses different noise from the first.
 fn noise(patch: Patch) -> Score {
     Score::new("engine-noise", patch, 1.0).on(0.0, 45, 100).on(0.3, 45, 100).on(0.31, 57, 100).off(0.6, 57)
 }
 
 /// Program changes between and during notes; a number beyond the list is ignored.
 fn programs(patch: Patch) -> Score {
-    let programs = vec![Patch::default().with(Param::Sweep, 24.0), patch.clone().with(Param::Exciter, 3.0)];
+    let programs = vec![
+        Patch::default().with(Param::Sweep, 24.0),
+        patch.clone().with(Param::MalletLevel, -60.0).with(Param::NoiseReach, 100.0),
+    ];
     Score::new("engine-programs", patch, 1.2)
         .with_programs(programs)
         .on(0.0, 60, 100)
@@ -184,8 +194,48 @@ fn programs(patch: Patch) -> Score {
         .on(0.6, 64, 100)
 }
 
+/// All that is behind the voices, with its parameters moved, and another body by a program change.
+fn space(patch: Patch) -> Score {
+    let with_space = |space: f32| {
+        patch
+            .clone()
+            .with(Param::MalletPulse, 1.0)
+            .with(Param::StringsLevel, 40.0)
+            .with(Param::TremoloDepth, 50.0)
+            .with(Param::TremoloStereo, 60.0)
+            .with(Param::Drive, 6.0)
+            .with(Param::ToneLow, 3.0)
+            .with(Param::ToneHigh, -2.0)
+            .with(Param::Space, space)
+            .with(Param::SpacePreDelay, 0.01)
+            .with(Param::SpaceMix, 50.0)
+            .with(Param::StereoWidth, 150.0)
+    };
+    let mut score =
+        Score::new("engine-space", with_space(2.0), 0.8).with_programs(vec![with_space(1.0)]).on(0.0, 60, 100);
+    for (step, (param, value)) in [
+        (Param::StringsTuning, 2.0),
+        (Param::StringsTune, -5.0),
+        (Param::StringsLowDecay, 1.0),
+        (Param::TremoloRate, 9.0),
+        (Param::Drive, 15.0),
+        (Param::ToneHigh, 4.0),
+        (Param::SpaceSize, 60.0),
+        (Param::SpaceMaterial, 3.0),
+        (Param::SpaceHighDecay, 0.2),
+        (Param::SpacePreDelay, 0.03),
+        (Param::StereoWidth, 30.0),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        score = score.then(0.0207 * (step + 1) as f64, 0, EventKind::Param { param, value });
+    }
+    score.on(0.3, 67, 90).then(0.4, 0, EventKind::Program(0)).on(0.5, 55, 110)
+}
+
 /// The same phrase at another sample rate.
 fn rate(name: &str, sample_rate: f64) -> Score {
-    let patch = trio().with(Param::Exciter, 1.0).with(Param::Sweep, 12.0).with(Param::Vibrato, 20.0);
+    let patch = trio().with(Param::MalletPulse, 1.0).with(Param::Sweep, 12.0).with(Param::Vibrato, 20.0);
     Score::new(name, patch, 0.6).at_rate(sample_rate).on(0.0, 57, 100).on(0.2, 69, 80).off(0.4, 57)
 }

@@ -1,4 +1,4 @@
-//! Checking a case against what was accepted, accepting anew, and what a failure leaves behind.
+//! Compares a case with its accepted result, accepts a new result, and writes files that explain a failure.
 
 use crate::score::{Score, WHOLE};
 use sprung::analysis::figure::{self, Render};
@@ -6,15 +6,15 @@ use sprung::analysis::{diff, digest::Digest, level};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Block sizes that must all give the same bits as one block of everything.
+/// Block sizes that must all give the same bits as one block of the whole length.
 const BLOCKS: [usize; 5] = [1, 7, 64, 480, 4096];
-/// Frames of audio that the cases which keep audio keep.
+/// Number of frames in the kept audio, for cases that keep audio.
 const KEPT_FRAMES: usize = 12_000;
 
 /// Left and right.
 pub(crate) type Stereo = [Vec<f32>; 2];
 
-/// Where accepted digests and audio lie and failures are explained.
+/// The folders of accepted digests and audio, and of explanations of failures.
 pub(crate) struct Store {
     pub(crate) accepted: PathBuf,
     pub(crate) failures: PathBuf,
@@ -34,7 +34,7 @@ impl Store {
         self.accepted.join(format!("{case}.wav"))
     }
 
-    /// Digests and audio that belong to none of `cases`.
+    /// Digests and audio files that belong to none of `cases`.
     pub(crate) fn stale(&self, cases: &BTreeSet<String>) -> Vec<PathBuf> {
         let files = std::fs::read_dir(&self.accepted).expect("tests/golden is a folder");
         let paths = files.map(|file| file.expect("tests/golden can be listed").path());
@@ -50,7 +50,7 @@ impl Store {
     }
 }
 
-/// Why a render cannot be right, whatever was accepted: accepting silence would test nothing for ever.
+/// Why a render cannot be right, even if it was accepted: a case with accepted silence would never test anything.
 fn flaw(case: &Score, audio: &Stereo) -> Result<(), String> {
     let peak = level::peak(&audio[0]).max(level::peak(&audio[1]));
     let samples = audio.iter().flatten();
@@ -63,7 +63,7 @@ fn flaw(case: &Score, audio: &Stereo) -> Result<(), String> {
     Ok(())
 }
 
-/// Accepts what a case sounds like now.
+/// Accepts the present sound of a case.
 pub(crate) fn bless(store: &Store, case: &Score) {
     let audio = case.render(WHOLE);
     let digest = Digest::of(&audio[0], &audio[1], case.sample_rate);
@@ -73,13 +73,13 @@ pub(crate) fn bless(store: &Store, case: &Score) {
     }
 }
 
-/// Renders a case with every block size and compares it with what was accepted. The error is for people.
+/// Renders a case with every block size and compares it with the accepted result. The error is a message for people.
 pub(crate) fn check(store: &Store, case: &Score) -> Result<(), String> {
     let audio = case.render(WHOLE);
     check_audio(store, case, &audio)?;
     for block in BLOCKS {
         let blocks = case.render(block);
-        if let Some(difference) = diff::compare([&audio[0], &audio[1]], [&blocks[0], &blocks[1]]) {
+        if let Some(difference) = diff::compare(&audio, &blocks) {
             let message = format!("{}: blocks of {block} differ from one block: {difference}", case.name);
             let folder = explain(store, case, &blocks, Some(&audio), &message);
             return Err(format!("{message}\n    see {}", folder.display()));
@@ -88,7 +88,7 @@ pub(crate) fn check(store: &Store, case: &Score) -> Result<(), String> {
     Ok(())
 }
 
-/// Compares a render of `case` with what was accepted.
+/// Compares a render of `case` with the accepted result.
 pub(crate) fn check_audio(store: &Store, case: &Score, audio: &Stereo) -> Result<(), String> {
     flaw(case, audio)?;
     let name = &case.name;
@@ -100,8 +100,8 @@ pub(crate) fn check_audio(store: &Store, case: &Score, audio: &Stereo) -> Result
     let accepted = Digest::parse(&text, &path.display().to_string()).map_err(|error| format!("{name}: {error}"))?;
     let kept = if case.keeps_audio { Some(read_wav(&store.audio_path(name))?) } else { None };
     let difference = kept.as_ref().and_then(|kept| {
-        let [left, right] = beginning(audio);
-        diff::compare([&kept[0], &kept[1]], [left, right])
+        // Blessing keeps the beginning alone.
+        diff::compare(&kept[..], &beginning(audio))
     });
     let drift = accepted.compare(&Digest::of(&audio[0], &audio[1], case.sample_rate));
     let message = match (difference, drift) {
@@ -120,10 +120,10 @@ fn beginning(audio: &Stereo) -> [&[f32]; 2] {
     [&audio[0], &audio[1]].map(|channel| &channel[..channel.len().min(KEPT_FRAMES)])
 }
 
-/// Writes what there is to hear and to see of a failure; gives the folder.
+/// Writes audio and images of a failure and returns their folder.
 fn explain(store: &Store, case: &Score, actual: &Stereo, expected: Option<&Stereo>, message: &str) -> PathBuf {
     let folder = store.failures.join(&case.name);
-    // Files of an earlier failure would be taken for this one's.
+    // Files of an earlier failure could be mistaken for files of this one.
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("the folder for failures can be made");
     let sample_rate = case.sample_rate;
@@ -132,7 +132,7 @@ fn explain(store: &Store, case: &Score, actual: &Stereo, expected: Option<&Stere
     let title = message.lines().next().unwrap_or_default();
     let drawn = match expected {
         Some(expected) => {
-            // What was kept may be shorter than what was rendered.
+            // The kept audio may be shorter than the render.
             let frames = expected[0].len();
             let actual = [&actual[0], &actual[1]].map(|channel| &channel[..channel.len().min(frames)]);
             let difference =

@@ -1,16 +1,16 @@
-//! The terminal view, driven by keys in tmux.
+//! The terminal view, operated by keys in tmux.
 
 use super::sandbox::{Sandbox, text, wait_until};
 use std::process::Command;
 
-/// A tmux server of this test's own.
+/// A tmux server used only by this test.
 struct Terminal {
     socket: String,
     sandbox: Sandbox,
 }
 
 impl Terminal {
-    /// Starts `sprung` in a terminal of this size, on a device that leads nowhere at real-time pace.
+    /// Starts `sprung` in a terminal of this size, on a null device that runs at real-time speed.
     fn start(name: &str, arguments: &str) -> Self {
         let sandbox = Sandbox::new();
         let pipe = sandbox.path("pipe");
@@ -65,7 +65,7 @@ pub(crate) fn the_view_plays_loads_turns_and_resizes() {
     terminal.shows("3 voices");
     terminal.keys(&["/", "k", "i", "c", "k", "Enter", "Enter"]);
     terminal.shows("channel 1 plays ‘Kick’");
-    terminal.keys(&["Tab", "/", "w", "i", "d", "t", "h", "Enter", "Enter"]);
+    terminal.keys(&["Tab", "/", "d", "a", "m", "p", "e", "r", "Enter", "Enter"]);
     terminal.keys(&["2", "5", "Space", "%", "Enter"]);
     terminal.shows("25 %");
     terminal.keys(&["?"]);

@@ -185,6 +185,31 @@ fn tails_end_when_told() {
     assert!(chain.2.is_silent() && left[5999] == 0.0);
 }
 
+/// While all is idle, to be told of frames is as good as to play them: the motor goes on.
+#[test]
+fn skipped_frames_are_silence() {
+    let is_idle = |chain: &Chain| chain.0.is_idle() && chain.1.is_idle() && chain.2.is_idle() && chain.3.is_idle();
+    let mut played = Chain::new();
+    assert!(is_idle(&played) && played.0.is_off() && played.1.is_off() && played.2.is_off() && played.3.is_off());
+    played.turn(0.6);
+    assert!(!is_idle(&played));
+    let sound = |chain: &mut Chain| {
+        let [mut left, mut right] = noise(0.5, 1000, 6007);
+        chain.process(&mut left, &mut right);
+        assert!(is_idle(chain) && !chain.0.is_off());
+        [left, right].map(|side| side.into_iter().map(f32::to_bits).collect::<Vec<_>>())
+    };
+    sound(&mut played);
+    let mut skipped = played.clone();
+    for frames in [1, 24, 25, 32, 33, 63, 10_001] {
+        played.process(&mut vec![0.0; frames], &mut vec![0.0; frames]);
+        skipped.0.skip(frames);
+        skipped.2.skip(frames);
+        assert!(is_idle(&played) && is_idle(&skipped));
+        assert_eq!(sound(&mut played), sound(&mut skipped), "{frames}");
+    }
+}
+
 #[test]
 fn nonsense_is_survived_and_nothing_allocated() {
     let mut chain = Chain::new();

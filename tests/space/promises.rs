@@ -1,16 +1,27 @@
 //! What a reverb promises, whatever its body: passive, asleep in silence, smooth, and nothing allocated.
 
-use crate::signal::{RATE, blocks_are_equal, impulse, noise, peak, rms};
+use crate::signal::{RATE, blocks_are_equal, decibels, impulse, noise, octave, peak, rms};
 use crate::{AllocDisabler, reverb};
 use assert_no_alloc::{assert_no_alloc, violation_count};
 use sprung::dsp::random::{key, uniform};
 use sprung::dsp::space::{BodyMode, Decay, ModalReverb, ModeSet, Plate, Resonator, Spring, Strings};
+use std::sync::LazyLock;
 
 const DECAY: Decay = Decay { low: 0.4, high: 0.2 };
 
 /// A few hundred modes, quickly played.
 fn small() -> ModeSet {
     Plate { length: 0.6, width: 0.35, thickness: 0.001, ..Plate::default() }.modes()
+}
+
+static SMALL: LazyLock<ModeSet> = LazyLock::new(small);
+static SPRINGS: LazyLock<ModeSet> = LazyLock::new(|| Spring::default().modes());
+static PAIR: LazyLock<ModeSet> = LazyLock::new(|| Strings::new([220.0, 330.0]).modes());
+
+/// A reverb that any of these bodies finds room in.
+fn with_room(sets: &[&ModeSet]) -> ModalReverb {
+    let most = sets.iter().map(|modes| modes.len()).max().unwrap();
+    ModalReverb::new(Resonator::with_room(most, DECAY, RATE))
 }
 
 /// Numbers from −1 to 1, one after the other.
@@ -40,11 +51,14 @@ fn energy_never_exceeds_what_came_in() {
         let rate = [22_050.0, 44_100.0, 48_000.0, 192_000.0][seed as usize % 4];
         let mut reverb = ModalReverb::new(Resonator::new(&modes, decay(&mut next), rate));
         reverb.set_mix(1.0);
-        let norm = (reverb.body().len() as f64).sqrt();
+        let norm = (modes.len() as f64).sqrt();
         let mut before = 0.0;
         for block in 0..400 {
             if next() > 0.7 {
                 reverb.set_decay(decay(&mut next));
+            }
+            if next() > 0.8 {
+                reverb.set_pitch(libm::exp2(3.0 * next()) as f32);
             }
             let level = if block % 8 < 4 { 10.0 } else { 0.0 };
             let (mut left, mut right) = ([0.0; 24], [0.0; 24]);
@@ -137,12 +151,12 @@ fn blocks_do_not_matter() {
     let mut signal = noise(0.3, 3000, 80_000);
     // Asleep in between, and woken within a tick.
     signal[0][70_007..70_100].fill(0.25);
-    let other = Resonator::new(&Strings::new([220.0, 330.0]).modes(), DECAY, RATE);
     let turn = |reverb: &mut ModalReverb, frame: usize| match frame {
         1001 => reverb.set_decay(Decay { low: 0.3, high: 0.15 }),
         1500 => reverb.set_pre_delay(0.04),
         2003 => reverb.set_mix(0.7),
-        2501 => assert!(reverb.replace_body(other.clone()).is_ok()),
+        2501 => reverb.set_body(&PAIR),
+        2600 => reverb.set_pitch(0.7),
         66_003 => {
             assert!(reverb.is_silent());
             reverb.set_mix(0.6);
@@ -150,7 +164,7 @@ fn blocks_do_not_matter() {
         }
         _ => reverb.set_mix(0.0),
     };
-    blocks_are_equal(&one, &signal, &[1001, 1500, 2003, 2501, 66_003, 75_001], turn, ModalReverb::process);
+    blocks_are_equal(&one, &signal, &[1001, 1500, 2003, 2501, 2600, 66_003, 75_001], turn, ModalReverb::process);
 }
 
 #[test]
@@ -173,10 +187,7 @@ fn nothing_clicks() {
         ("decay", |reverb| reverb.set_decay(Decay { low: 0.1, high: 0.1 })),
         ("mix", |reverb| reverb.set_mix(0.0)),
         ("delay", |reverb| reverb.set_pre_delay(0.1)),
-        ("body", |reverb| {
-            let other = Resonator::new(&Spring::default().modes(), DECAY, RATE);
-            assert!(reverb.replace_body(other).is_ok());
-        }),
+        ("body", |reverb| reverb.set_body(&SPRINGS)),
     ];
     for (name, turn) in turns {
         let mut turned = rings.clone();
@@ -191,24 +202,116 @@ fn nothing_clicks() {
         let undisturbed = f64::from(plain.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max));
         assert!(first < 0.02 * level && most < undisturbed * 1.01, "{name}");
     }
+    // All that changes its pitch moves on from where it is, and by smaller steps.
+    let step = |samples: &[f32]| samples.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
+    let mut lower = rings.clone();
+    lower.set_pitch(0.6);
+    let [mut left, mut right] = silence();
+    lower.process(&mut left, &mut right);
+    let (own, turned) = (step(&plain), step(&left));
+    println!("pitch: {turned:.2e}, its own {own:.2e}");
+    assert!(turned < 1.05 * own && left != plain, "{turned}, {own}");
+}
+
+/// A body that is switched on, or comes in place of another, while something sounds is not struck by it.
+#[test]
+fn what_sounds_already_comes_in_gently() {
+    let tone = |n: usize| 0.3 * libm::sin(0.01 * n as f64) as f32;
+    let heard = |turn: fn(&mut ModalReverb)| {
+        let mut rings = with_room(&[&SMALL, &SPRINGS]);
+        rings.set_body(&SPRINGS);
+        let mut left: Vec<f32> = (0..24_000).map(tone).collect();
+        let mut right = left.clone();
+        rings.process(&mut left[..5150], &mut right[..5150]);
+        turn(&mut rings);
+        rings.process(&mut left[5150..], &mut right[5150..]);
+        // Above 2 kHz there is nothing but what a sudden beginning brings.
+        let high = octave(&left, 4000.0)[5000..].iter().fold(0.0_f64, |most, sample| most.max(sample.abs()));
+        assert!(rings.body().energy() > 0.0);
+        high
+    };
+    let sudden = heard(|reverb| {
+        reverb.set_levels(0.0, 1.0);
+        reverb.reset();
+    });
+    let on = heard(|reverb| reverb.set_levels(0.0, 1.0));
+    println!("{on:.2e} when it is switched on, {sudden:.2e} when it is struck");
+    assert!(on < 0.05 * sudden, "{on}, {sudden}");
 }
 
 #[test]
-fn a_replaced_body_is_handed_out() {
-    let mut rings = reverb(&small(), DECAY, 1.0);
-    let body = || Resonator::new(&Spring::default().modes(), DECAY, RATE);
-    let springs = body().len();
+fn a_body_goes_over_into_another() {
+    let sets = [&*SMALL, &*SPRINGS];
+    let mut rings = with_room(&sets);
     // At rest, at once.
-    assert!(rings.replace_body(body()).is_ok() && rings.body().len() == springs);
-    assert!(rings.replace_body(body()).is_err(), "the first has not been taken");
-    assert!(rings.take_replaced().is_some());
+    rings.set_body(&SPRINGS);
+    assert_eq!(rings.body().len(), SPRINGS.len());
+    rings.set_mix(1.0);
     let [mut left, mut right] = noise(0.3, 1000, 1000);
     rings.process(&mut left, &mut right);
-    assert!(rings.replace_body(Resonator::new(&small(), DECAY, RATE)).is_ok());
-    assert!(rings.take_replaced().is_none() && rings.tail_frames() >= 4800);
-    let [mut left, mut right] = noise(0.3, 6000, 6000);
+    rings.set_body(&SMALL);
+    rings.set_decay(DECAY);
+    let told = rings.tail_frames();
+    let heard = SMALL.modes().iter().filter(|mode| mode.frequency < 0.49 * RATE).count();
+    let mut frames = 0;
+    while !rings.is_silent() {
+        let [mut left, mut right] = [[0.0; 32]; 2];
+        rings.process(&mut left, &mut right);
+        frames += 32;
+    }
+    assert!(rings.body().len() == heard && frames < told + 32, "{frames} frames, {told} told");
+    let [mut left, mut right] = noise(0.3, 4800, 4800);
     rings.process(&mut left, &mut right);
-    assert_eq!(rings.take_replaced().map(|body| body.len()), Some(springs));
+    let new = reverb(&SMALL, DECAY, 1.0);
+    let [mut expected, mut expected_right] = noise(0.3, 4800, 4800);
+    new.clone().process(&mut expected, &mut expected_right);
+    assert!(left == expected && right == expected_right, "nothing is left of the one before");
+}
+
+/// A plate of another size is the plate with another pitch.
+#[test]
+fn pitch_is_that_of_a_body_made_so() {
+    let decay = Decay { low: 0.8, high: 0.3 };
+    for pitch in [0.25, 0.5, 2.0, 4.0_f32] {
+        let own = Plate { length: 0.6, width: 0.35, thickness: 0.001, top: 5000.0, ..Plate::default() };
+        let size = 1.0 / f64::from(pitch).sqrt();
+        let made = Plate { length: size * own.length, width: size * own.width, top: 5000.0 * f64::from(pitch), ..own };
+        let [mut left, mut right] = impulse(4800);
+        reverb(&made.modes(), decay, 1.0).process(&mut left, &mut right);
+        let mut tuned = reverb(&own.modes(), decay, 1.0);
+        tuned.set_pitch(pitch);
+        let [mut other, mut other_right] = impulse(4800);
+        tuned.process(&mut other, &mut other_right);
+        let heard = made.modes().modes().iter().filter(|mode| mode.frequency < 0.49 * RATE).count();
+        assert_eq!(tuned.body().len(), heard, "{pitch}");
+        let differences: Vec<f32> = left.iter().zip(&other).map(|(a, b)| a - b).collect();
+        let error = decibels(rms(&differences) / rms(&left));
+        println!("pitch {pitch}: {error:.1} dB");
+        assert!(error < -50.0, "{pitch}: {error} dB");
+    }
+}
+
+/// While it sleeps, to be told of frames is as good as to play them.
+#[test]
+fn skipped_frames_are_silence() {
+    let mut played = reverb(&small(), DECAY, 0.5);
+    let mut skipped = played.clone();
+    let [mut left, mut right] = noise(0.3, 5000, 5000);
+    let mut bits = |reverb: &mut ModalReverb| {
+        [left, right] = noise(0.3, 5000, 5000);
+        reverb.process(&mut left, &mut right);
+        [&left, &right].map(|side| side.iter().map(|sample| sample.to_bits()).collect::<Vec<_>>())
+    };
+    for frames in [1, 63, 777, 10_000] {
+        played.process(&mut vec![0.0; frames], &mut vec![0.0; frames]);
+        skipped.skip(frames);
+        assert_eq!(bits(&mut played), bits(&mut skipped), "{frames}");
+        for reverb in [&mut played, &mut skipped] {
+            while !reverb.is_idle() {
+                reverb.process(&mut [0.0; 32], &mut [0.0; 32]);
+            }
+        }
+    }
 }
 
 #[test]
@@ -219,6 +322,7 @@ fn nonsense_is_survived() {
         rings.set_mix(value);
         rings.set_levels(value, value);
         rings.set_pre_delay(value.into());
+        rings.set_pitch(value);
         rings.set_decay(Decay { low: value.into(), high: (-value).into() });
     }
     rings.set_mix(0.5);
@@ -232,10 +336,10 @@ fn nonsense_is_survived() {
 #[test]
 fn nothing_is_allocated() {
     let _: &AllocDisabler = &crate::ALLOCATOR;
-    let mut rings = reverb(&small(), DECAY, 0.5);
+    let bodies = [&*SMALL, &*SPRINGS, &*PAIR];
+    let mut rings = with_room(&bodies);
     let [mut left, mut right] = noise(0.5, 2000, 40_000);
     let mut next = numbers(1);
-    let mut body = Some(Resonator::new(&Spring::default().modes(), DECAY, RATE));
     assert_no_alloc(|| {
         for (left, right) in left.chunks_mut(100).zip(right.chunks_mut(100)) {
             rings.set_mix(next() as f32);
@@ -243,10 +347,10 @@ fn nothing_is_allocated() {
             rings.set_pre_delay(0.2 * next());
             rings.process(left, right);
             std::hint::black_box((rings.tail_frames(), rings.is_silent()));
-            if let Some(replaced) = body.take() {
-                body = rings.replace_body(replaced).err();
+            rings.set_pitch(1.0 + next() as f32);
+            if next() > 0.5 {
+                rings.set_body(bodies[(1.5 + 1.5 * next()) as usize % 3]);
             }
-            body = body.take().or(rings.take_replaced());
         }
         rings.reset();
     });

@@ -1,14 +1,15 @@
-//! How loud a case can be at most, from its patch and its events alone: the sum over strikes of what each brings.
+//! Upper bound of a case's loudness, from its patch and events alone: the sum over all strikes.
 //!
-//! A strike brings a mode the amplitude that its force has through the mode's gain, wherever the pitch is and wherever
-//! it goes; damping and movement only take away. What is heard of it is at most the largest output gain of the case.
+//! A strike adds to a mode the amplitude of its force times the mode's gain, whatever the pitch is and however it
+//! moves; damping and movement can only reduce it. It is heard with at most the largest output gain of the case.
 //!
-//! How sharp that is: a single struck note reaches its bound. Looser, by what is said: strikes are counted as if none
-//! had decayed and all their modes met in phase; gains that move count at their highest, each by itself; every note-on
-//! counts as a strike, also where a legato voice is only retuned; a noise burst counts nine times its expected
-//! amplitude, or what it would be if all its frames pushed the same way if that is less.
+//! How sharp the bound is: a single struck note reaches it. The bound is looser in these ways: strikes are counted as
+//! if none had decayed and all their modes were in phase; each moving gain counts at its highest value, independently
+//! of the others; every note-on counts as a strike, even if a legato voice is only retuned; a noise burst counts with
+//! nine times its expected amplitude, or with the sum of all its frames if that is smaller.
 
 use crate::case::Case;
+use crate::noise::Noise;
 use libm::{fabs, hypot, pow, sin, sqrt};
 use sprung::engine::{Event, EventKind, Expression};
 use sprung::params::{PARAM_COUNT, PARAMS, Param};
@@ -16,33 +17,31 @@ use sprung::patch::{Mode, Patch};
 use sprung::units::gain_from_db;
 use std::f64::consts::{LOG2_10, PI, SQRT_2};
 
-/// How much louder than asked for the classic law may be. Its bank holds a mode to 8 times at every control tick; before
-/// the next one a sweep that rises to the end of its range can bring out 7.1 times that, as it does with a strike.
+/// Factor by which the classic law may be louder than requested. Its bank limits a mode to 8 times at every control
+/// tick. Until the next tick, a sweep that rises to the end of its range can increase this 7.1 times, as it can for a
+/// strike.
 const CLASSIC: f64 = 8.0 * 7.1;
-/// A burst of noise adds up at random. By Hoeffding's inequality it is above so many of its standard deviations in one
-/// of 10¹⁷ cases, whatever the pitch does (which cannot follow the noise).
-const NOISE_DEVIATIONS: f64 = 9.0;
 /// What the soft pedal leaves of the force.
 const SOFT: f64 = 0.6;
 
-/// Amplitudes to the left and to the right.
+/// Amplitudes, left and right.
 type Sides = [f64; 2];
 
-/// The bound from a frame on.
+/// The bound from a certain frame on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Step {
     pub(crate) frame: u32,
-    /// Of the samples.
+    /// Bound of the samples.
     pub(crate) output: Sides,
-    /// Of the displacements of all masses together, before any output gain.
+    /// Bound of the sum of all displacements, before any output gain.
     pub(crate) displacement: f64,
 }
 
-/// The bound of a case: a staircase that rises with each strike.
+/// The bound of a case over time: a staircase that rises with each strike.
 pub(crate) fn bound(case: &Case) -> Vec<Step> {
     let parts = if case.ensemble { 16 } else { 1 };
     let mut all: Vec<Step> = (0..parts).flat_map(|index| Part::new(case, index).bound(case)).collect();
-    // Each part's steps are rises, so that those of all parts add up.
+    // Each part's steps are increments, so that those of all parts can be added up.
     all.sort_by_key(|step| step.frame);
     let mut sum = Step { frame: 0, output: [0.0; 2], displacement: 0.0 };
     for step in &mut all {
@@ -53,8 +52,8 @@ pub(crate) fn bound(case: &Case) -> Vec<Step> {
     all
 }
 
-/// Which events the synth of a channel hears: those of its channel, or of a zone's members if it is the master; and all
-/// if it is the only one.
+/// For each event, whether the synth of a channel receives it: events of its channel, or of a zone's members if it is
+/// the master; all events if it is the only synth.
 fn hears(case: &Case, index: u8) -> Vec<bool> {
     let (mut lower, mut upper, mut chosen) = (0_u8, 0_u8, [[127_u8; 2]; 16]);
     let mut is_heard = |event: &Event| {
@@ -86,48 +85,56 @@ fn hears(case: &Case, index: u8) -> Vec<bool> {
                 _ => {}
             }
         }
-        // What a member's program change says is not for the master.
+        // The program changes of members do not apply to the master.
         owner == index && (owner == channel || !matches!(event.kind, EventKind::Program(_)))
     };
     case.events.iter().map(|event| !case.ensemble || is_heard(event)).collect()
 }
 
-/// One synth: its patch as events move it.
+/// One synth, with its patch as changed by events.
 struct Part {
     ensemble: bool,
-    /// Whether it hears each event of the case.
+    /// For each event of the case, whether the synth receives it.
     hears: Vec<bool>,
     patch: Patch,
     offsets: [f32; PARAM_COUNT],
     soft: [bool; 16],
-    /// The most unison voices that a note has.
+    /// The largest number of unison voices of a note.
     unison: f64,
-    /// Brightness moves: the strike's tilt is not known.
+    /// Whether brightness changes; if so, the strike's tilt is unknown.
     bright: bool,
+    /// The amplitude of all modes together that a bow of speed 1 gives until the end of the case at most, times the highest
+    /// level of the bow.
+    bow: f64,
     /// What a strike reaches, until the patch changes.
     reach: Option<Reach>,
 }
 
-/// What a strike of force 1 gives all modes together, by pulse and by noise, as heard and as displacement.
+/// What mallet, pluck and noise of force 1 give all modes together, as heard and as displacement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Reach {
     struck: [f64; 3],
+    plucked: [f64; 3],
     noise: [f64; 3],
 }
 
-/// A strike, and how long its force lasts.
+/// A strike, and the end of its force.
 #[derive(Clone, Copy)]
 struct Strike {
     end: u64,
-    force: f64,
-    noise_factor: f64,
+    /// Of mallet, pluck and noise, which counts at what it brings at most.
+    forces: [f64; 3],
+    /// What a bow gives all modes together at most.
+    bow: f64,
     law: f64,
     reach: Reach,
 }
 
 impl Strike {
     fn amplitudes(&self) -> [f64; 3] {
-        [0, 1, 2].map(|i| self.force * self.law * (self.reach.struck[i] + self.noise_factor * self.reach.noise[i]))
+        let [mallet, pluck, noise] = self.forces;
+        let Reach { struck, plucked, noise: burst } = self.reach;
+        [0, 1, 2].map(|i| self.law * (mallet * struck[i] + pluck * plucked[i] + noise * burst[i]))
     }
 }
 
@@ -135,9 +142,19 @@ impl Part {
     fn new(case: &Case, index: u8) -> Self {
         let (ensemble, patch) = (case.ensemble, case.patch.clone());
         let (offsets, soft) = ([0.0; PARAM_COUNT], [false; 16]);
-        let mut part =
-            Self { ensemble, hears: hears(case, index), patch, offsets, soft, unison: 1.0, bright: false, reach: None };
+        let mut part = Self {
+            ensemble,
+            hears: hears(case, index),
+            patch,
+            offsets,
+            soft,
+            unison: 1.0,
+            bright: false,
+            bow: 0.0,
+            reach: None,
+        };
         part.unison = part.most_unison(case);
+        part.bow = part.most_bow(case);
         part.bright = part.events(case).any(|event| match event.kind {
             EventKind::Express { expression, .. } => expression == Expression::Brightness,
             EventKind::Control { controller, .. } => controller == 74,
@@ -146,7 +163,8 @@ impl Part {
         part
     }
 
-    /// As a voice struck again keeps the number that its note began with, the most that there ever is.
+    /// The largest number of unison voices in the case, because a voice that is struck again keeps the number of its
+    /// note's start.
     fn most_unison(&self, case: &Case) -> f64 {
         let programs = case.programs.iter().filter(|_| self.ensemble);
         let set = programs.chain([&self.patch]).map(|patch| patch.get(Param::Unison));
@@ -158,13 +176,27 @@ impl Part {
         set.chain(moved).fold(1.0, f32::max).into()
     }
 
+    /// A frame of a bow adds at most twice friction times speed to the squared amplitudes, and friction is at most the speed;
+    /// so `n` frames give the amplitude `√(2 n) · speed`, which up to 64 modes may share.
+    fn most_bow(&self, case: &Case) -> f64 {
+        let programs = case.programs.iter().filter(|_| self.ensemble);
+        let set = programs.chain([&self.patch]).map(|patch| patch.get(Param::BowLevel));
+        let moved = self.events(case).filter_map(|event| match event.kind {
+            EventKind::Param { param: Param::BowLevel, value } => Some(Param::BowLevel.info().clamp(value)),
+            EventKind::Modulate { param: Param::BowLevel, .. } => Some(Param::BowLevel.info().max),
+            _ => None,
+        });
+        let level = set.chain(moved).fold(-60.0, f32::max);
+        if level > -60.0 { gain_from_db(level.into()) * sqrt(2.0 * case.frames as f64 * 64.0) } else { 0.0 }
+    }
+
     /// The events that this synth hears.
     fn events<'a>(&self, case: &'a Case) -> impl Iterator<Item = &'a Event> + use<'a> {
         let events = case.events.iter().zip(self.hears.clone());
         events.filter(|(_, is_heard)| *is_heard).map(|(event, _)| event)
     }
 
-    /// The rises of the bound.
+    /// The increments of the bound.
     fn bound(mut self, case: &Case) -> Vec<Step> {
         let gain = self.output_gain(case);
         let (mut steps, mut strikes) = (vec![], Vec::<Strike>::new());
@@ -176,6 +208,8 @@ impl Part {
             }
             let reach = self.reach();
             let mut rise = strike.map_or([0.0; 3], |strike| strike.amplitudes());
+            let bowed = strike.map_or(0.0, |strike| strike.bow);
+            rise = add(rise, [SQRT_2, SQRT_2, 1.0].map(|gain| gain * bowed));
             // What is still to come of earlier forces goes through the gains of this strike, or of a brightness that
             // comes before the first frame.
             let running = |earlier: &&mut Strike| earlier.end > u64::from(event.frame) && earlier.reach != reach;
@@ -183,6 +217,7 @@ impl Part {
                 let before = earlier.amplitudes();
                 for i in 0..3 {
                     earlier.reach.struck[i] = earlier.reach.struck[i].max(reach.struck[i]);
+                    earlier.reach.plucked[i] = earlier.reach.plucked[i].max(reach.plucked[i]);
                     earlier.reach.noise[i] = hypot(earlier.reach.noise[i], reach.noise[i]);
                 }
                 let after = earlier.amplitudes();
@@ -197,7 +232,7 @@ impl Part {
         steps
     }
 
-    /// Takes in what changes the patch, its modulation and the soft pedal.
+    /// Applies an event's changes of the patch, its modulation and the soft pedal.
     fn apply(&mut self, case: &Case, event: &Event) {
         if matches!(event.kind, EventKind::Param { .. } | EventKind::Modulate { .. } | EventKind::Program(_)) {
             self.reach = None;
@@ -213,7 +248,7 @@ impl Part {
             EventKind::Control { controller: 67, value } => {
                 self.soft[usize::from(event.channel & 15)] = unit(value) >= 0.5;
             }
-            // A reset on a zone's master lifts the pedals of its members too.
+            // A reset on a zone's master also lifts the pedals of its members.
             EventKind::Control { controller: 121, .. } => self.soft = [false; 16],
             _ => {}
         }
@@ -223,26 +258,43 @@ impl Part {
         f64::from(modulated(self.patch.get(param), param, self.offsets[param as usize]))
     }
 
+    /// The gain of an exciter's level: the lowest is off.
+    fn level(&self, param: Param) -> f64 {
+        let db = self.value(param);
+        if db > -60.0 { gain_from_db(db) } else { 0.0 }
+    }
+
     fn strike(&mut self, event: &Event, sample_rate: f64) -> Option<Strike> {
         let EventKind::NoteOn { velocity, .. } = event.kind else { return None };
         let soft = if self.soft[usize::from(event.channel & 15)] { SOFT } else { 1.0 };
         // Of n unison voices each has the force divided by √n, and they may meet in phase.
-        let force = pow(unit(velocity).into(), 0.02 * self.value(Param::Velocity)) * soft * sqrt(self.unison);
-        let noise_frames = libm::floor(self.value(Param::NoiseTime) * sample_rate + 0.5);
-        // The longest pulse lasts 10 ms.
-        let end = u64::from(event.frame) + noise_frames.max(0.01 * sample_rate) as u64 + 2;
-        let law = if self.value(Param::Coefficients) == 0.0 { 1.0 } else { CLASSIC };
-        Some(Strike { end, force, noise_factor: noise_factor(noise_frames, law), law, reach: self.reach() })
+        let force = |own| {
+            let power = (self.value(Param::Velocity) + self.value(own)).max(0.0);
+            pow(unit(velocity).into(), 0.02 * power) * soft * sqrt(self.unison)
+        };
+        let noise = Noise::new(|param| self.value(param), sample_rate);
+        // The longest pulse lasts 10 ms; ten times as long where mass and speed make it longer.
+        let is_plain = self.value(Param::MalletMass) <= 1.0 && self.value(Param::MalletSpeed) == 0.0;
+        let pulse = if is_plain { 0.01 } else { 0.101 } * sample_rate;
+        let end = u64::from(event.frame) + noise.frames().max(pulse) as u64 + 2;
+        let is_exact = self.value(Param::Coefficients) == 0.0;
+        let forces = [
+            force(Param::MalletVelocity) * self.level(Param::MalletLevel),
+            force(Param::PluckVelocity) * self.level(Param::PluckLevel),
+            force(Param::NoiseVelocity) * noise.most(is_exact),
+        ];
+        let bow = force(Param::BowVelocity) * self.bow;
+        Some(Strike { end, forces, bow, law: if is_exact { 1.0 } else { CLASSIC }, reach: self.reach() })
     }
 
-    /// What a strike of force 1 gives the modes now.
+    /// The reach of a strike of force 1 with the present patch.
     fn reach(&mut self) -> Reach {
         if let Some(reach) = self.reach {
             return reach;
         }
         let modes = self.patch.modes.as_slice();
-        let exciter = self.value(Param::Exciter) as u32;
-        let noise_gain = gain_from_db(self.value(Param::NoiseLevel));
+        let noise_gain = self.level(Param::NoiseLevel);
+        let varied = gain_from_db(self.value(Param::VaryModes));
         let tilt = self.value(Param::Tilt) / (20.0 / LOG2_10);
         let tilted = |mode: &Mode| fabs(f64::from(mode.level)) * pow(f64::from(mode.ratio), tilt);
         let plain: f64 = modes.iter().map(|mode| fabs(f64::from(mode.level))).sum();
@@ -253,31 +305,33 @@ impl Part {
         for mode in modes {
             let gains = if self.unison > 1.0 { [SQRT_2, SQRT_2, 1.0] } else { heard(mode, self.value(Param::Width)) };
             widest = [0, 1, 2].map(|i| widest[i].max(gains[i]));
-            let level = tilted(mode) * balance;
-            let struck = if exciter == 3 { 0.0 } else { level * f64::from(mode.strike) };
-            let noise = if exciter == 3 { level } else { level * (1.0 - f64::from(mode.strike)) } * noise_gain;
-            let point = sin(PI * self.value(Param::Position) * 0.01 * f64::from(mode.ratio));
-            let struck = if exciter == 2 { struck * fabs(point) } else { struck };
+            let level = tilted(mode) * balance * varied;
+            let struck = level * f64::from(mode.strike);
+            let reached = 1.0 - f64::from(mode.strike) * (1.0 - 0.01 * self.value(Param::NoiseReach));
+            let noise = level * reached * noise_gain;
+            let point = sin(PI * self.value(Param::PluckPosition) * 0.01 * f64::from(mode.ratio));
+            let plucked = struck * if self.value(Param::VaryPosition) > 0.0 { 1.0 } else { fabs(point) };
             reach.struck = add(reach.struck, gains.map(|gain| gain * struck));
+            reach.plucked = add(reach.plucked, gains.map(|gain| gain * plucked));
             reach.noise = add(reach.noise, gains.map(|gain| gain * noise));
         }
         if self.bright {
             // Any tilt distributes the same sum of levels in another way.
-            let most = widest.map(|gain| gain * plain);
-            reach = Reach { struck: most, noise: most.map(|most| most * noise_gain) };
+            let most = widest.map(|gain| gain * plain * varied);
+            reach = Reach { struck: most, plucked: most, noise: most.map(|most| most * noise_gain) };
         }
         self.reach = Some(reach);
         reach
     }
 
-    /// The largest gain that can apply to anything, to each side: each factor at its highest in the case.
+    /// The largest possible output gain for each side: each factor at its highest value in the case.
     fn output_gain(&self, case: &Case) -> Sides {
         let mut levels = vec![self.patch.get(Param::Gain)];
         let mut pans = vec![self.patch.get(Param::Pan)];
         let (mut level_offsets, mut pan_offsets) = (vec![0.0], vec![0.0]);
         let mut volume = 1.0_f32;
         let mut positions = vec![0.5_f32];
-        // Of the channels that can be masters, and of all.
+        // The highest values on channels that can be masters, and on all channels.
         let (mut masters, mut channels, mut zones) = (vec![0.5_f32], vec![0.5_f32], false);
         for event in self.events(case) {
             match event.kind {
@@ -333,28 +387,15 @@ fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| a[i] + b[i])
 }
 
-/// The gains of a mode to the left and right, and 1 for its displacement.
+/// The gains of a mode, left and right, and 1 for its displacement.
 fn heard(mode: &Mode, width: f64) -> [f64; 3] {
     let [left, right] = pan_gains(f64::from(mode.pan) * width * 0.01 * 0.5 + 0.5);
     [left, right, 1.0]
 }
 
-/// Gains of a position from 0 (left) to 1 (right), of constant power.
+/// Constant-power gains of a position from 0 (left) to 1 (right).
 fn pan_gains(position: f64) -> Sides {
     [1.0 - position, position].map(|share| SQRT_2 * sqrt(share.max(0.0)))
-}
-
-/// The amplitude that a burst of noise of force 1 and so many frames brings at most: its frames are uniform over ±1
-/// under `(1−u)²`, scaled so that the sum of their squares is expected to be 1 if they are many. The classic law is only
-/// held to what they are if all of them push the same way.
-fn noise_factor(frames: f64, law: f64) -> f64 {
-    let n = frames.max(1.0);
-    let scale = 1.0 / sqrt(n / 15.0);
-    // Σ (j/n)² and Σ (j/n)⁴ for j = 1 … n.
-    let sum = (n + 1.0) * (2.0 * n + 1.0) / (6.0 * n);
-    let squares = (n + 1.0) * (2.0 * n + 1.0) * (3.0 * n * n + 3.0 * n - 1.0) / (30.0 * n * n * n);
-    let likely = NOISE_DEVIATIONS * sqrt(squares / 3.0);
-    scale * if law == 1.0 { sum.min(likely) } else { sum }
 }
 
 fn finite(value: f32) -> f32 {
@@ -365,7 +406,7 @@ fn unit(value: f32) -> f32 {
     finite(value).clamp(0.0, 1.0)
 }
 
-/// A parameter's value, moved by an offset in knob travel.
+/// A parameter's value, moved by an offset of the knob position.
 fn modulated(value: f32, param: Param, offset: f32) -> f32 {
     let info = &PARAMS[param as usize];
     let offset = offset.clamp(-1.0, 1.0);

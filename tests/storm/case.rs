@@ -1,7 +1,7 @@
-//! One case: a patch, a sample rate and a stream of events, decoded from bytes so that chance and a fuzzer can make it.
+//! One case: patch, sample rate and events, decoded from bytes, so that a random generator and a fuzzer can create it.
 //!
-//! Five bytes of header, then records of five bytes each. Every string of bytes is a case, and what is left of a case
-//! when records are taken out of it is one too: that is what makes failing cases easy to shrink.
+//! Five bytes of header, then records of five bytes each. Every string of bytes is a valid case, and so is a case after
+//! removing some of its records. This makes failing cases easy to shrink.
 
 use sprung::engine::{Event, EventKind, Expression, NoteId, Notes};
 use sprung::params::Param;
@@ -9,32 +9,32 @@ use sprung::patch::routes::{MAX_ROUTES, Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 
-/// Bytes of the header, and of each record.
+/// Length in bytes of the header and of each record.
 pub(crate) const RECORD: usize = 5;
 /// Longest case, in frames.
 pub(crate) const MAX_FRAMES: u32 = 1 << 16;
-/// Most events of a case.
+/// Maximum number of events of a case.
 const MAX_EVENTS: usize = 2048;
 
 /// What is played.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
-    /// Hz.
+    /// Sample rate in Hz.
     pub(crate) sample_rate: f64,
     pub(crate) seed: u64,
     /// One synth on sixteen channels, or an ensemble of sixteen synths.
     pub(crate) ensemble: bool,
     pub(crate) patch: Patch,
-    /// What program changes choose from (ensemble only).
+    /// The patches that program changes select from (ensemble only).
     pub(crate) programs: Vec<Patch>,
-    /// Frames of a block.
+    /// Frames per block.
     pub(crate) block: usize,
-    /// Frames are counted from the start, in order.
+    /// In order of their frames, which are counted from the start.
     pub(crate) events: Vec<Event>,
     pub(crate) frames: usize,
 }
 
-/// What a record says. Its byte is the place in [`Kind::ALL`], counted round.
+/// The kind of a record. Its byte is the index in [`Kind::ALL`], modulo the length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// A mode of the patch.
@@ -59,12 +59,12 @@ pub(crate) enum Kind {
     Tempo,
     Choke,
     Program,
-    /// A route of the patch, with its amount.
+    /// A route of the patch and its amount.
     Route,
 }
 
 impl Kind {
-    /// Every kind. Their order is part of the kept cases: new ones come last.
+    /// Every kind. Kept cases depend on the order, so new kinds must be added at the end.
     pub(crate) const ALL: [Kind; 19] = [
         Kind::Mode,
         Kind::Set,
@@ -91,7 +91,7 @@ impl Kind {
 /// The parameters by the numbers that kept cases have for them: new ones come last, and a retired one
 /// has become the one that a route moves in its place. The limiter is not among them,
 /// because it would hide what the bound is to find.
-pub(crate) const PARAM_IDS: &str = "exciter hardness hardness position noise_level noise_time velocity decay \
+pub(crate) const PARAM_IDS: &str = "mallet_pulse mallet_hardness mallet_hardness pluck_position noise_level noise_time velocity decay \
     release note_off decay decay_tilt tilt stretch width coefficients tune fine tuning key_track sweep sweep_time \
     sweep_curve sweep vibrato vibrato_rate vibrato_delay vibrato_sync glide bend_range vibrato \
     vibrato damper release voices mode choke gain pan \
@@ -101,10 +101,13 @@ pub(crate) const PARAM_IDS: &str = "exciter hardness hardness position noise_lev
     envelope1_curve envelope2_delay envelope2_attack envelope2_hold envelope2_decay envelope2_sustain \
     envelope2_release envelope2_curve macro1 macro2 macro3 macro4 macro5 macro6 macro7 macro8 \
     route1 route2 route3 route4 route5 route6 route7 route8 route9 route10 route11 route12 route13 route14 route15 \
-    route16 glide_when glide_by priority unison unison_detune unison_spread unison_phase";
+    route16 glide_when glide_by priority unison unison_detune unison_spread unison_phase \
+    mallet_level pluck_level pluck_hardness pluck_width noise_reach noise_decay noise_attack noise_colour noise_hits \
+    noise_spacing mallet_velocity pluck_velocity noise_velocity mallet_mass mallet_speed mallet_key vary_position \
+    vary_hardness vary_modes bow_level bow_force bow_position bow_slip bow_velocity input_level";
 
-/// What routes lead to here: all that moves pitch and damping, but nothing that the bound is made of, and the
-/// modulation's own parameters. New ones come last.
+/// Destinations of routes: the parameters that move pitch and damping and those of the modulation itself, but none on
+/// which the bound depends. New ones must be added at the end.
 const DESTINATIONS: [Param; 22] = [
     Param::Tune,
     Param::Fine,
@@ -119,7 +122,7 @@ const DESTINATIONS: [Param; 22] = [
     Param::Sweep,
     Param::SweepTime,
     Param::SweepCurve,
-    Param::Hardness,
+    Param::MalletHardness,
     Param::DecayTilt,
     Param::Decay,
     Param::Lfo1Rate,
@@ -130,14 +133,14 @@ const DESTINATIONS: [Param; 22] = [
     Param::Envelope1Attack,
 ];
 
-/// The parameter of a number, counted round.
+/// The parameter with a number, modulo their count.
 pub(crate) fn param(number: u8) -> Param {
     let ids = || PARAM_IDS.split_whitespace();
     let id = ids().nth(usize::from(number) % ids().count());
     id.and_then(Param::from_id).expect("an id of the table")
 }
 
-/// The patch with its limiter off, if it has one.
+/// The patch with the limiter switched off.
 pub(crate) fn without_limiter(mut patch: Patch) -> Patch {
     if let Some(limiter) = Param::from_id("limiter") {
         let off = limiter.info().choices.iter().position(|choice| *choice == "off");
@@ -146,7 +149,7 @@ pub(crate) fn without_limiter(mut patch: Patch) -> Patch {
     patch
 }
 
-/// Half of the bytes choose from these, the others cover 1–768 kHz by equal ratios.
+/// Half of the byte values select one of these; the others cover 1–768 kHz in equal ratios.
 const RATES: [u32; 16] = [
     48_000, 44_100, 22_050, 96_000, 1_000, 768_000, 8_000, 11_025, 16_000, 32_000, 88_200, 176_400, 192_000, 384_000,
     2_000, 4_000,
@@ -155,7 +158,7 @@ const BLOCKS: [usize; 8] = [512, 1 << 16, 32, 480, 64, 7, 1, 1000];
 const CONTROLLERS: [u8; 13] = [1, 7, 10, 11, 64, 66, 67, 74, 120, 121, 123, 6, 2];
 const GARBAGE: [f32; 4] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30];
 
-/// The case of these bytes.
+/// Decodes a case.
 pub(crate) fn decode(bytes: &[u8]) -> Case {
     let header: [u8; RECORD] = std::array::from_fn(|i| bytes.get(i).copied().unwrap_or(0));
     let [rate, base, form, seed, tail] = header;
@@ -236,7 +239,7 @@ fn sample_rate(byte: u8) -> f64 {
     }
 }
 
-/// Frames of a byte: up to 127 as it is, then by about equal ratios up to 31,744.
+/// The number of frames of a byte: up to 127 directly, then in about equal ratios up to 31,744.
 fn wait(byte: u8) -> u32 {
     match byte.checked_sub(128) {
         None => byte.into(),
@@ -248,12 +251,12 @@ fn unit(byte: u8) -> f32 {
     f32::from(byte) / 255.0
 }
 
-/// −1 to 1; 0 at 128.
+/// From −1 to 1; 128 is 0.
 fn signed(byte: u8) -> f32 {
     ((f32::from(byte) - 128.0) / 127.0).max(-1.0)
 }
 
-/// From `low` to `high` by equal ratios.
+/// From `low` to `high` in equal ratios.
 fn between(low: f32, high: f32, byte: u8) -> f32 {
     low * libm::powf(high / low, unit(byte))
 }
@@ -268,7 +271,7 @@ fn mode([ratio, level, decay, rest]: [u8; 4]) -> Mode {
     }
 }
 
-/// A value of a parameter at a position of 16 bits; the position below the highest is no number.
+/// The value of a parameter at a 16-bit position; the second-highest position gives NaN.
 fn setting(param: Param, high: u8, low: u8) -> f32 {
     match u16::from_be_bytes([high, low]) {
         0xFFFE => f32::NAN,
@@ -277,7 +280,7 @@ fn setting(param: Param, high: u8, low: u8) -> f32 {
 }
 
 fn event(kind: Kind, a: u8, b: u8, c: u8) -> EventKind {
-    // One in 256 numbers is out of all range.
+    // One in 256 numbers is out of every range.
     let number = |value: f32| if c == 255 { GARBAGE[usize::from(b & 3)] } else { value };
     let id = NoteId::new(i32::from((c >> 4) & 3) - 1);
     let notes = match c >> 6 {

@@ -1,4 +1,4 @@
-//! Scala's files: known scales sound at their published pitches, and malformed files are refused with their line.
+//! Scala files: known scales sound at their published pitches, and malformed files are refused with their line.
 
 mod playing;
 mod refused;
@@ -16,26 +16,27 @@ use std::path::Path;
 
 const SAMPLE_RATE: u32 = 48_000;
 
-/// What a file in `tests/tuning/files` holds.
+/// The text of a file in `tests/tuning/files`.
 fn file(name: &str) -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tuning/files").join(name)).unwrap()
 }
 
-/// The tuning of a scale and a keyboard mapping (`just`, or `just c-256`) there.
+/// The tuning from the scale and keyboard mapping with these names (`just`, or `just c-256`) in that folder.
 fn tuning(names: &str) -> Tuning {
     let (scale, keymap) = names.split_once(' ').map_or((names, None), |(scale, keymap)| (scale, Some(keymap)));
     let keymap = keymap.map(|keymap| file(&format!("{keymap}.kbm")));
     Tuning::from_scala(&file(&format!("{scale}.scl")), keymap.as_deref()).unwrap()
 }
 
-/// Notes struck together and held for as long as they are rendered: the left channel.
+/// Notes struck together and held until the end: returns the left channel.
 fn render(tuning: &Tuning, patch: &Patch, keys: &[u8], seconds: f64) -> Vec<f32> {
     let on = |key: &u8| EventKind::NoteOn { key: *key, detune: 0.0, velocity: 1.0, id: None };
     let events = keys.iter().map(|key| SongEvent { seconds: 0.0, channel: 0, kind: on(key) }).collect();
     let song = Song { events, seconds };
     let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 4096, tail: Tail::None };
     let mut samples = Vec::new();
-    let job = Job { song: &song, kit: &Kit::of_patch(patch), channels: &[], programs: &[], tuning, options };
+    let kit = Kit::of_patch(patch);
+    let job = Job { tuning, ..Job::new(&song, &kit, options) };
     job.render(|left, _| {
         samples.extend(left);
         Ok(())
@@ -44,7 +45,7 @@ fn render(tuning: &Tuning, patch: &Patch, keys: &[u8], seconds: f64) -> Vec<f32>
     samples
 }
 
-/// The frequency that a key is heard at, in Hz.
+/// The frequency in Hz at which a key sounds.
 #[track_caller]
 fn heard(tuning: &Tuning, patch: &Patch, key: u8) -> f64 {
     fit_unknown(&render(tuning, patch, &[key], 0.4), SAMPLE_RATE.into()).expect("a damped sinusoid").frequency
@@ -54,8 +55,8 @@ fn cents(frequency: f64, expected: f64) -> f64 {
     1200.0 * log2(frequency / expected)
 }
 
-/// Renders every fifth key of five octaves and compares it with what `expected` says in Hz, within 0.01 cents; none
-/// is silence. Files are named as in [`tuning`].
+/// Renders every fifth key of five octaves and compares its frequency with `expected` in Hz, within 0.01 cents; `None`
+/// means silence. Files are named as for [`tuning`].
 #[track_caller]
 fn check(names: &str, expected: impl Fn(i32) -> Option<f64>) {
     let (tuning, patch) = (tuning(names), Patch::default());
@@ -73,18 +74,18 @@ fn check(names: &str, expected: impl Fn(i32) -> Option<f64>) {
     }
 }
 
-/// The ratio of a degree to degree 0 in a scale of these ratios from 1 up, which repeats at `period`.
+/// The ratio of a degree to degree 0, in a scale of these ratios starting at 1, which repeats at `period`.
 fn ratio(ratios: &[f64], period: f64, degree: i32) -> f64 {
     let notes = ratios.len() as i32;
     pow(period, degree.div_euclid(notes).into()) * ratios[degree.rem_euclid(notes) as usize]
 }
 
-/// Degrees from C of a scale without a keyboard mapping: A4, nine keys above C4, is at 440 Hz.
+/// Degrees from C of a scale without a keyboard mapping: A4, nine keys above C4, has 440 Hz.
 fn from_a4(ratios: &[f64], period: f64) -> impl Fn(i32) -> Option<f64> {
     move |key| Some(440.0 * ratio(ratios, period, key - 60) / ratio(ratios, period, 9))
 }
 
-/// Twelve degrees as numbers of fifths from C, brought into one octave.
+/// Twelve degrees, given as numbers of fifths from C and moved into one octave.
 fn fifths(fifth: f64, counts: [i32; 12]) -> [f64; 12] {
     counts.map(|count| {
         let octaves = log2(fifth) * f64::from(count);
@@ -127,7 +128,7 @@ fn just_intonation_and_its_reference() {
 #[test]
 fn pythagorean_and_meantone_are_chains_of_fifths() {
     check("pythagorean", from_a4(&fifths(1.5, [0, 7, 2, -3, 4, -1, 6, 1, -4, 3, -2, 5]), 2.0));
-    // Four fifths of the quarter-comma meantone make a pure third two octaves up.
+    // In quarter-comma meantone, four fifths make a pure third two octaves higher.
     check("meantone", from_a4(&fifths(pow(5.0, 0.25), [0, 7, 2, -3, 4, -1, 6, 1, 8, 3, -2, 5]), 2.0));
 }
 
@@ -166,7 +167,7 @@ fn measured_scales_of_java() {
 
 #[test]
 fn partch_and_the_harmonic_series() {
-    // The scale mirrors itself: the upper half is the octaves above the reciprocals of the lower.
+    // The scale is symmetric: its upper half is the octave divided by the lower ratios.
     let lower: [(f64, f64); 22] = [
         (1.0, 1.0),
         (81.0, 80.0),
@@ -205,7 +206,7 @@ fn a_keyboard_map_with_gaps() {
     let diatonic = [1.0, 9.0 / 8.0, 5.0 / 4.0, 4.0 / 3.0, 3.0 / 2.0, 5.0 / 3.0, 15.0 / 8.0];
     check("diatonic white-keys", |key| {
         let degree = white[(key - 60).rem_euclid(12) as usize]?;
-        // A4 is the sixth degree of the octave from C4.
+        // A4 is the sixth degree of the octave that starts at C4.
         Some(264.0 * ratio(&diatonic, 2.0, degree + 7 * (key - 60).div_euclid(12)))
     });
     let tuning = tuning("diatonic white-keys");
@@ -219,7 +220,7 @@ fn a_keyboard_map_that_repeats_after_thirteen_semitones() {
     let major = [0, 2, 4, 5, 7, 9, 11];
     check("12-equal stretched", |key| {
         let semitones = major[(key - 60).rem_euclid(7) as usize] + 13 * (key - 60).div_euclid(7);
-        // Key 62, four semitones above the middle one, is at 300 Hz.
+        // Key 62, four semitones above the middle key, has 300 Hz.
         Some(300.0 * exp2(f64::from(semitones - 4) / 12.0)).filter(|frequency| *frequency < 20_000.0)
     });
 }

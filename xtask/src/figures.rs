@@ -5,7 +5,6 @@ use sprung::analysis::figure::{Render, waveform_and_spectrogram};
 use sprung::io::Song;
 use sprung::preset::Preset;
 use sprung::render::{Job, Options, Tail};
-use sprung::sound::Tuning;
 use std::fs::File;
 
 /// Renders the suite and draws it to `assets/demo.png`.
@@ -19,8 +18,7 @@ fn draw() -> sprung::Result<()> {
     let song = Song::read(file, origin)?;
     let programs: Vec<_> = Preset::factory().iter().map(Preset::kit).collect();
     let options = Options { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::Auto };
-    let job =
-        Job { song: &song, kit: &programs[0], channels: &[], programs: &programs, tuning: &Tuning::EQUAL, options };
+    let job = Job { programs: &programs, ..Job::new(&song, &programs[0], options) };
     let (mut left, mut right) = (Vec::new(), Vec::new());
     job.render(|block_left, block_right| {
         left.extend(block_left);

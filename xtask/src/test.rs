@@ -1,4 +1,4 @@
-//! `cargo xtask test`: the whole suite, step by step, with a count of what really ran.
+//! `cargo xtask test`: runs the whole suite, step by step, and counts what was really run.
 
 use crate::shell::{cargo, run_and_read};
 use crate::{bundle, callgrind, patch, setup, skipped};
@@ -6,10 +6,10 @@ use std::fmt;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// What a step's output says of how much it did.
+/// How to count what a step has run, from its output.
 #[derive(Clone, Copy, PartialEq)]
 enum Shows {
-    /// Nothing but success or failure: it counts as one check.
+    /// Only success or failure, which counts as one check.
     OneCheck,
     /// The test harness's `test result:` lines.
     Tests,
@@ -72,6 +72,12 @@ const STEPS: &[Step] = &[
         shows: Shows::Tests,
     },
     Step {
+        name: "modes, release",
+        arguments: "test --release --package sprung --no-default-features --features analysis --lib -- analysis::modes",
+        environment: &[],
+        shows: Shows::Tests,
+    },
+    Step {
         name: "documentation",
         arguments: "doc --workspace --no-deps --all-features",
         environment: &[DENY],
@@ -103,12 +109,12 @@ const STEPS: &[Step] = &[
     },
 ];
 
-/// How much ran, and how it went.
+/// How many checks ran, and with which results.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Count {
     passed: usize,
     failed: usize,
-    /// By name.
+    /// The names of skipped tests.
     skipped: Vec<String>,
 }
 
@@ -126,7 +132,8 @@ struct Outcome {
     time: Duration,
 }
 
-/// Runs all steps, whatever fails, and sums up. If it is `strict`, tests that are skipped without an excuse fail it.
+/// Runs all steps, even after failures, and prints a summary. If `strict`, tests skipped without an excuse are
+/// failures.
 pub(crate) fn run(strict: bool) -> Result<(), String> {
     let mut outcomes = vec![timed("setup", || match setup::run() {
         Ok(()) => (Count { passed: 1, ..Count::default() }, ""),
@@ -160,13 +167,13 @@ pub(crate) fn run(strict: bool) -> Result<(), String> {
 }
 
 impl Count {
-    /// Whether nothing failed and, if it is `strict`, nothing was skipped without an excuse.
+    /// Whether nothing failed and, if `strict`, nothing was skipped without an excuse.
     fn is_good(&self, strict: bool) -> bool {
         self.failed == 0 && (!strict || skipped::report(&self.skipped).1 == 0)
     }
 }
 
-/// The plugin's own tests, and the bundles that musicians install in real hosts.
+/// Runs the plugin's own tests, and tests the bundles that musicians install in real hosts.
 fn plugin() -> (Count, &'static str) {
     match bundle::run(false) {
         Ok(folder) => {
@@ -178,7 +185,7 @@ fn plugin() -> (Count, &'static str) {
     }
 }
 
-/// The counts of the kernels' instructions, against those kept.
+/// Compares the instruction counts of the kernels with the kept ones.
 fn instructions() -> (Count, &'static str) {
     if !callgrind::can_count() {
         return (Count { skipped: vec!["instructions".to_owned()], ..Count::default() }, " (no valgrind)");
@@ -221,8 +228,8 @@ impl Step {
 }
 
 impl Shows {
-    /// What ran, from the output of a step; a step whose filter met nothing, or that broke before it could count,
-    /// has failed once.
+    /// Counts what a step ran, from its output. A step whose filter matched nothing, or that failed before it could
+    /// count, counts as one failure.
     fn judge(self, succeeded: bool, lines: &[String]) -> (Count, &'static str) {
         let mut count = match self {
             Shows::OneCheck => Count { passed: usize::from(succeeded), ..Count::default() },
@@ -245,7 +252,7 @@ impl Shows {
     }
 }
 
-/// The sum of the harness's `test result: ok. 3 passed; 0 failed; 1 ignored; …` lines.
+/// The sum over the harness's lines of the form `test result: ok. 3 passed; 0 failed; 1 ignored; …`.
 fn count_tests(lines: &[String]) -> Count {
     let (mut count, mut ignored) = (Count::default(), 0);
     for result in lines.iter().filter_map(|line| line.strip_prefix("test result: ")) {

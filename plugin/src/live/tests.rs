@@ -1,4 +1,4 @@
-//! The audio thread against the engine alone, with a host made up.
+//! The audio thread compared with the engine alone, in a simulated host.
 
 use super::*;
 use crate::plugin::Sprung;
@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 const RATE: f64 = 48_000.0;
 const FRAMES: usize = 4_800;
 
-/// What the shell sees of a host.
+/// A simulated host.
 struct Host {
     events: VecDeque<NoteEvent<()>>,
     ended: Vec<(u32, VoiceID, Key)>,
@@ -75,16 +75,16 @@ fn params(patch: Patch) -> SprungParams {
     params
 }
 
-/// A block of stereo from the shell.
+/// A stereo block from the shell.
 fn stereo(live: &mut Live, params: &SprungParams, host: &mut Host, frames: usize) -> ([Vec<f32>; 2], ProcessStatus) {
-    // What a host leaves in its buffers is not to be heard.
+    // Old contents of the host's buffers must not be heard.
     let mut out = [vec![9.0; frames], vec![9.0; frames]];
     let [left, right] = &mut out;
-    let status = live.process(params, &mut [left, right], host);
+    let status = live.process(params, &[], &mut [left, right], host);
     (out, status)
 }
 
-/// The same notes from the engine alone.
+/// The same notes, rendered by the engine alone.
 fn alone(patch: &Patch, events: &[(u32, EventKind)], frames: usize) -> [Vec<f32>; 2] {
     let mut synth = Synth::new(RATE, 3);
     synth.set_patch(patch);
@@ -115,9 +115,33 @@ fn the_shell_has_the_bits_of_the_engine() {
     live.reset(&params);
     let mut mono = vec![9.0; FRAMES];
     let mut host = Host::new(&[on(100, 1, 60), on(100, 2, 67), off(2_000, 1)]);
-    live.process(&params, &mut [&mut mono], &mut host);
+    live.process(&params, &[], &mut [&mut mono], &mut host);
     let mean: Vec<f32> = expected[0].iter().zip(&expected[1]).map(|(left, right)| 0.5 * (left + right)).collect();
     assert_eq!(mono, mean, "mono is the mean, after a reset as from the start");
+}
+
+#[test]
+fn what_comes_in_drives_what_is_held() {
+    let patch = Patch::default().with(Param::InputLevel, -20.0).with(Param::MalletLevel, -60.0);
+    let params = params(patch.clone());
+    let input: Vec<f32> = (0..FRAMES).map(|n| if n % 300 < 9 { 0.4 } else { 0.0 }).collect();
+    let mut synth = Synth::new(RATE, 3);
+    synth.set_patch(&patch);
+    let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
+    let note = Event { frame: 100, channel: 0, kind: strike(60, 1) };
+    synth.process_with_input(&[note], &input, &mut left, &mut right);
+    assert!(left.iter().any(|sample| sample.abs() > 1e-4));
+    let mean: Vec<f32> = left.iter().zip(&right).map(|(left, right)| 0.5 * (left + right)).collect();
+
+    let mut live = Live::new(RATE, false, &params);
+    let mut out = [vec![9.0; FRAMES], vec![9.0; FRAMES]];
+    let [to_left, to_right] = &mut out;
+    live.process(&params, &input, &mut [to_left, to_right], &mut Host::new(&[on(100, 1, 60)]));
+    assert_eq!(out, [left, right]);
+    live.reset(&params);
+    let mut mono = vec![9.0; FRAMES];
+    live.process(&params, &input, &mut [&mut mono], &mut Host::new(&[on(100, 1, 60)]));
+    assert_eq!(mono, mean);
 }
 
 #[test]

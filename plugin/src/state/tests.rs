@@ -1,4 +1,4 @@
-//! States that come back, that are old, and that cannot be read as a whole.
+//! States that are read back, states of old versions, and states that can only be read in part.
 
 use super::*;
 use crate::params::{Knob, SprungParams};
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use sprung::params::{PARAM_COUNT, Param};
 use std::path::Path;
 
-/// A state as the wrapper makes it.
+/// A state as the wrapper stores it.
 fn wrapped(params: &SprungParams) -> PluginState {
     let value = |knob: &Knob| match knob {
         Knob::Continuous(knob) => ParamValue::F32(knob.unmodulated_plain_value()),
@@ -19,7 +19,7 @@ fn wrapped(params: &SprungParams) -> PluginState {
     PluginState { version: env!("CARGO_PKG_VERSION").to_owned(), params: values.collect(), fields }
 }
 
-/// A sound with a value in each kind of parameter that its knob's position would not give, and a knob at a
+/// A sound that has, for each kind of parameter, a value that its knob position would not give back, and a knob
 /// position that its value would not give.
 fn odd() -> State {
     let bell = Preset::find("Church Bell").unwrap();
@@ -44,7 +44,7 @@ fn a_state_is_read_back_exactly_and_unchanged() {
     assert_eq!(serde_json::to_string(&wrapped(&other)).unwrap(), text);
 }
 
-/// A kit with sounds of the factory and of its own, and values that its files do not have.
+/// A kit with factory presets and its own, and values that differ from its files.
 fn odd_kit() -> State {
     let text = "kit = 1\nname = \"Odd\"\nvoices = 9\nkeys = [{ key = 36, sound = \"Kick\", pan = -0.3 },\
         { key = 38, sound = \"mine.toml\", choke = 2 }, { key = 40, sound = \"Kick\", pitch = 50.5 }]";
@@ -76,7 +76,7 @@ fn a_kit_is_kept_with_its_presets() {
 
     let mut saved: Map<String, Value> = serde_json::from_str(&json).unwrap();
     saved["sounds"].as_object_mut().unwrap().remove("mine.toml");
-    saved["sounds"]["Kick"] = "format = 3\nname = \"Kick\"\n[params]\ngain = 99".into();
+    saved["sounds"]["Kick"] = "format = 4\nname = \"Kick\"\n[params]\ngain = 99".into();
     saved["values"]["mode"] = 7.into();
     let Read { state, complaints } = State::parse(&serde_json::to_string(&saved).unwrap()).unwrap();
     let Playable::Kit(kit) = &state.playable else { panic!("a kit") };
@@ -88,7 +88,7 @@ fn a_kit_is_kept_with_its_presets() {
     assert!(complaints.iter().zip(starts).all(|(line, start)| line.starts_with(start)), "{complaints:?}");
 }
 
-/// Changes in the JSON of a state.
+/// Replaces a part of a state's JSON.
 fn change(json: &str, from: &str, to: &str) -> String {
     assert!(json.contains(from), "{from} in {json}");
     json.replacen(from, to, 1)
@@ -106,8 +106,8 @@ fn what_is_no_state_at_all_says_why_and_changes_nothing() {
         ("[]".to_owned(), "not a state of Sprung"),
         ("{}".to_owned(), "not a state of Sprung: there is neither a preset nor a kit"),
         (change(&json, "\"preset\":", "\"present\":"), "not a state of Sprung: there is neither"),
-        (change(&json, "format = 3", "format = "), "the state's preset:"),
-        (change(&json, "format = 3", "fermat = 3"), "the state's preset: there is no ‘format’"),
+        (change(&json, "format = 4", "format = "), "the state's preset:"),
+        (change(&json, "format = 4", "fermat = 4"), "the state's preset: there is no ‘format’"),
     ] {
         let error = State::parse(&bad).unwrap_err();
         assert!(error.starts_with(why), "{error}");
@@ -147,7 +147,7 @@ fn what_can_be_read_is_taken_over_and_the_rest_is_told() {
         ("\"gain\":0.12345678", "\"gain\":null", knob(), "positions.gain: expected a number, found null"),
         ("\"gain\":0.12345678", "\"mode\":0.5", knob(), "positions.mode: 0.5 is not a position of that knob"),
         ("\"gain\":0.12345678", "\"gian\":0.5", knob(), "positions: there is no parameter ‘gian’"),
-        ("format = 3", "format = 9", odd(), "format 9 is of a newer version"),
+        ("format = 4", "format = 9", odd(), "format 9 is of a newer version"),
         ("decay = 0.12345679", "decay = nan", with(Param::Decay, default), "params.decay: NaN is out of range"),
         ("decay = 0.12345679", "decya = 1", with(Param::Decay, default), "unknown key ‘params.decya’"),
         ("fine = -0.1", "fine = -0.1\\ndecay_key = 3", odd(), "params.decay_key: ‘decay_key’ is retired"),
@@ -178,7 +178,7 @@ fn parameters_that_a_state_does_not_name_have_their_defaults() {
     assert!(params.complaints().is_empty());
 }
 
-/// Each released version leaves here a state that it wrote, and the preset that was in it.
+/// The folder has, for each released version, a state that it wrote, and the preset that the state contains.
 #[test]
 fn states_of_all_versions_load() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/states");

@@ -1,4 +1,4 @@
-//! Parameter changes at their frames, with the engine's own bits.
+//! Parameter changes take effect at their frames, with the same bits as in the engine.
 
 use crate::host::reference::{At, assert_same_bits, render};
 use crate::host::{Address, Instance, Rendered, Sent, Timed};
@@ -11,22 +11,22 @@ use sprung::patch::Patch;
 const RATE: f64 = 48_000.0;
 const FRAMES: usize = 9_600;
 
-/// Sizes of blocks that put events at starts, ends and in between.
+/// Block sizes that put events at the start, at the end and in the middle of blocks.
 const BLOCKS: [usize; 4] = [1, 64, 480, 4_801];
 
-/// A sound in which most parameters are heard.
+/// A sound in which most parameters are audible.
 pub(crate) fn patch() -> Patch {
-    Patch::default().with(Param::Exciter, 1.0).with(Param::Vibrato, 20.0).with(Param::Decay, 0.8)
+    Patch::default().with(Param::MalletPulse, 1.0).with(Param::Vibrato, 20.0).with(Param::Decay, 0.8)
 }
 
-/// A note, for the host and for the engine.
+/// A note, as the host's event and as the engine's.
 pub(crate) fn on(frame: u64, channel: u8, key: u8, id: i32, velocity: f32) -> (Timed, At) {
     let note = Address::note(channel.into(), key.into(), id);
     let sent = Sent::On(note, velocity.into()).at(frame);
     (sent, At(frame, channel, EventKind::NoteOn { key, detune: 0.0, velocity, id: NoteId::new(id) }))
 }
 
-/// Plays a song in a host and on the engine, and compares; the sound of both.
+/// Plays a song in a host and on the engine, compares the bits, and returns the sound.
 #[track_caller]
 pub(crate) fn compare(what: &str, patch: &Patch, song: &[(Timed, At)]) -> [Vec<f32>; 2] {
     let (sent, events): (Vec<Timed>, Vec<At>) = song.iter().copied().unzip();
@@ -44,7 +44,7 @@ fn play(patch: &Patch, song: &[Timed], block: usize) -> Rendered {
     instance.play(RATE, 8_192).render(song, FRAMES, || block)
 }
 
-/// Each parameter moves to three places while notes sound, and before a note that hears what only new notes hear.
+/// Each parameter changes three times while notes sound, and once before a note, for changes that only new notes use.
 pub(crate) fn a_parameter_changes_at_its_frame() {
     let mut instance = Instance::new();
     for info in PARAMS {
@@ -53,10 +53,10 @@ pub(crate) fn a_parameter_changes_at_its_frame() {
         let mut now = patch().get(info.param);
         for (frame, position) in [(1_001, 0.3), (2_777, 0.8), (2_778, 0.55)] {
             let value = info.denormalise(f64::from(position as f32));
-            // Between two values of the table, a position says which is meant.
+            // Between two values of the table, the host's position decides which of them is meant.
             let host = host_value(info, value);
             let value = if host.fract() == 0.0 { value } else { info.denormalise(f64::from(host as f32)) };
-            // What changes nothing is not handed on: the engine would set out anew from its frame.
+            // The plugin drops changes to the same value, since the engine would start a new line at their frame.
             if std::mem::replace(&mut now, value) != value {
                 let event = EventKind::Param { param: info.param, value };
                 song.push((Sent::Value(id, host).at(frame), At(frame, 0, event)));
@@ -68,7 +68,7 @@ pub(crate) fn a_parameter_changes_at_its_frame() {
     }
 }
 
-/// Many changes at one frame, and one at each of many neighbouring frames.
+/// Many changes at one frame, and one change at each of many neighbouring frames.
 pub(crate) fn changes_may_be_as_dense_as_frames() {
     let mut instance = Instance::new();
     let [gain, tune] = [Param::Gain, Param::Tune].map(|param| (param, instance.id(param)));

@@ -1,4 +1,4 @@
-//! States that are damaged, of another version, or none: what can be read of them is taken over, and nothing of the others.
+//! Damaged states, states of other versions and non-states: what can be read is used, and nothing else changes.
 
 use crate::host::Instance;
 use crate::host::reference::{assert_same_bits, render};
@@ -33,7 +33,7 @@ fn broken_states(saved: &[u8]) -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-/// States of which a part cannot be read, with the patch that the rest makes of the one that was saved.
+/// States of which a part is unreadable, each with the patch that the plugin must make from the rest.
 fn states_in_part(saved: &[u8], patch: &Patch) -> Vec<(&'static str, Vec<u8>, Patch)> {
     let own = own_part(saved);
     let changed = |change: fn(&mut serde_json::Value)| {
@@ -42,7 +42,7 @@ fn states_in_part(saved: &[u8], patch: &Patch) -> Vec<(&'static str, Vec<u8>, Pa
         (enclosed(&own.to_string()), patch.clone())
     };
     let preset = |modes: &str, params: &str| {
-        let text = format!("format = 3\nname = \"Broken\"\nmodes = [{modes}]\n\n[params]\ndecay = 2.5\n{params}\n");
+        let text = format!("format = 4\nname = \"Broken\"\nmodes = [{modes}]\n\n[params]\ndecay = 2.5\n{params}\n");
         let mut rest = Patch::default().with(Param::Decay, 2.5);
         if modes.matches("ratio = 2").count() > 0 {
             rest.modes = ModeTable::new(&vec![Mode { ratio: 2.0, ..Mode::UNIT }; modes.matches("ratio = 2").count()]);
@@ -100,7 +100,7 @@ pub(crate) fn what_is_no_state_changes_nothing() {
     assert_same_bits("after them all", &found, &render(&patch, RATE, &events, FRAMES));
 }
 
-/// Bytes that went over in the wrong order, one at a time: whatever is made of them, all is well afterwards.
+/// One to three bytes of a state are changed. Whether or not the plugin accepts it, it never has half a patch.
 pub(crate) fn damaged_states_never_leave_half_a_patch() {
     let mut source = Instance::new();
     load(&mut source, &patches()[1].1);
@@ -116,7 +116,7 @@ pub(crate) fn damaged_states_never_leave_half_a_patch() {
         let before = instance.save();
         instance.load(&bytes);
         let after = instance.save();
-        // Either it was refused, or what is there now is whole and comes back.
+        // Either the state was refused, or the plugin now has a complete patch that it saves and loads.
         if after != before {
             let mut again = Instance::new();
             assert!(again.load(&after), "damage {n}");

@@ -1,4 +1,4 @@
-//! Every parameter of the table as a host sees it: ids, names, ranges, texts both ways, values.
+//! Every parameter of the table as a host sees it: id, name, range, conversion to and from text, value.
 
 use crate::host::{Address, Instance, Parameter, Sent};
 use clack_extensions::params::ParamInfoFlags;
@@ -7,10 +7,10 @@ use clack_host::prelude::*;
 use sprung::params::{Change, PARAMS, Param, ParamInfo, Unit};
 use std::collections::BTreeSet;
 
-/// Positions of a knob that each parameter is tried at.
+/// Knob positions that are tried for each parameter.
 const POSITIONS: [f64; 9] = [0.0, 1.0, 0.5, 0.25, 0.1, 0.333_333, 0.9, 0.01, 0.618];
 
-/// The rows of the table, each with the host's view of it.
+/// The rows of the table, each with the parameter that the host sees.
 fn rows(instance: &mut Instance) -> Vec<(&'static ParamInfo, Parameter)> {
     let parameters = instance.parameters();
     let find = |info: &'static ParamInfo| {
@@ -21,17 +21,17 @@ fn rows(instance: &mut Instance) -> Vec<(&'static ParamInfo, Parameter)> {
     PARAMS.iter().map(find).collect()
 }
 
-/// Whether hosts count the parameter in steps.
+/// Whether the host's values of the parameter are steps.
 pub(crate) fn is_stepped(info: &ParamInfo) -> bool {
     matches!(info.unit, Unit::Count | Unit::Choice)
 }
 
-/// The host's value of a parameter's value: a knob's position, or a step.
+/// The host's value for a parameter's value: a knob position, or a step.
 pub(crate) fn host_value(info: &ParamInfo, value: f32) -> f64 {
     if is_stepped(info) { f64::from(value - info.min) } else { info.normalise(value) }
 }
 
-/// The parameter's value of a host's value, which passes through the wrapper as a single-precision number.
+/// The parameter's value for a host's value, which the wrapper passes in single precision.
 fn table_value(info: &ParamInfo, value: f64) -> f32 {
     if is_stepped(info) { info.min + value as f32 } else { info.denormalise(f64::from(value as f32)) }
 }
@@ -41,7 +41,7 @@ fn host_values(info: &ParamInfo) -> Vec<f64> {
     if is_stepped(info) { (0..=(info.max - info.min) as u32).map(f64::from).collect() } else { POSITIONS.to_vec() }
 }
 
-/// Songs and automation hold the host's ids: each is the hash of the table's id that the wrapper has always used.
+/// Songs and automation contain the host's ids: each is the hash of the table's id that the wrapper has always used.
 pub(crate) fn ids_are_those_of_the_table_for_ever() {
     let hash = |id: &str| {
         let sum = id.bytes().fold(0_u32, |sum, byte| sum.wrapping_mul(31).wrapping_add(byte.into()));
@@ -109,7 +109,7 @@ pub(crate) fn what_people_type_is_understood_or_refused() {
         (Param::Tuning, "A4", Some(440.0)),
         (Param::Tune, "1 oct", Some(12.0)),
         (Param::Gain, "-12dB", Some(-12.0)),
-        (Param::Exciter, "Pluck", Some(2.0)),
+        (Param::MalletPulse, "Contact", Some(1.0)),
         (Param::Voices, "8", Some(8.0)),
         (Param::Decay, "soon", None),
         (Param::Decay, "", None),
@@ -170,7 +170,7 @@ pub(crate) fn senseless_values_and_unknown_ids_change_nothing_else() {
     }
 }
 
-/// Hardware controllers and hosts that group parameters find each on one page.
+/// For hardware controllers, and hosts that group parameters: each parameter is on exactly one page.
 pub(crate) fn remote_control_pages_have_every_parameter_once() {
     let mut instance = Instance::new();
     let rows = rows(&mut instance);

@@ -1,4 +1,4 @@
-//! Sounds to play, and how they get into the plugin: as the state that a host's project would keep.
+//! Sounds to play, and how they are loaded into the plugin: as the state in a host's project.
 
 use crate::host::Instance;
 use sprung::params::Param;
@@ -8,11 +8,12 @@ use sprung::preset::{Playable, Preset};
 use std::fs::File;
 use std::path::Path;
 
-/// Sounds that between them use every exciter, few and many modes, both laws, and values that no knob's position gives.
+/// Sounds that together use every exciter, few and many modes, both laws, and values between knob positions.
 pub(crate) fn patches() -> Vec<(&'static str, Patch)> {
     let factory = |name: &'static str| (name, Preset::find(name).unwrap().patch.clone());
     let mut odd = Patch::default()
-        .with(Param::Exciter, 2.0)
+        .with(Param::MalletLevel, -60.0)
+        .with(Param::PluckLevel, 0.0)
         .with(Param::Decay, 0.731_234_5)
         .with(Param::Mode, 2.0)
         .with(Param::Glide, 0.0503)
@@ -36,7 +37,7 @@ pub(crate) fn patches() -> Vec<(&'static str, Patch)> {
     ]
 }
 
-/// A patch as the state that holds it.
+/// The state that contains a patch.
 pub(crate) fn state(patch: &Patch) -> Vec<u8> {
     let preset = Preset {
         name: "Of a test".to_owned(),
@@ -49,20 +50,20 @@ pub(crate) fn state(patch: &Patch) -> Vec<u8> {
     state_of_text(&preset.to_toml())
 }
 
-/// A preset file's text as the state that holds it.
+/// The state that contains the text of a preset file.
 pub(crate) fn state_of_text(preset: &str) -> Vec<u8> {
     let own = serde_json::json!({ "format": 2, "preset": preset, "seed": 0, "window": [880, 640] });
     enclosed(&own.to_string())
 }
 
-/// The kit in the tree, as the command reads it.
+/// The kit in this repository, as the command reads it.
 pub(crate) fn drums() -> Playable {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/kits/drums.toml");
     let mut open = |path: &Path| Ok(File::open(path).expect("the file is there"));
     Playable::read(&path, &mut open, &mut |_, _| {}).unwrap()
 }
 
-/// A kit as the state that holds it with its presets.
+/// The state that contains a kit and its presets.
 pub(crate) fn state_of_kit(kit: &Playable) -> Vec<u8> {
     let Playable::Kit(preset) = kit else { panic!("a kit") };
     let sounds = preset.sounds.iter().map(|(name, preset)| (name.clone(), preset.to_toml().into())).collect();
@@ -73,7 +74,7 @@ pub(crate) fn state_of_kit(kit: &Playable) -> Vec<u8> {
     enclosed(&own.to_string())
 }
 
-/// The plugin's own part of a state, with what the wrapper puts around it.
+/// The plugin's own part of a state, inside the wrapper's part.
 pub(crate) fn enclosed(own: &str) -> Vec<u8> {
     let whole = serde_json::json!({ "version": "0.1.0", "params": {}, "fields": { "sprung": own } }).to_string();
     let mut bytes = (whole.len() as u64).to_le_bytes().to_vec();
@@ -81,12 +82,12 @@ pub(crate) fn enclosed(own: &str) -> Vec<u8> {
     bytes
 }
 
-/// The plugin's own part of a state that a CLAP host has saved, which starts with its length.
+/// The plugin's own part of a state saved by a CLAP host, which starts with its length.
 pub(crate) fn own_part(state: &[u8]) -> serde_json::Value {
     own_part_of(&state[8..])
 }
 
-/// The plugin's own part of a state that a VST3 host has saved.
+/// The plugin's own part of a state saved by a VST3 host.
 pub(crate) fn own_part_of(state: &[u8]) -> serde_json::Value {
     let whole: serde_json::Value = serde_json::from_slice(state).unwrap();
     serde_json::from_str(whole["fields"]["sprung"].as_str().expect("the plugin keeps its own field")).unwrap()
@@ -98,7 +99,7 @@ pub(crate) fn patch_in(state: &[u8]) -> Patch {
     Preset::parse(own["preset"].as_str().unwrap(), "the saved state").unwrap().patch
 }
 
-/// Puts a patch into an instance.
+/// Loads a patch into an instance.
 #[track_caller]
 pub(crate) fn load(instance: &mut Instance, patch: &Patch) {
     assert!(instance.load(&state(patch)), "the plugin takes a state");

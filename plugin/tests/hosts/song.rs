@@ -1,4 +1,4 @@
-//! The same song, patch, seed and rate: the same bits from the command's renderer and from the plugin in a host.
+//! With the same song, patch, seed and rate, the command's renderer and the plugin in a host give the same bits.
 
 use crate::host::reference::{assert_same_bits, assert_sound};
 use crate::host::{Instance, Player, Timed};
@@ -10,11 +10,11 @@ use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::patch::routes::Source;
 use sprung::render::{Job, Options, Tail};
-use sprung::sound::{Kit, Tuning};
+use sprung::sound::Kit;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A name, and the lengths of blocks one after the other.
+/// A name, and a function that returns the length of each next block.
 type Division = (&'static str, Box<dyn FnMut() -> usize>);
 
 /// Ways to divide a song into blocks.
@@ -33,11 +33,11 @@ fn divisions() -> Vec<Division> {
     ]
 }
 
-/// What `sprung render` makes of a MIDI file, as samples.
+/// The samples that `sprung render` makes from a MIDI file.
 pub(crate) fn rendered_by_the_command(midi: &[u8], kit: &Arc<Kit>) -> Vec<Vec<f32>> {
     let song = phrase::song(midi);
     let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 1024, tail: Tail::None };
-    let job = Job { song: &song, kit, channels: &[], programs: &[], tuning: &Tuning::EQUAL, options };
+    let job = Job::new(&song, kit, options);
     let mut channels = vec![Vec::new(), Vec::new()];
     job.render(|left, right| {
         channels[0].extend(left);
@@ -69,7 +69,7 @@ pub(crate) fn one_channel_has_the_bits_of_the_command() {
     }
 }
 
-/// A file that configures a zone is played on one instrument, as the plugin plays it.
+/// A file that configures an MPE zone is played on one instrument, as in the plugin.
 pub(crate) fn an_mpe_performance_has_the_bits_of_the_command() {
     let messages = phrase::mpe_messages();
     let midi = phrase::file(&messages);
@@ -87,7 +87,7 @@ pub(crate) fn an_mpe_performance_has_the_bits_of_the_command() {
     }
 }
 
-/// A kit that a project keeps, on the keys that it has.
+/// A kit in a project, with notes on its keys.
 pub(crate) fn a_kit_has_the_bits_of_the_command() {
     let messages = phrase::kit_messages();
     let drums = drums();
@@ -105,7 +105,7 @@ pub(crate) fn a_kit_has_the_bits_of_the_command() {
     }
 }
 
-/// The demo songs' sixteen channels on one instance: the bits of the engine's one synth.
+/// The sixteen channels of the demo songs on one instance: the bits of one synth of the engine.
 pub(crate) fn sixteen_channels_have_the_bits_of_one_synth() {
     for song in ["groove", "suite"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../assets/midi/{song}.mid"));
@@ -123,9 +123,10 @@ pub(crate) fn sixteen_channels_have_the_bits_of_one_synth() {
     }
 }
 
-/// Messages on the engine's synth, in one block a second.
+/// Plays messages on the engine's synth, in blocks of one second.
 fn played_by_one_synth(messages: &[(u64, [u8; 3])], patch: &Patch, frames: usize) -> Vec<Vec<f32>> {
     let mut synth = Synth::new(SAMPLE_RATE.into(), 0);
+    synth.reserve_space();
     synth.set_patch(patch);
     synth.reset();
     let mut channels = vec![vec![0.0; frames]; 2];

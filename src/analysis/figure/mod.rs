@@ -1,5 +1,6 @@
 //! Figures of renders as PNG or SVG, with axes in units.
 
+pub mod modes;
 mod panel;
 
 use crate::error::{Error, Result};
@@ -31,15 +32,12 @@ pub fn waveform_and_spectrogram(render: Render, title: &str, path: &Path) -> Res
 /// Draws what was expected and what came instead, their difference (at its own scale), and the spectrogram of the
 /// difference.
 pub fn comparison(expected: Render, actual: Render, title: &str, path: &Path) -> Result<()> {
-    let len = expected.left.len().max(actual.left.len());
-    let middle = |render: Render| {
-        let mut samples = mean(render.left, render.right);
-        samples.resize(len, 0.0);
-        samples
-    };
-    let difference: Vec<f32> = middle(actual).iter().zip(middle(expected)).map(|(a, e)| a - e).collect();
-    let sample_rate = actual.sample_rate;
-    save(path, Sheet { title, cell: 1, sample_rate, render: actual, against: Some(expected), middle: difference })
+    save(path, Sheet::comparison(expected, actual, title))
+}
+
+/// [`comparison`] as the bytes of a file in `format`, `png` or `svg`.
+pub fn comparison_bytes(expected: Render, actual: Render, title: &str, format: &str) -> Result<Vec<u8>> {
+    bytes(Sheet::comparison(expected, actual, title), format)
 }
 
 /// What a figure shows.
@@ -53,6 +51,20 @@ struct Sheet<'a> {
     against: Option<Render<'a>>,
     /// The signal of the spectrogram: mean of the channels, or of their differences.
     middle: Vec<f32>,
+}
+
+impl<'a> Sheet<'a> {
+    fn comparison(expected: Render<'a>, actual: Render<'a>, title: &'a str) -> Self {
+        let len = expected.left.len().max(actual.left.len());
+        let middle = |render: Render| {
+            let mut samples = mean(render.left, render.right);
+            samples.resize(len, 0.0);
+            samples
+        };
+        let difference: Vec<f32> = middle(actual).iter().zip(middle(expected)).map(|(a, e)| a - e).collect();
+        let sample_rate = actual.sample_rate;
+        Self { title, cell: 1, sample_rate, render: actual, against: Some(expected), middle: difference }
+    }
 }
 
 impl Picture for Sheet<'_> {
@@ -96,13 +108,16 @@ impl Picture for Sheet<'_> {
 /// Draws to the format that the file's extension names.
 fn save(path: &Path, sheet: Sheet) -> Result<()> {
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
-    let bytes = match extension.as_str() {
-        "png" => png(&sheet)?,
-        // A vector image has no pixels: larger cells keep the file small.
-        "svg" => svg(&Sheet { cell: 5, ..sheet })?.into_bytes(),
-        _ => return Err(Error::value("figure", format!("{} must end in .png or .svg", path.display()))),
-    };
-    std::fs::write(path, bytes).map_err(|error| Error::io(path.display().to_string(), error))
+    if !["png", "svg"].contains(&extension.as_str()) {
+        return Err(Error::value("figure", format!("{} must end in .png or .svg", path.display())));
+    }
+    std::fs::write(path, bytes(sheet, &extension)?).map_err(|error| Error::io(path.display().to_string(), error))
+}
+
+/// The sheet as a file in that format.
+fn bytes(sheet: Sheet, format: &str) -> Result<Vec<u8>> {
+    // A vector image has no pixels: larger cells keep the file small.
+    if format == "svg" { svg(&Sheet { cell: 5, ..sheet }).map(String::into_bytes) } else { png(&sheet) }
 }
 
 /// The mean of two channels.

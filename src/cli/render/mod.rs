@@ -5,7 +5,7 @@ mod report;
 use super::progress::Bar;
 use super::song::SongArgs;
 use super::sound::{SoundArgs, Sounds};
-use super::{completion, interrupt, quantity};
+use super::{completion, interrupt, quantity, recording};
 use clap::ArgGroup;
 use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
 use sprung::params::Param;
@@ -21,8 +21,9 @@ Examples:
   sprung render song.mid -o song.wav
   sprung render song.mid --preset mine.toml --normalize lufs=-14 --bits 16 --dither -o song.wav
   sprung render --note C2 --preset Kick --tail none --length 0.5 -o kick.wav
-  sprung render --note C4,E4,67.5,440Hz --set decay=\"3 s\" --set exciter=pluck -o chord.wav
+  sprung render --note C4,E4,67.5,440Hz --set decay=\"3 s\" --set mallet_pulse=contact -o chord.wav
   sprung render song.mid --preset Marimba --channel 10=drums.toml --ignore-programs -o song.wav
+  sprung render --note C3 --preset Gong --set input_level=0 --input voice.wav -o spoken.wav
   sprung render song.mid --scale mine.scl --keymap mine.kbm -o song.wav
   sprung render song.mid -o - | flac - -o song.flac";
 
@@ -34,6 +35,9 @@ pub(super) struct Args {
     /// Notes to strike together, instead of a song: names (C#4), keys 0-127 (60, 60.5) or frequencies (440Hz)
     #[arg(long, value_delimiter = ',', value_parser = quantity::note, allow_hyphen_values = true)]
     note: Vec<String>,
+    /// Sound file that drives the notes of sounds with an input_level, from the first frame on, at the rate of the output
+    #[arg(long, value_name = "IN.wav")]
+    input: Option<PathBuf>,
     /// Velocity of the notes, 1-127
     #[arg(long, default_value_t = 100, allow_hyphen_values = true, conflicts_with = "song", value_parser = quantity::whole::<u8>(1..=127))]
     velocity: u8,
@@ -105,12 +109,20 @@ pub(super) fn run(args: &Args) -> Result<()> {
     };
     args.reading.warn_of_programs(&song, args.sound.asked_for(&sounds), &sounds.programs);
     args.sound.tuning.warn_of_unmapped(&song, &sounds.tuning);
-    SoundArgs::warn_of_missing_pads(&song, &sounds, args.reading.programs(&sounds.programs));
+    SoundArgs::warn_of_silence(&song, &sounds, args.reading.programs(&sounds.programs));
 
+    let input = match &args.input {
+        Some(path) => {
+            let (recording, name) = recording::read(path, &mut inputs)?;
+            recording.mono_at(args.rate, &name)?
+        }
+        None => vec![],
+    };
     let options =
         Options { sample_rate: args.rate, seed: args.sound.seed, block: args.block as usize, tail: args.tail };
     let Sounds { kit, channels, programs, tuning } = &sounds;
-    let job = Job { song: &song, kit, channels, programs: args.reading.programs(programs), tuning, options };
+    let job =
+        Job { song: &song, kit, channels, programs: args.reading.programs(programs), tuning, input: &input, options };
     let delivery = Delivery {
         samples: args.bits,
         dither: args.dither,
@@ -135,7 +147,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
 
 fn chord(args: &Args, kit: &Kit) -> Result<Song> {
     args.sound.tuning.check_notes(&args.note)?;
-    // Frequencies are placed by the sound's own tuning, so that 440 Hz is 440 Hz in every sound.
+    // Frequencies are converted with the sound's own A4, so that 440 Hz is 440 Hz with every sound.
     let a4_hz = f64::from(kit.values().get(Param::Tuning));
     let keys: std::result::Result<Vec<f64>, String> = args.note.iter().map(|note| parse_key(note, a4_hz)).collect();
     let keys = keys.map_err(|message| Error::value("--note", message))?;

@@ -1,4 +1,4 @@
-//! What `sprung render` says when it is done.
+//! The report that `sprung render` prints.
 
 use crate::cli::terminal::{complain, complain_lines, print};
 use serde_json::json;
@@ -51,7 +51,7 @@ pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()
 fn summary(report: &Report, target: &Target) -> String {
     let level = |value: Option<f64>, unit: &str| value.map_or(String::new(), |value| format!(", {value:.1} {unit}"));
     format!(
-        "{}: {:.3} s (tail {:.3} s) at {} Hz{}{}, at most {} voices, {:.0}x real time",
+        "{}: {:.3} s (tail {:.3} s) at {} Hz{}{}, at most {} notes at once, {:.0}x real time",
         target.name(),
         report.seconds,
         report.tail_seconds,
@@ -66,8 +66,8 @@ fn summary(report: &Report, target: &Target) -> String {
     )
 }
 
-/// The report under the names of [`Report`]'s fields: `voices_used`, too, is added up over channels. In silence the
-/// levels are null and `non_finite_samples` is 0.
+/// The report as JSON, with the names of [`Report`]'s fields. `voices_used` is added up over channels too. For silence,
+/// the levels are null and `non_finite_samples` is 0.
 fn to_json(report: &Report, target: &Target) -> serde_json::Value {
     json!({
         "output": target.name(),

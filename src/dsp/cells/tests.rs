@@ -1,11 +1,11 @@
-//! Cells side by side against single banks, and cells that have been used against new ones.
+//! Several cells compared with single banks, and used cells compared with new ones.
 
 use super::*;
 use crate::dsp::random::{key, uniform};
 
 const RATE: f64 = 48_000.0;
 
-/// A body of so many modes, at rest, with its excitation gains set.
+/// Loads a body of this many modes, at rest, with its excitation gains set.
 fn body(cells: &mut Cells, law: Law, modes: usize, seed: u64) {
     let unit = |m: usize, n: u64| f64::from(uniform(key(seed, n), m as u64)) * 0.5 + 0.5;
     let ratios: Vec<f64> = (0..modes).map(|m| 0.5 + 40.0 * unit(m, 0)).collect();
@@ -27,17 +27,19 @@ fn cells(count: usize) -> Cells {
     cells
 }
 
-/// A strike, a sweep, a change of damping and ringing until tables are in use: all samples, and what is left.
+/// A strike, a sweep, a change of damping, then ringing until tables are used. Returns all samples, the energy left and
+/// the frames left.
 fn play(cells: &mut Cells, ticks: usize) -> (Vec<u32>, f64, u64) {
     let mut drive = Drive::NONE;
-    drive.pulse[3] = 0.7;
+    drive.push[3] = 0.7;
+    drive.pull[5] = 0.4;
     let mut samples = vec![];
     for tick in 0..ticks {
         if tick == 5 {
             cells.damp(|scale| 0.5 * scale);
         }
         cells.sweep_to(if tick < 8 { 1.0 + 0.01 * tick as f64 } else { 1.08 }, CONTROL_FRAMES);
-        for sides in cells.render((tick == 0).then_some(&drive), CONTROL_FRAMES) {
+        for sides in cells.render((tick == 0).then_some(&drive), None, CONTROL_FRAMES) {
             samples.extend(sides.iter().map(|sample| sample.to_bits()));
         }
     }
@@ -55,7 +57,7 @@ fn cells_that_were_used_give_the_bits_of_new_ones() {
             let mut used = cells(count);
             for (other, seed) in [(Law::Exact, 2), (Law::Classic, 3), (law, 4), (law, 5)] {
                 body(&mut used, other, 64 * count - seed as usize, seed);
-                // To the midst of a sweep, and to where tables are in use.
+                // End in the middle of a sweep, or at a point where tables are used.
                 play(&mut used, if seed == 5 { 3 } else { 30 });
             }
             body(&mut used, law, modes, 1);
@@ -72,7 +74,7 @@ fn many_cells_are_the_sum_of_each_by_itself() {
     let mut sum = vec![0.0_f64; samples.len()];
     let mut energies = 0.0;
     for cell in 0..8 {
-        // The same modes, and all others unmoved.
+        // The same modes, but those of the other cells are not excited.
         let mut part = cells(8);
         body(&mut part, Law::Exact, 500, 7);
         let others = (0..500).filter(|m| m / MAX_MODES != cell);
@@ -95,7 +97,7 @@ fn the_end_of_many_cells_is_when_their_energies_add_up_to_it() {
     let mut frames = 0;
     while whole.settle() >= 1e-9 {
         whole.sweep_to(1.08, CONTROL_FRAMES);
-        whole.render(None, CONTROL_FRAMES);
+        whole.render(None, None, CONTROL_FRAMES);
         frames += CONTROL_FRAMES as u64;
     }
     assert!(told <= frames && frames < told + CONTROL_FRAMES as u64 + 1, "{told} {frames}");

@@ -1,5 +1,6 @@
-//! The bank as its users see it: load modes, strike them, move their pitch, hear them.
+//! The public interface of the bank: load modes, excite them, change their pitch and decay, render.
 
+use super::friction::Bowed;
 use super::ring::Ring;
 use super::rows::{Form, Modes, Moving, Output, Row, State, Wide};
 use super::step::Step;
@@ -8,46 +9,47 @@ use super::tuning::{Aim, ChordLoss, Settle, Tune, Tuning, UNIT};
 use super::{ExcitationGains, LEAST_LN_RADIUS, MAX_MODES, MOST_LN_RADIUS, ModeSetup};
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
-use crate::dsp::exciter::Drive;
+use crate::dsp::exciter::{Bow, Drive};
 use crate::dsp::simd::vector::LANES;
 use crate::dsp::simd::{Instructions, Level};
 use libm::{cosf, sinf};
 
-/// A bank is worth making tables for once it has rung freely at one pitch for a control tick per so many modes: with
-/// few modes they are paid for in a tick, with 64 in about eight.
+/// A bank makes tables after it has rung freely at one pitch for one control tick per this many modes. A bank with few
+/// modes regains the cost of its tables within one tick, one with 64 modes in about eight.
 const MODES_PER_TICK: usize = 8;
 
-/// A bank of modes, structure of arrays. Real-time safe throughout, but for [`ModeBank::new`] when it is the first.
+/// A bank of modes, as a structure of arrays. Real-time safe, except for the first [`ModeBank::new`], which detects the
+/// CPU.
 ///
-/// Whatever is asked of it, and however often, the amplitude of a mode never exceeds the sum of what strikes have
-/// brought: `force · gain` each. Pitch, damping and their changes can only take from it.
+/// Whatever calls are made, the amplitude of a mode never exceeds the sum of `force · gain` over all strikes. Pitch,
+/// damping and their changes can only reduce it.
 ///
-/// Modes that have rung freely at one pitch for a few control ticks are rendered a whole tick at a time, by tables; all
-/// others are stepped. Which of the two depends on the modes and on what happens to them, never on the CPU or on how
-/// frames are asked for.
+/// Modes that have rung freely at one pitch for a few control ticks are rendered one whole tick at a time, with tables;
+/// all others are stepped. The choice depends on the modes and on the calls made, never on the CPU or on block sizes.
 #[derive(Clone, Debug)]
 pub struct ModeBank {
     instructions: Instructions,
     sample_rate: f64,
     pub(super) len: usize,
-    /// Modes from here on are at rest: a multiple of [`LANES`] or all, so that every CPU moves the same modes.
+    /// Modes from this index on are at rest. A multiple of [`LANES`] or all modes, so that every CPU computes the same
+    /// modes.
     pub(super) live: usize,
-    /// Gains at full level, and whether any of them is not 1.
+    /// Gains at full level, left and right, and whether any of them is not 1.
     gains: [Row; 2],
     stereo: bool,
-    /// Some modes are so high that they are not heard at full level.
+    /// Some modes are so high that they sound below full level.
     faded: bool,
-    /// Pitch ratio at which the coefficients are, or at which they are to arrive.
+    /// Pitch ratio of the coefficients, or their target while they move.
     ratio: f64,
-    /// Frequencies or T60s have changed since the coefficients were made.
+    /// Frequencies or T60s have changed since the coefficients were computed.
     retuned: bool,
-    /// T60s have been taken over that the coefficients do not have yet.
+    /// `tuning` has new T60s that the coefficients do not use yet.
     damped: bool,
     /// Frames until the next control tick.
     until_tick: usize,
     motion: Motion,
-    /// The state, and that at the end of a tick that is rendered by tables; which is which changes with every such
-    /// tick.
+    /// The state, and the state at the end of a tick that is rendered by tables. The two swap roles after every such
+    /// tick; `current` is the index of the state.
     states: [State; 2],
     current: usize,
     modes: Modes,
@@ -58,7 +60,7 @@ pub struct ModeBank {
     half_angle: Wide,
 }
 
-/// How the pitch of a bank moves, and so how it is rendered.
+/// How the pitch of a bank moves, which decides how the bank is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Motion {
     /// On a straight line of `frames` frames that ends at the next control tick.
@@ -66,12 +68,13 @@ enum Motion {
         frames: usize,
         /// Whether gains move as well.
         gains: bool,
-        /// Whether a force has acted on the way.
+        /// Whether an excitation force has acted during the line.
         driven: bool,
     },
-    /// The pitch stands still, and nothing has driven the bank since so many calls of [`ModeBank::sweep_to`].
+    /// The pitch does not move, and nothing has driven the bank during the last `ticks` calls of
+    /// [`ModeBank::sweep_to`].
     Still { ticks: usize },
-    /// As before, and rendered by tables: so many frames of the present tick have been handed out.
+    /// The pitch does not move, and tables are used: `handed_out` frames of the present tick have been returned.
     Tabled { handed_out: usize },
 }
 
@@ -102,17 +105,17 @@ impl ModeBank {
         }
     }
 
-    /// The level of instructions that the bank uses.
+    /// The instruction level that the bank uses.
     pub fn instructions(&self) -> Level {
         self.instructions.level()
     }
 
-    /// Fills the bank with modes at rest, at a pitch ratio of 1. Modes beyond [`MAX_MODES`] are left out. What the bank
-    /// played before leaves no trace: it then gives the bits of a new one.
+    /// Fills the bank with modes at rest, at a pitch ratio of 1. Modes beyond [`MAX_MODES`] are ignored. Nothing
+    /// remains of what the bank played before: it gives the same bits as a new one.
     pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
         self.instructions = Instructions::current();
         (self.len, self.stereo, self.faded) = (0, false, false);
-        // Both, since each becomes the other at the end of a tick that is rendered by tables.
+        // Both states, since they swap roles after each tick that is rendered by tables.
         (self.states, self.motion) = ([State::REST; 2], Motion::Still { ticks: 0 });
         for (m, mode) in modes.take(MAX_MODES).enumerate() {
             self.len = m + 1;
@@ -125,9 +128,8 @@ impl ModeBank {
         [self.modes.left_step, self.modes.right_step] = [Row::ZERO; 2];
         for m in self.len..MAX_MODES {
             // What was loaded before must not be heard: lanes and tables are filled up with modes at rest.
-            for row in [&mut self.modes.pulse_x, &mut self.modes.pulse_y, &mut self.modes.noise] {
-                row.0[m] = 0.0;
-            }
+            let Modes { push_x, push_y, pull_x, pull_y, noise, bow, .. } = &mut self.modes;
+            [push_x, push_y, pull_x, pull_y, noise, bow].into_iter().for_each(|row| row.0[m] = 0.0);
         }
         self.live = self.len;
         self.jump_to(1.0);
@@ -143,17 +145,25 @@ impl ModeBank {
         self.len == 0
     }
 
-    /// Sets how strongly mode `m` is moved by what drives the bank.
+    /// Sets how strongly the pulse and noise excite mode `m`.
     pub fn set_excitation_gains(&mut self, m: usize, gains: ExcitationGains) {
         self.tune();
-        let (x, y) = (gains.pull * self.tuning.pull_x.0[m], gains.push + gains.pull * self.tuning.pull_y.0[m]);
-        (self.modes.pulse_x.0[m], self.modes.pulse_y.0[m]) = if gains.phase == 0.0 {
-            (x, y)
-        } else {
+        let turned = |x: f32, y: f32| {
+            if gains.phase == 0.0 {
+                return (x, y);
+            }
             let (sin, cos) = (sinf(gains.phase), cosf(gains.phase));
             (x * cos + y * sin, y * cos - x * sin)
         };
+        let pulled = turned(gains.pull * self.tuning.pull_x.0[m], gains.pull * self.tuning.pull_y.0[m]);
+        (self.modes.push_x.0[m], self.modes.push_y.0[m]) = turned(0.0, gains.push);
+        (self.modes.pull_x.0[m], self.modes.pull_y.0[m]) = pulled;
         self.modes.noise.0[m] = gains.noise;
+    }
+
+    /// Sets how far mode `m` moves the point under a bow, and is moved by it. The squares of all are to add up to 1.
+    pub fn set_bow_weight(&mut self, m: usize, weight: f32) {
+        self.modes.bow.0[m] = weight;
     }
 
     /// Changes the T60 of mode `m` to `t60` seconds, at once. Follow with [`ModeBank::sweep_to`].
@@ -163,8 +173,8 @@ impl ModeBank {
         self.retuned = true;
     }
 
-    /// Gives the modes, in their order, new frequencies in Hz and T60s in seconds while they ring. The pitch stays where
-    /// it is until [`ModeBank::sweep_to`], which must follow, moves it.
+    /// Gives the modes, in their order, new frequencies in Hz and T60s in seconds while they ring. The pitch does not
+    /// change until the next [`ModeBank::sweep_to`], which must follow.
     pub fn retune(&mut self, modes: impl Iterator<Item = (f64, f64)>) {
         for (m, (frequency, t60)) in modes.take(self.len).enumerate() {
             self.half_angle[m] = 0.5 * angle_from_frequency(frequency, self.sample_rate);
@@ -172,7 +182,7 @@ impl ModeBank {
         }
     }
 
-    /// Takes over frequencies and T60s, if they have changed.
+    /// Updates `tuning` if frequencies or T60s have changed.
     fn tune(&mut self) {
         if std::mem::take(&mut self.retuned) {
             let Self { tuning, ln_radius, half_angle, len, .. } = self;
@@ -181,8 +191,8 @@ impl ModeBank {
         }
     }
 
-    /// Moves every mode to a pitch ratio, in a straight line of the coefficients over `frames` frames: those until the
-    /// next control tick, at which it is to be called again.
+    /// Moves every mode to a pitch ratio, with coefficients on a straight line over `frames` frames. These are the
+    /// frames until the next control tick, when this must be called again.
     pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
         let frames = frames.max(1);
         let same = ratio == self.ratio && !self.retuned && !self.damped;
@@ -198,7 +208,7 @@ impl ModeBank {
         let (mut arrived, mut lost) = (false, None);
         if let Motion::Line { frames, driven, .. } = self.motion {
             arrived = same && passed == frames;
-            // What a force has brought on the way has lost less: then nothing is given back.
+            // A force may have acted late, and its part of the amplitude has lost less: then nothing is given back.
             lost = (!driven).then(|| ChordLoss::new(passed, frames));
         }
         self.tune();
@@ -206,7 +216,7 @@ impl ModeBank {
         self.aim((!arrived).then_some(frames), [passed, left], lost);
     }
 
-    /// Puts every mode at a pitch ratio at once: for modes at rest.
+    /// Sets the pitch ratio of every mode at once, without a line: for modes at rest.
     pub fn jump_to(&mut self, ratio: f64) {
         self.leave_tables();
         self.tune();
@@ -214,8 +224,9 @@ impl ModeBank {
         self.aim(None, [0, 0], None);
     }
 
-    /// Sends the coefficients to those of `ratio`, over so many frames or at once. Of the line before, so many frames
-    /// have passed and so many are left, and what those that passed have lost is given back.
+    /// Sets the target of the coefficients to those of `ratio`, reached after `frames` frames, or at once if `None`. Of
+    /// the line before, `passed` frames have been rendered and `left` frames remain. `lost` is the amplitude that the
+    /// rendered frames have lost; it is given back.
     fn aim(&mut self, frames: Option<usize>, [passed, left]: [usize; 2], lost: Option<ChordLoss>) {
         let fades = self.tuning.fades(self.ratio);
         let faded = std::mem::replace(&mut self.faded, fades);
@@ -240,12 +251,12 @@ impl ModeBank {
         };
     }
 
-    /// Frames of a line that have passed.
+    /// Frames of the present line that have been rendered.
     fn passed(&self) -> usize {
         if let Motion::Line { frames, .. } = self.motion { frames - self.until_tick } else { 0 }
     }
 
-    /// Steps on from the start of a tick that is rendered by tables, to the frame that is next.
+    /// Ends the use of tables: steps from the start of the present tick to the next frame.
     fn leave_tables(&mut self) {
         if let Motion::Tabled { handed_out } = self.motion {
             self.motion = Motion::Still { ticks: 0 };
@@ -272,6 +283,12 @@ impl ModeBank {
         self.instructions.run(Step { form, modes, state, drive, out });
     }
 
+    fn step_bowed(&mut self, drive: &Drive, bow: &Bow, frames: usize) {
+        let form = self.form(true, frames);
+        let (modes, state, out) = (&self.modes, &mut self.states[self.current], &mut self.output);
+        self.instructions.run(Bowed { form, modes, state, drive, bow, out });
+    }
+
     /// Makes the tables at the start of a tick, once that is worth while.
     fn make_tables(&mut self) {
         if let Motion::Still { ticks } = self.motion
@@ -284,12 +301,13 @@ impl ModeBank {
         }
     }
 
-    /// Renders a whole tick by the tables.
+    /// Renders a whole tick with the tables.
     fn ring(&mut self) {
         let form = self.form(false, CONTROL_FRAMES);
         let [first, second] = &mut self.states;
         let (start, end) = if self.current == 0 { (first, second) } else { (second, first) };
-        // What modes that have come to rest left here two ticks ago must not be struck to life.
+        // This state was in use two ticks ago. Modes that came to rest since then may have old values in it and must
+        // not sound again.
         if self.live < self.len {
             end.x.0[self.live..self.len].fill(0.0);
             end.y.0[self.live..self.len].fill(0.0);
@@ -298,19 +316,28 @@ impl ModeBank {
         self.instructions.run(Ring { form, table, modes, start, end, out });
     }
 
-    /// The next frames, left and right: at most those until the next control tick, of which [`ModeBank::sweep_to`]
-    /// has told.
+    /// Renders the next frames, left and right. `frames` must not exceed those left until the next control tick, as
+    /// given to [`ModeBank::sweep_to`].
     pub fn render(&mut self, drive: Option<&Drive>, frames: usize) -> [&[f32]; 2] {
+        self.render_bowed(drive, None, frames)
+    }
+
+    /// As [`ModeBank::render`], under a bow. It costs more than other forces do, since each frame waits for the one before.
+    pub fn render_bowed(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
         debug_assert!(frames <= self.until_tick);
         let frames = frames.min(CONTROL_FRAMES);
-        if let Some(drive) = drive {
+        if drive.is_some() || bow.is_some() {
+            let drive = drive.unwrap_or(&Drive::NONE);
             self.leave_tables();
             self.live = self.len;
             match &mut self.motion {
                 Motion::Line { driven, .. } => *driven = true,
                 still => *still = Motion::Still { ticks: 0 },
             }
-            self.step(drive, true, frames);
+            match bow {
+                Some(bow) => self.step_bowed(drive, bow, frames),
+                None => self.step(drive, true, frames),
+            }
         } else {
             self.make_tables();
             match self.motion {
@@ -331,20 +358,20 @@ impl ModeBank {
         [&left[start..end], &(if stereo { right } else { left })[start..end]]
     }
 
-    /// Where mode `m` is and its squared amplitude, at full gain: to look at. Within a tick that is rendered by tables,
-    /// as of its start.
+    /// Displacement and squared amplitude of mode `m`, at full gain, for display. During a tick that is rendered by
+    /// tables, these are the values at the start of the tick.
     pub fn mass(&self, m: usize) -> (f32, f32) {
         let State { x, y } = &self.states[self.current];
         (x.0[m], x.0[m] * x.0[m] + y.0[m] * y.0[m])
     }
 
-    /// Frames that have been heard since the state was as [`ModeBank::mass`] has it.
+    /// Frames rendered since the state that [`ModeBank::mass`] returns.
     pub(super) fn frames_since(&self) -> usize {
         if let Motion::Tabled { handed_out } = self.motion { handed_out } else { 0 }
     }
 
-    /// The sum of the squared amplitudes of the modes; those that have all but stopped are set to rest. To be called at
-    /// control ticks.
+    /// Returns the sum of the squared amplitudes of the modes, and sets modes that have nearly stopped to rest. Must be
+    /// called at control ticks only.
     pub fn settle(&mut self) -> f64 {
         debug_assert!(self.frames_since() == 0);
         let state = &mut self.states[self.current];

@@ -1,10 +1,10 @@
-//! What a bank keeps of its modes: a row of numbers each, so that vectors of modes lie side by side.
+//! The data of a bank: one row of numbers per quantity, so that vectors of modes lie side by side.
 
 use super::MAX_MODES;
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::simd::vector::Vector;
 
-/// A number for each mode.
+/// One number for each mode.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Row(pub(super) [f32; MAX_MODES]);
@@ -13,18 +13,18 @@ impl Row {
     pub(super) const ZERO: Row = Row([0.0; MAX_MODES]);
     pub(super) const ONE: Row = Row([1.0; MAX_MODES]);
 
-    /// The numbers of the modes from `at` on. (A method and not a closure where it is used: closures are not inlined,
-    /// and what is not inlined is compiled without the level's instructions.)
+    /// The numbers of the modes from `at` on. (A method, because closures are not inlined where this is used, and what
+    /// is not inlined is compiled without the level's instructions.)
     #[inline(always)]
     pub(super) fn at<V: Vector>(&self, proof: V::Proof, at: usize) -> V {
         V::load(proof, &self.0[at..])
     }
 }
 
-/// A double-precision number for each mode.
+/// One double-precision number for each mode.
 pub(super) type Wide = [f64; MAX_MODES];
 
-/// Where each mass is: its displacement, and the displacement that it will have a quarter turn ahead.
+/// The state of each mass: its displacement, and the displacement a quarter period later.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
     pub(super) x: Row,
@@ -35,27 +35,32 @@ impl State {
     pub(super) const REST: State = State { x: Row::ZERO, y: Row::ZERO };
 }
 
-/// What the register form reads of each mode: one frame turns the state by `z = r e^(iθ)`.
+/// The data of each mode for stepping: one frame turns the state by `z = r e^(iθ)`.
 ///
-/// What moves has its value at the start of a straight line, and how much it changes a frame: after `i` frames it is
-/// `value + i · step`, rounded once. (Adding the step frame by frame would round each time the same way.)
+/// A moving quantity is stored as its value at the start of a straight line and its change per frame: after `i` frames
+/// it is `value + i · step`, rounded once. (Adding `step` in every frame would add up rounding errors of the same
+/// sign.)
 #[derive(Clone, Debug)]
 pub(super) struct Modes {
-    /// `α = 1 − r cos θ`. The difference from 1, so that no digit of a long decay is lost.
+    /// `α = 1 − r cos θ`: the difference from 1, so that long decays keep all their digits.
     pub(super) alpha: Row,
     /// `β = r sin θ`.
     pub(super) beta: Row,
     pub(super) alpha_step: Row,
     pub(super) beta_step: Row,
-    /// Gains to the left and to the right.
+    /// Output gains, left and right.
     pub(super) left: Row,
     pub(super) right: Row,
     pub(super) left_step: Row,
     pub(super) right_step: Row,
-    /// What a unit of pulse adds to both coordinates, and a unit of noise to `y`.
-    pub(super) pulse_x: Row,
-    pub(super) pulse_y: Row,
+    /// What a unit of push and of pull add to both coordinates, and a unit of noise to `y`.
+    pub(super) push_x: Row,
+    pub(super) push_y: Row,
+    pub(super) pull_x: Row,
+    pub(super) pull_y: Row,
     pub(super) noise: Row,
+    /// How far each mode moves the point under a bow, and is moved by it.
+    pub(super) bow: Row,
 }
 
 impl Modes {
@@ -68,39 +73,42 @@ impl Modes {
         right: Row::ONE,
         left_step: Row::ZERO,
         right_step: Row::ZERO,
-        pulse_x: Row::ZERO,
-        pulse_y: Row::ZERO,
+        push_x: Row::ZERO,
+        push_y: Row::ZERO,
+        pull_x: Row::ZERO,
+        pull_y: Row::ZERO,
         noise: Row::ZERO,
+        bow: Row::ZERO,
     };
 }
 
-/// How much moves while frames are rendered.
+/// What moves while frames are rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Moving {
-    /// Nothing but the masses.
+    /// Only the masses.
     Nothing,
-    /// Pitches: `α` and `β`.
+    /// The pitches as well: `α` and `β`.
     Pitch,
-    /// Pitches and gains, because modes pass the top of the spectrum.
+    /// Pitches and gains, because modes fade at the top of the spectrum.
     PitchAndGain,
 }
 
-/// What the next frames need. Multiplications by 1 and additions of 0 are left out where they can be, which changes
-/// no bit.
+/// Which computations the next frames need. Multiplications by 1 and additions of 0 are left out where possible, which
+/// changes no bit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Form {
     pub(super) moving: Moving,
     pub(super) driven: bool,
-    /// Gains are not all 1.
+    /// Whether the gains are not all 1.
     pub(super) stereo: bool,
-    /// Modes that may be ringing, from the first.
+    /// How many modes, from the first, may be ringing.
     pub(super) live: usize,
-    /// How many, at most [`CONTROL_FRAMES`].
+    /// Number of frames, at most [`CONTROL_FRAMES`].
     pub(super) frames: usize,
-    /// Frames of the line, and how many of them have passed before these.
+    /// Length of the line in frames, and how many of them have been rendered before.
     pub(super) line: usize,
     pub(super) passed: usize,
 }
 
-/// Output of up to a control tick, left and right; the right side is written only in stereo.
+/// Output of up to one control tick, left and right; the right side is written only in stereo.
 pub(super) type Output = [[f32; CONTROL_FRAMES]; 2];

@@ -1,9 +1,9 @@
-//! The register form of a bank: all modes stepped, sample by sample, with their state in registers.
+//! Renders sample by sample: all modes are stepped, with their state in registers.
 //!
 //! A frame turns each mode's state: `x ← x − αx + βy`, `y ← y − αy − βx`, both from the old state. Modes are added up
-//! by lane (`m mod 16`) and then the lanes by halves: that order is frozen. Modes at rest add `+0` and can be left out
-//! without changing a bit. While pitches move, the coefficients are those of the line at the middle of every
-//! [`super::tuning::STAIR`] frames.
+//! by lane (`m mod 16`) and then the lanes by halves: this order is frozen. Modes at rest add `+0`, so leaving them out
+//! changes no bit. While pitches move, the coefficients change every [`super::tuning::STAIR`] frames, to their values
+//! in the middle of these frames.
 
 use super::MAX_MODES;
 use super::rows::{Form, Modes, Moving, Output, Row, State};
@@ -13,20 +13,22 @@ use crate::dsp::exciter::Drive;
 use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::{LANES, Partial, Vector};
 
-/// How much of a [`Drive`] is read: nothing, one force that acts on `y`, or all that there is.
+/// How much of a [`Drive`] is read: nothing, one force that acts on `y`, noise and one force that acts on both
+/// coordinates, or all that there is.
 const FREE: u8 = 0;
 const PUSHED: u8 = 1;
 const DRIVEN: u8 = 2;
+const ALL: u8 = 3;
 
-/// What moves while frames are rendered, as [`Moving`] has it.
+/// What moves while frames are rendered, see [`Moving`].
 const NOTHING: u8 = 0;
 const PITCH: u8 = 1;
 const PITCH_AND_GAIN: u8 = 2;
 
-/// Frames to the right: none but in stereo.
+/// Length of the right output in frames: 0 unless in stereo.
 const STEREO: usize = CONTROL_FRAMES;
 
-/// Steps the live modes through some frames.
+/// Steps the live modes through a number of frames.
 pub(super) struct Step<'a> {
     pub(super) form: Form,
     pub(super) modes: &'a Modes,
@@ -41,8 +43,9 @@ impl Kernel for Step<'_> {
     #[inline(always)]
     fn run<V: Vector>(self, proof: V::Proof) {
         let force = if self.form.driven { self.force() } else { FREE };
-        // Fewer functions than there are cases, for each is compiled for every level.
+        // Fewer functions than cases, because each is compiled for every level.
         match (self.form.moving, force, self.form.stereo) {
+            (_, ALL, _) => self.all::<V, PITCH_AND_GAIN, ALL, STEREO>(proof),
             (Moving::Nothing, FREE, false) => self.all::<V, NOTHING, FREE, 0>(proof),
             (Moving::Nothing, FREE, true) => self.all::<V, NOTHING, FREE, STEREO>(proof),
             (Moving::Nothing, PUSHED, false) => self.all::<V, NOTHING, PUSHED, 0>(proof),
@@ -52,20 +55,23 @@ impl Kernel for Step<'_> {
             (Moving::Pitch, FREE, true) => self.all::<V, PITCH, FREE, STEREO>(proof),
             (Moving::Pitch, PUSHED, _) => self.all::<V, PITCH, PUSHED, STEREO>(proof),
             (Moving::Pitch, ..) => self.all::<V, PITCH, DRIVEN, STEREO>(proof),
-            (Moving::PitchAndGain, ..) => self.all::<V, PITCH_AND_GAIN, DRIVEN, STEREO>(proof),
+            (Moving::PitchAndGain, ..) => self.all::<V, PITCH_AND_GAIN, ALL, STEREO>(proof),
         }
     }
 }
 
 impl Step<'_> {
-    /// How much of the force of these frames has to be read. What is left out would have added zeros.
+    /// How much of the drive must be read for these frames. The rest would only add zeros.
     #[inline(always)]
     fn force(&self) -> u8 {
         let (live, frames) = (self.form.live.min(MAX_MODES), self.form.frames.min(CONTROL_FRAMES));
-        match (is_zero(&self.drive.pulse[..frames]), is_zero(&self.drive.noise[..frames])) {
-            (true, true) => FREE,
-            (true, false) => PUSHED,
-            (false, true) if is_zero(&self.modes.pulse_x.0[..live]) => PUSHED,
+        let Drive { push, pull, noise } = self.drive;
+        let acts = [push, pull, noise].map(|force| !is_zero(&force[..frames]));
+        match acts {
+            [false, false, false] => FREE,
+            [false, false, true] => PUSHED,
+            [true, false, false] if is_zero(&self.modes.push_x.0[..live]) => PUSHED,
+            [true, true, _] => ALL,
             _ => DRIVEN,
         }
     }
@@ -84,7 +90,7 @@ impl Step<'_> {
         }
         let mut lane = 0;
         while lane < live.min(LANES) {
-            // Modes beyond the live ones are at rest: a fourth group of them is stepped along with three.
+            // Modes beyond the live ones are at rest, so three groups may be stepped as four.
             let mut vectors = 1;
             match live.div_ceil(LANES) {
                 1 => run!(1, 1, lane),
@@ -104,7 +110,7 @@ impl Step<'_> {
     }
 }
 
-/// Whether all numbers are zero. Looks at all of them: with vectors that is sooner done than leaving early.
+/// Whether all numbers are zero. Always reads all of them: with vectors this is faster than leaving early.
 #[inline(always)]
 fn is_zero(numbers: &[f32]) -> bool {
     let mut bits = 0;
@@ -114,7 +120,7 @@ fn is_zero(numbers: &[f32]) -> bool {
     bits == 0
 }
 
-/// A number for each of the modes that are stepped together: `N` vectors of each of `G` groups of [`LANES`].
+/// One number for each of the modes that are stepped together: `N` vectors of each of `G` groups of [`LANES`].
 #[inline(always)]
 fn load<V: Vector, const G: usize, const N: usize>(proof: V::Proof, row: &Row, lane: usize) -> [[V; G]; N] {
     let mut vectors = [[V::splat(proof, 0.0); G]; N];
@@ -126,8 +132,8 @@ fn load<V: Vector, const G: usize, const N: usize>(proof: V::Proof, row: &Row, l
     vectors
 }
 
-/// Steps `N` vectors of each of the `G` groups that ring, from a lane on: side by side they fill the time that one step
-/// has to wait for the one before.
+/// Steps `N` vectors of each of the `G` live groups, from `lane` on. They are stepped side by side, because each step
+/// has to wait for the result of the one before.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "a kernel: everything in registers")]
 fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const FORCE: u8, const RIGHT: usize>(
@@ -148,16 +154,23 @@ fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const 
     let (alpha_start, alpha_step, beta_start, beta_step) =
         rows!(modes.alpha, modes.alpha_step, modes.beta, modes.beta_step);
     let (left, left_step, right, right_step) = rows!(modes.left, modes.left_step, modes.right, modes.right_step);
-    let (pulse_x, pulse_y, noise) = rows!(modes.pulse_x, modes.pulse_y, modes.noise);
-    // The one force that acts on y, if there is but one.
-    let by_noise = FORCE == PUSHED && is_zero(&drive.pulse[..frames]);
-    let (force, pushed) = if by_noise { (&drive.noise, noise) } else { (&drive.pulse, pulse_y) };
+    // The one force besides the noise, if there is but one.
+    let is_pushed = !is_zero(&drive.push[..frames]);
+    let (pulse, pulse_x, pulse_y) = if FORCE == DRIVEN && !is_pushed {
+        (&drive.pull, &modes.pull_x, &modes.pull_y)
+    } else {
+        (&drive.push, &modes.push_x, &modes.push_y)
+    };
+    let (pulse_x, pulse_y, noise) = rows!(*pulse_x, *pulse_y, modes.noise);
+    let (pull_x, pull_y) = rows!(modes.pull_x, modes.pull_y);
+    let (force, pushed) = if FORCE == PUSHED && !is_pushed { (&drive.noise, noise) } else { (pulse, pulse_y) };
     let (mut alpha, mut beta) = (alpha_start, beta_start);
     let mut start = 0;
     while start < frames {
         let mut end = frames;
         if MOVING != NOTHING {
-            let (middle, left) = stair(form.passed + start, form.line);
+            // A line of no frames stands still: any place on it is the same.
+            let (middle, left) = stair(form.passed + start, form.line.max(1));
             end = frames.min(start + left);
             let middle = V::splat(proof, middle);
             for n in 0..N {
@@ -174,12 +187,18 @@ fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const 
                     let (mut x_now, mut y_now) = (x[n][g], y[n][g]);
                     if FORCE == PUSHED {
                         y_now = V::splat(proof, force[i]).mul_add(pushed[n][g], y_now);
-                    } else if FORCE == DRIVEN {
-                        let (pulse, burst) = (V::splat(proof, drive.pulse[i]), V::splat(proof, drive.noise[i]));
+                    } else if FORCE == DRIVEN || FORCE == ALL {
+                        let (pulse, burst) = (V::splat(proof, pulse[i]), V::splat(proof, drive.noise[i]));
+                        if FORCE == ALL {
+                            let pull = V::splat(proof, drive.pull[i]);
+                            y_now = pull.mul_add(pull_y[n][g], y_now);
+                            x_now = pull.mul_add(pull_x[n][g], x_now);
+                        }
                         y_now = burst.mul_add(noise[n][g], pulse.mul_add(pulse_y[n][g], y_now));
                         x_now = pulse.mul_add(pulse_x[n][g], x_now);
                     }
-                    // Negated is what changes from frame to frame: a negated coefficient would be kept beside the plain one.
+                    // The values that change every frame are negated: negated coefficients would need registers of
+                    // their own.
                     let (alpha, beta) = (alpha[n][g], beta[n][g]);
                     let (to_x, to_y) = (y_now.mul_add(beta, x_now), x_now.neg_mul_add(beta, y_now));
                     (x_now, y_now) = (x_now.neg_mul_add(alpha, to_x), y_now.neg_mul_add(alpha, to_y));

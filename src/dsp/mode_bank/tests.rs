@@ -1,4 +1,4 @@
-//! The bank as its users see it.
+//! Tests of the bank through its public interface.
 
 use super::*;
 use crate::dsp::mode_bank::tuning::TOP_ANGLE;
@@ -23,7 +23,13 @@ fn bank(modes: &[(f64, f64)]) -> ModeBank {
 
 fn strike() -> Drive {
     let mut drive = Drive::NONE;
-    drive.pulse[0] = 1.0;
+    drive.push[0] = 1.0;
+    drive
+}
+
+fn pluck() -> Drive {
+    let mut drive = Drive::NONE;
+    drive.pull[0] = 1.0;
     drive
 }
 
@@ -37,7 +43,7 @@ fn run(bank: &mut ModeBank, frames: usize, drive: Option<&Drive>) -> Vec<f32> {
     left
 }
 
-/// Moves to a pitch ratio in one control tick.
+/// Renders one control tick in which the pitch moves to `ratio`.
 fn glide(bank: &mut ModeBank, ratio: f64) -> Vec<f32> {
     bank.sweep_to(ratio, CONTROL_FRAMES);
     bank.render(None, CONTROL_FRAMES)[0].to_vec()
@@ -47,9 +53,9 @@ fn amplitude(bank: &mut ModeBank) -> f64 {
     libm::sqrt(bank.settle())
 }
 
-/// The oscillator in double precision is what a mode is: pushed or displaced, at every pitch and decay. (RMS over a
-/// second. Until it has tables, a mode is stepped with coefficients in single precision, whose rounding puts the phase
-/// of a high mode out by some 1e−7 a frame.)
+/// A mode equals the double-precision oscillator, pushed or displaced, at every pitch and decay. (RMS over a second.
+/// Until it has tables, a mode is stepped with single-precision coefficients, whose rounding changes the phase of a
+/// high mode by some 1e−7 per frame.)
 #[test]
 fn one_mode_is_the_oscillator() {
     for frequency in [20.0, 100.0, 440.0, 4000.0, 12_345.6, 20_000.0, 23_000.0] {
@@ -61,7 +67,7 @@ fn one_mode_is_the_oscillator() {
                     bank.set_excitation_gains(0, ExcitationGains { pull: 1.0, ..ExcitationGains::default() });
                     c = Coefficients { x0: 1.0 / c.amplitude(1.0, 0.0), v0: 0.0, ..c };
                 }
-                let rendered = run(&mut bank, 48_000, Some(&strike()));
+                let rendered = run(&mut bank, 48_000, Some(&if pull { pluck() } else { strike() }));
                 let db = error_db(&rendered, &mut [HarmonicOscillator::new(&c)]);
                 let most = if frequency > 10_000.0 { -110.0 } else { -120.0 };
                 assert!(db < most, "{frequency} Hz, {t60} s, pull {pull}: {db:.1} dB");
@@ -70,8 +76,8 @@ fn one_mode_is_the_oscillator() {
     }
 }
 
-/// Many modes are stepped for nine control ticks before they have tables. Meanwhile the rounding of their coefficients
-/// puts the phase of the highest out by some 1e−5.
+/// With many modes, tables are used only after nine control ticks. Until then, the rounding of the coefficients changes
+/// the phase of the highest mode by some 1e−5.
 #[test]
 fn sixty_four_modes_are_as_many_oscillators() {
     let modes: Vec<_> = (0..64).map(|m| (60.0 * libm::pow(1.1, m.into()), 2.0 / f64::from(m + 1))).collect();
@@ -83,18 +89,18 @@ fn sixty_four_modes_are_as_many_oscillators() {
     assert!(db < -120.0, "{db:.1} dB");
 }
 
-/// RMS difference to the sum of masses, of full scale a mass.
+/// RMS difference from the sum of masses, in dB; full scale is one mass of amplitude 1.
 fn error_db(rendered: &[f32], masses: &mut [HarmonicOscillator<f64>]) -> f64 {
     let difference = |sample: &f32| f64::from(*sample) - masses.iter_mut().map(HarmonicOscillator::step).sum::<f64>();
     let squares: f64 = rendered.iter().map(difference).map(|difference| difference * difference).sum();
     10.0 * libm::log10(squares / rendered.len() as f64) - 20.0 * libm::log10(masses.len() as f64)
 }
 
-/// The state changes places every tick that is rendered by tables: neither place may keep what has come to rest.
+/// The two states swap roles after every tick that is rendered by tables. Neither may keep old values of modes at rest.
 #[test]
 fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
     for ticks in 0..4 {
-        // More of them than a vector has lanes.
+        // More modes at rest than a vector has lanes.
         let modes: Vec<_> = (0..64).map(|m| (200.0, if m == 0 { 10.0 } else { 0.02 })).collect();
         let mut bank = bank(&modes);
         let mut drive = Some(strike());
@@ -113,7 +119,7 @@ fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
     }
 }
 
-/// What was loaded before is not heard, however many lanes a vector has.
+/// Modes that were loaded before are not heard, whatever the number of lanes of a vector.
 #[test]
 fn a_bank_that_is_loaded_again_has_forgotten_its_modes() {
     let many: Vec<_> = (0..64).map(|m| (200.0 + 50.0 * f64::from(m), 10.0)).collect();
@@ -131,7 +137,7 @@ fn a_bank_that_is_loaded_again_has_forgotten_its_modes() {
     }
 }
 
-/// Nothing that a caller gets wrong makes a bank grow or hang.
+/// No wrong argument makes a bank grow louder or hang.
 #[test]
 fn odd_requests_are_brought_into_range() {
     let mut bank = bank(&[(1000.0, 1.0)]);
@@ -147,7 +153,7 @@ fn odd_requests_are_brought_into_range() {
     }
 }
 
-/// Modes at rest are left out of a sweep: struck in the midst of one, they must not sound where they fell asleep.
+/// Modes at rest are left out of a sweep. When struck in the middle of one, they must sound at its present pitch.
 #[test]
 fn a_mode_that_wakes_is_where_the_sweep_is() {
     let modes: Vec<_> = (0..64).map(|m| (200.0, if m == 0 { 10.0 } else { 0.02 })).collect();
@@ -160,10 +166,10 @@ fn a_mode_that_wakes_is_where_the_sweep_is() {
     assert_eq!(bank.live, LANES);
     bank.sweep_to(3.0, CONTROL_FRAMES);
     bank.render(None, 16);
-    // An event: every voice sets out anew from its frame.
+    // As for an event: every voice starts a new line at its frame.
     bank.sweep_to(3.0, 16);
     bank.render(Some(&strike()), 16);
-    // Those of the first group have been awake all the time.
+    // The modes of the first group have not been at rest.
     let Modes { beta, beta_step, .. } = &bank.modes;
     let beta: Vec<_> = beta.0.iter().zip(&beta_step.0).map(|(start, step)| start + 16.0 * step).collect();
     assert!(beta[1..].iter().all(|mode| (mode / beta[1] - 1.0).abs() < 1e-6), "{beta:?}");
@@ -181,8 +187,40 @@ fn a_pull_and_a_push_give_the_same_amplitude() {
     for frequency in [50.0, 5000.0, 20_000.0] {
         let mut pulled = bank(&[(frequency, 1.0)]);
         pulled.set_excitation_gains(0, ExcitationGains { pull: 1.0, ..ExcitationGains::default() });
-        run(&mut pulled, 1, Some(&strike()));
+        run(&mut pulled, 1, Some(&pluck()));
         assert!((pulled.settle() - 1.0).abs() < 1e-3, "{frequency}: {}", pulled.settle());
+    }
+}
+
+/// Each force alone goes through a form of the kernel that reads no other: the state must be that of the form that reads
+/// all, to the bit, where the others are zero but for a force that no mode feels.
+#[test]
+fn a_force_alone_gives_the_bits_of_the_form_that_reads_all() {
+    let modes: Vec<_> = (0..40).map(|m| (90.0 * f64::from(m + 1), 0.7)).collect();
+    for phase in [0.0, 0.8] {
+        for alone in 0..3 {
+            let mut found = [vec![], vec![]];
+            for (all, found) in [false, true].into_iter().zip(&mut found) {
+                let mut bank = bank(&modes);
+                let gains = [0, 1, 2].map(|force| if force == alone { 0.5 } else { 0.0 });
+                let [push, pull, noise] = gains;
+                (0..bank.len())
+                    .for_each(|m| bank.set_excitation_gains(m, ExcitationGains { push, pull, noise, phase }));
+                let mut drive = Drive::NONE;
+                let Drive { push, pull, noise } = &mut drive;
+                for (force, row) in [push, pull, noise].into_iter().enumerate() {
+                    if all || force == alone {
+                        row[..9].copy_from_slice(&[0.3, -0.1, 0.7, 0.0, 0.2, 0.01, 0.5, -0.6, 0.11]);
+                    }
+                }
+                bank.sweep_to(1.01, CONTROL_FRAMES);
+                let mut left = bank.render(Some(&drive), CONTROL_FRAMES)[0].to_vec();
+                left.extend(run(&mut bank, 64, Some(&drive)));
+                *found = left;
+            }
+            assert!(found[0].iter().any(|sample| *sample != 0.0));
+            assert!(found[0] == found[1], "force {alone} at phase {phase}");
+        }
     }
 }
 
@@ -213,7 +251,7 @@ fn decay_does_not_depend_on_the_movement_of_the_pitch() {
     }
 }
 
-/// Jumps to anywhere at any time, with changes of damping: the amplitude only falls.
+/// Jumps to any pitch at any time, with changes of damping: the amplitude only falls.
 #[test]
 fn nothing_but_a_strike_adds_energy() {
     let stream = key(23, 0);
@@ -224,18 +262,18 @@ fn nothing_but_a_strike_adds_energy() {
         let mut bank = bank_at(rate, &[(between(1, 8.0, 0.7 * rate), between(2, 0.005, 60.0))]);
         bank.jump_to(between(3, 0.01, 100.0));
         run(&mut bank, CONTROL_FRAMES, Some(&strike()));
-        // What would be left, had the pitch stood still.
+        // The energy that would be left if the pitch had not moved.
         let mut due = 1.0;
         for n in 0..100 {
             if unit(10_000 * case + 10 * n + 9) < 0.2 {
                 bank.set_t60(0, between(10 * n + 8, 0.001, 60.0));
             }
             let frames = 1 + (unit(10_000 * case + 10 * n + 7) * 31.0) as usize;
-            // As events do: lines of any length, most of them broken off.
+            // As events do: lines of any length, most of them interrupted.
             let line = frames + (unit(10_000 * case + 10 * n + 5) * (CONTROL_FRAMES - frames) as f64) as usize;
             bank.sweep_to(between(10 * n + 6, 0.01, 100.0), line);
             let peak = bank.render(None, frames)[0].iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
-            // By rounding, a mode that hardly decays can gain 1e−7 a frame.
+            // Through rounding, a mode that hardly decays can gain 1e−7 per frame.
             let rounding = 1.0 + 4e-7 * (32 + 32 * n) as f64;
             assert!(f64::from(peak * peak) <= due * rounding + 1e-30, "{case}, {n}: {peak}, {due}");
             due *= libm::exp(2.0 * bank.ln_radius[0] * frames as f64);
@@ -288,7 +326,7 @@ fn a_strike_above_the_spectrum_is_heard_when_the_sweep_comes_down() {
     assert!((heard - 1.0).abs() < 0.02, "{heard}");
 }
 
-/// The fade at the top of the spectrum moves in straight lines and ends where it belongs, in mono and in stereo.
+/// The fade at the top of the spectrum moves in straight lines to the right value, in mono and in stereo.
 #[test]
 fn modes_fade_at_the_top_of_the_spectrum() {
     for right in [1.0, 0.5] {
@@ -319,7 +357,7 @@ fn retuning_is_continuous_and_reaches_every_pitch() {
         let mut kept = bank.clone();
         bank.retune([(to, 60.0), (to * 5.0, 60.0)].into_iter());
         let after = glide(&mut bank, from / to);
-        // The same pitch by other coefficients: the same samples.
+        // The same pitch from other coefficients must give the same samples.
         let expected = run(&mut kept, 32, None);
         let worst = after.iter().zip(&expected).fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs()));
         assert!(worst < 2e-3, "{from} to {to}: {worst} after {}", before[3216]);
@@ -329,7 +367,7 @@ fn retuning_is_continuous_and_reaches_every_pitch() {
     }
 }
 
-/// A damper changes the decay from its frame on and nothing else: neither pitch nor displacement.
+/// A damper changes the decay from its frame on, but neither pitch nor displacement.
 #[test]
 fn a_damper_acts_at_once() {
     let (mut ringing, mut damped) = (bank(&[(1000.0, 10.0)]), bank(&[(1000.0, 10.0)]));
@@ -347,7 +385,7 @@ fn a_damper_acts_at_once() {
     }
 }
 
-/// Random coefficients as the bank rounds them, over everything that can be asked for: none grows by more than rounding.
+/// Random coefficients as the bank rounds them, over the whole parameter range: none grows by more than rounding.
 #[test]
 fn random_parameter_sets_are_stable() {
     let stream = key(5, 0);

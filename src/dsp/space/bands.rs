@@ -1,5 +1,6 @@
 //! How much energy a body may hold, by bands of frequency: a bound in closed form, from what went in.
 
+use super::decay::height_of_way;
 use super::kernel::FRAMES;
 use crate::dsp::mode_bank::tail::Energies;
 use libm::{exp, exp2, sqrt};
@@ -12,8 +13,12 @@ pub(super) const BANDS: usize = 32;
 #[derive(Clone, Debug)]
 pub(super) struct Band {
     blocks: Range<usize>,
+    /// Where its lowest and its highest mode lie between low and high frequencies, at the body's own pitch.
+    ways: [f32; 2],
     /// Least and greatest height of its modes, by which their decay goes.
     heights: [f64; 2],
+    /// Whether any of its modes can be heard at the pitch that the body has.
+    is_heard: bool,
     /// Root of the number of its modes, and of the summed squared gains of the louder pick-up.
     drive: f64,
     pick_up: f64,
@@ -28,13 +33,14 @@ pub(super) struct Band {
 }
 
 impl Band {
-    /// A band at rest. Follow with [`Bands::damp`].
+    /// A band at rest. Follow with [`Bands::tune`] and [`Bands::damp`].
     ///
-    /// `heights`: of its lowest and highest mode; `gains`: the sum of the squared gains to the left and to the right.
-    pub(super) fn new(blocks: Range<usize>, heights: [f64; 2], modes: usize, gains: [f64; 2]) -> Self {
+    /// `ways`: of its lowest and highest mode; `gains`: the sum of the squared gains to the left and to the right.
+    pub(super) fn new(blocks: Range<usize>, ways: [f32; 2], modes: usize, gains: [f64; 2]) -> Self {
         let [left, right] = gains;
         let (drive, pick_up, power) = (sqrt(modes as f64), sqrt(left.max(right)), 0.5 * (left + right));
-        Self { blocks, heights, drive, pick_up, power, ln_radius: 0.0, per_tick: 1.0, amplitude: 0.0 }
+        let (heights, is_heard) = ([0.0; 2], false);
+        Self { blocks, ways, heights, is_heard, drive, pick_up, power, ln_radius: 0.0, per_tick: 1.0, amplitude: 0.0 }
     }
 }
 
@@ -52,8 +58,34 @@ pub(super) struct Bands {
 const ROUNDING: f64 = 1.001;
 
 impl Bands {
-    pub(super) fn new(bands: Vec<Band>) -> Self {
-        Self { bands }
+    /// None, with room for all.
+    pub(super) fn new() -> Self {
+        Self { bands: Vec::with_capacity(BANDS) }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.bands.clear();
+    }
+
+    /// Adds the next, of higher frequencies than those before.
+    pub(super) fn push(&mut self, band: Band) {
+        self.bands.push(band);
+    }
+
+    /// Takes over a pitch that adds `shift` to the ways of all modes, and of which only the first `blocks` are heard.
+    /// Follow with [`Bands::damp`]. Real-time safe.
+    pub(super) fn tune(&mut self, shift: f32, blocks: usize) {
+        for band in &mut self.bands {
+            band.heights = band.ways.map(|way| height_of_way(way + shift).into());
+            band.is_heard = band.blocks.start < blocks;
+            if !band.is_heard {
+                band.amplitude = 0.0;
+            }
+        }
+    }
+
+    fn heard(&self) -> impl Iterator<Item = &Band> {
+        self.bands.iter().filter(|band| band.is_heard)
     }
 
     pub(super) fn len(&self) -> usize {
@@ -85,13 +117,13 @@ impl Bands {
             let height = 0.5 * (band.heights[0] + band.heights[1]);
             band.power / (4.0 * exp2(low + span * height))
         };
-        let sum: f64 = self.bands.iter().map(energy).sum();
+        let sum: f64 = self.heard().map(energy).sum();
         if sum > 0.0 { 1.0 / sqrt(sum) } else { 0.0 }
     }
 
     /// A control tick has passed, and with it input whose magnitudes add up to `input`.
     pub(super) fn tick(&mut self, input: f64) {
-        for band in &mut self.bands {
+        for band in self.bands.iter_mut().filter(|band| band.is_heard) {
             band.amplitude = band.amplitude * band.per_tick + input * band.drive;
         }
     }
@@ -108,13 +140,13 @@ impl Bands {
 
     /// At most what either pick-up hears, once input whose magnitudes add up to `input` has come as well.
     pub(super) fn peak(&self, input: f64) -> f64 {
-        self.bands.iter().map(|band| band.pick_up * (band.amplitude + input * band.drive)).sum()
+        self.heard().map(|band| band.pick_up * (band.amplitude + input * band.drive)).sum()
     }
 
     /// At most how many frames it takes until that has fallen to `peak`. An exponential a band for each of some five steps.
     pub(super) fn frames_until(&self, peak: f64, input: f64) -> u64 {
         let mut amplitudes = Energies::<BANDS>::NONE;
-        for band in &self.bands {
+        for band in self.heard() {
             amplitudes.add(band.pick_up * (band.amplitude + input * band.drive), band.ln_radius);
         }
         amplitudes.frames_until(peak)

@@ -24,7 +24,7 @@ impl Decay {
     /// T60 in seconds at a frequency in Hz.
     pub fn t60_at(&self, frequency: f64) -> f64 {
         let Self { low, high } = self.clamped();
-        exp2(log2(low) + height(frequency) * log2(high / low))
+        exp2(log2(low) + f64::from(height_of_way(way(frequency) as f32)) * log2(high / low))
     }
 
     /// Within what a body can do; what is not a number is short.
@@ -42,9 +42,21 @@ impl Decay {
     }
 }
 
-/// Where between low and high a frequency is: 0 to 1.
-pub(super) fn height(frequency: f64) -> f64 {
-    let way = log2(frequency / Decay::LOW_FREQUENCY) / log2(Decay::HIGH_FREQUENCY / Decay::LOW_FREQUENCY);
+/// Where between low and high frequencies one lies, by its logarithm: 0 to 1, and beyond where it is beyond.
+pub(super) fn way(frequency: f64) -> f64 {
+    log2(frequency / Decay::LOW_FREQUENCY) / OCTAVES
+}
+
+/// What a ratio of frequencies adds to the way.
+pub(super) fn shift(ratio: f64) -> f64 {
+    log2(ratio) / OCTAVES
+}
+
+/// Octaves from low to high frequencies.
+const OCTAVES: f64 = 5.0;
+
+/// Where between the decay of low and that of high frequencies a way is: 0 to 1.
+pub(super) fn height_of_way(way: f32) -> f32 {
     let way = way.clamp(0.0, 1.0);
     way * way * (3.0 - 2.0 * way)
 }
@@ -57,6 +69,7 @@ mod tests {
     fn the_ends_are_as_asked() {
         let decay = Decay { low: 4.0, high: 1.0 };
         assert!((decay.t60_at(100.0) - 4.0).abs() < 1e-12 && (decay.t60_at(9000.0) - 1.0).abs() < 1e-12);
+        assert_eq!(Decay::HIGH_FREQUENCY, Decay::LOW_FREQUENCY * exp2(OCTAVES));
         assert!((decay.t60_at(1131.37) - 2.0).abs() < 1e-5, "the geometric mean halfway");
         let wild = Decay { low: f64::NAN, high: f64::INFINITY };
         assert_eq!([wild.t60_at(100.0), wild.t60_at(9000.0)], Decay::RANGE.map(|t60| exp2(log2(t60))));

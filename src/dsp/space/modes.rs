@@ -1,5 +1,7 @@
 //! What a resonant body is to a reverb: its modes, each with a frequency and its share in the drive and the pick-ups.
 
+use super::decay::way;
+
 /// Most modes that a body keeps. A body with more keeps its lowest.
 pub const MAX_MODES: usize = 16_384;
 
@@ -22,6 +24,8 @@ pub struct BodyMode {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeSet {
     modes: Vec<BodyMode>,
+    /// Where each lies between low and high frequencies.
+    ways: Vec<f32>,
 }
 
 impl ModeSet {
@@ -35,12 +39,18 @@ impl ModeSet {
         // A stable sort: modes of one frequency keep the order in which the body names them, on every machine.
         modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
         modes.truncate(MAX_MODES);
-        Self { modes }
+        let ways = modes.iter().map(|mode| way(mode.frequency) as f32).collect();
+        Self { modes, ways }
     }
 
     /// The modes, lowest first.
     pub fn modes(&self) -> &[BodyMode] {
         &self.modes
+    }
+
+    /// Where each mode lies between low and high frequencies.
+    pub(super) fn ways(&self) -> &[f32] {
+        &self.ways
     }
 
     /// Number of modes.

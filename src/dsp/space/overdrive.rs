@@ -128,15 +128,38 @@ impl Overdrive {
         self.blend.rests_at(0.0) || self.silent_frames >= self.forget_frames
     }
 
-    /// At most how many frames of silence it takes until that is so.
+    /// At most how many frames of silence it takes until that is so, and nothing moves.
     pub fn tail_frames(&self) -> u64 {
-        if self.is_silent() { 0 } else { self.forget_frames - self.silent_frames }
+        let filters = if self.is_silent() { 0 } else { self.forget_frames - self.silent_frames };
+        filters.max(self.hardness.frames_left().max(self.blend.frames_left()).into())
+    }
+
+    /// The same after input that has yet to come.
+    pub fn tail_frames_after(&self) -> u64 {
+        if self.is_off() { 0 } else { self.forget_frames.max(self.tail_frames()) }
+    }
+
+    /// Greatest magnitude of what comes out from now on, but for what the filters overshoot, if what comes in has at most
+    /// `peak`.
+    pub fn peak_after(&self, peak: f64) -> f64 {
+        let hardness = f64::from(self.hardness.after(0).max(self.hardness.target()));
+        peak * sqrt(1.0 + hardness * hardness)
+    }
+
+    /// Whether it touches nothing.
+    pub fn is_off(&self) -> bool {
+        self.blend.rests_at(0.0) && !self.hardness.is_moving()
+    }
+
+    /// Whether silence that comes in changes nothing.
+    pub fn is_idle(&self) -> bool {
+        self.is_silent() && !self.blend.is_moving() && !self.hardness.is_moving()
     }
 
     /// Changes `left` and `right`, up to the length of the shorter.
     pub fn process(&mut self, left: &mut [f32], right: &mut [f32]) {
         for (left, right) in left.iter_mut().zip(right) {
-            if self.blend.rests_at(0.0) && !self.hardness.is_moving() {
+            if self.is_off() {
                 return;
             }
             let (hardness, blend) = (self.hardness.after(0), self.blend.after(0));

@@ -1,13 +1,14 @@
 //! A resonant body at work: all of its masses, driven by every sample and heard by two pick-ups.
 
 use super::bands::{BANDS, Band, Bands};
-use super::decay::{Decay, height};
+use super::decay::{Decay, shift};
 use super::kernel::{Block, Damp, FRAMES, GROUP, Measure, Output, Step, Turn};
-use super::modes::{BodyMode, ModeSet};
+use super::modes::ModeSet;
 use crate::dsp::coefficients::angle_from_frequency;
 use crate::dsp::simd::vector::LANES;
 use crate::dsp::simd::{Instructions, Level};
-use libm::{cos, floor, log2, sin};
+use libm::{floor, log2};
+use std::f64::consts::PI;
 
 /// Modes nearer to half the sample rate than this share of it are left out.
 const TOP: f64 = 0.98;
@@ -15,17 +16,24 @@ const TOP: f64 = 0.98;
 /// Blocks that a control tick gives another decay: 1,024 masses, in about a microsecond.
 const DAMPED_PER_TICK: usize = 64;
 
+/// Least and greatest pitch of a body against its own.
+const PITCHES: [f64; 2] = [1.0 / 64.0, 64.0];
+
 /// A body whose every mode is a mass on a spring. Making and dropping one (de)allocates: not for the audio thread, but for
 /// all else it is made to be used there. See [`super::ModalReverb`], which plays it.
 ///
 /// **Passive.** A frame turns each mass and shrinks it; only input adds to it. So without input the energy falls with every
-/// frame whatever happens to the decay; and its root never rises by more than the input's magnitude times the root of the
-/// number of masses. (A mass's amplitude counts in units of what a sample of 1 gives it.)
+/// frame whatever happens to pitch and decay; and its root never rises by more than the input's magnitude times the root of
+/// the number of masses. (A mass's amplitude counts in units of what a sample of 1 gives it.)
 #[derive(Clone, Debug)]
 pub struct Resonator {
     instructions: Instructions,
     sample_rate: f64,
+    /// The frequencies are so many times those of the modes.
+    pitch: f64,
+    /// How many masses are heard at this pitch, and the groups' blocks that they are in.
     len: usize,
+    heard: usize,
     blocks: Vec<Block>,
     turns: Vec<Turn>,
     bands: Bands,
@@ -41,49 +49,109 @@ pub struct Resonator {
 }
 
 impl Resonator {
-    /// A body at rest. Modes above 98 % of half the sample rate are left out.
+    /// A body at rest. Modes above 98 % of half the sample rate are silent.
     pub fn new(modes: &ModeSet, decay: Decay, sample_rate: f64) -> Self {
-        let top = 0.5 * TOP * sample_rate;
-        let modes: Vec<_> = modes.modes().iter().filter(|mode| mode.frequency < top).copied().collect();
-        let groups = modes.len().div_ceil(GROUP * LANES);
-        let (mut blocks, mut turns) = (vec![Block::REST; groups * GROUP], vec![Turn::NONE; groups * GROUP]);
-        for (m, mode) in modes.iter().enumerate() {
-            let (block, turn, lane) = (&mut blocks[m / LANES], &mut turns[m / LANES], m % LANES);
-            let angle = angle_from_frequency(mode.frequency, sample_rate);
-            let half_chord = sin(0.5 * angle);
-            block.left[lane] = gain(mode.drive * mode.left);
-            block.right[lane] = gain(mode.drive * mode.right);
-            turn.versine[lane] = (2.0 * half_chord * half_chord) as f32;
-            turn.cosine[lane] = cos(angle) as f32;
-            turn.sine[lane] = sin(angle) as f32;
-            turn.height[lane] = height(mode.frequency) as f32;
-        }
-        let rates = decay.log_rates(sample_rate);
-        let mut body = Self {
-            instructions: Instructions::current(),
-            sample_rate,
-            len: modes.len(),
-            turns,
-            bands: bands(&modes, &blocks),
-            live: 0,
-            blocks,
-            decay,
-            rates: [rates; 2],
-            next_damped: 0,
-            to_damp: 0,
-            out: [[0.0; FRAMES]; 2],
-        };
-        body.damp(0..body.blocks.len());
-        body.bands.damp(body.rates);
+        let mut body = Self::with_room(modes.len(), decay, sample_rate);
+        body.load(modes);
         body
     }
 
-    /// Number of masses.
+    /// A body without masses, with room for so many.
+    pub fn with_room(masses: usize, decay: Decay, sample_rate: f64) -> Self {
+        let blocks = blocks_of(masses);
+        Self {
+            instructions: Instructions::current(),
+            sample_rate,
+            pitch: 1.0,
+            len: 0,
+            heard: 0,
+            blocks: Vec::with_capacity(blocks),
+            turns: Vec::with_capacity(blocks),
+            bands: Bands::new(),
+            live: 0,
+            decay,
+            rates: [decay.log_rates(sample_rate); 2],
+            next_damped: 0,
+            to_damp: 0,
+            out: [[0.0; FRAMES]; 2],
+        }
+    }
+
+    /// Becomes the body of other modes, at rest and at the same pitch. Real-time safe if it has had room for as many;
+    /// some 100 µs for 13,000.
+    pub(super) fn load(&mut self, modes: &ModeSet) {
+        let count = blocks_of(modes.len());
+        self.blocks.clear();
+        self.turns.clear();
+        self.blocks.resize(count, Block::REST);
+        self.turns.resize(count, Turn::NONE);
+        for (m, (mode, way)) in modes.modes().iter().zip(modes.ways()).enumerate() {
+            let (block, turn, lane) = (&mut self.blocks[m / LANES], &mut self.turns[m / LANES], m % LANES);
+            block.left[lane] = gain(mode.drive * mode.left);
+            block.right[lane] = gain(mode.drive * mode.right);
+            turn.angle[lane] = angle_from_frequency(mode.frequency, self.sample_rate) as f32;
+            turn.way[lane] = *way;
+        }
+        self.live = 0;
+        self.find_bands(modes);
+        self.tune(self.pitch);
+    }
+
+    /// Sends all masses to frequencies of so many times those of the body's modes. Real-time safe; some 100 µs for 13,000.
+    pub(super) fn tune(&mut self, pitch: f64) {
+        let [least, greatest] = PITCHES;
+        self.pitch = if pitch.is_nan() { 1.0 } else { pitch.clamp(least, greatest) };
+        let (pitch, highest, shift) = (self.pitch, PI * TOP, shift(self.pitch) as f32);
+        // By ascending frequency.
+        let is_heard = |angle: f32| f64::from(angle) * pitch < highest;
+        let whole = self.turns.partition_point(|turn| is_heard(turn.angle[LANES - 1]));
+        let rest = self.turns.get(whole).map_or(0, |turn| turn.angle.partition_point(|angle| is_heard(*angle)));
+        self.len = whole * LANES + rest;
+        self.heard = blocks_of(self.len);
+        for turn in &mut self.turns[..self.heard] {
+            turn.tune(pitch, shift, highest);
+        }
+        // What is too high to be heard has no motion that could come back.
+        let live = self.live.min(self.heard);
+        rest_all(&mut self.blocks[live..self.live]);
+        self.live = live;
+        self.bands.tune(shift, self.heard);
+        self.damp_all();
+    }
+
+    /// Finds the bands of the modes, which lie in the blocks.
+    fn find_bands(&mut self, modes: &ModeSet) {
+        self.bands.clear();
+        let (blocks, modes, ways) = (&self.blocks, modes.modes(), modes.ways());
+        let of_block = |block: usize| {
+            // Blocks that only fill up the last group belong to the last band.
+            let first = block.min((modes.len() - 1) / LANES) * LANES;
+            let frequency = modes[first].frequency;
+            floor((3.0 * log2(frequency / 31.25)).clamp(0.0, (BANDS - 1) as f64)) as usize
+        };
+        let mut start = 0;
+        while start < blocks.len() {
+            let band = of_block(start);
+            let end = (start..blocks.len()).find(|block| of_block(*block) != band).unwrap_or(blocks.len());
+            let members = start * LANES..(end * LANES).min(modes.len()).max(start * LANES);
+            let sum = |side: fn(&Block) -> &[f32; LANES]| -> f64 {
+                let gains = blocks[start..end].iter().flat_map(|block| side(block).iter());
+                gains.map(|gain| f64::from(*gain) * f64::from(*gain)).sum()
+            };
+            let gains = [sum(|block| &block.left), sum(|block| &block.right)];
+            let ways = &ways[members.clone()];
+            let edges = [ways.first(), ways.last()].map(|way| way.copied().unwrap_or(0.0));
+            self.bands.push(Band::new(start..end, edges, members.len(), gains));
+            start = end;
+        }
+    }
+
+    /// Number of masses that are heard.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether it has none, and so is never heard.
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -126,7 +194,7 @@ impl Resonator {
                 [low, high - low]
             }
         };
-        (self.decay, self.rates, self.to_damp) = (decay, [rates, slowest], self.blocks.len());
+        (self.decay, self.rates, self.to_damp) = (decay, [rates, slowest], self.heard);
         self.bands.damp(self.rates);
     }
 
@@ -134,6 +202,13 @@ impl Resonator {
         let [low, span] = self.rates[0].map(|rate| rate as f32);
         let (blocks, turns) = (&mut self.blocks[range.clone()], &self.turns[range]);
         self.instructions.run(Damp { blocks, turns, low, span });
+    }
+
+    /// Sends all masses to the decay that they are to have, at once.
+    fn damp_all(&mut self) {
+        self.damp(0..self.heard);
+        (self.to_damp, self.next_damped, self.rates[1]) = (0, 0, self.rates[0]);
+        self.bands.damp(self.rates);
     }
 
     /// Gain by which white noise comes out as loud as it went in.
@@ -145,10 +220,10 @@ impl Resonator {
     pub(super) fn tick(&mut self, input: f64) {
         self.bands.tick(input);
         if self.to_damp > 0 {
-            let end = self.blocks.len().min(self.next_damped + DAMPED_PER_TICK.min(self.to_damp));
+            let end = self.heard.min(self.next_damped + DAMPED_PER_TICK.min(self.to_damp));
             self.damp(self.next_damped..end);
             self.to_damp -= end - self.next_damped;
-            self.next_damped = end % self.blocks.len();
+            self.next_damped = end % self.heard;
             if self.to_damp == 0 {
                 self.rates[1] = self.rates[0];
                 self.bands.damp(self.rates);
@@ -178,7 +253,7 @@ impl Resonator {
     pub(super) fn render(&mut self, input: &[f32]) -> &Output {
         let driven = input.iter().any(|sample| *sample != 0.0);
         if driven {
-            self.live = self.blocks.len();
+            self.live = self.heard;
         }
         let Self { blocks, live, out, .. } = self;
         self.instructions.run(Step { blocks: &mut blocks[..*live], input, driven, out });
@@ -197,9 +272,7 @@ impl Resonator {
 
     /// Sets all masses to rest.
     pub(super) fn reset(&mut self) {
-        for block in &mut self.blocks[..self.live] {
-            (block.x, block.y) = ([0.0; LANES], [0.0; LANES]);
-        }
+        rest_all(&mut self.blocks[..self.live]);
         self.live = 0;
         self.bands.rest();
     }
@@ -207,43 +280,23 @@ impl Resonator {
     /// Sends masses at rest to the decay that they are on their way to, all at once.
     pub(super) fn finish_damping(&mut self) {
         if self.to_damp > 0 {
-            self.damp(0..self.blocks.len());
-            (self.to_damp, self.next_damped, self.rates[1]) = (0, 0, self.rates[0]);
-            self.bands.damp(self.rates);
+            self.damp_all();
         }
+    }
+}
+
+/// Blocks of so many masses: whole groups.
+fn blocks_of(masses: usize) -> usize {
+    masses.div_ceil(GROUP * LANES) * GROUP
+}
+
+fn rest_all(blocks: &mut [Block]) {
+    for block in blocks {
+        (block.x, block.y) = ([0.0; LANES], [0.0; LANES]);
     }
 }
 
 /// A gain in single precision; next to a node, none: products with it would leave the normal numbers.
 fn gain(value: f64) -> f32 {
     if value.abs() < 1e-9 { 0.0 } else { value.clamp(-1e6, 1e6) as f32 }
-}
-
-/// The bands of a body.
-fn bands(modes: &[BodyMode], blocks: &[Block]) -> Bands {
-    let of_block = |block: usize| {
-        // Blocks that only fill up the last group belong to the last band.
-        let first = block.min((modes.len() - 1) / LANES) * LANES;
-        let frequency = modes[first].frequency;
-        floor((3.0 * log2(frequency / 31.25)).clamp(0.0, (BANDS - 1) as f64)) as usize
-    };
-    let mut bands = Vec::new();
-    let mut start = 0;
-    while start < blocks.len() {
-        let band = of_block(start);
-        let end = (start..blocks.len()).find(|block| of_block(*block) != band).unwrap_or(blocks.len());
-        let members = &modes[start * LANES..(end * LANES).min(modes.len()).max(start * LANES)];
-        let of_rows = |norm: &dyn Fn(&Block, usize) -> f64| -> f64 {
-            let all = blocks[start..end].iter().flat_map(|block| (0..LANES).map(move |lane| (block, lane)));
-            all.map(|(block, lane)| norm(block, lane)).sum()
-        };
-        let square = |value: f32| f64::from(value) * f64::from(value);
-        let left = of_rows(&|block, lane| square(block.left[lane]));
-        let right = of_rows(&|block, lane| square(block.right[lane]));
-        let edge = |mode: Option<&BodyMode>| mode.map_or(0.0, |mode| height(mode.frequency));
-        let heights = [edge(members.first()), edge(members.last())];
-        bands.push(Band::new(start..end, heights, members.len(), [left, right]));
-        start = end;
-    }
-    Bands::new(bands)
 }

@@ -49,6 +49,11 @@ impl Smoothed {
         self.left
     }
 
+    /// Frames that it takes from one value to another.
+    pub(super) fn frames(&self) -> u32 {
+        self.frames
+    }
+
     /// Whether it rests at `value`.
     pub(super) fn rests_at(&self, value: f32) -> bool {
         self.left == 0 && self.target == value

@@ -86,12 +86,45 @@ impl Tone {
         self.shelves.iter().all(|shelf| shelf.state == [0.0; 2])
     }
 
-    /// At most how many frames of silence it takes until that is so.
+    /// At most how many frames of silence it takes until that is so, and nothing moves.
     pub fn tail_frames(&self) -> u64 {
-        if self.is_silent() {
-            0
-        } else {
-            self.forget_frames().saturating_sub(self.silent_frames) + CONTROL_FRAMES as u64
+        if self.is_idle() {
+            return 0;
+        }
+        let moving = self.shelves.iter().map(|shelf| shelf.decibels.frames_left()).max().unwrap_or(0).into();
+        self.forget_frames().saturating_sub(self.silent_frames).max(moving) + 3 * CONTROL_FRAMES as u64
+    }
+
+    /// The same after input that has yet to come.
+    pub fn tail_frames_after(&self) -> u64 {
+        if self.is_off() { 0 } else { self.forget_frames() + 3 * CONTROL_FRAMES as u64 }
+    }
+
+    /// Greatest magnitude of what comes out from now on, if what comes in has at most `peak`: a shelf adds at most what its
+    /// one-pole filter lets through, which is no louder than what comes in.
+    pub fn peak_after(&self, peak: f64) -> f64 {
+        self.shelves.iter().fold(peak, |peak, shelf| {
+            let decibels = f64::from(shelf.decibels.after(0).max(shelf.decibels.target()));
+            peak * (1.0 + 2.0 * (exp(decibels * LN_10 / 20.0) - 1.0).abs().max(1.0))
+        })
+    }
+
+    /// Whether it touches nothing.
+    pub fn is_off(&self) -> bool {
+        self.is_flat() && self.ticks.is_due()
+    }
+
+    /// Whether silence that comes in changes nothing but the time: [`Tone::skip`] does the same.
+    pub fn is_idle(&self) -> bool {
+        let moves = self.shelves.iter().any(|shelf| shelf.decibels.is_moving() || shelf.amount[0] != shelf.amount[1]);
+        self.is_off() || !moves && self.is_silent()
+    }
+
+    /// Lets frames of silence pass while it is idle.
+    pub fn skip(&mut self, frames: usize) {
+        if !self.is_off() {
+            self.ticks.advance(frames);
+            self.passed = (self.passed + frames) % CONTROL_FRAMES;
         }
     }
 

@@ -27,8 +27,9 @@ pub struct Tremolo {
     rate: f64,
     depth: Smoothed,
     stereo_phase: Smoothed,
-    /// Turns of the motor, 0 to 1.
-    phase: f64,
+    /// Turns of the motor when its rate was last set, and control ticks since then.
+    start: f64,
+    turned: u64,
     /// Gains at the last control tick and at the next, of both sides.
     gains: [[f32; 2]; 2],
     /// Frames since the last control tick.
@@ -44,7 +45,8 @@ impl Tremolo {
             rate: 5.0,
             depth: Smoothed::new(0.0, sample_rate),
             stereo_phase: Smoothed::new(0.0, sample_rate),
-            phase: 0.0,
+            start: 0.0,
+            turned: 0,
             gains: [[1.0; 2]; 2],
             passed: 0,
         }
@@ -52,7 +54,8 @@ impl Tremolo {
 
     /// Turns a second, from 0 to 20, from the next control tick on.
     pub fn set_rate(&mut self, rate: f64) {
-        if !rate.is_nan() {
+        if !rate.is_nan() && rate.clamp(0.0, 20.0) != self.rate {
+            (self.start, self.turned) = (self.phase(), 0);
             self.rate = rate.clamp(0.0, 20.0);
         }
     }
@@ -71,8 +74,48 @@ impl Tremolo {
     pub fn reset(&mut self) {
         self.depth.jump(self.depth.target());
         self.stereo_phase.jump(self.stereo_phase.target());
-        (self.ticks, self.phase, self.passed) = (Ticks::default(), 0.0, 0);
+        (self.ticks, self.start, self.turned, self.passed) = (Ticks::default(), 0.0, 0, 0);
         self.gains = [self.gains_at(0.0, 0); 2];
+    }
+
+    /// Turns of the motor at the next control tick, 0 to 1.
+    fn phase(&self) -> f64 {
+        let turns = self.start + self.turned as f64 * (self.rate * CONTROL_FRAMES as f64 / self.sample_rate);
+        turns - libm::floor(turns)
+    }
+
+    /// Whether it touches nothing.
+    pub fn is_off(&self) -> bool {
+        self.depth.rests_at(0.0) && self.gains[1] == [1.0; 2] && self.ticks.is_due()
+    }
+
+    /// Whether silence that comes in changes nothing but the time: [`Tremolo::skip`] does the same.
+    pub fn is_idle(&self) -> bool {
+        self.is_off() || self.tail_frames() == 0 && self.gains[1] == self.gains_at(self.phase(), 0)
+    }
+
+    /// Frames until depth and phase are where they are to be.
+    pub fn tail_frames(&self) -> u64 {
+        self.depth.frames_left().max(self.stereo_phase.frames_left()).into()
+    }
+
+    /// Lets frames of silence pass while it is idle: the motor goes on.
+    pub fn skip(&mut self, frames: usize) {
+        if self.is_off() {
+            return;
+        }
+        let to_tick = if self.ticks.is_due() { 0 } else { CONTROL_FRAMES - self.passed };
+        self.ticks.advance(frames);
+        if frames <= to_tick {
+            self.passed += frames;
+            return;
+        }
+        let ticks = (frames - to_tick).div_ceil(CONTROL_FRAMES);
+        self.passed = frames - to_tick - (ticks - 1) * CONTROL_FRAMES;
+        self.turned += ticks as u64 - 1;
+        let before = self.gains_at(self.phase(), 0);
+        self.turned += 1;
+        self.gains = [before, self.gains_at(self.phase(), 0)];
     }
 
     fn gains_at(&self, phase: f64, frames: usize) -> [f32; 2] {
@@ -87,12 +130,11 @@ impl Tremolo {
         let mut start = 0;
         while start < frames {
             if self.ticks.is_due() {
-                if self.depth.rests_at(0.0) && self.gains[1] == [1.0; 2] {
+                if self.is_off() {
                     return;
                 }
-                self.phase += self.rate * CONTROL_FRAMES as f64 / self.sample_rate;
-                self.phase -= libm::floor(self.phase);
-                self.gains = [self.gains[1], self.gains_at(self.phase, CONTROL_FRAMES)];
+                self.turned += 1;
+                self.gains = [self.gains[1], self.gains_at(self.phase(), CONTROL_FRAMES)];
                 self.depth.advance(CONTROL_FRAMES);
                 self.stereo_phase.advance(CONTROL_FRAMES);
                 self.passed = 0;

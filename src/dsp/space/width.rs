@@ -35,12 +35,28 @@ impl Width {
         self.width.jump(self.width.target());
     }
 
+    /// Whether it touches nothing.
+    pub fn is_off(&self) -> bool {
+        self.width.rests_at(1.0)
+    }
+
+    /// Whether silence that comes in changes nothing.
+    pub fn is_idle(&self) -> bool {
+        !self.width.is_moving()
+    }
+
+    /// Frames until the width is where it is to be.
+    pub fn tail_frames(&self) -> u64 {
+        self.width.frames_left().into()
+    }
+
     /// Changes `left` and `right`, up to the length of the shorter.
     pub fn process(&mut self, left: &mut [f32], right: &mut [f32]) {
-        if self.width.rests_at(1.0) {
-            return;
-        }
         for (left, right) in left.iter_mut().zip(right) {
+            // Also within a block: the sum of middle and side is rounded.
+            if self.is_off() {
+                return;
+            }
             let (middle, side) = (0.5 * (*left + *right), 0.5 * (*left - *right) * self.width.after(0));
             (*left, *right) = (middle + side, middle - side);
             self.width.advance(1);

@@ -1,4 +1,4 @@
-//! A chunk: the events and frames that all parts of an ensemble play before they are mixed.
+//! A chunk: the events and frames that all parts of an ensemble render before they are mixed.
 
 use crate::engine::Event;
 use crate::engine::note::nearest_channel;
@@ -6,23 +6,25 @@ use crate::engine::zones::Owners;
 use crate::sound::Kit;
 use std::sync::Arc;
 
-/// What the parts play in one go.
+/// What every part renders between two mixes.
 #[derive(Clone, Copy)]
 pub(super) struct Chunk<'a> {
     pub(super) events: &'a [Event],
-    /// The frame of the block, from which events count, at which the chunk starts.
+    /// Incoming sound, from the start of the chunk.
+    pub(super) input: &'a [f32],
+    /// Frame of the block at which the chunk starts. Events count their frames from the start of the block.
     pub(super) start: usize,
-    /// The last frame of the chunk that an event can be at.
+    /// The last frame that an event of the chunk can have, counted from the chunk's start.
     pub(super) last: usize,
     pub(super) frames: usize,
-    /// Who plays which channel.
+    /// Which part plays which channel.
     pub(super) owners: Owners,
-    /// The kits that program changes choose from.
+    /// The kits of the program numbers.
     pub(super) programs: &'a [Arc<Kit>],
 }
 
 impl<'a> Chunk<'a> {
-    /// The frame of an event, from the start of the chunk.
+    /// The frame of an event, counted from the start of the chunk.
     pub(super) fn frame(&self, event: &Event) -> usize {
         (event.frame as usize).saturating_sub(self.start).min(self.last)
     }
@@ -32,8 +34,8 @@ impl<'a> Chunk<'a> {
         self.owners.of(nearest_channel(event.channel))
     }
 
-    /// The kit of a program number that an event brings to a part; none if there is no such program, or if the event is
-    /// on a member channel, which plays what its master does.
+    /// The kit that a program change event selects. None if there is no such program, or if the event is on a member
+    /// channel of an MPE zone, which plays the kit of its master channel.
     pub(super) fn program(&self, event: &Event, number: u8) -> Option<&'a Arc<Kit>> {
         let is_own = self.owner(event) == nearest_channel(event.channel);
         self.programs.get(usize::from(number)).filter(|_| is_own)

@@ -1,8 +1,9 @@
-//! The voices that the parts of an ensemble share: lent to those that have notes to start, and taken back.
+//! The pool of voices that the parts of an ensemble share: lends voices before each chunk, takes unused ones back.
 //!
-//! Parts play a chunk by themselves, on any threads. So before it each is lent what its notes can need at most. If the
-//! pool cannot serve them all, the chunk ends at the first note that it cannot serve; the notes that give way are chosen
-//! by the state of all channels at that frame. So the bits depend on events alone.
+//! Parts render a chunk independently, on any threads. So before the chunk each part is lent the most that its notes
+//! can need. If the pool is too small for that, the chunk ends at the first note that it has no voices for, and the
+//! notes to steal are chosen by the state of all channels at that frame. So the bits depend on the events alone, not on
+//! threads or block sizes.
 
 use super::chunk::Chunk;
 use super::part::Part;
@@ -14,8 +15,8 @@ use crate::engine::voice::SynthVoice;
 use crate::engine::voice_manager::{Footprint, MAX_UNISON, VoicePool, has_room, make_room};
 use crate::params::Param;
 
-/// What an ensemble can sound: 384 notes of 64 modes or 48 of 512 on all channels together, and as many more as a third
-/// of them that fade.
+/// Size of an ensemble's pool: on all channels together 384 notes of 64 modes, or 48 of 512. The remaining quarter of
+/// the pool is for notes that fade out.
 const POOL: Footprint = Footprint { voices: 512, cells: 512 };
 
 /// The pool of an ensemble. Real-time safe once made.
@@ -23,18 +24,19 @@ pub(super) struct Lender {
     pool: VoicePool<SynthVoice>,
 }
 
-/// The most that a note of a part can take from the pool in a chunk, as far as its events have been looked at.
+/// The most that one note of a part can take from the pool, judging by the events of the chunk that were examined so
+/// far.
 struct MostNeeded {
-    /// By the kits that the part has had; none before it is asked for.
+    /// The most for any kit that the part has had in the chunk; none until it is first needed.
     by_kits: Option<Footprint>,
-    /// The number of unison voices changes in the chunk.
+    /// An event of the chunk changes the number of unison voices.
     any_unison: bool,
 }
 
 impl MostNeeded {
     const UNKNOWN: Self = Self { by_kits: None, any_unison: false };
 
-    /// By the kits that the part has had in the chunk.
+    /// The most for any kit that the part has had in the chunk.
     fn by_kits(&mut self, synth: &Synth) -> Footprint {
         *self.by_kits.get_or_insert_with(|| synth.footprint())
     }
@@ -54,21 +56,21 @@ impl Lender {
         Self { pool: voices(sample_rate, POOL) }
     }
 
-    /// An empty pool for one part, with places for all. Allocates.
+    /// An empty pool for one part, with capacity for all voices and cells. Allocates.
     pub(super) fn for_part() -> VoicePool<SynthVoice> {
         VoicePool::empty(POOL)
     }
 
-    /// Lends each part what its notes in a chunk can need. Gives the index and the frame of the first note-on that
-    /// cannot be served yet: there the chunk has to end.
+    /// Lends each part the voices that its notes in a chunk can need. Returns the index and the frame of the first note
+    /// on that the pool has no room for; the chunk must end there.
     pub(super) fn lend(&mut self, parts: &mut [Part], chunk: &Chunk) -> Option<(usize, usize)> {
         let mut most_needed = [const { MostNeeded::UNKNOWN }; 16];
         for (index, event) in chunk.events.iter().enumerate() {
             let owner = usize::from(chunk.owner(event));
             let (most, synth) = (&mut most_needed[owner], &parts[owner].synth);
             match event.kind {
-                EventKind::NoteOn { key, .. } => {
-                    // Events before it in the chunk may change what a note needs.
+                EventKind::NoteOn { key, .. } | EventKind::Strike { key, .. } => {
+                    // Events before this one in the chunk may change what the note needs.
                     let is_first = index == 0 && chunk.frame(event) == 0;
                     let need = match is_first {
                         true => synth.need(nearest_channel(event.channel), key),
@@ -97,7 +99,7 @@ impl Lender {
         None
     }
 
-    /// Takes back what no note of the parts has.
+    /// Takes back all voices and cells that no note uses.
     pub(super) fn take_back(&mut self, parts: &mut [Part]) {
         for part in parts {
             let pool = part.synth.manager().pool();

@@ -1,4 +1,4 @@
-//! The limiter at the end of an ensemble's mix, and the channels that ask for it.
+//! The limiter at the end of an ensemble's mix, and the channels whose kits switch it on.
 
 use super::chunk::Chunk;
 use crate::dsp::Limiter;
@@ -8,19 +8,19 @@ use crate::engine::{Event, EventKind};
 use crate::params::Param;
 use crate::sound::Kit;
 
-/// One limiter for the mix of sixteen channels. It is on while any channel that has had a note has a kit that asks
-/// for it. Real-time safe once built.
+/// One limiter for the mix of sixteen channels. It is on while any channel that has had a note has a kit that switches
+/// it on. Real-time safe once built.
 pub(super) struct MixLimiter {
     limiter: Limiter,
     channels: Channels,
 }
 
-/// Sets of channels, a bit each.
+/// Sets of channels, one bit each.
 #[derive(Clone, Copy)]
 struct Channels {
-    /// Those with a kit that asks for the limiter.
+    /// Channels whose kit switches the limiter on.
     asking: u16,
-    /// Those that have had a note.
+    /// Channels that have had a note.
     played: u16,
 }
 
@@ -34,11 +34,11 @@ impl Channels {
         self.asking = if value == 0.0 { self.asking & !bit } else { self.asking | bit };
     }
 
-    /// Takes in an event of a chunk.
+    /// Updates the sets after an event of a chunk.
     fn handle(&mut self, event: &Event, chunk: &Chunk) {
         let owner = chunk.owner(event);
         match event.kind {
-            EventKind::NoteOn { .. } => self.played |= 1 << owner,
+            EventKind::NoteOn { .. } | EventKind::Strike { .. } => self.played |= 1 << owner,
             EventKind::Param { param: Param::Limiter, value } => {
                 self.set_asking(owner, Param::Limiter.info().clamp(value));
             }
@@ -53,22 +53,22 @@ impl Channels {
 }
 
 impl MixLimiter {
-    /// For sixteen channels, each of which is to be given a kit.
+    /// A limiter for sixteen channels, each of which must then be given a kit.
     pub(super) fn new(sample_rate: f64) -> Self {
         Self { limiter: Limiter::new(sample_rate), channels: Channels { asking: 0, played: 0 } }
     }
 
-    /// A channel has another kit.
+    /// Sets the kit of a channel.
     pub(super) fn set_kit(&mut self, channel: u8, kit: &Kit) {
         self.channels.set_asking(channel, kit.values().get(Param::Limiter));
     }
 
-    /// What it has done so far.
+    /// How much the limiter has reduced the level so far.
     pub(super) fn work(&self) -> Work {
         self.limiter.work()
     }
 
-    /// Limits the frames of a chunk in place. Without `is_heard` they are silent.
+    /// Limits the frames of a chunk in place. If `is_heard` is false, the frames are silent.
     pub(super) fn process(&mut self, chunk: &Chunk, is_heard: bool, [left, right]: [&mut [f32]; 2]) {
         let mut limit = |is_on: bool, left: &mut [f32], right: &mut [f32]| {
             if is_heard || !self.limiter.is_idle() {

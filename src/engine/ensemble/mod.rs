@@ -1,4 +1,4 @@
-//! Sixteen MIDI channels, a synth each, mixed in channel order: what a MIDI file plays on.
+//! Sixteen MIDI channels, one synth each, mixed in channel order: the instrument for MIDI files.
 
 mod choke;
 mod chunk;
@@ -8,6 +8,7 @@ mod part;
 mod process;
 
 use super::note::nearest_channel;
+use super::space::needs_bodies;
 use super::synth::allowed;
 use super::zones::Owners;
 use super::{Snapshot, Synth};
@@ -20,25 +21,25 @@ use mix_limiter::MixLimiter;
 pub use part::Part;
 use std::sync::Arc;
 
-/// Frames that are mixed at a time, unless [`Ensemble::with_chunk`] says otherwise.
+/// Frames that are rendered and mixed at a time, unless [`Ensemble::with_chunk`] sets another number.
 const CHUNK: usize = 1024;
 
 /// Sixteen synths behind one stream of events.
 ///
 /// Each channel has its own kit, controllers and polyphony. An MPE configuration message makes a zone, whose members
 /// play on the instrument of their master channel. A note of a choke group silences that group on every
-/// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a kit that asks
-/// for it. Gives the same bits however the frames are divided into blocks. Real-time safe once built.
+/// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a kit that
+/// switches it on. Each channel has its own effects, and only those that are on take time. Gives the same bits however the frames are divided into blocks. Real-time safe once built.
 pub struct Ensemble {
     parts: Vec<Part>,
     programs: Vec<Arc<Kit>>,
-    /// The kits that channels have been built with, kept so that none is freed in a program change.
+    /// The kits that channels were built with, kept so that a program change never frees one on the audio thread.
     starts: Vec<Arc<Kit>>,
-    /// What each part plays, for the others to know.
+    /// What each part plays: its kit and choke groups, which other parts need to know.
     playing: [Playing; 16],
-    /// Most frames of a chunk.
+    /// Maximum length of a chunk in frames.
     chunk_frames: usize,
-    /// Which part plays which channel.
+    /// Index of the part that plays each channel.
     owners: Owners,
     lender: Lender,
     limiter: MixLimiter,
@@ -69,6 +70,9 @@ impl Ensemble {
             limiter: MixLimiter::new(allowed(sample_rate)),
         };
         ensemble.reserve(largest);
+        if ensemble.programs.iter().any(|kit| needs_bodies(kit.values())) {
+            ensemble.reserve_space();
+        }
         (0..16).fold(ensemble, |ensemble, channel| ensemble.with_kit(channel, kit))
     }
 
@@ -81,13 +85,20 @@ impl Ensemble {
         self
     }
 
-    /// Makes room for kits of up to so many sounds on every channel, so that [`Ensemble::set_kit`] need not. Allocates.
+    /// Makes room for kits of up to `sounds` sounds on every channel, so that [`Ensemble::set_kit`] does not allocate.
+    /// Allocates.
     pub fn reserve(&mut self, sounds: usize) {
         self.parts.iter_mut().for_each(|part| part.synth.reserve(sounds));
     }
 
-    /// The same ensemble, mixing up to `frames` frames (at least 1) at a time: more than it would of itself pay where
-    /// parts are played side by side. Allocates.
+    /// Makes room on every channel for sympathetic strings and for any body of the space, as [`Synth::reserve_space`]: 1 MB
+    /// for each channel. Kits and programs that use them reserve it themselves. Allocates.
+    pub fn reserve_space(&mut self) {
+        self.parts.iter_mut().for_each(|part| part.synth.reserve_space());
+    }
+
+    /// The same ensemble, rendering up to `frames` frames (at least 1) at a time. Longer chunks than the default pay if
+    /// parts are rendered on several threads. Allocates.
     #[must_use]
     pub fn with_chunk(mut self, frames: usize) -> Self {
         self.chunk_frames = frames.max(1);
@@ -105,30 +116,30 @@ impl Ensemble {
         self.limiter.set_kit(channel, kit);
     }
 
-    /// Tunes the keys of all channels in another way from the next note on. Notes that sound keep their pitch.
+    /// Sets the tuning of all channels from the next note on. Sounding notes keep their pitch.
     /// Real-time safe.
     pub fn set_tuning(&mut self, tuning: &Tuning) {
         self.parts.iter_mut().for_each(|part| part.synth.set_tuning(tuning));
     }
 
-    /// What sounds now, on all channels together. Real-time safe.
+    /// The voices and masses that sound now, of all channels together. Real-time safe.
     pub fn snapshot(&self) -> Snapshot {
         let mut snapshot = Snapshot::default();
         self.parts.iter().for_each(|part| part.synth.show(&mut snapshot));
         snapshot
     }
 
-    /// How much the limiter has worked. Real-time safe.
+    /// How much the limiter has reduced the level so far. Real-time safe.
     pub fn limiter_work(&self) -> Work {
         self.limiter.work()
     }
 
-    /// Whether nothing sounds any more. Real-time safe.
+    /// Whether no note sounds on any channel. Real-time safe.
     pub fn is_silent(&self) -> bool {
         self.parts.iter().all(|part| part.synth.is_silent())
     }
 
-    /// Most notes that have sounded at once on one channel each, added up.
+    /// The largest number of notes that sounded at once on each channel, added up over the channels.
     pub fn voices_used(&self) -> usize {
         self.parts.iter().map(|part| part.synth.voices_used()).sum()
     }

@@ -1,7 +1,8 @@
-//! One part of an ensemble: the synth of a channel, and its frames of the chunk that is being mixed.
+//! One part of an ensemble: the synth of a channel, and its output for the chunk that is being mixed.
 
 use super::choke::ChokeGroups;
 use super::chunk::Chunk;
+use crate::engine::synth::part as part_of;
 use crate::engine::{Event, EventKind, Synth};
 use crate::params::Param;
 
@@ -11,7 +12,7 @@ pub struct Part {
     pub(super) synth: Synth,
     left: Vec<f32>,
     right: Vec<f32>,
-    /// Whether the chunk has sound.
+    /// Whether the synth made any sound in the chunk.
     pub(super) is_heard: bool,
 }
 
@@ -27,7 +28,7 @@ impl Part {
         self.right.resize(frames, 0.0);
     }
 
-    /// Renders a chunk into the part's own frames. `groups` are the choke groups of all parts before the chunk.
+    /// Renders a chunk into the part's own buffers. `groups` are the choke groups of all parts before the chunk.
     pub(super) fn play<'a>(&mut self, chunk: &Chunk<'a>, mut groups: [ChokeGroups<'a>; 16]) {
         let Self { channel, synth, is_heard, .. } = self;
         let (left, right) = (&mut self.left[..chunk.frames], &mut self.right[..chunk.frames]);
@@ -40,7 +41,7 @@ impl Part {
                 _ => None,
             };
             let kind = match event.kind {
-                EventKind::NoteOn { key, .. } if owner != *channel => {
+                EventKind::NoteOn { key, .. } | EventKind::Strike { key, .. } if owner != *channel => {
                     EventKind::Choke { group: groups[owner].of_key(key, synth.tuning()) }
                 }
                 kind => kind,
@@ -59,7 +60,7 @@ impl Part {
                 continue;
             }
             let at = chunk.frame(event).max(frame);
-            synth.play(&mut left[frame..at], &mut right[frame..at]);
+            synth.play(part_of(chunk.input, frame, at), &mut left[frame..at], &mut right[frame..at]);
             frame = at;
             match program {
                 Some(kit) => synth.set_kit(kit),
@@ -68,9 +69,10 @@ impl Part {
             *is_heard |= !synth.is_silent();
         }
         if *is_heard {
-            synth.play(&mut left[frame..], &mut right[frame..]);
+            let input = part_of(chunk.input, frame, chunk.frames);
+            synth.play(input, &mut left[frame..], &mut right[frame..]);
         } else {
-            synth.pass(chunk.frames - frame);
+            synth.rest(chunk.frames - frame);
         }
     }
 

@@ -1,10 +1,11 @@
-//! How an ensemble renders: blocks cut into chunks that parts play by themselves, and their mix.
+//! How an ensemble renders: it cuts blocks into chunks, every part renders a chunk on its own, and the parts are mixed.
 
 use super::Ensemble;
 use super::choke::Playing;
 use super::chunk::Chunk;
 use super::part::Part;
 use crate::engine::Event;
+use crate::engine::synth::part;
 use crate::engine::zones::Owners;
 
 /// Where a chunk ends, and why.
@@ -13,65 +14,81 @@ struct Cut {
     events: usize,
     /// The frame of the block at which it ends.
     end: usize,
-    /// The last frame of the chunk that an event can be at.
+    /// The last frame that an event of the chunk can have, counted from the chunk's start.
     last: usize,
     cause: Cause,
 }
 
 #[derive(Clone, Copy)]
 enum Cause {
-    /// The block ends, or the chunk is as long as chunks can be.
+    /// The block ends, or the chunk has its maximum length.
     Length,
-    /// The next event is a note that the pool cannot serve yet: the notes that give way are chosen by the state of all
-    /// parts at its frame.
+    /// The next event is a note that the pool has no room for. Which notes are stolen depends on the state of all parts
+    /// at its frame, so they are all rendered up to it.
     Pool,
-    /// The next event configures an MPE zone: channels change their owners between two chunks.
+    /// The next event configures an MPE zone. Channels change their owners between two chunks only.
     Zone { master: u8, members: u8 },
 }
 
 impl Cut {
-    /// An end before the event at `index`, which is at a frame of the chunk that starts at `start`.
+    /// A chunk that starts at frame `start` of the block and ends before the event at `index`, which is at `frame` of
+    /// the chunk.
     fn before(index: usize, start: usize, frame: usize, cause: Cause) -> Self {
         Self { events: index, end: start + frame, last: frame, cause }
     }
 }
 
 impl Ensemble {
-    /// Renders the next frames over what the slices hold: as many as the shorter of the two has (any number; they are
-    /// meant to be of one length). The rest of a longer one stays as it is. `events` are in order of their frames.
+    /// Renders the next frames and overwrites the slices: as many frames as the shorter one has (any number; they are
+    /// meant to be equally long). The rest of a longer one stays unchanged. `events` are in order of their frames.
+    /// Real-time safe.
     pub fn process(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
-        self.process_by(|parts, play| parts.iter_mut().for_each(play), events, left, right);
+        self.process_with_input(events, &[], left, right);
     }
 
-    /// As [`Ensemble::process`], with the parts played by `each`: it calls the function that it is given once with
-    /// every part, in any order and on any threads, as no part depends on another. The bits are the same. As
-    /// real-time safe as `each` is.
+    /// As [`Ensemble::process`], with the sound `input` that comes in, as in
+    /// [`Synth::process_with_input`](crate::engine::Synth::process_with_input). Real-time safe.
+    pub fn process_with_input(&mut self, events: &[Event], input: &[f32], left: &mut [f32], right: &mut [f32]) {
+        self.process_by(|parts, play| parts.iter_mut().for_each(play), events, input, left, right);
+    }
+
+    /// As [`Ensemble::process_with_input`], but `each` runs the parts: it must call the function that it receives once with
+    /// every part, in any order and on any threads, since no part depends on another. The bits are the same. As real-time
+    /// safe as `each` is.
     pub fn process_by(
         &mut self,
         each: impl Fn(&mut [Part], &(dyn Fn(&mut Part) + Sync)),
         mut events: &[Event],
+        input: &[f32],
         left: &mut [f32],
         right: &mut [f32],
     ) {
         let (frames, mut start) = (left.len().min(right.len()), 0);
-        // At least once: a block of no frames still brings its events.
+        // At least once: a block without frames can still have events.
         loop {
             let owners = self.owners;
             let cut = self.cut(events, start, frames);
             let (now, later) = events.split_at(cut.events);
-            let chunk =
-                Chunk { events: now, start, last: cut.last, frames: cut.end - start, owners, programs: &self.programs };
+            let chunk = Chunk {
+                events: now,
+                input: part(input, start, cut.end),
+                start,
+                last: cut.last,
+                frames: cut.end - start,
+                owners,
+                programs: &self.programs,
+            };
             let groups = self.playing.each_ref().map(Playing::choke_groups);
             each(&mut self.parts, &|part| part.play(&chunk, groups));
-            self.playing.iter_mut().zip(&self.parts).for_each(|(playing, part)| playing.follow(&part.synth));
             let is_heard = self.parts.iter().any(|part| part.is_heard);
             if is_heard || !now.is_empty() {
+                self.playing.iter_mut().zip(&self.parts).for_each(|(playing, part)| playing.follow(&part.synth));
                 self.lender.take_back(&mut self.parts);
             }
             let (left, right) = (&mut left[start..cut.end], &mut right[start..cut.end]);
             left.fill(0.0);
             right.fill(0.0);
-            // In the order of their channels: the order of additions is part of the bits.
+            // In channel order: the sum's bits depend on the order of the additions.
             self.parts.iter().for_each(|part| part.add_to(left, right));
             self.limiter.process(&chunk, is_heard, [left, right]);
             (events, start) = (later, cut.end);
@@ -87,12 +104,12 @@ impl Ensemble {
         }
     }
 
-    /// Finds where the chunk ends that starts at frame `start` of a block of `frames` frames, and lends the parts the
-    /// voices that they can need until then. The owners of channels become those after the chunk.
+    /// Finds the end of the chunk that starts at frame `start` of a block of `frames` frames, and lends the parts the
+    /// voices that their notes can need until then. Afterwards `self.owners` holds the owners after the chunk.
     fn cut(&mut self, events: &[Event], start: usize, frames: usize) -> Cut {
         let before = self.owners;
         let end = frames.min(start + self.chunk_frames);
-        // Events beyond the end of the block are taken as its last frame's.
+        // An event beyond the end of the block counts as one at its last frame.
         let is_last = end == frames;
         let count = if is_last { events.len() } else { events.partition_point(|event| (event.frame as usize) < end) };
         let mut cut = Cut {
@@ -103,6 +120,7 @@ impl Ensemble {
         };
         let chunk = |cut: &Cut| Chunk {
             events: &events[..cut.events],
+            input: &[],
             start,
             last: cut.last,
             frames: cut.end - start,
@@ -122,7 +140,8 @@ impl Ensemble {
         cut
     }
 
-    /// Tells the parts of a zone, and hands what channels hold over to their owners where these are others than before.
+    /// Configures a zone in all parts. Where a channel's owner has changed, the new owner gets the channel's
+    /// controllers.
     fn configure_zone(&mut self, before: Owners, event: &Event, master: u8, members: u8) {
         for channel in 0..16 {
             let [from, to] = [before, self.owners].map(|owners| usize::from(owners.of(channel)));
@@ -131,7 +150,7 @@ impl Ensemble {
                 self.parts[to].synth.set_channel(channel, held);
             }
         }
-        // Every part knows the zones.
+        // Every part needs to know the zones.
         self.parts.iter_mut().for_each(|part| part.synth.configure_zone(master, members));
         self.parts[usize::from(before.of(master))].synth.handle(event);
     }

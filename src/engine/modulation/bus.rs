@@ -1,39 +1,40 @@
-//! The routes of a sound in the order in which they count, and how far they move what they lead to.
+//! The routes of a sound in the order in which they are evaluated, and the offsets of their destinations.
 
 use super::destination::{Destination, Target};
 use super::link::{Amounts, Link, MOVING, Mover, Offsets, SOURCES, Sources, bit};
 use crate::params::Param;
 use crate::patch::routes::{MAX_ROUTES, Route, Routes, Source};
 
-/// What the routes lead to, and the routes to each: those that move macros and amounts of others come first, and otherwise
-/// the order of their places counts. Plain data.
+/// The destinations of a sound's routes, and the routes to each. Routes that modulate macros and amounts of other
+/// routes come first; otherwise routes keep the order of their places. Plain data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bus {
-    /// First the routes that move others; then the rest, in groups that lead to one destination.
+    /// First the routes to macros and amounts; then the others, grouped by destination.
     links: [Link; MAX_ROUTES],
     links_len: usize,
-    /// What the first of them move, and the destination of each.
+    /// For each of the first links: the macro or amount that it modulates, and the index of its destination.
     movers: [(Mover, u8); MAX_ROUTES],
     movers_len: usize,
     destinations: [Destination; MAX_ROUTES],
-    /// The links of each: from one index to before another. None for those of the movers.
+    /// The links of each destination: first index, and index after the last. Empty for macros and amounts.
     groups: [[u8; 2]; MAX_ROUTES],
     destinations_len: usize,
-    /// A bit for each destination that sounding notes follow.
+    /// A bit for each destination that sounding notes follow at control ticks.
     followed: u32,
-    /// Bits of the destinations that each source moves.
+    /// Destinations of each source, one bit each.
     moved: [u16; SOURCES],
-    /// A bit for each source that is read, and for each that moves routes.
+    /// Sources that any route reads, one bit each; and, in the next field, those that routes to macros or amounts read.
     read: u32,
     read_by_movers: u32,
-    /// Sources that move by themselves move what decides when a note is over, or may do so by other routes.
+    /// Oscillators or envelopes modulate a parameter that decides when a note is over, or may do so through other
+    /// routes.
     moves_the_end: bool,
 }
 
-/// What decides when a note is over.
+/// The parameters that decide when a note is over.
 const DECIDING: [Param; 6] = [Param::Decay, Param::DecayTilt, Param::Release, Param::Damper, Param::Gain, Param::Pan];
 
-/// The places of the bits that are set, from the lowest.
+/// The indices of the bits that are set, lowest first.
 pub(super) fn places(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         let place = bits.trailing_zeros();
@@ -59,7 +60,7 @@ impl Bus {
         moves_the_end: false,
     };
 
-    /// That of some routes. Real-time safe.
+    /// The bus of these routes. Real-time safe.
     pub(crate) fn new(routes: &Routes) -> Self {
         let mut bus = Self::EMPTY;
         for (place, route) in routes.iter() {
@@ -82,7 +83,7 @@ impl Bus {
         bus
     }
 
-    /// The place of a destination, a new one if need be.
+    /// The index of a destination; it is added if it is new.
     fn place_of(&mut self, param: Param) -> usize {
         let known = self.destinations().iter().position(|destination| destination.param == param);
         known.unwrap_or_else(|| {
@@ -94,12 +95,12 @@ impl Bus {
         })
     }
 
-    /// Adds a route to the destination at `to`. Returns a bit for each source that it reads.
+    /// Adds a route to the destination with index `to`. Returns a bit for each source that the route reads.
     fn add(&mut self, place: usize, route: &Route, to: usize) -> u32 {
         let (link, is_mover) = (Link::new(place, route), Mover::of(route.destination).is_some());
         self.links[self.links_len] = link;
         self.links_len += 1;
-        let reads = link.reads();
+        let reads = bit(route.source) | route.scale.map_or(0, bit);
         self.read |= reads;
         self.moves_the_end |= reads & MOVING != 0 && (DECIDING.contains(&route.destination) || is_mover);
         places(reads).for_each(|source| self.moved[source] |= 1 << to);
@@ -110,7 +111,7 @@ impl Bus {
         self.links_len == 0
     }
 
-    /// Whether oscillators or envelopes move what decides when a note is over.
+    /// Whether oscillators or envelopes modulate a parameter that decides when a note is over.
     pub(crate) fn moves_the_end(&self) -> bool {
         self.moves_the_end
     }
@@ -121,38 +122,44 @@ impl Bus {
         self.read & bit(source) != 0
     }
 
-    /// The same of the source that is so many after `first`.
+    /// Whether any route reads the `nth` source after `first` (0 is `first` itself).
     pub(crate) fn reads_nth(&self, first: Source, nth: usize) -> bool {
         self.read & bit(first) << nth != 0
     }
 
-    /// Whether a source that is read moves while nothing happens.
+    /// Whether any route reads a source that changes with time alone: an oscillator or an envelope.
     pub(crate) fn reads_moving(&self) -> bool {
         self.read & MOVING != 0
     }
 
-    /// A bit for each source that moves macros or amounts, and so may move all that the routes lead to.
+    /// A bit for each source that modulates macros or amounts, and so may change every destination.
     pub(crate) fn read_by_movers(&self) -> u32 {
         self.read_by_movers
     }
 
-    /// What the routes lead to; offsets are in this order.
+    /// Whether a route leads to a parameter.
+    pub(crate) fn leads_to(&self, param: Param) -> bool {
+        self.destinations().iter().any(|destination| destination.param == param)
+    }
+
+    /// The destinations of the routes; offsets are in this order.
     pub(crate) fn destinations(&self) -> &[Destination] {
         &self.destinations[..self.destinations_len]
     }
 
-    /// A bit for each destination that sounding notes follow.
+    /// A bit for each destination that sounding notes follow at control ticks.
     pub(crate) fn followed(&self) -> u32 {
         self.followed
     }
 
-    /// A bit for each destination whose offset depends on any of some sources, given as bits, none of which moves routes.
+    /// A bit for each destination whose offset depends on any of these `sources` (bits). None of them may modulate
+    /// macros or amounts.
     pub(crate) fn moved_by(&self, sources: u32) -> u32 {
         places(sources & self.read).fold(0, |moved, source| moved | u32::from(self.moved[source]))
     }
 
-    /// Moves macros, among the sources, and amounts from where the settings have them. Returns how far, at the places of
-    /// the destinations. Real-time safe.
+    /// Applies the routes to macros (in `sources`) and to amounts, both of which must have their values from the
+    /// settings. Returns the offsets in knob travel, in the order of the destinations. Real-time safe.
     pub(crate) fn move_routes(&self, sources: &mut Sources, amounts: &mut Amounts) -> Offsets {
         let mut offsets = [0.0; MAX_ROUTES];
         for (link, (mover, to)) in self.links.iter().zip(&self.movers[..self.movers_len]) {
@@ -163,15 +170,16 @@ impl Bus {
         offsets
     }
 
-    /// How far a destination that is no macro and no amount is moved, in knob travel, after [`Bus::move_routes`].
+    /// Offset in knob travel of a destination that is neither a macro nor an amount. Call [`Bus::move_routes`] before.
     /// Real-time safe.
+    #[inline]
     pub(crate) fn offset(&self, to: usize, sources: &Sources, amounts: &Amounts) -> f32 {
         let [first, end] = self.groups[to].map(usize::from);
-        self.links[first..end].iter().fold(0.0, |offset, link| offset + link.travel(sources, amounts))
+        self.links[first..end].iter().map(|link| link.travel(sources, amounts)).sum()
     }
 
-    /// How far each destination is moved, in knob travel, by sources with these values through routes with these
-    /// amounts, macros and amounts as the settings have them. Real-time safe.
+    /// Offsets of all destinations in knob travel, for these source values and amounts. Macros and amounts must have
+    /// their values from the settings. Real-time safe.
     pub(crate) fn offsets(&self, mut sources: Sources, mut amounts: Amounts) -> Offsets {
         let mut offsets = self.move_routes(&mut sources, &mut amounts);
         for to in (0..self.destinations_len).filter(|to| self.groups[*to][0] < self.groups[*to][1]) {
@@ -183,6 +191,7 @@ impl Bus {
 
 #[cfg(test)]
 mod tests {
+    use super::super::link::SOURCES_AT_REST;
     use super::*;
     use crate::patch::routes::{Response, Route};
 
@@ -197,7 +206,7 @@ mod tests {
         routes.set(5, Some(Route { scale: Some(Source::Wheel), ..route(Source::Lfo1, Param::Gain) }));
         routes.set(7, Some(Route { response: Response::Squared, ..route(Source::Bend, Param::Decay) }));
         let bus = Bus::new(&routes);
-        let mut sources = [0.0; Source::ALL.len()];
+        let mut sources = SOURCES_AT_REST;
         for (source, value) in
             [(Source::Velocity, 0.5), (Source::Lfo1, -1.0), (Source::Wheel, 0.25), (Source::Bend, -0.5)]
         {
@@ -219,7 +228,7 @@ mod tests {
             routes.set(moved, Some(route(Source::Lfo1, Param::Tune)));
             routes.set(mover, Some(route(Source::Wheel, crate::patch::routes::amount_param(moved))));
             let bus = Bus::new(&routes);
-            let mut sources = [0.0; Source::ALL.len()];
+            let mut sources = SOURCES_AT_REST;
             (sources[Source::Lfo1 as usize], sources[Source::Wheel as usize]) = (1.0, 0.5);
             let mut amounts = [0.0; MAX_ROUTES];
             amounts[mover] = 0.25;

@@ -1,26 +1,34 @@
-//! One route as it is worked out: what it reads, and how far it moves its destination.
+//! One route in the form in which it is evaluated: the sources that it reads, and the offset that it gives.
 
 use crate::params::Param;
 use crate::patch::routes::{MAX_ROUTES, Response, Route, Source, place_of_amount};
 
-/// How many sources there are.
+/// Number of sources.
 pub(crate) const SOURCES: usize = Source::ALL.len();
 
-/// Values of all sources, by `Source as usize`.
-pub(crate) type Sources = [f32; SOURCES];
+/// Values of all sources, by `Source as usize`. After them is a 1, by which routes without a second source are scaled.
+/// The length is a power of two, so that [`Link::travel`] needs no bounds checks.
+pub(crate) type Sources = [f32; (SOURCES + 1).next_power_of_two()];
 
-/// How far each destination is moved, in knob travel.
+/// All sources at 0.
+pub(crate) const SOURCES_AT_REST: Sources = {
+    let mut sources = [0.0; (SOURCES + 1).next_power_of_two()];
+    sources[SOURCES] = 1.0;
+    sources
+};
+
+/// Offsets of the destinations in knob travel (1 is the knob's whole range), in the bus's order.
 pub(crate) type Offsets = [f32; MAX_ROUTES];
 
-/// Amounts of the routes, by place, from −1 to 1.
+/// Amounts of the routes, by route number, from −1 to 1.
 pub(crate) type Amounts = [f32; MAX_ROUTES];
 
-/// The bit of a source.
+/// The bit of a source in a set of sources.
 pub(crate) const fn bit(source: Source) -> u32 {
     1 << source as u32
 }
 
-/// The sources that move while nothing happens.
+/// The sources that change with time alone.
 pub(super) const MOVING: u32 =
     bit(Source::Lfo1) | bit(Source::Lfo2) | bit(Source::Lfo3) | bit(Source::Envelope1) | bit(Source::Envelope2);
 
@@ -28,32 +36,32 @@ pub(super) const MOVING: u32 =
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
     place: u8,
-    source: Source,
-    scale: Option<Source>,
+    source: u8,
+    /// Index of the second source in [`Sources`].
+    scale: u8,
     response: Response,
 }
 
 impl Link {
-    pub(super) const NONE: Self = Self { place: 0, source: Source::Velocity, scale: None, response: Response::Linear };
+    pub(super) const NONE: Self = Self { place: 0, source: 0, scale: 0, response: Response::Linear };
 
-    /// That of the route at a place.
+    /// The link of the route with number `place`.
     pub(super) fn new(place: usize, route: &Route) -> Self {
-        Self { place: place as u8, source: route.source, scale: route.scale, response: route.response }
+        let scale = route.scale.map_or(SOURCES, |scale| scale as usize);
+        Self { place: place as u8, source: route.source as u8, scale: scale as u8, response: route.response }
     }
 
-    /// A bit for each source that it reads.
-    pub(super) fn reads(&self) -> u32 {
-        bit(self.source) | self.scale.map_or(0, bit)
-    }
-
-    /// How far it moves its destination, in knob travel.
+    /// The offset that the route gives its destination, in knob travel.
+    #[inline]
     pub(super) fn travel(&self, sources: &Sources, amounts: &Amounts) -> f32 {
-        let scale = self.scale.map_or(1.0, |scale| sources[scale as usize]);
-        amounts[usize::from(self.place)] * self.response.apply(sources[self.source as usize]) * scale
+        let [source, scale] = [self.source, self.scale].map(|place| sources[usize::from(place) % sources.len()]);
+        // Most routes are linear, and a branch to one of the four curves takes as long as all the rest.
+        let bent = if self.response == Response::Linear { source } else { self.response.apply(source) };
+        amounts[usize::from(self.place) % amounts.len()] * bent * scale
     }
 }
 
-/// What a route can move of the routes themselves, by index.
+/// A destination inside the modulation itself: the amount of a route, or a macro, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Mover {
     Amount(u8),
@@ -61,18 +69,18 @@ pub(super) enum Mover {
 }
 
 impl Mover {
-    /// What a route to this parameter moves of them, if anything.
+    /// The mover for a route to this parameter; none if it is neither an amount nor a macro.
     pub(super) fn of(param: Param) -> Option<Self> {
         let index = (param as usize).checked_sub(Param::Macro1 as usize).filter(|index| *index < 8);
         let amount = place_of_amount(param).map(|place| Self::Amount(place as u8));
         amount.or(index.map(|index| Self::Macro(index as u8)))
     }
 
-    /// Moves it, by some knob travel.
+    /// Adds an offset in knob travel, within the range of the macro or amount.
     pub(super) fn apply(self, travel: f32, sources: &mut Sources, amounts: &mut Amounts) {
         match self {
             Self::Amount(index) => {
-                // Knob travel of an amount is half of its range, which is from −1 to 1.
+                // A route's amount ranges from −1 to 1, so the whole knob travel is 2.
                 let amount = &mut amounts[usize::from(index)];
                 *amount = (*amount + 2.0 * travel).clamp(-1.0, 1.0);
             }

@@ -1,16 +1,16 @@
-//! The modulation of one voice: its sources as they are now, and what the routes make of them at each control tick.
+//! The modulation of one voice: the present values of its sources, and the destinations' values at each control tick.
 
 use super::bus::{Bus, places};
 use super::destination::Target;
 use super::envelope::Times;
-use super::link::{Amounts, Offsets, SOURCES, Sources, bit};
+use super::link::{Amounts, Offsets, SOURCES_AT_REST, Sources, bit};
 use super::moving::Moving;
 use super::settings::{LFOS, Settings, SharedLfos, of_lfo};
 use crate::dsp::random;
 use crate::params::{Choice, Param, Scope};
 use crate::patch::routes::{MAX_ROUTES, Source};
 
-/// The stream of a strike's random numbers, beside that of its noise.
+/// Stream number of a strike's random modulation source. It differs from the stream of the strike's noise.
 const STRIKE_STREAM: u64 = 0x5354_5249_4b45;
 
 /// Positions of the controllers that routes can read.
@@ -24,14 +24,14 @@ pub(crate) struct Positions {
     pub(crate) expression: f32,
 }
 
-/// What a strike says that stays until the next.
+/// Values that are set at a strike and stay until the next one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Struck {
     pub(crate) velocity: f32,
     /// In semitones on the MIDI scale.
     pub(crate) pitch: f64,
     pub(crate) seed: u64,
-    /// Counts the notes.
+    /// Number of the note: each new note has the next one.
     pub(crate) serial: u64,
 }
 
@@ -40,30 +40,33 @@ pub(crate) struct Struck {
 pub(crate) struct Modulators {
     bus: Bus,
     settings: Settings,
-    /// Macros among them are where routes have moved them.
+    /// Values of all sources. The macros among them include what routes add to them.
     sources: Sources,
-    /// Amounts of the routes, where routes have moved them.
+    /// Amounts of the routes, including what routes add to them.
     amounts: Amounts,
-    /// Sources that have changed since they were last looked at, as bits.
+    /// Sources that have changed since the last control tick, one bit each.
     changed: u32,
-    /// All destinations are to be computed at the next control: settings have changed, or the controls were replaced.
+    /// The next control tick must compute every destination, since the settings have changed or the controls were
+    /// replaced.
     unsettled: bool,
-    /// How far each destination of the bus is moved that sounding notes follow; and how far all were at the strike.
+    /// Offsets of the destinations in knob travel: at the last control tick (only those that sounding notes follow),
+    /// and, in the next field, of all of them at the last strike.
     offsets: Offsets,
     struck_offsets: Offsets,
-    /// Rounds a second as they are modulated: until the next control, and from then on.
+    /// Modulated rates of the oscillators in Hz: until the next control tick, and, in the next field, from that tick
+    /// on.
     rates: [f64; LFOS],
     next_rates: [f64; LFOS],
     moving: Moving,
 }
 
 impl Modulators {
-    /// Without routes.
+    /// Modulators without routes.
     pub(crate) fn none() -> Self {
         Self {
             bus: Bus::EMPTY,
             settings: Settings::STILL,
-            sources: [0.0; SOURCES],
+            sources: SOURCES_AT_REST,
             amounts: [0.0; MAX_ROUTES],
             changed: 0,
             unsettled: true,
@@ -75,12 +78,12 @@ impl Modulators {
         }
     }
 
-    /// Whether there are no routes: then there is nothing to do.
+    /// Whether there are no routes, so that there is nothing to compute.
     pub(crate) fn are_idle(&self) -> bool {
         self.bus.is_empty()
     }
 
-    /// Whether oscillators or envelopes move what decides when a note is over.
+    /// Whether oscillators or envelopes modulate a parameter that decides when a note is over.
     pub(crate) fn move_the_end(&self) -> bool {
         self.bus.moves_the_end()
     }
@@ -90,15 +93,15 @@ impl Modulators {
         self.bus.reads(source)
     }
 
-    /// Takes over the routes of an instrument. Those that a voice is started with are its own until it ends.
+    /// Copies the routes of an instrument. A voice keeps the routes that it was started with until it ends.
     pub(crate) fn load(&mut self, bus: &Bus) {
         if !(bus.is_empty() && self.are_idle()) {
             self.bus = *bus;
         }
     }
 
-    /// A note is struck while the controllers are at `positions`. `value` has the instrument's parameters. A
-    /// `first` strike starts the oscillators.
+    /// Sets the sources for a strike. `positions` are the controllers now, `value` reads the instrument's parameters.
+    /// The `first` strike of a note also starts the oscillators.
     pub(crate) fn strike(
         &mut self,
         struck: &Struck,
@@ -125,18 +128,19 @@ impl Modulators {
         if first {
             (self.rates, self.next_rates) = (settings.rates, settings.rates);
         }
-        // The envelopes' times and the fades follow from where the sources are before they start.
+        // Envelope times and fades can be destinations of routes, so they are computed from the sources before
+        // envelopes start.
         self.look_ahead(0.0, positions);
         self.struck_offsets = self.all_offsets();
         let times = |index| Times::new(index, |param| f64::from(self.struck_value(param, &value)));
         let fade = |index| f64::from(self.struck_value(of_lfo(Param::Lfo1Fade, index), &value));
         let (times, fades) = (std::array::from_fn(times), std::array::from_fn(fade));
         self.moving.start(times, fades);
-        // The first control finds the values of all destinations.
+        // Makes the first control tick compute the values of all destinations.
         self.unsettled = true;
     }
 
-    /// The value that a parameter has for the strike.
+    /// The modulated value of a parameter at the strike.
     pub(crate) fn struck_value(&self, param: Param, value: impl Fn(Param) -> f32) -> f32 {
         let place = self.bus.destinations().iter().position(|destination| destination.param == param);
         match place {
@@ -145,19 +149,20 @@ impl Modulators {
         }
     }
 
-    /// The brightness of a note has changed before its strike has begun, and with it what the strike reads.
+    /// Sets the note's brightness after the strike was set but before it has begun, and computes the offsets of the
+    /// strike again.
     pub(crate) fn shade(&mut self, timbre: f32) {
         self.set_source(Source::Timbre, timbre);
         self.struck_offsets = self.all_offsets();
     }
 
-    /// The key has come up.
+    /// The key was released, at this velocity from 0 to 1.
     pub(crate) fn release(&mut self, velocity: f32) {
         self.set_source(Source::ReleaseVelocity, velocity);
         self.moving.release();
     }
 
-    /// Lets time pass.
+    /// Advances oscillators and envelopes by some seconds.
     pub(crate) fn advance(&mut self, seconds: f64) {
         if self.bus.reads_moving() {
             self.moving.advance(&self.bus, &self.rates, seconds);
@@ -165,12 +170,13 @@ impl Modulators {
         }
     }
 
-    /// The note has slid to another pitch, in semitones on the MIDI scale.
+    /// Sets the note's pitch after a slide, in semitones on the MIDI scale.
     pub(crate) fn set_pitch(&mut self, pitch: f64) {
         self.set_source(Source::Key, key_position(pitch));
     }
 
-    /// Takes over the instrument's present settings, or those of this note alone, and where its oscillators are.
+    /// Copies the settings of the instrument, or those of this note if `are_own`, and the phases of the shared
+    /// oscillators.
     pub(crate) fn follow(&mut self, settings: &Settings, are_own: bool, shared: &SharedLfos) {
         if are_own || settings.serial != self.settings.serial {
             (self.settings, self.unsettled) = (*settings, true);
@@ -178,18 +184,18 @@ impl Modulators {
         self.share(shared);
     }
 
-    /// The controls were replaced by unmoved ones: the next control writes every destination again.
+    /// The next control tick computes every destination again, since the controls were replaced by unmodulated ones.
     pub(crate) fn unsettle(&mut self) {
         self.unsettled = true;
     }
 
-    /// The routes, for [`Settings`] of this note alone.
+    /// The routes of the voice, to make [`Settings`] for this note only.
     pub(crate) fn bus(&self) -> &Bus {
         &self.bus
     }
 
-    /// Finds where the destinations are to be in some seconds, and hands each that may have changed since the control before
-    /// to `set`, with its value.
+    /// Computes the destinations for a time `seconds` from now. Calls `set` with the parameter and the value of each
+    /// destination that may have changed since the control tick before.
     pub(crate) fn control(&mut self, seconds: f64, positions: &Positions, mut set: impl FnMut(Param, f32)) {
         let unsettled = self.unsettled;
         let moved = self.look_ahead(seconds, positions);
@@ -222,8 +228,8 @@ impl Modulators {
         }
     }
 
-    /// Reads the sources as they will be in some seconds, and lets routes move others. Returns a bit for each destination that
-    /// may be moved otherwise than before.
+    /// Reads the sources as they will be in some seconds, and applies the routes that modulate macros and amounts.
+    /// Returns a bit for each destination whose offset may have changed.
     fn look_ahead(&mut self, seconds: f64, positions: &Positions) -> u32 {
         for (source, value) in [
             (Source::Pressure, positions.pressure),
@@ -233,7 +239,7 @@ impl Modulators {
             (Source::Breath, positions.breath),
             (Source::Expression, positions.expression),
         ] {
-            // Not read, it would be written and compared for nothing.
+            // A source that no route reads need not be written and compared.
             if self.bus.reads(source) {
                 self.set_source(source, value);
             }
@@ -254,7 +260,7 @@ impl Modulators {
         }
     }
 
-    /// How far each destination is moved now, worked out from the beginning.
+    /// The offsets of all destinations, computed from the sources without the results of earlier ticks.
     fn all_offsets(&self) -> Offsets {
         let mut sources = self.sources;
         set_macros(&mut sources, &self.settings);
@@ -266,20 +272,20 @@ impl Modulators {
     }
 }
 
-/// Sets the source that is so many after `first`, and notes whether it has changed.
+/// Sets the `nth` source after `first` (0 is `first` itself), and sets its bit in `changed` if the value is new.
 fn set_nth(sources: &mut Sources, changed: &mut u32, first: Source, nth: usize, value: f32) {
     let source = &mut sources[first as usize + nth];
     *changed |= u32::from(*source != value) * (bit(first) << nth);
     *source = value;
 }
 
-/// Puts the macros where the settings have them.
+/// Resets the macros to their values in the settings.
 fn set_macros(sources: &mut Sources, settings: &Settings) {
     let macros = &mut sources[Source::Macro1 as usize..];
     macros.iter_mut().zip(settings.macros).for_each(|(source, value)| *source = value);
 }
 
-/// Where a pitch lies for [`Source::Key`].
+/// Position of a pitch as [`Source::Key`] gives it: from −1 to 1, 0 at middle C.
 fn key_position(pitch: f64) -> f32 {
     ((pitch - 60.0) / 60.0).clamp(-1.0, 1.0) as f32
 }

@@ -1,4 +1,4 @@
-//! The sources of a voice that move by themselves: its oscillators and envelopes, now and at the next control tick.
+//! The sources of a voice that change with time: its oscillators and envelopes, now and at the next control tick.
 
 use super::bus::Bus;
 use super::envelope::{Envelope, Times};
@@ -14,16 +14,18 @@ pub(super) const ENVELOPES: usize = 2;
 /// Oscillators and envelopes of a voice. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moving {
-    /// As they are, and as they will be `ahead_seconds` later: at the next control tick, as a rule. `now` says which is which, so
-    /// that a tick without events need not copy what it has found to be ahead.
+    /// The state now and the state `ahead_seconds` later, which is usually the next control tick. `now` is the index of
+    /// the present state: if no event cuts the tick short, the two swap roles and nothing is computed twice.
     states: [State; 2],
     now: usize,
     ahead_seconds: f64,
-    /// Share of a round at which each oscillator starts.
+    times: [Times; ENVELOPES],
+    /// Phase at which each oscillator starts, 0–1 of a cycle.
     phases: [f64; LFOS],
-    /// Seconds in which it fades in.
+    /// Fade-in time of each oscillator in seconds.
     fades: [f64; LFOS],
-    /// Whether it is where the shared one is. A copy of that: a voice that outlives its patch goes on by itself.
+    /// Whether each oscillator takes its phase from the instrument's shared one. Copied here, since a voice can outlive
+    /// its patch and must then run alone.
     are_shared: [bool; LFOS],
 }
 
@@ -37,18 +39,6 @@ struct State {
 
 impl State {
     const REST: Self = Self { lfos: [Lfo::REST; LFOS], envelopes: [Envelope::REST; ENVELOPES], age: 0.0 };
-
-    /// Lets time pass for what routes read.
-    fn advance(&mut self, bus: &Bus, rates: &[f64; LFOS], seconds: f64) {
-        self.age += seconds;
-        for (index, lfo) in self.lfos.iter_mut().enumerate().filter(|(index, _)| bus.reads_nth(Source::Lfo1, *index)) {
-            lfo.advance(rates[index] * seconds);
-        }
-        let envelopes = self.envelopes.iter_mut().enumerate();
-        for (_, envelope) in envelopes.filter(|(index, _)| bus.reads_nth(Source::Envelope1, *index)) {
-            envelope.advance(seconds);
-        }
-    }
 }
 
 impl Moving {
@@ -57,13 +47,14 @@ impl Moving {
         states: [State::REST; 2],
         now: 0,
         ahead_seconds: 0.0,
+        times: [Times::NONE; ENVELOPES],
         phases: [0.0; LFOS],
         fades: [0.0; LFOS],
         are_shared: [false; LFOS],
     };
 
-    /// A strike sets where the oscillators start and which are shared; a `first` one starts them, with random numbers of a
-    /// `stream`.
+    /// Sets the start phases and which oscillators are shared. The `first` strike of a note also starts the
+    /// oscillators, with random numbers of a `stream`.
     pub(super) fn strike(&mut self, phases: [f64; LFOS], are_shared: [bool; LFOS], first: bool, stream: u64) {
         (self.phases, self.are_shared, self.ahead_seconds) = (phases, are_shared, 0.0);
         let state = &mut self.states[self.now];
@@ -76,38 +67,60 @@ impl Moving {
         }
     }
 
-    /// What the strike has found of envelopes and fades, and with it their start.
+    /// Starts the envelopes and sets the fade-in times, both as modulated at the strike.
     pub(super) fn start(&mut self, times: [Times; ENVELOPES], fades: [f64; LFOS]) {
         self.fades = fades;
         let state = &mut self.states[self.now];
-        state.envelopes.iter_mut().zip(times).for_each(|(envelope, times)| envelope.strike(times));
+        for ((envelope, times), before) in state.envelopes.iter_mut().zip(&times).zip(&self.times) {
+            envelope.strike(times, before);
+        }
+        self.times = times;
         self.states[1 - self.now] = *state;
     }
 
-    /// The key has come up.
+    /// The key was released: envelopes go to their release stage.
     pub(super) fn release(&mut self) {
-        self.states[self.now].envelopes.iter_mut().for_each(Envelope::release);
+        let envelopes = self.states[self.now].envelopes.iter_mut();
+        envelopes.zip(&self.times).for_each(|(envelope, times)| envelope.release(times));
     }
 
-    /// Puts the oscillators that are shared where those of the instrument are.
+    /// Copies the phases of the instrument's oscillators to those that are shared.
     pub(super) fn share(&mut self, shared: &SharedLfos) {
         for (index, common) in shared.0.iter().enumerate().filter(|(index, _)| self.are_shared[*index]) {
             let lfo = &mut self.states[self.now].lfos[index];
-            *lfo = *common;
-            lfo.advance(self.phases[index]);
+            *lfo = common.after(self.phases[index]);
         }
     }
 
-    /// Lets time pass, at these rates.
+    /// Advances by some seconds, with these rates in Hz.
     pub(super) fn advance(&mut self, bus: &Bus, rates: &[f64; LFOS], seconds: f64) {
-        if seconds == self.ahead_seconds {
-            self.now = 1 - self.now;
-        } else {
-            self.states[self.now].advance(bus, rates, seconds);
+        if seconds != self.ahead_seconds {
+            // An event has ended the tick early.
+            self.go_on(bus, rates, seconds);
+        }
+        self.now = 1 - self.now;
+    }
+
+    /// Computes, into the other state, the sources that routes read as they will be in some seconds.
+    fn go_on(&mut self, bus: &Bus, rates: &[f64; LFOS], seconds: f64) {
+        self.ahead_seconds = seconds;
+        let [first, second] = &mut self.states;
+        let (now, ahead) = if self.now == 0 { (first, second) } else { (second, first) };
+        ahead.age = now.age + seconds;
+        for (index, rate) in rates.iter().enumerate() {
+            if bus.reads_nth(Source::Lfo1, index) {
+                ahead.lfos[index] = now.lfos[index].after(rate * seconds);
+            }
+        }
+        for (index, times) in self.times.iter().enumerate() {
+            if bus.reads_nth(Source::Envelope1, index) {
+                ahead.envelopes[index] = now.envelopes[index].after(seconds, times);
+            }
         }
     }
 
-    /// Hands the value that each source that is read will have in some seconds to `set`, as so many after a first one.
+    /// Computes the sources as they will be in some seconds. Calls `set` for each one that routes read, with the first
+    /// source of its kind, its index from there, and its value.
     pub(super) fn look_ahead(
         &mut self,
         bus: &Bus,
@@ -116,17 +129,19 @@ impl Moving {
         seconds: f64,
         mut set: impl FnMut(Source, usize, f32),
     ) {
-        self.ahead_seconds = seconds;
-        let mut ahead = self.states[self.now];
-        ahead.advance(bus, rates, seconds);
-        for (index, lfo) in ahead.lfos.iter().enumerate().filter(|(index, _)| bus.reads_nth(Source::Lfo1, *index)) {
-            let fade = if ahead.age < self.fades[index] { (ahead.age / self.fades[index]) as f32 } else { 1.0 };
-            set(Source::Lfo1, index, fade * lfo.value(shapes[index]));
+        self.go_on(bus, rates, seconds);
+        let ahead = &self.states[1 - self.now];
+        for (index, shape) in shapes.iter().enumerate() {
+            if bus.reads_nth(Source::Lfo1, index) {
+                let fade = self.fades[index];
+                let fade = if ahead.age < fade { (ahead.age / fade) as f32 } else { 1.0 };
+                set(Source::Lfo1, index, fade * ahead.lfos[index].value(*shape));
+            }
         }
-        let envelopes = ahead.envelopes.iter().enumerate();
-        for (index, envelope) in envelopes.filter(|(index, _)| bus.reads_nth(Source::Envelope1, *index)) {
-            set(Source::Envelope1, index, envelope.level());
+        for (index, times) in self.times.iter().enumerate() {
+            if bus.reads_nth(Source::Envelope1, index) {
+                set(Source::Envelope1, index, ahead.envelopes[index].level(times));
+            }
         }
-        self.states[1 - self.now] = ahead;
     }
 }

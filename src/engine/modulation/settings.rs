@@ -1,4 +1,4 @@
-//! What the modulators of all voices of an instrument follow: settings, and oscillators that notes can share.
+//! Parameter values that the modulators of all voices of an instrument use, and the oscillators that notes can share.
 
 use super::bus::Bus;
 use super::lfo::Lfo;
@@ -7,36 +7,36 @@ use crate::dsp::random;
 use crate::params::{Choice, NoteValue, PARAMS, Param, Shape};
 use crate::patch::routes::{MAX_ROUTES, amount_param};
 
-/// How many slow oscillators there are.
+/// Number of low-frequency oscillators (LFOs).
 pub(super) const LFOS: usize = 3;
 
-/// The stream of random numbers of the first of them.
+/// Random number stream of the first LFO; the others follow.
 pub(super) const LFO_STREAM: u64 = 0x4c46_4f00;
 
-/// The parameter of an oscillator that is `first` of the first one.
+/// The parameter of LFO `index` that corresponds to `first`, a parameter of the first LFO.
 pub(super) fn of_lfo(first: Param, index: usize) -> Param {
     let rows = Param::Lfo2Rate as usize - Param::Lfo1Rate as usize;
     PARAMS[first as usize + index * rows].param
 }
 
-/// What voices follow of the modulators' own parameters, and of those that routes lead to. Plain data.
+/// Values that voices use: of the modulators' own parameters, and of the routes' destinations. Plain data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
-    /// Counts how often they were made anew.
+    /// Number of these settings: each new version has the next one.
     pub(super) serial: u32,
-    /// Rounds a second.
+    /// Rates in Hz.
     pub(super) rates: [f64; LFOS],
-    /// Whether the rate is that of a note value, which nothing moves.
+    /// Whether the rate follows the tempo. Such a rate cannot be modulated.
     pub(super) are_synchronised: [bool; LFOS],
     pub(super) shapes: [Shape; LFOS],
     pub(super) macros: [f32; 8],
     pub(super) amounts: Amounts,
-    /// Values of the bus's destinations before they are moved.
+    /// Values of the destinations before modulation, in the bus's order.
     pub(super) bases: [f32; MAX_ROUTES],
 }
 
 impl Settings {
-    /// Nothing moves.
+    /// Settings without any modulation.
     pub(crate) const STILL: Self = Self {
         serial: 0,
         rates: [0.0; LFOS],
@@ -47,7 +47,7 @@ impl Settings {
         bases: [0.0; MAX_ROUTES],
     };
 
-    /// Those after these: of parameters with these values, at a tempo in beats per second.
+    /// The next version of these settings, with parameters from `value`, at a tempo in beats per second.
     pub(crate) fn next(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
         let mut bases = [0.0; MAX_ROUTES];
         bus.destinations().iter().zip(&mut bases).for_each(|(destination, base)| *base = value(destination.param));
@@ -66,24 +66,24 @@ impl Settings {
         }
     }
 
-    /// Those of one note, told from all that the instrument will have next.
+    /// Settings for one note only. Their serial is one that the instrument will not use next, so that the two differ.
     pub(crate) fn own(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
         Self { serial: self.serial.wrapping_sub(1), ..self.next(bus, value, beat_rate) }
     }
 }
 
-/// Oscillators that all voices of an instrument can follow.
+/// LFOs that all voices of an instrument can share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SharedLfos(pub(super) [Lfo; LFOS]);
 
 impl SharedLfos {
-    /// At their start, for a seed.
+    /// LFOs at the start of their cycles, with random numbers from a seed.
     pub(crate) fn new(seed: u64) -> Self {
         Self(std::array::from_fn(|index| Lfo::new(0.0, random::key(seed, LFO_STREAM + index as u64))))
     }
 
-    /// Lets time pass.
+    /// Advances by some seconds.
     pub(crate) fn advance(&mut self, settings: &Settings, seconds: f64) {
-        self.0.iter_mut().zip(settings.rates).for_each(|(lfo, rate)| lfo.advance(rate * seconds));
+        self.0.iter_mut().zip(settings.rates).for_each(|(lfo, rate)| *lfo = lfo.after(rate * seconds));
     }
 }

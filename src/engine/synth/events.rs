@@ -1,34 +1,27 @@
-//! What a synth does at an event: notes, note expressions, parameters and their modulation.
+//! How a synth responds to events: notes, note expressions, parameters and their modulation.
 
 use super::Synth;
 use crate::engine::event::{Event, EventKind, Expression, finite, unit};
 use crate::engine::note::{Note, NoteId, Notes, nearest_channel, nearest_key};
 use crate::engine::voice_manager::{has_room, make_room};
 use crate::params::{Change, Param};
+use crate::sound::contact::velocity_of;
 use crate::sound::tuning::Pitch;
 
 impl Synth {
-    /// Takes in one event, at the frame that is rendered next.
+    /// Handles one event, at the frame that is rendered next.
     pub fn handle(&mut self, event: &Event) {
         let channel = nearest_channel(event.channel);
-        // A tempo can wait for the next control tick.
+        // A new tempo takes effect at the next regular control tick.
         self.needs_control |= !matches!(event.kind, EventKind::Tempo(_));
         match event.kind {
             EventKind::NoteOn { key, detune, velocity, id } => {
-                let key = nearest_key(key);
-                self.note_on(Note {
-                    channel,
-                    key,
-                    pitch: Pitch::Semitones(key.into()),
-                    detune: finite(detune).clamp(-128.0, 128.0),
-                    velocity: unit(velocity),
-                    brightness: self.channels.brightness(channel),
-                    id,
-                    is_legato: self.manager.has_key_down(),
-                    serial: self.note_serial,
-                    ..Note::NONE
-                });
-                self.note_serial += 1;
+                let detune = finite(detune).clamp(-128.0, 128.0);
+                self.key_down(Note { channel, key, detune, velocity: unit(velocity), id, ..Note::NONE });
+            }
+            EventKind::Strike { key, contact } => {
+                let velocity = velocity_of(contact.impulse);
+                self.key_down(Note { channel, key, velocity, contact: Some(contact), ..Note::NONE });
             }
             EventKind::NoteOff { key, velocity, id } => {
                 self.note_off(Notes { id, ..Notes::on(channel, key) }, velocity);
@@ -45,6 +38,10 @@ impl Synth {
             EventKind::Param { param, value } => {
                 self.instruments.set(param, value, self.clock);
                 self.follow_param();
+                if param.is_behind_voices() {
+                    let at_once = self.is_silent();
+                    self.space.set(param, self.instruments.values(), at_once);
+                }
             }
             EventKind::Modulate { id: None, param, offset } => {
                 self.instruments.modulate(param, finite(offset).clamp(-1.0, 1.0), self.clock);
@@ -62,7 +59,21 @@ impl Synth {
         }
     }
 
-    /// A key goes down: the note, without what its pad, its sound and the pedals make of it.
+    /// Presses a key. The channel and the synth complete the note.
+    fn key_down(&mut self, note: Note) {
+        let key = nearest_key(note.key);
+        self.note_on(Note {
+            key,
+            pitch: Pitch::Semitones(key.into()),
+            brightness: self.channels.brightness(note.channel),
+            is_legato: self.manager.has_key_down(),
+            serial: self.note_serial,
+            ..note
+        });
+        self.note_serial += 1;
+    }
+
+    /// Starts a note. The pad, the sound and the soft pedal complete it first.
     fn note_on(&mut self, mut note: Note) {
         let Some(instrument) = self.instruments.start(&mut note, self.clock) else {
             return self.manager.turn_away(note);
@@ -82,9 +93,9 @@ impl Synth {
         }
     }
 
-    /// Keys come up.
+    /// Releases the keys of these notes.
     fn note_off(&mut self, notes: Notes, velocity: f32) {
-        // The instrument is for a voice that returns to a held key: in a kit of several sounds, none does.
+        // The first instrument is for a voice that returns to a held key, which can only happen in a kit of one sound.
         self.manager.note_off(self.instruments.first(), notes, unit(velocity));
     }
 
@@ -95,7 +106,7 @@ impl Synth {
         }
     }
 
-    /// Moves a parameter of one note by an offset in knob travel.
+    /// Sets the offset of a parameter for one note, in knob travel.
     fn modulate_note(&mut self, id: NoteId, param: Param, offset: f32) {
         if !matches!(param.info().change, Change::Smoothed(_)) {
             return;
@@ -107,7 +118,7 @@ impl Synth {
         }
     }
 
-    /// Has voices and their manager follow a parameter of the kit that has a new value or offset.
+    /// Passes a parameter of the kit on to voices and manager, after its value or offset has changed.
     fn follow_param(&mut self) {
         for (note, voice) in self.manager.active() {
             self.instruments.of_note(note).into_iter().for_each(|instrument| voice.follow(instrument));

@@ -1,4 +1,4 @@
-//! A kit, its voices, and a stream of events in; stereo samples out.
+//! A synth: it plays a kit from a stream of events and renders stereo samples.
 
 mod channels;
 mod controllers;
@@ -9,6 +9,7 @@ mod process;
 use super::Snapshot;
 use super::controls::Smoother;
 use super::note::{Note, nearest_channel, nearest_key};
+use super::space::{Space, needs_bodies};
 use super::voice::SynthVoice;
 use super::voice_manager::{Footprint, PlayMode, Priority, VoiceManager, VoicePool};
 use crate::dsp::limiter::Work;
@@ -20,39 +21,43 @@ use channels::Channels;
 use instruments::{DEFAULT_BEAT_RATE, Instruments};
 use std::sync::Arc;
 
+pub(super) use process::part;
+
 /// Sample rates that the engine runs at, in Hz.
 pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
 
-/// What a synth of its own can sound: 64 notes of 64 modes with 64 more that fade, or 24 of 512.
+/// Size of a synth's own pool: for 64 notes of 64 modes with 64 more that fade, or for 24 notes of 512 modes.
 const POOL: Footprint = Footprint { voices: 256, cells: 256 };
 
-/// A synthesizer that plays one kit on sixteen channels (as MPE uses them).
+/// A synthesizer that plays one kit on sixteen MIDI channels, which can form MPE zones.
 ///
 /// The same seed, kit, events and sample rate give the same bits, however the frames are divided into blocks.
-/// [`Synth::new`], [`Synth::prepare`], [`Synth::reserve`] and [`Synth::set_patch`] allocate; [`Synth::set_kit`] is
-/// real-time safe on the conditions that it names, and everything else always.
+/// [`Synth::new`], [`Synth::prepare`], [`Synth::reserve`], [`Synth::reserve_space`] and [`Synth::set_patch`] allocate.
+/// [`Synth::set_kit`] is real-time safe under the conditions in its documentation. All other methods always are.
 pub struct Synth {
     manager: VoiceManager<SynthVoice>,
-    /// The size of its own pool of voices; none for a part of an ensemble, which makes room for its notes.
+    /// The size of its own pool of voices. None for a part of an ensemble, where the ensemble makes room for notes.
     own_pool: Option<Footprint>,
     instruments: Instruments,
     channels: Channels,
+    /// What is behind the voices.
+    space: Space,
     limiter: Limiter,
-    /// Counts the notes started.
+    /// Number of notes started so far.
     note_serial: u64,
-    /// Frames since the start: control ticks fall on its multiples of [`CONTROL_FRAMES`](crate::dsp::CONTROL_FRAMES).
+    /// Frames since the start. Control ticks are at the multiples of [`CONTROL_FRAMES`](crate::dsp::CONTROL_FRAMES).
     clock: u64,
     /// An event was handled since the last `control_tick()`: run it before rendering.
     needs_control: bool,
 }
 
 impl Synth {
-    /// A synth with the default patch and voices of its own. The sample rate is brought into [`SAMPLE_RATES`].
+    /// A synth with the default patch and its own pool of voices. The sample rate is clamped to [`SAMPLE_RATES`].
     pub fn new(sample_rate: f64, seed: u64) -> Self {
         Self::with_own_voices(Instruments::new(allowed(sample_rate), seed, Kit::of_patch(&Patch::default())))
     }
 
-    /// A synth that plays on voices of this pool and has no other.
+    /// A synth that takes its voices from this pool.
     pub(super) fn with_voices(sample_rate: f64, seed: u64, pool: VoicePool<SynthVoice>) -> Self {
         Self::with_pool(Instruments::new(allowed(sample_rate), seed, Kit::of_patch(&Patch::default())), pool)
     }
@@ -69,43 +74,58 @@ impl Synth {
             own_pool: None,
             instruments,
             channels: Channels::new(sample_rate),
+            space: Space::new(sample_rate),
             limiter: Limiter::new(sample_rate),
             note_serial: 0,
             clock: 0,
             needs_control: false,
         };
         synth.configure_manager();
+        synth.follow_space();
         synth
     }
 
-    /// Changes the sample rate and starts anew, keeping the kit, its parameters, the tuning and the room for other kits.
+    /// Changes the sample rate and restarts the synth. It keeps the kit, its parameters, the tuning and the reserved
+    /// room.
     pub fn prepare(&mut self, sample_rate: f64) {
+        let has_bodies = self.space.has_room();
         *self = Self::with_own_voices(self.instruments.at_rate(allowed(sample_rate)));
+        if has_bodies {
+            self.reserve_space();
+        }
     }
 
-    /// Makes room for kits of up to so many sounds, so that [`Synth::set_kit`] need not. Allocates.
+    /// Makes room for kits of up to `sounds` sounds, so that [`Synth::set_kit`] does not allocate. Allocates.
     pub fn reserve(&mut self, sounds: usize) {
         self.instruments.reserve(sounds);
     }
 
-    /// Silences everything and forgets all controllers, modulation and tempo; the kit, its parameters and the tuning
-    /// stay. What follows is what a new synth would play.
+    /// Makes room for sympathetic strings and for any body of the space: 1 MB. Without room these stay off, unless a kit
+    /// has them when it is set. Allocates; the first call in a process takes some 10 ms.
+    pub fn reserve_space(&mut self) {
+        self.space.reserve();
+        self.follow_space();
+    }
+
+    /// Silences everything and resets controllers, modulation and tempo. The kit, its parameters and the tuning stay.
+    /// From here on the output is that of a new synth.
     pub fn reset(&mut self) {
         self.manager.reset();
         self.limiter.reset();
         self.instruments.reset();
+        self.space.set_all(self.instruments.values(), true);
         self.channels = Channels::new(self.instruments.sample_rate());
         (self.note_serial, self.clock, self.needs_control) = (0, 0, false);
         self.configure_manager();
     }
 
-    /// What is random of notes starts from another seed with the next one; shared oscillators go on. Real-time safe.
+    /// Sets the seed of the random numbers, from the next note on. Shared oscillators continue. Real-time safe.
     pub fn set_seed(&mut self, seed: u64) {
         self.instruments.set_seed(seed);
     }
 
-    /// Tunes the keys in another way from the next note on: those of sounds without a tuning of their own. Notes that
-    /// sound keep their pitch. Real-time safe.
+    /// Sets the tuning of all sounds that have none of their own, from the next note on. Sounding notes keep their
+    /// pitch. Real-time safe.
     pub fn set_tuning(&mut self, tuning: &Tuning) {
         self.instruments.set_tuning(tuning);
     }
@@ -115,23 +135,28 @@ impl Synth {
         self.instruments.tuning()
     }
 
-    /// Plays another kit from the next note on. Notes that sound go on with the sound that they have. Parameters start
-    /// again from [`Kit::values`].
+    /// Plays another kit from the next note on. Sounding notes keep their sound. Parameters start again from
+    /// [`Kit::values`]. The effects after the voices change for all notes, within 20 ms.
     ///
-    /// Real-time safe if there is room for its sounds ([`Synth::reserve`]) and somebody keeps the kit before
-    /// ([`Shelf`](crate::sound::Shelf)).
+    /// Real-time safe if there is room for the kit's sounds ([`Synth::reserve`]) and for its strings and space, if it has
+    /// any ([`Synth::reserve_space`]), and if someone else holds the previous kit ([`Shelf`](crate::sound::Shelf)), so
+    /// that it is not freed here.
     pub fn set_kit(&mut self, kit: &Arc<Kit>) {
         self.instruments.set_kit(kit, self.clock);
+        if needs_bodies(kit.values()) {
+            self.space.reserve();
+        }
         self.configure_manager();
+        self.follow_space();
     }
 
-    /// As [`Synth::set_kit`], with a kit of one sound that is made of a patch. Allocates and frees.
+    /// As [`Synth::set_kit`], with a kit made of one patch. Allocates and frees.
     pub fn set_patch(&mut self, patch: &Patch) {
         self.set_kit(&Kit::of_patch(patch));
     }
 
-    /// Sets all parameters of the kit at once, without slopes: what was set before has no part in the notes from now on.
-    /// Notes that sound jump, so this is for times when nothing does. Modulation stays. Real-time safe.
+    /// Sets all parameters of the kit at once, without smoothing: earlier values do not affect new notes. Sounding
+    /// notes jump to the values, so call it while nothing sounds. Modulation stays. Real-time safe.
     pub fn set_values(&mut self, values: &Values) {
         self.instruments.set_values(values, self.clock);
         for (note, voice) in self.manager.active() {
@@ -139,6 +164,7 @@ impl Synth {
         }
         self.needs_control = true;
         self.configure_manager();
+        self.follow_space();
     }
 
     /// The kit in use. Real-time safe.
@@ -146,7 +172,7 @@ impl Synth {
         self.instruments.kit()
     }
 
-    /// The parameters of the kit as last set, modulation left out. Real-time safe.
+    /// The parameters of the kit as last set, without modulation. Real-time safe.
     pub fn values(&self) -> &Values {
         self.instruments.values()
     }
@@ -159,27 +185,27 @@ impl Synth {
         self.manager.ended()
     }
 
-    /// Whether nothing sounds. An event may change that.
+    /// Whether nothing sounds, neither notes nor the effects after them.
     pub fn is_silent(&self) -> bool {
-        self.manager.is_silent()
+        self.manager.is_silent() && !self.space.is_awake()
     }
 
-    /// Adds what sounds now to a snapshot. Real-time safe.
+    /// Adds the voices that sound now to a snapshot. Real-time safe.
     pub fn show(&self, snapshot: &mut Snapshot) {
         self.manager.sounding_voices().for_each(|voice| snapshot.add(voice));
     }
 
-    /// Most notes that have sounded at once.
+    /// The largest number of notes that have sounded at once.
     pub fn voices_used(&self) -> usize {
         self.manager.peak()
     }
 
-    /// How much the limiter has worked since the synth was new or reset. Real-time safe.
+    /// How much the limiter has reduced the level since the synth was created or reset. Real-time safe.
     pub fn limiter_work(&self) -> Work {
         self.limiter.work()
     }
 
-    /// What a note on a channel takes from the pool if it starts now.
+    /// What a note of this key on a channel would take from the pool if it started now.
     pub(super) fn need(&self, channel: u8, key: u8) -> Footprint {
         let (channel, key) = (nearest_channel(channel), nearest_key(key));
         let Some(instrument) = self.instruments.of_key(key) else { return Footprint::NONE };
@@ -187,12 +213,12 @@ impl Synth {
         self.manager.need(instrument, &Note { channel, key, patch, body, ..Note::NONE })
     }
 
-    /// The most that a note takes from the pool.
+    /// The most that a note of any sound of the kit takes from the pool.
     pub(super) fn footprint(&self) -> Footprint {
         self.instruments.footprint()
     }
 
-    /// The most that a note of another kit would take.
+    /// The most that a note of any sound of another kit would take from the pool.
     pub(super) fn footprint_of(&self, kit: &Kit) -> Footprint {
         self.instruments.footprint_of(kit)
     }
@@ -202,7 +228,13 @@ impl Synth {
         &mut self.manager
     }
 
-    /// Hands the manager the parameters that are its own.
+    /// Passes the parameters of the effects on: they apply at once while nothing sounds.
+    fn follow_space(&mut self) {
+        let at_once = self.is_silent();
+        self.space.set_all(self.instruments.values(), at_once);
+    }
+
+    /// Passes the parameters on that belong to the voice manager.
     fn configure_manager(&mut self) {
         let value = |param| self.instruments.modulated(param);
         let mode = match self.instruments.kit().is_single() {
@@ -221,7 +253,7 @@ pub(super) fn voices(sample_rate: f64, capacity: Footprint) -> VoicePool<SynthVo
     VoicePool::full(capacity, || SynthVoice::new(sample_rate, controls), || Cell::new(sample_rate))
 }
 
-/// The nearest of the [`SAMPLE_RATES`]; 48 kHz for NaN.
+/// The sample rate clamped to [`SAMPLE_RATES`]; 48 kHz for NaN.
 pub(super) fn allowed(sample_rate: f64) -> f64 {
     let (lowest, highest) = SAMPLE_RATES.into_inner();
     if sample_rate.is_nan() { 48_000.0 } else { sample_rate.clamp(lowest.into(), highest.into()) }

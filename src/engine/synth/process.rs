@@ -1,4 +1,4 @@
-//! How a synth renders: blocks divided at events, and the frames between events divided at control ticks.
+//! How a synth renders: it splits blocks at events, and the frames between events at control ticks.
 
 use super::Synth;
 use crate::dsp::CONTROL_FRAMES;
@@ -6,45 +6,64 @@ use crate::engine::event::Event;
 use crate::params::{self, Param};
 
 impl Synth {
-    /// Renders the next frames over what the slices hold: as many as the shorter of the two has (any number; they are
-    /// meant to be of one length). The rest of a longer one stays as it is. `events` are in order of their frames.
+    /// Renders the next frames and overwrites the slices: as many frames as the shorter one has (any number; they are
+    /// meant to be equally long). The rest of a longer one stays unchanged. `events` are in order of their frames.
+    /// Real-time safe.
     pub fn process(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]) {
+        self.process_with_input(events, &[], left, right);
+    }
+
+    /// As [`Synth::process`], with sound that comes in: it drives the modes of notes whose keys are held, at the level
+    /// that their sounds have for it ([`Param::InputLevel`]). `input` has a sample for each frame; where it is shorter,
+    /// nothing comes in.
+    pub fn process_with_input(&mut self, events: &[Event], input: &[f32], left: &mut [f32], right: &mut [f32]) {
         let frames = left.len().min(right.len());
         let (left, right) = (&mut left[..frames], &mut right[..frames]);
         self.manager.clear_ended();
         let mut frame = 0;
         for event in events {
             let at = (event.frame as usize).min(frames.saturating_sub(1)).max(frame);
-            self.play_limited(&mut left[frame..at], &mut right[frame..at]);
+            self.play_limited(part(input, frame, at), &mut left[frame..at], &mut right[frame..at]);
             self.handle(event);
             frame = at;
         }
-        self.play_limited(&mut left[frame..], &mut right[frame..]);
+        self.play_limited(part(input, frame, frames), &mut left[frame..], &mut right[frame..]);
     }
 
-    fn play_limited(&mut self, left: &mut [f32], right: &mut [f32]) {
-        let is_heard = self.play(left, right);
+    fn play_limited(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32]) {
+        let is_heard = self.play(input, left, right);
         if is_heard || !self.limiter.is_idle() {
             let limiter = self.values().choice::<params::Limiter>(Param::Limiter);
             self.limiter.process(limiter == params::Limiter::On, left, right);
         }
     }
 
-    /// Renders frames in which nothing happens over what the slices hold, without the limiter. Returns whether there
-    /// may be sound in them.
-    pub(in crate::engine) fn play(&mut self, left: &mut [f32], right: &mut [f32]) -> bool {
+    /// Renders frames without events and without the limiter, and overwrites the slices. Returns whether they may
+    /// contain sound. `input` is the incoming sound.
+    pub(in crate::engine) fn play(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32]) -> bool {
         left.fill(0.0);
         right.fill(0.0);
-        let is_heard = !self.manager.is_silent();
-        self.render(left, right);
-        if is_heard {
-            left.iter_mut().chain(right).for_each(|sample| *sample = without_subnormals(*sample));
+        if self.is_silent() {
+            self.needs_control = false;
+            self.rest(left.len());
+            return false;
         }
-        is_heard
+        self.render(input, left, right);
+        flush(left, right);
+        if self.space.process(left, right) {
+            flush(left, right);
+        }
+        true
     }
 
-    /// Renders frames in which nothing happens, adding to both slices.
-    fn render(&mut self, left: &mut [f32], right: &mut [f32]) {
+    /// Lets frames pass in which nothing sounds.
+    pub(in crate::engine) fn rest(&mut self, frames: usize) {
+        self.pass(frames);
+        self.space.skip(frames);
+    }
+
+    /// Renders frames without events, and adds them to both slices.
+    fn render(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32]) {
         let (frames, mut frame) = (left.len(), 0);
         while frame < frames {
             if self.manager.is_silent() {
@@ -62,15 +81,15 @@ impl Synth {
             }
             let end = frames.min(frame + to_tick);
             for (_, voice) in self.manager.active() {
-                voice.render(&mut left[frame..end], &mut right[frame..end]);
+                voice.render(part(input, frame, end), &mut left[frame..end], &mut right[frame..end]);
             }
             self.pass(end - frame);
             frame = end;
         }
     }
 
-    /// Has voices set out for what parameters and controllers ask for at the next control tick, `to_tick` frames from
-    /// now.
+    /// Lets all voices compute their targets for the next control tick, `to_tick` frames from now, from parameters and
+    /// controllers.
     fn control_tick(&mut self, to_tick: usize) {
         self.instruments.control(self.clock, to_tick as u32);
         for (note, voice) in self.manager.active() {
@@ -80,24 +99,40 @@ impl Synth {
         self.needs_control = false;
     }
 
-    /// Lets time pass for everything but the voices: all there is to do while none sounds.
-    pub(in crate::engine) fn pass(&mut self, frames: usize) {
+    /// Advances everything except the voices and the effects by `frames` frames.
+    fn pass(&mut self, frames: usize) {
         self.clock += frames as u64;
         self.instruments.advance(frames as u32);
         self.channels.advance(frames as u32);
     }
 
-    /// Frames until silence if nothing more happens: exact to a control tick ([`CONTROL_FRAMES`]) once strikes have
-    /// ended and parameters have arrived where they slide to, no less than that during a strike; 0 if nothing sounds.
-    /// Real-time safe: some microseconds a voice when something has happened to it, next to nothing otherwise.
+    /// Frames until silence if no more events come; 0 if nothing sounds. Exact to a control tick ([`CONTROL_FRAMES`])
+    /// after strikes have ended and smoothed parameters have reached their targets; an upper bound during a strike, and
+    /// while an effect after the voices is on. Real-time safe: takes some microseconds for each voice that has changed,
+    /// and nearly no time for the others.
     pub fn tail_frames(&mut self) -> u64 {
         let to_tick = (CONTROL_FRAMES as u64 - self.clock % CONTROL_FRAMES as u64) % CONTROL_FRAMES as u64;
-        self.manager.active().map(|(_, voice)| voice.tail_frames(to_tick)).max().unwrap_or(0)
+        let (mut frames, mut peak) = (0, 0.0);
+        for (_, voice) in self.manager.active() {
+            frames = voice.tail_frames(to_tick).max(frames);
+            peak += voice.peak();
+        }
+        self.space.tail_frames(frames, peak)
     }
 }
 
-/// Zero for a number so small that CPUs take a hundred times as long for it: what is left of −60 dB of gain or of the
-/// far end of a pan law when the sound itself has all but died away.
+/// The frames of an input from one to before another, as far as it has them.
+pub(in crate::engine) fn part(input: &[f32], start: usize, end: usize) -> &[f32] {
+    &input[start.min(input.len())..end.min(input.len())]
+}
+
+/// Replaces subnormal numbers in both slices.
+fn flush(left: &mut [f32], right: &mut [f32]) {
+    left.iter_mut().chain(right).for_each(|sample| *sample = without_subnormals(*sample));
+}
+
+/// Replaces subnormal numbers by zero, since CPUs may take a hundred times as long for them. They come from a very low
+/// gain, or from the far side of a pan law, while the sound itself has nearly decayed.
 fn without_subnormals(sample: f32) -> f32 {
     if sample.abs() < f32::MIN_POSITIVE { 0.0 } else { sample }
 }

@@ -1,4 +1,4 @@
-//! How long the modes of a note ring: their decay and the damper.
+//! The decay of a note's modes, and the damper.
 
 use super::values::StruckValues;
 use crate::dsp::cells::Cells;
@@ -10,31 +10,29 @@ use libm::pow;
 
 /// The decay of a voice. Real-time safe.
 pub(super) struct Decay {
-    /// How higher modes decay faster.
+    /// Tilt of the decay: the T60 of a mode of ratio r is multiplied by r^−tilt.
     tilt: f64,
     pub(super) damping: Damping,
-    /// A release changes nothing.
+    /// The patch lets notes ring on after their release: a release does not damp them.
     rings_on: bool,
     released: bool,
-    /// The bank has the decay of the last controls.
-    settled: bool,
 }
 
 impl Decay {
-    /// Of a voice that has had no note.
+    /// The decay of a voice before its first note.
     pub(super) fn new() -> Self {
         let damping = Damping { decay: 1.0, release: 1.0, amount: 0.0 };
-        Self { tilt: 0.0, damping, rings_on: false, released: false, settled: false }
+        Self { tilt: 0.0, damping, rings_on: false, released: false }
     }
 
-    /// Reads how the patch's modes ring.
+    /// Reads the decay and its tilt from the patch, as modulated at the strike.
     pub(super) fn read(&mut self, values: &StruckValues, controls: &Controls, bank: &mut Cells) {
         let tilt = values.moved(Param::DecayTilt, controls.decay_tilt);
         self.set_tilt(tilt, values.instrument.sound.patch().modes.as_slice(), bank);
         self.press(values.moved(Param::Decay, controls.decay));
     }
 
-    /// Each mode's T60 as a multiple of the decay: the higher, the shorter.
+    /// Sets each mode's T60 as a multiple of the decay. With a positive tilt, higher modes decay faster.
     fn set_tilt(&mut self, tilt: f64, modes: &[Mode], bank: &mut Cells) {
         self.tilt = tilt;
         for (scale, mode) in bank.t60_scales_mut().zip(modes) {
@@ -43,40 +41,25 @@ impl Decay {
         }
     }
 
-    /// A key goes down, with a T60 in seconds.
+    /// The key was pressed: the note is not damped, and decays with a T60 in seconds.
     pub(super) fn press(&mut self, decay: f64) {
         self.damping = Damping { decay, release: 0.0, amount: 0.0 };
-        (self.released, self.settled) = (false, false);
+        self.released = false;
     }
 
-    /// Reads what a strike says of the release.
+    /// Reads from the patch whether the note rings on after its release.
     pub(super) fn strike(&mut self, values: &StruckValues) {
         self.rings_on = values.instrument.modulated.choice::<NoteOff>(Param::NoteOff) == NoteOff::Ring;
     }
 
-    /// The key comes up.
+    /// The key was released.
     pub(super) fn release(&mut self) {
-        (self.released, self.settled) = (!self.rings_on, false);
+        self.released = !self.rings_on;
     }
 
-    /// The controls have moved since the bank was given their decay: the next control looks at them again.
-    pub(super) fn unsettle(&mut self) {
-        self.settled = false;
-    }
-
-    /// Sets the T60s of the bank if they have changed; `is_new` says whether the controls may have. A voice of the present
-    /// patch has its `modes` to tilt anew. Returns whether anything has changed.
-    pub(super) fn control(
-        &mut self,
-        controls: &Controls,
-        is_new: bool,
-        modes: Option<&[Mode]>,
-        bank: &mut Cells,
-    ) -> bool {
-        if self.settled && !is_new {
-            return false;
-        }
-        self.settled = true;
+    /// Sets the T60s of the bank if they have changed. `modes` are the patch's, for a new tilt; none if the patch was
+    /// replaced. Returns whether anything has changed.
+    pub(super) fn control(&mut self, controls: &Controls, modes: Option<&[Mode]>, bank: &mut Cells) -> bool {
         let tilted = modes.filter(|_| controls.decay_tilt != self.tilt);
         tilted.into_iter().for_each(|modes| self.set_tilt(controls.decay_tilt, modes, bank));
         let amount = if self.released { 1.0 } else { controls.damper };

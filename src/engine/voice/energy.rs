@@ -1,14 +1,15 @@
-//! The energy of a voice, and when it will be over: known, because nothing but damping takes energy from its modes.
+//! The energy of a voice, and the time at which the voice is over: predictable, since only damping removes energy.
 
 use super::strike::Strike;
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::cells::Cells;
 use crate::engine::fader::Fader;
+use libm::sqrt;
 
-/// A voice is over when its modes could not add up to more than this: −120 dBFS.
+/// A voice is over when the sum of its modes cannot exceed this amplitude: −120 dBFS.
 const SILENCE: f64 = 1e-6;
 
-/// The energy is measured every so many control ticks, and at every tick below −110 dBFS.
+/// Control ticks between two measurements of the energy. Below −110 dBFS it is measured at every tick.
 const MEASURING_TICKS: u32 = 8;
 const NEARLY_SILENT: f64 = 3.2e-6;
 
@@ -17,32 +18,32 @@ const TICK: u64 = CONTROL_FRAMES as u64;
 /// The energy of a voice: sums of squared amplitudes. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Energy {
-    /// What the exciter has still to bring.
+    /// Upper bound of the energy that the strike will still add.
     pending: f64,
-    /// That of the bank when it was last measured.
+    /// Energy of the bank when it was last measured.
     measured: f64,
-    /// Control ticks until it is measured again.
+    /// Control ticks until the next measurement.
     until_measured: u32,
-    /// The frame since the voice's start at which it will be over, if it is known.
+    /// Frames from the voice's start to its end, if already known.
     end: Option<u64>,
 }
 
 impl Energy {
-    /// Of a voice at rest.
+    /// The energy of a voice at rest.
     pub(super) const NONE: Self = Self { pending: 0.0, measured: 0.0, until_measured: 0, end: None };
 
-    /// The exciter will bring so much more: less, if negative.
+    /// Adds to the energy that the strike will still bring. `more` may be negative.
     pub(super) fn expect(&mut self, more: f64) {
         self.pending += more;
     }
 
-    /// Decay, gain or a strike has changed when the voice will be over.
+    /// Discards the known end, after a change of decay or gain or after a strike.
     pub(super) fn forget_end(&mut self) {
         self.end = None;
     }
 
-    /// Measures the remaining energy and puts silent modes to rest, at control ticks. Every few ticks are enough, until
-    /// the voice is nearly silent or its strike has just ended.
+    /// Measures the remaining energy and puts silent modes to rest. Called at control ticks, but only measures every
+    /// few ticks, until the voice is nearly silent or its strike has just ended.
     pub(super) fn settle(&mut self, bank: &mut Cells, strike: &Strike, fader: &Fader) {
         let strike_over = self.pending > 0.0 && !strike.is_active();
         if self.until_measured == 0 || strike_over || self.is_below(NEARLY_SILENT, bank, fader) {
@@ -55,14 +56,20 @@ impl Energy {
         self.until_measured -= 1;
     }
 
-    /// Whether the modes could not add up to an amplitude, were they all in phase: n amplitudes whose squares sum to E
-    /// add up to √(n E) at most.
+    /// Whether the sum of the modes cannot reach an amplitude, even with all modes in phase: n amplitudes whose squares
+    /// sum to E add up to √(n E) at most.
     fn is_below(&self, amplitude: f64, bank: &Cells, fader: &Fader) -> bool {
         let gain = f64::from(fader.loudest()).max(1.0);
         self.measured * bank.len() as f64 * gain * gain < amplitude * amplitude
     }
 
-    /// What orders voices by how loud they are.
+    /// Upper bound of the amplitude from now on: that of all modes in phase.
+    pub(super) fn peak(&self, bank: &Cells, fader: &Fader) -> f64 {
+        let gain = f64::from(fader.loudest()).max(1.0);
+        (sqrt(self.measured) + sqrt(self.pending.max(0.0))) * sqrt(bank.len() as f64) * gain
+    }
+
+    /// How loud the voice is, for voice stealing.
     pub(super) fn rank(&self, fader: &Fader) -> f64 {
         self.measured.max(self.pending) * fader.remaining()
     }
@@ -72,15 +79,15 @@ impl Energy {
         fader.is_closed() || (self.pending == 0.0 && self.is_below(SILENCE, bank, fader))
     }
 
-    /// Frames until the voice is over if it is left alone, `now` frames after its start and `to_tick` frames before the
-    /// next control tick: exact to a tick once the strike has ended and neither decay nor gain slides to another value,
-    /// no less than that during a strike.
+    /// Frames until the voice is over if no event comes, `now` frames after its start and `to_tick` frames before the
+    /// next control tick. Exact to a tick after the strike has ended and while neither decay nor gain changes; an upper
+    /// bound during a strike.
     pub(super) fn tail_frames(&mut self, bank: &Cells, strike: &Strike, fader: &Fader, now: u64, to_tick: u64) -> u64 {
         let end = match self.end {
             Some(end) => end,
             None => {
                 let end = now + self.find_end(bank, strike, fader, to_tick);
-                // While energy comes in or the gain slides, the end is not known yet.
+                // As long as the strike adds energy or the gain changes, the end may still change.
                 self.end = (self.pending == 0.0 && fader.is_level()).then_some(end);
                 end
             }
@@ -89,8 +96,9 @@ impl Energy {
         end.saturating_sub(now).min(fade)
     }
 
-    /// The energy is measured every [`MEASURING_TICKS`], and at every tick once it has been found low: the end is the
-    /// first time that it is then below the limit.
+    /// Frames until the end is detected. The energy is measured every [`MEASURING_TICKS`] ticks, and at every tick
+    /// after it was found to be nearly silent: the voice ends at the first of these times at which it is below the
+    /// limit.
     fn find_end(&self, bank: &Cells, strike: &Strike, fader: &Fader, to_tick: u64) -> u64 {
         let gain = f64::from(fader.loudest()).max(1.0);
         let share = 1.0 / (bank.len().max(1) as f64 * gain * gain);

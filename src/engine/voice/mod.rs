@@ -1,13 +1,17 @@
-//! One note: its strikes, a bank of modes, and what moves their pitch, decay and gain.
+//! One voice: the strikes of its note, a bank of modes, and the modulation of their pitch, decay and gain.
 
+mod bowing;
 mod clock;
 mod decay;
 mod energy;
+mod input;
 pub(super) mod key_tracking;
+mod line;
 mod notes;
 mod pitch;
 mod strike;
 mod values;
+mod variation;
 
 use super::channel::Wheels;
 use super::controls::Controls;
@@ -27,7 +31,7 @@ use pitch::{Bends, Pitch};
 use strike::Strike;
 use values::StruckValues;
 
-/// What a note takes of a patch's modes and of so many unison voices.
+/// The voices and cells that a note needs, for a patch's modes and a number of unison voices.
 pub(crate) fn footprint(modes: &ModeTable, unison: f32) -> Footprint {
     let voices = unison as usize;
     Footprint { voices, cells: voices * Cells::count_for(modes.as_slice().len()) }
@@ -37,7 +41,7 @@ pub(crate) fn footprint(modes: &ModeTable, unison: f32) -> Footprint {
 pub(crate) struct SynthVoice {
     sample_rate: f64,
     pub(super) bank: Cells,
-    /// Which of the note's voices it is.
+    /// The voice's position among the unison voices of its note.
     unison: Unison,
     clock: Clock,
     strike: Strike,
@@ -45,23 +49,28 @@ pub(crate) struct SynthVoice {
     pitch: Pitch,
     decay: Decay,
     fader: Fader,
-    /// The parameters that it follows, as they will be at the next control tick.
+    /// The smoothed and modulated parameters, at the next control tick.
     controls: Controls,
-    /// The count of the instrument's controls that these are made of, if they are.
+    /// The count of the instrument's controls when `controls` was copied from them; none if the note has offsets of its
+    /// own.
     controls_serial: Option<u32>,
     key: u8,
     /// −0.5 to 0.5.
     brightness: f64,
     /// Note expressions: tuning, volume, pan, pressure, brightness, vibrato.
     expressions: Expressions,
-    /// What moves the instrument's parameters for this note.
+    /// Offsets that the host sets for this note only.
     modulation: NoteModulation,
-    /// What its routes make of its sources.
+    /// The sources and routes of this voice.
     modulators: Modulators,
-    /// The release that the modulators have still to be told of.
+    /// Velocity of a release that the modulators have not received yet: they get it at the next control tick.
     let_go: Option<f32>,
-    /// Pitch and gain are taken as they are at the first control, not slid to.
+    /// The voice has not had a control tick yet. The first one sets pitch and gain without a ramp.
     fresh: bool,
+    /// The key is down, or a pedal holds the note: then bow and input act.
+    is_held: bool,
+    /// Routes of the patch lead to the level of the bow or of the input.
+    may_be_driven: bool,
 }
 
 impl SynthVoice {
@@ -86,24 +95,24 @@ impl SynthVoice {
             modulators: Modulators::none(),
             let_go: None,
             fresh: true,
+            is_held: false,
+            may_be_driven: false,
         }
     }
 
-    /// Sets out for where pitch, decay and gain are to be in `frames` frames: at the next control tick.
-    /// There is no instrument for a voice of an earlier patch, which keeps the last controls it had.
+    /// Computes pitch, decay and gain for the next control tick, `frames` frames from now, and starts ramps to them.
+    /// `instrument` is none for a voice whose patch was replaced; such a voice keeps its last controls.
     pub(crate) fn control(&mut self, instrument: Option<&Instrument>, wheels: Wheels, frames: usize) {
         let passed = self.clock.since_control();
         self.clock.control();
         self.pitch.advance(self.controls.vibrato_rate, passed);
         let base = instrument.filter(|_| self.modulation.is_none()).map(|instrument| &instrument.next_controls);
-        let mut is_new = self.fresh;
         if let Some(Instrument { smoother, controls_serial, .. }) = instrument {
             let serial = base.map(|_| *controls_serial);
             if serial.is_none() || serial != self.controls_serial {
                 let own = || smoother.modulated(&self.modulation, frames as u32);
                 (self.controls, self.controls_serial) = (base.copied().unwrap_or_else(own), serial);
                 self.modulators.unsettle();
-                is_new = true;
             }
         }
         if !self.modulators.are_idle() {
@@ -118,12 +127,12 @@ impl SynthVoice {
                     .then(|| smoother.own_settings(&self.modulation, frames as u32, settings, bus));
                 self.modulators.follow(own.as_ref().unwrap_or(settings), own.is_some(), &instrument.shared);
             }
-            // A note starts where its modulation starts: its pitch goes on from there below.
-            is_new |= self.move_controls(base, wheels, if self.fresh { 0 } else { frames });
+            // A new note starts with its routes applied for this frame. Below, the ramp to the next tick begins there.
+            self.move_controls(base, wheels, if self.fresh { 0 } else { frames });
         }
 
         let modes = instrument.map(|instrument| instrument.sound.patch().modes.as_slice());
-        if self.decay.control(&self.controls, is_new, modes, &mut self.bank) {
+        if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
         let bends = Bends { wheels, tuning: self.expressions.tuning.into() };
@@ -132,17 +141,35 @@ impl SynthVoice {
             self.bank.jump_to(self.pitch.aim(&self.controls, &bends, &self.clock, 0));
             if !self.modulators.are_idle() {
                 start = Some([self.controls.gain_left, self.controls.gain_right]);
-                if self.move_controls(base, wheels, frames) {
-                    self.decay.unsettle();
-                }
+                self.move_controls(base, wheels, frames);
             }
         }
         self.pitch.aim(&self.controls, &bends, &self.clock, frames);
         self.aim_gain(start, wheels, frames);
+        self.control_driven(instrument, frames);
         self.fresh = false;
     }
 
-    /// Sets out for where the gain is to be in `frames` frames. A fresh voice begins at the gains `start`, or there.
+    /// Sets out for where bow and input are to be in `frames` frames.
+    fn control_driven(&mut self, instrument: Option<&Instrument>, frames: usize) {
+        let Self { strike, controls, is_held, modulators, bank, sample_rate, pitch, .. } = self;
+        if *is_held || strike.bowing.is_on() || strike.input.is_on() {
+            strike.input.control(if *is_held { controls.input_gain } else { 0.0 }, *sample_rate, frames);
+            let values = instrument.map(|instrument| StruckValues { instrument, modulators });
+            let note = || [pitch.frequency(), *sample_rate];
+            strike.bowing.control(controls, *is_held, values.as_ref(), note, bank, frames);
+        }
+    }
+
+    /// Whether bow or input feed the note, or may any moment.
+    fn is_driven(&self) -> bool {
+        let Controls { bow_speed, input_gain, .. } = self.controls;
+        let may_be = bow_speed > 0.0 || input_gain > 0.0 || self.may_be_driven;
+        (self.is_held && may_be) || self.strike.bowing.is_on() || self.strike.input.is_on()
+    }
+
+    /// Starts a ramp to the gain `frames` frames from now. A fresh voice has no gain yet: it begins at the gains
+    /// `start`, or, if there are none, at the target.
     fn aim_gain(&mut self, start: Option<[f32; 2]>, wheels: Wheels, frames: usize) {
         if self.fresh {
             self.expressions.land();
@@ -161,9 +188,9 @@ impl SynthVoice {
         }
     }
 
-    /// Puts the controls, which are those of `base` if that is known, where the routes want them in `frames` frames. Returns
-    /// whether any has moved.
-    fn move_controls(&mut self, base: Option<&Controls>, wheels: Wheels, frames: usize) -> bool {
+    /// Applies the routes to the controls, for the time `frames` frames from now. `base` has the instrument's controls,
+    /// if they are those of the voice.
+    fn move_controls(&mut self, base: Option<&Controls>, wheels: Wheels, frames: usize) {
         let mut positions = wheels.positions(self.brightness, |source| self.modulators.reads(source));
         positions.pressure = positions.pressure.max(self.expressions.pressure);
         positions.wheel = positions.wheel.max(self.expressions.vibrato);
@@ -176,11 +203,10 @@ impl SynthVoice {
         if has_moved {
             controls.find_gains(before, base);
         }
-        has_moved
     }
 
-    /// Sends the modes to the pitch that [`SynthVoice::control`] has found. Apart from it, so that what one voice
-    /// waits for is done while others wait: that gains a tenth.
+    /// Starts the modes' ramp to the pitch that [`SynthVoice::control`] has computed. It is a separate call for all
+    /// voices, so that the CPU can overlap the latencies of one voice with the work of others: a tenth less time.
     pub(crate) fn sweep(&mut self, frames: usize) {
         self.bank.sweep_to(self.pitch.ratio(), frames);
     }
@@ -190,30 +216,39 @@ impl SynthVoice {
         self.energy.settle(&mut self.bank, &self.strike, &self.fader);
     }
 
-    /// Frames until the voice is over if it is left alone, `to_tick` frames before the next control tick: see
-    /// [`Energy::tail_frames`]. Without end where routes move decay or gain: nobody knows where they will be.
+    /// Frames until the voice is over if no event comes, `to_tick` frames before the next control tick: see
+    /// [`Energy::tail_frames`]. `u64::MAX` if oscillators or envelopes modulate decay or gain, since the end is then
+    /// unknown.
     ///
-    /// Real-time safe. Some microseconds after a strike, release or change of gain or decay, next to nothing otherwise.
+    /// Real-time safe. Takes some microseconds after a strike, a release or a change of gain or decay, and nearly no
+    /// time otherwise.
     pub(crate) fn tail_frames(&mut self, to_tick: u64) -> u64 {
         if self.is_over() {
             to_tick
-        } else if self.modulators.move_the_end() {
+        } else if self.modulators.move_the_end() || self.is_driven() {
             u64::MAX
         } else {
             self.energy.tail_frames(&self.bank, &self.strike, &self.fader, self.clock.total, to_tick)
         }
     }
 
+    /// At most the greatest sample from now on, if it is left alone. Real-time safe.
+    pub(crate) fn peak(&self) -> f64 {
+        self.energy.peak(&self.bank, &self.fader)
+    }
+
     /// Adds the next frames, at most [`crate::dsp::CONTROL_FRAMES`], to `left` and `right`.
-    pub(crate) fn render(&mut self, left: &mut [f32], right: &mut [f32]) {
+    /// `input` is what comes in as sound: nothing, or a sample a frame.
+    pub(crate) fn render(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32]) {
         let frames = left.len();
-        self.fader.mix(self.bank.render(self.strike.drive(frames), frames), [left, right]);
+        let bow = self.strike.bowing.stroke(frames);
+        self.fader.mix(self.bank.render(self.strike.drive(frames, input), bow.as_ref(), frames), [left, right]);
         self.clock.advance(frames as u64);
         self.expressions.advance(frames as u32);
         self.modulation.advance(frames as u32);
     }
 
-    /// Takes in what the note is told; `brightness` is the channel's.
+    /// Applies a note expression. `brightness` is the channel's.
     pub(crate) fn express(
         &mut self,
         instrument: Option<&Instrument>,
@@ -227,7 +262,7 @@ impl SynthVoice {
         }
     }
 
-    /// Lets go of the key's pressure.
+    /// Resets the key's pressure.
     pub(crate) fn relax(&mut self) {
         self.expressions.set(Expression::Pressure, 0.0);
     }
@@ -238,12 +273,13 @@ impl SynthVoice {
         self.follow(instrument);
     }
 
-    /// Takes the note's own offsets from the instrument's present values.
+    /// Computes the targets of the note's own offsets again, from the instrument's present values.
     pub(crate) fn follow(&mut self, instrument: &Instrument) {
         self.modulation.aim(&instrument.values, &instrument.modulated, self.sample_rate, self.fresh);
     }
 
-    /// Takes over the brightness of the note and of its channel: also into a strike that has yet to begin.
+    /// Sets the brightness to the sum of the note's and its channel's. It also changes the note's strike if that has
+    /// not begun.
     pub(crate) fn shade(&mut self, instrument: Option<&Instrument>, channel: f32) {
         self.brightness = (self.expressions.brightness + channel).clamp(-0.5, 0.5).into();
         if let Some(instrument) = instrument.filter(|_| self.clock.age == 0 && !self.modulators.are_idle()) {

@@ -1,4 +1,4 @@
-//! How a voice takes notes: starts, strikes, slides, releases.
+//! The notes of a voice: starts, strikes, glides and releases.
 
 use super::SynthVoice;
 use super::clock::Clock;
@@ -17,23 +17,25 @@ use crate::engine::voice_manager::{Footprint, Unison, Voice};
 use crate::params::{Coefficients, Param};
 use crate::patch::Mode;
 
-/// The time in which a stolen or choked voice is faded out.
+/// Fade-out time of a stolen or choked voice.
 const FADE_SECONDS: f64 = 0.012;
 
 impl SynthVoice {
-    /// Strikes with what the patch says of it.
+    /// Strikes the modes with the patch's exciter.
     fn excite(&mut self, instrument: &Instrument, note: &Note) {
         let values = StruckValues { instrument, modulators: &self.modulators };
-        self.energy.expect(self.strike.strike(&values, note, self.unison, &mut self.bank));
+        let frequency = self.pitch.frequency();
+        self.energy.expect(self.strike.strike(&values, note, frequency, self.unison, &mut self.bank));
         self.energy.forget_end();
         self.pitch.strike(&values);
         self.decay.strike(&values);
     }
 
-    /// The note that the voice had hands over to `note`, which is told what it is told anew. A gain that the last one
-    /// was told fades to this one's.
+    /// Replaces the voice's note by `note`: note expressions and offsets start again as neutral. The gain changes
+    /// smoothly.
     fn take_over(&mut self, note: &Note) {
-        // A MIDI controller that has not let go of the key still presses it.
+        self.is_held = true;
+        // A MIDI controller whose key is still down goes on to press it.
         let pressure = if note.key == self.key && note.id.is_none() { self.expressions.pressure } else { 0.0 };
         self.expressions.begin(note.gain, note.pan);
         self.expressions.pressure = pressure;
@@ -42,8 +44,8 @@ impl SynthVoice {
         self.brightness = note.brightness.into();
     }
 
-    /// Makes the sounding voice that of `note`, sliding from where its pitch is; `is_legato` if another key is down.
-    /// Without an instrument, the voice goes by what it has read of its own.
+    /// Changes the sounding voice to `note`, with a glide from its present pitch. `is_legato` says that another key is
+    /// down. `instrument` is none if the patch was replaced: the voice then uses its own copies of the patch's values.
     fn slide(&mut self, instrument: Option<&Instrument>, note: &Note, is_legato: bool) {
         self.take_over(note);
         self.energy.forget_end();
@@ -73,7 +75,7 @@ impl Voice for SynthVoice {
     }
 
     fn add_cell(&mut self, cell: Box<Cell>) {
-        // A note takes no more cells than its voices have room for.
+        // The number of cells comes from `footprint`, so the bank has room for each.
         let surplus = self.bank.add(cell);
         debug_assert!(surplus.is_none());
     }
@@ -82,7 +84,7 @@ impl Voice for SynthVoice {
         self.bank.take()
     }
 
-    /// Only what the note before may have left is reset: a voice is too large to be made anew.
+    /// Resets only what the last note may have changed, since a voice is too large to be built again.
     fn start(&mut self, instrument: &Instrument, note: &Note, unison: Unison) {
         self.unison = unison;
         self.clock = Clock::new(self.sample_rate);
@@ -95,7 +97,8 @@ impl Voice for SynthVoice {
         if !self.modulation.is_none() {
             self.modulation = NoteModulation::NONE;
         }
-        (self.let_go, self.fresh) = (None, true);
+        (self.let_go, self.fresh, self.is_held) = (None, true, true);
+        self.may_be_driven = [Param::BowLevel, Param::InputLevel].iter().any(|level| instrument.bus.leads_to(*level));
         self.modulators.load(&instrument.bus);
         if !self.modulators.are_idle() {
             strike_modulators(instrument, &mut self.modulators, note, true);
@@ -139,11 +142,12 @@ impl Voice for SynthVoice {
     }
 
     fn release(&mut self, velocity: f32) {
-        self.let_go = Some(velocity);
+        (self.let_go, self.is_held) = (Some(velocity), false);
         self.decay.release();
     }
 
     fn fade(&mut self) {
+        self.is_held = false;
         self.fader.fade((FADE_SECONDS * self.sample_rate) as u32);
     }
 
@@ -152,6 +156,6 @@ impl Voice for SynthVoice {
     }
 
     fn is_over(&self) -> bool {
-        self.energy.is_over(&self.bank, &self.fader)
+        self.fader.is_closed() || (!self.is_driven() && self.energy.is_over(&self.bank, &self.fader))
     }
 }

@@ -1,15 +1,19 @@
 //! The strikes of a voice: how hard they are, and how strongly each mode is moved by them.
 
+use super::bowing::Bowing;
+use super::input::Input;
 use super::values::StruckValues;
+use super::variation::Variation;
 use crate::dsp::cells::Cells;
-use crate::dsp::exciter::{self, Drive};
+use crate::dsp::exciter::{BurstSetup, Decay, Drive, Exciter, Stroke};
 use crate::dsp::mode_bank::ExcitationGains;
 use crate::dsp::random;
+use crate::engine::gain::exciter_gain;
 use crate::engine::note::Note;
 use crate::engine::voice_manager::Unison;
-use crate::params::{Exciter, Param};
+use crate::params::{Choice, MalletPulse, NoiseDecay, Param};
 use crate::patch::Mode;
-use crate::units::gain_from_db;
+use crate::sound::contact::{contact_time, hertz};
 use libm::{fabs, pow, sin, sqrt};
 use std::f64::consts::{LOG2_10, PI};
 
@@ -18,43 +22,47 @@ const SOFT_FORCE: f64 = 0.6;
 /// … and this much of the hardness.
 const SOFT_HARDNESS: f64 = 0.3;
 
-/// Contact times of the softest and the hardest mallet, in seconds.
-const SOFTEST_CONTACT: f64 = 0.01;
-const HARDEST_CONTACT: f64 = 0.000_05;
-
 /// The stream of random phases, beside that of a voice's noise.
 const PHASE_STREAM: u64 = 0x55_4e49_534f_4e00;
 
 /// What moves the modes of a voice. Real-time safe.
 pub(super) struct Strike {
-    exciter: exciter::Exciter,
+    exciter: Exciter,
     drive: Drive,
-    /// Squared force of the last strike, and the energy that one of force 1 brings: the sum of the squared gains.
-    squared_force: f64,
-    unit_energy: f64,
+    /// Forces of the last strike: of the mallet, the pluck and the noise.
+    forces: [f64; 3],
+    /// The energy that they bring.
+    energy: f64,
     /// Whether noise is among what moves the modes.
     is_noisy: bool,
     /// Radians by which the strike of a unison voice is turned ahead.
     phase: f32,
+    variation: Variation,
+    pub(super) bowing: Bowing,
+    pub(super) input: Input,
 }
 
 impl Strike {
     /// None yet.
     pub(super) fn new() -> Self {
         Self {
-            exciter: exciter::Exciter::REST,
+            exciter: Exciter::REST,
             drive: Drive::NONE,
-            squared_force: 0.0,
-            unit_energy: 0.0,
+            forces: [0.0; 3],
+            energy: 0.0,
             is_noisy: false,
             phase: 0.0,
+            variation: Variation::NONE,
+            bowing: Bowing::OFF,
+            input: Input::OFF,
         }
     }
 
     /// Forgets the strikes of the note before.
     pub(super) fn start(&mut self) {
-        self.exciter = exciter::Exciter::REST;
-        (self.squared_force, self.unit_energy, self.phase) = (0.0, 0.0, 0.0);
+        self.exciter = Exciter::REST;
+        (self.forces, self.energy, self.phase) = ([0.0; 3], 0.0, 0.0);
+        (self.bowing, self.input) = (Bowing::OFF, Input::OFF);
     }
 
     /// Whether any force is still to come.
@@ -67,19 +75,20 @@ impl Strike {
         self.exciter.frames_left()
     }
 
-    /// The force of the next frames, if there is any.
-    pub(super) fn drive(&mut self, frames: usize) -> Option<&Drive> {
-        self.exciter.is_active().then(|| {
+    /// The force of the next frames, if there is any. `input` is what comes in as sound: nothing, or a sample a frame.
+    pub(super) fn drive(&mut self, frames: usize, input: &[f32]) -> Option<&Drive> {
+        let is_driven = self.exciter.is_active() || (self.input.is_on() && !input.is_empty());
+        if is_driven || self.input.is_on() {
             self.exciter.fill(frames, &mut self.drive);
-            &self.drive
-        })
+            self.input.add_to(&mut self.drive.push, input, frames);
+        }
+        is_driven.then_some(&self.drive)
     }
 
     /// Computes each mode's excitation gains. Returns how much more energy the last strike brings for that.
     pub(super) fn set_gains(&mut self, values: &StruckValues, bank: &mut Cells) -> f64 {
         let modes = values.instrument.sound.patch().modes.as_slice();
         let tilt = values.get(Param::Tilt) / (20.0 / LOG2_10);
-        let (noise_gain, position) = (gain_from_db(values.get(Param::NoiseLevel)), values.get(Param::Position));
         let tilted = |mode: &Mode| {
             let tilt = if tilt == 0.0 { 1.0 } else { pow(f64::from(mode.ratio), tilt) };
             f64::from(mode.level) * tilt
@@ -91,32 +100,41 @@ impl Strike {
             balance = if total > 0.0 { plain / total } else { 1.0 };
         }
 
-        let exciter = values.instrument.modulated.choice::<Exciter>(Param::Exciter);
+        let [mallet, pluck, burst] = self.forces;
+        let place = values.get(Param::PluckPosition) + self.variation.pluck_place;
+        let (width, reach) = (values.share(Param::PluckWidth), values.share(Param::NoiseReach));
+        let noise_gain = exciter_gain(values.get(Param::NoiseLevel));
         let (mut noisy, mut energy) = (false, 0.0);
         for (m, mode) in modes.iter().enumerate() {
-            let level = tilted(mode) * balance;
-            let struck = if exciter == Exciter::Noise { 0.0 } else { level * f64::from(mode.strike) };
-            let noise =
-                if exciter == Exciter::Noise { level } else { level * (1.0 - f64::from(mode.strike)) } * noise_gain;
-            let (push, pull) = match exciter {
-                Exciter::Pluck => (0.0, struck * sin(PI * position * 0.01 * f64::from(mode.ratio))),
-                _ => (struck, 0.0),
-            };
+            let (level, ratio, strike) = (tilted(mode) * balance, f64::from(mode.ratio), f64::from(mode.strike));
+            let level = self.variation.mode_level(m, level);
+            let struck = level * strike;
+            let push = self.variation.at_mallet(ratio, struck);
+            let pull =
+                if pluck > 0.0 { struck * sin(PI * place * 0.01 * ratio) * under_finger(width, ratio) } else { 0.0 };
+            let noise = level * (1.0 - strike * (1.0 - reach)) * noise_gain;
             let gains =
                 ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32, phase: self.phase };
             bank.set_excitation_gains(m, gains);
             noisy |= noise != 0.0;
-            energy += push * push + pull * pull + noise * noise;
+            let (pulses, burst) = (fabs(push * mallet) + fabs(pull * pluck), noise * burst);
+            energy += pulses * pulses + burst * burst;
         }
-        let more = self.squared_force * (energy - self.unit_energy);
-        (self.unit_energy, self.is_noisy) = (energy, noisy);
+        let more = energy - self.energy;
+        (self.energy, self.is_noisy) = (energy, noisy);
         more
     }
 
-    /// Reads what the patch says of a strike, and strikes. Returns the energy that it brings.
-    pub(super) fn strike(&mut self, values: &StruckValues, note: &Note, unison: Unison, bank: &mut Cells) -> f64 {
-        // The strike before has brought its energy: this one's is counted below.
-        self.squared_force = 0.0;
+    /// Reads what the patch says of a strike, and strikes. `frequency` is the note's, in Hz. Returns the energy that it
+    /// brings.
+    pub(super) fn strike(
+        &mut self,
+        values: &StruckValues,
+        note: &Note,
+        frequency: f64,
+        unison: Unison,
+        bank: &mut Cells,
+    ) -> f64 {
         // Each unison voice has a phase and noise of its own; together they have the energy of one.
         let (Unison { index, count }, key) = (unison, random::key(values.instrument.seed, note.serial));
         let key = if index == 0 { key } else { random::key(key, index as u64) };
@@ -124,21 +142,76 @@ impl Strike {
             let phase = random::uniform(random::key(key, PHASE_STREAM), 0);
             self.phase = (PI * values.share(Param::UnisonPhase)) as f32 * phase;
         }
-        self.set_gains(values, bank);
+        self.variation = Variation::new(values, key);
+        self.variation.move_mallet(note.contact.map_or(0.0, |contact| contact.place.into()));
 
-        let velocity = f64::from(note.velocity);
         let soft = if note.soft { SOFT_FORCE } else { 1.0 };
-        let force = pow(velocity, 2.0 * values.share(Param::Velocity)) * soft / sqrt(count as f64);
-        let hardness = values.share(Param::Hardness);
-        let hardness = if note.soft { hardness * (1.0 - SOFT_HARDNESS) } else { hardness };
-        let contact = SOFTEST_CONTACT * pow(HARDEST_CONTACT / SOFTEST_CONTACT, hardness);
-        let frames = |seconds: f64| (seconds * values.instrument.sample_rate + 0.5) as u32;
-        let is_impulse = values.instrument.modulated.choice::<Exciter>(Param::Exciter) == Exciter::Impulse;
-        let pulse_frames = if is_impulse { 1 } else { frames(contact) };
-        let noise_force = if self.is_noisy { force as f32 } else { 0.0 };
-        let noise_frames = frames(values.get(Param::NoiseTime));
-        self.exciter.strike(force as f32, pulse_frames, noise_force, noise_frames, key);
-        self.squared_force = force * force;
-        self.squared_force * self.unit_energy
+        let follow = values.share(Param::Velocity);
+        let force = |own| {
+            let power = 2.0 * (follow + values.share(own)).max(0.0);
+            pow(f64::from(note.velocity), power) * soft / sqrt(count as f64)
+        };
+        let [mallet, pluck, burst] = [Param::MalletVelocity, Param::PluckVelocity, Param::NoiseVelocity].map(force);
+        let levels = [Param::MalletLevel, Param::PluckLevel].map(|param| exciter_gain(values.get(param)));
+        self.forces = [mallet * levels[0], pluck * levels[1], burst];
+        self.bowing.strike(values, force(Param::BowVelocity));
+        // The strike before has brought its energy: only this one's counts.
+        self.energy = 0.0;
+        let more = self.set_gains(values, bank);
+
+        let hardness = |param| {
+            let hardness = (values.share(param) + self.variation.hardness).clamp(0.0, 1.0);
+            if note.soft { hardness * (1.0 - SOFT_HARDNESS) } else { hardness }
+        };
+        let sample_rate = values.instrument.sample_rate;
+        let frames = |seconds: f64| frames(seconds, sample_rate);
+        let speed = mallet * sqrt(count as f64);
+        let pushing = mallet_frames(values, note, hardness(Param::MalletHardness), speed, frequency);
+        let stroke = Stroke {
+            push: (self.forces[0] as f32, pushing),
+            pull: (self.forces[1] as f32, frames(contact_time(hardness(Param::PluckHardness)))),
+            noise: BurstSetup {
+                force: if self.is_noisy { burst as f32 } else { 0.0 },
+                frames: frames(values.get(Param::NoiseTime)),
+                attack: frames(values.get(Param::NoiseAttack)),
+                decay: match NoiseDecay::from_value(values.get(Param::NoiseDecay) as f32) {
+                    NoiseDecay::Quadratic => Decay::Quadratic,
+                    NoiseDecay::Exponential => Decay::Exponential,
+                },
+                hits: values.get(Param::NoiseHits) as u32,
+                spacing: frames(values.get(Param::NoiseSpacing)),
+                colour: values.share(Param::NoiseColour),
+                key,
+            },
+        };
+        self.exciter.strike(&stroke, sample_rate);
+        more
     }
+}
+
+/// How much of a wave so many times as high as a string's lowest a finger moves that covers a share of the string: the
+/// mean of the wave over that width.
+fn under_finger(width: f64, ratio: f64) -> f64 {
+    let half = 0.5 * PI * width * ratio;
+    if half == 0.0 { 1.0 } else { sin(half) / half }
+}
+
+/// The frames for which a mallet touches that comes with a speed from 0 to 1, on a note of a frequency in Hz.
+fn mallet_frames(values: &StruckValues, note: &Note, hardness: f64, speed: f64, frequency: f64) -> u32 {
+    let sample_rate = values.instrument.sample_rate;
+    if let Some(contact) = note.contact {
+        return frames(contact.seconds.into(), sample_rate);
+    }
+    if values.instrument.modulated.choice::<MalletPulse>(Param::MalletPulse) == MalletPulse::Impulse {
+        return 1;
+    }
+    let stretch = hertz(values.get(Param::MalletMass), speed, values.share(Param::MalletSpeed));
+    let contact = contact_time(hardness) * stretch;
+    let by_key = values.share(Param::MalletKey);
+    let shortened = if by_key > 0.0 { pow((1.0 / (frequency.max(1.0) * contact)).min(1.0), by_key) } else { 1.0 };
+    frames(contact * shortened, sample_rate)
+}
+
+fn frames(seconds: f64, sample_rate: f64) -> u32 {
+    (seconds * sample_rate + 0.5) as u32
 }

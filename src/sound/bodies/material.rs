@@ -1,30 +1,31 @@
-//! Materials: stiffness, density, and how fast they lose what rings in them.
+//! Materials: stiffness, density, and how fast vibrations in them decay.
 
+use crate::dsp::coefficients::LN_MINUS_60_DB;
 use libm::pow;
 use std::f64::consts::PI;
 
-/// `ln 1000`: a level falls by 60 dB while `rate · time` grows by this.
-pub const LN_1000: f64 = 6.907_755_278_982_137;
+/// `ln 1000`: the level has fallen by 60 dB when `rate · time` reaches this value.
+pub const LN_1000: f64 = -LN_MINUS_60_DB;
 
-/// How fast a mode's amplitude falls, in 1/s: `b0 + b1 · f^power`, with f in Hz.
+/// Decay rate of a mode's amplitude, in 1/s: `b0 + b1 · f^power`, with f in Hz.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loss {
-    /// The part that all modes have: supports, and air where it matters.
+    /// The part that is the same for all modes: supports, and the air where it matters.
     pub b0: f64,
     /// The part that grows with frequency.
     pub b1: f64,
-    /// How it grows: 1 for a loss factor, ½ for friction of air at a wall, 2 for strings.
+    /// The exponent: 1 for a loss factor, ½ for friction of air at a wall, 2 for strings.
     pub power: f64,
 }
 
 impl Loss {
-    /// That of a material's loss factor η, besides `b0`: the amplitude of a mode falls at `π η f`
-    /// (Cremer, Heckl and Petersson, "Structure-Borne Sound": T60 = 2.2 / (η f)).
+    /// The loss of a material with loss factor η, plus `b0`: a mode's amplitude decays at the rate `π η f` (Cremer,
+    /// Heckl and Petersson, "Structure-Borne Sound": T60 = 2.2 / (η f)).
     pub const fn factor(eta: f64, b0: f64) -> Self {
         Self { b0, b1: PI * eta, power: 1.0 }
     }
 
-    /// The rate at a frequency in Hz, in 1/s.
+    /// The decay rate at a frequency in Hz, in 1/s.
     pub fn rate(&self, frequency: f64) -> f64 {
         self.b0 + self.b1 * pow(frequency, self.power)
     }
@@ -35,18 +36,18 @@ impl Loss {
     }
 }
 
-/// What a body is made of.
+/// A material that bodies are made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// What presets call it.
+    /// Its name in presets.
     pub id: &'static str,
     /// Density in kg/m³.
     pub density: f64,
-    /// Young's modulus in Pa; of wood along the grain.
+    /// Young's modulus in Pa; for wood, along the grain.
     pub young: f64,
     /// Poisson's ratio.
     pub poisson: f64,
-    /// How it loses what rings in it.
+    /// How fast vibrations in it decay.
     pub loss: Loss,
 }
 
@@ -55,9 +56,10 @@ const fn solid(id: &'static str, density: f64, young: f64, poisson: f64, loss: L
 }
 
 /// The materials that presets can name. Densities and moduli are handbook values. Loss factors of metals, glass and
-/// rubber lie within the ranges of Cremer, Heckl and Petersson's table of materials (aluminium 1e-4, steel 2e-4 to 6e-4,
-/// brass below 1e-3, glass 0.6e-3 to 2e-3), those of woods and nylon within what is published for them; `b0`, which
-/// depends on how a body is held, is ours, as are both parts of skin and mylar, where air takes most.
+/// rubber lie in the ranges of Cremer, Heckl and Petersson's table of materials (aluminium 1e-4, steel 2e-4 to 6e-4,
+/// brass below 1e-3, glass 0.6e-3 to 2e-3); those of woods and nylon lie in published ranges. `b0` depends on how a
+/// body is held; its values are our own choice. So are both parts of skin and mylar, where most of the loss is to the
+/// air.
 pub const MATERIALS: &[Material] = &[
     solid("steel", 7850.0, 2.0e11, 0.28, Loss::factor(2e-4, 0.3)),
     solid("aluminium", 2700.0, 7.0e10, 0.33, Loss::factor(1e-4, 0.5)),
@@ -73,23 +75,24 @@ pub const MATERIALS: &[Material] = &[
     solid("skin", 1000.0, 3.0e9, 0.35, Loss::factor(1.5e-2, 8.0)),
     solid("mylar", 1390.0, 4.5e9, 0.38, Loss::factor(2e-3, 1.0)),
     solid("nylon", 1120.0, 4.5e9, 0.39, Loss { b0: 1.0, b1: 1.5e-6, power: 2.0 }),
-    // The wires of a snare drum, steel that rattles on a head.
+    // The wires of a snare drum: steel that rattles on a head.
     solid("snare_wire", 7850.0, 2.0e11, 0.28, Loss::factor(4e-4, 12.0)),
     // A C4 piano string: b1 + b2 (2πf/c)² with b1 = 1.1, b2 = 2.7e-4, c = 329.6 m/s (Bensa, Bilbao, Kronland-Martinet and
     // Smith 2003, table I).
     solid("wire", 7850.0, 2.0e11, 0.28, Loss { b0: 1.1, b1: 9.811_9e-8, power: 2.0 }),
-    // Friction and heat at the wall of a pipe of 1 cm radius: the wave falls by 1.2e-5 √ω / a per metre (Fletcher and
-    // Rossing, chapter 8), which is 1.2e-5 · √(2π f) / 0.01 · 343 per second. The rest is the open end's sound.
+    // Friction and heat at the wall of a pipe of 1 cm radius: the wave decays by 1.2e-5 √ω / a per metre (Fletcher and
+    // Rossing, chapter 8), which is 1.2e-5 · √(2π f) / 0.01 · 343 per second. `b0` is the sound radiated from the open
+    // end.
     solid("air", 1.2, 1.42e5, 0.0, Loss { b0: 2.0, b1: 1.031_7, power: 0.5 }),
 ];
 
 impl Material {
-    /// The material of this name.
+    /// Finds the material with this name.
     pub fn find(id: &str) -> Option<&'static Self> {
         MATERIALS.iter().find(|material| material.id == id)
     }
 
-    /// Speed of waves of length along a thin bar, in m/s: √(E/ρ).
+    /// Speed of longitudinal waves in a thin bar, in m/s: √(E/ρ).
     pub(super) fn bar_speed(&self) -> f64 {
         (self.young / self.density).sqrt()
     }

@@ -1,4 +1,4 @@
-//! The tables of `benches/README.md`, from what was measured.
+//! Formats the tables of `benches/README.md`.
 
 use super::measured::Measured;
 use super::peers::Peer;
@@ -7,13 +7,13 @@ use std::fmt::Write as _;
 
 const WORKS: [&str; 3] = ["ringing", "modulated", "driven"];
 const RATE: f64 = 48_000.0;
-/// Seconds of a block of 64 frames.
+/// Duration of a block of 64 frames, in seconds.
 const BLOCK: f64 = 64.0 / RATE;
 
-/// From frames a second to what a table tells.
+/// Converts frames per second to the unit of a table.
 type Unit = fn(f64) -> f64;
 
-/// All of them.
+/// All tables.
 pub(super) fn all(measured: &Measured, peers: &[Peer], cpu: &str) -> String {
     let levels: Vec<Level> = Level::ALL.into_iter().rev().filter(|level| level.is_available()).collect();
     let mut text = machine(measured, cpu);
@@ -24,7 +24,7 @@ pub(super) fn all(measured: &Measured, peers: &[Peer], cpu: &str) -> String {
     text
 }
 
-/// A number with three figures, or a dash.
+/// A number with three significant digits, or a dash.
 fn figure(value: Option<f64>) -> String {
     match value {
         None => "–".to_owned(),
@@ -86,10 +86,11 @@ fn instrument(measured: &Measured, levels: &[Level]) -> String {
     text += &head("", levels.iter().map(|level| level.name().to_owned()));
     let share: Unit = |rate| 64.0 / rate / BLOCK * 100.0;
     let times: Unit = |rate| rate / RATE;
-    let rows: [(&str, &str, Unit); 3] = [
+    let rows: [(&str, &str, Unit); 4] = [
         ("all struck in one block, % of its time", "note-on", share),
         ("ringing, × real time", "ringing", times),
         ("bend, vibrato and sweep moving, × real time", "moving", times),
+        ("and 16 routes, 3 oscillators and 2 envelopes a voice, × real time", "routed", times),
     ];
     for (title, name, unit) in rows {
         let cell = |level: &Level| figure(measured.rate(&format!("synth/{}/{name}", level.name())).map(unit));

@@ -1,15 +1,16 @@
-//! What the engine itself plays: the reference for every comparison of bits.
+//! Renders with the engine alone: the reference for all comparisons of bits.
 
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::patch::Patch;
 
-/// An event of the engine at a frame of the song.
+/// An event of the engine with its frame in the song.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct At(pub(crate) u64, pub(crate) u8, pub(crate) EventKind);
 
-/// Renders left and right of `frames` frames in one go.
+/// Renders `frames` frames, left and right, in one block.
 pub(crate) fn render(patch: &Patch, sample_rate: f64, song: &[At], frames: usize) -> [Vec<f32>; 2] {
     let mut synth = Synth::new(sample_rate, 0);
+    synth.reserve_space();
     synth.set_patch(patch);
     synth.reset();
     let events: Vec<Event> =
@@ -19,7 +20,7 @@ pub(crate) fn render(patch: &Patch, sample_rate: f64, song: &[At], frames: usize
     [left, right]
 }
 
-/// Fails unless both have the same bits: says where they part, and by how much at worst.
+/// Fails unless both have the same bits. Reports the first and the largest difference.
 #[track_caller]
 pub(crate) fn assert_same_bits(what: &str, found: &[Vec<f32>], expected: &[Vec<f32>]) {
     assert_eq!(found.len(), expected.len(), "{what}: channels");
@@ -40,7 +41,7 @@ pub(crate) fn assert_same_bits(what: &str, found: &[Vec<f32>], expected: &[Vec<f
     }
 }
 
-/// Fails if something is not a number, infinite or subnormal, or if all is silent.
+/// Fails if a sample is NaN, infinite or subnormal, or if everything is silent.
 #[track_caller]
 pub(crate) fn assert_sound(what: &str, channels: &[Vec<f32>]) {
     assert_clean(what, channels);
@@ -48,7 +49,7 @@ pub(crate) fn assert_sound(what: &str, channels: &[Vec<f32>]) {
     assert!(peak > 1e-3, "{what}: silent, the peak is {peak}");
 }
 
-/// Fails if something is not a number, infinite or subnormal.
+/// Fails if a sample is NaN, infinite or subnormal.
 #[track_caller]
 pub(crate) fn assert_clean(what: &str, channels: &[Vec<f32>]) {
     for (channel, samples) in channels.iter().enumerate() {

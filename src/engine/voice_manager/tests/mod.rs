@@ -1,4 +1,4 @@
-//! What the manager tells its voices, written down by a fake one.
+//! The calls that the manager makes to its voices, logged by fake voices.
 
 mod fake;
 
@@ -26,12 +26,12 @@ enum Do {
 }
 use Do::*;
 
-/// Plays a script and returns what the voices were told.
+/// Plays a script and returns the calls that the voices received.
 fn play(polyphony: usize, mode: PlayMode, script: &[Do]) -> Vec<String> {
     play_with(polyphony, mode, Priority::Last, 1, script).0
 }
 
-/// As [`play`]; also the keys of the notes that have ended, in that order.
+/// As [`play`]; also returns the keys of the ended notes, in order of their ends.
 fn play_with(
     polyphony: usize,
     mode: PlayMode,
@@ -63,6 +63,7 @@ fn play_with(
             gain: 1.0,
             pan: 0.0,
             is_legato,
+            contact: None,
         };
         if let OnPatch(_, patch) | OnChokePatch(_, _, patch) | Patch(patch) = *action {
             instrument.patch = patch;
@@ -133,7 +134,7 @@ fn stealing_takes_the_same_key_then_the_quietest_then_the_oldest() {
 
 #[test]
 fn more_steals_than_spare_voices_cut_the_oldest_and_go_on() {
-    // There are 128 slots: from the 129th note on, one has to be cut off.
+    // There are 128 slots, so each note after the 128th cuts one off.
     let script: Vec<_> = (0..200).map(|n| On(n % 128, 1.0)).collect();
     let told = play(1, PlayMode::Poly, &script);
     assert_eq!(told.iter().filter(|line| line.starts_with("start")).count(), 200);
@@ -144,7 +145,7 @@ fn choke_groups_silence_their_own_and_no_others() {
     let script = [OnChoke(42, 1), OnChoke(38, 0), OnChoke(46, 1), OnChoke(46, 1), OnChoke(50, 2)];
     let expected = ["start 42", "start 38", "fade 42", "start 46", "restrike 46 as 46", "start 50"];
     check(16, PlayMode::Poly, &script, &expected);
-    // The same key of another patch is another sound, and an overlapping legato note is the same one.
+    // The same key of another patch is another sound. An overlapping legato note continues the same sound.
     let told = play_choked(PlayMode::Poly, &[(46, 0), (46, 1)]);
     assert_eq!(told, ["start 46", "fade 46", "start 46"]);
     assert_eq!(play_choked(PlayMode::Legato, &[(46, 0), (48, 0)]), ["start 46", "retune 46 to 48"]);
@@ -166,7 +167,7 @@ fn the_sustain_pedal_holds_until_it_is_lifted() {
 fn sostenuto_holds_only_the_keys_that_were_down() {
     let script = [On(60, 1.0), Sostenuto(true), On(62, 1.0), Off(60), Off(62), Sostenuto(false)];
     check(16, PlayMode::Poly, &script, &["start 60", "start 62", "release 62 at 0.25", "release 60 at 0.5"]);
-    // A pedal that says again that it is down catches nothing more.
+    // A pedal that repeats its down message holds no further notes.
     let repeated = [Sostenuto(true), On(60, 1.0), Sostenuto(true), Off(60)];
     check(16, PlayMode::Poly, &repeated, &["start 60", "release 60 at 0.25"]);
     let both = [On(60, 1.0), Sostenuto(true), Sustain(true), Off(60), Sostenuto(false), Sustain(false)];
@@ -250,7 +251,7 @@ fn a_key_without_priority_sounds_once_the_other_has_died_away() {
     assert_eq!(told, ["start 60", "start 64", "retune 64 to 60", "restrike 60 as 65"]);
 }
 
-/// Managers that share a pool of 16 voices, 12 of them for notes that do not fade.
+/// Managers that share a pool of 16 voices, of which notes that do not fade may use 12.
 #[test]
 fn what_gives_way_is_the_quietest_of_all_managers() {
     let (log, capacity) = (Log::default(), Footprint { voices: 16, cells: 32 });

@@ -1,0 +1,135 @@
+//! The poles of a narrow band by ESPRIT (Roy & Kailath 1989).
+//!
+//! The band is shifted to zero, filtered and decimated, so that a few dozen samples hold few modes; its signal subspace turns
+//! by the poles from one sample to the next.
+//!
+//! The filter looks at what comes after the first sample only, where a sum of damped sinusoids stays just that.
+
+use super::pole::Pole;
+use libm::{atan2, log, log2, sqrt};
+use nalgebra::{DMatrix, Schur, SymmetricEigen};
+use realfft::num_complex::Complex;
+use std::f64::consts::PI;
+
+/// Samples that a band is decimated to.
+const SAMPLES: usize = 104;
+/// Rows of the data matrix.
+const ROWS: usize = 44;
+/// Most poles that a band can have.
+const MOST_POLES: usize = 18;
+/// Half-width of a band, and of where its filter ends, as shares of the decimated rate.
+const PASS: f64 = 0.3;
+const STOP: f64 = 0.7;
+/// Attenuation beyond the band in dB.
+const ATTENUATION: f64 = 110.0;
+
+/// A narrow band of a sound: its middle, and the samples from one output to the next.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Band {
+    pub(super) theta: f64,
+    hop: usize,
+}
+
+impl Band {
+    /// The band around `theta` that resolves modes which ring for about `len` samples.
+    pub(super) fn new(theta: f64, len: usize) -> Self {
+        Self { theta, hop: (len / (SAMPLES + Self::taps(1))).max(1) }
+    }
+
+    /// Half of its width in radians per sample.
+    pub(super) fn half_width(&self) -> f64 {
+        PASS * 2.0 * PI / self.hop as f64
+    }
+
+    /// Length of the filter (Kaiser 1974).
+    fn taps(hop: usize) -> usize {
+        ((ATTENUATION - 7.95) / (2.285 * 2.0 * PI * (STOP - PASS) / hop as f64)) as usize | 1
+    }
+
+    /// The band's samples at its own rate.
+    fn decimate(&self, samples: &[f64]) -> Vec<Complex<f64>> {
+        let taps = Self::taps(self.hop);
+        let beta = 0.1102 * (ATTENUATION - 8.7);
+        let middle = (taps / 2) as f64;
+        let cutoff = 0.5 * (PASS + STOP) * 2.0 * PI / self.hop as f64;
+        let filter: Vec<Complex<f64>> = (0..taps)
+            .map(|n| {
+                let x = n as f64 - middle;
+                let sinc = if x == 0.0 { cutoff / PI } else { libm::sin(cutoff * x) / (PI * x) };
+                let window = bessel(beta * sqrt((1.0 - (x / (middle + 1.0)) * (x / (middle + 1.0))).max(0.0)));
+                let (sin, cos) = libm::sincos(self.theta * n as f64);
+                Complex::new(cos, -sin) * (sinc * window / bessel(beta))
+            })
+            .collect();
+        let count = samples.len().saturating_sub(taps) / self.hop;
+        (0..count.min(SAMPLES))
+            .map(|m| {
+                let stretch = &samples[m * self.hop..m * self.hop + taps];
+                let sum: Complex<f64> = stretch.iter().zip(&filter).map(|(sample, tap)| tap * sample).sum();
+                let (sin, cos) = libm::sincos(self.theta * (m * self.hop) as f64);
+                sum * Complex::new(cos, -sin)
+            })
+            .collect()
+    }
+
+    /// The poles within the band, as many as the description length asks for (MDL; Wax & Kailath 1985).
+    pub(super) fn poles(&self, samples: &[f64]) -> Vec<Pole> {
+        let band = self.decimate(samples);
+        let rows = ROWS.min(band.len() / 2);
+        if rows < 4 {
+            return Vec::new();
+        }
+        let columns = band.len() - rows + 1;
+        let data = DMatrix::from_fn(rows, columns, |row, column| band[row + column]);
+        let covariance = &data * data.adjoint();
+        let Some(SymmetricEigen { eigenvectors, eigenvalues }) = SymmetricEigen::try_new(covariance, 1e-15, 10_000)
+        else {
+            return Vec::new();
+        };
+        let mut order: Vec<usize> = (0..rows).collect();
+        order.sort_by(|a, b| eigenvalues[*b].total_cmp(&eigenvalues[*a]));
+        let sorted: Vec<f64> = order.iter().map(|index| eigenvalues[*index]).collect();
+        let count = description_length(&sorted, columns).min(MOST_POLES).min(rows - 2);
+        let subspace = DMatrix::from_fn(rows, count, |row, column| eigenvectors[(row, order[column])]);
+        let (upper, lower) = (subspace.rows(0, rows - 1).into_owned(), subspace.rows(1, rows - 1).into_owned());
+        let Some(turn) = (upper.adjoint() * &upper).lu().solve(&(upper.adjoint() * lower)) else { return Vec::new() };
+        let Some(schur) = Schur::try_new(turn, 1e-15, 10_000) else { return Vec::new() };
+        let (_, triangle) = schur.unpack();
+        (0..count).filter_map(|index| self.pole(triangle[(index, index)])).collect()
+    }
+
+    /// The pole of a turn from one of the band's samples to the next; none outside the band, or that grows.
+    fn pole(&self, turn: Complex<f64>) -> Option<Pole> {
+        let (radius, angle) = (turn.norm(), atan2(turn.im, turn.re));
+        let inside = angle.abs() < 2.0 * PI * PASS * 1.05 && radius > 1e-6;
+        let grows = log(radius.max(1e-9)) * SAMPLES as f64 > 1.0;
+        let pole =
+            Pole { decay: -log(radius.max(1e-9)) / self.hop as f64, theta: self.theta + angle / self.hop as f64 };
+        (inside && !grows && pole.theta > 0.0 && pole.theta < PI)
+            .then_some(Pole { decay: pole.decay.max(1e-3 / (self.hop * SAMPLES) as f64), ..pole })
+    }
+}
+
+/// How many of the falling eigenvalues of a covariance over so many snapshots are no noise.
+fn description_length(eigenvalues: &[f64], snapshots: usize) -> usize {
+    let (count, floor) = (eigenvalues.len(), 1e-15 * eigenvalues[0].max(f64::MIN_POSITIVE));
+    let cost = |order: usize| {
+        let noise = eigenvalues[order..].iter().map(|value| value.max(floor));
+        let rest = (count - order) as f64;
+        let (logarithms, sum) = noise.fold((0.0, 0.0), |(logs, sum), value| (logs + log2(value), sum + value));
+        let flatness = logarithms / rest - log2(sum / rest);
+        let parameters = (order * (2 * count - order)) as f64;
+        -(snapshots as f64) * rest * flatness + 0.5 * parameters * log2(snapshots as f64)
+    };
+    (0..count - 1).min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(0)
+}
+
+/// Modified Bessel function of order 0, by its series.
+fn bessel(x: f64) -> f64 {
+    let (mut term, mut sum) = (1.0, 1.0);
+    for k in 1..60 {
+        term *= (x / (2.0 * f64::from(k))) * (x / (2.0 * f64::from(k)));
+        sum += term;
+    }
+    sum
+}

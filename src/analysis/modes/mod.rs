@@ -1,0 +1,206 @@
+//! A recording of strikes taken apart into its modes.
+//!
+//! Modes are damped sinusoids, each with frequency, T60, level, phase and how certain these are.
+//!
+//! Peaks of spectra that are matched to decays of all lengths say where there is more than noise; ESPRIT resolves the bands
+//! around them into poles; all poles are refined together by least squares on the whole sound; what explains no more than
+//! noise would is dropped; and so on with what is left over, until nothing stands out of it.
+
+mod common;
+mod detect;
+mod esprit;
+mod fit;
+mod groups;
+mod mode;
+mod pole;
+mod prune;
+mod search;
+mod strikes;
+
+pub use common::{Common, common};
+pub use mode::{Group, Kind, Mode, Strike, Uncertainty};
+
+use super::level::dbfs;
+use crate::error::{Error, Result};
+use fit::Fit;
+use groups::groups;
+use libm::{log10, sqrt};
+use pole::{LN_60_DB, add};
+use std::f64::consts::{LN_10, PI};
+use strikes::{Stretch, strikes};
+
+/// What to look for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Most modes of a strike; the strongest are found first.
+    pub most_modes: usize,
+    /// Seconds of a strike that are looked at, at most.
+    pub longest: f64,
+    /// Whether every strike is taken apart, or the first alone.
+    pub all_strikes: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { most_modes: 256, longest: 12.0, all_strikes: false }
+    }
+}
+
+/// A recording taken apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Analysis {
+    /// The strikes that were taken apart.
+    pub strikes: Vec<Strike>,
+    /// Strikes that were found, taken apart or not.
+    pub strikes_found: usize,
+    /// What makes the figures doubtful.
+    pub warnings: Vec<String>,
+}
+
+/// Quietest peak of a recording that is not silent: −100 dBFS.
+const SILENCE: f64 = 1e-5;
+/// T60 in seconds beyond which a mode does not decay.
+const ENDLESS: f64 = 2000.0;
+/// Residual in dB above which the sound is hardly made of modes.
+const HARDLY_MODES_DB: f64 = -6.0;
+
+/// Takes a recording apart: a list of samples for each channel, at `sample_rate` Hz. `progress` is told the share of the
+/// work that is done, and ends it by `false`.
+///
+/// # Errors
+/// [`Error::Value`] for silence, samples that are not finite, sounds too short and fits that have no solution;
+/// [`Error::Interrupted`].
+pub fn modes(
+    channels: &[Vec<f32>],
+    sample_rate: f64,
+    settings: &Settings,
+    progress: &mut dyn FnMut(f64) -> bool,
+) -> Result<Analysis> {
+    let mut warnings = Vec::new();
+    let wrong = |message: &str| Error::value("sound", message);
+    if channels.iter().flatten().any(|sample| !sample.is_finite()) {
+        return Err(wrong("some samples are not finite: expected numbers"));
+    }
+    let mut rest = mono(channels, &mut warnings);
+    let peak = rest.iter().fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
+    if peak < SILENCE {
+        return Err(wrong("it is silent: expected a strike above −100 dBFS"));
+    }
+    warnings.extend(clipping(channels));
+    let stretches = strikes(&rest, sample_rate, settings.longest);
+    if stretches.is_empty() {
+        return Err(wrong("there is no strike of at least 30 ms in it: expected something that is struck and rings"));
+    }
+    let count = if settings.all_strikes { stretches.len() } else { 1 };
+    let mut found = Vec::new();
+    for (index, stretch) in stretches.iter().take(count).enumerate() {
+        let mut told = |share: f64| progress((index as f64 + share) / count as f64);
+        let samples = &rest[stretch.start..stretch.end];
+        let modes = search::find(samples, sample_rate, settings.most_modes, &mut told)?;
+        // What rings on is no part of the next strike.
+        for (pole, amplitude) in modes.fit.poles.iter().zip(&modes.fit.amplitudes) {
+            add(&mut rest[stretch.end..], *pole, *amplitude * pole.power(stretch.end - stretch.start), -1.0);
+        }
+        let strike = strike(&modes, channels, &rest, stretch, sample_rate);
+        if strike.residual_db > HARDLY_MODES_DB {
+            warnings.push(format!(
+                "the modes of the strike at {:.3} s explain little of it ({:.1} dB are left): expected something that is \
+                 struck and rings freely",
+                strike.onset, strike.residual_db
+            ));
+        }
+        found.push(strike);
+    }
+    Ok(Analysis { strikes: found, strikes_found: stretches.len(), warnings })
+}
+
+/// The mean of the channels, or the loudest where they all but cancel.
+fn mono(channels: &[Vec<f32>], warnings: &mut Vec<String>) -> Vec<f64> {
+    let len = channels.iter().map(Vec::len).min().unwrap_or(0);
+    let mean = |n: usize| channels.iter().map(|channel| f64::from(channel[n])).sum::<f64>() / channels.len() as f64;
+    let mean: Vec<f64> = (0..len).map(mean).collect();
+    let energy = |channel: &Vec<f32>| channel.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
+    let loudest = channels.iter().enumerate().max_by(|a, b| energy(a.1).total_cmp(&energy(b.1)));
+    let of_mean: f64 = mean.iter().map(|sample| sample * sample).sum();
+    match loudest {
+        Some((index, channel)) if of_mean < 0.1 * energy(channel) && channels.len() > 1 => {
+            warnings.push(format!("the channels all but cancel: channel {} alone was taken apart", index + 1));
+            channel.iter().map(|sample| f64::from(*sample)).collect()
+        }
+        _ => mean,
+    }
+}
+
+/// A warning of samples that stand still at the loudest level.
+fn clipping(channels: &[Vec<f32>]) -> Option<String> {
+    let mut count = 0;
+    for channel in channels {
+        let peak = channel.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+        let flat = |window: &&[f32]| window.iter().all(|sample| *sample == window[0]) && window[0].abs() == peak;
+        count += if peak > 0.5 { channel.windows(3).filter(flat).count() } else { 0 };
+    }
+    (count > 0).then(|| format!("the sound is clipped in {count} places: levels and high modes are doubtful"))
+}
+
+fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: &Stretch, sample_rate: f64) -> Strike {
+    let samples = &sound[stretch.start..stretch.end];
+    let residual = found.fit.residual(samples);
+    let energy = |samples: &[f64]| samples.iter().map(|sample| sample * sample).sum::<f64>();
+    let fits: Vec<Option<Fit>> = match channels.len() {
+        1 => Vec::new(),
+        _ => channels
+            .iter()
+            .map(|channel| {
+                let samples: Vec<f64> = channel[stretch.start..stretch.end].iter().map(|x| f64::from(*x)).collect();
+                Fit::new(&samples, found.fit.poles.clone())
+            })
+            .collect(),
+    };
+    // Where the exciter has let go the modes have been ringing for a while.
+    let late = (stretch.start - stretch.onset) as f64;
+    let mut modes: Vec<Mode> = (0..found.fit.poles.len())
+        .map(|k| {
+            let pole = found.fit.poles[k];
+            let at_onset = |fit: &Fit| {
+                let amplitude = fit.amplitudes[k];
+                let level = dbfs(amplitude.norm()) + 20.0 / LN_10 * pole.decay * late;
+                let cosine = libm::atan2(amplitude.im, amplitude.re) - pole.theta * late;
+                (level, libm::remainder(cosine + 0.5 * PI, 2.0 * PI))
+            };
+            let (level_db, phase) = at_onset(&found.fit);
+            // Both quadratures of noise are in the floor.
+            let variance = found.floors[k] / 2.0;
+            let deviation = |index: usize| sqrt((found.certainty.variances[k][index] * variance).max(0.0));
+            let t60 = LN_60_DB / (pole.decay * sample_rate);
+            Mode {
+                frequency: pole.theta * sample_rate / (2.0 * PI),
+                t60: if t60 < ENDLESS { t60 } else { f64::INFINITY },
+                level_db,
+                phase,
+                uncertainty: Uncertainty {
+                    frequency: deviation(1) * sample_rate / (2.0 * PI),
+                    t60: deviation(0) / pole.decay.max(1e-300) * t60.min(ENDLESS),
+                    level_db: 20.0 / LN_10 * deviation(2),
+                    phase: deviation(3),
+                },
+                snr_db: 10.0 * log10(found.certainty.explained[k] / variance.max(1e-300)),
+                channels: fits.iter().flatten().map(at_onset).collect(),
+            }
+        })
+        .collect();
+    modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    let single = |samples: &[f64]| samples.iter().map(|sample| *sample as f32).collect();
+    Strike {
+        onset: stretch.onset as f64 / sample_rate,
+        seconds: (stretch.end - stretch.onset) as f64 / sample_rate,
+        groups: groups(&modes),
+        modes,
+        residual_db: 10.0 * log10((energy(&residual) / energy(samples).max(1e-300)).max(1e-30)),
+        samples: single(samples),
+        residual: single(&residual),
+        fitted_from: stretch.start as f64 / sample_rate,
+    }
+}
+
+#[cfg(test)]
+mod tests;

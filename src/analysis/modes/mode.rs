@@ -1,0 +1,73 @@
+//! A mode of a strike, and the strike that it is of.
+
+/// What a group of modes is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Modes a little apart, which beat: what is one mode of a perfect body, split by its imperfections.
+    SplitPair,
+    /// A mode that decays fast at first and slowly later: modes of one frequency and different T60, as of a string's two
+    /// directions (Weinreich 1977).
+    TwoStageDecay,
+}
+
+/// Modes of a strike that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// What they are.
+    pub kind: Kind,
+    /// Their places in the list of modes.
+    pub modes: Vec<usize>,
+}
+
+/// Standard deviations, if what is not explained is noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Hz.
+    pub frequency: f64,
+    /// Seconds.
+    pub t60: f64,
+    /// dB.
+    pub level_db: f64,
+    /// Radians.
+    pub phase: f64,
+}
+
+/// A damped sinusoid, `a · 0.001^(t / t60) · sin(2π · frequency · t + phase)` with `t` in seconds from the strike's onset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// Hz.
+    pub frequency: f64,
+    /// Seconds in which it decays by 60 dB; infinite if it does not within what can be told.
+    pub t60: f64,
+    /// `a` in dBFS: 0 dB is a sine of full scale.
+    pub level_db: f64,
+    /// Radians, −π to π.
+    pub phase: f64,
+    /// How well these are known.
+    pub uncertainty: Uncertainty,
+    /// Energy of the mode over the power density of the noise at its frequency, in dB: what a detector goes by.
+    pub snr_db: f64,
+    /// Level in dBFS and phase in each channel, where there are several.
+    pub channels: Vec<(f64, f64)>,
+}
+
+/// One strike and its modes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strike {
+    /// Seconds from the recording's beginning to the strike's.
+    pub onset: f64,
+    /// Seconds from there to the end of what was looked at.
+    pub seconds: f64,
+    /// By rising frequency.
+    pub modes: Vec<Mode>,
+    /// Modes that are heard as one: by their places in `modes`.
+    pub groups: Vec<Group>,
+    /// Energy that the modes leave unexplained, in dB relative to the whole.
+    pub residual_db: f64,
+    /// The sound itself from `fitted_from` on, and what the modes leave of it.
+    pub samples: Vec<f32>,
+    /// See `samples`.
+    pub residual: Vec<f32>,
+    /// Seconds from the recording's beginning to the first of `samples`: the exciter has let go.
+    pub fitted_from: f64,
+}

@@ -1,0 +1,178 @@
+//! When a recording is struck, and how long each strike can be listened to.
+
+use libm::sqrt;
+
+/// Seconds over which energy is compared on either side of an onset.
+const STEP: f64 = 0.005;
+/// Rise of the energy from one step to the next that makes an onset: 8 dB.
+const RISE: f64 = 6.3;
+/// Seconds before an onset in which nothing may have been as loud: what beats comes back, but never above where it was.
+const MEMORY: f64 = 0.08;
+/// Seconds by which an onset may come before its first sample that stands out.
+const SWELL: f64 = 0.001;
+/// Least distance of onsets in seconds.
+const APART: f64 = 0.05;
+/// Amplitude below the loudest of the recording that is no strike: −50 dB.
+const FAINT: f64 = 3e-3;
+/// Seconds within which an exciter lets go.
+const CONTACT: f64 = 0.015;
+/// Seconds of a block whose level tells whether there is more than noise.
+const BLOCK: f64 = 0.05;
+/// Level above the noise at which there is.
+const ABOVE_NOISE: f64 = 1.03;
+/// Noise keeps its level within 1 dB for so many blocks: in as long, a T60 of 30 s loses more.
+const STEADY: f64 = 1.122;
+const STEADY_BLOCKS: usize = 12;
+/// Shortest stretch in seconds that modes are looked for in.
+const SHORTEST: f64 = 0.03;
+
+/// A strike: frames of the recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stretch {
+    /// Where the sound begins.
+    pub(super) onset: usize,
+    /// Where the exciter has let go, and the modes ring by themselves.
+    pub(super) start: usize,
+    /// Where nothing but noise is left, or the next strike comes.
+    pub(super) end: usize,
+}
+
+/// Finds strikes in samples that are not silent; none longer than `longest` seconds.
+pub(super) fn strikes(samples: &[f64], sample_rate: f64, longest: f64) -> Vec<Stretch> {
+    let frames = |seconds: f64| ((seconds * sample_rate) as usize).max(1);
+    // A constant is no sound.
+    let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
+    let samples: Vec<f64> = samples.iter().map(|sample| sample - mean).collect();
+    let samples = &samples[..];
+    let mut onsets = onsets(samples, sample_rate);
+    if onsets.is_empty() {
+        // It sounds all the time.
+        onsets.push(0);
+    }
+    let floor = noise(samples, frames(BLOCK));
+    let next = |index: usize| onsets.get(index + 1).map_or(samples.len(), |next| next.saturating_sub(frames(0.002)));
+    let stretch = |(index, onset): (usize, &usize)| {
+        let start = released(samples, *onset, frames(0.001), frames(CONTACT));
+        let limit = next(index).min(start + frames(longest));
+        let mut blocks = samples[start.min(limit)..limit].chunks(frames(BLOCK)).enumerate();
+        let above = |block: &[f64]| rms(block) > ABOVE_NOISE * floor;
+        let heard = blocks.rfind(|(_, block)| above(block)).map_or(0, |(block, _)| block + 1);
+        let end = (start + (heard * frames(BLOCK)).max(frames(SHORTEST))).min(limit);
+        Stretch { onset: *onset, start, end }
+    };
+    let long_enough = |stretch: &Stretch| stretch.end >= stretch.start + frames(SHORTEST);
+    onsets.iter().enumerate().map(stretch).filter(long_enough).collect()
+}
+
+/// Frames at which strikes begin.
+fn onsets(samples: &[f64], sample_rate: f64) -> Vec<usize> {
+    let step = ((STEP * sample_rate) as usize).max(1);
+    let peak = samples.iter().fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
+    let energies: Vec<f64> = samples.chunks(step).map(|block| block.iter().map(|x| x * x).sum()).collect();
+    let (memory, apart) = ((MEMORY / STEP) as usize, (APART * sample_rate) as usize);
+    let least = FAINT * FAINT * peak * peak * step as f64 * 0.1;
+    // Nothing is known of what came before the recording.
+    let quietest = energies.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut found: Vec<usize> = Vec::new();
+    for (block, energy) in energies.iter().enumerate() {
+        let loudest =
+            energies[block.saturating_sub(memory)..block].iter().fold(0.0_f64, |most, energy| most.max(*energy));
+        let before = block.checked_sub(1).map_or(quietest, |before| energies[before]);
+        if *energy < least || *energy < RISE * before || *energy < 1.5 * loudest {
+            continue;
+        }
+        let onset = first_above(samples, block * step, step, (SWELL * sample_rate) as usize);
+        if found.last().is_none_or(|last| onset >= last + apart) {
+            found.push(onset);
+        }
+    }
+    found
+}
+
+/// The first sample, from a step before frame `from`, that what came before does not explain; `swell` frames before one that
+/// stands out clearly, fainter ones count.
+fn first_above(samples: &[f64], from: usize, step: usize, swell: usize) -> usize {
+    let most = |range: &[f64]| range.iter().fold(0.0_f64, |most, sample| most.max(sample.abs()));
+    let begin = from.saturating_sub(step);
+    let (before, after) = (most(&samples[begin.saturating_sub(4 * step)..begin]), {
+        most(&samples[begin..(from + step).min(samples.len())])
+    });
+    let threshold = (1.5 * before).max(0.03 * after).min(after);
+    let place = begin + samples[begin..].iter().position(|sample| sample.abs() >= threshold).unwrap_or(0);
+    // It swells from there, and what came before is quieter than that, too.
+    let faint = (1.5 * before).max(0.001 * after).min(after);
+    let earliest = place.saturating_sub(swell);
+    earliest + samples[earliest..].iter().position(|sample| sample.abs() >= faint).unwrap_or(0)
+}
+
+/// Where the energy first comes to half of its maximum within the time of contact: what is struck rings by itself soon after.
+fn released(samples: &[f64], onset: usize, block: usize, contact: usize) -> usize {
+    let end = (onset + contact).min(samples.len());
+    let energies: Vec<f64> = samples[onset..end].chunks(block).map(|block| block.iter().map(|x| x * x).sum()).collect();
+    let most = energies.iter().fold(0.0_f64, |most, energy| most.max(*energy));
+    let reached = energies.iter().position(|energy| *energy >= 0.5 * most).unwrap_or(0);
+    onset + reached * block
+}
+
+fn rms(samples: &[f64]) -> f64 {
+    sqrt(samples.iter().map(|sample| sample * sample).sum::<f64>() / samples.len().max(1) as f64)
+}
+
+/// Level of the noise that is left where nothing sounds; 0 where there is none, as in a strike that decays to the end.
+fn noise(samples: &[f64], block: usize) -> f64 {
+    let mut levels: Vec<f64> = samples.chunks_exact(block).map(rms).collect();
+    levels.sort_by(f64::total_cmp);
+    let (Some(quietest), Some(loudest)) = (levels.first(), levels.last()) else { return 0.0 };
+    // Noise stands still, and what decays does not.
+    let still = levels.iter().take_while(|level| **level <= STEADY * quietest).count();
+    if still >= STEADY_BLOCKS && *quietest < 0.1 * loudest { levels[still / 2] } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decay(len: usize) -> impl Iterator<Item = f64> {
+        (0..len).map(|n| libm::exp(-3e-4 * n as f64) * libm::cos(0.1 * n as f64))
+    }
+
+    #[test]
+    fn strikes_begin_where_they_begin() {
+        let mut samples = vec![0.0; 1000];
+        samples.extend(decay(24_000));
+        samples.extend(decay(24_000));
+        let found = strikes(&samples, 48_000.0, 10.0);
+        assert_eq!(found.iter().map(|stretch| stretch.onset).collect::<Vec<_>>(), [1000, 25_000]);
+        assert!(found[0].end <= 25_000 && found[1].end == 49_000, "{found:?}");
+    }
+
+    #[test]
+    fn a_strike_ends_where_noise_alone_is_left() {
+        let mut state = 1_u32;
+        let mut noise = || {
+            state ^= state << 13;
+            state ^= state >> 17;
+            state ^= state << 5;
+            1e-3 * (f64::from(state) / f64::from(u32::MAX) - 0.5)
+        };
+        let silence = std::iter::repeat_n(0.0, 72_000);
+        let samples: Vec<f64> = decay(24_000).chain(silence).map(|sample| sample + noise()).collect();
+        let [strike] = strikes(&samples, 48_000.0, 10.0)[..] else { panic!("one strike") };
+        // By then, 26 and 31 dB of the level in noise are left.
+        assert!((21_600..60_000).contains(&strike.end), "{strike:?}");
+    }
+
+    #[test]
+    fn beats_are_no_strikes() {
+        let beat = |n: usize| 1.0 + libm::cos(std::f64::consts::TAU * 25.0 * n as f64 / 48_000.0);
+        let samples: Vec<f64> = decay(48_000).enumerate().map(|(n, x)| beat(n) * x).collect();
+        assert_eq!(strikes(&samples, 48_000.0, 10.0).len(), 1);
+    }
+
+    #[test]
+    fn a_constant_tone_is_one_strike_and_a_few_samples_are_none() {
+        let tone: Vec<f64> = (0..48_000).map(|n| libm::sin(0.1 * f64::from(n))).collect();
+        assert_eq!(strikes(&tone, 48_000.0, 0.5).len(), 1);
+        assert!(strikes(&tone[..100], 48_000.0, 1.0).is_empty());
+    }
+}

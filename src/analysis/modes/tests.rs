@@ -1,0 +1,293 @@
+//! Synthetic strikes whose modes are known, clean and in noise, and sounds that are no strikes.
+
+use super::fit::energy;
+use super::pole::Pole;
+use super::*;
+use libm::{cos, exp, log2, pow};
+use realfft::num_complex::Complex;
+
+const RATE: f64 = 48_000.0;
+/// Modes of a strike, and strikes: as many as a build can bear.
+const MODES: usize = if cfg!(debug_assertions) { 24 } else { 60 };
+const SEEDS: u64 = if cfg!(debug_assertions) { 1 } else { 20 };
+
+/// A mode that is put into a sound: frequency, T60, amplitude, phase of a sine.
+#[derive(Clone, Copy, Debug)]
+struct Known(f64, f64, f64, f64);
+
+/// Uniform numbers from 0 to 1 (Marsaglia's xorshift, 2003).
+struct Chance(u64);
+
+impl Chance {
+    fn uniform(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A number of a normal distribution (Box & Muller 1958).
+    fn normal(&mut self) -> f64 {
+        let radius = sqrt(-2.0 * libm::log(self.uniform() + 1e-300));
+        radius * cos(2.0 * PI * self.uniform())
+    }
+}
+
+/// So many modes from 60 Hz to 14 kHz, T60 0.03 to 10 s, levels over 60 dB, no two nearer than the wider one's bandwidth and
+/// 1 Hz; a quarter of them with a neighbour that is just as near as that.
+fn body(count: usize, chance: &mut Chance) -> Vec<Known> {
+    let mut modes: Vec<Known> = Vec::new();
+    let clear = |modes: &[Known], frequency: f64, t60: f64| {
+        let apart = |mode: &Known| (mode.0 - frequency).abs() > (2.2 / mode.1).max(2.2 / t60).max(1.0);
+        modes.iter().all(apart)
+    };
+    while modes.len() < count {
+        let (frequency, t60) = (60.0 * pow(14_000.0 / 60.0, chance.uniform()), 0.03 * pow(333.0, chance.uniform()));
+        if !clear(&modes, frequency, t60) {
+            continue;
+        }
+        let amplitude = pow(10.0, -3.0 * chance.uniform());
+        let phase = |chance: &mut Chance| PI * (2.0 * chance.uniform() - 1.0);
+        modes.push(Known(frequency, t60, amplitude, phase(chance)));
+        let neighbour = frequency + 1.02 * (2.2 / t60).max(1.0);
+        let (before, t60) = (modes.len() - 1, t60 * (1.0 + 0.3 * chance.uniform()));
+        if chance.uniform() < 0.25 && modes.len() < count && clear(&modes[..before], neighbour, t60) {
+            let amplitude = (amplitude * pow(10.0, -chance.uniform())).max(1e-3);
+            modes.push(Known(neighbour, t60, amplitude, phase(chance)));
+        }
+    }
+    modes
+}
+
+/// The sound of modes struck at sample 0, its peak at half of full scale, with noise so many dB below the strongest mode. Gives
+/// the factor that amplitudes were scaled by and the noise's standard deviation, too.
+fn sound(modes: &[Known], seconds: f64, noise_db: f64, chance: &mut Chance) -> (Vec<f32>, f64, f64) {
+    let mut samples = vec![0.0; (seconds * RATE) as usize];
+    for Known(frequency, t60, amplitude, phase) in modes.iter().copied() {
+        for (n, sample) in samples.iter_mut().enumerate() {
+            let t = n as f64 / RATE;
+            *sample += amplitude * exp(-LN_60_DB * t / t60) * libm::sin(2.0 * PI * frequency * t + phase);
+        }
+    }
+    let peak = samples.iter().fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
+    let strongest = modes.iter().map(|mode| mode.2).fold(0.0, f64::max);
+    let (scale, deviation) = (0.5 / peak, 0.5 / peak * strongest * pow(10.0, noise_db / 20.0));
+    let noisy = samples.iter().map(|sample| (scale * sample + deviation * chance.normal()) as f32);
+    (noisy.collect(), scale, deviation)
+}
+
+fn taken_apart(samples: Vec<f32>) -> Analysis {
+    modes(&[samples], RATE, &Settings::default(), &mut |_| true).unwrap()
+}
+
+fn cents(a: f64, b: f64) -> f64 {
+    (1200.0 * log2(a / b)).abs()
+}
+
+/// For each known mode the nearest found one, if it lies within a bandwidth, and those found that are left over.
+fn matched<'a>(known: &[Known], found: &'a [Mode]) -> (Vec<Option<&'a Mode>>, Vec<&'a Mode>) {
+    let mut free: Vec<&Mode> = found.iter().collect();
+    let take = |known: &Known| {
+        let distance = |mode: &Mode| (mode.frequency - known.0).abs() / (2.2 / known.1).max(1.0);
+        let nearest = (0..free.len()).min_by(|a, b| distance(free[*a]).total_cmp(&distance(free[*b])))?;
+        (distance(free[nearest]) < 0.5).then(|| free.remove(nearest))
+    };
+    (known.iter().map(take).collect::<Vec<_>>(), free)
+}
+
+fn clean_strikes(count: usize, seeds: std::ops::RangeInclusive<u64>) {
+    for seed in seeds {
+        let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+        let known = body(count, &mut chance);
+        let (samples, scale, _) = sound(&known, 2.0, -400.0, &mut chance);
+        let found = taken_apart(samples);
+        let strike = &found.strikes[0];
+        let (pairs, spurious) = matched(&known, &strike.modes);
+        for (known, found) in known.iter().zip(pairs) {
+            let found = found.unwrap_or_else(|| panic!("seed {seed}: {known:?} was not found"));
+            let level = found.level_db - dbfs(scale * known.2);
+            let case = format!("seed {seed}: {known:?} is {found:?}");
+            assert!(cents(found.frequency, known.0) < 0.01 && (found.t60 / known.1 - 1.0).abs() < 1e-3, "{case}");
+            assert!(level.abs() < 0.05, "{case}");
+        }
+        let loudest = known.iter().map(|known| dbfs(scale * known.2)).fold(-300.0, f64::max);
+        let worst = spurious.iter().map(|mode| mode.level_db - loudest).fold(-300.0, f64::max);
+        assert!(worst < -70.0, "seed {seed}: {spurious:?}");
+    }
+}
+
+#[test]
+fn the_modes_of_clean_strikes_are_exact() {
+    clean_strikes(MODES, 1..=SEEDS);
+}
+
+/// Energy over the power density of noise, in dB, that the tallest of its peaks has in two seconds: `2 ln n` of `n` bins.
+const FLOOR_DB: f64 = 13.3;
+
+/// What noise lets anyone know of a mode (Cramér & Rao), if all modes are unknown.
+struct Bound {
+    /// Energy that no change of the other modes could explain, over the power density of the noise, in dB. A mode alone
+    /// has all of its energy.
+    energy_db: f64,
+    /// Standard deviation in Hz.
+    frequency: f64,
+    /// Standard deviation as a share of T60.
+    t60: f64,
+}
+
+fn bounds(known: &[Known], scale: f64, deviation: f64) -> Vec<Bound> {
+    let pole = |known: &Known| Pole { decay: LN_60_DB / (known.1 * RATE), theta: 2.0 * PI * known.0 / RATE };
+    let poles: Vec<Pole> = known.iter().map(pole).collect();
+    let mut samples = vec![0.0; (2.0 * RATE) as usize];
+    for (known, pole) in known.iter().zip(&poles) {
+        let amplitude = Complex::from_polar(scale * known.2, known.3 - 0.5 * PI);
+        add(&mut samples, *pole, amplitude, 1.0);
+    }
+    let fit = Fit::new(&samples, poles).unwrap();
+    let (all, certainty) = (fit.inverses().unwrap().all, fit.certainty(samples.len()).unwrap());
+    let bound = |k: usize| {
+        // A mode alone loses half of it to its own pole.
+        let own = 2.0 * energy(&all, k, fit.amplitudes[k]);
+        let [decay, theta, ..] = certainty.variances[k].map(|variance| deviation * sqrt(variance));
+        Bound {
+            energy_db: 10.0 * log10(own / (deviation * deviation)),
+            frequency: theta * RATE / (2.0 * PI),
+            t60: decay / fit.poles[k].decay,
+        }
+    };
+    (0..known.len()).map(bound).collect()
+}
+
+/// Gives the errors in cents and in shares of T60 of the modes that stand 6 dB above the floor, and how many of them were
+/// not found, or not as exactly as 0.5 cents, 5 % and the bound ask for.
+fn noisy_strike(count: usize, seed: u64) -> (Vec<f64>, Vec<f64>, usize) {
+    let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    let known = body(count, &mut chance);
+    let (samples, scale, deviation) = sound(&known, 2.0, -60.0, &mut chance);
+    let found = taken_apart(samples);
+    let (pairs, spurious) = matched(&known, &found.strikes[0].modes);
+    let (mut pitch, mut decay, mut missed) = (Vec::new(), Vec::new(), 0);
+    for ((known, found), bound) in known.iter().zip(pairs).zip(bounds(&known, scale, deviation)) {
+        if bound.energy_db < FLOOR_DB + 6.0 {
+            continue;
+        }
+        let Some(found) = found else {
+            missed += 1;
+            continue;
+        };
+        let (cents, share) = (cents(found.frequency, known.0), (found.t60 / known.1 - 1.0).abs());
+        // No method can know a mode that is short and weak better than the bound, nor one beside what looks like a mode.
+        let deviation = bound.frequency.max(found.uncertainty.frequency);
+        let share_deviation = bound.t60.max(found.uncertainty.t60 / known.1);
+        let tuned = cents < 0.5 || (found.frequency - known.0).abs() < 5.0 * deviation;
+        if !tuned || (share >= 0.05 && share >= 5.0 * share_deviation) {
+            missed += 1;
+            continue;
+        }
+        pitch.push(cents);
+        decay.push(share);
+    }
+    assert!(spurious.len() * 10 <= found.strikes[0].modes.len(), "seed {seed}: {spurious:?}");
+    (pitch, decay, missed)
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+fn noisy_strikes(count: usize, seeds: std::ops::RangeInclusive<u64>) {
+    let (mut pitch, mut decay, mut missed) = (Vec::new(), Vec::new(), 0);
+    for seed in seeds {
+        let (cents, shares, more) = noisy_strike(count, seed);
+        pitch.extend(cents);
+        decay.extend(shares);
+        missed += more;
+    }
+    assert!(missed * 100 <= pitch.len(), "{missed} of {} were not found", missed + pitch.len());
+    assert!(median(&mut pitch) < 0.01 && median(&mut decay) < 0.003, "{pitch:?}, {decay:?}");
+}
+
+#[test]
+fn modes_in_noise_are_as_certain_as_they_can_be() {
+    noisy_strikes(24, 3..=2 + SEEDS);
+}
+
+#[test]
+fn a_pair_is_told_from_a_decay_in_two_stages() {
+    let known = [
+        Known(440.0, 2.0, 0.3, 0.1),
+        Known(441.2, 2.2, 0.2, 1.0),
+        Known(900.0, 0.4, 0.4, 0.0),
+        Known(900.3, 3.0, 0.08, 0.4),
+    ];
+    let found = taken_apart(sound(&known, 2.0, -300.0, &mut Chance(7)).0);
+    let kinds: Vec<_> = found.strikes[0].groups.iter().map(|group| (group.kind, group.modes.clone())).collect();
+    assert_eq!(kinds, [(Kind::SplitPair, vec![0, 1]), (Kind::TwoStageDecay, vec![2, 3])]);
+}
+
+#[test]
+fn a_late_onset_a_constant_and_a_second_channel_change_nothing() {
+    let known = [Known(300.0, 0.8, 0.5, 0.4), Known(1234.5, 0.5, 0.25, -1.0)];
+    let (strike, scale, _) = sound(&known, 1.0, -300.0, &mut Chance(7));
+    let mut late = vec![0.1_f32; 12_345];
+    late.extend(strike.iter().map(|sample| sample + 0.1));
+    let quiet: Vec<f32> = late.iter().map(|sample| 0.5 * sample).collect();
+    let found = modes(&[late, quiet], RATE, &Settings::default(), &mut |_| true).unwrap();
+    let strike = &found.strikes[0];
+    assert!((strike.onset - 12_345.0 / RATE).abs() < 1e-3, "{}", strike.onset);
+    assert_eq!(strike.modes.len(), 2, "{:?}", strike.modes);
+    for (known, mode) in known.iter().zip(&strike.modes) {
+        assert!(cents(mode.frequency, known.0) < 0.01 && (mode.t60 / known.1 - 1.0).abs() < 1e-3, "{mode:?}");
+        let [left, right] = [mode.channels[0].0, mode.channels[1].0];
+        assert!((left - right - 6.0206).abs() < 0.01 && (left - dbfs(scale * known.2)).abs() < 0.2, "{mode:?}");
+    }
+}
+
+#[test]
+fn what_rings_on_is_no_part_of_the_next_strike() {
+    let (first, second) = ([Known(300.0, 3.0, 0.5, 0.0)], [Known(300.0, 3.0, 0.5, 0.0), Known(800.0, 1.0, 0.7, 0.2)]);
+    let mut samples = sound(&first, 2.0, -300.0, &mut Chance(7)).0;
+    let (next, scale, _) = sound(&second, 1.0, -300.0, &mut Chance(7));
+    samples[48_000..].iter_mut().zip(&next).for_each(|(sample, next)| *sample += 2.0 * next);
+    let settings = Settings { all_strikes: true, ..Settings::default() };
+    let found = modes(&[samples], RATE, &settings, &mut |_| true).unwrap();
+    assert_eq!(found.strikes.iter().map(|strike| strike.modes.len()).collect::<Vec<_>>(), [1, 2]);
+    let level = found.strikes[1].modes[0].level_db;
+    assert!((level - dbfs(2.0 * scale * 0.5)).abs() < 0.2, "{level}");
+    let shared = common(&found.strikes);
+    assert_eq!(shared.len(), 1);
+    assert!(cents(shared[0].frequency, 300.0) < 0.01 && shared[0].levels_db.iter().all(Option::is_some), "{shared:?}");
+}
+
+#[test]
+fn what_cannot_be_taken_apart_is_refused_or_warned_of() {
+    let try_with = |samples: Vec<f32>| modes(&[samples], RATE, &Settings::default(), &mut |_| true);
+    for (samples, message) in [
+        (vec![], "sound: it is silent: expected a strike above −100 dBFS"),
+        (vec![0.0; 5000], "sound: it is silent: expected a strike above −100 dBFS"),
+        (
+            vec![0.5; 100],
+            "sound: there is no strike of at least 30 ms in it: expected something that is struck and rings",
+        ),
+        (vec![f32::NAN; 5000], "sound: some samples are not finite: expected numbers"),
+    ] {
+        assert_eq!(try_with(samples).unwrap_err().to_string(), message);
+    }
+    let mut chance = Chance(5);
+    let noise = (0..24_000).map(|_| (0.1 * chance.normal()) as f32).collect();
+    let found = try_with(noise).unwrap();
+    assert!(found.warnings.iter().any(|warning| warning.contains("explain little of it")), "{:?}", found.warnings);
+    assert!(found.strikes[0].modes.len() < 4, "{:?}", found.strikes[0].modes);
+
+    let (loud, ..) = sound(&[Known(300.0, 1.0, 1.0, 0.0)], 0.5, -300.0, &mut chance);
+    let clipped: Vec<f32> = loud.iter().take(9600).map(|sample| (4.0 * sample).clamp(-1.0, 1.0)).collect();
+    // What is no sum of modes asks for more of them than there may be.
+    let few = Settings { most_modes: 24, ..Settings::default() };
+    let found = modes(&[clipped], RATE, &few, &mut |_| true).unwrap();
+    assert!(
+        found.warnings[0].starts_with("the sound is clipped in ") && found.strikes[0].modes.len() <= 24,
+        "{found:?}"
+    );
+    assert!(matches!(modes(&[loud], RATE, &Settings::default(), &mut |_| false), Err(Error::Interrupted)));
+}

@@ -1,0 +1,178 @@
+//! `sprung diff`: whether two sound files are the same, and if not, where and by how much they differ.
+
+use super::recording::{FigureArgs, read};
+use super::terminal::{complain, print};
+use super::{interrupt, quantity};
+use serde_json::json;
+use sprung::analysis::comparison::Comparison;
+use sprung::analysis::figure::{Render, comparison_bytes};
+use sprung::io::Inputs;
+use sprung::io::sound_file::{Recording, resampled};
+use sprung::{Error, Result};
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  sprung diff before.wav after.wav
+  sprung diff before.wav after.flac --tolerance-db -90 --figure difference.png
+  sprung diff before.wav after.wav --json
+
+Exit codes: 0 the same, 1 different, 2 an error or wrong usage, 130 interrupted.";
+
+/// Exit code for files that cannot be compared, as `diff` and `cmp` have it.
+const TROUBLE: u8 = 2;
+
+#[derive(clap::Args)]
+pub(super) struct Args {
+    /// The sound that is expected: WAV, AIFF, FLAC, Ogg Vorbis or MP3; - is stdin
+    #[arg(value_name = "EXPECTED")]
+    expected: PathBuf,
+    /// The sound that is compared with it
+    #[arg(value_name = "ACTUAL")]
+    actual: PathBuf,
+    /// Largest error that still counts as the same, in dBFS [default: none]
+    #[arg(long, value_name = "DBFS", value_parser = quantity::tolerance_db, allow_hyphen_values = true)]
+    tolerance_db: Option<f64>,
+    /// Print the differences as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    figure: FigureArgs,
+}
+
+/// Compares, and gives the exit code.
+pub(super) fn run(args: &Args) -> ExitCode {
+    match compare(args) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            complain("error", &error);
+            let interrupted = matches!(error, Error::Interrupted);
+            ExitCode::from(if interrupted { interrupt::INTERRUPTED } else { TROUBLE })
+        }
+    }
+}
+
+/// Whether the files are the same.
+fn compare(args: &Args) -> Result<bool> {
+    let mut inputs = Inputs::default();
+    let (expected, _) = read(&args.expected, &mut inputs)?;
+    let (actual, _) = read(&args.actual, &mut inputs)?;
+    interrupt::end_at_once()?;
+    let figure = args.figure.open(&inputs)?;
+    // Samples can only be compared at one rate. Other rates are a difference all the same.
+    let converted = resampled(&actual, expected.sample_rate)?;
+    let found = Comparison::of(&expected.channels, &converted.channels, f64::from(expected.sample_rate));
+    let same_kind = expected.sample_rate == actual.sample_rate && expected.channels.len() == actual.channels.len();
+    let within = match (&found, args.tolerance_db) {
+        (None, _) => true,
+        (Some(found), Some(tolerance)) => found.difference.worst_dbfs <= tolerance,
+        (Some(_), None) => false,
+    };
+    let same = same_kind && within;
+    if let Some(figure) = figure {
+        let [before, after] = [&expected, &converted].map(sides);
+        let title = format!("{} and {}", args.expected.display(), args.actual.display());
+        figure.write(|format| comparison_bytes(before, after, &title, format))?;
+    }
+    let report = Report { expected: &expected, actual: &actual, found: found.as_ref(), same };
+    print(&if args.json { format!("{:#}\n", report.json()) } else { report.text() })?;
+    Ok(same)
+}
+
+/// The first two channels, as figures show them.
+fn sides(sound: &Recording) -> Render<'_> {
+    let right = sound.channels.get(1).unwrap_or(&sound.channels[0]);
+    Render { left: &sound.channels[0], right, sample_rate: f64::from(sound.sample_rate) }
+}
+
+struct Report<'a> {
+    expected: &'a Recording,
+    actual: &'a Recording,
+    found: Option<&'a Comparison>,
+    same: bool,
+}
+
+impl Report<'_> {
+    fn text(&self) -> String {
+        let mut text = String::new();
+        let mut line = |line: String| writeln!(text, "{line}").expect("a String takes all");
+        let [expected, actual] = [self.expected, self.actual];
+        if expected.sample_rate != actual.sample_rate {
+            line(format!("sample rate {} Hz → {} Hz", expected.sample_rate, actual.sample_rate));
+        }
+        if expected.channels.len() != actual.channels.len() {
+            line(format!("{} channels → {}", expected.channels.len(), actual.channels.len()));
+        }
+        let Some(found) = self.found else {
+            if self.same {
+                line(format!("the same: {} frames, every sample", expected.frames()));
+            }
+            return text;
+        };
+        let verdict = if self.same { "within the tolerance" } else { "different" };
+        line(format!("{verdict}: {}", found.difference));
+        if let Some(moved) = found.moved() {
+            let shift = match moved.shift {
+                0 => "in place".to_owned(),
+                shift => format!("{} frames {}", shift.abs(), if shift > 0 { "later" } else { "earlier" }),
+            };
+            let inverted = if moved.gain < 0.0 { ", inverted" } else { "" };
+            line(format!(
+                "the same sound, {shift}, at {:+.2} dB{inverted}: what is left is {:.1} dB below it",
+                moved.gain_db(),
+                -moved.residual_db
+            ));
+        }
+        for octave in &found.octaves {
+            line(format!(
+                "{:>8} Hz  {:>7.1} → {:>6.1} dBFS, difference {:>6.1}",
+                octave.frequency, octave.expected_db, octave.actual_db, octave.difference_db
+            ));
+        }
+        text
+    }
+
+    /// Levels that are infinite, as where a sample is not a number, are null.
+    fn json(&self) -> serde_json::Value {
+        let sound = |sound: &Recording| {
+            json!({
+                "sample_rate": sound.sample_rate,
+                "channels": sound.channels.len(),
+                "frames": sound.frames(),
+                "encoding": sound.encoding,
+            })
+        };
+        let difference = self.found.map(|found| found.difference);
+        let alignment = self.found.and_then(|found| found.alignment);
+        let octaves: Option<Vec<_>> = self.found.map(|found| {
+            let octave = |octave: &sprung::analysis::comparison::Octave| {
+                json!({
+                    "frequency": octave.frequency,
+                    "expected_db": octave.expected_db,
+                    "actual_db": octave.actual_db,
+                    "difference_db": octave.difference_db,
+                })
+            };
+            found.octaves.iter().map(octave).collect()
+        });
+        json!({
+            "same": self.same,
+            "expected": sound(self.expected),
+            "actual": sound(self.actual),
+            "first_frame": difference.map(|difference| difference.first_frame),
+            "worst_frame": difference.map(|difference| difference.worst_frame),
+            "worst_dbfs": difference.map(|difference| difference.worst_dbfs),
+            "rms_dbfs": difference.map(|difference| difference.rms_dbfs),
+            "alignment": alignment.map(|found| json!({
+                "shift_frames": found.shift,
+                "gain_db": found.gain_db(),
+                "inverted": found.gain < 0.0,
+                "residual_db": found.residual_db,
+            })),
+            "octaves": octaves,
+        })
+    }
+}

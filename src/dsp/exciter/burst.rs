@@ -1,0 +1,164 @@
+//! A burst of noise: one hit or several, their envelope, and their colour.
+
+use crate::dsp::coefficients::LN_MINUS_60_DB;
+use crate::dsp::random::uniform;
+use libm::{exp, pow, sqrt};
+use std::f64::consts::TAU;
+
+/// The darkest colour lets pass what is below the first of these frequencies in Hz, the least dark what is below the
+/// second; the brightest what is above the second, the least bright what is above the first.
+const LOWEST_CORNER: f64 = 100.0;
+const HIGHEST_CORNER: f64 = 16_000.0;
+
+/// How a burst falls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decay {
+    /// As `(1−u)²`, to nothing at its end.
+    Quadratic,
+    /// Exponentially, by 60 dB until its end.
+    Exponential,
+}
+
+/// A burst of noise as it is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct BurstSetup {
+    /// Its expected energy in a mode is that of a strike of this force, if it is white; 0 is none.
+    pub force: f32,
+    /// Frames in which a hit falls.
+    pub frames: u32,
+    /// Frames in which it rises before, in a straight line.
+    pub attack: u32,
+    /// How it falls.
+    pub decay: Decay,
+    /// How many hits there are, at least one. Each cuts off the one before; all of them together have the energy of one.
+    pub hits: u32,
+    /// Frames between two hits.
+    pub spacing: u32,
+    /// From −1 (dark: noise is low-passed by a mass whose damper all but stops it) to 1 (bright: what that mass leaves
+    /// out). 0 is white.
+    pub colour: f64,
+    /// The stream of random numbers.
+    pub key: u64,
+}
+
+impl BurstSetup {
+    /// No noise.
+    pub const NONE: BurstSetup = BurstSetup {
+        force: 0.0,
+        frames: 0,
+        attack: 0,
+        decay: Decay::Quadratic,
+        hits: 1,
+        spacing: 0,
+        colour: 0.0,
+        key: 0,
+    };
+
+    /// Per frame of a hit, the logarithm of what is left.
+    fn rate(&self) -> f64 {
+        -LN_MINUS_60_DB / f64::from(self.frames.max(1))
+    }
+
+    /// The sum of the squared envelope over the first `frames` frames of a hit.
+    fn squares(&self, frames: u32) -> f64 {
+        let (attack, frames) = (f64::from(self.attack), f64::from(frames.min(self.attack + self.frames)));
+        if frames < attack {
+            return frames * frames * frames / (3.0 * attack * attack);
+        }
+        let (falling, length) = (frames - attack, f64::from(self.frames.max(1)));
+        let fallen = match self.decay {
+            Decay::Quadratic => 0.2 * length * (1.0 - pow(1.0 - falling / length, 5.0)),
+            Decay::Exponential => (1.0 - exp(-2.0 * self.rate() * falling)) / (2.0 * self.rate()),
+        };
+        attack / 3.0 + fallen
+    }
+
+    /// The expected energy of the burst at an envelope of 1: the noise has variance 1/3.
+    fn energy(&self) -> f64 {
+        if self.hits <= 1 && self.attack == 0 && self.decay == Decay::Quadratic {
+            return f64::from(self.frames.max(1)) / 15.0;
+        }
+        let cut_off = f64::from(self.hits.max(1) - 1) * self.squares(self.spacing);
+        (cut_off + self.squares(u32::MAX >> 1)) / 3.0
+    }
+}
+
+/// A burst under way. Real-time safe.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Burst {
+    setup: BurstSetup,
+    frames: u32,
+    scale: f32,
+    /// What the exponential envelope keeps from frame to frame, and where it is.
+    keep: f32,
+    level: f32,
+    /// How far the over-damped mass follows the noise in a frame, and where it is; it is not there if the noise is white.
+    follow: f32,
+    mass: f32,
+}
+
+impl Burst {
+    pub(super) const NONE: Burst =
+        Burst { setup: BurstSetup::NONE, frames: 0, scale: 0.0, keep: 1.0, level: 1.0, follow: 1.0, mass: 0.0 };
+
+    pub(super) fn new(setup: BurstSetup, sample_rate: f64) -> Self {
+        if setup.force <= 0.0 || setup.frames == 0 {
+            return Self::NONE;
+        }
+        let spaced = (setup.hits.max(1) - 1).saturating_mul(setup.spacing);
+        let share = if setup.colour < 0.0 { 1.0 + setup.colour } else { setup.colour };
+        let corner = LOWEST_CORNER * pow(HIGHEST_CORNER / LOWEST_CORNER, share);
+        Self {
+            frames: spaced.saturating_add(setup.attack).saturating_add(setup.frames),
+            scale: (f64::from(setup.force) / sqrt(setup.energy())) as f32,
+            keep: exp(-setup.rate()) as f32,
+            level: 1.0,
+            follow: (1.0 - exp(-TAU * corner / sample_rate)) as f32,
+            mass: 0.0,
+            setup,
+        }
+    }
+
+    pub(super) fn frames(&self) -> u32 {
+        self.frames
+    }
+
+    /// Adds the frames from `frame` on; they are asked for in their order.
+    pub(super) fn add_to(&mut self, frame: u32, force: &mut [f32]) {
+        let left = self.frames.saturating_sub(frame) as usize;
+        for (frame, force) in (frame..).zip(force.iter_mut().take(left)) {
+            let noise = self.coloured(uniform(self.setup.key, u64::from(frame)));
+            *force += noise * self.envelope(frame);
+        }
+    }
+
+    fn coloured(&mut self, noise: f32) -> f32 {
+        if self.setup.colour == 0.0 {
+            return noise;
+        }
+        self.mass += self.follow * (noise - self.mass);
+        if self.setup.colour < 0.0 { self.mass } else { noise - self.mass }
+    }
+
+    /// The envelope at a frame, scaled.
+    fn envelope(&mut self, frame: u32) -> f32 {
+        let BurstSetup { frames, attack, decay, hits, spacing, .. } = self.setup;
+        let hit = if hits > 1 { frame.checked_div(spacing).unwrap_or(hits).min(hits - 1) } else { 0 };
+        let frame = frame - hit * spacing;
+        if frame < attack {
+            return (frame as f32 + 0.5) / attack as f32 * self.scale;
+        }
+        match decay {
+            _ if frame >= attack + frames => 0.0,
+            Decay::Quadratic => {
+                let envelope = 1.0 - (frame - attack) as f32 / frames as f32;
+                envelope * envelope * self.scale
+            }
+            Decay::Exponential => {
+                let level = if frame == attack { 1.0 } else { self.level };
+                self.level = level * self.keep;
+                level * self.scale
+            }
+        }
+    }
+}

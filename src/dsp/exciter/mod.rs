@@ -1,0 +1,125 @@
+//! What moves the masses: a mallet's force pulse, a pluck, bursts of noise and a bow, any of them at once.
+
+mod bow;
+mod burst;
+mod pulse;
+
+use super::CONTROL_FRAMES;
+pub use bow::Bow;
+use burst::Burst;
+pub use burst::{BurstSetup, Decay};
+use pulse::Pulse;
+
+/// The forces of one stretch of frames, of at most [`CONTROL_FRAMES`].
+#[derive(Clone, Copy, Debug)]
+pub struct Drive {
+    /// What pushes: a mallet's pulses sum to the force of the strike.
+    pub push: [f32; CONTROL_FRAMES],
+    /// What displaces: a pluck's pulses sum to its force.
+    pub pull: [f32; CONTROL_FRAMES],
+    /// The noise burst: its expected energy in a mode is that of a strike of the same force.
+    pub noise: [f32; CONTROL_FRAMES],
+}
+
+impl Drive {
+    /// No force.
+    pub const NONE: Drive =
+        Drive { push: [0.0; CONTROL_FRAMES], pull: [0.0; CONTROL_FRAMES], noise: [0.0; CONTROL_FRAMES] };
+}
+
+/// A strike as it is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Stroke {
+    /// Area of the mallet's pulse, and its frames, at least one; 0 is none.
+    pub push: (f32, u32),
+    /// The same of the pluck.
+    pub pull: (f32, u32),
+    /// The noise.
+    pub noise: BurstSetup,
+}
+
+impl Stroke {
+    /// Nothing.
+    pub const NONE: Stroke = Stroke { push: (0.0, 1), pull: (0.0, 1), noise: BurstSetup::NONE };
+}
+
+/// Strikes that are told apart while they overlap; one more takes the place of the oldest.
+const OVERLAPPING: usize = 4;
+
+/// The strikes in progress on one voice. Real-time safe.
+#[derive(Clone, Copy, Debug)]
+pub struct Exciter {
+    blows: [Blow; OVERLAPPING],
+    next: usize,
+}
+
+impl Exciter {
+    /// An exciter at rest.
+    pub const REST: Exciter = Exciter { blows: [Blow::REST; OVERLAPPING], next: 0 };
+
+    /// Starts a strike, beside what may be left of those before.
+    pub fn strike(&mut self, stroke: &Stroke, sample_rate: f64) {
+        self.blows[self.next] = Blow::new(stroke, sample_rate);
+        self.next = (self.next + 1) % OVERLAPPING;
+    }
+
+    /// Whether any force is still to come.
+    pub fn is_active(&self) -> bool {
+        self.blows.iter().any(Blow::is_active)
+    }
+
+    /// Frames until it is not.
+    pub fn frames_left(&self) -> u32 {
+        self.blows.iter().map(Blow::frames_left).max().unwrap_or(0)
+    }
+
+    /// Writes the forces of the next `frames` frames, at most [`CONTROL_FRAMES`], and moves on.
+    pub fn fill(&mut self, frames: usize, drive: &mut Drive) {
+        let Drive { push, pull, noise } = drive;
+        [push, pull, noise].into_iter().for_each(|force| force[..frames].fill(0.0));
+        for blow in self.blows.iter_mut().filter(|blow| blow.is_active()) {
+            blow.add_to(frames, drive);
+        }
+    }
+}
+
+/// One strike.
+#[derive(Clone, Copy, Debug)]
+struct Blow {
+    push: Pulse,
+    pull: Pulse,
+    noise: Burst,
+    frame: u32,
+}
+
+impl Blow {
+    const REST: Blow = Blow { push: Pulse::NONE, pull: Pulse::NONE, noise: Burst::NONE, frame: 0 };
+
+    fn new(stroke: &Stroke, sample_rate: f64) -> Self {
+        let pulse = |(area, frames)| Pulse::new(area, frames);
+        Self {
+            push: pulse(stroke.push),
+            pull: pulse(stroke.pull),
+            noise: Burst::new(stroke.noise, sample_rate),
+            frame: 0,
+        }
+    }
+
+    fn is_active(&self) -> bool {
+        self.frames_left() > 0
+    }
+
+    fn frames_left(&self) -> u32 {
+        self.push.frames().max(self.pull.frames()).max(self.noise.frames()).saturating_sub(self.frame)
+    }
+
+    fn add_to(&mut self, frames: usize, drive: &mut Drive) {
+        self.push.add_to(self.frame, &mut drive.push[..frames]);
+        self.pull.add_to(self.frame, &mut drive.pull[..frames]);
+        self.noise.add_to(self.frame, &mut drive.noise[..frames]);
+        self.frame = self.frame.saturating_add(frames as u32);
+    }
+}
+
+#[cfg(test)]
+mod tests;

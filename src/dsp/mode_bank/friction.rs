@@ -1,0 +1,107 @@
+//! The bank under a bow, stepped frame by frame.
+//!
+//! The friction of each frame depends on where the one before has left the masses. The bow acts on `x`, the coordinate that
+//! is heard, and what `x` is at its point counts as the point's speed: so a bow that pulls steadily is not heard. All modes
+//! are turned in one pass over the bank, which adds up their part in the speed for the next frame, by lane (`m mod 16`) and
+//! then the lanes by halves, as in `step`.
+
+use super::MAX_MODES;
+use super::rows::{Form, Modes, Output, State};
+use super::tuning::stair;
+use crate::dsp::CONTROL_FRAMES;
+use crate::dsp::exciter::{Bow, Drive};
+use crate::dsp::simd::Kernel;
+use crate::dsp::simd::vector::{LANES, Partial, Vector};
+
+/// Steps the live modes through some frames, under a bow and whatever else drives them.
+pub(super) struct Bowed<'a> {
+    pub(super) form: Form,
+    pub(super) modes: &'a Modes,
+    pub(super) state: &'a mut State,
+    pub(super) drive: &'a Drive,
+    pub(super) bow: &'a Bow,
+    pub(super) out: &'a mut Output,
+}
+
+/// Sums of a frame: to the left, to the right, and the speed at the bow.
+type Sums = [f32; 3];
+
+impl Kernel for Bowed<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, proof: V::Proof) {
+        let Self { form, modes, state, drive, bow, out } = self;
+        let (live, frames) = (form.live.min(MAX_MODES), form.frames.min(CONTROL_FRAMES));
+        let mut speed = speed_at_bow::<V>(proof, modes, state, live);
+        for i in 0..frames {
+            let (middle, _) = stair(form.passed + i, form.line.max(1));
+            let forces = [bow.force_on(i, speed), drive.push[i], drive.pull[i], drive.noise[i]];
+            let lines = [middle, (form.passed + i + 1) as f32];
+            let [left, right, after] = turn::<V>(proof, modes, state, live, lines, forces);
+            (out[0][i], out[1][i], speed) = (left, right, after);
+        }
+    }
+}
+
+/// How fast the point under the bow moves.
+#[inline(always)]
+fn speed_at_bow<V: Vector>(proof: V::Proof, modes: &Modes, state: &State, live: usize) -> f32 {
+    let mut total = [Partial([0.0; LANES])];
+    let mut at = 0;
+    while at < live {
+        let (x, bow): (V, V) = (state.x.at(proof, at), modes.bow.at(proof, at));
+        let lane = &mut total[0].0[at % LANES..];
+        x.mul_add(bow, V::load(proof, lane)).store(lane);
+        at += V::WIDTH;
+    }
+    let mut sum = [0.0];
+    V::sum_lanes(proof, &total, &mut sum);
+    sum[0]
+}
+
+/// Lets the forces (bow, push, pull, noise) of a frame act, and turns all modes. `lines` is where on their lines coefficients
+/// and gains are.
+#[inline(always)]
+fn turn<V: Vector>(
+    proof: V::Proof,
+    modes: &Modes,
+    state: &mut State,
+    live: usize,
+    lines: [f32; 2],
+    forces: [f32; 4],
+) -> Sums {
+    let mut totals = [Partial([0.0; LANES]); 3];
+    let [bow, push, pull, noise] = [0, 1, 2, 3].map(|force| V::splat(proof, forces[force]));
+    let (middle, passed) = (V::splat(proof, lines[0]), V::splat(proof, lines[1]));
+    let mut at = 0;
+    while at < live {
+        let weight: V = modes.bow.at(proof, at);
+        let (mut x, mut y): (V, V) = (state.x.at(proof, at), state.y.at(proof, at));
+        x = pull.mul_add(modes.pull_x.at(proof, at), bow.mul_add(weight, x));
+        x = push.mul_add(modes.push_x.at(proof, at), x);
+        y = push.mul_add(modes.push_y.at(proof, at), pull.mul_add(modes.pull_y.at(proof, at), y));
+        y = noise.mul_add(modes.noise.at(proof, at), y);
+        let alpha: V = middle.mul_add(modes.alpha_step.at(proof, at), modes.alpha.at(proof, at));
+        let beta: V = middle.mul_add(modes.beta_step.at(proof, at), modes.beta.at(proof, at));
+        let (to_x, to_y) = (y.mul_add(beta, x), x.neg_mul_add(beta, y));
+        let (x, y) = (x.neg_mul_add(alpha, to_x), y.neg_mul_add(alpha, to_y));
+        x.store(&mut state.x.0[at..]);
+        y.store(&mut state.y.0[at..]);
+        let left = passed.mul_add(modes.left_step.at(proof, at), modes.left.at(proof, at));
+        let right = passed.mul_add(modes.right_step.at(proof, at), modes.right.at(proof, at));
+        let [to_left, to_right, to_speed] = &mut totals;
+        let lane = at % LANES;
+        x.mul_add(left, V::load(proof, &to_left.0[lane..])).store(&mut to_left.0[lane..]);
+        x.mul_add(right, V::load(proof, &to_right.0[lane..])).store(&mut to_right.0[lane..]);
+        x.mul_add(weight, V::load(proof, &to_speed.0[lane..])).store(&mut to_speed.0[lane..]);
+        at += V::WIDTH;
+    }
+    let mut sums = [0.0; 3];
+    V::sum_lanes(proof, &totals, &mut sums);
+    sums
+}
+
+#[cfg(test)]
+#[path = "friction_tests.rs"]
+mod tests;

@@ -1,0 +1,233 @@
+//! A reverb whose space is a resonant body: a plate, springs, a room, or sympathetic strings.
+
+mod process;
+mod tail;
+
+use super::decay::Decay;
+use super::kernel::FRAMES;
+use super::modes::ModeSet;
+use super::pre_delay::PreDelay;
+use super::resonator::Resonator;
+use super::smoothed::Smoothed;
+use super::ticks::Ticks;
+use libm::{cos, sin};
+use std::f64::consts::FRAC_PI_2;
+
+/// Longest pre-delay in seconds.
+pub const LONGEST_PRE_DELAY: f64 = 0.25;
+
+/// Below this a tail is over: −120 dBFS.
+const SILENCE: f64 = 1e-6;
+
+/// Ticks between two measurements of the energy.
+const MEASURE_TICKS: u64 = 32;
+
+/// Ticks between two steps of a pitch that moves.
+const PITCH_TICKS: u64 = 4;
+
+/// A stereo processor: the sum of both sides drives a [`Resonator`], whose pick-ups are added to what came in.
+///
+/// Real-time safe but for making it: [`ModalReverb::process`] and all setters neither allocate nor wait. Bits do not depend
+/// on how frames are divided into blocks. Output is finite for finite input.
+///
+/// Once the input is silent and the tail is below −120 dBFS for certain, it sleeps: a silent block then costs one look at
+/// its samples, and is left as it is. At a wet level of 0 it is off, and does not touch what passes where the dry level is 1.
+#[derive(Clone, Debug)]
+pub struct ModalReverb {
+    sample_rate: f64,
+    body: Resonator,
+    /// The modes of the body to come, once what sounds has faded out.
+    next_body: Option<&'static ModeSet>,
+    pitch: Smoothed,
+    line: PreDelay,
+    ticks: Ticks<{ FRAMES as u64 }>,
+    /// What comes in is faded in where the body begins to hear something that sounds already.
+    drive: Smoothed,
+    dry: Smoothed,
+    wet: Smoothed,
+    /// What the levels are set to.
+    levels: [f32; 2],
+    state: State,
+    /// Frames of silence at the input; very many if none came before.
+    silent_frames: usize,
+    /// Sum of the magnitudes of the input since the last control tick.
+    input: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Awake,
+    /// Everything is at rest, and input wakes it.
+    Asleep,
+    /// Everything is at rest, and a wet level wakes it.
+    Off,
+}
+
+impl ModalReverb {
+    /// A reverb with this body, off, without pre-delay. Allocates.
+    pub fn new(body: Resonator) -> Self {
+        let sample_rate = body.sample_rate();
+        let line = PreDelay::new((LONGEST_PRE_DELAY * sample_rate) as usize, sample_rate);
+        Self {
+            sample_rate,
+            body,
+            next_body: None,
+            pitch: Smoothed::new(1.0, sample_rate),
+            silent_frames: usize::MAX,
+            line,
+            ticks: Ticks::default(),
+            drive: Smoothed::new(1.0, sample_rate),
+            dry: Smoothed::new(1.0, sample_rate),
+            wet: Smoothed::new(0.0, sample_rate),
+            levels: [1.0, 0.0],
+            state: State::Off,
+            input: 0.0,
+        }
+    }
+
+    /// The body that plays.
+    pub fn body(&self) -> &Resonator {
+        &self.body
+    }
+
+    /// From dry (0) to wet (1) at equal power: white noise stays as loud as it is.
+    pub fn set_mix(&mut self, mix: f32) {
+        let angle = FRAC_PI_2 * f64::from(mix.clamp(0.0, 1.0));
+        let dry = if mix >= 1.0 { 0.0 } else { cos(angle) as f32 };
+        self.set_levels(dry, sin(angle) as f32);
+    }
+
+    /// Gains of what comes in and of what the pick-ups hear, 1 being as loud as white noise that comes in. They move there
+    /// in 20 ms, and a body that was off is faded in; at once while it sleeps, and with [`ModalReverb::reset`].
+    pub fn set_levels(&mut self, dry: f32, wet: f32) {
+        let levels = [dry, wet].map(|level| if level.is_finite() { level.clamp(0.0, 10.0) } else { 0.0 });
+        if levels == self.levels {
+            return;
+        }
+        self.levels = levels;
+        if self.state == State::Off && levels[1] > 0.0 {
+            // What is dry may sound.
+            self.ticks = Ticks::default();
+            self.wake();
+            self.fade_in();
+        } else if self.state == State::Asleep {
+            return self.jump_to_levels();
+        }
+        self.move_levels();
+    }
+
+    /// Gives the body another decay, in place: see [`Decay`].
+    pub fn set_decay(&mut self, decay: Decay) {
+        if decay != self.body.decay() {
+            self.body.set_decay(decay);
+            match self.state {
+                State::Awake => self.move_levels(),
+                State::Asleep => self.jump_to_levels(),
+                State::Off => {}
+            }
+        }
+    }
+
+    /// The body takes over a decay that it was given while it was at rest, all at once.
+    fn wake(&mut self) {
+        self.state = State::Awake;
+        self.body.finish_damping();
+    }
+
+    /// Time in seconds before the body hears what comes in, up to [`LONGEST_PRE_DELAY`]. Changes by a crossfade of 20 ms.
+    pub fn set_pre_delay(&mut self, seconds: f64) {
+        // What is no number is 0 as a whole one.
+        let frames = (seconds.clamp(0.0, LONGEST_PRE_DELAY) * self.sample_rate) as usize;
+        self.line.set(frames, self.state != State::Awake);
+    }
+
+    /// Goes on with a body of other modes, from rest. While it sounds, that is once the one before has faded out in 20 ms.
+    ///
+    /// Real-time safe if the body has room for as many modes ([`Resonator::with_room`]).
+    pub fn set_body(&mut self, modes: &'static ModeSet) {
+        if self.state == State::Awake {
+            self.next_body = Some(modes);
+            self.move_levels();
+        } else {
+            self.body.load(modes);
+            self.jump_to_levels();
+        }
+    }
+
+    /// Sends all modes to so many times the frequencies that the body has of itself, in 20 ms; at once while nothing
+    /// sounds. From 1/64 to 64; those that come near half the sample rate are silent. What rings goes on at its new pitch.
+    pub fn set_pitch(&mut self, pitch: f32) {
+        let pitch = pitch.clamp(1.0 / 64.0, 64.0);
+        if self.state == State::Awake {
+            self.pitch.set(pitch);
+        } else if !pitch.is_nan() && !self.pitch.rests_at(pitch) {
+            self.pitch.jump(pitch);
+            self.body.tune(pitch.into());
+            self.jump_to_levels();
+        }
+    }
+
+    /// Whether it sleeps or is off: silence in gives silence out.
+    pub fn is_silent(&self) -> bool {
+        self.state != State::Awake
+    }
+
+    /// Whether it is off and nothing of it moves: it touches nothing.
+    pub fn is_off(&self) -> bool {
+        self.state == State::Off && self.dry.rests_at(1.0)
+    }
+
+    /// Whether silence that comes in changes nothing but the time: [`ModalReverb::skip`] does the same.
+    pub fn is_idle(&self) -> bool {
+        self.state != State::Awake && !self.dry.is_moving()
+    }
+
+    /// Lets frames of silence pass while it is idle. Real-time safe.
+    pub fn skip(&mut self, frames: usize) {
+        self.ticks.advance(frames);
+    }
+
+    /// Silence, and all that moves where it is to be.
+    pub fn reset(&mut self) {
+        self.body.reset();
+        self.finish();
+        self.line.clear();
+        (self.ticks, self.input, self.silent_frames) = (Ticks::default(), 0.0, usize::MAX);
+        self.drive.jump(1.0);
+        self.jump_to_levels();
+        self.state = if self.levels[1] > 0.0 { State::Asleep } else { State::Off };
+    }
+
+    /// Whether nothing moves to where it has been set.
+    fn is_still(&self) -> bool {
+        let levels = [&self.drive, &self.dry, &self.wet];
+        !levels.iter().any(|level| level.is_moving()) && !self.pitch.is_moving() && self.next_body.is_none()
+    }
+
+    /// The body to come comes, and has the pitch that it is to have.
+    fn finish(&mut self) {
+        if let Some(modes) = self.next_body.take() {
+            self.body.load(modes);
+        }
+        if self.pitch.is_moving() {
+            self.pitch.jump(self.pitch.target());
+            self.body.tune(self.pitch.target().into());
+        }
+    }
+
+    fn fade_in(&mut self) {
+        self.drive.jump(0.0);
+        self.drive.set(1.0);
+    }
+
+    fn move_levels(&mut self) {
+        self.dry.set(self.levels[0]);
+        let fades = self.next_body.is_some();
+        self.wet.set(if fades { 0.0 } else { self.levels[1] * self.body.noise_gain() });
+    }
+
+    fn jump_to_levels(&mut self) {
+        self.dry.jump(self.levels[0]);
+        self.wet.jump(self.levels[1] * self.body.noise_gain());
+    }
+}

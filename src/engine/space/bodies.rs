@@ -1,0 +1,129 @@
+//! The bodies that reverberate and ring along, as tables of modes that all synths share.
+
+use crate::dsp::space::{Material, ModeSet, Plate, Room, Spring, Strings};
+use crate::params::{Space, SpaceMaterial, StringsTuning};
+use crate::units::frequency_from_key;
+use std::sync::LazyLock;
+
+/// The modes of each body at its own size, made when a synth first needs room for them.
+///
+/// A body of another size or material has all frequencies higher or lower by one ratio, so the tables never change, and no
+/// knob needs a body to be made.
+#[derive(Debug)]
+pub(super) struct Bodies {
+    plate: ModeSet,
+    spring: ModeSet,
+    room: ModeSet,
+    chromatic: ModeSet,
+    major: ModeSet,
+    minor: ModeSet,
+    fifths: ModeSet,
+}
+
+/// Keys of the strings.
+const MAJOR: [u8; 8] = [36, 43, 48, 52, 55, 60, 64, 67];
+const MINOR: [u8; 8] = [36, 43, 48, 51, 55, 60, 63, 67];
+const FIFTHS: [u8; 6] = [36, 43, 50, 57, 64, 71];
+
+impl Bodies {
+    /// The one that there is. The first call makes it, which takes some 10 ms: not for the audio thread.
+    pub(super) fn shared() -> &'static Self {
+        static SHARED: LazyLock<Bodies> = LazyLock::new(Bodies::new);
+        &SHARED
+    }
+
+    fn new() -> Self {
+        let strings = |keys: &mut dyn Iterator<Item = u8>| {
+            Strings::new(keys.map(|key| frequency_from_key(key.into(), 440.0))).modes()
+        };
+        Self {
+            plate: Plate::default().modes(),
+            spring: Spring::default().modes(),
+            room: Room::default().modes(),
+            chromatic: strings(&mut (36..60)),
+            major: strings(&mut MAJOR.into_iter()),
+            minor: strings(&mut MINOR.into_iter()),
+            fifths: strings(&mut FIFTHS.into_iter()),
+        }
+    }
+
+    /// Most masses of a space, and of strings.
+    pub(super) fn most(&self) -> [usize; 2] {
+        let most = |sets: &[&ModeSet]| sets.iter().map(|modes| modes.len()).max().unwrap_or(0);
+        [
+            most(&[&self.plate, &self.spring, &self.room]),
+            most(&[&self.chromatic, &self.major, &self.minor, &self.fifths]),
+        ]
+    }
+
+    /// The modes of a space. Real-time safe.
+    pub(super) fn of_space(&self, space: Space) -> Option<&ModeSet> {
+        match space {
+            Space::None => None,
+            Space::Plate => Some(&self.plate),
+            Space::Spring => Some(&self.spring),
+            Space::Room => Some(&self.room),
+        }
+    }
+
+    /// The modes of strings. Real-time safe.
+    pub(super) fn of_strings(&self, tuning: StringsTuning) -> &ModeSet {
+        match tuning {
+            StringsTuning::Chromatic => &self.chromatic,
+            StringsTuning::Major => &self.major,
+            StringsTuning::Minor => &self.minor,
+            StringsTuning::Fifths => &self.fifths,
+        }
+    }
+}
+
+/// The frequencies of a space of a size (1 is its own) and a material, against those of its table. Real-time safe.
+///
+/// Of a plate as thick as before, the modes go with the inverse of its area and with the stiffness of a sheet
+/// ([`Material::plate_stiffness`]); of a tank that is larger as a whole, with the inverse of its size and the speed of
+/// waves in the wire ([`Material::bar_speed`]); of a room, with the inverse of its size.
+pub(super) fn pitch(space: Space, size: f64, material: SpaceMaterial) -> f64 {
+    let material = match material {
+        SpaceMaterial::Steel => Material::STEEL,
+        SpaceMaterial::Aluminium => Material::ALUMINIUM,
+        SpaceMaterial::Gold => Material::GOLD,
+        SpaceMaterial::Bronze => Material::BRONZE,
+        SpaceMaterial::Glass => Material::GLASS,
+    };
+    match space {
+        Space::None | Space::Room => 1.0 / size,
+        Space::Plate => material.plate_stiffness(1.0) / Material::STEEL.plate_stiffness(1.0) / (size * size),
+        Space::Spring => material.bar_speed() / Material::STEEL.bar_speed() / size,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_and_materials_are_those_of_bodies_made_so() {
+        let bodies = Bodies::shared();
+        let lowest = |modes: &ModeSet| modes.modes()[0].frequency;
+        let pitch = |space, size, material| pitch(space, size, material) * lowest(bodies.of_space(space).unwrap());
+        let gold = Plate { length: 1.0, width: 0.5, material: Material::GOLD, ..Plate::default() };
+        let close = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-12, "{found}, {expected}");
+        close(pitch(Space::Plate, 0.5, SpaceMaterial::Gold), lowest(&gold.modes()));
+        let room = Room { size: Room::default().size.map(|side| 1.5 * side), ..Room::default() };
+        close(pitch(Space::Room, 1.5, SpaceMaterial::Steel), lowest(&room.modes()));
+        let own = Spring::default();
+        let large = Spring {
+            wires: own.wires.map(|wire| 2.0 * wire),
+            wire_radius: 2.0 * own.wire_radius,
+            coil_radius: 2.0 * own.coil_radius,
+            material: Material::BRONZE,
+            ..own
+        };
+        let transition = super::pitch(Space::Spring, 2.0, SpaceMaterial::Bronze) * own.transition_frequency();
+        close(transition, large.transition_frequency());
+        assert_eq!(bodies.of_strings(StringsTuning::Chromatic).modes()[0].frequency, {
+            let c2 = frequency_from_key(36.0, 440.0);
+            c2 * libm::sqrt(1.0 + Strings::new([c2]).stiffness)
+        });
+    }
+}

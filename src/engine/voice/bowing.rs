@@ -1,0 +1,88 @@
+//! The bow of a voice: what it does from control tick to control tick.
+
+use super::line::Line;
+use super::values::StruckValues;
+use crate::dsp::cells::Cells;
+use crate::dsp::exciter::Bow;
+use crate::engine::controls::Controls;
+use crate::params::Param;
+use crate::patch::Mode;
+use libm::{fabs, sin};
+use std::f64::consts::{PI, TAU};
+
+/// Friction of a bow that is fully pressed on, as a multiple of what brings a mass to the bow's speed within one radian of
+/// the note, or at most within one frame. So the same pressure suits low notes and high ones.
+const MOST_PRESSURE: f64 = 4.0;
+
+/// The bow of a voice: off until something sets it going. Real-time safe.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bowing {
+    /// Speed that the strike asks for, at a level of 0 dB; and how gradually friction falls.
+    speed: f64,
+    width: f32,
+    /// The modes have their weights.
+    is_placed: bool,
+    bow_speed: Line,
+    bow_force: Line,
+}
+
+impl Bowing {
+    /// No bow.
+    pub(super) const OFF: Self =
+        Self { speed: 0.0, width: 1.0, is_placed: false, bow_speed: Line::ZERO, bow_force: Line::ZERO };
+
+    /// Reads what a strike says of the bow: `speed` is what velocity asks for.
+    pub(super) fn strike(&mut self, values: &StruckValues, speed: f64) {
+        (self.speed, self.width, self.is_placed) = (speed, values.share(Param::BowSlip) as f32, false);
+    }
+
+    /// Whether it moves or is about to.
+    pub(super) fn is_on(&self) -> bool {
+        !self.bow_speed.is_zero()
+    }
+
+    /// Starts ramps of speed and force to where they have to be in `frames` frames. `note` gives the note's frequency and the
+    /// sample rate in Hz: it is called only if there is a bow. Without values to place it by, no bow begins.
+    pub(super) fn control(
+        &mut self,
+        controls: &Controls,
+        is_held: bool,
+        values: Option<&StruckValues>,
+        note: impl FnOnce() -> [f64; 2],
+        bank: &mut Cells,
+        frames: usize,
+    ) {
+        let wanted = if is_held { f64::from(controls.bow_speed) * self.speed } else { 0.0 };
+        if wanted == 0.0 && !self.is_on() {
+            return;
+        }
+        if !self.is_placed {
+            let Some(values) = values else { return };
+            self.place(values, bank);
+        }
+        let (pressure, [frequency, sample_rate]) = (f64::from(controls.bow_force), note());
+        let force = wanted * (MOST_PRESSURE * pressure * pressure * TAU * frequency / sample_rate).min(1.0);
+        self.bow_speed.aim(wanted as f32, frames);
+        self.bow_force.aim(force as f32, frames);
+    }
+
+    /// Gives the modes their weights under the bow.
+    fn place(&mut self, values: &StruckValues, bank: &mut Cells) {
+        self.is_placed = true;
+        let modes = values.instrument.sound.patch().modes.as_slice();
+        let place = values.share(Param::BowPosition);
+        let weight = |mode: &Mode| fabs(mode.level.into()) * sin(PI * place * f64::from(mode.ratio));
+        bank.set_bow_weights(|m| modes.get(m).map_or(0.0, weight));
+    }
+
+    /// The bow of the next frames, if it is on.
+    pub(super) fn stroke(&mut self, frames: usize) -> Option<Bow> {
+        if !self.is_on() {
+            return None;
+        }
+        let ((speed, passed), (force, _)) = (self.bow_speed.parts(), self.bow_force.parts());
+        self.bow_speed.advance(frames);
+        self.bow_force.advance(frames);
+        Some(Bow { speed, force, passed, width: self.width })
+    }
+}

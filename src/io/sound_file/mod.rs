@@ -1,0 +1,87 @@
+//! Sound files as they are read: WAV of every kind, and with the feature `codecs` AIFF, FLAC, Ogg Vorbis and MP3.
+
+#[cfg(feature = "codecs")]
+mod codecs;
+mod recording;
+mod resample;
+mod wav;
+
+pub use recording::Recording;
+pub use resample::resampled;
+
+use crate::error::{Error, Result};
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+
+/// Bytes at the start of a file that tell its format.
+const MAGIC_LEN: usize = 12;
+
+/// Reads a sound file to its end; `name` is what errors call it. A file that breaks off is read as far as it goes, with
+/// a line in [`Recording::warnings`].
+///
+/// # Errors
+/// [`Error::Io`] if it cannot be read; [`Error::Format`], with what would be right, if it is no sound file, of a format
+/// that is not read, or without a single frame.
+pub fn read(mut file: File, name: &str) -> Result<Recording> {
+    let failed = |source| Error::io(name, source);
+    let mut magic = Vec::with_capacity(MAGIC_LEN);
+    (&mut file).take(MAGIC_LEN as u64).read_to_end(&mut magic).map_err(failed)?;
+    if magic.is_empty() {
+        return Err(Error::format(name, "the file is empty: expected a sound file"));
+    }
+    file.seek(SeekFrom::Start(0)).map_err(failed)?;
+    let recording = match Format::of(&magic) {
+        Some(Format::Wav) => wav::read(file, name),
+        Some(Format::Coded(format)) => coded(file, name, format),
+        None => Err(Error::format(name, "this is not a sound file: expected WAV, AIFF, FLAC, Ogg Vorbis or MP3")),
+    }?;
+    if recording.frames() == 0 {
+        return Err(Error::format(name, "there is no sound in the file: expected at least one frame"));
+    }
+    Ok(recording)
+}
+
+#[cfg(feature = "codecs")]
+fn coded(file: File, name: &str, format: &str) -> Result<Recording> {
+    codecs::read(file, name, format)
+}
+
+#[cfg(not(feature = "codecs"))]
+fn coded(_: File, name: &str, format: &str) -> Result<Recording> {
+    let message =
+        format!("this sprung was built without {format}: expected a WAV, or one built with ‘--features codecs’");
+    Err(Error::format(name, message))
+}
+
+/// What the first bytes of a file promise.
+#[derive(Debug, PartialEq)]
+enum Format {
+    Wav,
+    /// One that needs a decoder, by its name.
+    Coded(&'static str),
+}
+
+impl Format {
+    fn of(magic: &[u8]) -> Option<Self> {
+        let at = |start: usize, bytes: &[u8]| magic.get(start..start + bytes.len()) == Some(bytes);
+        let form = |container: &[u8], kind: &[u8]| at(0, container) && at(8, kind);
+        // An MPEG audio frame begins with eleven ones; layer 0 does not exist.
+        let mpeg = || magic.len() > 1 && magic[0] == 0xff && magic[1] & 0xe0 == 0xe0 && magic[1] & 0x06 != 0;
+        if [&b"RIFF"[..], b"RF64", b"BW64"].iter().any(|container| form(container, b"WAVE")) {
+            Some(Self::Wav)
+        } else if form(b"FORM", b"AIFF") || form(b"FORM", b"AIFC") {
+            Some(Self::Coded("AIFF"))
+        } else if at(0, b"fLaC") {
+            Some(Self::Coded("FLAC"))
+        } else if at(0, b"OggS") {
+            Some(Self::Coded("Ogg"))
+        } else if at(0, b"ID3") || mpeg() {
+            Some(Self::Coded("MP3"))
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

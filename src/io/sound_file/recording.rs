@@ -1,0 +1,85 @@
+//! A sound as it was read: samples, rate, and what was wrong with the file.
+
+use crate::error::{Error, Result};
+
+/// A sound in memory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Frames per second.
+    pub sample_rate: u32,
+    /// The samples of each channel, 1.0 being full scale; all of one length. Integers of up to 24 bits are exact, longer
+    /// ones and 64-bit floats are rounded to single precision.
+    pub channels: Vec<Vec<f32>>,
+    /// How the file stored them: `24-bit PCM`, `FLAC`.
+    pub encoding: String,
+    /// What was wrong with the file and did not keep it from being read.
+    pub warnings: Vec<String>,
+}
+
+impl Recording {
+    /// Number of frames.
+    pub fn frames(&self) -> usize {
+        self.channels.first().map_or(0, Vec::len)
+    }
+
+    /// Length in seconds.
+    pub fn seconds(&self) -> f64 {
+        self.frames() as f64 / f64::from(self.sample_rate)
+    }
+
+    /// The mean of the channels, if the sound has this sample rate: nothing is resampled here. `name` is what errors call
+    /// the file.
+    ///
+    /// # Errors
+    /// [`Error::Format`] for another rate, and for samples that are not finite.
+    pub fn mono_at(&self, sample_rate: u32, name: &str) -> Result<Vec<f32>> {
+        if self.sample_rate != sample_rate {
+            let message = format!("its rate is {} Hz: expected {sample_rate} Hz, that of the output", self.sample_rate);
+            return Err(Error::format(name, message));
+        }
+        self.check_finite(name)?;
+        let mean = |frame| self.channels.iter().map(|samples| samples[frame]).sum::<f32>() / self.channels.len() as f32;
+        Ok((0..self.frames()).map(mean).collect())
+    }
+
+    /// Refuses samples that are infinite or not a number; `name` is what the error calls the file.
+    ///
+    /// # Errors
+    /// [`Error::Format`] that names the first of them.
+    pub fn check_finite(&self, name: &str) -> Result<()> {
+        for frame in 0..self.frames() {
+            for (channel, samples) in self.channels.iter().enumerate() {
+                let sample = samples[frame];
+                if !sample.is_finite() {
+                    let message = format!(
+                        "frame {frame} ({:.3} s) of channel {} is {}: expected finite samples",
+                        frame as f64 / f64::from(self.sample_rate),
+                        channel + 1,
+                        if sample.is_nan() { "not a number" } else { "infinite" },
+                    );
+                    return Err(Error::format(name, message));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mono_sound_is_the_mean_of_the_channels_at_its_own_rate() {
+        let sound = |channels: Vec<Vec<f32>>| Recording {
+            sample_rate: 48_000,
+            channels,
+            encoding: "float".to_owned(),
+            warnings: vec![],
+        };
+        assert_eq!(sound(vec![vec![-1.0, 0.5], vec![0.0, 0.5]]).mono_at(48_000, "a").unwrap(), [-0.5, 0.5]);
+        let error = sound(vec![vec![0.0]]).mono_at(44_100, "a").unwrap_err().to_string();
+        assert_eq!(error, "a: its rate is 48000 Hz: expected 44100 Hz, that of the output");
+        assert!(sound(vec![vec![f32::NAN]]).mono_at(48_000, "a").unwrap_err().to_string().contains("not a number"));
+    }
+}

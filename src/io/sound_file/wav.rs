@@ -1,0 +1,165 @@
+//! WAV files as they are read: RIFF, RF64 and BW64, integers of 8 to 32 bits and floats, whole or broken off.
+
+use super::recording::Recording;
+use crate::error::{Error, Result};
+use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
+
+/// What a `data` chunk of unknown length is said to have, by programs that write to pipes: this or more.
+const UNKNOWN_LEN: u64 = 0x7fff_0000;
+/// What the 32-bit sizes of an RF64 file hold, where the `ds64` chunk has the real ones (EBU Tech 3306).
+const IN_DS64: u64 = 0xffff_ffff;
+
+/// Codes of the `fmt ` chunk (Multimedia Programming Interface and Data Specifications 1.0, 1991, and mmreg.h).
+const PCM: u16 = 1;
+const FLOAT: u16 = 3;
+const EXTENSIBLE: u16 = 0xfffe;
+
+/// How the samples are stored.
+#[derive(Clone, Copy, Debug)]
+struct Layout {
+    float: bool,
+    channels: usize,
+    sample_rate: u32,
+    /// Bytes of a sample.
+    width: usize,
+}
+
+/// Reads a file that begins as a WAV does.
+pub(super) fn read(file: impl Read + Seek, name: &str) -> Result<Recording> {
+    let mut input = BufReader::with_capacity(1 << 16, file);
+    let wrong = |message: String| Error::format(name, message);
+    let failed = |source| Error::io(name, source);
+    input.seek(SeekFrom::Start(12)).map_err(failed)?;
+    let (mut layout, mut long_data) = (None, None);
+    loop {
+        let mut head = [0; 8];
+        if !fill(&mut input, &mut head).map_err(failed)? {
+            let missing = if layout.is_none() { "‘fmt ’" } else { "‘data’" };
+            return Err(wrong(format!("the WAV ends before its {missing} chunk: expected a whole file")));
+        }
+        let len = u64::from(u32::from_le_bytes([head[4], head[5], head[6], head[7]]));
+        match &head[..4] {
+            b"fmt " => {
+                let mut body = Vec::new();
+                (&mut input).take(len).read_to_end(&mut body).map_err(failed)?;
+                layout = Some(Layout::parse(&body).map_err(wrong)?);
+                skip(&mut input, len % 2).map_err(failed)?;
+            }
+            b"ds64" => {
+                let mut body = Vec::new();
+                (&mut input).take(len).read_to_end(&mut body).map_err(failed)?;
+                long_data = body.get(8..16).and_then(|bytes| Some(u64::from_le_bytes(bytes.try_into().ok()?)));
+                skip(&mut input, len % 2).map_err(failed)?;
+            }
+            b"data" => {
+                let layout = layout.ok_or_else(|| wrong("the ‘fmt ’ chunk is missing before ‘data’".to_owned()))?;
+                let len = if len == IN_DS64 { long_data.unwrap_or(len) } else { len };
+                return layout.samples(&mut input, len).map_err(failed);
+            }
+            _ => skip(&mut input, len + len % 2).map_err(failed)?,
+        }
+    }
+}
+
+fn skip(input: &mut impl Seek, len: u64) -> std::io::Result<()> {
+    input.seek_relative(i64::try_from(len).unwrap_or(i64::MAX))
+}
+
+/// Whether the buffer could be filled before the end of the file.
+fn fill(input: &mut impl Read, buffer: &mut [u8]) -> std::io::Result<bool> {
+    match input.read_exact(buffer) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == ErrorKind::UnexpectedEof => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+impl Layout {
+    /// Reads a `fmt ` chunk. The error says what would be right.
+    fn parse(body: &[u8]) -> std::result::Result<Self, String> {
+        let word = |at: usize| body.get(at..at + 2).map(|bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
+        let (Some(code), Some(channels), Some(align), Some(bits)) = (word(0), word(2), word(12), word(14)) else {
+            return Err("the ‘fmt ’ chunk is shorter than 16 bytes".to_owned());
+        };
+        let sample_rate = u32::from_le_bytes([body[4], body[5], body[6], body[7]]);
+        // The first two bytes of the sub-format's GUID are the code that it stands for.
+        let code = if code == EXTENSIBLE { word(24).unwrap_or(code) } else { code };
+        if channels == 0 || sample_rate == 0 {
+            return Err(format!("{channels} channels at {sample_rate} Hz: expected at least 1 of each"));
+        }
+        let width = usize::from(bits.div_ceil(8));
+        let known = match code {
+            PCM => (1..=4).contains(&width),
+            FLOAT => width == 4 || width == 8,
+            _ => return Err(format!("samples are coded as {}: expected PCM or floats", coding(code))),
+        };
+        if !known || usize::from(align) != width * usize::from(channels) {
+            let stored = if code == FLOAT { "floats" } else { "integers" };
+            return Err(format!(
+                "samples are {stored} of {bits} bits, {align} bytes a frame of {channels} channels: expected integers of \
+                 8, 16, 24 or 32 bits, or floats of 32 or 64"
+            ));
+        }
+        Ok(Self { float: code == FLOAT, channels: channels.into(), sample_rate, width })
+    }
+
+    /// Reads a `data` chunk of so many bytes, or as much of it as there is.
+    fn samples(self, input: &mut BufReader<impl Read + Seek>, len: u64) -> std::io::Result<Recording> {
+        let mut warnings = Vec::new();
+        let frame_len = self.width * self.channels;
+        // A program that was stopped has left a length of 0. What follows is a chunk's name only if nothing is missing.
+        let left_open = len == 0 && {
+            let mut next = [0; 4];
+            let here = input.stream_position()?;
+            let more = fill(input, &mut next)?;
+            input.seek(SeekFrom::Start(here))?;
+            more && !next.iter().all(u8::is_ascii_graphic)
+        };
+        let unknown = left_open || (UNKNOWN_LEN..=IN_DS64).contains(&len);
+        let mut data = input.take(if left_open { u64::MAX } else { len });
+        let mut channels = vec![Vec::new(); self.channels];
+        let mut frame = vec![0; frame_len];
+        while fill(&mut data, &mut frame)? {
+            for (channel, bytes) in channels.iter_mut().zip(frame.chunks(self.width)) {
+                channel.push(self.decode(bytes));
+            }
+        }
+        let (found, told) = (channels[0].len() as u64, len / frame_len as u64);
+        if left_open {
+            warnings.push(format!("the length was never written: read {found} frames, to the end of the file"));
+        } else if found < told && !unknown {
+            warnings.push(format!("the file breaks off: {found} of {told} frames are there"));
+        }
+        let kind = if self.float { "float" } else { "PCM" };
+        let encoding = format!("{}-bit {kind}", 8 * self.width);
+        Ok(Recording { sample_rate: self.sample_rate, channels, encoding, warnings })
+    }
+
+    fn decode(self, bytes: &[u8]) -> f32 {
+        match (self.float, bytes) {
+            (true, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),
+            (true, &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]) as f32,
+            // 8 bits are unsigned, and wider samples are signed.
+            (false, &[a]) => (f32::from(a) - 128.0) / 128.0,
+            (false, bytes) => {
+                let mut word = [0; 4];
+                word[4 - bytes.len()..].copy_from_slice(bytes);
+                i32::from_le_bytes(word) as f32 / 2_147_483_648.0
+            }
+            (true, _) => unreachable!("floats have 4 or 8 bytes"),
+        }
+    }
+}
+
+/// The name of a coding that is not read.
+fn coding(code: u16) -> String {
+    let name = match code {
+        2 => "MS ADPCM",
+        6 => "A-law",
+        7 => "µ-law",
+        0x11 => "IMA ADPCM",
+        0x55 => "MP3",
+        _ => return format!("format {code}"),
+    };
+    name.to_owned()
+}

@@ -1,0 +1,101 @@
+//! `sprung analyze` and `sprung diff`.
+
+use crate::Sandbox;
+use std::f64::consts::TAU;
+
+/// A mono WAV of floats.
+fn wav(samples: &[f32], sample_rate: u32) -> Vec<u8> {
+    let spec =
+        hound::WavSpec { channels: 1, sample_rate, bits_per_sample: 32, sample_format: hound::SampleFormat::Float };
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let mut writer = hound::WavWriter::new(&mut bytes, spec).unwrap();
+    samples.iter().for_each(|sample| writer.write_sample(*sample).unwrap());
+    writer.finalize().unwrap();
+    bytes.into_inner()
+}
+
+/// Half a second of a mode of 440 Hz and a T60 of 0.5 s.
+fn strike(gain: f64) -> Vec<f32> {
+    let sample = |n: u32| {
+        let t = f64::from(n) / 44_100.0;
+        (gain * libm::exp(-6.907_755 * t / 0.5) * libm::cos(TAU * 440.0 * t)) as f32
+    };
+    (0..22_050).map(sample).collect()
+}
+
+#[test]
+fn a_strike_is_taken_apart_into_its_modes() {
+    let sandbox = Sandbox::new();
+    sandbox.write("a.wav", wav(&strike(0.5), 44_100));
+    let json: serde_json::Value = serde_json::from_slice(&sandbox.succeeds("analyze a.wav --json")).unwrap();
+    let modes = json["modes"].as_array().unwrap();
+    assert_eq!(modes.len(), 1, "{json}");
+    let number = |key: &str| modes[0][key].as_f64().unwrap();
+    assert!((number("frequency") - 440.0).abs() < 1e-3 && (number("t60") - 0.5).abs() < 1e-4, "{json}");
+    assert!((number("level_db") + 6.02).abs() < 0.01, "{json}");
+    let csv = String::from_utf8(sandbox.succeeds("analyze a.wav --csv --figure modes.png")).unwrap();
+    assert!(csv.lines().count() == 2 && csv.starts_with("hit,onset_s,frequency_hz"), "{csv}");
+    assert!(sandbox.read("modes.png").starts_with(b"\x89PNG"));
+    assert!(String::from_utf8(sandbox.succeeds("analyze a.wav")).unwrap().contains("440.000 Hz"));
+    let hits: serde_json::Value = serde_json::from_slice(&sandbox.succeeds("analyze a.wav --hits --json")).unwrap();
+    assert_eq!(hits["hits"].as_array().unwrap().len(), 1);
+    sandbox.fails("analyze a.wav --figure modes.png", 1, "modes.png: the file exists; add --force to overwrite it");
+}
+
+#[test]
+fn files_are_compared() {
+    let sandbox = Sandbox::new();
+    let sound = strike(0.5);
+    sandbox.write("a.wav", wav(&sound, 44_100));
+    sandbox.write("same.wav", wav(&sound, 44_100));
+    sandbox.write("half.wav", wav(&strike(0.25), 44_100));
+    let mut near = sound.clone();
+    near[100] += 1e-5;
+    sandbox.write("near.wav", wav(&near, 44_100));
+    sandbox.write("faster.wav", wav(&sound, 48_000));
+    let run = |args: &str| {
+        let output = sandbox.sprung(args).assert().get_output().clone();
+        (output.status.code(), String::from_utf8(output.stdout).unwrap())
+    };
+    assert_eq!(run("diff a.wav same.wav"), (Some(0), "the same: 22050 frames, every sample\n".to_owned()));
+    let (code, text) = run("diff a.wav half.wav");
+    assert!(code == Some(1) && text.contains("the same sound, in place, at -6.02 dB"), "{text}");
+    let (code, text) = run("diff a.wav near.wav");
+    assert!(code == Some(1) && text.contains("first differing frame 100, worst error -100.0 dBFS"), "{text}");
+    assert_eq!(run("diff a.wav near.wav --tolerance-db -99").0, Some(0));
+    assert_eq!(run("diff a.wav near.wav --tolerance-db -101").0, Some(1));
+    let (code, text) = run("diff a.wav faster.wav");
+    assert!(code == Some(1) && text.contains("sample rate 44100 Hz → 48000 Hz"), "{text}");
+    let (_, json) = run("diff a.wav half.wav --json --figure d.svg");
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(
+        (&json["same"], &json["first_frame"], &json["alignment"]["shift_frames"]),
+        (&false.into(), &0.into(), &0.into())
+    );
+    assert!(sandbox.read("d.svg").starts_with(b"<svg"));
+}
+
+#[test]
+fn what_is_no_recording_is_refused() {
+    let sandbox = Sandbox::new();
+    sandbox.write("a.wav", wav(&strike(0.5), 44_100));
+    sandbox.write("nan.wav", wav(&[0.0, f32::NAN], 44_100));
+    sandbox.write("silent.wav", wav(&[0.0; 10_000], 44_100));
+    sandbox.write("empty.wav", wav(&[], 44_100));
+    sandbox.write("text.wav", "a text");
+    for (args, code, message) in [
+        ("analyze nan.wav", 1, "nan.wav: frame 1 (0.000 s) of channel 1 is not a number: expected finite samples"),
+        ("analyze silent.wav", 1, "silent.wav: it is silent: expected a strike above −100 dBFS"),
+        ("analyze empty.wav", 1, "empty.wav: there is no sound in the file: expected at least one frame"),
+        ("analyze text.wav", 1, "text.wav: this is not a sound file: expected WAV, AIFF, FLAC, Ogg Vorbis or MP3"),
+        ("analyze none.wav", 1, "none.wav: "),
+        ("analyze a.wav --figure a.gif", 1, "--figure: a.gif: expected a name that ends in .png or .svg"),
+        ("analyze a.wav --json --csv", 2, "cannot be used with"),
+        ("diff a.wav text.wav", 2, "text.wav: this is not a sound file"),
+        ("diff a.wav none.wav", 2, "none.wav: "),
+        ("diff a.wav", 2, "<ACTUAL>"),
+        ("diff a.wav a.wav --tolerance-db 3", 2, "3 is out of range: expected -300 to 0 dBFS"),
+    ] {
+        sandbox.fails(args, code, message);
+    }
+}
