@@ -9,50 +9,50 @@ pub(crate) struct Lfo {
     /// Phase, 0–1 of a cycle.
     phase: f64,
     /// Number of complete cycles so far.
-    round: u64,
+    cycle: u64,
     /// Stream of its random numbers.
     stream: u64,
 }
 
 impl Lfo {
     /// Placeholder until the first note starts.
-    pub(crate) const REST: Self = Self { phase: 0.0, round: 0, stream: 0 };
+    pub(crate) const REST: Self = Self { phase: 0.0, cycle: 0, stream: 0 };
 
     /// Starts at a phase in cycles (only the fraction counts).
     pub(crate) fn new(phase: f64, stream: u64) -> Self {
-        Self { phase: phase - libm::floor(phase), round: 0, stream }
+        Self { phase: phase - libm::floor(phase), cycle: 0, stream }
     }
 
     /// The oscillator after a number of cycles, at least 0.
     #[must_use]
-    pub(crate) fn after(&self, rounds: f64) -> Self {
-        let phase = self.phase + rounds;
+    pub(crate) fn after(&self, cycles: f64) -> Self {
+        let phase = self.phase + cycles;
         let whole = phase as i64;
-        Self { phase: phase - whole as f64, round: self.round.wrapping_add(whole as u64), ..*self }
+        Self { phase: phase - whole as f64, cycle: self.cycle.wrapping_add(whole as u64), ..*self }
     }
 
     /// Its value, −1 to 1.
     pub(crate) fn value(&self, shape: Shape) -> f32 {
         let phase = self.phase as f32;
         match shape {
-            Shape::Sine => sine_of_rounds(phase),
+            Shape::Sine => sine_of_cycles(phase),
             Shape::Triangle => {
                 let quarter = if phase < 0.75 { phase } else { phase - 1.0 };
                 1.0 - (4.0 * quarter - 1.0).abs()
             }
             Shape::Ramp => 2.0 * phase - 1.0,
             Shape::Square => 1.0_f32.copysign(0.5 - phase),
-            Shape::Steps => uniform(self.stream, self.round),
+            Shape::Steps => uniform(self.stream, self.cycle),
             Shape::Drift => {
-                let [from, to] = [0, 1].map(|next| uniform(self.stream, self.round.wrapping_add(next)));
+                let [from, to] = [0, 1].map(|next| uniform(self.stream, self.cycle.wrapping_add(next)));
                 from + (to - from) * (phase * phase * (3.0 - 2.0 * phase))
             }
         }
     }
 }
 
-/// `sin 2πx` for 0 ≤ x ≤ 1, within 2e−6, at a fifth of the time that an exact one takes.
-fn sine_of_rounds(x: f32) -> f32 {
+/// `sin 2πx` for 0 ≤ x ≤ 1, within 4e−6, at a fifth of the time that an exact one takes.
+fn sine_of_cycles(x: f32) -> f32 {
     // The angle is folded to the quarter cycle around 0; there the sine's power series up to the ninth power is used.
     let centred = if x > 0.5 { x - 1.0 } else { x };
     let folded = if centred > 0.25 {
@@ -93,12 +93,12 @@ mod tests {
         for n in 0..=1000 {
             let x = n as f32 / 1000.0;
             let expected = libm::sin(std::f64::consts::TAU * f64::from(x)) as f32;
-            assert!((sine_of_rounds(x) - expected).abs() < 5e-6, "{x}");
+            assert!((sine_of_cycles(x) - expected).abs() < 5e-6, "{x}");
         }
     }
 
     #[test]
-    fn random_shapes_change_with_the_round_and_repeat_with_the_seed() {
+    fn random_shapes_change_with_the_cycle_and_repeat_with_the_seed() {
         let (mut one, mut other) = (Lfo::new(0.0, key(1, 2)), Lfo::new(0.0, key(1, 2)));
         let first = one.value(Shape::Steps);
         one = one.after(0.9);

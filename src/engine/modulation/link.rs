@@ -54,10 +54,10 @@ impl Link {
     /// The offset that the route gives its destination, in knob travel.
     #[inline]
     pub(super) fn travel(&self, sources: &Sources, amounts: &Amounts) -> f32 {
-        let [source, scale] = [self.source, self.scale].map(|place| sources[usize::from(place) % sources.len()]);
+        let [source, scale] = [self.source, self.scale].map(|index| sources[usize::from(index) % sources.len()]);
         // Most routes are linear, and a branch to one of the four curves takes as long as all the rest.
-        let bent = if self.response == Response::Linear { source } else { self.response.apply(source) };
-        amounts[usize::from(self.place) % amounts.len()] * bent * scale
+        let value = if self.response == Response::Linear { source } else { self.response.apply(source) };
+        amounts[usize::from(self.place) % amounts.len()] * value * scale
     }
 }
 

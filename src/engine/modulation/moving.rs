@@ -96,13 +96,13 @@ impl Moving {
     pub(super) fn advance(&mut self, bus: &Bus, rates: &[f64; LFOS], seconds: f64) {
         if seconds != self.ahead_seconds {
             // An event has ended the tick early.
-            self.go_on(bus, rates, seconds);
+            self.compute_ahead(bus, rates, seconds);
         }
         self.now = 1 - self.now;
     }
 
     /// Computes, into the other state, the sources that routes read as they will be in some seconds.
-    fn go_on(&mut self, bus: &Bus, rates: &[f64; LFOS], seconds: f64) {
+    fn compute_ahead(&mut self, bus: &Bus, rates: &[f64; LFOS], seconds: f64) {
         self.ahead_seconds = seconds;
         let [first, second] = &mut self.states;
         let (now, ahead) = if self.now == 0 { (first, second) } else { (second, first) };
@@ -129,7 +129,7 @@ impl Moving {
         seconds: f64,
         mut set: impl FnMut(Source, usize, f32),
     ) {
-        self.go_on(bus, rates, seconds);
+        self.compute_ahead(bus, rates, seconds);
         let ahead = &self.states[1 - self.now];
         for (index, shape) in shapes.iter().enumerate() {
             if bus.reads_nth(Source::Lfo1, index) {
@@ -141,6 +141,64 @@ impl Moving {
         for (index, times) in self.times.iter().enumerate() {
             if bus.reads_nth(Source::Envelope1, index) {
                 set(Source::Envelope1, index, ahead.envelopes[index].level(times));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::params::Param;
+    use crate::patch::routes::{Route, Routes};
+
+    const TICK: f64 = 32.0 / 48_000.0;
+    const RATES: [f64; LFOS] = [5.0, 0.7, 11.0];
+    const SHAPES: [Shape; LFOS] = [Shape::Sine, Shape::Triangle, Shape::Drift];
+    const SOURCES: [Source; 5] = [Source::Lfo1, Source::Lfo2, Source::Lfo3, Source::Envelope1, Source::Envelope2];
+
+    /// Moving sources of a note that has just been struck, and a bus that reads all of them.
+    fn struck() -> (Moving, Bus) {
+        let mut routes = Routes::NONE;
+        for (place, source) in SOURCES.into_iter().enumerate() {
+            routes.set(place, Some(Route::linear(source, Param::Tune)));
+        }
+        let mut moving = Moving::REST;
+        moving.strike([0.0, 0.25, 0.5], [false; LFOS], true, 7);
+        let times = |index| Times::new(index, |param| f64::from(param.info().default));
+        moving.start(std::array::from_fn(times), [0.0, 0.01, 0.0]);
+        (moving, Bus::new(&routes))
+    }
+
+    /// The values of all sources, so many frames ahead.
+    fn ahead(moving: &mut Moving, bus: &Bus, frames: f64) -> [f32; 5] {
+        let mut values = [f32::NAN; 5];
+        moving.look_ahead(bus, &RATES, &SHAPES, frames / 48_000.0, |first, index, value| {
+            values[index + if first == Source::Lfo1 { 0 } else { LFOS }] = value;
+        });
+        values
+    }
+
+    #[test]
+    fn a_tick_that_events_cut_short_ends_where_a_whole_one_does() {
+        for is_released in [false, true] {
+            let [(mut whole, bus), (mut cut, _)] = [struck(), struck()];
+            for tick in 0..50 {
+                let values = ahead(&mut whole, &bus, 32.0);
+                assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
+                whole.advance(&bus, &RATES, TICK);
+                // The first look ahead reaches the end of the tick, but an event comes after 7 frames.
+                ahead(&mut cut, &bus, 32.0);
+                cut.advance(&bus, &RATES, 7.0 / 48_000.0);
+                let rest = ahead(&mut cut, &bus, 25.0);
+                cut.advance(&bus, &RATES, 25.0 / 48_000.0);
+                for (whole, rest) in values.iter().zip(rest) {
+                    assert!((whole - rest).abs() < 1e-5, "tick {tick}, released: {is_released}: {whole} {rest}");
+                }
+                if is_released && tick == 20 {
+                    whole.release();
+                    cut.release();
+                }
             }
         }
     }
