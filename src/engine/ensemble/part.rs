@@ -29,11 +29,14 @@ impl Part {
     }
 
     /// Renders a chunk into the part's own buffers. `groups` are the choke groups of all parts before the chunk.
-    pub(super) fn play<'a>(&mut self, chunk: &Chunk<'a>, mut groups: [ChokeGroups<'a>; 16]) {
+    pub(super) fn play<'a>(&mut self, chunk: &Chunk<'a>, groups: &[ChokeGroups<'a>; 16]) {
         let Self { channel, synth, is_heard, .. } = self;
-        let (left, right) = (&mut self.left[..chunk.frames], &mut self.right[..chunk.frames]);
-        let mut frame = 0;
         *is_heard = !synth.is_silent();
+        if !*is_heard && chunk.events.is_empty() {
+            return synth.rest(chunk.frames);
+        }
+        let (left, right) = (&mut self.left[..chunk.frames], &mut self.right[..chunk.frames]);
+        let (mut frame, mut groups) = (0, *groups);
         for event in chunk.events {
             let owner = usize::from(chunk.owner(event));
             let program = match event.kind {

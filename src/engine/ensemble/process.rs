@@ -79,10 +79,12 @@ impl Ensemble {
                 programs: &self.programs,
             };
             let groups = self.playing.each_ref().map(Playing::choke_groups);
-            each(&mut self.parts, &|part| part.play(&chunk, groups));
+            each(&mut self.parts, &|part| part.play(&chunk, &groups));
             let is_heard = self.parts.iter().any(|part| part.is_heard);
-            if is_heard || !now.is_empty() {
+            if !now.is_empty() {
                 self.playing.iter_mut().zip(&self.parts).for_each(|(playing, part)| playing.follow(&part.synth));
+            }
+            if is_heard || !now.is_empty() {
                 self.lender.take_back(&mut self.parts);
             }
             let (left, right) = (&mut left[start..cut.end], &mut right[start..cut.end]);
