@@ -5,6 +5,7 @@ pub mod cells;
 pub mod classic_bank;
 pub mod coefficients;
 pub mod exciter;
+pub(crate) mod fader;
 pub mod limiter;
 pub mod mode_bank;
 pub mod oscillator;

@@ -8,7 +8,6 @@ mod damping;
 pub mod ensemble;
 pub mod event;
 mod expression;
-mod fader;
 mod gain;
 mod instrument;
 pub mod midi;

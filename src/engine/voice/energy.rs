@@ -3,7 +3,7 @@
 use super::strike::Strike;
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::cells::Cells;
-use crate::engine::fader::Fader;
+use crate::dsp::fader::Fader;
 use libm::sqrt;
 
 /// A voice is over when the sum of its modes cannot exceed this amplitude: −120 dBFS.

@@ -17,11 +17,11 @@ use super::channel::Wheels;
 use super::controls::Controls;
 use super::event::Expression;
 use super::expression::Expressions;
-use super::fader::Fader;
 use super::instrument::Instrument;
 use super::modulation::{Modulators, NoteModulation};
 use super::voice_manager::{Footprint, Unison, Voice};
 use crate::dsp::cells::Cells;
+use crate::dsp::fader::Fader;
 use crate::params::Param;
 use crate::patch::ModeTable;
 use clock::Clock;
@@ -85,7 +85,7 @@ impl SynthVoice {
             energy: Energy::NONE,
             pitch: Pitch::new(),
             decay: Decay::new(),
-            fader: Fader::CLOSED,
+            fader: Fader::closed(),
             controls,
             controls_serial: None,
             key: 0,

@@ -1,8 +1,12 @@
 //! The gain of a voice: linear ramps between control ticks, and the fade-out that ends a voice early.
 
+use super::simd::vector::Vector;
+use super::simd::{Instructions, Kernel};
+
 /// Left and right gain. It depends on the elapsed frames only, not on how they are divided into calls. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fader {
+    instructions: Instructions,
     from: [f32; 2],
     step: [f32; 2],
     /// Frames since the start of the ramp.
@@ -14,7 +18,10 @@ pub(crate) struct Fader {
 
 impl Fader {
     /// A silent fader. [`Fader::jump`] sets its first gain.
-    pub(crate) const CLOSED: Fader = Fader { from: [0.0; 2], step: [0.0; 2], elapsed: 0, fade_frames: 0, faded: 0 };
+    pub(crate) fn closed() -> Self {
+        let instructions = Instructions::current();
+        Self { instructions, from: [0.0; 2], step: [0.0; 2], elapsed: 0, fade_frames: 0, faded: 0 }
+    }
 
     /// The gain of the last frame.
     fn now(&self) -> [f32; 2] {
@@ -69,20 +76,42 @@ impl Fader {
         left.max(right)
     }
 
-    /// Adds the next frames of a voice to a mix.
+    /// Adds the next frames of a voice to a mix: as many as the slices have, which are equally long.
     pub(crate) fn mix(&mut self, voice: [&[f32]; 2], into: [&mut [f32]; 2]) {
-        let (mut frames, elapsed, faded, length) = (0, self.elapsed, self.faded, self.fade_frames);
-        for (side, (voice, into)) in voice.into_iter().zip(into).enumerate() {
-            let (from, step) = (self.from[side], self.step[side]);
-            frames = into.len() as u32;
+        let frames = into[0].len() as u32;
+        self.instructions.run(Mix { fader: *self, voice, into });
+        self.elapsed += frames;
+        if self.fade_frames > 0 {
+            self.faded = self.fade_frames.min(self.faded + frames);
+        }
+    }
+}
+
+/// The work of [`Fader::mix`]: plain loops, from which the compiler makes vector instructions of each level.
+struct Mix<'a> {
+    fader: Fader,
+    voice: [&'a [f32]; 2],
+    into: [&'a mut [f32]; 2],
+}
+
+impl Kernel for Mix<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, _: V::Proof) {
+        let Fader { elapsed, fade_frames, faded, .. } = self.fader;
+        for (side, (voice, into)) in self.voice.into_iter().zip(self.into).enumerate() {
+            let (from, step) = (self.fader.from[side], self.fader.step[side]);
             let pairs = into.iter_mut().zip(voice);
-            if length > 0 {
+            if fade_frames > 0 {
                 for (i, (into, voice)) in (1..).zip(pairs) {
                     let gain = from + step * (elapsed + i) as f32;
-                    *into += voice * (gain * fade_after(faded + i, length));
+                    *into += voice * (gain * fade_after(faded + i, fade_frames));
                 }
             } else if step == 0.0 {
-                pairs.for_each(|(into, voice)| *into += voice * from);
+                for (into, voice) in pairs {
+                    *into += voice * from;
+                }
             } else {
                 // A signed counter, since every CPU has a vector instruction that converts it to float.
                 for (i, (into, voice)) in (elapsed as i32 + 1..).zip(pairs) {
@@ -90,14 +119,11 @@ impl Fader {
                 }
             }
         }
-        self.elapsed += frames;
-        if length > 0 {
-            self.faded = length.min(self.faded + frames);
-        }
     }
 }
 
 /// An S-curve from 1 to 0. Its slope is zero at both ends, so a fade makes no click.
+#[inline(always)]
 fn fade_after(frames: u32, length: u32) -> f32 {
     let u = frames.min(length) as f32 / length as f32;
     1.0 - u * u * (3.0 - 2.0 * u)
@@ -116,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_line_arrives_on_time_however_it_is_divided() {
-        let mut whole = Fader::CLOSED;
+        let mut whole = Fader::closed();
         whole.jump([0.25, 1.0]);
         assert_eq!(render(&mut whole, 3), [0.25; 3]);
         whole.aim([1.0, 0.0], 30);
