@@ -5,19 +5,17 @@ use super::link::{Amounts, Link, MOVING, Mover, Offsets, SOURCES, Sources, bit};
 use crate::params::Param;
 use crate::patch::routes::{MAX_ROUTES, Route, Routes, Source};
 
-/// The destinations of a sound's routes, and the routes to each. Routes that modulate macros and amounts of other
-/// routes come first; otherwise routes keep the order of their places. Plain data.
+/// The routes of a sound and their destinations. Routes that modulate macros and amounts of other routes come first;
+/// otherwise routes keep the order of their places. Plain data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bus {
-    /// First the routes to macros and amounts; then the others, grouped by destination.
+    /// First the routes to macros and amounts; then the others.
     links: [Link; MAX_ROUTES],
     links_len: usize,
-    /// For each of the first links: the macro or amount that it modulates, and the index of its destination.
-    movers: [(Mover, u8); MAX_ROUTES],
+    /// For each of the first links: the macro or amount that it modulates.
+    movers: [Mover; MAX_ROUTES],
     movers_len: usize,
     destinations: [Destination; MAX_ROUTES],
-    /// The links of each destination: first index, and index after the last. Empty for macros and amounts.
-    groups: [[u8; 2]; MAX_ROUTES],
     destinations_len: usize,
     /// A bit for each destination that sounding notes follow at control ticks.
     followed: u32,
@@ -48,10 +46,9 @@ impl Bus {
     pub(crate) const EMPTY: Self = Self {
         links: [Link::NONE; MAX_ROUTES],
         links_len: 0,
-        movers: [(Mover::Amount(0), 0); MAX_ROUTES],
+        movers: [Mover::Amount(0); MAX_ROUTES],
         movers_len: 0,
         destinations: [Destination::NONE; MAX_ROUTES],
-        groups: [[0; 2]; MAX_ROUTES],
         destinations_len: 0,
         followed: 0,
         moved: [0; SOURCES],
@@ -65,20 +62,13 @@ impl Bus {
         let mut bus = Self::EMPTY;
         for (place, route) in routes.iter() {
             if let Some(mover) = Mover::of(route.destination) {
-                let to = bus.place_of(route.destination);
-                bus.movers[bus.movers_len] = (mover, to as u8);
+                bus.movers[bus.movers_len] = mover;
                 bus.movers_len += 1;
-                bus.read_by_movers |= bus.add(place, &route, to);
+                bus.read_by_movers |= bus.add(place, &route);
             }
         }
-        let others = || routes.iter().filter(|(_, route)| Mover::of(route.destination).is_none());
-        others().for_each(|(_, route)| _ = bus.place_of(route.destination));
-        for to in 0..bus.destinations_len {
-            let (first, param) = (bus.links_len, bus.destinations[to].param);
-            for (place, route) in others().filter(|(_, route)| route.destination == param) {
-                bus.add(place, &route, to);
-            }
-            bus.groups[to] = [first as u8, bus.links_len as u8];
+        for (place, route) in routes.iter().filter(|(_, route)| Mover::of(route.destination).is_none()) {
+            bus.add(place, &route);
         }
         bus
     }
@@ -95,10 +85,10 @@ impl Bus {
         })
     }
 
-    /// Adds a route to the destination with index `to`. Returns a bit for each source that the route reads.
-    fn add(&mut self, place: usize, route: &Route, to: usize) -> u32 {
-        let (link, is_mover) = (Link::new(place, route), Mover::of(route.destination).is_some());
-        self.links[self.links_len] = link;
+    /// Adds a route. Returns a bit for each source that it reads.
+    fn add(&mut self, place: usize, route: &Route) -> u32 {
+        let (to, is_mover) = (self.place_of(route.destination), Mover::of(route.destination).is_some());
+        self.links[self.links_len] = Link::new(place, route, to);
         self.links_len += 1;
         let reads = bit(route.source) | route.scale.map_or(0, bit);
         self.read |= reads;
@@ -162,29 +152,27 @@ impl Bus {
     /// settings. Returns the offsets in knob travel, in the order of the destinations. Real-time safe.
     pub(crate) fn move_routes(&self, sources: &mut Sources, amounts: &mut Amounts) -> Offsets {
         let mut offsets = [0.0; MAX_ROUTES];
-        for (link, (mover, to)) in self.links.iter().zip(&self.movers[..self.movers_len]) {
+        for (link, mover) in self.links.iter().zip(&self.movers[..self.movers_len]) {
             let travel = link.travel(sources, amounts);
-            offsets[usize::from(*to)] += travel;
+            link.add(travel, &mut offsets);
             mover.apply(travel, sources, amounts);
         }
         offsets
     }
 
-    /// Offset in knob travel of a destination that is neither a macro nor an amount. Call [`Bus::move_routes`] before.
-    /// Real-time safe.
-    #[inline]
-    pub(crate) fn offset(&self, to: usize, sources: &Sources, amounts: &Amounts) -> f32 {
-        let [first, end] = self.groups[to].map(usize::from);
-        self.links[first..end].iter().map(|link| link.travel(sources, amounts)).sum()
+    /// Adds the offsets in knob travel of all destinations that are neither macros nor amounts. Call
+    /// [`Bus::move_routes`] before. Real-time safe.
+    pub(crate) fn add_offsets(&self, sources: &Sources, amounts: &Amounts, offsets: &mut Offsets) {
+        for link in &self.links[self.movers_len..self.links_len] {
+            link.add(link.travel(sources, amounts), offsets);
+        }
     }
 
     /// Offsets of all destinations in knob travel, for these source values and amounts. Macros and amounts must have
     /// their values from the settings. Real-time safe.
     pub(crate) fn offsets(&self, mut sources: Sources, mut amounts: Amounts) -> Offsets {
         let mut offsets = self.move_routes(&mut sources, &mut amounts);
-        for to in (0..self.destinations_len).filter(|to| self.groups[*to][0] < self.groups[*to][1]) {
-            offsets[to] = self.offset(to, &sources, &amounts);
-        }
+        self.add_offsets(&sources, &amounts, &mut offsets);
         offsets
     }
 }

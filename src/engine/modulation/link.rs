@@ -32,10 +32,12 @@ pub(crate) const fn bit(source: Source) -> u32 {
 pub(super) const MOVING: u32 =
     bit(Source::Lfo1) | bit(Source::Lfo2) | bit(Source::Lfo3) | bit(Source::Envelope1) | bit(Source::Envelope2);
 
-/// A route, without its destination.
+/// A route as the bus evaluates it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
     place: u8,
+    /// Index of the destination in the bus.
+    to: u8,
     source: u8,
     /// Index of the second source in [`Sources`].
     scale: u8,
@@ -43,12 +45,19 @@ pub(super) struct Link {
 }
 
 impl Link {
-    pub(super) const NONE: Self = Self { place: 0, source: 0, scale: 0, response: Response::Linear };
+    pub(super) const NONE: Self = Self { place: 0, to: 0, source: 0, scale: 0, response: Response::Linear };
 
-    /// The link of the route with number `place`.
-    pub(super) fn new(place: usize, route: &Route) -> Self {
-        let scale = route.scale.map_or(SOURCES, |scale| scale as usize);
-        Self { place: place as u8, source: route.source as u8, scale: scale as u8, response: route.response }
+    /// The link of the route with number `place`, to the destination with index `to`.
+    pub(super) fn new(place: usize, route: &Route, to: usize) -> Self {
+        let (source, response) = (route.source as u8, route.response);
+        let scale = route.scale.map_or(SOURCES, |scale| scale as usize) as u8;
+        Self { place: place as u8, to: to as u8, source, scale, response }
+    }
+
+    /// Adds a travel to the offset of the destination.
+    #[inline]
+    pub(super) fn add(&self, travel: f32, offsets: &mut Offsets) {
+        offsets[usize::from(self.to) % offsets.len()] += travel;
     }
 
     /// The offset that the route gives its destination, in knob travel.

@@ -202,9 +202,13 @@ impl Modulators {
         if unsettled {
             self.next_rates = self.settings.rates;
         }
-        for place in places(moved & self.bus.followed()) {
+        let moved = moved & self.bus.followed();
+        if moved != 0 {
+            self.offsets = [0.0; MAX_ROUTES];
+            self.bus.add_offsets(&self.sources, &self.amounts, &mut self.offsets);
+        }
+        for place in places(moved) {
             let destination = &self.bus.destinations()[place];
-            self.offsets[place] = self.bus.offset(place, &self.sources, &self.amounts);
             let value = destination.moved(self.settings.bases[place], self.offsets[place]);
             match destination.target {
                 Target::Strike => {}
