@@ -4,9 +4,9 @@ use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::cells::{Cells, Climb};
 use crate::engine::controls::Controls;
 
-/// Twice the bloom time is what the lowest half octave would take at full energy to pass on all that it can. With this the
-/// highest modes of gongs are loudest after about the bloom time.
-const SPEED: f64 = 2.0;
+/// In a bloom time, the lowest half octave at full energy passes on this many times what is missing above it. Soft mallets
+/// bring much less than full energy to a gong; with this its high modes are loudest after about the bloom time.
+const SPEED: f64 = 6.0;
 
 /// The bloom of a voice. Real-time safe.
 #[derive(Clone, Copy, Debug)]
