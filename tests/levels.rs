@@ -118,6 +118,10 @@ fn patch(stream: &mut Stream, seed: u64) -> Patch {
         patch.set(level, if is_on(exciter as u64) { 0.0 } else { -60.0 });
     }
     patch.set(Param::NoiseReach, if seed % 4 == 2 { 100.0 } else { 0.0 });
+    // A touch silences most sounds soon, so every third of these bodies is touched, and lightly; every other one blooms.
+    patch.set(Param::Touch, if seed % 9 == 4 { 20.0 } else { 0.0 });
+    patch.set(Param::Bloom, if seed % 4 >= 2 { 80.0 } else { 0.0 });
+    patch.set(Param::BloomTime, 0.1);
     // Without fused instructions a body of many masses is slow: every eighth has springs and strings.
     let has_bodies = seed % 8 == 3;
     patch.set(Param::Space, if has_bodies { 2.0 } else { 0.0 });

@@ -1,7 +1,8 @@
 //! The mode bank of a voice, with exact tuning or with the original formulas.
 
 use super::exciter::{Bow, Drive};
-use super::mode_bank::{ExcitationGains, ModeSetup};
+use super::mode_bank::exchange::{BANDS, Band, Exchange};
+use super::mode_bank::{ExcitationGains, MAX_MODES, ModeSetup};
 use super::{ClassicBank, ModeBank};
 
 /// Selects the formulas that turn pitch and decay into coefficients.
@@ -124,6 +125,34 @@ impl Bank {
     /// See [`ModeBank::settle`].
     pub fn settle(&mut self) -> f64 {
         either!(self, bank => bank.settle())
+    }
+
+    /// See [`ModeBank::add_energies`]. Modes of the original formulas pass no energy to each other, and are not counted.
+    pub(super) fn add_energies(&self, bands: &[u8; MAX_MODES], sums: &mut [Band; BANDS]) {
+        if let Self::Exact(bank) = self {
+            bank.add_energies(bands, sums);
+        }
+    }
+
+    /// See [`ModeBank::squared_amplitudes`].
+    #[cfg(test)]
+    pub(super) fn squared_amplitudes(&self) -> impl Iterator<Item = f64> {
+        match self {
+            Self::Exact(bank) => bank.squared_amplitudes().collect::<Vec<_>>().into_iter(),
+            Self::Classic(bank) => (0..bank.len()).map(|m| f64::from(bank.mass(m).1)).collect::<Vec<_>>().into_iter(),
+        }
+    }
+
+    /// See [`ModeBank::exchange`].
+    pub(super) fn exchange(
+        &mut self,
+        bands: &[u8; MAX_MODES],
+        exchange: &[Exchange; BANDS],
+        sign: impl Fn(usize) -> f32,
+    ) {
+        if let Self::Exact(bank) = self {
+            bank.exchange(bands, exchange, sign);
+        }
     }
 
     /// See [`ModeBank::tell_energies`].

@@ -1,5 +1,9 @@
 //! The modes of one voice: a bank of 64 modes, or several such banks for a body with more modes.
 
+mod cascade;
+
+pub use cascade::Climb;
+
 use super::CONTROL_FRAMES;
 use super::bank::{Bank, Law};
 use super::exciter::{Bow, Drive};
@@ -15,12 +19,22 @@ pub struct Cell {
     /// Frequency of each mode as a multiple of the note's frequency, and its T60 as a multiple of the note's decay.
     ratios: [f64; MAX_MODES],
     t60_scales: [f64; MAX_MODES],
+    /// How far each mode moves where the body is touched: the square of its shape there, 0–1.
+    touched: [f32; MAX_MODES],
+    /// The band of each mode, for [`Cells::climb`].
+    bands: [u8; MAX_MODES],
 }
 
 impl Cell {
     /// A cell without modes.
     pub fn new(sample_rate: f64) -> Self {
-        Self { bank: Bank::new(sample_rate), ratios: [1.0; MAX_MODES], t60_scales: [1.0; MAX_MODES] }
+        Self {
+            bank: Bank::new(sample_rate),
+            ratios: [1.0; MAX_MODES],
+            t60_scales: [1.0; MAX_MODES],
+            touched: [0.0; MAX_MODES],
+            bands: [0; MAX_MODES],
+        }
     }
 }
 
@@ -80,35 +94,43 @@ impl Cells {
         self.iter_mut().flat_map(|cell| &mut cell.t60_scales)
     }
 
-    /// Fills the cells with modes at rest: `setup` makes each of them from an item of `modes`, the mode's ratio and its
-    /// T60 scale. Nothing remains of what a cell played before.
+    /// How far each mode moves where the body is touched: the square of its shape there, 0–1. Nothing but the arguments
+    /// of [`Cells::load`], [`Cells::retune`] and [`Cells::damp`] reads it.
+    pub fn touched_mut(&mut self) -> impl Iterator<Item = &mut f32> {
+        self.iter_mut().flat_map(|cell| &mut cell.touched)
+    }
+
+    /// Fills the cells with modes at rest: `setup` makes each of them from an item of `modes`, the mode's ratio, its
+    /// T60 scale, and how far it moves where the body is touched. Nothing remains of what a cell played before.
     pub fn load<T>(
         &mut self,
         law: Law,
         sample_rate: f64,
         modes: &[T],
-        setup: impl Fn(&T, f64, f64) -> ModeSetup + Copy,
+        setup: impl Fn(&T, f64, f64, f64) -> ModeSetup + Copy,
     ) {
-        for (Cell { bank, ratios, t60_scales }, modes) in self.iter_mut().zip(modes.chunks(MAX_MODES)) {
+        for (Cell { bank, ratios, t60_scales, touched, .. }, modes) in self.iter_mut().zip(modes.chunks(MAX_MODES)) {
             bank.set_law(law, sample_rate);
-            let rows = modes.iter().zip(ratios).zip(t60_scales);
-            bank.load(rows.map(|((mode, ratio), scale)| setup(mode, *ratio, *scale)));
+            let rows = modes.iter().zip(ratios).zip(t60_scales).zip(touched);
+            bank.load(rows.map(|(((mode, ratio), scale), touched)| setup(mode, *ratio, *scale, f64::from(*touched))));
         }
         self.len = self.iter().map(|cell| cell.bank.len()).sum();
     }
 
     /// Like [`super::ModeBank::retune`]: `tuning` computes a mode's frequency in Hz and its T60 in seconds from its
-    /// ratio and its T60 scale.
-    pub fn retune(&mut self, tuning: impl Fn(f64, f64) -> (f64, f64) + Copy) {
-        for Cell { bank, ratios, t60_scales } in self.iter_mut() {
-            bank.retune(ratios.iter().zip(t60_scales).map(|(ratio, scale)| tuning(*ratio, *scale)));
+    /// ratio, its T60 scale, and how far it moves where the body is touched.
+    pub fn retune(&mut self, tuning: impl Fn(f64, f64, f64) -> (f64, f64) + Copy) {
+        for Cell { bank, ratios, t60_scales, touched, .. } in self.iter_mut() {
+            let rows = ratios.iter().zip(t60_scales).zip(touched);
+            bank.retune(rows.map(|((ratio, scale), touched)| tuning(*ratio, *scale, f64::from(*touched))));
         }
     }
 
-    /// Like [`super::ModeBank::set_t60`], for all modes: `t60` computes the T60 in seconds from a mode's T60 scale.
-    pub fn damp(&mut self, t60: impl Fn(f64) -> f64) {
-        for Cell { bank, t60_scales, .. } in self.iter_mut() {
-            (0..bank.len()).for_each(|m| bank.set_t60(m, t60(t60_scales[m])));
+    /// Like [`super::ModeBank::set_t60`], for all modes: `t60` computes the T60 in seconds from a mode's T60 scale and how
+    /// far it moves where the body is touched.
+    pub fn damp(&mut self, t60: impl Fn(f64, f64) -> f64) {
+        for Cell { bank, t60_scales, touched, .. } in self.iter_mut() {
+            (0..bank.len()).for_each(|m| bank.set_t60(m, t60(t60_scales[m], f64::from(touched[m]))));
         }
     }
 

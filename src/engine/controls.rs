@@ -123,6 +123,14 @@ pub(crate) struct Controls {
     pub(crate) damper: f64,
     /// Exponent by which higher modes decay faster.
     pub(crate) decay_tilt: f64,
+    /// Semitones by which a full strike raises the pitch.
+    pub(crate) tension: f64,
+    /// Share of its energy that a band passes on, 0–1, and time of its climb in seconds.
+    pub(crate) bloom: f64,
+    pub(crate) bloom_time: f64,
+    /// How firmly the body is touched, 0–1, and where, as a share of its length.
+    pub(crate) touch: f64,
+    pub(crate) touch_position: f64,
     /// Semitones.
     pub(crate) bend_range: f32,
     /// Speed of the bow, from 0, and how hard it is pressed on, 0–1.
@@ -157,6 +165,11 @@ impl Controls {
             is_synchronised: sync != NoteValue::Off,
             damper: f64::from(value(Param::Damper)) * 0.01,
             decay_tilt: value(Param::DecayTilt).into(),
+            tension: value(Param::Tension).into(),
+            bloom: f64::from(value(Param::Bloom)) * 0.01,
+            bloom_time: value(Param::BloomTime).into(),
+            touch: f64::from(value(Param::Touch)) * 0.01,
+            touch_position: f64::from(value(Param::TouchPosition)) * 0.01,
             bend_range: value(Param::BendRange),
             bow_speed: exciter_gain(value(Param::BowLevel).into()) as f32,
             bow_force: value(Param::BowForce) * 0.01,
@@ -183,6 +196,11 @@ impl Controls {
             Param::VibratoRate if !self.is_synchronised => self.vibrato_rate = wide,
             Param::Damper => self.damper = wide * 0.01,
             Param::DecayTilt => self.decay_tilt = wide,
+            Param::Tension => self.tension = wide,
+            Param::Bloom => self.bloom = wide * 0.01,
+            Param::BloomTime => self.bloom_time = wide,
+            Param::Touch => self.touch = wide * 0.01,
+            Param::TouchPosition => self.touch_position = wide * 0.01,
             Param::BendRange => self.bend_range = value,
             Param::BowLevel => self.bow_speed = exciter_gain(wide) as f32,
             Param::BowForce => self.bow_force = value * 0.01,

@@ -22,6 +22,16 @@ macro_rules! body {
             "How far apart the modes are panned.";
         Coefficients "coefficients" "Coefficients", Choice 0.0..1.0 = 0.0, Linear, NextNote, [Coefficients],
             "Exact tuning and decay, or the original formulas with their drift, clamped short of exploding.";
+        Tension "tension" "Tension", Semitones 0.0..24.0 = 0.0, Linear, Smoothed(20), [],
+            "How far a full strike stretches head or string: the pitch rises by this much, and falls as the sound decays.";
+        Bloom "bloom" "Bloom", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
+            "How much of its energy a loud sound passes on from each half octave to the next: gongs and cymbals.";
+        BloomTime "bloom_time" "Bloom time", Seconds 0.05..10.0 = 0.5, Logarithmic, Smoothed(20), [],
+            "Time in which the energy of a full strike climbs to the high modes.";
+        Touch "touch" "Touch", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
+            "How firmly a finger touches the sounding body: it damps each mode by how far that moves there.";
+        TouchPosition "touch_position" "Touch position", Percent 0.0..100.0 = 50.0, Linear, Smoothed(20), [],
+            "Where the finger touches, in per cent of the body's length.";
     }
         } $($rest)* }
     };

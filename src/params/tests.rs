@@ -13,6 +13,7 @@ fn ids_are_pinned() {
         bow_level bow_force bow_position bow_slip bow_velocity input_level \
         velocity vary_position vary_hardness vary_modes \
         decay release damper note_off decay_tilt tilt stretch width coefficients \
+        tension bloom bloom_time touch touch_position \
         tune fine tuning key_track sweep sweep_time sweep_curve \
         vibrato vibrato_rate vibrato_delay vibrato_sync glide glide_when glide_by \
         bend_range \

@@ -52,6 +52,10 @@ const FILES: &[(&str, &str)] = embed! {
     "37-church-bell"
     "38-gong"
     "39-wine-glass"
+    "40-tam-tam"
+    "41-opera-gong"
+    "42-floor-tom"
+    "43-slack-string"
 };
 
 impl Preset {

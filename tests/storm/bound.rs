@@ -6,7 +6,8 @@
 //! How sharp the bound is: a single struck note reaches it. The bound is looser in these ways: strikes are counted as
 //! if none had decayed and all their modes were in phase; each moving gain counts at its highest value, independently
 //! of the others; every note-on counts as a strike, even if a legato voice is only retuned; a noise burst counts with
-//! nine times its expected amplitude, or with the sum of all its frames if that is smaller.
+//! nine times its expected amplitude, or with the sum of all its frames if that is smaller; energy that blooms counts as if
+//! all modes shared it, in phase and all on the louder side.
 
 use crate::case::Case;
 use crate::noise::Noise;
@@ -106,6 +107,8 @@ struct Part {
     /// The amplitude of all modes together that a bow of speed 1 gives until the end of the case at most, times the highest
     /// level of the bow.
     bow: f64,
+    /// How much louder what strikes bring may become when its energy climbs to other modes; none if nothing blooms.
+    bloom: Option<f64>,
     /// What a strike reaches, until the patch changes.
     reach: Option<Reach>,
 }
@@ -151,10 +154,12 @@ impl Part {
             unison: 1.0,
             bright: false,
             bow: 0.0,
+            bloom: None,
             reach: None,
         };
         part.unison = part.most_unison(case);
         part.bow = part.most_bow(case);
+        part.bloom = part.most_bloom(case);
         part.bright = part.events(case).any(|event| match event.kind {
             EventKind::Express { expression, .. } => expression == Expression::Brightness,
             EventKind::Control { controller, .. } => controller == 74,
@@ -188,6 +193,19 @@ impl Part {
         });
         let level = set.chain(moved).fold(-60.0, f32::max);
         if level > -60.0 { gain_from_db(level.into()) * sqrt(2.0 * case.frames as f64 * 64.0) } else { 0.0 }
+    }
+
+    /// The amplitudes of `n` modes add up to at most `√n` times the root of their energy, and the root of the energy that
+    /// several strikes bring is at most the sum of all amplitudes that they bring. Bloom leaves the energy as it is.
+    fn most_bloom(&self, case: &Case) -> Option<f64> {
+        let patches = || case.programs.iter().filter(|_| self.ensemble).chain([&self.patch]);
+        let is_moved = |event: &Event| match event.kind {
+            EventKind::Param { param, .. } | EventKind::Modulate { param, .. } => param == Param::Bloom,
+            _ => false,
+        };
+        let blooms = patches().any(|patch| patch.get(Param::Bloom) > 0.0) || self.events(case).any(is_moved);
+        let modes = patches().map(|patch| patch.modes.as_slice().len()).max()?;
+        blooms.then_some(sqrt(modes as f64))
     }
 
     /// The events that this synth hears.
@@ -224,6 +242,9 @@ impl Part {
                 rise = [0, 1, 2].map(|i| rise[i] + after[i] - before[i]);
             }
             strikes.extend(strike);
+            if let Some(louder) = self.bloom {
+                rise = [SQRT_2, SQRT_2, 1.0].map(|gain| gain * louder * rise[2]);
+            }
             if rise != [0.0; 3] {
                 let output = [rise[0] * gain[0], rise[1] * gain[1]];
                 steps.push(Step { frame: event.frame, output, displacement: rise[2] });

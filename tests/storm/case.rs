@@ -104,11 +104,12 @@ pub(crate) const PARAM_IDS: &str = "mallet_pulse mallet_hardness mallet_hardness
     route16 glide_when glide_by priority unison unison_detune unison_spread unison_phase \
     mallet_level pluck_level pluck_hardness pluck_width noise_reach noise_decay noise_attack noise_colour noise_hits \
     noise_spacing mallet_velocity pluck_velocity noise_velocity mallet_mass mallet_speed mallet_key vary_position \
-    vary_hardness vary_modes bow_level bow_force bow_position bow_slip bow_velocity input_level";
+    vary_hardness vary_modes bow_level bow_force bow_position bow_slip bow_velocity input_level \
+    tension bloom bloom_time touch touch_position";
 
 /// Destinations of routes: the parameters that move pitch and damping and those of the modulation itself, but none on
 /// which the bound depends. New ones must be added at the end.
-const DESTINATIONS: [Param; 22] = [
+const DESTINATIONS: [Param; 26] = [
     Param::Tune,
     Param::Fine,
     Param::Decay,
@@ -131,6 +132,10 @@ const DESTINATIONS: [Param; 22] = [
     Param::Route2,
     Param::Route3,
     Param::Envelope1Attack,
+    Param::Tension,
+    Param::BloomTime,
+    Param::Touch,
+    Param::TouchPosition,
 ];
 
 /// The parameter with a number, modulo their count.

@@ -12,8 +12,12 @@ fn body(cells: &mut Cells, law: Law, modes: usize, seed: u64) {
     cells.ratios_mut().zip(&ratios).for_each(|(to, ratio)| *to = *ratio);
     cells.t60_scales_mut().take(modes).enumerate().for_each(|(m, to)| *to = 0.05 + unit(m, 1));
     let pans: Vec<f32> = (0..modes).map(|m| unit(m, 2) as f32).collect();
-    let setup =
-        |pan: &f32, ratio: f64, scale: f64| ModeSetup { frequency: 200.0 * ratio, t60: scale, left: *pan, right: 1.0 };
+    let setup = |pan: &f32, ratio: f64, scale: f64, _: f64| ModeSetup {
+        frequency: 200.0 * ratio,
+        t60: scale,
+        left: *pan,
+        right: 1.0,
+    };
     cells.load(law, RATE, &pans, setup);
     for m in 0..modes {
         let gains = ExcitationGains { push: unit(m, 3) as f32, pull: 0.1, ..ExcitationGains::default() };
@@ -36,7 +40,7 @@ fn play(cells: &mut Cells, ticks: usize) -> (Vec<u32>, f64, u64) {
     let mut samples = vec![];
     for tick in 0..ticks {
         if tick == 5 {
-            cells.damp(|scale| 0.5 * scale);
+            cells.damp(|scale, _| 0.5 * scale);
         }
         cells.sweep_to(if tick < 8 { 1.0 + 0.01 * tick as f64 } else { 1.08 }, CONTROL_FRAMES);
         for sides in cells.render((tick == 0).then_some(&drive), None, CONTROL_FRAMES) {

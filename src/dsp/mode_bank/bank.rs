@@ -50,8 +50,8 @@ pub struct ModeBank {
     motion: Motion,
     /// The state, and the state at the end of a tick that is rendered by tables. The two swap roles after every such
     /// tick; `current` is the index of the state.
-    states: [State; 2],
-    current: usize,
+    pub(super) states: [State; 2],
+    pub(super) current: usize,
     modes: Modes,
     tuning: Tuning,
     table: Table,

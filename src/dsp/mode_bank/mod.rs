@@ -7,10 +7,11 @@
 //! strike can add energy to a mass, however its pitch and damping move.
 //!
 //! `bank` is the public interface, `rows` the data, `step` and `ring` are the two ways to render, `tuning` is the work
-//! at control ticks, `table` makes the tables for freely ringing modes, and `tail` computes how long they ring. Kernels
-//! are written once for all vector instructions of [`super::simd`].
+//! at control ticks, `table` makes the tables for freely ringing modes, `tail` computes how long they ring, and `exchange`
+//! lets modes pass energy to each other. Kernels are written once for all vector instructions of [`super::simd`].
 
 mod bank;
+pub(super) mod exchange;
 #[allow(clippy::needless_range_loop, reason = "as in `ring`")]
 mod friction;
 #[allow(clippy::needless_range_loop, reason = "kernels index several arrays in step")]

@@ -30,7 +30,17 @@ pub(crate) struct Bus {
 }
 
 /// The parameters that decide when a note is over.
-const DECIDING: [Param; 6] = [Param::Decay, Param::DecayTilt, Param::Release, Param::Damper, Param::Gain, Param::Pan];
+const DECIDING: [Param; 9] = [
+    Param::Decay,
+    Param::DecayTilt,
+    Param::Release,
+    Param::Damper,
+    Param::Touch,
+    Param::TouchPosition,
+    Param::Bloom,
+    Param::Gain,
+    Param::Pan,
+];
 
 /// The indices of the bits that are set, lowest first.
 pub(super) fn places(mut bits: u32) -> impl Iterator<Item = usize> {

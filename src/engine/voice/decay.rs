@@ -1,4 +1,4 @@
-//! The decay of a note's modes, and the damper.
+//! The decay of a note's modes, the damper, and a finger that touches the body.
 
 use super::values::StruckValues;
 use crate::dsp::cells::Cells;
@@ -6,13 +6,19 @@ use crate::engine::controls::Controls;
 use crate::engine::damping::Damping;
 use crate::params::{NoteOff, Param};
 use crate::patch::Mode;
-use libm::pow;
+use libm::{pow, sin};
+use std::f64::consts::PI;
+
+/// T60 in seconds of a mode that moves most where the body is touched as firmly as can be.
+const FIRMEST_TOUCH: f64 = 0.02;
 
 /// The decay of a voice. Real-time safe.
 pub(super) struct Decay {
     /// Tilt of the decay: the T60 of a mode of ratio r is multiplied by r^−tilt.
     tilt: f64,
     pub(super) damping: Damping,
+    /// Where the body is touched, as a share of its length, if the modes' shapes there are known.
+    place: Option<f64>,
     /// The patch lets notes ring on after their release: a release does not damp them.
     rings_on: bool,
     released: bool,
@@ -21,15 +27,21 @@ pub(super) struct Decay {
 impl Decay {
     /// The decay of a voice before its first note.
     pub(super) fn new() -> Self {
-        let damping = Damping { decay: 1.0, release: 1.0, amount: 0.0 };
-        Self { tilt: 0.0, damping, rings_on: false, released: false }
+        let damping = Damping { decay: 1.0, release: 1.0, amount: 0.0, touch: 0.0 };
+        Self { tilt: 0.0, damping, place: None, rings_on: false, released: false }
     }
 
-    /// Reads the decay and its tilt from the patch, as modulated at the strike.
+    /// Reads decay, tilt and touch from the patch, as modulated at the strike.
     pub(super) fn read(&mut self, values: &StruckValues, controls: &Controls, bank: &mut Cells) {
         let tilt = values.moved(Param::DecayTilt, controls.decay_tilt);
-        self.set_tilt(tilt, values.instrument.sound.patch().modes.as_slice(), bank);
-        self.press(values.moved(Param::Decay, controls.decay));
+        let modes = values.instrument.sound.patch().modes.as_slice();
+        self.set_tilt(tilt, modes, bank);
+        let touch = touch_rate(0.01 * values.moved(Param::Touch, 100.0 * controls.touch));
+        self.place = None;
+        if touch > 0.0 {
+            self.set_place(0.01 * values.moved(Param::TouchPosition, 100.0 * controls.touch_position), modes, bank);
+        }
+        self.press(values.moved(Param::Decay, controls.decay), touch);
     }
 
     /// Sets each mode's T60 as a multiple of the decay. With a positive tilt, higher modes decay faster.
@@ -41,9 +53,19 @@ impl Decay {
         }
     }
 
-    /// The key was pressed: the note is not damped, and decays with a T60 in seconds.
-    pub(super) fn press(&mut self, decay: f64) {
-        self.damping = Damping { decay, release: 0.0, amount: 0.0 };
+    /// Sets how far each mode moves at a place, in shares of the body's length. Its shape is a standing wave, as for
+    /// pluck and bow.
+    fn set_place(&mut self, place: f64, modes: &[Mode], bank: &mut Cells) {
+        self.place = Some(place);
+        for (touched, mode) in bank.touched_mut().zip(modes) {
+            let shape = sin(PI * place * f64::from(mode.ratio));
+            *touched = (shape * shape) as f32;
+        }
+    }
+
+    /// The key was pressed: the note is not damped, and decays with a T60 in seconds. `touch` is that of [`Damping`].
+    pub(super) fn press(&mut self, decay: f64, touch: f64) {
+        self.damping = Damping { decay, release: 0.0, amount: 0.0, touch };
         self.released = false;
     }
 
@@ -57,19 +79,31 @@ impl Decay {
         self.released = !self.rings_on;
     }
 
-    /// Sets the T60s of the bank if they have changed. `modes` are the patch's, for a new tilt; none if the patch was
-    /// replaced. Returns whether anything has changed.
+    /// Sets the T60s of the bank if they have changed. `modes` are the patch's, for a new tilt and a new place of touch;
+    /// none if the patch was replaced. Returns whether anything has changed.
     pub(super) fn control(&mut self, controls: &Controls, modes: Option<&[Mode]>, bank: &mut Cells) -> bool {
         let tilted = modes.filter(|_| controls.decay_tilt != self.tilt);
         tilted.into_iter().for_each(|modes| self.set_tilt(controls.decay_tilt, modes, bank));
         let amount = if self.released { 1.0 } else { controls.damper };
         let release = if amount == 0.0 { 0.0 } else { controls.release };
-        let damping = Damping { decay: controls.decay, release, amount };
-        let changes = tilted.is_some() || damping != self.damping;
+        let mut touch = touch_rate(controls.touch);
+        let moved = modes.filter(|_| touch > 0.0 && self.place != Some(controls.touch_position));
+        moved.into_iter().for_each(|modes| self.set_place(controls.touch_position, modes, bank));
+        if self.place.is_none() {
+            // The modes' shapes are unknown.
+            touch = 0.0;
+        }
+        let damping = Damping { decay: controls.decay, release, amount, touch };
+        let changes = tilted.is_some() || moved.is_some() || damping != self.damping;
         if changes {
             self.damping = damping;
-            bank.damp(|scale| damping.t60(scale));
+            bank.damp(|scale, touched| damping.t60(scale, touched));
         }
         changes
     }
+}
+
+/// The rate that [`Damping`] has for a touch, 0–1. It grows with the square, so that light touches can be told apart.
+fn touch_rate(touch: f64) -> f64 {
+    touch * touch / FIRMEST_TOUCH
 }

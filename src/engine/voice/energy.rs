@@ -24,13 +24,16 @@ pub(super) struct Energy {
     measured: f64,
     /// Control ticks until the next measurement.
     until_measured: u32,
+    /// Control ticks between two measurements, while the voice is not nearly silent.
+    interval: u32,
     /// Frames from the voice's start to its end, if already known.
     end: Option<u64>,
 }
 
 impl Energy {
     /// The energy of a voice at rest.
-    pub(super) const NONE: Self = Self { pending: 0.0, measured: 0.0, until_measured: 0, end: None };
+    pub(super) const NONE: Self =
+        Self { pending: 0.0, measured: 0.0, until_measured: 0, interval: MEASURING_TICKS, end: None };
 
     /// Adds to the energy that the strike will still bring. `more` may be negative.
     pub(super) fn expect(&mut self, more: f64) {
@@ -42,13 +45,25 @@ impl Energy {
         self.end = None;
     }
 
+    /// From now on the energy is measured at every control tick.
+    pub(super) fn measure_always(&mut self) {
+        if self.interval != 1 {
+            (self.interval, self.until_measured, self.end) = (1, 0, None);
+        }
+    }
+
+    /// The energy now, or that of a strike still under way if it is more.
+    pub(super) fn now(&self) -> f64 {
+        self.measured.max(self.pending)
+    }
+
     /// Measures the remaining energy and puts silent modes to rest. Called at control ticks, but only measures every
     /// few ticks, until the voice is nearly silent or its strike has just ended.
     pub(super) fn settle(&mut self, bank: &mut Cells, strike: &Strike, fader: &Fader) {
         let strike_over = self.pending > 0.0 && !strike.is_active();
         if self.until_measured == 0 || strike_over || self.is_below(NEARLY_SILENT, bank, fader) {
             self.measured = bank.settle();
-            self.until_measured = MEASURING_TICKS;
+            self.until_measured = self.interval;
             if !strike.is_active() {
                 self.pending = 0.0;
             }
@@ -71,7 +86,7 @@ impl Energy {
 
     /// How loud the voice is, for voice stealing.
     pub(super) fn rank(&self, fader: &Fader) -> f64 {
-        self.measured.max(self.pending) * fader.remaining()
+        self.now() * fader.remaining()
     }
 
     /// Whether the voice will be silent until it is struck again.
@@ -81,14 +96,21 @@ impl Energy {
 
     /// Frames until the voice is over if no event comes, `now` frames after its start and `to_tick` frames before the
     /// next control tick. Exact to a tick after the strike has ended and while neither decay nor gain changes; an upper
-    /// bound during a strike.
-    pub(super) fn tail_frames(&mut self, bank: &Cells, strike: &Strike, fader: &Fader, now: u64, to_tick: u64) -> u64 {
+    /// bound during a strike, and if the voice `blooms`.
+    pub(super) fn tail_frames(
+        &mut self,
+        bank: &Cells,
+        strike: &Strike,
+        fader: &Fader,
+        blooms: bool,
+        [now, to_tick]: [u64; 2],
+    ) -> u64 {
         let end = match self.end {
             Some(end) => end,
             None => {
-                let end = now + self.find_end(bank, strike, fader, to_tick);
-                // As long as the strike adds energy or the gain changes, the end may still change.
-                self.end = (self.pending == 0.0 && fader.is_level()).then_some(end);
+                let end = now + self.find_end(bank, strike, fader, blooms, to_tick);
+                // As long as the strike adds energy, the gain changes or energy climbs, the end may still change.
+                self.end = (self.pending == 0.0 && fader.is_level() && !blooms).then_some(end);
                 end
             }
         };
@@ -96,14 +118,15 @@ impl Energy {
         end.saturating_sub(now).min(fade)
     }
 
-    /// Frames until the end is detected. The energy is measured every [`MEASURING_TICKS`] ticks, and at every tick
+    /// Frames until the end is detected. The energy is measured every [`MEASURING_TICKS`] ticks or at every tick, and at every tick
     /// after it was found to be nearly silent: the voice ends at the first of these times at which it is below the
     /// limit.
-    fn find_end(&self, bank: &Cells, strike: &Strike, fader: &Fader, to_tick: u64) -> u64 {
+    fn find_end(&self, bank: &Cells, strike: &Strike, fader: &Fader, blooms: bool, to_tick: u64) -> u64 {
         let gain = f64::from(fader.loudest()).max(1.0);
         let share = 1.0 / (bank.len().max(1) as f64 * gain * gain);
         let below = |amplitude: f64| amplitude * amplitude * share;
-        if self.pending > 0.0 {
+        if self.pending > 0.0 || blooms {
+            // Energy that climbs may reach any mode, so all of it decays like the slowest at the most.
             let frames = bank.frames_until_at_most(below(SILENCE), self.pending);
             return to_tick
                 + round_up(u64::from(strike.frames_left()).saturating_add(frames))
@@ -116,7 +139,7 @@ impl Energy {
         }
         let nearly = bank.frames_until(below(NEARLY_SILENT));
         let first = to_tick + u64::from(self.until_measured) * TICK;
-        let interval = u64::from(MEASURING_TICKS) * TICK;
+        let interval = u64::from(self.interval) * TICK;
         let found = first + nearly.saturating_sub(first).div_ceil(interval) * interval;
         every_tick.max(found)
     }

@@ -13,6 +13,11 @@ pub(super) struct Line {
 impl Line {
     pub(super) const ZERO: Self = Self { from: 0.0, to: 0.0, step: 0.0, frames: 0, passed: 0 };
 
+    /// A number that stays where it is.
+    pub(super) fn at_rest(number: f32) -> Self {
+        Self { from: number, to: number, ..Self::ZERO }
+    }
+
     /// Sets out for `to`, to be there in `frames` frames.
     pub(super) fn aim(&mut self, to: f32, frames: usize) {
         let from = self.now();
@@ -22,6 +27,11 @@ impl Line {
     /// Where it is: after the last frame exactly where it was to be.
     pub(super) fn now(&self) -> f32 {
         if self.passed < self.frames { self.from + self.passed as f32 * self.step } else { self.to }
+    }
+
+    /// Where it is to be at the next control tick.
+    pub(super) fn end(&self) -> f32 {
+        self.to
     }
 
     /// Whether it is 0 and stays there.

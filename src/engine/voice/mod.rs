@@ -1,5 +1,6 @@
 //! One voice: the strikes of its note, a bank of modes, and the modulation of their pitch, decay and gain.
 
+mod bloom;
 mod bowing;
 mod clock;
 mod decay;
@@ -10,6 +11,7 @@ mod line;
 mod notes;
 mod pitch;
 mod strike;
+mod tension;
 mod values;
 mod variation;
 
@@ -24,11 +26,13 @@ use crate::dsp::cells::Cells;
 use crate::dsp::fader::Fader;
 use crate::params::Param;
 use crate::patch::ModeTable;
+use bloom::Bloom;
 use clock::Clock;
 use decay::Decay;
 use energy::Energy;
 use pitch::{Bends, Pitch};
 use strike::Strike;
+use tension::Tension;
 use values::StruckValues;
 
 /// The voices and cells that a note needs, for a patch's modes and a number of unison voices.
@@ -48,6 +52,8 @@ pub(crate) struct SynthVoice {
     energy: Energy,
     pitch: Pitch,
     decay: Decay,
+    tension: Tension,
+    bloom: Bloom,
     fader: Fader,
     /// The smoothed and modulated parameters, at the next control tick.
     controls: Controls,
@@ -69,6 +75,8 @@ pub(crate) struct SynthVoice {
     fresh: bool,
     /// The key is down, or a pedal holds the note: then bow and input act.
     is_held: bool,
+    /// Routes of the patch lead to tension or bloom.
+    may_move: bool,
     /// Routes of the patch lead to the level of the bow or of the input.
     may_be_driven: bool,
 }
@@ -85,6 +93,8 @@ impl SynthVoice {
             energy: Energy::NONE,
             pitch: Pitch::new(),
             decay: Decay::new(),
+            tension: Tension::NONE,
+            bloom: Bloom::NONE,
             fader: Fader::closed(),
             controls,
             controls_serial: None,
@@ -96,6 +106,7 @@ impl SynthVoice {
             let_go: None,
             fresh: true,
             is_held: false,
+            may_move: false,
             may_be_driven: false,
         }
     }
@@ -135,7 +146,12 @@ impl SynthVoice {
         if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
-        let bends = Bends { wheels, tuning: self.expressions.tuning.into() };
+        if self.may_move || self.controls.tension > 0.0 || self.controls.bloom > 0.0 {
+            self.energy.measure_always();
+        }
+        let energy = || self.energy.now() / self.strike.full_energy();
+        let tension = self.tension.control(&self.controls, energy, self.fresh, self.sample_rate, frames);
+        let bends = Bends { wheels, tuning: self.expressions.tuning.into(), tension };
         let mut start = None;
         if self.fresh {
             self.bank.jump_to(self.pitch.aim(&self.controls, &bends, &self.clock, 0));
@@ -214,6 +230,7 @@ impl SynthVoice {
     /// Measures the remaining energy and puts silent modes to rest, at control ticks.
     pub(crate) fn settle(&mut self) {
         self.energy.settle(&mut self.bank, &self.strike, &self.fader);
+        self.bloom.climb(&self.controls, self.strike.full_energy(), self.sample_rate, &mut self.bank);
     }
 
     /// Frames until the voice is over if no event comes, `to_tick` frames before the next control tick: see
@@ -228,7 +245,9 @@ impl SynthVoice {
         } else if self.modulators.move_the_end() || self.is_driven() {
             u64::MAX
         } else {
-            self.energy.tail_frames(&self.bank, &self.strike, &self.fader, self.clock.total, to_tick)
+            let blooms = self.controls.bloom > 0.0;
+            let times = [self.clock.total, to_tick];
+            self.energy.tail_frames(&self.bank, &self.strike, &self.fader, blooms, times)
         }
     }
 
@@ -243,6 +262,7 @@ impl SynthVoice {
         let frames = left.len();
         let bow = self.strike.bowing.stroke(frames);
         self.fader.mix(self.bank.render(self.strike.drive(frames, input), bow.as_ref(), frames), [left, right]);
+        self.tension.advance(frames);
         self.clock.advance(frames as u64);
         self.expressions.advance(frames as u32);
         self.modulation.advance(frames as u32);

@@ -1,8 +1,10 @@
 //! The notes of a voice: starts, strikes, glides and releases.
 
 use super::SynthVoice;
+use super::bloom::Bloom;
 use super::clock::Clock;
 use super::energy::Energy;
+use super::tension::Tension;
 use super::values::{StruckValues, strike_modulators};
 use crate::dsp::bank::Law;
 use crate::dsp::cells::Cell;
@@ -27,6 +29,7 @@ impl SynthVoice {
         let frequency = self.pitch.frequency();
         self.energy.expect(self.strike.strike(&values, note, frequency, self.unison, &mut self.bank));
         self.energy.forget_end();
+        self.bloom.strike(self.strike.key());
         self.pitch.strike(&values);
         self.decay.strike(&values);
     }
@@ -57,12 +60,13 @@ impl SynthVoice {
                 self.pitch.read(&values, self.unison, &mut self.bank);
                 self.decay.read(&values, &controls, &mut self.bank);
             }
-            None => self.decay.press(controls.decay),
+            None => self.decay.press(controls.decay, self.decay.damping.touch),
         }
         self.pitch.slide(from, note, &controls, is_legato, &self.clock);
         self.modulators.set_pitch(self.pitch.note());
         let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
-        self.bank.retune(|ratio, scale| (frequency * ratio, damping.t60(scale)));
+        self.bank.retune(|ratio, scale, touched| (frequency * ratio, damping.t60(scale, touched)));
+        self.bloom.forget_bands();
     }
 }
 
@@ -88,7 +92,7 @@ impl Voice for SynthVoice {
     fn start(&mut self, instrument: &Instrument, note: &Note, unison: Unison) {
         self.unison = unison;
         self.clock = Clock::new(self.sample_rate);
-        self.energy = Energy::NONE;
+        (self.energy, self.tension, self.bloom) = (Energy::NONE, Tension::NONE, Bloom::NONE);
         self.fader = Fader::closed();
         (self.controls, self.controls_serial) = (instrument.controls, None);
         (self.key, self.brightness) = (note.key, note.brightness.into());
@@ -98,6 +102,7 @@ impl Voice for SynthVoice {
             self.modulation = NoteModulation::NONE;
         }
         (self.let_go, self.fresh, self.is_held) = (None, true, true);
+        self.may_move = [Param::Tension, Param::Bloom].iter().any(|param| instrument.bus.leads_to(*param));
         self.may_be_driven = [Param::BowLevel, Param::InputLevel].iter().any(|level| instrument.bus.leads_to(*level));
         self.modulators.load(&instrument.bus);
         if !self.modulators.are_idle() {
@@ -115,10 +120,10 @@ impl Voice for SynthVoice {
         };
         let (width, spread) = (values.share(Param::Width), unison.position() * values.share(Param::UnisonSpread));
         let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
-        let setup = |mode: &Mode, ratio: f64, scale: f64| {
+        let setup = |mode: &Mode, ratio: f64, scale: f64, touched: f64| {
             let pan = (f64::from(mode.pan) * width + spread).clamp(-1.0, 1.0);
             let (left, right) = if pan == 0.0 { (1.0, 1.0) } else { pan_gains((pan * 0.5 + 0.5) as f32) };
-            ModeSetup { frequency: frequency * ratio, t60: damping.t60(scale), left, right }
+            ModeSetup { frequency: frequency * ratio, t60: damping.t60(scale, touched), left, right }
         };
         self.bank.load(law, self.sample_rate, instrument.sound.patch().modes.as_slice(), setup);
         self.excite(instrument, note);

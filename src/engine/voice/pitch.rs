@@ -1,4 +1,4 @@
-//! The pitch of a note: key, tuning, glide, sweep, bend and vibrato.
+//! The pitch of a note: key, tuning, glide, sweep, bend, vibrato and tension.
 
 use super::clock::Clock;
 use super::key_tracking::KeyTracking;
@@ -40,6 +40,8 @@ pub(super) struct Bends<'a> {
     pub(super) wheels: Wheels<'a>,
     /// The note expression for tuning, in semitones.
     pub(super) tuning: f64,
+    /// The rise by tension in semitones.
+    pub(super) tension: f64,
 }
 
 impl Pitch {
@@ -156,5 +158,6 @@ impl Pitch {
             + tuning
             + bends.tuning
             + vibrato
+            + bends.tension
     }
 }

@@ -33,11 +33,17 @@ pub(super) struct Strike {
     forces: [f64; 3],
     /// The energy that they bring.
     energy: f64,
+    /// Those of the same strike at full velocity and without routes, the noise with its level, and the energy that they
+    /// would bring.
+    full_forces: [f64; 3],
+    full_energy: f64,
     /// Whether noise is among what moves the modes.
     is_noisy: bool,
     /// Radians by which the strike of a unison voice is turned ahead.
     phase: f32,
     variation: Variation,
+    /// Stream of its random numbers.
+    key: u64,
     pub(super) bowing: Bowing,
     pub(super) input: Input,
 }
@@ -50,9 +56,12 @@ impl Strike {
             drive: Drive::NONE,
             forces: [0.0; 3],
             energy: 0.0,
+            full_forces: [0.0; 3],
+            full_energy: 0.0,
             is_noisy: false,
             phase: 0.0,
             variation: Variation::NONE,
+            key: 0,
             bowing: Bowing::OFF,
             input: Input::OFF,
         }
@@ -68,6 +77,17 @@ impl Strike {
     /// Whether any force is still to come.
     pub(super) fn is_active(&self) -> bool {
         self.exciter.is_active()
+    }
+
+    /// The energy of a full strike: like the last one, but at full velocity and without routes. 1 if none of mallet, pluck
+    /// and noise is on.
+    pub(super) fn full_energy(&self) -> f64 {
+        if self.full_energy > 0.0 { self.full_energy } else { 1.0 }
+    }
+
+    /// The stream of random numbers of the last strike.
+    pub(super) fn key(&self) -> u64 {
+        self.key
     }
 
     /// Frames until it is not.
@@ -101,10 +121,11 @@ impl Strike {
         }
 
         let [mallet, pluck, burst] = self.forces;
+        let [full_mallet, full_pluck, full_burst] = self.full_forces;
         let place = values.get(Param::PluckPosition) + self.variation.pluck_place;
         let (width, reach) = (values.share(Param::PluckWidth), values.share(Param::NoiseReach));
         let noise_gain = exciter_gain(values.get(Param::NoiseLevel));
-        let (mut noisy, mut energy) = (false, 0.0);
+        let (mut noisy, mut energy, mut full) = (false, 0.0, 0.0);
         for (m, mode) in modes.iter().enumerate() {
             let (level, ratio, strike) = (tilted(mode) * balance, f64::from(mode.ratio), f64::from(mode.strike));
             let level = self.variation.mode_level(m, level);
@@ -112,16 +133,19 @@ impl Strike {
             let push = self.variation.at_mallet(ratio, struck);
             let pull =
                 if pluck > 0.0 { struck * sin(PI * place * 0.01 * ratio) * under_finger(width, ratio) } else { 0.0 };
-            let noise = level * (1.0 - strike * (1.0 - reach)) * noise_gain;
+            let reached = level * (1.0 - strike * (1.0 - reach));
+            let noise = reached * noise_gain;
             let gains =
                 ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32, phase: self.phase };
             bank.set_excitation_gains(m, gains);
             noisy |= noise != 0.0;
             let (pulses, burst) = (fabs(push * mallet) + fabs(pull * pluck), noise * burst);
             energy += pulses * pulses + burst * burst;
+            let (pulses, burst) = (fabs(push * full_mallet) + fabs(pull * full_pluck), reached * full_burst);
+            full += pulses * pulses + burst * burst;
         }
         let more = energy - self.energy;
-        (self.energy, self.is_noisy) = (energy, noisy);
+        (self.energy, self.full_energy, self.is_noisy) = (energy, full, noisy);
         more
     }
 
@@ -138,6 +162,7 @@ impl Strike {
         // Each unison voice has a phase and noise of its own; together they have the energy of one.
         let (Unison { index, count }, key) = (unison, random::key(values.instrument.seed, note.serial));
         let key = if index == 0 { key } else { random::key(key, index as u64) };
+        self.key = key;
         if count > 1 {
             let phase = random::uniform(random::key(key, PHASE_STREAM), 0);
             self.phase = (PI * values.share(Param::UnisonPhase)) as f32 * phase;
@@ -154,6 +179,8 @@ impl Strike {
         let [mallet, pluck, burst] = [Param::MalletVelocity, Param::PluckVelocity, Param::NoiseVelocity].map(force);
         let levels = [Param::MalletLevel, Param::PluckLevel].map(|param| exciter_gain(values.get(param)));
         self.forces = [mallet * levels[0], pluck * levels[1], burst];
+        let level = |param| exciter_gain(values.instrument.modulated.get(param).into()) / sqrt(count as f64);
+        self.full_forces = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(level);
         self.bowing.strike(values, force(Param::BowVelocity));
         // The strike before has brought its energy: only this one's counts.
         self.energy = 0.0;

@@ -1,0 +1,107 @@
+//! The cascade of energy: what low modes of a body that swings far lose, higher ones receive.
+//!
+//! In a gong or a cymbal that is struck hard, the modes are not independent: they pass energy on to higher ones, so that
+//! the sound brightens for some tenths of a second (Legge and Fletcher 1989, Nonlinearity, chaos, and the sound of shallow
+//! gongs; Touzé, Bilbao and Cadot 2012, Transition scenario to turbulence in thin vibrating plates). This is a model of
+//! that effect and not of the equations behind it: modes are sorted into bands of half an octave, and at each control tick
+//! each band passes a part of its energy to the next band that has modes. The part grows with the energy of all modes
+//! together, so a soft sound keeps its spectrum.
+//!
+//! What a band receives is what the one below has lost, and a mode's state is multiplied by a factor that is rounded down.
+//! So the energy of all modes together never rises.
+
+use super::Cells;
+use crate::dsp::mode_bank::MAX_MODES;
+use crate::dsp::mode_bank::exchange::{BANDS, Band, Exchange};
+use crate::dsp::random;
+use libm::log2;
+use std::f64::consts::SQRT_2;
+
+/// How strongly energy climbs.
+#[derive(Clone, Copy, Debug)]
+pub struct Climb {
+    /// The part of a band's energy that the next band half an octave above comes to at most, 0–1.
+    pub share: f64,
+    /// The part of what is missing there that the lowest band passes on in a control tick, at full energy. Each band
+    /// passes it on faster than the one below, by the ratio of their frequencies.
+    pub speed: f64,
+    /// Full energy: the sum of the squared amplitudes of all modes after a full strike.
+    pub full: f64,
+    /// Stream of random numbers for the signs of modes that are woken.
+    pub key: u64,
+}
+
+/// The largest part that goes up in a control tick.
+const MOST: f64 = 0.25;
+
+/// Energies in units of full energy: more counts as the first, and below the second nothing climbs.
+const MOST_ENERGY: f64 = 4.0;
+const LEAST_ENERGY: f64 = 1e-4;
+
+/// In a control tick a band at most doubles its energy, apart from this part of the total for each mode: so no mode starts
+/// with a click.
+const SEED: f64 = 1e-8;
+
+impl Cells {
+    /// Sorts the modes into bands of half an octave by their ratios, the lowest first. Call it before [`Cells::climb`],
+    /// after [`Cells::load`] and whenever ratios have changed. Real-time safe.
+    pub fn sort_into_bands(&mut self) {
+        let ratios = self.iter().flat_map(|cell| &cell.ratios[..cell.bank.len()]);
+        let lowest = ratios.copied().fold(f64::INFINITY, f64::min);
+        for cell in self.iter_mut() {
+            let len = cell.bank.len();
+            for (band, ratio) in cell.bands.iter_mut().zip(&cell.ratios[..len]) {
+                // A whole number of half octaves; rounding up or down at the edge of a band does not matter.
+                *band = (2.0 * log2(ratio / lowest)).min((BANDS - 1) as f64) as u8;
+            }
+        }
+    }
+
+    /// Lets energy climb to higher modes for one control tick. Must be called at control ticks only. The modes' phases
+    /// stay; a mode at rest starts without displacement, up or down by a random sign. Does nothing with the original
+    /// formulas. Real-time safe.
+    pub fn climb(&mut self, climb: &Climb) {
+        let mut bands = [Band::EMPTY; BANDS];
+        self.iter().for_each(|cell| cell.bank.add_energies(&cell.bands, &mut bands));
+        let total: f64 = bands.iter().map(|band| band.energy).sum();
+        let energy = (total / climb.full).min(MOST_ENERGY);
+        // Not less, so that NaN ends here too.
+        if !(energy >= LEAST_ENERGY) {
+            return;
+        }
+        let exchange = exchange(&bands, total, Climb { speed: climb.speed * energy, ..*climb });
+        for (n, cell) in self.iter_mut().enumerate() {
+            let sign = |m: usize| random::uniform(climb.key, (n * MAX_MODES + m) as u64);
+            cell.bank.exchange(&cell.bands, &exchange, sign);
+        }
+    }
+}
+
+/// What each band keeps, and what each of its modes receives.
+fn exchange(bands: &[Band; BANDS], total: f64, climb: Climb) -> [Exchange; BANDS] {
+    let mut exchange = [Exchange::NONE; BANDS];
+    let (mut speed, mut share) = (climb.speed, 1.0);
+    let mut below: Option<(usize, f64)> = None;
+    for (place, band) in bands.iter().enumerate() {
+        share *= climb.share;
+        if band.modes > 0 {
+            if let Some((from, its_speed)) = below {
+                let lower = bands[from].energy;
+                let missing = share * lower - band.energy;
+                let room = band.energy + f64::from(band.modes) * SEED * total;
+                let flow = (f64::min(its_speed, MOST) * missing).min(room);
+                if flow > 0.0 {
+                    exchange[from].kept = 1.0 - flow / lower;
+                    exchange[place].received = flow / f64::from(band.modes);
+                }
+            }
+            (below, share) = (Some((place, speed)), 1.0);
+        }
+        speed *= SQRT_2;
+    }
+    exchange
+}
+
+#[cfg(test)]
+#[path = "cascade_tests.rs"]
+mod tests;

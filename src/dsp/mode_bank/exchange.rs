@@ -1,0 +1,90 @@
+//! Energy that modes of a bank lose and receive at a control tick, by bands.
+
+use super::{MAX_MODES, ModeBank};
+use crate::dsp::simd::vector::LANES;
+use libm::sqrt;
+
+/// Maximum number of bands.
+pub(in crate::dsp) const BANDS: usize = 32;
+
+/// The modes of a band: the sum of their squared amplitudes, and how many there are.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::dsp) struct Band {
+    pub(in crate::dsp) energy: f64,
+    pub(in crate::dsp) modes: u32,
+}
+
+impl Band {
+    /// Without modes.
+    pub(in crate::dsp) const EMPTY: Self = Self { energy: 0.0, modes: 0 };
+}
+
+/// What happens to each mode of a band.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::dsp) struct Exchange {
+    /// The part of its energy that it keeps, 0–1.
+    pub(in crate::dsp) kept: f64,
+    /// The energy that it receives.
+    pub(in crate::dsp) received: f64,
+}
+
+impl Exchange {
+    /// Nothing.
+    pub(in crate::dsp) const NONE: Self = Self { kept: 1.0, received: 0.0 };
+}
+
+/// Factors are rounded down by this: more than the rounding errors of the factor and of its product with the state, so the
+/// energy of all modes together never rises.
+const ROUNDED_DOWN: f32 = 1.0 - 4.0 * (0.5 * f32::EPSILON);
+
+/// A mode at rest that would receive less than this stays at rest. A smaller amplitude would soon be set to rest again.
+const LEAST_RECEIVED: f64 = 1e-36;
+
+impl ModeBank {
+    /// Adds the energies of the modes to those of their bands.
+    pub(in crate::dsp) fn add_energies(&self, bands: &[u8; MAX_MODES], sums: &mut [Band; BANDS]) {
+        let state = &self.states[self.current];
+        for (m, band) in bands[..self.len].iter().enumerate() {
+            let (x, y) = (f64::from(state.x.0[m]), f64::from(state.y.0[m]));
+            let sum = &mut sums[usize::from(*band) % BANDS];
+            sum.energy += x * x + y * y;
+            sum.modes += 1;
+        }
+    }
+
+    /// The squared amplitude of each mode, without rounding errors of single precision.
+    #[cfg(test)]
+    pub(in crate::dsp) fn squared_amplitudes(&self) -> impl Iterator<Item = f64> {
+        let state = &self.states[self.current];
+        let square = |number: &f32| f64::from(*number) * f64::from(*number);
+        (0..self.len).map(move |m| square(&state.x.0[m]) + square(&state.y.0[m]))
+    }
+
+    /// Lets the modes lose and receive energy by their bands. A mode keeps its phase. A mode at rest starts with a
+    /// displacement of 0, in the direction of `sign` of its number. Must be called at control ticks only.
+    pub(in crate::dsp) fn exchange(
+        &mut self,
+        bands: &[u8; MAX_MODES],
+        exchange: &[Exchange; BANDS],
+        sign: impl Fn(usize) -> f32,
+    ) {
+        debug_assert!(self.frames_since() == 0);
+        let state = &mut self.states[self.current];
+        for (m, band) in bands[..self.len].iter().enumerate() {
+            let Exchange { kept, received } = exchange[usize::from(*band) % BANDS];
+            if kept == 1.0 && received == 0.0 {
+                continue;
+            }
+            let (x, y) = (&mut state.x.0[m], &mut state.y.0[m]);
+            let energy = f64::from(*x) * f64::from(*x) + f64::from(*y) * f64::from(*y);
+            if energy > 0.0 {
+                let factor = sqrt(kept + received / energy) as f32 * ROUNDED_DOWN;
+                (*x, *y) = (*x * factor, *y * factor);
+            } else if received > LEAST_RECEIVED {
+                *y = (sqrt(received) as f32 * ROUNDED_DOWN).copysign(sign(m));
+                // Modes from `live` on are at rest and lie on the end of their line, so this one can just begin.
+                self.live = self.live.max((m + 1).next_multiple_of(LANES).min(self.len));
+            }
+        }
+    }
+}
