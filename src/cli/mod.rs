@@ -3,6 +3,7 @@
 mod analyze;
 mod completion;
 mod diff;
+mod figure;
 mod interrupt;
 mod lab;
 mod manual;
