@@ -10,5 +10,6 @@ pub mod diff;
 pub mod digest;
 pub mod figure;
 pub mod level;
+pub mod log_mel;
 pub mod modes;
 pub mod spectrum;
