@@ -3,7 +3,7 @@
 //! In each mel band, what the recording has more than the draft decays by a law of its own; a few modes at random places of the
 //! band get that level and that decay.
 
-use super::draft::Partial;
+use super::draft::{Partial, Sweep, speed};
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, centre};
 use crate::dsp::random::{key, uniform};
 use libm::{log10, pow, sqrt};
@@ -25,7 +25,7 @@ const MOST: f64 = 6.0;
 const BANDWIDTH: f64 = 2.2;
 
 /// The bed that fills `draft` up to `target`, of at most `most` modes. `seed` sets where they lie.
-pub(super) fn bed(target: &LogMel, draft: &LogMel, most: usize, seed: u64) -> Vec<Partial> {
+pub(super) fn bed(target: &LogMel, draft: &LogMel, sweep: &Sweep, most: usize, seed: u64) -> Vec<Partial> {
     let floor = target.loudest() - SPAN_DB - 6.0;
     let mut bands: Vec<(f64, Vec<Partial>)> =
         (0..BANDS).filter_map(|band| fill(target, draft, band, floor, seed)).collect();
@@ -33,7 +33,10 @@ pub(super) fn bed(target: &LogMel, draft: &LogMel, most: usize, seed: u64) -> Ve
     let mut bed = Vec::new();
     for (_, partials) in bands {
         if bed.len() + partials.len() <= most {
-            bed.extend(partials);
+            // The sweep moves them to where they are wanted.
+            let lower =
+                |partial: Partial| Partial { frequency: partial.frequency / speed(sweep, partial.t60), ..partial };
+            bed.extend(partials.into_iter().map(lower));
         }
     }
     bed

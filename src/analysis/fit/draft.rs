@@ -86,6 +86,19 @@ pub(super) fn share_of_mean(pan: f64) -> f64 {
     0.5 * (libm::sqrt(1.0 - pan) + libm::sqrt(1.0 + pan))
 }
 
+impl Partial {
+    /// The frequency in Hz at which it has the middle of its energy, since a sweep moves it.
+    pub(super) fn heard_at(&self, sweep: &Sweep) -> f64 {
+        self.frequency * speed(sweep, self.t60)
+    }
+}
+
+/// How much higher than at its end a sweep has the middle of the energy of a mode, by its T60 in seconds.
+pub(super) fn speed(sweep: &Sweep, t60: f64) -> f64 {
+    // The squared amplitude falls by 120 dB in a T60: its mean time is T60 / ln 10⁶.
+    if sweep.semitones == 0.0 { 1.0 } else { pow(2.0, sweep.envelope().at(t60 / 13.8) / 12.0) }
+}
+
 impl Draft {
     /// The partial that the ear takes the most of: energy over all of its decay.
     pub(super) fn main(&self) -> Option<&Partial> {

@@ -3,12 +3,13 @@
 use super::draft::Draft;
 use super::refine::Listener;
 use super::take::Prepared;
-use super::{bed, start};
+use super::{bed, start, sweep};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
 
-/// Share of the work until the modes are known.
-const ANALYSIS: f64 = 0.5;
+/// Shares of the work until the sweep and the modes are known.
+const SEARCH: f64 = 0.15;
+const ANALYSIS: f64 = 0.6;
 /// What a bed has to gain in dB to be kept.
 const WORTH_A_BED: f64 = 0.02;
 /// Rounds of corrections at a time.
@@ -20,11 +21,28 @@ pub(super) fn fit(
     most: usize,
     progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(Draft, Option<Strike>)> {
-    let (draft, strike) = start::draft(take, most.div_ceil(2), &mut |share| progress(ANALYSIS * share))?;
+    let mut tell = |share: f64| if progress(share) { Ok(()) } else { Err(Error::Interrupted) };
+    let sweep = sweep::find(&take.mean);
+    tell(SEARCH)?;
     let mut listener = Listener::new(take);
-    let mut tell =
-        |share: f64| if progress(ANALYSIS + (1.0 - ANALYSIS) * share) { Ok(()) } else { Err(Error::Interrupted) };
-    Ok((improved(draft, &mut listener, most, &mut tell)?, strike))
+    let count = most.div_ceil(2);
+    let part = |from: f64, to: f64, share: f64| from + (to - from) * share;
+    let middle = if sweep.semitones == 0.0 { ANALYSIS } else { 0.5 * (SEARCH + ANALYSIS) };
+    let (mut draft, mut strike) =
+        start::draft(take, sweep, count, &mut |share| tell(part(SEARCH, middle, share)).is_ok())?;
+    if sweep.semitones != 0.0 {
+        // What was found with a better sweep is better, too.
+        listener.choose_hardness(&mut draft);
+        listener.choose_sweep(&mut draft);
+        let (mut other, other_strike) =
+            start::draft(take, draft.sweep, count, &mut |share| tell(part(middle, ANALYSIS, share)).is_ok())?;
+        listener.choose_hardness(&mut other);
+        if listener.distance(&other, usize::MAX) < listener.distance(&draft, usize::MAX) {
+            (draft, strike) = (other, other_strike);
+        }
+    }
+    let draft = improved(draft, &mut listener, most, &mut |share| tell(part(ANALYSIS, 1.0, share)))?;
+    Ok((draft, strike))
 }
 
 fn improved(
@@ -42,7 +60,7 @@ fn improved(
         let heard = listener.hear(&draft);
         let room = most.saturating_sub(draft.partials.len());
         let mut other = draft.clone();
-        other.partials.extend(bed::bed(&listener.target, &heard, room, seed));
+        other.partials.extend(bed::bed(&listener.target, &heard, &draft.sweep, room, seed));
         if other.partials.is_empty() {
             break;
         }

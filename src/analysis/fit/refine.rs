@@ -1,16 +1,21 @@
 //! Brings a draft nearer to its recording by listening: it is played, compared band by band, and corrected.
 
 use super::audition::Audition;
-use super::draft::{Draft, Noise};
+use super::draft::{Draft, Noise, Sweep};
 use super::take::Prepared;
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, MelBands, RATE, SPAN_DB, weights};
 use crate::units::key_from_frequency;
-use libm::pow;
+use libm::{exp, pow};
 
 /// Hardnesses that are tried.
 const HARDNESSES: [f64; 10] = [0.95, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25, 0.15, 0.05];
+/// Lengths and rises in seconds of the noise that are tried.
+const LENGTHS: [f64; 9] = [0.001, 0.003, 0.006, 0.012, 0.025, 0.05, 0.11, 0.23, 0.5];
+const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
 /// Windows of the attack: 150 ms.
 const ATTACK: usize = 26;
+/// Steps of the search for a sweep.
+const SIMPLEX_STEPS: usize = 36;
 /// Largest correction of a level in dB and of a decay in dB/s at a time, as a share of its own.
 const MOST_DB: f64 = 12.0;
 const MOST_SHARE: f64 = 0.6;
@@ -87,35 +92,68 @@ impl<'a> Listener<'a> {
         }
         let with = |draft: &Draft, noise| Draft { noise, ..draft.clone() };
         let noise = draft.noise;
-        let lengths: Vec<Draft> = [0.001, 0.002, 0.004, 0.008, 0.015, 0.03, 0.06, 0.12]
-            .map(|seconds| with(draft, Noise { seconds, ..noise }))
-            .into();
-        self.best(draft, usize::MAX, lengths);
+        // Decays of the modes were measured on the whole: what the burst takes is to be left out of them.
+        let mut found = draft.clone();
+        let mut least = self.distance(draft, usize::MAX);
+        for seconds in LENGTHS {
+            let mut other = with(draft, Noise { seconds, ..noise });
+            self.correct(&mut other, 2);
+            let distance = self.distance(&other, usize::MAX);
+            if distance < least {
+                (found, least) = (other, distance);
+            }
+        }
+        *draft = found;
         let noise = draft.noise;
-        let rises: Vec<Draft> = [0.003, 0.01, 0.03, 0.1].map(|attack| with(draft, Noise { attack, ..noise })).into();
+        let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
         self.best(draft, usize::MAX, rises);
     }
 
-    /// Chooses the sweep anew, near the one that it has.
+    /// Moves the sweep to where the distance is least (downhill simplex, Nelder & Mead 1965).
     pub(super) fn choose_sweep(&mut self, draft: &mut Draft) {
         if draft.sweep.semitones == 0.0 {
             return;
         }
-        for step in [0.15, 0.07, 0.03] {
-            for number in 0..3 {
-                let moved = |sign: f64| {
-                    let mut other = draft.clone();
-                    let sweep = &mut other.sweep;
-                    match number {
-                        0 => sweep.semitones = (sweep.semitones * (1.0 + sign * step)).clamp(-60.0, 60.0),
-                        1 => sweep.seconds = (sweep.seconds * (1.0 + sign * step)).clamp(0.001, 10.0),
-                        _ => sweep.curve = (sweep.curve + sign * step).clamp(-1.0, 1.0),
+        let start = draft.sweep;
+        let sweep = |[semitones, seconds, curve]: [f64; 3]| Sweep {
+            semitones: (start.semitones * (1.0 + semitones)).clamp(-60.0, 60.0),
+            seconds: (start.seconds * exp(seconds)).clamp(0.002, 5.0),
+            curve: (start.curve + curve).clamp(-1.0, 1.0),
+        };
+        let mut distance = |place: [f64; 3]| self.distance(&Draft { sweep: sweep(place), ..draft.clone() }, usize::MAX);
+        let mut simplex: Vec<([f64; 3], f64)> = vec![([0.0; 3], distance([0.0; 3]))];
+        for number in 0..3 {
+            let mut place = [0.0; 3];
+            place[number] = 0.2;
+            simplex.push((place, distance(place)));
+        }
+        for _ in 0..SIMPLEX_STEPS {
+            simplex.sort_by(|a, b| a.1.total_cmp(&b.1));
+            let middle: [f64; 3] =
+                std::array::from_fn(|n| simplex[..3].iter().map(|(place, _)| place[n]).sum::<f64>() / 3.0);
+            let worst = simplex[3];
+            let along =
+                |share: f64| -> [f64; 3] { std::array::from_fn(|n| middle[n] + share * (worst.0[n] - middle[n])) };
+            let mirrored = (along(-1.0), distance(along(-1.0)));
+            simplex[3] = if mirrored.1 < simplex[0].1 {
+                let further = (along(-2.0), distance(along(-2.0)));
+                if further.1 < mirrored.1 { further } else { mirrored }
+            } else if mirrored.1 < simplex[2].1 {
+                mirrored
+            } else {
+                let nearer = (along(0.5), distance(along(0.5)));
+                if nearer.1 >= worst.1 {
+                    let best = simplex[0].0;
+                    for corner in &mut simplex[1..3] {
+                        let place: [f64; 3] = std::array::from_fn(|n| 0.5 * (best[n] + corner.0[n]));
+                        *corner = (place, distance(place));
                     }
-                    other
-                };
-                let near = [-1.0, 1.0].map(moved);
-                self.best(draft, usize::MAX, near);
-            }
+                }
+                nearer
+            };
+        }
+        if let Some((place, _)) = simplex.iter().min_by(|a, b| a.1.total_cmp(&b.1)) {
+            draft.sweep = sweep(*place);
         }
     }
 
@@ -181,8 +219,9 @@ fn line(points: &[(f64, f64)]) -> Correction {
 
 fn corrected(draft: &Draft, corrections: &[Correction; BANDS], share: f64) -> Draft {
     let mut draft = draft.clone();
+    let sweep = draft.sweep;
     for partial in &mut draft.partials {
-        let weights = weights(partial.frequency);
+        let weights = weights(partial.heard_at(&sweep));
         let (mut level, mut slope) = (0.0, 0.0);
         for (weight, correction) in weights.iter().zip(corrections) {
             level += weight * correction.0;

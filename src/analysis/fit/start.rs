@@ -22,13 +22,14 @@ const LONGEST: f64 = 5.0;
 /// Seconds by which a strike may be felt after the onset, for the phases of modes.
 const LATEST: f64 = 0.006;
 
-/// A draft of a sound's modes alone, and the strike that they were found in. Silence of modes is no error: noise has none.
+/// A draft of a sound's modes alone when a sweep is taken out, and the strike that they were found in. No modes are no error:
+/// noise has none.
 pub(super) fn draft(
     take: &Prepared,
+    swept: Sweep,
     most_modes: usize,
     progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(Draft, Option<Strike>)> {
-    let swept = sweep::find(&take.mean);
     let still: Vec<Vec<f32>> = take.channels.iter().map(|channel| sweep::stilled(channel, &swept)).collect();
     let settings =
         modes::Settings { most_modes: most_modes.min(MOST_MODES), longest: LONGEST, ..modes::Settings::default() };
@@ -53,15 +54,7 @@ pub(super) fn draft(
     }
     let note = take.key.map_or_else(|| pitch::estimate(&partials), |key| take.frequency_of(key));
     let noise = Noise { seconds: 0.004, attack: 0.0 };
-    let draft = Draft {
-        note,
-        velocity: take.velocity,
-        follow: 1.0,
-        partials,
-        hardness: None,
-        sweep: if swept.semitones == 0.0 { Sweep::NONE } else { swept },
-        noise,
-    };
+    let draft = Draft { note, velocity: take.velocity, follow: 1.0, partials, hardness: None, sweep: swept, noise };
     Ok((draft, strike))
 }
 

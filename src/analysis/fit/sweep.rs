@@ -11,15 +11,15 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Seconds of the sound that are looked at.
-const STRETCH: f64 = 0.6;
+const STRETCH: f64 = 0.45;
 /// Points of the transform.
-const POINTS: usize = 1 << 17;
+const POINTS: usize = 1 << 16;
 /// How much taller the peaks must be than without a sweep.
 const CLEARLY: f64 = 1.25;
 /// Steps of the coarse search.
-const SEMITONES: [f64; 14] = [-12.0, -5.0, -2.0, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 18.0, 24.0, 32.0, 44.0, 60.0];
+const SEMITONES: [f64; 15] = [-18.0, -12.0, -5.0, -2.0, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 18.0, 24.0, 32.0, 44.0, 60.0];
 const SECONDS: [f64; 8] = [0.02, 0.04, 0.07, 0.11, 0.16, 0.25, 0.4, 0.7];
-const CURVES: [f64; 3] = [0.2, 0.5, 0.8];
+const CURVES: [f64; 4] = [-0.3, 0.2, 0.5, 0.8];
 /// Rounds of the fine search.
 const ROUNDS: usize = 7;
 
