@@ -9,6 +9,8 @@ pub mod damped_sine;
 pub mod diff;
 pub mod digest;
 pub mod figure;
+pub mod fit;
 pub mod level;
+pub mod log_mel;
 pub mod modes;
 pub mod spectrum;

@@ -4,7 +4,7 @@ use super::interrupt;
 use super::progress::Bar;
 use super::quantity;
 use super::recording::{FigureArgs, read};
-use super::terminal::{complain, print};
+use super::terminal::{complain, counted, print};
 use serde_json::json;
 use sprung::Result;
 use sprung::analysis::figure::modes::ModesFigure;
@@ -67,10 +67,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
     found.warnings.iter().for_each(|warning| complain("warning", format_args!("{name}: {warning}")));
     if found.strikes_found > found.strikes.len() {
         let more = found.strikes_found - found.strikes.len();
-        complain("note", format_args!("{name}: {more} more strikes follow the first; --hits takes them apart, too"));
+        let (strikes, follow, them) =
+            if more == 1 { ("strike", "follows", "it") } else { ("strikes", "follow", "them") };
+        let message = format!("{name}: {more} more {strikes} {follow} the first; --hits takes {them} apart, too");
+        complain("note", message);
     }
     if let (Some(figure), Some(strike)) = (figure, found.strikes.first()) {
-        let title = format!("{name}: {} modes", strike.modes.len());
+        let title = format!("{name}: {}", counted(strike.modes.len(), "mode"));
         let picture = ModesFigure { title: &title, strike, sample_rate };
         figure.write(|format| match format {
             "png" => figure::png(&picture),
@@ -85,7 +88,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     })
 }
 
-/// A T60 that is infinite is null.
+/// A T60 that is infinite is null, and so is what is not known of it.
 fn mode_json(mode: &Mode) -> serde_json::Value {
     let channels: Vec<_> =
         mode.channels.iter().map(|(level, phase)| json!({"level_db": level, "phase": phase})).collect();
@@ -124,6 +127,7 @@ fn strike_json(strike: &Strike) -> serde_json::Value {
     json!({
         "onset": strike.onset,
         "seconds": strike.seconds,
+        "damped": strike.damped,
         "residual_db": strike.residual_db,
         "modes": strike.modes.iter().map(onset).collect::<Vec<_>>(),
         "groups": strike.groups.iter()
@@ -151,21 +155,29 @@ fn to_csv(found: &Analysis) -> String {
     );
     for (index, strike) in found.strikes.iter().enumerate() {
         for mode in &strike.modes {
-            let Mode { frequency, t60, level_db, phase, snr_db, uncertainty: deviation, .. } = mode;
-            writeln!(
-                text,
-                "{},{},{frequency},{t60},{level_db},{phase},{snr_db},{},{},{},{}",
-                index + 1,
+            let deviation = mode.uncertainty;
+            let numbers = [
                 strike.onset,
+                mode.frequency,
+                mode.t60,
+                mode.level_db,
+                mode.phase,
+                mode.snr_db,
                 deviation.frequency,
                 deviation.t60,
                 deviation.level_db,
-                deviation.phase
-            )
-            .expect("a String takes all");
+                deviation.phase,
+            ];
+            let cells: Vec<String> = numbers.into_iter().map(cell).collect();
+            writeln!(text, "{},{}", index + 1, cells.join(",")).expect("a String takes all");
         }
     }
     text
+}
+
+/// A number of a CSV; empty where there is none, as for the T60 of what does not decay.
+fn cell(number: f64) -> String {
+    if number.is_finite() { number.to_string() } else { String::new() }
 }
 
 fn to_text(found: &Analysis, shared: &[Common]) -> String {
@@ -173,21 +185,23 @@ fn to_text(found: &Analysis, shared: &[Common]) -> String {
     let mut line = |line: String| writeln!(text, "{line}").expect("a String takes all");
     for strike in &found.strikes {
         line(format!(
-            "strike at {:.4} s, {:.2} s of it: {} modes, {:.1} dB are left",
+            "strike at {:.4} s, {:.2} s of it: {}, {:.1} dB are left",
             strike.onset,
             strike.seconds,
-            strike.modes.len(),
+            counted(strike.modes.len(), "mode"),
             strike.residual_db
         ));
+        if strike.modes.is_empty() {
+            continue;
+        }
         line(format!("{:>12}  {:>18}  {:>12}  {:>7}", "frequency", "T60", "level", "SNR"));
         for (place, mode) in strike.modes.iter().enumerate() {
             let group = strike.groups.iter().find(|group| group.modes.contains(&place));
             let group = group.map_or("", |group| kind(group.kind));
             let row = format!(
-                "{:>9.3} Hz  {:>8.4} ± {:<5} s  {:>7.2} dBFS  {:>4.0} dB  {group}",
+                "{:>9.3} Hz  {:>18}  {:>7.2} dBFS  {:>4.0} dB  {group}",
                 mode.frequency,
-                mode.t60,
-                deviation(mode.uncertainty.t60),
+                t60(mode.t60, Some(mode.uncertainty.t60)),
                 mode.level_db,
                 mode.snr_db
             );
@@ -200,12 +214,17 @@ fn to_text(found: &Analysis, shared: &[Common]) -> String {
     for mode in shared {
         let level = |level: &Option<f64>| level.map_or("–".to_owned(), |level| format!("{level:.1}"));
         let levels: Vec<String> = mode.levels_db.iter().map(level).collect();
-        line(format!("{:>9.3} Hz  {:>8.4} s  {} dBFS", mode.frequency, mode.t60, levels.join(", ")));
+        line(format!("{:>9.3} Hz  {:>10}  {} dBFS", mode.frequency, t60(mode.t60, None), levels.join(", ")));
     }
     text
 }
 
-/// A standard deviation to two digits.
-fn deviation(value: f64) -> String {
-    if value < 1e-3 { format!("{value:.0e}") } else { format!("{value:.3}") }
+/// A T60, and its standard deviation if it has one.
+fn t60(value: f64, deviation: Option<f64>) -> String {
+    let text = |value: f64| if value < 1e-3 { format!("{value:.0e}") } else { format!("{value:.3}") };
+    match deviation {
+        _ if !value.is_finite() => "no decay".to_owned(),
+        Some(deviation) => format!("{value:>8.4} ± {:<5} s", text(deviation)),
+        None => format!("{value:>8.4} s"),
+    }
 }

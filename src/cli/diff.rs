@@ -1,7 +1,7 @@
 //! `sprung diff`: whether two sound files are the same, and if not, where and by how much they differ.
 
 use super::recording::{FigureArgs, read};
-use super::terminal::{complain, print};
+use super::terminal::{complain, counted, print};
 use super::{interrupt, quantity};
 use serde_json::json;
 use sprung::analysis::comparison::Comparison;
@@ -9,8 +9,9 @@ use sprung::analysis::figure::{Render, comparison_bytes};
 use sprung::io::Inputs;
 use sprung::io::sound_file::{Recording, resampled};
 use sprung::{Error, Result};
+use std::borrow::Cow;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 pub(super) const EXAMPLES: &str = "\
@@ -57,6 +58,9 @@ pub(super) fn run(args: &Args) -> ExitCode {
 
 /// Whether the files are the same.
 fn compare(args: &Args) -> Result<bool> {
+    if [&args.expected, &args.actual].into_iter().all(|path| path == Path::new("-")) {
+        return Err(Error::value("stdin", "both sounds are read from it: expected a file for one of them"));
+    }
     let mut inputs = Inputs::default();
     let (expected, _) = read(&args.expected, &mut inputs)?;
     let (actual, _) = read(&args.actual, &mut inputs)?;
@@ -64,7 +68,9 @@ fn compare(args: &Args) -> Result<bool> {
     let figure = args.figure.open(&inputs)?;
     // Samples can only be compared at one rate. Other rates are a difference all the same.
     let converted = resampled(&actual, expected.sample_rate)?;
-    let found = Comparison::of(&expected.channels, &converted.channels, f64::from(expected.sample_rate));
+    let channels = expected.channels.len().max(actual.channels.len());
+    let [before, after] = [&expected, &converted].map(|sound| on_channels(sound, channels));
+    let found = Comparison::of(&before, &after, f64::from(expected.sample_rate));
     let same_kind = expected.sample_rate == actual.sample_rate && expected.channels.len() == actual.channels.len();
     let within = match (&found, args.tolerance_db) {
         (None, _) => true,
@@ -77,9 +83,18 @@ fn compare(args: &Args) -> Result<bool> {
         let title = format!("{} and {}", args.expected.display(), args.actual.display());
         figure.write(|format| comparison_bytes(before, after, &title, format))?;
     }
-    let report = Report { expected: &expected, actual: &actual, found: found.as_ref(), same };
+    let report =
+        Report { expected: &expected, actual: &actual, converted: converted.frames(), found: found.as_ref(), same };
     print(&if args.json { format!("{:#}\n", report.json()) } else { report.text() })?;
     Ok(same)
+}
+
+/// The channels of a sound that is compared with one of so many: a mono sound is the same on each of them.
+fn on_channels(sound: &Recording, count: usize) -> Cow<'_, [Vec<f32>]> {
+    match &sound.channels[..] {
+        [mono] if count > 1 => Cow::Owned(vec![mono.clone(); count]),
+        channels => Cow::Borrowed(channels),
+    }
 }
 
 /// The first two channels, as figures show them.
@@ -91,6 +106,8 @@ fn sides(sound: &Recording) -> Render<'_> {
 struct Report<'a> {
     expected: &'a Recording,
     actual: &'a Recording,
+    /// Frames of the actual sound at the rate of the expected one.
+    converted: usize,
     found: Option<&'a Comparison>,
     same: bool,
 }
@@ -101,15 +118,31 @@ impl Report<'_> {
         let mut line = |line: String| writeln!(text, "{line}").expect("a String takes all");
         let [expected, actual] = [self.expected, self.actual];
         if expected.sample_rate != actual.sample_rate {
-            line(format!("sample rate {} Hz → {} Hz", expected.sample_rate, actual.sample_rate));
+            let [before, after] = [expected.sample_rate, actual.sample_rate];
+            line(format!("sample rate {before} Hz → {after} Hz: compared at {before} Hz"));
         }
-        if expected.channels.len() != actual.channels.len() {
-            line(format!("{} channels → {}", expected.channels.len(), actual.channels.len()));
+        let [before, after] = [expected.channels.len(), actual.channels.len()];
+        if before != after {
+            let how = match before.min(after) {
+                1 => "the mono sound is compared with each channel",
+                _ => "what only one has is compared with silence",
+            };
+            line(format!("{} → {after}: {how}", counted(before, "channel")));
+        }
+        let rate = f64::from(expected.sample_rate);
+        let seconds = [expected.frames(), self.converted].map(|frames| frames as f64 / rate);
+        if expected.frames() != self.converted {
+            line(format!(
+                "length {:.3} s → {:.3} s ({} → {}): what is beyond the shorter one is compared with silence",
+                seconds[0],
+                seconds[1],
+                expected.frames(),
+                counted(self.converted, "frame")
+            ));
         }
         let Some(found) = self.found else {
-            if self.same {
-                line(format!("the same: {} frames, every sample", expected.frames()));
-            }
+            let verdict = if self.same { "the same" } else { "different, but the same samples" };
+            line(format!("{verdict}: {}, every sample", counted(expected.frames(), "frame")));
             return text;
         };
         let verdict = if self.same { "within the tolerance" } else { "different" };
@@ -117,7 +150,11 @@ impl Report<'_> {
         if let Some(moved) = found.moved() {
             let shift = match moved.shift {
                 0 => "in place".to_owned(),
-                shift => format!("{} frames {}", shift.abs(), if shift > 0 { "later" } else { "earlier" }),
+                shift => format!(
+                    "{} {}",
+                    counted(shift.unsigned_abs(), "frame"),
+                    if shift > 0 { "later" } else { "earlier" }
+                ),
             };
             let inverted = if moved.gain < 0.0 { ", inverted" } else { "" };
             line(format!(
@@ -160,6 +197,7 @@ impl Report<'_> {
         });
         json!({
             "same": self.same,
+            "compared_at": self.expected.sample_rate,
             "expected": sound(self.expected),
             "actual": sound(self.actual),
             "first_frame": difference.map(|difference| difference.first_frame),

@@ -3,6 +3,8 @@
 mod analyze;
 mod completion;
 mod diff;
+mod figure;
+mod fit;
 mod interrupt;
 mod lab;
 mod manual;
@@ -47,6 +49,7 @@ Examples:
   sprung presets list
   sprung params
   sprung analyze strike.wav
+  sprung fit strike.wav -o strike.toml
   sprung diff before.wav after.wav
   sprung lab compare -o report.html
 
@@ -78,6 +81,9 @@ enum Command {
     /// Take the recording of a strike apart into its modes
     #[command(after_help = analyze::EXAMPLES)]
     Analyze(analyze::Args),
+    /// Make a preset that plays what was recorded
+    #[command(after_help = fit::EXAMPLES)]
+    Fit(fit::Args),
     /// Compare two sound files
     #[command(after_help = diff::EXAMPLES)]
     Diff(diff::Args),
@@ -122,6 +128,7 @@ fn execute(command: &Command) -> Result<()> {
         Command::Presets(args) => presets::run(args),
         Command::Params(args) => parameters::run(args),
         Command::Analyze(args) => analyze::run(args),
+        Command::Fit(args) => fit::run(args),
         Command::Diff(_) => unreachable!("it has exit codes of its own"),
         Command::Lab(args) => lab::run(args),
         Command::Completions(args) => completion::run(args),
@@ -171,6 +178,7 @@ mod tests {
             #[cfg(feature = "realtime")]
             play::EXAMPLES,
             analyze::EXAMPLES,
+            fit::EXAMPLES,
             diff::EXAMPLES,
             lab::EXAMPLES,
             manual::EXAMPLES,

@@ -1,12 +1,18 @@
 //! `sprung presets`: lists and shows factory presets, and checks preset and kit files.
 
 use super::completion;
+use super::figure;
+use super::recording::FigureArgs;
 use super::terminal::{complain, print};
 use clap::Subcommand;
 use clap_complete::ArgValueCompleter;
-use sprung::io::Inputs;
+use sprung::analysis::figure::sound::modes_of;
+use sprung::io::{Inputs, Song};
+use sprung::params::Param;
 use sprung::preset::{Playable, Preset, Replaced, is_file_name};
+use sprung::render::{Job, Options, Tail};
 use sprung::text::printable;
+use sprung::units::frequency_from_key;
 use sprung::{Error, Result};
 use std::ffi::{OsStr, OsString};
 use std::fmt::Write;
@@ -16,6 +22,7 @@ pub(super) const EXAMPLES: &str = "\
 Examples:
   sprung presets list
   sprung presets show Kick > mine.toml
+  sprung presets show Marimba --figure marimba.png
   sprung presets check *.toml";
 
 #[derive(clap::Args)]
@@ -34,6 +41,8 @@ enum Action {
         /// Name of a factory preset, or a preset or kit file ending in .toml
         #[arg(add = ArgValueCompleter::new(completion::presets))]
         name: OsString,
+        #[command(flatten)]
+        figure: FigureArgs,
     },
     /// Check preset and kit files and report all that is wrong with each
     Check {
@@ -46,10 +55,13 @@ enum Action {
 pub(super) fn run(args: &Args) -> Result<()> {
     match &args.action {
         Action::List => print(&list(Preset::factory())),
-        Action::Show { name } => {
+        Action::Show { name, figure } => {
             let mut inputs = Inputs::default();
             let playable = load(name, &mut inputs)?;
             inputs.check_stdout()?;
+            if let Some(figure) = figure.open(&inputs)? {
+                return figure.write(|format| drawn(&playable, format));
+            }
             print(&playable.to_toml())
         }
         Action::Check { files } => check(files),
@@ -64,6 +76,28 @@ pub(super) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
     } else {
         Preset::find(&name.to_string_lossy()).cloned().map(Playable::Preset)
     }
+}
+
+/// Key and velocity of the note that a preset is drawn with, and how many seconds it is held.
+const DRAWN_KEY: f64 = 60.0;
+const DRAWN_VELOCITY: f32 = 100.0 / 127.0;
+const DRAWN_SECONDS: f64 = 2.0;
+const DRAWN_RATE: u32 = 48_000;
+
+/// A note of a preset and its modes, in place of its file.
+fn drawn(playable: &Playable, format: &str) -> Result<Vec<u8>> {
+    let Playable::Preset(preset) = playable else {
+        let message = format!(
+            "‘{}’ is a kit: expected a preset; ‘sprung render --figure’ draws what a kit plays",
+            playable.name()
+        );
+        return Err(Error::value("--figure", message));
+    };
+    let (kit, song) = (preset.kit(), Song::chord(&[DRAWN_KEY], DRAWN_VELOCITY, DRAWN_SECONDS));
+    let options = Options { sample_rate: DRAWN_RATE, seed: 0, block: 4096, tail: Tail::Auto };
+    let a4_hz = f64::from(preset.patch.get(Param::Tuning));
+    let modes = modes_of(&preset.patch, frequency_from_key(DRAWN_KEY, a4_hz));
+    figure::drawn(&Job::new(&song, &kit, options), &format!("{}: C4", preset.name), &modes, format)
 }
 
 fn read(path: &Path, inputs: &mut Inputs) -> Result<Playable> {

@@ -45,16 +45,21 @@ pub(super) struct FigureFile {
 impl FigureArgs {
     /// Opens the figure's file, if one is wanted.
     pub(super) fn open(&self, inputs: &Inputs) -> Result<Option<FigureFile>> {
-        let Some(path) = &self.figure else { return Ok(None) };
-        let format = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
-        if !["png", "svg"].contains(&format.as_str()) {
-            let message = format!("{}: expected a name that ends in .png or .svg", path.display());
-            return Err(Error::value("--figure", message));
-        }
-        let output = Output::create(&Target::Path(path.clone()), self.force, inputs)?;
-        interrupt::remove(&output);
-        Ok(Some(FigureFile { output, format }))
+        open_figure(self.figure.as_deref(), self.force, inputs)
     }
+}
+
+/// Opens a figure's file, if one is wanted.
+pub(super) fn open_figure(path: Option<&Path>, force: bool, inputs: &Inputs) -> Result<Option<FigureFile>> {
+    let Some(path) = path else { return Ok(None) };
+    let format = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
+    if !["png", "svg"].contains(&format.as_str()) {
+        let message = format!("{}: expected a name that ends in .png or .svg", path.display());
+        return Err(Error::value("--figure", message));
+    }
+    let output = Output::create(&Target::Path(path.to_owned()), force, inputs)?;
+    interrupt::remove(&output);
+    Ok(Some(FigureFile { output, format }))
 }
 
 impl FigureFile {

@@ -29,3 +29,8 @@ pub(super) fn checked(written: std::io::Result<()>) -> Result<()> {
         _ => Ok(()),
     }
 }
+
+/// A number with its noun, which gets an s unless there is one of it.
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}

@@ -1,8 +1,9 @@
-//! Figures as SVG text or PNG bytes, from the same drawing code; their only font is included in the crate.
+//! Figures as SVG text or PNG bytes, from the same drawing code; their only font is included in the crate. Pages as HTML.
 
 pub mod colour;
 pub mod envelope;
 pub mod number;
+pub mod page;
 pub mod panel;
 
 use crate::error::{Error, Result};

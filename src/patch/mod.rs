@@ -44,6 +44,16 @@ impl Mode {
         [self.ratio, self.level, self.decay, self.strike, self.pan]
     }
 
+    /// The mode with each field at the nearest value in its range; NaN becomes the smallest one.
+    #[must_use]
+    pub fn clamped(&self) -> Self {
+        let mut fields = self.fields();
+        for (field, (_, min, max)) in fields.iter_mut().zip(Self::FIELDS) {
+            *field = if *field >= min { field.min(max) } else { min };
+        }
+        Self::from_fields(fields)
+    }
+
     /// The reverse of [`Mode::fields`].
     pub(crate) fn from_fields([ratio, level, decay, strike, pan]: [f32; 5]) -> Self {
         Self { ratio, level, decay, strike, pan }
@@ -130,6 +140,12 @@ impl Patch {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_mode_out_of_range_becomes_the_nearest_in_it() {
+        let mode = Mode { ratio: 0.0, level: 3.0, decay: f32::NAN, strike: 0.5, pan: -2.0 }.clamped();
+        assert_eq!(mode, Mode { ratio: 0.01, level: 1.0, decay: 0.001, strike: 0.5, pan: -1.0 });
+    }
 
     #[test]
     fn a_table_has_between_one_and_512_modes() {

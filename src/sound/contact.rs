@@ -70,8 +70,9 @@ impl Sound {
     }
 }
 
-/// How long a mallet of a hardness from 0 to 1 touches what it strikes, in seconds, at full speed and a mass of 1.
-pub(crate) fn contact_time(hardness: f64) -> f64 {
+/// How long a mallet of a hardness from 0 to 1 touches what it strikes, in seconds, at full speed and a mass of 1. Real-time
+/// safe.
+pub fn contact_time(hardness: f64) -> f64 {
     SOFTEST_CONTACT * pow(HARDEST_CONTACT / SOFTEST_CONTACT, hardness)
 }
 

@@ -7,7 +7,7 @@ pub mod kit;
 mod shelf;
 pub mod tuning;
 
-pub use contact::Contact;
+pub use contact::{Contact, contact_time};
 pub use kit::{Kit, Pad};
 pub use shelf::Shelf;
 pub use tuning::Tuning;

@@ -25,7 +25,7 @@ const ALLOWED: &[Row] = &[
     ("render", &["dsp", "engine", "error", "io", "params", "patch", "preset", "sound", "units"]),
     ("realtime", &["engine", "error", "io", "params", "patch", "preset", "render", "sound", "text", "units"]),
     ("figure", &["error"]),
-    ("analysis", &["error", "figure", "units"]),
+    ("analysis", &["dsp", "engine", "error", "figure", "io", "params", "patch", "preset", "sound", "units"]),
     ("lab", &["dsp", "error", "figure"]),
 ];
 

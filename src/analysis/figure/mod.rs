@@ -2,6 +2,7 @@
 
 pub mod modes;
 mod panel;
+pub mod sound;
 
 use crate::error::{Error, Result};
 use crate::figure::colour::{BLUE, VERMILLION};

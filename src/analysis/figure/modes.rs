@@ -1,6 +1,6 @@
 //! A strike's modes over its spectrum, what they leave of it, and their decay over frequency.
 
-use crate::analysis::modes::Strike;
+use crate::analysis::modes::{Mode, Strike};
 use crate::analysis::spectrum::{Spectrum, spectrum};
 use crate::figure::colour::{BLUE, INK, VERMILLION};
 use crate::figure::panel::{Axis, Panel, Stroke, line};
@@ -40,10 +40,12 @@ impl Picture for ModesFigure<'_> {
         let sound = spectrum(&self.strike.samples, self.sample_rate);
         let residual = spectrum(&self.strike.residual, self.sample_rate);
         let loudest = sound.levels.iter().copied().fold(-300.0, f64::max);
-        let top = 10.0 * ceil(loudest / 10.0);
+        // A mode that decays has a higher level at the onset than its peak in the spectrum, which is that of its mean.
+        let strongest = self.strike.modes.iter().map(|mode| mode.level_db).fold(-300.0, f64::max);
+        let top = 10.0 * ceil(loudest.max(strongest) / 10.0);
         let levels = Panel {
             x: Axis::logarithmic(x.clone(), ""),
-            y: Axis::linear(top - SPAN_DB..top, "spectrum / dBFS"),
+            y: Axis::linear(top - SPAN_DB..top, "level / dBFS"),
             title: "",
         };
         let mut chart = levels.draw(&upper)?;
@@ -51,9 +53,8 @@ impl Picture for ModesFigure<'_> {
             line(&mut chart, &outline(spectrum, &x), Stroke { colour, width: 1, dashed: false })?;
         }
         let modes = &self.strike.modes;
-        // A dot on the spectrum, where the mode's peak is.
-        let place = |frequency: f64| (log10(frequency), level_at(&sound, frequency).max(top - SPAN_DB));
-        chart.draw_series(modes.iter().map(|mode| Circle::new(place(mode.frequency), 4, INK.stroke_width(1))))?;
+        let place = |mode: &Mode| (log10(mode.frequency), mode.level_db.max(top - SPAN_DB));
+        chart.draw_series(modes.iter().map(|mode| Circle::new(place(mode), 4, INK.stroke_width(1))))?;
 
         let decays = || modes.iter().map(|mode| log10(mode.t60)).filter(|decay| decay.is_finite());
         let (least, most) = decays().fold((0.0_f64, 0.0_f64), |(least, most), t60| (least.min(t60), most.max(t60)));
@@ -63,7 +64,6 @@ impl Picture for ModesFigure<'_> {
             title: "",
         };
         let mut chart = decay.draw(&lower)?;
-        let strongest = modes.iter().map(|mode| mode.level_db).fold(-300.0, f64::max);
         for mode in modes.iter().filter(|mode| mode.t60.is_finite()) {
             let at = |deviations: f64| {
                 (log10(mode.frequency), log10((mode.t60 + deviations * mode.uncertainty.t60).max(1e-3 * mode.t60)))
@@ -74,9 +74,10 @@ impl Picture for ModesFigure<'_> {
             chart.draw_series([Circle::new(at(0.0), size, BLUE.filled())])?;
         }
         let remarks = [
-            (BLUE, "the sound"),
+            (BLUE, "the spectrum"),
             (VERMILLION, "what is left of it"),
-            (INK, "a circle a mode"),
+            (INK, "circles: levels of"),
+            (INK, "modes at the onset"),
             (INK, ""),
             (INK, "below, the larger"),
             (INK, "the louder; lines:"),
@@ -100,11 +101,4 @@ fn outline(spectrum: &Spectrum, x: &std::ops::Range<f64>) -> Vec<(f64, f64)> {
         (edge(column), level)
     };
     (0..COLUMNS).map(loudest).collect()
-}
-
-/// The loudest of the bins around a frequency.
-fn level_at(spectrum: &Spectrum, frequency: f64) -> f64 {
-    let bin = (frequency / spectrum.bin_width).round() as usize;
-    let last = spectrum.levels.len() - 1;
-    spectrum.levels[bin.saturating_sub(2).min(last)..=(bin + 2).min(last)].iter().copied().fold(-300.0, f64::max)
 }

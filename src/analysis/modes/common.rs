@@ -7,7 +7,7 @@ use super::mode::{Mode, Strike};
 pub struct Common {
     /// Hz: the mean of all, weighted by their certainty.
     pub frequency: f64,
-    /// Seconds, likewise.
+    /// Seconds, likewise; infinite if it decays in none.
     pub t60: f64,
     /// Its level in dBFS in each strike; none where it was not found.
     pub levels_db: Vec<Option<f64>>,
@@ -50,11 +50,13 @@ pub fn common(strikes: &[Strike]) -> Vec<Common> {
                 let (sum, weights) = members.iter().map(|member| value(of(member))).fold(
                     (0.0, 0.0),
                     |(sum, weights), (value, deviation)| {
-                        let weight = 1.0 / (deviation * deviation).max(1e-18);
-                        (sum + weight * value, weights + weight)
+                        // What does not decay has no T60 that could be averaged.
+                        let known = value.is_finite() && deviation.is_finite();
+                        let weight = if known { 1.0 / (deviation * deviation).max(1e-18) } else { 0.0 };
+                        (sum + if known { weight * value } else { 0.0 }, weights + weight)
                     },
                 );
-                sum / weights
+                if weights > 0.0 { sum / weights } else { f64::INFINITY }
             };
             let mut levels_db = vec![None; strikes.len()];
             members.iter().for_each(|member| levels_db[member.0] = Some(of(member).level_db));

@@ -20,6 +20,9 @@ const MEDIANS: usize = 4;
 /// Bins that a median is taken of, at most, evenly spread.
 const MEDIAN_BINS: usize = 500;
 
+/// Samples after which the recurrence of a decay starts from an exact power again.
+const BLOCK: usize = 256;
+
 /// A peak that noise does not explain.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
@@ -39,15 +42,18 @@ pub(super) struct Spectrum {
 
 impl Spectrum {
     fn new(samples: &[f64], decay: f64, sample_rate: f64, planner: &mut RealFftPlanner<f64>) -> Self {
-        let len = samples.len().min((7.0 / decay) as usize).max(16);
+        let len = samples.len().min(((7.0 / decay) as usize).max(16));
         let size = (len + len / 2).next_power_of_two();
         let transform = planner.plan_fft_forward(size);
         let mut input = transform.make_input_vec();
         let mut weights = 0.0;
-        for (n, (input, sample)) in input.iter_mut().zip(samples).enumerate().take(len) {
-            let weight = exp(-decay * n as f64);
-            *input = weight * sample;
-            weights += weight * weight;
+        for (block, (inputs, samples)) in input.chunks_mut(BLOCK).zip(samples[..len].chunks(BLOCK)).enumerate() {
+            let (mut weight, step) = (exp(-decay * (block * BLOCK) as f64), exp(-decay));
+            for (input, sample) in inputs.iter_mut().zip(samples) {
+                *input = weight * sample;
+                weights += weight * weight;
+                weight *= step;
+            }
         }
         let mut output = transform.make_output_vec();
         transform.process(&mut input, &mut output).expect("the buffers are the transform's own");
@@ -138,7 +144,7 @@ impl Spectra {
         reach: impl Fn(Pole) -> f64,
     ) -> Vec<Candidate> {
         let mut all: Vec<Candidate> = self.peaks(ratio, energy, range).collect();
-        all.sort_by(|a, b| b.energy.total_cmp(&a.energy));
+        all.sort_unstable_by(|a, b| b.energy.total_cmp(&a.energy));
         let mut kept: Vec<Candidate> = Vec::new();
         for candidate in all {
             let apart = |other: &Candidate| (candidate.pole.theta - other.pole.theta).abs() > reach(other.pole);

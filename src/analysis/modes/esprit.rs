@@ -48,28 +48,41 @@ impl Band {
 
     /// The band's samples at its own rate.
     fn decimate(&self, samples: &[f64]) -> Vec<Complex<f64>> {
-        let taps = Self::taps(self.hop);
-        let beta = 0.1102 * (ATTENUATION - 8.7);
-        let middle = (taps / 2) as f64;
-        let cutoff = 0.5 * (PASS + STOP) * 2.0 * PI / self.hop as f64;
-        let filter: Vec<Complex<f64>> = (0..taps)
-            .map(|n| {
-                let x = n as f64 - middle;
-                let sinc = if x == 0.0 { cutoff / PI } else { libm::sin(cutoff * x) / (PI * x) };
-                let window = bessel(beta * sqrt((1.0 - (x / (middle + 1.0)) * (x / (middle + 1.0))).max(0.0)));
-                let (sin, cos) = libm::sincos(self.theta * n as f64);
-                Complex::new(cos, -sin) * (sinc * window / bessel(beta))
-            })
-            .collect();
+        let filter = self.filter();
+        let taps = filter.len();
         let count = samples.len().saturating_sub(taps) / self.hop;
+        let shift = Pole { decay: 0.0, theta: -self.theta };
+        let (re, im): (Vec<f64>, Vec<f64>) = filter.iter().map(|tap| (tap.re, tap.im)).unzip();
         (0..count.min(SAMPLES))
             .map(|m| {
                 let stretch = &samples[m * self.hop..m * self.hop + taps];
-                let sum: Complex<f64> = stretch.iter().zip(&filter).map(|(sample, tap)| tap * sample).sum();
-                let (sin, cos) = libm::sincos(self.theta * (m * self.hop) as f64);
-                sum * Complex::new(cos, -sin)
+                Complex::new(dot(stretch, &re), dot(stretch, &im)) * shift.power(m * self.hop)
             })
             .collect()
+    }
+
+    /// The filter's taps: a windowed sinc, shifted to the band's middle.
+    fn filter(&self) -> Vec<Complex<f64>> {
+        let taps = Self::taps(self.hop);
+        let beta = 0.1102 * (ATTENUATION - 8.7);
+        let (middle, peak) = (taps / 2, bessel(beta));
+        let cutoff = 0.5 * (PASS + STOP) * 2.0 * PI / self.hop as f64;
+        let mut filter = vec![Complex::ZERO; taps];
+        for distance in 0..=middle {
+            let x = distance as f64;
+            let sinc = if distance == 0 { cutoff / PI } else { libm::sin(cutoff * x) / (PI * x) };
+            let share = x / (middle as f64 + 1.0);
+            let tap = sinc * bessel(beta * sqrt(1.0 - share * share)) / peak;
+            let (sin, cos) = libm::sincos(self.theta * x);
+            filter[middle + distance] = Complex::new(tap * cos, -tap * sin);
+            filter[middle - distance] = Complex::new(tap * cos, tap * sin);
+        }
+        filter
+    }
+
+    /// Samples from the first on that [`Self::poles`] looks at.
+    pub(super) fn reach(&self) -> usize {
+        SAMPLES * self.hop + Self::taps(self.hop)
     }
 
     /// The poles within the band, as many as the description length asks for (MDL; Wax & Kailath 1985).
@@ -130,6 +143,22 @@ fn bessel(x: f64) -> f64 {
     for k in 1..60 {
         term *= (x / (2.0 * f64::from(k))) * (x / (2.0 * f64::from(k)));
         sum += term;
+        if term < 1e-17 * sum {
+            break;
+        }
     }
     sum
+}
+
+/// Inner product, in several sums side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let (first, second) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = first.remainder().iter().zip(second.remainder()).map(|(a, b)| a * b).sum();
+    for (a, b) in first.zip(second) {
+        for lane in 0..8 {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    rest + sums.iter().sum::<f64>()
 }

@@ -9,6 +9,13 @@ const STAGES: f64 = 2.0;
 /// Distance of a pair, in bandwidths of the wider mode and in Hz at most.
 const NEAR: f64 = 6.0;
 const NEAR_HZ: f64 = 12.0;
+/// Levels of a pair differ by less.
+const PAIR_DB: f64 = 40.0;
+/// By how many dB the fast stage of a decay is louder than the slow one at first.
+const LEAST_LEAD: f64 = -6.0;
+const MOST_LEAD: f64 = 50.0;
+/// Standard deviations by which values differ that are not the same.
+const DEVIATIONS: f64 = 4.0;
 
 /// Finds the groups in modes of rising frequency.
 pub(super) fn groups(modes: &[Mode]) -> Vec<Group> {
@@ -16,16 +23,7 @@ pub(super) fn groups(modes: &[Mode]) -> Vec<Group> {
     let mut first = 0;
     while first + 1 < modes.len() {
         let (a, b) = (&modes[first], &modes[first + 1]);
-        let bandwidth = (BANDWIDTH / a.t60).max(BANDWIDTH / b.t60);
-        let distance = b.frequency - a.frequency;
-        let stages = (a.t60 / b.t60).max(b.t60 / a.t60) >= STAGES;
-        let kind = if distance < 0.5 * bandwidth && stages {
-            Some(Kind::TwoStageDecay)
-        } else if distance < (NEAR * bandwidth).clamp(2.0, NEAR_HZ) {
-            Some(Kind::SplitPair)
-        } else {
-            None
-        };
+        let kind = kind(a, b);
         match kind {
             Some(kind) => {
                 found.push(Group { kind, modes: vec![first, first + 1] });
@@ -35,4 +33,28 @@ pub(super) fn groups(modes: &[Mode]) -> Vec<Group> {
         }
     }
     found
+}
+
+/// What two neighbours are to each other, if anything.
+fn kind(a: &Mode, b: &Mode) -> Option<Kind> {
+    let (fast, slow) = if a.t60 < b.t60 { (a, b) } else { (b, a) };
+    let (wide, narrow) = (BANDWIDTH / fast.t60, BANDWIDTH / slow.t60);
+    let distance = b.frequency - a.frequency;
+    let deviation = |mode: &Mode| mode.uncertainty.t60 / mode.t60;
+    let ratio = slow.t60 / fast.t60;
+    let differs = ratio - 1.0 > DEVIATIONS * ratio * (deviation(fast) + deviation(slow));
+    let decibels = fast.level_db - slow.level_db;
+    // A short mode beside a long one is a stage of its decay only if it has the frequency and is heard first.
+    let stages =
+        distance < 0.5 * wide && distance < narrow + deviated(a, b) && (LEAST_LEAD..MOST_LEAD).contains(&decibels);
+    if ratio >= STAGES {
+        (stages && differs).then_some(Kind::TwoStageDecay)
+    } else {
+        (distance < (NEAR * wide).clamp(2.0, NEAR_HZ) && decibels.abs() < PAIR_DB).then_some(Kind::SplitPair)
+    }
+}
+
+/// Hz by which two frequencies may differ that are one.
+fn deviated(a: &Mode, b: &Mode) -> f64 {
+    DEVIATIONS * (a.uncertainty.frequency + b.uncertainty.frequency)
 }

@@ -7,11 +7,14 @@
 //! noise would is dropped; and so on with what is left over, until nothing stands out of it.
 
 mod common;
+mod contact;
+mod damping;
 mod detect;
 mod esprit;
 mod fit;
 mod groups;
 mod mode;
+mod plausible;
 mod pole;
 mod prune;
 mod search;
@@ -25,9 +28,10 @@ use crate::error::{Error, Result};
 use fit::Fit;
 use groups::groups;
 use libm::{log10, sqrt};
+use plausible::{AUDIBLE, Limits};
 use pole::{LN_60_DB, add};
 use std::f64::consts::{LN_10, PI};
-use strikes::{Stretch, strikes};
+use strikes::{SHORTEST, Stretch, strikes};
 
 /// What to look for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,15 +97,23 @@ pub fn modes(
     }
     let count = if settings.all_strikes { stretches.len() } else { 1 };
     let mut found = Vec::new();
-    for (index, stretch) in stretches.iter().take(count).enumerate() {
+    for (index, stretch) in stretches.iter().copied().take(count).enumerate() {
         let mut told = |share: f64| progress((index as f64 + share) / count as f64);
-        let samples = &rest[stretch.start..stretch.end];
-        let modes = search::find(samples, sample_rate, settings.most_modes, &mut told)?;
-        // What rings on is no part of the next strike.
-        for (pole, amplitude) in modes.fit.poles.iter().zip(&modes.fit.amplitudes) {
-            add(&mut rest[stretch.end..], *pole, *amplitude * pole.power(stretch.end - stretch.start), -1.0);
+        let (stretch, damped, modes) = search(&rest, stretch, sample_rate, settings.most_modes, &mut told)?;
+        if damped.is_none() {
+            // What rings on is no part of the next strike.
+            for (pole, amplitude) in modes.fit.poles.iter().zip(&modes.fit.amplitudes) {
+                add(&mut rest[stretch.end..], *pole, *amplitude * pole.power(stretch.end - stretch.start), -1.0);
+            }
         }
-        let strike = strike(&modes, channels, &rest, stretch, sample_rate);
+        let mut strike = strike(&modes, channels, &rest, &stretch, sample_rate);
+        strike.damped = damped.map(|frame| frame as f64 / sample_rate);
+        if let Some(seconds) = strike.damped {
+            warnings.push(format!(
+                "the strike at {:.3} s is damped from about {seconds:.3} s on: its modes are those of what comes before",
+                strike.onset
+            ));
+        }
         if strike.residual_db > HARDLY_MODES_DB {
             warnings.push(format!(
                 "the modes of the strike at {:.3} s explain little of it ({:.1} dB are left): expected something that is \
@@ -112,6 +124,32 @@ pub fn modes(
         found.push(strike);
     }
     Ok(Analysis { strikes: found, strikes_found: stretches.len(), warnings })
+}
+
+/// The modes of a stretch: of all of it, or of what comes before the frame at which it is damped.
+fn search(
+    sound: &[f64],
+    stretch: Stretch,
+    sample_rate: f64,
+    most_modes: usize,
+    progress: &mut dyn FnMut(f64) -> bool,
+) -> Result<(Stretch, Option<usize>, search::Found)> {
+    let samples = &sound[stretch.start..stretch.end];
+    let peak = sound[stretch.onset..stretch.end].iter().fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
+    let limits = Limits { peak, late: (stretch.start - stretch.onset) as f64, sample_rate };
+    let mut begun = 0.0;
+    let shortest = (SHORTEST * sample_rate) as usize;
+    if let Some(len) = damping::damped_from(samples, sample_rate).filter(|len| *len >= shortest) {
+        begun = 0.5;
+        let before = &samples[..len];
+        let found = search::find(before, sample_rate, most_modes, &limits, &mut |share| progress(begun * share))?;
+        if damping::confirmed(&found.fit, len, &samples[len..], sample_rate) {
+            let end = stretch.start + len;
+            return Ok((Stretch { end, ..stretch }, Some(end), found));
+        }
+    }
+    let mut told = |share: f64| progress(begun + (1.0 - begun) * share);
+    Ok((stretch, None, search::find(samples, sample_rate, most_modes, &limits, &mut told)?))
 }
 
 /// The mean of the channels, or the loudest where they all but cancel.
@@ -158,7 +196,9 @@ fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: 
     };
     // Where the exciter has let go the modes have been ringing for a while.
     let late = (stretch.start - stretch.onset) as f64;
+    let audible = |k: &usize| found.fit.poles[*k].theta * sample_rate >= 2.0 * PI * AUDIBLE;
     let mut modes: Vec<Mode> = (0..found.fit.poles.len())
+        .filter(audible)
         .map(|k| {
             let pole = found.fit.poles[k];
             let at_onset = |fit: &Fit| {
@@ -170,7 +210,7 @@ fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: 
             let (level_db, phase) = at_onset(&found.fit);
             // Both quadratures of noise are in the floor.
             let variance = found.floors[k] / 2.0;
-            let deviation = |index: usize| sqrt((found.certainty.variances[k][index] * variance).max(0.0));
+            let deviation = |index: usize| sqrt(found.certainty.variances[k][index] * variance);
             let t60 = LN_60_DB / (pole.decay * sample_rate);
             Mode {
                 frequency: pole.theta * sample_rate / (2.0 * PI),
@@ -192,6 +232,7 @@ fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: 
     let single = |samples: &[f64]| samples.iter().map(|sample| *sample as f32).collect();
     Strike {
         onset: stretch.onset as f64 / sample_rate,
+        damped: None,
         seconds: (stretch.end - stretch.onset) as f64 / sample_rate,
         groups: groups(&modes),
         modes,

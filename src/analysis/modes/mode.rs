@@ -58,6 +58,9 @@ pub struct Strike {
     pub onset: f64,
     /// Seconds from there to the end of what was looked at.
     pub seconds: f64,
+    /// Seconds from the recording's beginning to where the strike is damped from outside, and no longer looked at; none if
+    /// it rings to its end.
+    pub damped: Option<f64>,
     /// By rising frequency.
     pub modes: Vec<Mode>,
     /// Modes that are heard as one: by their places in `modes`.

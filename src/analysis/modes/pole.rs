@@ -5,8 +5,10 @@ use realfft::num_complex::Complex;
 
 pub(super) use crate::analysis::damped_sine::LN_60_DB;
 
-/// Samples after which a recurrence for `zⁿ` starts from an exact power again.
-const ANCHOR: usize = 512;
+/// Samples of a block: within it powers come from a table, from block to block from a recurrence.
+const BLOCK: usize = 16;
+/// Blocks after which the recurrence starts from an exact power again.
+const ANCHOR: usize = 32;
 /// Modes whose powers are stepped side by side.
 const LANES: usize = 4;
 /// `|zⁿ|` below which a mode is over: −280 dB.
@@ -44,51 +46,67 @@ impl Pole {
 
 /// `Σ y·z̄ⁿ` and `Σ τ·y·z̄ⁿ` with `τ = n/len`, for each pole.
 pub(super) fn correlations(samples: &[f64], poles: &[Pole]) -> Vec<[Complex<f64>; 2]> {
-    let scale = 1.0 / samples.len() as f64;
     let mut found = Vec::with_capacity(poles.len());
     for poles in poles.chunks(LANES) {
-        let mut step = [[0.0; LANES]; 2];
-        for (lane, pole) in poles.iter().enumerate() {
-            let z = pole.power(1);
-            (step[0][lane], step[1][lane]) = (z.re, -z.im);
-        }
         let end = poles.iter().map(|pole| pole.end(samples.len())).max().unwrap_or(0);
-        let mut sums = [[0.0; LANES]; 4];
-        for base in (0..end).step_by(ANCHOR) {
-            let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);
-            for (lane, pole) in poles.iter().enumerate() {
-                let z = pole.power(base);
-                (re[lane], im[lane]) = (z.re, -z.im);
-            }
-            for (n, y) in samples.iter().enumerate().take(end.min(base + ANCHOR)).skip(base) {
-                let weighted = y * (n as f64 * scale);
-                for lane in 0..LANES {
-                    sums[0][lane] += y * re[lane];
-                    sums[1][lane] += y * im[lane];
-                    sums[2][lane] += weighted * re[lane];
-                    sums[3][lane] += weighted * im[lane];
-                    let turned = re[lane] * step[0][lane] - im[lane] * step[1][lane];
-                    im[lane] = re[lane] * step[1][lane] + im[lane] * step[0][lane];
-                    re[lane] = turned;
-                }
-            }
-        }
-        let sum = |lane: usize, at: usize| Complex::new(sums[at][lane], sums[at + 1][lane]);
-        found.extend((0..poles.len()).map(|lane| [sum(lane, 0), sum(lane, 2)]));
+        let sums = lanes(&samples[..end], poles);
+        found.extend(sums.into_iter().take(poles.len()).map(|[sum, moment]| [sum, moment / samples.len() as f64]));
     }
     found
+}
+
+/// `Σ y·z̄ⁿ` and `Σ n·y·z̄ⁿ` for up to [`LANES`] poles.
+fn lanes(samples: &[f64], poles: &[Pole]) -> [[Complex<f64>; 2]; LANES] {
+    let pole = |lane: usize| poles.get(lane).copied().unwrap_or(Pole::CONSTANT);
+    let powers = |n: usize| {
+        let powers: [Complex<f64>; LANES] = std::array::from_fn(|lane| pole(lane).power(n).conj());
+        (powers.map(|z| z.re), powers.map(|z| z.im))
+    };
+    let table: [_; BLOCK] = std::array::from_fn(powers);
+    let step: [Complex<f64>; LANES] = std::array::from_fn(|lane| pole(lane).power(BLOCK).conj());
+    let mut sums = [[Complex::ZERO; 2]; LANES];
+    let mut z = [Complex::ZERO; LANES];
+    for (index, block) in samples.chunks(BLOCK).enumerate() {
+        let base = index * BLOCK;
+        if index.is_multiple_of(ANCHOR) {
+            z = std::array::from_fn(|lane| pole(lane).power(base).conj());
+        }
+        // Sums and first moments of the block, as if it were the first one.
+        let mut local = [[0.0; LANES]; 4];
+        for (n, (y, (re, im))) in block.iter().zip(&table).enumerate() {
+            let weighted = y * n as f64;
+            for lane in 0..LANES {
+                local[0][lane] += y * re[lane];
+                local[1][lane] += y * im[lane];
+                local[2][lane] += weighted * re[lane];
+                local[3][lane] += weighted * im[lane];
+            }
+        }
+        for lane in 0..LANES {
+            let sum = z[lane] * Complex::new(local[0][lane], local[1][lane]);
+            let moment = z[lane] * Complex::new(local[2][lane], local[3][lane]);
+            sums[lane][0] += sum;
+            sums[lane][1] += moment + sum * base as f64;
+            z[lane] *= step[lane];
+        }
+    }
+    sums
 }
 
 /// Adds `factor · Re(a·zⁿ)` to the samples.
 pub(super) fn add(samples: &mut [f64], pole: Pole, amplitude: Complex<f64>, factor: f64) {
     let end = pole.end(samples.len());
-    let step = pole.power(1);
-    for base in (0..end).step_by(ANCHOR) {
-        let mut z = amplitude * pole.power(base) * factor;
-        for sample in &mut samples[base..end.min(base + ANCHOR)] {
-            *sample += z.re;
-            z *= step;
+    let table: [Complex<f64>; BLOCK] = std::array::from_fn(|n| pole.power(n));
+    let (re, im) = (table.map(|z| z.re), table.map(|z| z.im));
+    let (step, mut z) = (pole.power(BLOCK), Complex::ZERO);
+    for (index, block) in samples[..end].chunks_mut(BLOCK).enumerate() {
+        if index.is_multiple_of(ANCHOR) {
+            z = amplitude * pole.power(index * BLOCK) * factor;
         }
+        for (sample, (re, im)) in block.iter_mut().zip(re.iter().zip(&im)) {
+            *sample += z.re * re - z.im * im;
+        }
+        z *= step;
     }
 }
 

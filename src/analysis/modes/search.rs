@@ -6,6 +6,7 @@
 use super::detect::Spectra;
 use super::esprit::Band;
 use super::fit::{Certainty, Fit};
+use super::plausible::{Limits, implausible};
 use super::pole::{LN_60_DB, Pole, add};
 use super::prune::{DETECTION, prune};
 use crate::error::{Error, Result};
@@ -23,6 +24,8 @@ const MOST_ROUNDS: usize = 24;
 /// Rounds without progress after which a sound is taken for no sum of modes. Modes that are resolved anew with their
 /// neighbours can cost a round or two.
 const PATIENCE: usize = 3;
+/// Times that modes which the sound cannot have had are dropped. What is left may be implausible then.
+const MOST_REMOVALS: usize = 12;
 
 /// Modes that were found, with what is known of them.
 pub(super) struct Found {
@@ -41,6 +44,7 @@ pub(super) fn find(
     samples: &[f64],
     sample_rate: f64,
     most_modes: usize,
+    limits: &Limits,
     progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Found> {
     let unsolvable = || {
@@ -87,11 +91,29 @@ pub(super) fn find(
         progress(share)
     };
     fit = pruned(fit.refine(samples, 1e-7, 40, &mut go_on))?;
+    for _ in 0..MOST_REMOVALS {
+        let dropped = implausible(&fit, &floors(&fit, samples, sample_rate), samples.len(), limits);
+        if dropped.is_empty() {
+            break;
+        }
+        let left = (0..fit.poles.len()).filter(|k| !dropped.contains(k)).map(|k| fit.poles[k]).collect();
+        fit = Fit::new(samples, left).ok_or_else(unsolvable)?.refine(samples, 1e-7, 20, &mut go_on);
+    }
     fit = fit.refine(samples, 1e-8, 20, &mut go_on);
+    let dropped = implausible(&fit, &floors(&fit, samples, sample_rate), samples.len(), limits);
+    if !dropped.is_empty() {
+        let left = (0..fit.poles.len()).filter(|k| !dropped.contains(k)).map(|k| fit.poles[k]).collect();
+        fit = Fit::new(samples, left).ok_or_else(unsolvable)?;
+    }
     let certainty = fit.certainty(samples.len()).ok_or_else(unsolvable)?;
-    let spectra = Spectra::new(&fit.residual(samples), sample_rate);
-    let floors = fit.poles.iter().map(|pole| spectra.floor(*pole)).collect();
+    let floors = floors(&fit, samples, sample_rate);
     if progress(1.0) { Ok(Found { fit, certainty, floors }) } else { Err(Error::Interrupted) }
+}
+
+/// Average energy that noise explains for each mode.
+fn floors(fit: &Fit, samples: &[f64], sample_rate: f64) -> Vec<f64> {
+    let spectra = Spectra::new(&fit.residual(samples), sample_rate);
+    fit.poles.iter().map(|pole| spectra.floor(*pole)).collect()
 }
 
 /// Which bands are resolved into poles anew.
@@ -131,7 +153,7 @@ fn resolve(fit: &Fit, samples: &[f64], sample_rate: f64, most_modes: usize, plac
         let band = band(candidate, samples.len());
         let within = |pole: Pole| (pole.theta - candidate.theta).abs() < band.half_width();
         let members: Vec<usize> = (0..known.len()).filter(|k| known[*k].1 && within(known[*k].0)).collect();
-        let mut mixed = residual.clone();
+        let mut mixed = residual[..band.reach().min(residual.len())].to_vec();
         members.iter().for_each(|k| add(&mut mixed, known[*k].0, amplitudes[*k], 1.0));
         let mut poles = band.poles(&mixed);
         poles.retain(|pole| (range.0..=range.1).contains(&pole.theta));

@@ -1,5 +1,6 @@
 //! When a recording is struck, and how long each strike can be listened to.
 
+use super::contact::let_go;
 use libm::sqrt;
 
 /// Seconds over which energy is compared on either side of an onset.
@@ -8,6 +9,9 @@ const STEP: f64 = 0.005;
 const RISE: f64 = 6.3;
 /// Seconds before an onset in which nothing may have been as loud: what beats comes back, but never above where it was.
 const MEMORY: f64 = 0.08;
+/// Rise of the mean energy over so many seconds after an onset: 2 dB.
+const LOUDER: f64 = 1.6;
+const LOUDER_OVER: f64 = 0.05;
 /// Seconds by which an onset may come before its first sample that stands out.
 const SWELL: f64 = 0.001;
 /// Least distance of onsets in seconds.
@@ -24,7 +28,7 @@ const ABOVE_NOISE: f64 = 1.03;
 const STEADY: f64 = 1.122;
 const STEADY_BLOCKS: usize = 12;
 /// Shortest stretch in seconds that modes are looked for in.
-const SHORTEST: f64 = 0.03;
+pub(super) const SHORTEST: f64 = 0.03;
 
 /// A strike: frames of the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +56,9 @@ pub(super) fn strikes(samples: &[f64], sample_rate: f64, longest: f64) -> Vec<St
     let floor = noise(samples, frames(BLOCK));
     let next = |index: usize| onsets.get(index + 1).map_or(samples.len(), |next| next.saturating_sub(frames(0.002)));
     let stretch = |(index, onset): (usize, &usize)| {
-        let start = released(samples, *onset, frames(0.001), frames(CONTACT));
+        let released = released(samples, *onset, frames(0.001), frames(CONTACT));
+        let free = onset + let_go(&samples[*onset..next(index).max(*onset)], sample_rate);
+        let start = released.max(free);
         let limit = next(index).min(start + frames(longest));
         let mut blocks = samples[start.min(limit)..limit].chunks(frames(BLOCK)).enumerate();
         let above = |block: &[f64]| rms(block) > ABOVE_NOISE * floor;
@@ -79,6 +85,13 @@ fn onsets(samples: &[f64], sample_rate: f64) -> Vec<usize> {
             energies[block.saturating_sub(memory)..block].iter().fold(0.0_f64, |most, energy| most.max(*energy));
         let before = block.checked_sub(1).map_or(quietest, |before| energies[before]);
         if *energy < least || *energy < RISE * before || *energy < 1.5 * loudest {
+            continue;
+        }
+        // Modes of low pitch that meet again and again come back in each step, but not louder than before.
+        let around = (LOUDER_OVER / STEP) as usize;
+        let mean = |range: &[f64]| range.iter().sum::<f64>() / range.len().max(1) as f64;
+        let after = mean(&energies[block..(block + around).min(energies.len())]);
+        if block > 0 && after < LOUDER * mean(&energies[block.saturating_sub(around)..block]) {
             continue;
         }
         let onset = first_above(samples, block * step, step, (SWELL * sample_rate) as usize);

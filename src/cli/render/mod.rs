@@ -1,5 +1,6 @@
 //! `sprung render`: a MIDI file or some notes to a WAV file.
 
+mod figure;
 mod report;
 
 use super::progress::Bar;
@@ -23,6 +24,7 @@ Examples:
   sprung render --note C2 --preset Kick --tail none --length 0.5 -o kick.wav
   sprung render --note C4,E4,67.5,440Hz --set decay=\"3 s\" --set mallet_pulse=contact -o chord.wav
   sprung render song.mid --preset Marimba --channel 10=drums.toml --ignore-programs -o song.wav
+  sprung render --note C4 --preset Marimba --figure marimba.png -o marimba.wav
   sprung render --note C3 --preset Gong --set input_level=0 --input voice.wav -o spoken.wav
   sprung render song.mid --scale mine.scl --keymap mine.kbm -o song.wav
   sprung render song.mid -o - | flac - -o song.flac";
@@ -81,7 +83,10 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", allow_hyphen_values = true,
         value_parser = quantity::whole::<u16>((*THREADS.start()).into()..=(*THREADS.end()).into()))]
     threads: Option<u16>,
-    /// Overwrite an existing file
+    /// Draw waveform, spectrogram and, of single notes, modes, as PNG or SVG
+    #[arg(long, value_name = "FILE.png|FILE.svg")]
+    figure: Option<PathBuf>,
+    /// Overwrite existing files
     #[arg(long)]
     force: bool,
     /// Print a report as JSON to stdout, or to stderr if stdout gets the WAV
@@ -133,6 +138,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         inputs.check_stdout()?;
     }
     let mut output = Output::create(&target, args.force, &inputs)?;
+    let figure = recording::open_figure(args.figure.as_deref(), args.force, &inputs)?;
     interrupt::catch(output.is_seekable())?;
     let mut bar = Bar::new();
     let progress = |progress| {
@@ -141,6 +147,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
     };
     let report = on_threads(args.threads, || to_wav(&job, &delivery, &mut output, progress))??;
     drop(bar);
+    if let Some(figure) = figure {
+        figure.write(|format| figure::draw(args, &job, format))?;
+    }
     output.commit()?;
     report::tell(&report, &target, args.json)
 }

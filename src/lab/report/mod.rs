@@ -6,10 +6,10 @@ use super::method::{Method, Order};
 use super::system::{Spring, State, System};
 use super::trajectory::Trajectory;
 use crate::figure::number::{measured, short};
+use crate::figure::page;
 use serde_json::{Value, json};
 
 const PAGE: &str = include_str!("report.html");
-const STYLE: &str = include_str!("report.css");
 const SCRIPT: &str = include_str!("report.js");
 
 /// Maximum number of states of one run in the page; longer runs are thinned out.
@@ -20,26 +20,17 @@ const SHOWN: [Method; 5] =
 
 /// Makes the page.
 pub fn html(comparison: &Comparison) -> String {
-    // One pass over the template, so that inserted text is never searched for placeholders.
-    let mut out = String::new();
-    let mut rest = PAGE;
-    while let Some((before, after)) = rest.split_once("{{") {
-        let (name, tail) = after.split_once("}}").unwrap_or((after, ""));
-        out += before;
-        out += &match name {
-            "style" => STYLE.to_owned(),
-            "script" => SCRIPT.to_owned(),
-            // A "</script>" in the data would end the script.
-            "data" => data(comparison).to_string().replace('<', "\\u003c"),
-            "summary" => summary(comparison),
-            "methods" => checkboxes(comparison),
-            "steps" => radios(comparison),
-            "tables" => tables(comparison),
-            _ => sources(comparison),
-        };
-        rest = tail;
-    }
-    out + rest
+    page::fill(PAGE, |name| match name {
+        "style" => page::STYLE.to_owned(),
+        "script" => SCRIPT.to_owned(),
+        // A "</script>" in the data would end the script.
+        "data" => data(comparison).to_string().replace('<', "\\u003c"),
+        "summary" => summary(comparison),
+        "methods" => checkboxes(comparison),
+        "steps" => radios(comparison),
+        "tables" => tables(comparison),
+        _ => sources(comparison),
+    })
 }
 
 fn summary(comparison: &Comparison) -> String {

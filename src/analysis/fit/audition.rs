@@ -1,0 +1,46 @@
+//! Plays a patch, as it will be heard.
+
+use crate::analysis::log_mel::RATE;
+use crate::engine::{Event, EventKind, Synth};
+use crate::patch::Patch;
+use crate::units::mono_from_stereo;
+
+/// Frames that are rendered at a time.
+const BLOCK: usize = 512;
+
+/// A synth that plays one note after another, each as if it were the first. Not real-time safe.
+pub(super) struct Audition {
+    synth: Synth,
+}
+
+impl Audition {
+    pub(super) fn new() -> Self {
+        Self { synth: Synth::new(RATE.into(), 0) }
+    }
+
+    /// The first `frames` frames of a held note, left and right. `key` is a fractional MIDI key, `velocity` 0–1.
+    pub(super) fn play(&mut self, patch: &Patch, key: f64, velocity: f64, frames: usize) -> [Vec<f32>; 2] {
+        // A patch that is set while notes could sound moves there smoothly; a reset makes it the present one.
+        self.synth.set_patch(patch);
+        self.synth.reset();
+        let nearest = key.round().clamp(0.0, 127.0);
+        let on = EventKind::NoteOn {
+            key: nearest as u8,
+            detune: (key - nearest) as f32,
+            velocity: velocity as f32,
+            id: None,
+        };
+        let event = [Event { frame: 0, channel: 0, kind: on }];
+        let [mut left, mut right] = [vec![0.0; frames], vec![0.0; frames]];
+        for (n, (left, right)) in left.chunks_mut(BLOCK).zip(right.chunks_mut(BLOCK)).enumerate() {
+            self.synth.process(if n == 0 { &event } else { &[] }, left, right);
+        }
+        [left, right]
+    }
+
+    /// As [`Audition::play`], the mean of both channels.
+    pub(super) fn mean(&mut self, patch: &Patch, key: f64, velocity: f64, frames: usize) -> Vec<f32> {
+        let [left, right] = self.play(patch, key, velocity, frames);
+        left.iter().zip(&right).map(|(left, right)| mono_from_stereo(*left, *right)).collect()
+    }
+}

@@ -1,0 +1,88 @@
+//! What the modes do not explain, as a bed of modes that noise moves.
+//!
+//! In each mel band, what the recording has more than the draft decays by a law of its own; a few modes at random places of the
+//! band get that level and that decay.
+
+use super::draft::{Partial, Sweep, speed};
+use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, centre};
+use crate::dsp::random::{key, uniform};
+use libm::{log10, pow, sqrt};
+
+/// Excess in dB of the recording over the draft that is filled up.
+const EXCESS_DB: f64 = 1.5;
+/// Shortest and longest T60 of the bed in seconds.
+const T60: (f64, f64) = (0.01, 20.0);
+/// dB by which a band is followed down from where it is loudest.
+const FOLLOWED_DB: f64 = 45.0;
+/// Windows in which a band can come to its loudest: 60 ms.
+const RISE: usize = 11;
+/// What the main lobe of a Hann window makes of a sine's power, and a triangular band of the sines in it.
+const LOBE: f64 = 1.5 * 2.0 / 3.0;
+/// Modes of a band.
+const FEWEST: f64 = 2.0;
+const MOST: f64 = 6.0;
+/// Bandwidth in Hz of a mode with a T60 of 1 s.
+const BANDWIDTH: f64 = 2.2;
+
+/// The bed that fills `draft` up to `target`, of at most `most` modes. `seed` sets where they lie.
+pub(super) fn bed(target: &LogMel, draft: &LogMel, sweep: &Sweep, most: usize, seed: u64) -> Vec<Partial> {
+    let floor = target.loudest() - SPAN_DB - 6.0;
+    let mut bands: Vec<(f64, Vec<Partial>)> =
+        (0..BANDS).filter_map(|band| fill(target, draft, band, floor, seed)).collect();
+    bands.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut bed = Vec::new();
+    for (_, partials) in bands {
+        if bed.len() + partials.len() <= most {
+            // The sweep moves them to where they are wanted.
+            let lower =
+                |partial: Partial| Partial { frequency: partial.frequency / speed(sweep, partial.t60), ..partial };
+            bed.extend(partials.into_iter().map(lower));
+        }
+    }
+    bed
+}
+
+/// The modes of one band and their energy.
+fn fill(target: &LogMel, draft: &LogMel, band: usize, floor: f64, seed: u64) -> Option<(f64, Vec<Partial>)> {
+    let level = |n: usize| {
+        let wanted = target.columns[n][band];
+        let has = draft.columns.get(n).map_or(-300.0, |column| column[band]);
+        let missing = pow(10.0, 0.1 * wanted) - pow(10.0, 0.1 * has);
+        (wanted > floor && wanted > has + EXCESS_DB).then(|| 10.0 * log10(missing))
+    };
+    let levels: Vec<Option<f64>> = (0..target.columns.len()).map(level).collect();
+    let start = (0..levels.len().min(RISE))
+        .filter(|n| levels[*n].is_some())
+        .max_by(|a, b| levels[*a].unwrap_or(f64::NEG_INFINITY).total_cmp(&levels[*b].unwrap_or(f64::NEG_INFINITY)))?;
+    let top = levels[start]?;
+    // A line through the levels in dB, from the loudest on.
+    let points: Vec<(f64, f64)> = (start..levels.len())
+        .map_while(|n| {
+            // A gap of some windows, where the draft is louder by chance, is no end.
+            let near = &levels[n..(n + 12).min(levels.len())];
+            near.iter().any(Option::is_some).then_some((n, levels[n]))
+        })
+        .filter_map(|(n, level)| Some(((n as f64) * HOP as f64 / f64::from(RATE), level?)))
+        .take_while(|(_, level)| *level > top - FOLLOWED_DB)
+        .collect();
+    let count = points.len() as f64;
+    let [t, y] = [0, 1].map(|which| points.iter().map(|(t, y)| if which == 0 { *t } else { *y }).sum::<f64>() / count);
+    let (product, square) = points.iter().fold((0.0, 0.0), |(product, square), point| {
+        (product + (point.0 - t) * (point.1 - y), square + (point.0 - t) * (point.0 - t))
+    });
+    let slope = if count >= 4.0 { (product / square).min(-60.0 / T60.1) } else { -60.0 / 0.03 };
+    let t60 = (-60.0 / slope).clamp(T60.0, T60.1);
+    let at_onset = if count >= 4.0 { (y - slope * t).min(top + 6.0) } else { top };
+    // As many as it takes that their resonances meet.
+    let width = 0.5 * (centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1)));
+    let modes = (0.5 * width * t60 / BANDWIDTH).clamp(FEWEST, MOST).round();
+    let amplitude = sqrt(pow(10.0, 0.1 * at_onset) / (modes * LOBE));
+    let partial = |n: usize| {
+        let chance = f64::from(uniform(key(seed, band as u64), n as u64));
+        let share = (n as f64 + 0.5 + 0.45 * chance) / modes - 0.5;
+        let pan = 0.4 * f64::from(uniform(key(seed, band as u64), 100 + n as u64));
+        Partial { frequency: centre(band) + width * share, t60, amplitude, pan, struck: false }
+    };
+    let partials: Vec<Partial> = (0..modes as usize).map(partial).collect();
+    Some((pow(10.0, 0.1 * at_onset) * t60, partials))
+}

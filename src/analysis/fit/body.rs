@@ -1,0 +1,272 @@
+//! The physical body that explains the modes of a sound best, with its numbers, and what remains.
+
+use super::draft::{Draft, Partial, contact_share, digits, share_of_mean};
+use crate::params::Param;
+use crate::patch::Patch;
+use crate::preset::modes_of_body;
+use crate::sound::bodies::{Body, BodyMode, FIELDS, LN_1000, Loss, Model, Pitch, Point};
+use crate::sound::contact_time;
+use libm::{fabs, log2, log10, pow, sqrt};
+
+/// Models of each family.
+const STRINGS: &[&str] = &["string"];
+const BARS: &[&str] = &["free_bar", "marimba", "vibraphone", "xylophone", "tine"];
+const MEMBRANES: &[&str] = &["membrane", "timpani"];
+const PLATES: &[&str] = &["plate", "free_plate", "disc", "free_disc"];
+const BELLS: &[&str] = &["church_bell", "hand_bell", "tubular_bell", "glass", "bowl"];
+/// Stiffnesses of strings, sides of plates and slendernesses of glasses that are tried.
+const STIFFNESSES: [f64; 12] = [0.0, 1e-5, 3e-5, 6e-5, 1e-4, 2e-4, 4e-4, 8e-4, 1.5e-3, 3e-3, 6e-3, 1.2e-2];
+const ASPECTS: [f64; 13] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 2.0, 2.25, 2.5, 3.0];
+const SLENDERNESSES: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0];
+/// Cents by which a mode may be off the model's to be that one.
+const NEAR: f64 = 60.0;
+/// Partials that the body's own modes are laid on in turn, and how many of these.
+const PLACED: usize = 5;
+const LOWEST: usize = 6;
+/// Modes of a body.
+const MODES: usize = 48;
+
+/// What a sound is to be explained by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Family {
+    /// A table of the modes as they are: explains everything, says nothing.
+    #[default]
+    Table,
+    /// A string.
+    String,
+    /// A bar: free, tuned, or clamped at one end.
+    Bar,
+    /// A drum head or a kettledrum.
+    Membrane,
+    /// A plate or a disc.
+    Plate,
+    /// A bell, a glass or a bowl.
+    Bell,
+}
+
+impl Family {
+    /// All, with the names that commands call them.
+    pub const ALL: [(&'static str, Family); 6] = [
+        ("table", Family::Table),
+        ("string", Family::String),
+        ("bar", Family::Bar),
+        ("membrane", Family::Membrane),
+        ("plate", Family::Plate),
+        ("bell", Family::Bell),
+    ];
+
+    fn models(self) -> &'static [&'static str] {
+        match self {
+            Self::Table => &[],
+            Self::String => STRINGS,
+            Self::Bar => BARS,
+            Self::Membrane => MEMBRANES,
+            Self::Plate => PLATES,
+            Self::Bell => BELLS,
+        }
+    }
+}
+
+/// How well a body explains a sound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explained {
+    /// The model's name in presets.
+    pub model: &'static str,
+    /// Mean distance in cents of the modes from the model's, weighted by their energy.
+    pub cents: f64,
+    /// Modes of the sound that are the model's, and all of them.
+    pub modes: (usize, usize),
+    /// Energy in dB, relative to all modes, of those that are none of the model's.
+    pub unexplained_db: f64,
+}
+
+/// A model laid on the partials.
+struct Match {
+    body: Body,
+    /// For each partial its mode of the model, and by how many cents it is off.
+    pairs: Vec<Option<(BodyMode, f64)>>,
+    score: f64,
+}
+
+fn weight(partial: &Partial) -> f64 {
+    // Energy alone would leave all to the loudest mode.
+    sqrt(fabs(partial.amplitude) * sqrt(partial.t60))
+}
+
+/// The bodies of a model with the numbers that set their ratios.
+fn variants(model: &Model) -> Vec<Body> {
+    let with = |name: &str, values: &[f64]| {
+        let field = FIELDS.iter().find(|field| field.name == name);
+        let body = |value: &f64| {
+            let mut body = Body { modes: MODES, ..Body::new(model.clone()) };
+            if let Some(field) = field {
+                (field.set)(&mut body, *value);
+            }
+            body
+        };
+        values.iter().map(body).collect()
+    };
+    match model {
+        Model::String => with("inharmonicity", &STIFFNESSES),
+        Model::Plate { .. } => with("aspect", &ASPECTS),
+        Model::Glass { .. } => with("slenderness", &SLENDERNESSES),
+        _ => with("inharmonicity", &[0.0]),
+    }
+}
+
+fn lay(body: &Body, frequency: f64, partials: &[Partial]) -> Match {
+    let body = Body { pitch: Pitch::Frequency(frequency), ..body.clone() };
+    let modes = body.modes();
+    let mut score = 0.0;
+    let pair = |partial: &Partial| {
+        let cents = |mode: &BodyMode| 1200.0 * log2(partial.frequency / mode.frequency);
+        let nearest = modes.iter().min_by(|a, b| fabs(cents(a)).total_cmp(&fabs(cents(b))))?;
+        let off = cents(nearest);
+        (fabs(off) < NEAR).then(|| {
+            score += weight(partial) * (1.0 - (off / NEAR) * (off / NEAR));
+            (*nearest, off)
+        })
+    };
+    let pairs: Vec<_> = partials.iter().map(pair).collect();
+    // Dense models meet everything by chance: a mode of theirs that should sound below the loudest partial, and is not
+    // there, counts against them.
+    let highest = partials.iter().map(|partial| partial.frequency).fold(0.0, f64::max);
+    let missing = modes
+        .iter()
+        .filter(|mode| mode.frequency < highest && mode.strike != 0.0)
+        .filter(|mode| !pairs.iter().flatten().any(|(met, _)| met.frequency == mode.frequency));
+    let mean = partials.iter().map(weight).sum::<f64>() / partials.len().max(1) as f64;
+    let score = score - 0.08 * mean * missing.count() as f64;
+    Match { body, pairs, score }
+}
+
+/// Finds the body of a family that explains a draft best. None if it has no modes.
+pub(super) fn find(draft: &Draft, family: Family) -> Option<(Patch, Explained)> {
+    let mut partials: Vec<Partial> = draft.partials.iter().copied().filter(|partial| partial.struck).collect();
+    partials.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+    partials.truncate(2 * MODES);
+    let mut best: Option<(&'static str, Match)> = None;
+    for (id, model) in Model::ALL.iter().filter(|(id, _)| family.models().contains(id)) {
+        for body in variants(model) {
+            let ratios: Vec<f64> = body.modes().iter().take(LOWEST).map(|mode| mode.ratio).collect();
+            for partial in partials.iter().take(PLACED) {
+                for ratio in &ratios {
+                    let found = lay(&body, partial.frequency / ratio, &partials);
+                    if best.as_ref().is_none_or(|(_, best)| found.score > best.score) {
+                        best = Some((id, found));
+                    }
+                }
+            }
+        }
+    }
+    let (model, mut found) = best?;
+    let (off, weights) = pairs(&found, &partials).fold((0.0, 0.0), |(off, weights), (partial, _, cents)| {
+        (off + weight(partial) * cents, weights + weight(partial))
+    });
+    let frequency = found.body.frequency() * pow(2.0, off / weights.max(1e-9) / 1200.0);
+    found = lay(&found.body, digits(frequency, 6), &partials);
+    found.body.material.loss = loss(&found, &partials);
+    place(&mut found, &partials);
+    Some((patch(draft, &found, &partials), explained(model, &found, &partials)))
+}
+
+/// Partials with their modes, and the cents between them.
+fn pairs<'a>(found: &'a Match, partials: &'a [Partial]) -> impl Iterator<Item = (&'a Partial, &'a BodyMode, f64)> {
+    let pairs = partials.iter().zip(&found.pairs);
+    pairs.filter_map(|(partial, pair)| pair.as_ref().map(|(mode, cents)| (partial, mode, *cents)))
+}
+
+/// The law of loss that the T60s follow best: `b0 + b1 f` by least squares, each rate as certain as it is large.
+fn loss(found: &Match, partials: &[Partial]) -> Loss {
+    let (mut s, mut sx, mut sy, mut sxx, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (partial, _, _) in pairs(found, partials) {
+        let (x, y) = (partial.frequency, LN_1000 / partial.t60);
+        let w = weight(partial) / (y * y);
+        (s, sx, sy, sxx, sxy) = (s + w, sx + w * x, sy + w * y, sxx + w * x * x, sxy + w * x * y);
+    }
+    if s == 0.0 {
+        return found.body.material.loss;
+    }
+    let determinant = s * sxx - sx * sx;
+    let (mut b0, mut b1) = (sy / s, 0.0);
+    if determinant > 1e-9 * s * sxx {
+        (b0, b1) = ((sxx * sy - sx * sxy) / determinant, (s * sxy - sx * sy) / determinant);
+    }
+    if b1 < 0.0 {
+        (b0, b1) = (sy / s, 0.0);
+    } else if b0 < 0.0 {
+        (b0, b1) = (0.0, sxy / sxx);
+    }
+    Loss { b0: digits(b0, 4), b1: digits(b1, 4), power: 1.0 }
+}
+
+/// Chooses place of the strike and tilt by the levels.
+fn place(found: &mut Match, partials: &[Partial]) {
+    let mut best = (f64::INFINITY, found.body.strike, 0.0);
+    for step in 1..50 {
+        let strike = Point { x: f64::from(step) / 50.0, ..found.body.strike };
+        let modes = Body { strike, tilt: 0.0, ..found.body.clone() }.modes();
+        // Levels in dB that the partials have more than the model, over octaves.
+        let points: Vec<[f64; 3]> = pairs(found, partials)
+            .filter_map(|(partial, met, _)| {
+                let mode = modes.iter().find(|mode| fabs(mode.ratio - met.ratio) < 1e-9 * met.ratio)?;
+                let more = 20.0 * log10(fabs(partial.amplitude) / fabs(mode.level).max(1e-4));
+                Some([log2(mode.ratio), more, weight(partial)])
+            })
+            .collect();
+        let sum = |value: &dyn Fn(&[f64; 3]) -> f64| points.iter().map(|point| point[2] * value(point)).sum::<f64>();
+        let weights = sum(&|_| 1.0).max(1e-12);
+        let (x, y) = (sum(&|point| point[0]) / weights, sum(&|point| point[1]) / weights);
+        let square = sum(&|point| (point[0] - x) * (point[0] - x));
+        let slope = if square > 1e-9 { sum(&|point| (point[0] - x) * (point[1] - y)) / square } else { 0.0 };
+        let tilt = slope.clamp(-24.0, 24.0);
+        let error = sum(&|point| {
+            let off = point[1] - y - tilt * (point[0] - x);
+            off * off
+        });
+        if error < best.0 {
+            best = (error, strike, tilt);
+        }
+    }
+    (found.body.strike, found.body.tilt) = (best.1, digits(best.2, 3));
+}
+
+fn patch(draft: &Draft, found: &Match, partials: &[Partial]) -> Patch {
+    let body = &found.body;
+    let mut patch = Patch { modes: modes_of_body(body), ..draft.patch() };
+    patch.set(Param::Decay, Param::Decay.info().clamp(body.t60() as f32));
+    // Contacts are softer for high modes: the levels of the body are to be what is left.
+    let semitones = 12.0 * log2(body.frequency() / draft.note);
+    let tune = semitones.round().clamp(-48.0, 48.0);
+    patch.set(Param::Tune, tune as f32);
+    patch.set(Param::Fine, Param::Fine.info().clamp(digits(100.0 * (semitones - tune), 4) as f32));
+    let table = patch.modes.as_slice();
+    let energy = |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>();
+    let wanted = energy(&mut partials.iter().map(|partial| partial.amplitude * sqrt(partial.t60)));
+    let seconds = draft.hardness.map(contact_time);
+    let has = energy(&mut table.iter().map(|mode| {
+        let share = seconds.map_or(1.0, |seconds| contact_share(f64::from(mode.ratio) * body.frequency(), seconds));
+        f64::from(mode.level) * share * share_of_mean(mode.pan.into()) * sqrt(f64::from(mode.decay) * body.t60())
+    }));
+    let gain = 10.0 * log10(wanted / has.max(1e-12)) - 20.0 * log10(draft.force());
+    patch.set(Param::Gain, Param::Gain.info().clamp(digits(gain, 4) as f32));
+    patch
+}
+
+fn explained(model: &'static str, found: &Match, partials: &[Partial]) -> Explained {
+    let energy = |partial: &Partial| partial.amplitude * partial.amplitude * partial.t60;
+    let all: f64 = partials.iter().map(energy).sum();
+    let (mut met, mut off, mut weights, mut count) = (0.0, 0.0, 0.0, 0);
+    for (partial, _, cents) in pairs(found, partials) {
+        met += energy(partial);
+        off += weight(partial) * fabs(cents);
+        weights += weight(partial);
+        count += 1;
+    }
+    Explained {
+        model,
+        cents: off / weights.max(1e-12),
+        modes: (count, partials.len()),
+        unexplained_db: 10.0 * log10(((all - met) / all.max(1e-300)).max(1e-12)),
+    }
+}

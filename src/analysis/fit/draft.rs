@@ -1,0 +1,179 @@
+//! A sound as the fit thinks of it, in Hz and amplitudes, and the patch that plays it.
+
+use crate::dsp::pitch::SweepEnvelope;
+use crate::params::{Choice, MalletPulse, NoiseDecay, NoteOff, Param};
+use crate::patch::{Mode, ModeTable, Patch};
+use crate::sound::contact_time;
+use libm::{cos, fabs, log10, pow};
+use std::f64::consts::PI;
+
+/// Most modes of a fit.
+pub(super) const MOST_MODES: usize = 256;
+/// Where the spectrum of a contact has less than this left, its modes are struck no harder: −40 dB.
+const LEAST_OF_CONTACT: f64 = 0.01;
+/// Points at which the spectrum of a contact is summed up.
+const POINTS: usize = 48;
+
+/// A mode of the sound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Partial {
+    /// Hz, after the sweep.
+    pub(super) frequency: f64,
+    /// Seconds.
+    pub(super) t60: f64,
+    /// In the mean of the channels, at the onset; negative for an inverted phase.
+    pub(super) amplitude: f64,
+    /// −1 to 1.
+    pub(super) pan: f64,
+    /// Whether the strike moves it, and not the noise.
+    pub(super) struck: bool,
+}
+
+/// A fall (or rise) of the pitch after the strike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sweep {
+    pub(super) semitones: f64,
+    pub(super) seconds: f64,
+    /// −1 to 1.
+    pub(super) curve: f64,
+}
+
+impl Sweep {
+    pub(super) const NONE: Self = Self { semitones: 0.0, seconds: 0.1, curve: 0.5 };
+
+    pub(super) fn envelope(&self) -> SweepEnvelope {
+        SweepEnvelope::new(self.semitones, self.seconds, self.curve)
+    }
+}
+
+/// The burst of noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Noise {
+    pub(super) seconds: f64,
+    pub(super) attack: f64,
+}
+
+/// All of a sound.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Draft {
+    /// Frequency in Hz of the note that it was recorded on.
+    pub(super) note: f64,
+    /// 0–1.
+    pub(super) velocity: f64,
+    /// How much velocity sets the force, 0–1.
+    pub(super) follow: f64,
+    pub(super) partials: Vec<Partial>,
+    /// Hardness of the mallet, 0–1; none for a strike in a single sample.
+    pub(super) hardness: Option<f64>,
+    pub(super) sweep: Sweep,
+    pub(super) noise: Noise,
+}
+
+/// Share of a strike's force that a mode of a frequency in Hz is given by a contact of so many seconds: the spectrum of the
+/// engine's pulse `u² (1 − u)²` about its middle. It is negative where the pulse pushes more against the wave than with it.
+pub(super) fn contact_share(frequency: f64, seconds: f64) -> f64 {
+    let phase = 2.0 * PI * frequency * seconds;
+    let point = |n: usize| {
+        let u = (n as f64 + 0.5) / POINTS as f64;
+        30.0 * u * u * (1.0 - u) * (1.0 - u) * cos(phase * (u - 0.5))
+    };
+    // More than half a turn from point to point cannot be summed up; by then nothing is left.
+    if phase > PI * POINTS as f64 { 0.0 } else { (0..POINTS).map(point).sum::<f64>() / POINTS as f64 }
+}
+
+/// What a pan does to the mean of both channels: the engine's pan law has constant power.
+pub(super) fn share_of_mean(pan: f64) -> f64 {
+    0.5 * (libm::sqrt(1.0 - pan) + libm::sqrt(1.0 + pan))
+}
+
+impl Partial {
+    /// The frequency in Hz at which it has the middle of its energy, since a sweep moves it.
+    pub(super) fn heard_at(&self, sweep: &Sweep) -> f64 {
+        self.frequency * speed(sweep, self.t60)
+    }
+}
+
+/// How much higher than at its end a sweep has the middle of the energy of a mode, by its T60 in seconds.
+pub(super) fn speed(sweep: &Sweep, t60: f64) -> f64 {
+    // The squared amplitude falls by 120 dB in a T60: its mean time is T60 / ln 10⁶.
+    if sweep.semitones == 0.0 { 1.0 } else { pow(2.0, sweep.envelope().at(t60 / 13.8) / 12.0) }
+}
+
+impl Draft {
+    /// The partial that the ear takes the most of: energy over all of its decay.
+    pub(super) fn main(&self) -> Option<&Partial> {
+        let energy = |partial: &&Partial| partial.amplitude * partial.amplitude * partial.t60;
+        self.partials.iter().max_by(|a, b| energy(a).total_cmp(&energy(b)))
+    }
+
+    /// The force of its strike, 0–1.
+    pub(super) fn force(&self) -> f64 {
+        pow(self.velocity, 2.0 * self.follow)
+    }
+
+    /// Amplitude over the force of a strike of amplitude 1, before pan.
+    fn demand(&self, partial: &Partial) -> f64 {
+        let share = match self.hardness {
+            Some(hardness) if partial.struck => {
+                let share = contact_share(partial.frequency, contact_time(hardness));
+                if share < 0.0 { share.min(-LEAST_OF_CONTACT) } else { share.max(LEAST_OF_CONTACT) }
+            }
+            _ => 1.0,
+        };
+        partial.amplitude / (share * share_of_mean(partial.pan))
+    }
+
+    /// The patch that plays it. Allocates.
+    pub(super) fn patch(&self) -> Patch {
+        let main = self.main().map_or(1.0, |partial| partial.t60);
+        let [decay_info, gain_info] = [Param::Decay, Param::Gain].map(Param::info);
+        let decay = main.clamp(decay_info.min.into(), decay_info.max.into());
+        let force = self.force();
+        let demands: Vec<f64> = self.partials.iter().map(|partial| self.demand(partial) / force).collect();
+        let total: f64 = demands.iter().map(|demand| fabs(*demand)).sum::<f64>().max(1e-9);
+        let gain_db = (20.0 * log10(total)).clamp(gain_info.min.into(), gain_info.max.into());
+        let gain = pow(10.0, gain_db / 20.0);
+        let mode = |(partial, demand): (&Partial, &f64)| {
+            let mode = Mode {
+                ratio: digits(partial.frequency / self.note, 7) as f32,
+                level: digits(demand / gain, 4) as f32,
+                decay: digits(partial.t60 / decay, 4) as f32,
+                strike: if partial.struck { 1.0 } else { 0.0 },
+                pan: digits(partial.pan, 2) as f32,
+            };
+            mode.clamped()
+        };
+        let modes: Vec<Mode> = self.partials.iter().zip(&demands).map(mode).collect();
+        let mut patch = Patch { modes: ModeTable::new(&modes), ..Patch::default() };
+        let mut set = |param: Param, value: f64| {
+            let info = param.info();
+            patch.set(param, info.clamp(digits(value, 5) as f32));
+        };
+        set(Param::Decay, decay);
+        set(Param::Gain, (gain_db * 100.0).round() / 100.0);
+        set(Param::Velocity, (100.0 * self.follow).round());
+        set(Param::NoteOff, f64::from(NoteOff::Ring.value()));
+        set(Param::NoiseTime, self.noise.seconds);
+        set(Param::NoiseAttack, self.noise.attack);
+        set(Param::NoiseDecay, f64::from(NoiseDecay::Quadratic.value()));
+        if let Some(hardness) = self.hardness {
+            set(Param::MalletPulse, f64::from(MalletPulse::Contact.value()));
+            set(Param::MalletHardness, 100.0 * hardness);
+        }
+        if self.sweep.semitones != 0.0 {
+            set(Param::Sweep, self.sweep.semitones);
+            set(Param::SweepTime, self.sweep.seconds);
+            set(Param::SweepCurve, 100.0 * self.sweep.curve);
+        }
+        patch
+    }
+}
+
+/// A number rounded to so many significant digits.
+pub(super) fn digits(value: f64, digits: i32) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    let scale = pow(10.0, f64::from(digits - 1) - libm::floor(log10(fabs(value))));
+    (value * scale).round() / scale
+}

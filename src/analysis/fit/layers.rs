@@ -1,0 +1,101 @@
+//! Several takes of one instrument: how its sound follows velocity and key.
+
+use super::draft::Draft;
+use crate::params::Param;
+use crate::patch::Patch;
+use crate::patch::routes::Source;
+use crate::units::key_from_frequency;
+use libm::log;
+
+/// Semitones within which two takes are of one key.
+const SAME_KEY: f64 = 0.5;
+/// Places of the routes: those of a new patch are behind them.
+const HARDNESS_ROUTE: usize = 0;
+const DECAY_ROUTE: usize = 1;
+
+/// A take's draft and what was measured of it.
+pub(super) struct Layer {
+    pub(super) draft: Draft,
+    /// RMS of its first 50 ms.
+    pub(super) level: f64,
+}
+
+impl Layer {
+    fn key(&self) -> f64 {
+        key_from_frequency(self.draft.note, 440.0)
+    }
+
+    fn t60(&self) -> f64 {
+        self.draft.main().map_or(1.0, |partial| partial.t60)
+    }
+}
+
+/// The take that the others are compared with: nearest to the middle of the keys, and the loudest of these.
+pub(super) fn base(layers: &[Layer]) -> usize {
+    let middle = layers.iter().map(Layer::key).sum::<f64>() / layers.len().max(1) as f64;
+    let distance = |layer: &Layer| (layer.key() - middle).abs();
+    let order = |a: &usize, b: &usize| {
+        let (a, b) = (&layers[*a], &layers[*b]);
+        let nearer = distance(a).total_cmp(&distance(b));
+        if (distance(a) - distance(b)).abs() < SAME_KEY {
+            b.draft.velocity.total_cmp(&a.draft.velocity)
+        } else {
+            nearer
+        }
+    };
+    (0..layers.len()).min_by(order).unwrap_or(0)
+}
+
+/// How much velocity sets the force, 0–1: amplitude goes with velocity to the power of twice that. 1 without layers of a key.
+pub(super) fn follow(layers: &[Layer], base: usize) -> f64 {
+    let points = of_the_key(layers, base).map(|layer| (log(layer.draft.velocity), log(layer.level.max(1e-9))));
+    slope(points).map_or(1.0, |slope| (0.5 * slope).clamp(0.0, 1.0))
+}
+
+fn of_the_key(layers: &[Layer], base: usize) -> impl Iterator<Item = &Layer> {
+    let key = layers[base].key();
+    layers.iter().filter(move |layer| (layer.key() - key).abs() < SAME_KEY)
+}
+
+/// Adds the routes that make the patch of layer `base` follow velocity and key as the layers do.
+pub(super) fn route(mut patch: Patch, layers: &[Layer], base: usize) -> Patch {
+    let own = &layers[base];
+    let hardnesses = of_the_key(layers, base).filter_map(|layer| Some((layer.draft.velocity, layer.draft.hardness?)));
+    if let (Some(hardness), Some(slope)) = (own.draft.hardness, slope(hardnesses)) {
+        // In travel of the knob, 0 to 100 %.
+        let slope = slope.clamp(0.0, 1.0);
+        let softest = (hardness - slope * own.draft.velocity).clamp(0.0, 1.0);
+        let amount = rounded(100.0 * (hardness - softest) / own.draft.velocity);
+        if amount > 0.0 {
+            patch.set(Param::MalletHardness, rounded(100.0 * softest));
+            patch = patch.with_route(HARDNESS_ROUTE, Source::Velocity, Param::MalletHardness, amount);
+        }
+    }
+    let decays = layers.iter().map(|layer| ((layer.key() - 60.0) / 60.0, log(layer.t60())));
+    if let Some(slope) = slope(decays) {
+        let info = Param::Decay.info();
+        let travel = log(f64::from(info.max) / f64::from(info.min));
+        let amount = rounded((100.0 * slope / travel).clamp(-100.0, 100.0));
+        let at_c4 = own.t60() * libm::exp(-0.01 * f64::from(amount) * travel * (own.key() - 60.0) / 60.0);
+        if amount != 0.0 {
+            patch.set(Param::Decay, info.clamp(at_c4 as f32));
+            patch = patch.with_route(DECAY_ROUTE, Source::Key, Param::Decay, amount);
+        }
+    }
+    patch
+}
+
+fn rounded(value: f64) -> f32 {
+    ((value * 100.0).round() / 100.0) as f32
+}
+
+/// The slope of a line through some points; none if they do not differ in `x`.
+fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let points: Vec<(f64, f64)> = points.collect();
+    let count = points.len() as f64;
+    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));
+    let (product, square) = points.iter().fold((0.0, 0.0), |(product, square), point| {
+        (product + (point.0 - x) * (point.1 - y), square + (point.0 - x) * (point.0 - x))
+    });
+    (square > 1e-4).then(|| product / square)
+}

@@ -1,0 +1,179 @@
+//! A recording of a struck sound becomes a preset that plays it over the keyboard.
+//!
+//! The sweep of the pitch is found and taken out; what then stands still is taken apart into modes; what they leave becomes a
+//! bed of modes that noise moves; hardness of the mallet, length of the noise, levels and decays are corrected by playing the
+//! draft and comparing it with the recording, band by band ([`super::log_mel`]).
+
+mod audition;
+mod bed;
+mod body;
+mod draft;
+mod improve;
+mod layers;
+mod pitch;
+mod refine;
+pub mod report;
+mod start;
+mod sweep;
+mod take;
+
+pub use body::{Explained, Family};
+pub use take::{Take, VELOCITY};
+
+use super::log_mel::{self, RATE};
+use super::modes::Strike;
+use crate::error::{Error, Result};
+use crate::patch::Patch;
+use crate::preset::Preset;
+use crate::units::{key_from_frequency, note_name};
+use audition::Audition;
+use draft::MOST_MODES;
+use layers::Layer;
+use take::Prepared;
+
+/// Frequency in Hz of A4 in a new patch.
+const A4: f64 = 440.0;
+
+/// How to fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Most modes of the sound, 1–256; those of the bed that noise moves are among them.
+    pub most_modes: usize,
+    /// What the modes are to be explained by.
+    pub family: Family,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { most_modes: 192, family: Family::Table }
+    }
+}
+
+/// What recordings became.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The patch.
+    pub patch: Patch,
+    /// The place of the take whose sound the patch has; velocity and key tracking are those of all.
+    pub base: usize,
+    /// The key that this take was recorded on, as a fractional MIDI key: its own, or the estimated one.
+    pub key: f64,
+    /// Whether the key was estimated.
+    pub is_estimated: bool,
+    /// Distance of the patch's sound from each recording in dB ([`super::log_mel::distance`]).
+    pub distances: Vec<f64>,
+    /// The base take from its onset on, at [`super::log_mel::RATE`], a list per channel.
+    pub recording: Vec<Vec<f32>>,
+    /// The same of the patch, left and right.
+    pub played: [Vec<f32>; 2],
+    /// The strike that the modes were found in, if any were: its frequencies are those after the sweep.
+    pub strike: Option<Strike>,
+    /// How well a body explains the modes, if one was asked for.
+    pub explained: Option<Explained>,
+    /// What is doubtful.
+    pub warnings: Vec<String>,
+}
+
+/// Fits recordings of one instrument: several takes of a key give its response to velocity, several keys that of the decay to the
+/// key. `progress` is told the share of the work that is done, and ends it by `false`. Not real-time safe: a take needs some
+/// seconds.
+///
+/// # Errors
+/// [`Error::Value`] without takes, [`Error::Format`] for one that is silent, too short or not finite, or has no modes where a body
+/// is asked for; [`Error::Interrupted`].
+///
+/// ```no_run
+/// use sprung::analysis::fit::{Settings, Take, VELOCITY, fit};
+/// use sprung::io::sound_file;
+/// use std::fs::File;
+///
+/// # fn main() -> sprung::Result<()> {
+/// let file = File::open("marimba.wav").map_err(|error| sprung::Error::io("marimba.wav", error))?;
+/// let recording = sound_file::read(file, "marimba.wav")?;
+/// let take = Take { name: "marimba.wav".to_owned(), recording, key: Some(60.0), velocity: VELOCITY };
+/// let fitted = fit(&[take], &Settings::default(), &mut |_| true)?;
+/// println!("{:.1} dB off", fitted.distances[0]);
+/// print!("{}", fitted.preset("Marimba", "Fitted to marimba.wav.").to_toml());
+/// # Ok(())
+/// # }
+/// ```
+pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) -> bool) -> Result<Fitted> {
+    if takes.is_empty() {
+        return Err(Error::value("recordings", "there are none: expected at least one"));
+    }
+    let prepared: Vec<Prepared> = takes.iter().map(Prepared::new).collect::<Result<_>>()?;
+    let count = takes.len() as f64;
+    let mut fits = Vec::new();
+    for (n, take) in prepared.iter().enumerate() {
+        let most = settings.most_modes.clamp(1, MOST_MODES);
+        fits.push(improve::fit(take, most, &mut |share| progress((n as f64 + share) / count))?);
+    }
+    let layer =
+        |((draft, _), take): (&(draft::Draft, _), &Prepared)| Layer { draft: draft.clone(), level: take.level() };
+    let mut layers: Vec<Layer> = fits.iter().zip(&prepared).map(layer).collect();
+    let base = layers::base(&layers);
+    let follow = layers::follow(&layers, base);
+    layers[base].draft.follow = follow;
+    let (take, draft) = (&prepared[base], layers[base].draft.clone());
+    let (patch, explained) = match settings.family {
+        Family::Table => (draft.patch(), None),
+        family => body::find(&draft, family).map(|(patch, explained)| (patch, Some(explained))).ok_or_else(|| {
+            Error::format(
+                &takes[base].name,
+                "no mode rings in it: expected a sound that a body can explain, or the body table",
+            )
+        })?,
+    };
+    let patch = layers::route(patch, &layers, base);
+    let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
+    let played = audition.play(&patch, key, draft.velocity, take.mean.len());
+    let distance = |(layer, take): (&Layer, &Prepared)| {
+        let key = key_from_frequency(layer.draft.note, A4);
+        log_mel::distance(&audition.mean(&patch, key, take.velocity, take.mean.len()), &take.mean)
+    };
+    let distances = layers.iter().zip(&prepared).map(distance).collect();
+    let mut warnings: Vec<String> = prepared.iter().filter_map(|take| take.warning.clone()).collect();
+    if draft.partials.iter().all(|partial| !partial.struck) {
+        let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
+        warnings.push(format!("{}: {message}", takes[base].name));
+    }
+    Ok(Fitted {
+        patch,
+        base,
+        key,
+        is_estimated: take.key.is_none(),
+        distances,
+        recording: take.channels.clone(),
+        played,
+        strike: fits.swap_remove(base).1,
+        explained,
+        warnings,
+    })
+}
+
+impl Fitted {
+    /// The preset. Allocates.
+    pub fn preset(&self, name: &str, comment: &str) -> Preset {
+        Preset {
+            name: name.to_owned(),
+            author: String::new(),
+            tags: vec!["fitted".to_owned()],
+            comment: comment.to_owned(),
+            patch: self.patch.clone(),
+            tuning: None,
+        }
+    }
+
+    /// The key as musicians write it: `C4`, or `C4 +13 ct` where it lies between two.
+    pub fn key_name(&self) -> String {
+        let nearest = self.key.round().clamp(0.0, 127.0);
+        let cents = (100.0 * (self.key - nearest)).round();
+        let name = note_name(nearest as u8);
+        if cents == 0.0 { name } else { format!("{name} {cents:+} ct") }
+    }
+
+    /// Sample rate in Hz of its sounds.
+    pub fn sample_rate(&self) -> f64 {
+        RATE.into()
+    }
+}

@@ -1,0 +1,63 @@
+//! The pitch of a sound by its modes.
+
+use super::draft::Partial;
+use libm::{fabs, log2, sqrt};
+
+/// Frequency in Hz of a sound that has no modes: C4.
+pub(super) const DEFAULT: f64 = 261.625_565_300_598_6;
+/// Lowest and highest pitch in Hz.
+const RANGE: (f64, f64) = (25.0, 6000.0);
+/// Cents by which a partial may be off its harmonic.
+const NEAR: f64 = 35.0;
+/// Harmonics that are looked at.
+const HARMONICS: f64 = 12.0;
+/// Weight of harmonics against the mode itself.
+const SERIES: f64 = 0.7;
+
+/// How much the ear takes of a mode: the longer it rings the more, up to half a second or so.
+fn weight(partial: &Partial) -> f64 {
+    fabs(partial.amplitude) * sqrt(partial.t60.min(0.6))
+}
+
+/// The frequency in Hz that is heard as the pitch: of the mode that, with those that are its harmonics, is the strongest. A bar
+/// or a bell has the pitch of one mode, and a string that of its lowest.
+pub(super) fn estimate(partials: &[Partial]) -> f64 {
+    let score = |candidate: &Partial| {
+        let mut sum = weight(candidate);
+        for other in partials.iter().filter(|other| other.frequency > 1.5 * candidate.frequency) {
+            let ratio = other.frequency / candidate.frequency;
+            let harmonic = ratio.round();
+            if harmonic <= HARMONICS && fabs(1200.0 * log2(ratio / harmonic)) < NEAR {
+                sum += SERIES * weight(other) / sqrt(harmonic);
+            }
+        }
+        sum
+    };
+    let heard = partials.iter().filter(|partial| (RANGE.0..=RANGE.1).contains(&partial.frequency));
+    heard.max_by(|a, b| score(a).total_cmp(&score(b))).map_or(DEFAULT, |partial| partial.frequency)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn partials(list: &[(f64, f64, f64)]) -> Vec<Partial> {
+        let partial = |(frequency, amplitude, t60): &(f64, f64, f64)| Partial {
+            frequency: *frequency,
+            t60: *t60,
+            amplitude: *amplitude,
+            pan: 0.0,
+            struck: true,
+        };
+        list.iter().map(partial).collect()
+    }
+
+    #[test]
+    fn strings_and_bars_have_the_pitch_that_is_heard() {
+        let string = partials(&[(110.0, 0.2, 2.0), (220.2, 0.25, 1.5), (330.5, 0.1, 1.0), (441.0, 0.1, 0.8)]);
+        assert_eq!(estimate(&string), 110.0);
+        let marimba = partials(&[(261.6, 0.5, 0.8), (1046.0, 0.3, 0.2), (2600.0, 0.2, 0.05), (90.0, 0.02, 0.05)]);
+        assert_eq!(estimate(&marimba), 261.6);
+        assert_eq!(estimate(&[]), DEFAULT);
+    }
+}

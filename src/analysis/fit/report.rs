@@ -1,0 +1,122 @@
+//! Writes a fit as one HTML file that works offline: both sounds to hear and to see, and their modes side by side.
+
+use super::Fitted;
+use crate::analysis::figure::Render;
+use crate::analysis::figure::sound::{DrawnMode, SoundFigure, modes_of};
+use crate::analysis::modes::Mode;
+use crate::error::Result;
+use crate::figure::number::measured;
+use crate::figure::page::{STYLE, data_link, escaped, fill};
+use crate::units::frequency_from_key;
+use libm::{fabs, log2};
+
+const PAGE: &str = include_str!("report.html");
+
+/// Cents within which a mode of the preset is one of the recording.
+const NEAR: f64 = 50.0;
+
+/// Makes the page. `title` is what it is called.
+///
+/// # Errors
+/// [`Error::Format`](crate::Error::Format) if a figure cannot be drawn.
+pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
+    let modes = modes_of(&fitted.patch, frequency_from_key(fitted.key, super::A4));
+    // One channel stands for both.
+    let first = fitted.recording.first().map_or(&[][..], Vec::as_slice);
+    let last = fitted.recording.last().map_or(&[][..], Vec::as_slice);
+    let [left, right] = &fitted.played;
+    let figure = |title, left, right, modes| {
+        let render = Render { left, right, sample_rate: fitted.sample_rate() };
+        Ok(data_link("image/png", &SoundFigure { title, render, modes, cell: 1 }.bytes("png")?))
+    };
+    let figures: [Result<String>; 2] = [figure("Recording", first, last, &[]), figure("Preset", left, right, &modes)];
+    let [recording, preset] = figures;
+    let (recording, preset) = (recording?, preset?);
+    Ok(fill(PAGE, |name| match name {
+        "style" => STYLE.to_owned(),
+        "title" => escaped(title),
+        "summary" => escaped(&summary(fitted)),
+        "recording" => data_link("audio/wav", &wav([first, last], fitted.sample_rate() as u32)),
+        "preset" => data_link("audio/wav", &wav([left, right], fitted.sample_rate() as u32)),
+        "recording-figure" => recording.clone(),
+        "preset-figure" => preset.clone(),
+        "note" => escaped(&note(fitted, &modes)),
+        _ => rows(fitted, &modes),
+    }))
+}
+
+/// What came of the fit, in a few sentences.
+pub fn summary(fitted: &Fitted) -> String {
+    let noisy = fitted.patch.modes.as_slice().iter().filter(|mode| mode.strike < 0.5).count();
+    let struck = fitted.patch.modes.as_slice().len() - noisy;
+    let key = if fitted.is_estimated { "estimated as " } else { "" };
+    let mut text = format!(
+        "Key {key}{} ({} Hz), {struck} modes that are struck and {noisy} that noise moves, {:.2} dB from the recording.",
+        fitted.key_name(),
+        measured(frequency_from_key(fitted.key, super::A4)),
+        fitted.distances[fitted.base],
+    );
+    if let Some(explained) = &fitted.explained {
+        text += &format!(
+            " As a {}: {} of {} modes are its own, {:.1} cents off on average; {:.1} dB of their energy remain unexplained.",
+            explained.model.replace('_', " "),
+            explained.modes.0,
+            explained.modes.1,
+            explained.cents,
+            explained.unexplained_db
+        );
+    }
+    text
+}
+
+fn note(fitted: &Fitted, modes: &[DrawnMode]) -> String {
+    let mut text = "Modes of the recording with the nearest ones of the preset.".to_owned();
+    match &fitted.strike {
+        Some(strike) => text += &format!(" They leave {:.1} dB of the recording unexplained", strike.residual_db),
+        None => text += " The recording has none",
+    }
+    text + &format!("; the preset's other modes ({} in all) fill up its bands.", modes.len())
+}
+
+fn rows(fitted: &Fitted, modes: &[DrawnMode]) -> String {
+    let row = |mode: &Mode| {
+        let cents = |other: &&DrawnMode| 1200.0 * log2(other.frequency / mode.frequency);
+        let nearest = modes.iter().min_by(|a, b| fabs(cents(a)).total_cmp(&fabs(cents(b))));
+        let (frequency, off, t60) = match nearest.filter(|other| fabs(cents(other)) < NEAR) {
+            Some(other) => (format!("{:.2}", other.frequency), format!("{:+.1}", cents(&other)), measured(other.t60)),
+            None => ("–".to_owned(), "–".to_owned(), "–".to_owned()),
+        };
+        format!(
+            "<tr><th scope=\"row\">{:.2}</th><td>{frequency}</td><td>{off}</td><td>{}</td><td>{t60}</td><td>{:.1}</td><td>{:.0}</td></tr>\n",
+            mode.frequency,
+            measured(mode.t60),
+            mode.level_db,
+            mode.snr_db
+        )
+    };
+    fitted.strike.iter().flat_map(|strike| &strike.modes).map(row).collect()
+}
+
+/// A WAV file in memory, of 16 bits.
+fn wav([left, right]: [&[f32]; 2], sample_rate: u32) -> Vec<u8> {
+    let bytes = 4 * left.len().min(right.len()) as u32;
+    let mut file = Vec::with_capacity(44 + bytes as usize);
+    file.extend(b"RIFF");
+    file.extend((36 + bytes).to_le_bytes());
+    file.extend(b"WAVEfmt ");
+    file.extend(16_u32.to_le_bytes());
+    // PCM, two channels.
+    file.extend([1, 0, 2, 0]);
+    file.extend(sample_rate.to_le_bytes());
+    file.extend((4 * sample_rate).to_le_bytes());
+    // Bytes of a frame, bits of a sample.
+    file.extend([4, 0, 16, 0]);
+    file.extend(b"data");
+    file.extend(bytes.to_le_bytes());
+    for pair in left.iter().zip(right) {
+        for sample in [pair.0, pair.1] {
+            file.extend(((sample.clamp(-1.0, 1.0) * 32_767.0).round() as i16).to_le_bytes());
+        }
+    }
+    file
+}

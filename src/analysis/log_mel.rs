@@ -1,0 +1,186 @@
+//! Spectra as the ear groups them, in 48 mel bands over time, and the distance of two sounds in them.
+
+use super::level::SILENCE_DB;
+use libm::{cos, log10, pow};
+use realfft::{RealFftPlanner, RealToComplex, num_complex::Complex};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Sample rate in Hz of the sounds that are measured.
+pub const RATE: u32 = 44_100;
+/// Number of bands.
+pub const BANDS: usize = 48;
+/// Samples of a window, and from one window to the next.
+pub const WINDOW: usize = 2048;
+/// See [`WINDOW`].
+pub const HOP: usize = 256;
+/// Range of levels in dB below the loudest band that counts.
+pub const SPAN_DB: f64 = 60.0;
+/// Highest frequency in Hz.
+const HIGHEST: f64 = 20_000.0;
+/// A sound begins at its first sample above this share of its peak.
+const AUDIBLE: f32 = 0.01;
+
+/// Levels in dB of each band, a list per window; the first window is centred on the first sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LogMel {
+    /// The windows.
+    pub columns: Vec<[f64; BANDS]>,
+}
+
+/// A planned measurement. Not real-time safe.
+pub struct MelBands {
+    fft: Arc<dyn RealToComplex<f64>>,
+    window: Vec<f64>,
+    input: Vec<f64>,
+    output: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+    /// For each band its first bin, and the weights from there.
+    filters: Vec<(usize, Vec<f64>)>,
+}
+
+/// Mel of a frequency in Hz (O'Shaughnessy, "Speech Communication", 1987).
+fn mel(frequency: f64) -> f64 {
+    2595.0 * log10(1.0 + frequency / 700.0)
+}
+
+/// The frequency in Hz of the edge before band `edge`; a band reaches from its edge to the next but one.
+fn edge(edge: usize) -> f64 {
+    700.0 * (pow(10.0, mel(HIGHEST) * edge as f64 / (BANDS + 1) as f64 / 2595.0) - 1.0)
+}
+
+/// The frequency in Hz at which a band weighs most.
+pub fn centre(band: usize) -> f64 {
+    edge(band + 1)
+}
+
+/// The weights of a frequency in Hz in the bands: at most two are not 0.
+pub fn weights(frequency: f64) -> [f64; BANDS] {
+    std::array::from_fn(|band| {
+        let (low, middle, high) = (edge(band), edge(band + 1), edge(band + 2));
+        let rise = (frequency - low) / (middle - low);
+        let fall = (high - frequency) / (high - middle);
+        rise.min(fall).max(0.0)
+    })
+}
+
+impl Default for MelBands {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl MelBands {
+    /// Plans the measurement: Hann windows, triangular bands.
+    pub fn new() -> Self {
+        let fft = RealFftPlanner::new().plan_fft_forward(WINDOW);
+        let bin_width = f64::from(RATE) / WINDOW as f64;
+        let all: Vec<[f64; BANDS]> = (0..=WINDOW / 2).map(|bin| weights(bin as f64 * bin_width)).collect();
+        let filter = |band: usize| {
+            let weight = |bin: usize| all[bin][band];
+            let first = (0..all.len()).find(|bin| weight(*bin) > 0.0).unwrap_or(0);
+            (first, (first..all.len()).map(weight).take_while(|weight| *weight > 0.0).collect())
+        };
+        let hann = |n: usize| 0.5 - 0.5 * cos(2.0 * PI * n as f64 / WINDOW as f64);
+        Self {
+            window: (0..WINDOW).map(hann).collect(),
+            input: fft.make_input_vec(),
+            output: fft.make_output_vec(),
+            scratch: fft.make_scratch_vec(),
+            filters: (0..BANDS).map(filter).collect(),
+            fft,
+        }
+    }
+
+    /// Measures samples at [`RATE`]. A sine of full scale in the middle of a band shows about 0 dB.
+    pub fn measure(&mut self, samples: &[f32]) -> LogMel {
+        let scale = 2.0 / self.window.iter().sum::<f64>();
+        let mut columns = Vec::with_capacity(samples.len() / HOP + 1);
+        for middle in (0..samples.len().max(1)).step_by(HOP) {
+            for (n, (input, window)) in self.input.iter_mut().zip(&self.window).enumerate() {
+                let sample = (middle + n).checked_sub(WINDOW / 2).and_then(|at| samples.get(at));
+                *input = window * f64::from(sample.copied().unwrap_or(0.0));
+            }
+            let done = self.fft.process_with_scratch(&mut self.input, &mut self.output, &mut self.scratch);
+            done.expect("the buffers are the transform's own");
+            columns.push(std::array::from_fn(|band| {
+                let (first, weights) = &self.filters[band];
+                let bins = self.output[*first..].iter().zip(weights);
+                let power: f64 = bins.map(|(bin, weight)| weight * bin.norm_sqr()).sum();
+                (10.0 * log10(power * scale * scale)).max(SILENCE_DB)
+            }));
+        }
+        LogMel { columns }
+    }
+}
+
+impl LogMel {
+    /// The loudest band of all windows, in dB.
+    pub fn loudest(&self) -> f64 {
+        self.columns.iter().flatten().copied().fold(SILENCE_DB, f64::max)
+    }
+
+    /// Mean difference from another sound in dB, over all bands and windows in which one of both is within [`SPAN_DB`] of the
+    /// loudest of both; what is below counts as being there. 0 for two silences.
+    pub fn distance(&self, other: &LogMel) -> f64 {
+        let floor = self.loudest().max(other.loudest()) - SPAN_DB;
+        let silence = [SILENCE_DB; BANDS];
+        let (mut sum, mut count) = (0.0, 0);
+        for n in 0..self.columns.len().max(other.columns.len()) {
+            let [a, b] = [self, other].map(|sound| sound.columns.get(n).unwrap_or(&silence));
+            for (a, b) in a.iter().zip(b).filter(|(a, b)| a.max(**b) > floor) {
+                sum += (a.max(floor) - b.max(floor)).abs();
+                count += 1;
+            }
+        }
+        if count == 0 { 0.0 } else { sum / f64::from(count) }
+    }
+}
+
+/// The samples from the first one on that is above 1 % of the peak.
+pub fn from_onset(samples: &[f32]) -> &[f32] {
+    let peak = samples.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+    let onset = samples.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0);
+    &samples[onset..]
+}
+
+/// Distance in dB of two sounds at [`RATE`], each from its onset on: see [`LogMel::distance`].
+pub fn distance(first: &[f32], second: &[f32]) -> f64 {
+    let mut bands = MelBands::new();
+    let [first, second] = [first, second].map(|samples| bands.measure(from_onset(samples)));
+    first.distance(&second)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine(frequency: f64, amplitude: f64, len: usize) -> Vec<f32> {
+        let sample = |n: usize| amplitude * libm::sin(2.0 * PI * frequency * n as f64 / f64::from(RATE));
+        (0..len).map(|n| sample(n) as f32).collect()
+    }
+
+    #[test]
+    fn a_sine_stands_in_its_band() {
+        for band in [2, 20, 40] {
+            let sound = MelBands::new().measure(&sine(centre(band), 0.1, 8192));
+            let column = sound.columns[16];
+            let loudest = (0..BANDS).max_by(|a, b| column[*a].total_cmp(&column[*b])).unwrap();
+            assert!(loudest == band && (column[band] + 20.0).abs() < 3.0, "{band}: {column:?}");
+        }
+        assert_eq!(weights(30_000.0), [0.0; BANDS]);
+        assert!((weights(1234.0).iter().sum::<f64>() - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_change_of_level_is_the_distance_and_a_shift_is_none() {
+        let sound = sine(1000.0, 0.5, 20_000);
+        let louder: Vec<f32> = sound.iter().map(|sample| 1.122_018_5 * sample).collect();
+        let found = distance(&sound, &louder);
+        assert!((0.9..=1.0 + 1e-6).contains(&found), "{found}");
+        let late: Vec<f32> = std::iter::repeat_n(0.0, 1000).chain(sound.iter().copied()).collect();
+        assert!(distance(&sound, &late) < 1e-9);
+        assert!(distance(&sound, &sine(3000.0, 0.5, 20_000)) > 10.0);
+        assert_eq!(distance(&[], &[0.0; 100]), 0.0);
+    }
+}

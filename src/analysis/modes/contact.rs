@@ -1,0 +1,132 @@
+//! When the exciter of a strike has let go.
+//!
+//! Modes that ring freely are predicted by what they did before (linear prediction; Makhoul 1975): `M` modes exactly by
+//! `2M` samples. What a mallet or a burst of noise adds is not. So the exciter is at work wherever the error of the best
+//! prediction is much larger than soon after.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// Samples that the next one is predicted from.
+const ORDER: usize = 160;
+/// Seconds of the strike that predictions are fitted to.
+const FITTED: f64 = 0.2;
+/// Seconds within which exciters let go.
+const LONGEST: f64 = 0.06;
+/// Seconds of a block whose error is looked at.
+const BLOCK: f64 = 0.0005;
+/// Blocks around a block over which the level of the sound is measured.
+const AROUND: usize = 5;
+/// Blocks after which, and over which, an error is compared with what follows.
+const PAUSE: usize = 2;
+const FOLLOWING: usize = 6;
+/// Error in energy over that of later, relative to the sound: 15 dB.
+const STANDS_OUT: f64 = 30.0;
+/// Error in energy over what follows: 6 dB. Modes that are not predicted fall more slowly.
+const FALLS: f64 = 4.0;
+/// Predictions that are fitted one after the other.
+const ROUNDS: usize = 4;
+/// Energy of a block relative to the loudest one, below which there is silence.
+const FAINTEST: f64 = 1e-9;
+/// Samples whose products are added up at a time.
+const ROWS: usize = 1024;
+/// Ridge of the normal equations, relative to their diagonal.
+const RIDGE: f64 = 1e-12;
+
+/// Samples after the first one at which the modes ring by themselves; 0 if they do from the beginning.
+pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
+    let block = ((BLOCK * sample_rate) as usize).max(8);
+    let samples = &samples[..samples.len().min((FITTED * sample_rate) as usize)];
+    let (blocks, latest) = (samples.len() / block, (LONGEST / BLOCK) as usize);
+    if samples.len() < 4 * ORDER || blocks < 2 * latest {
+        return 0;
+    }
+    let energies = |values: &[f64]| -> Vec<f64> {
+        values.chunks_exact(block).map(|block| block.iter().map(|x| x * x).sum::<f64>().max(1e-300)).collect()
+    };
+    let sound = energies(samples);
+    // Where the sound is over, rounding alone is left.
+    let least = FAINTEST * sound.iter().copied().fold(0.0, f64::max);
+    let levels: Vec<f64> = (0..blocks)
+        .map(|index| {
+            let around = &sound[index.saturating_sub(AROUND)..(index + AROUND + 1).min(blocks)];
+            (around.iter().sum::<f64>() / around.len() as f64).max(least)
+        })
+        .collect();
+    let mut weights: Vec<f64> = levels.iter().map(|level| 1.0 / level).collect();
+    let mut work = None;
+    for _ in 0..ROUNDS {
+        let Some(errors) = errors(samples, |n| weights[(n / block).min(blocks - 1)]) else { return 0 };
+        let errors = energies(&errors);
+        let mut later: Vec<f64> = (latest..blocks).map(|index| errors[index] / levels[index]).collect();
+        let middle = later.len() / 2;
+        let median = *later.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let at_work = |index: &usize| {
+            let following = &errors[index + PAUSE..index + PAUSE + FOLLOWING];
+            let mean = following.iter().sum::<f64>() / following.len() as f64;
+            errors[*index] > FALLS * mean && errors[*index] > STANDS_OUT * median * levels[*index]
+        };
+        let last = (0..latest).rfind(at_work);
+        if last == work {
+            break;
+        }
+        work = last;
+        // What is not predicted well is no part of what the prediction is fitted to.
+        let weight = |(error, level): (&f64, &f64)| 1.0 / error.max(1e-12 * level);
+        weights = errors.iter().zip(&levels).map(weight).collect();
+    }
+    work.map_or(0, |index| (index + 1) * block)
+}
+
+/// Errors of the linear prediction whose squares, weighted by `weight` of each sample, have the least sum; silence is
+/// before the first sample.
+fn errors(samples: &[f64], weight: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
+    let past = |n: usize, lag: usize| n.checked_sub(lag).map_or(0.0, |n| samples[n]);
+    // Lag 0 is the sample that is predicted.
+    let mut products = DMatrix::<f64>::zeros(ORDER + 1, ORDER + 1);
+    for from in (0..samples.len()).step_by(ROWS) {
+        let count = ROWS.min(samples.len() - from);
+        let rows = DMatrix::from_fn(ORDER + 1, count, |lag, row| past(from + row, lag));
+        let weighted = DMatrix::from_fn(count, ORDER + 1, |row, lag| weight(from + row) * rows[(lag, row)]);
+        products.gemm(1.0, &rows, &weighted, 1.0);
+    }
+    let mut normal = products.view((1, 1), (ORDER, ORDER)).into_owned();
+    let ridge = RIDGE * normal.diagonal().max();
+    (0..ORDER).for_each(|lag| normal[(lag, lag)] += ridge);
+    let right = products.column(0).rows(1, ORDER).into_owned();
+    let predictor = Cholesky::new(normal)?.solve(&right);
+    let error = |n: usize| samples[n] - (0..ORDER).map(|lag| predictor[lag] * past(n, lag + 1)).sum::<f64>();
+    Some((0..samples.len()).map(error).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two modes that noise drives for so many samples.
+    fn driven(len: usize) -> Vec<f64> {
+        let mut state = 1_u32;
+        let (mut sound, mut before) = (vec![0.0; 12_000], [[0.0; 2]; 2]);
+        for (n, sample) in sound.iter_mut().enumerate() {
+            state ^= state << 13;
+            state ^= state >> 17;
+            state ^= state << 5;
+            let force = if n < len { f64::from(state) / f64::from(u32::MAX) - 0.5 } else { 0.0 };
+            for (mode, (theta, radius)) in before.iter_mut().zip([(0.05, 0.9995), (0.21, 0.999)]) {
+                let next = force + 2.0 * radius * libm::cos(theta) * mode[0] - radius * radius * mode[1];
+                *mode = [next, mode[0]];
+                *sample += next;
+            }
+        }
+        sound
+    }
+
+    #[test]
+    fn a_burst_of_noise_is_waited_for_and_a_strike_is_not() {
+        for len in [100, 500, 1000] {
+            let found = let_go(&driven(len), 48_000.0);
+            assert!((len..len + 48).contains(&found), "{len}: {found}");
+        }
+        let free: Vec<f64> = driven(500).split_off(600);
+        assert!(let_go(&free, 48_000.0) < 48, "{}", let_go(&free, 48_000.0));
+    }
+}

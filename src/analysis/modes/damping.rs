@@ -1,0 +1,114 @@
+//! Where a strike is damped by something that comes in while it rings: a key that comes up, a hand, a gate.
+//!
+//! The energy of modes that ring freely falls along a curve that is convex on a scale of decibels, if beats are left aside:
+//! what decays fast is over first. Where the curve turns down for good, something else takes energy. Beats turn down as
+//! well, so a place that was found is confirmed by modes that were fitted to what comes before it: those of a beat go on to
+//! explain the sound, those of a strike that is damped do not.
+
+use super::fit::Fit;
+use super::pole::add;
+use libm::log10;
+
+/// Seconds from one level to the next, and steps that a level is measured over.
+const STEP: f64 = 0.005;
+const SMOOTH: usize = 4;
+/// Steps before and after a place over which slopes are measured.
+const REACHES: [usize; 4] = [16, 32, 64, 128];
+/// By how many dB the level after a reach lies below the line through the levels before, at least.
+const LEAST_DROP_DB: f64 = 4.0;
+/// The same in mean deviations of the levels from their lines.
+const LEAST_DEVIATIONS: f64 = 4.0;
+/// By how many dB all later levels lie below that line, at least.
+const NO_RETURN_DB: f64 = 2.0;
+/// Slope in dB per step above which a sound is driven, and does not ring freely.
+const RISING: f64 = 0.02;
+/// dB above the quietest level at which levels tell nothing.
+const FLOOR_DB: f64 = 6.0;
+/// Seconds before the place that are left out: the place is not known better.
+const GUARD: f64 = 0.012;
+/// Seconds after the place in which modes are compared with the sound.
+const COMPARED: f64 = 0.15;
+/// Energy that modes which explain the sound leave of it at most.
+const UNEXPLAINED: f64 = 0.2;
+
+/// A line through levels: at their first step, per step, and the mean deviation.
+struct Line {
+    first: f64,
+    slope: f64,
+    deviation: f64,
+}
+
+impl Line {
+    fn through(levels: &[f64]) -> Self {
+        let count = levels.len() as f64;
+        let middle = (count - 1.0) / 2.0;
+        let mean = levels.iter().sum::<f64>() / count;
+        let (mut product, mut square) = (0.0, 0.0);
+        for (step, level) in levels.iter().enumerate() {
+            product += (step as f64 - middle) * (level - mean);
+            square += (step as f64 - middle) * (step as f64 - middle);
+        }
+        let slope = product / square;
+        let first = mean - slope * middle;
+        let error = |(step, level): (usize, &f64)| (level - first - slope * step as f64).abs();
+        Self { first, slope, deviation: levels.iter().enumerate().map(error).sum::<f64>() / count }
+    }
+
+    fn at(&self, step: f64) -> f64 {
+        self.first + self.slope * step
+    }
+}
+
+/// The frame before which the samples seem to ring freely, if they seem to be damped afterwards.
+pub(super) fn damped_from(samples: &[f64], sample_rate: f64) -> Option<usize> {
+    let step = ((STEP * sample_rate) as usize).max(1);
+    let energies: Vec<f64> =
+        samples.chunks_exact(step).map(|block| block.iter().map(|x| x * x).sum::<f64>() / step as f64).collect();
+    let level = |blocks: &[f64]| 10.0 * log10((blocks.iter().sum::<f64>() / SMOOTH as f64).max(1e-30));
+    let levels: Vec<f64> = energies.windows(SMOOTH).map(level).collect();
+    let quietest = levels.iter().copied().fold(f64::INFINITY, f64::min);
+    let place = REACHES
+        .iter()
+        .flat_map(|reach| (*reach..levels.len().saturating_sub(*reach / 2)).map(move |place| (*reach, place)))
+        .filter_map(|(reach, place)| Some((significance(&levels, place, reach, quietest)?, place)))
+        .max_by(|a, b| a.0.total_cmp(&b.0))?
+        .1;
+    Some((place * step).saturating_sub((GUARD * sample_rate) as usize))
+}
+
+/// How clearly the levels turn down for good at a place, in mean deviations from the lines before and after. `None` if they
+/// do not.
+fn significance(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Option<f64> {
+    // Levels reach over steps, so those right before the place look beyond it.
+    let before = Line::through(&levels[place - reach..place + 1 - SMOOTH]);
+    let until = (place + reach).min(levels.len());
+    let after = Line::through(&levels[place..until]);
+    let last = (until - 1 - place) as f64;
+    let expected = |later: f64| before.at(reach as f64 + later);
+    let drop = expected(last) - after.at(last);
+    let significance = drop / (before.deviation + after.deviation + 0.25);
+    if before.slope > RISING || drop < LEAST_DROP_DB || significance < LEAST_DEVIATIONS {
+        return None;
+    }
+    // The line through what was before says nothing once it comes near the floor.
+    let back = |(later, level): (usize, &f64)| {
+        let expected = expected(later as f64);
+        expected > quietest + FLOOR_DB && *level > expected - NO_RETURN_DB
+    };
+    let comes_back = levels[place..].iter().enumerate().skip(reach / 2).any(back);
+    (!comes_back).then_some(significance)
+}
+
+/// Whether the sound after the samples that a fit was made of is not what its modes would have become.
+pub(super) fn confirmed(fit: &Fit, len: usize, after: &[f64], sample_rate: f64) -> bool {
+    let skipped = (2.0 * GUARD * sample_rate) as usize;
+    let compared = (COMPARED * sample_rate) as usize;
+    let Some(after) = after.get(skipped..).map(|after| &after[..compared.min(after.len())]) else { return false };
+    let mut expected = vec![fit.constant; after.len()];
+    for (pole, amplitude) in fit.poles.iter().zip(&fit.amplitudes) {
+        add(&mut expected, *pole, *amplitude * pole.power(len + skipped), 1.0);
+    }
+    let energy = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
+    let left = energy(&mut after.iter().zip(&expected).map(|(sample, expected)| sample - expected));
+    left > UNEXPLAINED * energy(&mut expected.iter().map(|x| x - fit.constant))
+}

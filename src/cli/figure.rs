@@ -1,0 +1,30 @@
+//! Figures of what a job renders.
+
+use sprung::analysis::figure::Render;
+use sprung::analysis::figure::sound::{DrawnMode, SoundFigure};
+use sprung::render::Job;
+use sprung::{Error, Result};
+
+/// Longest rendering in seconds that is drawn.
+const LONGEST: f64 = 600.0;
+/// Pixels to a cell of a vector image's spectrogram.
+const VECTOR_CELL: usize = 5;
+
+/// Renders a job and draws it, in `format`.
+pub(super) fn drawn(job: &Job, title: &str, modes: &[DrawnMode], format: &str) -> Result<Vec<u8>> {
+    let sample_rate = f64::from(job.options.sample_rate);
+    let [mut left, mut right] = [Vec::new(), Vec::new()];
+    job.render(|block_left, block_right| {
+        left.extend_from_slice(block_left);
+        right.extend_from_slice(block_right);
+        if left.len() as f64 > LONGEST * sample_rate {
+            return Err(Error::value(
+                "--figure",
+                format!("the sound is longer than {LONGEST} s: expected a shorter one"),
+            ));
+        }
+        Ok(())
+    })?;
+    let render = Render { left: &left, right: &right, sample_rate };
+    SoundFigure { title, render, modes, cell: if format == "svg" { VECTOR_CELL } else { 1 } }.bytes(format)
+}
