@@ -26,8 +26,10 @@ pub struct Sound {
 }
 
 impl Sound {
-    /// The sound of a patch, in the tuning of the whole instrument. Allocates.
+    /// The sound of a patch, in the tuning of the whole instrument. Allocates. If the patch has a table of modes for each
+    /// key, these are made here, which can take a second; clones of the patch share them.
     pub fn new(patch: Patch) -> Self {
+        patch.modes.make_tables();
         Self { patch, tuning: None }
     }
 

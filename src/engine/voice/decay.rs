@@ -28,7 +28,7 @@ impl Decay {
     /// Reads the decay and its tilt from the patch, as modulated at the strike.
     pub(super) fn read(&mut self, values: &StruckValues, controls: &Controls, bank: &mut Cells) {
         let tilt = values.moved(Param::DecayTilt, controls.decay_tilt);
-        self.set_tilt(tilt, values.instrument.sound.patch().modes.as_slice(), bank);
+        self.set_tilt(tilt, values.modes().as_slice(), bank);
         self.press(values.moved(Param::Decay, controls.decay));
     }
 
