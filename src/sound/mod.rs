@@ -1,9 +1,10 @@
-//! Sounds and kits that an engine plays, the bodies and joined bodies they are made of, and the tuning of the keys.
+//! Sounds and kits that an engine plays, the bodies and pairs of bodies they are made of, and the tuning of the keys.
 
 pub mod bodies;
 pub(crate) mod contact;
 pub mod coupled;
 pub mod kit;
+pub mod pairs;
 mod shelf;
 pub mod tuning;
 
