@@ -74,7 +74,7 @@ impl Mode {
         push: [0.0; 2],
         pull: [0.0; 2],
         noise: 0.0,
-        gains: ExcitationGains { push: 0.0, pull: 0.0, noise: 0.0, phase: 0.0 },
+        gains: ExcitationGains { push: 0.0, pull: 0.0, noise: 0.0, phase: 0.0, turned_noise: false },
         unit_push: 0.0,
         asked: 0.0,
     };

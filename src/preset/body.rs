@@ -1,13 +1,12 @@
 //! The body in a preset file, from which its modes are computed: `[body]` with `model = "marimba"`.
 
+use super::body_table::{read_body, text};
 use super::complaints::Complaints;
+use super::pair;
 use super::value::unexpected;
-use crate::error::nearest;
 use crate::params::Param;
 use crate::patch::{ModeTable, Patch};
-use crate::sound::bodies::{Body, FIELDS, Field, MATERIALS, Material, Model};
-use crate::units::split_quantity;
-use std::fmt::Write;
+use crate::sound::bodies::Body;
 use toml::{Table, Value};
 
 /// The modes of a body. They keep the text of `[body]` as their origin, so that a preset is saved with its body.
@@ -19,13 +18,16 @@ pub fn modes_of_body(body: &Body) -> ModeTable {
 /// The body from which modes were made; none if they were not made from one. Allocates.
 pub fn body_of_modes(modes: &ModeTable) -> Option<Body> {
     let mut complaints = Complaints::default();
-    let body = read_body(&toml::from_str(modes.origin()?).ok()?, &mut complaints);
+    let body = read_body(&toml::from_str(modes.origin()?).ok()?, "body", &mut complaints);
     body.filter(|_| complaints.into_lines().is_empty())
 }
 
 /// Reads the body of a file, if it has one. Sets the patch's modes and, unless the file has a `decay`, its decay.
 pub(super) fn read(file: &Table, patch: &mut Patch, complaints: &mut Complaints) {
     let table = match file.get("body") {
+        None if pair::is_in(file) => {
+            return complaints.add("second: there is no [body]: expected both, and a [joint] between them");
+        }
         None => return,
         Some(_) if file.contains_key("modes") => {
             return complaints.add("body: the file has ‘modes’ too: expected one of the two");
@@ -33,11 +35,24 @@ pub(super) fn read(file: &Table, patch: &mut Patch, complaints: &mut Complaints)
         Some(Value::Table(table)) => table,
         Some(other) => return complaints.add(unexpected("body", "a table [body]", other)),
     };
-    let Some(body) = read_body(table, complaints) else { return };
-    patch.modes = modes_of_body(&body);
+    let Some(body) = read_body(table, "body", complaints) else { return };
+    let t60 = if pair::is_in(file) {
+        let Some(pair) = pair::read(file, body, complaints) else { return };
+        let Some(modes) = complaints.take("", pair::modes_of_pair(&pair).map_err(|error| error.to_string())) else {
+            return;
+        };
+        patch.modes = modes;
+        pair.t60()
+    } else {
+        if !body.follows_key {
+            complaints.add("body.follows_key: expected a [second] body beside it; a single one needs key_track = 0");
+        }
+        patch.modes = modes_of_body(&body);
+        body.t60()
+    };
     let decay = Param::Decay.info();
     if file.get("params").and_then(|params| params.get(decay.id)).is_none() {
-        patch.set(Param::Decay, (body.t60() as f32).clamp(decay.min, decay.max));
+        patch.set(Param::Decay, (t60 as f32).clamp(decay.min, decay.max));
     }
 }
 
@@ -51,113 +66,11 @@ pub(super) fn to_toml(patch: &Patch) -> String {
     patch.modes.origin().map_or(String::new(), |origin| format!("\n[body]\n{origin}"))
 }
 
-/// Reads a body, if its model is known and it has a frequency. Numbers that cannot be read keep the model's values.
-fn read_body(table: &Table, complaints: &mut Complaints) -> Option<Body> {
-    let names = || ["model", "material"].into_iter().chain(FIELDS.iter().map(|field| field.name));
-    for unknown in table.keys().filter(|key| !names().any(|name| name == *key)) {
-        complaints.add(match nearest(unknown, names()) {
-            Some(near) => format!("unknown key ‘body.{unknown}’; the nearest is {near}"),
-            None => format!("unknown key ‘body.{unknown}’: expected one of {}", names().collect::<Vec<_>>().join(", ")),
-        });
-    }
-    let models = || Model::ALL.iter().map(|(id, _)| *id);
-    let model = named(table, "model", Model::find, models).and_then(|model| {
-        let expected = || models().collect::<Vec<_>>().join(", ");
-        model.ok_or_else(|| format!("body: there is no ‘model’: expected one of {}", expected()))
-    });
-    let mut body = Body::new(complaints.take("", model)?.clone());
-    let material = named(table, "material", Material::find, || MATERIALS.iter().map(|material| material.id));
-    if let Some(material) = complaints.take("", material).flatten() {
-        body.material = *material;
-    }
-    let given = |name: &str| table.contains_key(name);
-    let is_twice = given("frequency") && (given("length") || given("thickness") || given("tension"));
-    if is_twice {
-        complaints.add("body.frequency: it follows from length, thickness and tension: expected it or them");
-    }
-    for field in FIELDS.iter().filter(|field| !(is_twice && field.name == "frequency")) {
-        let Some(value) = table.get(field.name) else { continue };
-        let Some(value) = complaints.take(&format!("body.{}: ", field.name), number(field, value)) else { continue };
-        (field.set)(&mut body, value);
-        if (field.get)(&body).is_none() {
-            complaints.add(format!("body.{}: the model {} has no such number", field.name, body.model.id()));
-        }
-    }
-    if body.size().is_some_and(|size| body.model.frequency(&size, &body.material).is_none()) {
-        complaints.add(format!("body: the model {} has no size: expected a ‘frequency’", body.model.id()));
-        return None;
-    }
-    Some(body)
-}
-
-/// Finds what the text at a key names; none if the key is missing.
-fn named<T: 'static, N: Iterator<Item = &'static str>>(
-    table: &Table,
-    key: &str,
-    find: impl Fn(&str) -> Option<&'static T>,
-    all: impl Fn() -> N,
-) -> Result<Option<&'static T>, String> {
-    match table.get(key) {
-        None => Ok(None),
-        Some(Value::String(id)) => find(id).map(Some).ok_or_else(|| match nearest(id, all()) {
-            Some(near) => format!("body.{key}: there is no ‘{id}’; the nearest is {near}"),
-            None => format!("body.{key}: ‘{id}’ is not one of {}", all().collect::<Vec<_>>().join(", ")),
-        }),
-        Some(other) => Err(unexpected(&format!("body.{key}"), "a text", other)),
-    }
-}
-
-/// Reads a number in the field's unit, or a text with a unit.
-fn number(field: &Field, value: &Value) -> Result<f64, String> {
-    let value = match value {
-        Value::Integer(number) => *number as f64,
-        Value::Float(number) => *number,
-        Value::String(text) => quantity(field, text).ok_or_else(|| {
-            let unit = if field.unit.is_empty() { String::new() } else { format!(" in {}", field.unit) };
-            format!("‘{text}’ is no number{unit}")
-        })?,
-        other => return Err(format!("expected a number or a text with a unit, found {}", other.type_str())),
-    };
-    let unit = if field.unit.is_empty() { String::new() } else { format!(" {}", field.unit) };
-    if (field.min..=field.max).contains(&value) {
-        return Ok(value);
-    }
-    Err(format!("{value} is out of range: expected from {} to {}{unit}", field.min, field.max))
-}
-
-fn quantity(field: &Field, text: &str) -> Option<f64> {
-    let (value, unit) = split_quantity(text)?;
-    // Divide: 1/100 and 1/1000 are not exact in binary, but 62 / 100 gives the number 0.62.
-    match (field.unit, unit) {
-        (own, unit) if own == unit || unit.is_empty() => Some(value),
-        ("m", "cm") | ("", "%") => Some(value / 100.0),
-        ("m", "mm") => Some(value / 1000.0),
-        ("Hz", "kHz") => Some(value * 1000.0),
-        _ => None,
-    }
-}
-
-/// The lines of `[body]`: the model, and the values that differ from the model's own.
-fn text(body: &Body) -> String {
-    let mut out = format!("model = \"{}\"\n", body.model.id());
-    // Start from the listed model with the same identifier, since the reader starts from its values too.
-    let mut first = Body::new(Model::find(body.model.id()).unwrap_or(&body.model).clone());
-    if body.material.id != first.material.id {
-        let _ = writeln!(out, "material = \"{}\"", body.material.id);
-        first.material = Material::find(body.material.id).copied().unwrap_or(body.material);
-    }
-    for field in FIELDS {
-        if let Some(value) = (field.get)(body).filter(|value| (field.get)(&first) != Some(*value)) {
-            let _ = writeln!(out, "{} = {value:?}", field.name);
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::preset::Preset;
+    use crate::sound::bodies::{FIELDS, MATERIALS, Model};
 
     fn parse(body: &str) -> crate::Result<Preset> {
         Preset::parse(&format!("format = 2\nname = \"a\"\n{body}"), "x")

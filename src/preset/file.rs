@@ -13,7 +13,8 @@ use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use std::fmt::Write;
 use toml::{Table, Value};
 
-const KEYS: [&str; 10] = ["format", "name", "author", "tags", "comment", "modes", "body", "routes", "params", "tuning"];
+const KEYS: [&str; 12] =
+    ["format", "name", "author", "tags", "comment", "modes", "body", "second", "joint", "routes", "params", "tuning"];
 
 /// Reads as much of a preset as possible. Returns an error only if the text is no preset at all.
 pub(super) fn parse(

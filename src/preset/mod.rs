@@ -2,6 +2,7 @@
 
 mod about;
 mod body;
+mod body_table;
 mod complaints;
 mod factory;
 mod file;
@@ -11,6 +12,7 @@ mod kit_load;
 mod load;
 mod migration;
 mod one_exciter;
+mod pair;
 mod routes;
 mod tuning;
 mod value;
@@ -24,6 +26,7 @@ pub use kit::{KIT_VERSION, KitPreset, Playable};
 pub use kit_load::is_file_name;
 pub use load::MAX_FILE_SIZE;
 pub use migration::Replaced;
+pub use pair::{modes_of_pair, pair_of_modes};
 pub use tuning::OwnTuning;
 
 /// The preset format that is written. Older formats are read too: format 1 had no routes, formats 1 and 2 had

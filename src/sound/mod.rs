@@ -1,9 +1,10 @@
-//! Sounds and kits that an engine plays, the bodies and joined bodies they are made of, and the tuning of the keys.
+//! Sounds and kits that an engine plays, the bodies and pairs of bodies they are made of, and the tuning of the keys.
 
 pub mod bodies;
 pub(crate) mod contact;
 pub mod coupled;
 pub mod kit;
+pub mod pairs;
 mod shelf;
 pub mod tuning;
 
@@ -26,8 +27,10 @@ pub struct Sound {
 }
 
 impl Sound {
-    /// The sound of a patch, in the tuning of the whole instrument. Allocates.
+    /// The sound of a patch, in the tuning of the whole instrument. Allocates. If the patch has a table of modes for each
+    /// key, these are made here, which can take a second; clones of the patch share them.
     pub fn new(patch: Patch) -> Self {
+        patch.modes.make_tables();
         Self { patch, tuning: None }
     }
 

@@ -64,7 +64,8 @@ pub(super) fn implausible(fit: &Fit, floors: &[f64], len: usize, limits: &Limits
         .filter(|k| limits.audible(fit.poles[*k]) && (!limits.rings(fit.poles[*k]) || unknown(*k)))
         .collect();
     let excess = |k: usize| limits.excess(fit.poles[k], fit.amplitudes[k].norm());
-    let mut loud: Vec<usize> = (0..fit.poles.len()).filter(|k| !(excess(*k) <= 1.0) && !dropped.contains(k)).collect();
+    let is_loud = |k: usize| excess(k) > 1.0 || excess(k).is_nan();
+    let mut loud: Vec<usize> = (0..fit.poles.len()).filter(|k| is_loud(*k) && !dropped.contains(k)).collect();
     loud.sort_by(|a, b| excess(*b).total_cmp(&excess(*a)));
     for k in loud {
         let beside = |other: &usize| {

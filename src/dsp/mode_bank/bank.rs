@@ -37,6 +37,8 @@ pub struct ModeBank {
     /// Gains at full level, left and right, and whether any of them is not 1.
     gains: [Row; 2],
     stereo: bool,
+    /// Noise acts on `x` of some modes.
+    turned_noise: bool,
     /// Some modes are so high that they sound below full level.
     faded: bool,
     /// Pitch ratio of the coefficients, or their target while they move.
@@ -88,6 +90,7 @@ impl ModeBank {
             live: 0,
             gains: [Row::ONE; 2],
             stereo: false,
+            turned_noise: false,
             faded: false,
             ratio: 1.0,
             retuned: false,
@@ -114,7 +117,7 @@ impl ModeBank {
     /// remains of what the bank played before: it gives the same bits as a new one.
     pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
         self.instructions = Instructions::current();
-        (self.len, self.stereo, self.faded) = (0, false, false);
+        (self.len, self.stereo, self.turned_noise, self.faded) = (0, false, false, false);
         // Both states, since they swap roles after each tick that is rendered by tables.
         (self.states, self.motion) = ([State::REST; 2], Motion::Still { ticks: 0 });
         for (m, mode) in modes.take(MAX_MODES).enumerate() {
@@ -128,8 +131,8 @@ impl ModeBank {
         [self.modes.left_step, self.modes.right_step] = [Row::ZERO; 2];
         for m in self.len..MAX_MODES {
             // What was loaded before must not be heard: lanes and tables are filled up with modes at rest.
-            let Modes { push_x, push_y, pull_x, pull_y, noise, bow, .. } = &mut self.modes;
-            [push_x, push_y, pull_x, pull_y, noise, bow].into_iter().for_each(|row| row.0[m] = 0.0);
+            let Modes { push_x, push_y, pull_x, pull_y, noise_x, noise, bow, .. } = &mut self.modes;
+            [push_x, push_y, pull_x, pull_y, noise_x, noise, bow].into_iter().for_each(|row| row.0[m] = 0.0);
         }
         self.live = self.len;
         self.jump_to(1.0);
@@ -158,7 +161,9 @@ impl ModeBank {
         let pulled = turned(gains.pull * self.tuning.pull_x.0[m], gains.pull * self.tuning.pull_y.0[m]);
         (self.modes.push_x.0[m], self.modes.push_y.0[m]) = turned(0.0, gains.push);
         (self.modes.pull_x.0[m], self.modes.pull_y.0[m]) = pulled;
-        self.modes.noise.0[m] = gains.noise;
+        let noise = if gains.turned_noise { turned(0.0, gains.noise) } else { (0.0, gains.noise) };
+        (self.modes.noise_x.0[m], self.modes.noise.0[m]) = noise;
+        self.turned_noise |= noise.0 != 0.0;
     }
 
     /// Sets how far mode `m` moves the point under a bow, and is moved by it. The squares of all are to add up to 1.
@@ -274,7 +279,8 @@ impl ModeBank {
         };
         let line = if let Motion::Line { frames, .. } = self.motion { frames } else { 0 };
         let stereo = self.stereo || self.faded || moving == Moving::PitchAndGain;
-        Form { moving, driven, stereo, live: self.live, frames, line, passed: self.passed() }
+        let turned_noise = self.turned_noise;
+        Form { moving, driven, turned_noise, stereo, live: self.live, frames, line, passed: self.passed() }
     }
 
     fn step(&mut self, drive: &Drive, driven: bool, frames: usize) {

@@ -38,7 +38,7 @@ impl Kernel for Bowed<'_> {
             let (middle, _) = stair(form.passed + i, form.line.max(1));
             let forces = [bow.force_on(i, speed), drive.push[i], drive.pull[i], drive.noise[i]];
             let lines = [middle, (form.passed + i + 1) as f32];
-            let [left, right, after] = turn::<V>(proof, modes, state, live, lines, forces);
+            let [left, right, after] = turn::<V>(proof, modes, state, live, lines, forces, form.turned_noise);
             (out[0][i], out[1][i], speed) = (left, right, after);
         }
     }
@@ -61,7 +61,7 @@ fn speed_at_bow<V: Vector>(proof: V::Proof, modes: &Modes, state: &State, live: 
 }
 
 /// Lets the forces (bow, push, pull, noise) of a frame act, and turns all modes. `lines` is where on their lines coefficients
-/// and gains are.
+/// and gains are. `turned_noise` says that noise acts on both coordinates.
 #[inline(always)]
 fn turn<V: Vector>(
     proof: V::Proof,
@@ -70,6 +70,7 @@ fn turn<V: Vector>(
     live: usize,
     lines: [f32; 2],
     forces: [f32; 4],
+    turned_noise: bool,
 ) -> Sums {
     let mut totals = [Partial([0.0; LANES]); 3];
     let [bow, push, pull, noise] = [0, 1, 2, 3].map(|force| V::splat(proof, forces[force]));
@@ -82,6 +83,9 @@ fn turn<V: Vector>(
         x = push.mul_add(modes.push_x.at(proof, at), x);
         y = push.mul_add(modes.push_y.at(proof, at), pull.mul_add(modes.pull_y.at(proof, at), y));
         y = noise.mul_add(modes.noise.at(proof, at), y);
+        if turned_noise {
+            x = noise.mul_add(modes.noise_x.at(proof, at), x);
+        }
         let alpha: V = middle.mul_add(modes.alpha_step.at(proof, at), modes.alpha.at(proof, at));
         let beta: V = middle.mul_add(modes.beta_step.at(proof, at), modes.beta.at(proof, at));
         let (to_x, to_y) = (y.mul_add(beta, x), x.neg_mul_add(beta, y));

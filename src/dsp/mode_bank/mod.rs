@@ -60,4 +60,6 @@ pub struct ExcitationGains {
     pub noise: f32,
     /// By how many radians what pulses bring is turned ahead; its amplitude stays.
     pub phase: f32,
+    /// Whether what noise brings is turned as well: the phase is the body's, not just a pulse's.
+    pub turned_noise: bool,
 }

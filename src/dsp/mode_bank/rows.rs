@@ -53,11 +53,12 @@ pub(super) struct Modes {
     pub(super) right: Row,
     pub(super) left_step: Row,
     pub(super) right_step: Row,
-    /// What a unit of push and of pull add to both coordinates, and a unit of noise to `y`.
+    /// What a unit of push, of pull and of noise adds to both coordinates.
     pub(super) push_x: Row,
     pub(super) push_y: Row,
     pub(super) pull_x: Row,
     pub(super) pull_y: Row,
+    pub(super) noise_x: Row,
     pub(super) noise: Row,
     /// How far each mode moves the point under a bow, and is moved by it.
     pub(super) bow: Row,
@@ -77,6 +78,7 @@ impl Modes {
         push_y: Row::ZERO,
         pull_x: Row::ZERO,
         pull_y: Row::ZERO,
+        noise_x: Row::ZERO,
         noise: Row::ZERO,
         bow: Row::ZERO,
     };
@@ -99,6 +101,8 @@ pub(super) enum Moving {
 pub(super) struct Form {
     pub(super) moving: Moving,
     pub(super) driven: bool,
+    /// Whether noise acts on `x` as well as on `y`.
+    pub(super) turned_noise: bool,
     /// Whether the gains are not all 1.
     pub(super) stereo: bool,
     /// How many modes, from the first, may be ringing.

@@ -14,11 +14,12 @@ use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::{LANES, Partial, Vector};
 
 /// How much of a [`Drive`] is read: nothing, one force that acts on `y`, noise and one force that acts on both
-/// coordinates, or all that there is.
+/// coordinates, all that there is, or all with noise that acts on both coordinates too.
 const FREE: u8 = 0;
 const PUSHED: u8 = 1;
 const DRIVEN: u8 = 2;
 const ALL: u8 = 3;
+const TURNED: u8 = 4;
 
 /// What moves while frames are rendered, see [`Moving`].
 const NOTHING: u8 = 0;
@@ -45,6 +46,7 @@ impl Kernel for Step<'_> {
         let force = if self.form.driven { self.force() } else { FREE };
         // Fewer functions than cases, because each is compiled for every level.
         match (self.form.moving, force, self.form.stereo) {
+            (_, TURNED, _) => self.all::<V, PITCH_AND_GAIN, TURNED, STEREO>(proof),
             (_, ALL, _) => self.all::<V, PITCH_AND_GAIN, ALL, STEREO>(proof),
             (Moving::Nothing, FREE, false) => self.all::<V, NOTHING, FREE, 0>(proof),
             (Moving::Nothing, FREE, true) => self.all::<V, NOTHING, FREE, STEREO>(proof),
@@ -68,6 +70,7 @@ impl Step<'_> {
         let Drive { push, pull, noise } = self.drive;
         let acts = [push, pull, noise].map(|force| !is_zero(&force[..frames]));
         match acts {
+            [_, _, true] if self.form.turned_noise => TURNED,
             [false, false, false] => FREE,
             [false, false, true] => PUSHED,
             [true, false, false] if is_zero(&self.modes.push_x.0[..live]) => PUSHED,
@@ -162,7 +165,7 @@ fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const 
         (&drive.push, &modes.push_x, &modes.push_y)
     };
     let (pulse_x, pulse_y, noise) = rows!(*pulse_x, *pulse_y, modes.noise);
-    let (pull_x, pull_y) = rows!(modes.pull_x, modes.pull_y);
+    let (pull_x, pull_y, noise_x) = rows!(modes.pull_x, modes.pull_y, modes.noise_x);
     let (force, pushed) = if FORCE == PUSHED && !is_pushed { (&drive.noise, noise) } else { (pulse, pulse_y) };
     let (mut alpha, mut beta) = (alpha_start, beta_start);
     let mut start = 0;
@@ -187,15 +190,18 @@ fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const 
                     let (mut x_now, mut y_now) = (x[n][g], y[n][g]);
                     if FORCE == PUSHED {
                         y_now = V::splat(proof, force[i]).mul_add(pushed[n][g], y_now);
-                    } else if FORCE == DRIVEN || FORCE == ALL {
+                    } else if FORCE == DRIVEN || FORCE == ALL || FORCE == TURNED {
                         let (pulse, burst) = (V::splat(proof, pulse[i]), V::splat(proof, drive.noise[i]));
-                        if FORCE == ALL {
+                        if FORCE == ALL || FORCE == TURNED {
                             let pull = V::splat(proof, drive.pull[i]);
                             y_now = pull.mul_add(pull_y[n][g], y_now);
                             x_now = pull.mul_add(pull_x[n][g], x_now);
                         }
                         y_now = burst.mul_add(noise[n][g], pulse.mul_add(pulse_y[n][g], y_now));
                         x_now = pulse.mul_add(pulse_x[n][g], x_now);
+                        if FORCE == TURNED {
+                            x_now = burst.mul_add(noise_x[n][g], x_now);
+                        }
                     }
                     // The values that change every frame are negated: negated coefficients would need registers of
                     // their own.

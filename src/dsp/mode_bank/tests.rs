@@ -204,8 +204,8 @@ fn a_force_alone_gives_the_bits_of_the_form_that_reads_all() {
                 let mut bank = bank(&modes);
                 let gains = [0, 1, 2].map(|force| if force == alone { 0.5 } else { 0.0 });
                 let [push, pull, noise] = gains;
-                (0..bank.len())
-                    .for_each(|m| bank.set_excitation_gains(m, ExcitationGains { push, pull, noise, phase }));
+                let gains = ExcitationGains { push, pull, noise, phase, turned_noise: false };
+                (0..bank.len()).for_each(|m| bank.set_excitation_gains(m, gains));
                 let mut drive = Drive::NONE;
                 let Drive { push, pull, noise } = &mut drive;
                 for (force, row) in [push, pull, noise].into_iter().enumerate() {
@@ -220,6 +220,33 @@ fn a_force_alone_gives_the_bits_of_the_form_that_reads_all() {
             }
             assert!(found[0].iter().any(|sample| *sample != 0.0));
             assert!(found[0] == found[1], "force {alone} at phase {phase}");
+        }
+    }
+}
+
+/// A phase turns what a force brings, sample by sample, so the output is the force convolved with `sin(nθ + φ)`.
+#[test]
+fn every_force_is_convolved_with_a_turned_response() {
+    let force = [0.3, -0.1, 0.7, 0.0, 0.2, 0.01, 0.5, -0.6, 0.11];
+    let (frequency, t60, phase) = (1000.0, 0.2, 0.8_f32);
+    let (angle, ln_radius) = (2.0 * PI * frequency / 48_000.0, -6.907_755_278_982_137 / (t60 * 48_000.0));
+    for which in 0..2 {
+        let mut bank = bank(&[(frequency, t60)]);
+        let [push, noise] = [0, 1].map(|force| if force == which { 0.5 } else { 0.0 });
+        bank.set_excitation_gains(0, ExcitationGains { push, pull: 0.0, noise, phase, turned_noise: true });
+        let mut drive = Drive::NONE;
+        let Drive { push, noise, .. } = &mut drive;
+        [push, noise][which][..9].copy_from_slice(&force);
+        bank.sweep_to(1.0, CONTROL_FRAMES);
+        let mut left = bank.render(Some(&drive), CONTROL_FRAMES)[0].to_vec();
+        left.extend(run(&mut bank, 640, None));
+        for (frame, sample) in left.iter().enumerate() {
+            let expected: f64 =
+                force.iter().enumerate().filter(|(at, _)| *at <= frame).fold(0.0, |sum, (at, force)| {
+                    let n = (frame - at + 1) as f64;
+                    sum + 0.5 * f64::from(*force) * libm::exp(n * ln_radius) * libm::sin(n * angle + f64::from(phase))
+                });
+            assert!((f64::from(*sample) - expected).abs() < 2e-6, "force {which}, frame {frame}: {sample}, {expected}");
         }
     }
 }

@@ -69,7 +69,7 @@ impl Bowing {
     /// Gives the modes their weights under the bow.
     fn place(&mut self, values: &StruckValues, bank: &mut Cells) {
         self.is_placed = true;
-        let modes = values.instrument.sound.patch().modes.as_slice();
+        let modes = values.modes().as_slice();
         let place = values.share(Param::BowPosition);
         let weight = |mode: &Mode| fabs(mode.level.into()) * sin(PI * place * f64::from(mode.ratio));
         bank.set_bow_weights(|m| modes.get(m).map_or(0.0, weight));

@@ -34,7 +34,7 @@ impl Decay {
     /// Reads decay, tilt and touch from the patch, as modulated at the strike.
     pub(super) fn read(&mut self, values: &StruckValues, controls: &Controls, bank: &mut Cells) {
         let tilt = values.moved(Param::DecayTilt, controls.decay_tilt);
-        let modes = values.instrument.sound.patch().modes.as_slice();
+        let modes = values.modes().as_slice();
         self.set_tilt(tilt, modes, bank);
         let touch = touch_rate(0.01 * values.moved(Param::Touch, 100.0 * controls.touch));
         self.place = None;

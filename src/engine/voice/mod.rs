@@ -61,6 +61,8 @@ pub(crate) struct SynthVoice {
     /// own.
     controls_serial: Option<u32>,
     key: u8,
+    /// The place of the note's table of modes among those of the keys; see [`ModeTable::place`].
+    table: usize,
     /// −0.5 to 0.5.
     brightness: f64,
     /// Note expressions: tuning, volume, pan, pressure, brightness, vibrato.
@@ -99,6 +101,7 @@ impl SynthVoice {
             controls,
             controls_serial: None,
             key: 0,
+            table: 0,
             brightness: 0.0,
             expressions: Expressions::new(sample_rate),
             modulation: NoteModulation::NONE,
@@ -142,7 +145,7 @@ impl SynthVoice {
             self.move_controls(base, wheels, if self.fresh { 0 } else { frames });
         }
 
-        let modes = instrument.map(|instrument| instrument.sound.patch().modes.as_slice());
+        let modes = instrument.map(|instrument| instrument.sound.patch().modes.at(self.table).as_slice());
         if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
@@ -168,10 +171,10 @@ impl SynthVoice {
 
     /// Sets out for where bow and input are to be in `frames` frames.
     fn control_driven(&mut self, instrument: Option<&Instrument>, frames: usize) {
-        let Self { strike, controls, is_held, modulators, bank, sample_rate, pitch, .. } = self;
+        let Self { strike, controls, is_held, modulators, bank, sample_rate, pitch, table, .. } = self;
         if *is_held || strike.bowing.is_on() || strike.input.is_on() {
             strike.input.control(if *is_held { controls.input_gain } else { 0.0 }, *sample_rate, frames);
-            let values = instrument.map(|instrument| StruckValues { instrument, modulators });
+            let values = instrument.map(|instrument| StruckValues { instrument, modulators, table: *table });
             let note = || [pitch.frequency(), *sample_rate];
             strike.bowing.control(controls, *is_held, values.as_ref(), note, bank, frames);
         }
@@ -304,7 +307,7 @@ impl SynthVoice {
         self.brightness = (self.expressions.brightness + channel).clamp(-0.5, 0.5).into();
         if let Some(instrument) = instrument.filter(|_| self.clock.age == 0 && !self.modulators.are_idle()) {
             self.modulators.shade((2.0 * self.brightness) as f32);
-            let values = StruckValues { instrument, modulators: &self.modulators };
+            let values = StruckValues { instrument, modulators: &self.modulators, table: self.table };
             self.energy.expect(self.strike.set_gains(&values, &mut self.bank));
         }
     }

@@ -4,6 +4,7 @@ use super::SynthVoice;
 use super::bloom::Bloom;
 use super::clock::Clock;
 use super::energy::Energy;
+use super::pitch::Pitch;
 use super::tension::Tension;
 use super::values::{StruckValues, strike_modulators};
 use crate::dsp::bank::Law;
@@ -25,7 +26,7 @@ const FADE_SECONDS: f64 = 0.012;
 impl SynthVoice {
     /// Strikes the modes with the patch's exciter.
     fn excite(&mut self, instrument: &Instrument, note: &Note) {
-        let values = StruckValues { instrument, modulators: &self.modulators };
+        let values = StruckValues { instrument, modulators: &self.modulators, table: self.table };
         let frequency = self.pitch.frequency();
         self.energy.expect(self.strike.strike(&values, note, frequency, self.unison, &mut self.bank));
         self.energy.forget_end();
@@ -55,14 +56,19 @@ impl SynthVoice {
         instrument.into_iter().for_each(|instrument| self.follow(instrument));
         let from = self.pitch.now(&self.clock);
         let controls = instrument.map_or(self.controls, |instrument| instrument.controls);
-        match instrument.map(|instrument| StruckValues { instrument, modulators: &self.modulators }) {
+        let Self { modulators, table, .. } = self;
+        let mut values = instrument.map(|instrument| StruckValues { instrument, modulators, table: *table });
+        values.iter().for_each(|values| self.pitch.read(values, self.unison));
+        self.pitch.slide(from, note, &controls, is_legato, &self.clock);
+        match &mut values {
             Some(values) => {
-                self.pitch.read(&values, self.unison, &mut self.bank);
-                self.decay.read(&values, &controls, &mut self.bank);
+                *table = values.instrument.sound.patch().modes.place(self.pitch.frequency());
+                values.table = *table;
+                Pitch::set_ratios(values, &mut self.bank);
+                self.decay.read(values, &controls, &mut self.bank);
             }
             None => self.decay.press(controls.decay, self.decay.damping.touch),
         }
-        self.pitch.slide(from, note, &controls, is_legato, &self.clock);
         self.modulators.set_pitch(self.pitch.note());
         let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
         self.bank.retune(|ratio, scale, touched| (frequency * ratio, damping.t60(scale, touched)));
@@ -108,10 +114,13 @@ impl Voice for SynthVoice {
         if !self.modulators.are_idle() {
             strike_modulators(instrument, &mut self.modulators, note, true);
         }
-        let values = StruckValues { instrument, modulators: &self.modulators };
+        let mut values = StruckValues { instrument, modulators: &self.modulators, table: 0 };
         self.strike.start();
-        self.pitch.read(&values, unison, &mut self.bank);
+        self.pitch.read(&values, unison);
         self.pitch.start(note, &self.controls, instrument.last_pitch);
+        self.table = instrument.sound.patch().modes.place(self.pitch.frequency());
+        values.table = self.table;
+        Pitch::set_ratios(&values, &mut self.bank);
         self.decay.read(&values, &self.controls, &mut self.bank);
 
         let law = match instrument.modulated.choice::<Coefficients>(Param::Coefficients) {
@@ -125,7 +134,7 @@ impl Voice for SynthVoice {
             let (left, right) = if pan == 0.0 { (1.0, 1.0) } else { pan_gains((pan * 0.5 + 0.5) as f32) };
             ModeSetup { frequency: frequency * ratio, t60: damping.t60(scale, touched), left, right }
         };
-        self.bank.load(law, self.sample_rate, instrument.sound.patch().modes.as_slice(), setup);
+        self.bank.load(law, self.sample_rate, values.modes().as_slice(), setup);
         self.excite(instrument, note);
     }
 

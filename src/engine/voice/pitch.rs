@@ -62,12 +62,16 @@ impl Pitch {
         }
     }
 
-    /// Reads key tracking, unison detuning and the modes' frequency ratios from the patch.
-    pub(super) fn read(&mut self, values: &StruckValues, unison: Unison, bank: &mut Cells) {
+    /// Reads key tracking and unison detuning from the patch.
+    pub(super) fn read(&mut self, values: &StruckValues, unison: Unison) {
         self.tracking = KeyTracking::new(|param| values.get(param));
         self.detune = unison.position() * values.get(Param::UnisonDetune) * 0.01;
+    }
+
+    /// Sets the modes' frequency ratios to those of the note's table.
+    pub(super) fn set_ratios(values: &StruckValues, bank: &mut Cells) {
         let stretch = values.get(Param::Stretch);
-        for (ratio, mode) in bank.ratios_mut().zip(values.instrument.sound.patch().modes.as_slice()) {
+        for (ratio, mode) in bank.ratios_mut().zip(values.modes().as_slice()) {
             *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
         }
     }

@@ -107,7 +107,8 @@ impl Strike {
 
     /// Computes each mode's excitation gains. Returns how much more energy the last strike brings for that.
     pub(super) fn set_gains(&mut self, values: &StruckValues, bank: &mut Cells) -> f64 {
-        let modes = values.instrument.sound.patch().modes.as_slice();
+        let table = values.modes();
+        let modes = table.as_slice();
         let tilt = values.get(Param::Tilt) / (20.0 / LOG2_10);
         let tilted = |mode: &Mode| {
             let tilt = if tilt == 0.0 { 1.0 } else { pow(f64::from(mode.ratio), tilt) };
@@ -125,18 +126,20 @@ impl Strike {
         let place = values.get(Param::PluckPosition) + self.variation.pluck_place;
         let (width, reach) = (values.share(Param::PluckWidth), values.share(Param::NoiseReach));
         let noise_gain = exciter_gain(values.get(Param::NoiseLevel));
+        // Levels with phases are already those of the place at which the body is struck.
+        let at_place = |ratio: f64| if table.has_phases() { 1.0 } else { sin(PI * place * 0.01 * ratio) };
         let (mut noisy, mut energy, mut full) = (false, 0.0, 0.0);
         for (m, mode) in modes.iter().enumerate() {
             let (level, ratio, strike) = (tilted(mode) * balance, f64::from(mode.ratio), f64::from(mode.strike));
             let level = self.variation.mode_level(m, level);
             let struck = level * strike;
             let push = self.variation.at_mallet(ratio, struck);
-            let pull =
-                if pluck > 0.0 { struck * sin(PI * place * 0.01 * ratio) * under_finger(width, ratio) } else { 0.0 };
+            let pull = if pluck > 0.0 { struck * at_place(ratio) * under_finger(width, ratio) } else { 0.0 };
             let reached = level * (1.0 - strike * (1.0 - reach));
             let noise = reached * noise_gain;
+            let (phase, turned_noise) = (self.phase + table.phase(m), table.has_phases());
             let gains =
-                ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32, phase: self.phase };
+                ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32, phase, turned_noise };
             bank.set_excitation_gains(m, gains);
             noisy |= noise != 0.0;
             let (pulses, burst) = (fabs(push * mallet) + fabs(pull * pluck), noise * burst);

@@ -4,6 +4,7 @@ use crate::engine::instrument::Instrument;
 use crate::engine::modulation::{Modulators, Struck};
 use crate::engine::note::Note;
 use crate::params::Param;
+use crate::patch::ModeTable;
 
 /// Gives the modulators a strike: the `first` of the voice, or a later one.
 pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modulators, note: &Note, first: bool) {
@@ -18,9 +19,16 @@ pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modula
 pub(super) struct StruckValues<'a> {
     pub(super) instrument: &'a Instrument,
     pub(super) modulators: &'a Modulators,
+    /// The place of the note's table among those of the keys.
+    pub(super) table: usize,
 }
 
-impl StruckValues<'_> {
+impl<'a> StruckValues<'a> {
+    /// The modes of the note.
+    pub(super) fn modes(&self) -> &'a ModeTable {
+        self.instrument.sound.patch().modes.at(self.table)
+    }
+
     /// In the parameter's unit.
     pub(super) fn get(&self, param: Param) -> f64 {
         self.modulators.struck_value(param, |param| self.instrument.modulated.get(param)).into()

@@ -25,7 +25,9 @@ pub struct BodyMode {
     pub pickup: f64,
     /// The mode shape where the body is joined to another body.
     pub joint: f64,
-    /// `strike · pickup`, with the tilt applied; for a custom mode its own level, with the tilt applied.
+    /// Factor of the level in addition to the shapes: the tilt, and a custom mode's own level.
+    pub gain: f64,
+    /// `strike · pickup · gain`.
     pub level: f64,
     /// −1 (left) to 1 (right).
     pub pan: f64,
@@ -102,6 +104,7 @@ impl Body {
             };
             let ratio = ratio * ratio_from_semitones(0.01 * cents * side);
             let (strike, pickup) = (at(self.strike), at(self.pickup));
+            let tilt = gain_from_db(self.tilt * log2(ratio));
             modes.push(BodyMode {
                 frequency: frequency * ratio,
                 ratio,
@@ -109,7 +112,8 @@ impl Body {
                 strike,
                 pickup,
                 joint: at(self.joint),
-                level: partial.gain * strike * pickup * gain_from_db(self.tilt * log2(ratio)),
+                gain: partial.gain * tilt,
+                level: partial.gain * strike * pickup * tilt,
                 pan: self.pan * random.number(PAN) * if *other { -1.0 } else { 1.0 },
             });
         }

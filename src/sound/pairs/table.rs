@@ -1,0 +1,171 @@
+//! Converts a pair into the mode table of a patch: one for all keys, or one for each.
+
+use super::free::Free;
+use super::link::Link;
+use super::pair::Pair;
+use crate::dsp::random::{key, uniform};
+use crate::error::Result;
+use crate::patch::{Mode, ModeTable};
+use crate::sound::bodies::LN_1000;
+use crate::sound::coupled::{CoupledMode, Partial};
+use crate::units::frequency_from_key;
+use libm::{atan2, hypot};
+use std::f64::consts::TAU;
+
+/// The stream of the random pans, beside those that a body draws from its seed.
+const PAN_STREAM: u64 = 0x5041_4952_5041_4E00;
+
+/// Modes with less than this share of the sum of all levels (−120 dB) are left out of a table for all keys.
+const INAUDIBLE: f64 = 1e-6;
+
+/// The modes of the pair at one frequency, and what is heard of each on both bodies.
+struct Heard {
+    frequency: f64,
+    modes: Vec<CoupledMode>,
+    on: [Vec<Partial>; 2],
+}
+
+impl Heard {
+    /// The sum of all amplitudes on one of the bodies.
+    fn sum(&self, body: usize) -> f64 {
+        self.on[body].iter().map(|heard| hypot(heard.cosine, heard.sine)).sum()
+    }
+
+    /// What is heard of mode `m` with these gains of the bodies.
+    fn mixed(&self, m: usize, gains: [f64; 2]) -> Partial {
+        let [one, other] = [0, 1].map(|body| self.on[body][m]);
+        let of = |part: fn(&Partial) -> f64| gains[0] * part(&one) + gains[1] * part(&other);
+        Partial { cosine: of(|heard| heard.cosine), sine: of(|heard| heard.sine) }
+    }
+}
+
+impl Pair {
+    /// The T60 in seconds of the first body's mode that sets the pitch, before it is joined. It belongs in the patch's
+    /// `decay`, of which the table's decays are multiples. Allocates.
+    pub fn t60(&self) -> f64 {
+        self.first.t60()
+    }
+
+    /// The mode table of a patch: ratios to the played note, levels whose absolute values add up to 1 at most, decays as
+    /// multiples of [`Pair::t60`], and phases. Not real-time safe.
+    ///
+    /// If both bodies follow the keys, one table is for all keys. If not, there is one for each of [`Pair::keys`], made
+    /// when a [`Sound`](crate::sound::Sound) is. A note is played by the table of the key that is nearest to its pitch.
+    /// The whole table is shifted to the note's exact pitch, so tuning, bends and vibrato move all modes by the same
+    /// interval: the body that keeps its frequency moves along, by at most half a semitone unless the pitch is bent.
+    ///
+    /// # Errors
+    /// [`Error::Value`](crate::Error::Value) for a number that is out of range, and if the poles were not found.
+    pub fn table(&self) -> Result<ModeTable> {
+        self.check()?;
+        let one = self.heard(self.first.frequency())?;
+        let is_same = self.is_same_for_all_keys();
+        let count = if is_same { None } else { Some(self.count_of(&self.free())) };
+        let middle = self.tables_of(&[one], count).swap_remove(0);
+        if is_same {
+            return Ok(middle);
+        }
+        let pair = self.clone();
+        Ok(middle.with_keys(pair.keys[0], move || pair.key_tables()))
+    }
+
+    /// Number of modes of the pair, for the modes that its bodies have.
+    fn count_of(&self, free: &Free) -> usize {
+        let [first, second] = free.len();
+        self.directions() * first + second
+    }
+
+    /// A table for each of the keys.
+    fn key_tables(&self) -> Vec<ModeTable> {
+        let free = self.free();
+        let keys = (self.keys[0]..=self.keys[1]).map(|key| {
+            let frequency = frequency_from_key(key.into(), 440.0);
+            // The poles are found unless two of them nearly coincide, which another joint prevents.
+            let slightly_stiffer = || match self.link {
+                Link::Spring { stiffness, damping } => {
+                    let link = Link::Spring { stiffness: 1.001 * stiffness, damping };
+                    Self { link, ..self.clone() }.coupled(&free, frequency)
+                }
+                _ => Self { mass: 1.001 * self.mass, ..self.clone() }.heard(frequency).map(|heard| heard.modes),
+            };
+            let modes = self.coupled(&free, frequency).or_else(|_| slightly_stiffer());
+            self.heard_of(frequency, modes.unwrap_or_default())
+        });
+        self.tables_of(&keys.collect::<Vec<_>>(), Some(self.count_of(&free)))
+    }
+
+    fn heard(&self, frequency: f64) -> Result<Heard> {
+        Ok(self.heard_of(frequency, self.modes(frequency)?))
+    }
+
+    fn heard_of(&self, frequency: f64, modes: Vec<CoupledMode>) -> Heard {
+        let struck = [1.0 - self.struck, self.struck];
+        let on = [[1.0, 0.0], [0.0, 1.0]].map(|body| {
+            let heard = |mode: &CoupledMode| {
+                let Partial { cosine, sine } = mode.displacement(struck, body);
+                let scale = if is_playable(mode, frequency) { mode.angular_frequency } else { 0.0 };
+                Partial { cosine: scale * cosine, sine: scale * sine }
+            };
+            modes.iter().map(heard).collect()
+        });
+        Heard { frequency, modes, on }
+    }
+
+    /// The tables of some frequencies, with the same gains for all. Each has `count` modes; without a count, it has those
+    /// that are audible.
+    fn tables_of(&self, all: &[Heard], count: Option<usize>) -> Vec<ModeTable> {
+        let share = [1.0 - self.heard, self.heard];
+        let gains = [0, 1].map(|body| {
+            let mean = all.iter().map(|heard| heard.sum(body)).sum::<f64>() / all.len() as f64;
+            if mean > 0.0 { share[body] / mean } else { 0.0 }
+        });
+        let level = |heard: &Heard, m| {
+            let Partial { cosine, sine } = heard.mixed(m, gains);
+            hypot(cosine, sine)
+        };
+        let total = |heard: &Heard| (0..heard.modes.len()).map(|m| level(heard, m)).sum::<f64>();
+        let most = all.iter().map(total).fold(0.0, f64::max);
+        let t60 = self.t60();
+        let table = |heard: &Heard| {
+            let least = if count.is_none() { INAUDIBLE * total(heard) } else { -1.0 };
+            let audible = (0..heard.modes.len()).filter(|m| level(heard, *m) > least);
+            let (mut modes, mut phases): (Vec<Mode>, Vec<f32>) =
+                audible.map(|m| self.mode(heard, m, gains, most, t60)).unzip();
+            modes.resize(count.unwrap_or(modes.len()).max(1), Mode { level: 0.0, ..Mode::UNIT });
+            phases.resize(modes.len(), 0.0);
+            ModeTable::new(&modes).with_phases(&phases)
+        };
+        all.iter().map(table).collect()
+    }
+
+    /// Mode `m` and its phase.
+    fn mode(&self, heard: &Heard, m: usize, gains: [f64; 2], most: f64, t60: f64) -> (Mode, f32) {
+        let mode = &heard.modes[m];
+        let Partial { cosine, sine } = heard.mixed(m, gains);
+        let amounts = [0, 1].map(|body| {
+            let Partial { cosine, sine } = heard.on[body][m];
+            gains[body] * hypot(cosine, sine)
+        });
+        let sum = amounts[0] + amounts[1];
+        let random = if m == 0 { 0.0 } else { f64::from(uniform(key(self.first.seed, PAN_STREAM), m as u64)) };
+        let pan = amounts[0] * self.first.pan + amounts[1] * self.second.pan;
+        let strike = (1.0 - self.struck) * self.first.strike_share + self.struck * self.second.strike_share;
+        let level = if most > 0.0 { hypot(cosine, sine) / most } else { 0.0 };
+        let fields = [
+            mode.angular_frequency / (TAU * heard.frequency),
+            level,
+            LN_1000 / (mode.decay_rate * t60),
+            strike,
+            if sum > 0.0 { random * pan / sum } else { 0.0 },
+        ];
+        let ranges = Mode::FIELDS;
+        let within = |field: usize| (fields[field] as f32).clamp(ranges[field].1, ranges[field].2);
+        (Mode::from_fields([0, 1, 2, 3, 4].map(within)), atan2(cosine, sine) as f32)
+    }
+}
+
+/// Whether a bank can play the mode: it rings, and its ratio to the note is in range.
+fn is_playable(mode: &CoupledMode, frequency: f64) -> bool {
+    let (_, min, max) = Mode::FIELDS[0];
+    (f64::from(min)..=f64::from(max)).contains(&(mode.angular_frequency / (TAU * frequency)))
+}
