@@ -4,7 +4,7 @@
 //! `2M` samples. What a mallet or a burst of noise adds is not. So the exciter is at work wherever the error of the best
 //! prediction is much larger than soon after.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix};
 
 /// Samples that the next one is predicted from.
 const ORDER: usize = 160;
