@@ -126,7 +126,7 @@ fn centroid(sound: &[f32], start: f64, seconds: f64) -> f64 {
 fn gong() -> Patch {
     let mode = |m: u32| Mode {
         ratio: 1.0 + 0.41 * m as f32,
-        level: 0.5 / (1.0 + m as f32).powi(2),
+        level: 0.5 / ((1.0 + m as f32) * (1.0 + m as f32)),
         decay: 1.0 / (1.0 + 0.02 * m as f32),
         ..Mode::UNIT
     };
