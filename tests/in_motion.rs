@@ -136,14 +136,14 @@ fn gong() -> Patch {
 
 #[test]
 fn a_hard_stroke_blooms_for_some_tenths_of_a_second_and_a_soft_one_does_not() {
-    let patch = gong().with(Param::Bloom, 70.0).with(Param::BloomTime, 1.5);
+    let patch = gong().with(Param::Bloom, 70.0).with(Param::BloomTime, 0.3);
     let centroids = |velocity| {
         let sound = render(&patch, &[strike(0, 45, velocity)], 1.0);
         [0.03, 0.15, 0.3, 0.5].map(|start| centroid(&sound, start, 0.1))
     };
     let hard = centroids(1.0);
     assert!(hard.windows(2).take(2).all(|pair| pair[1] > 1.1 * pair[0]), "{hard:?}");
-    assert!(hard[2] > 2.0 * hard[0], "{hard:?}");
+    assert!(hard[3] > 1.8 * hard[0], "{hard:?}");
     let soft = centroids(0.25);
     assert!(soft.windows(2).all(|pair| pair[1] < 1.02 * pair[0]), "{soft:?}");
 }

@@ -65,8 +65,7 @@ impl Cells {
         self.iter().for_each(|cell| cell.bank.add_energies(&cell.bands, &mut bands));
         let total: f64 = bands.iter().map(|band| band.energy).sum();
         let energy = (total / climb.full).min(MOST_ENERGY);
-        // Not less, so that NaN ends here too.
-        if !(energy >= LEAST_ENERGY) {
+        if energy < LEAST_ENERGY || energy.is_nan() {
             return;
         }
         let exchange = exchange(&bands, total, Climb { speed: climb.speed * energy, ..*climb });
