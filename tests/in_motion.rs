@@ -1,5 +1,4 @@
-//! Tension, bloom and touch: pitch that follows the energy, energy that climbs, and a finger that damps modes by their
-//! shapes.
+//! Tension, bloom and touch: pitch and spectrum that follow the energy, and a finger that damps modes by their shapes.
 
 mod events;
 
