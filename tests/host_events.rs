@@ -297,10 +297,7 @@ fn tails_are_told_exactly() {
             let told = synth.tail_frames();
             let found = if synth.is_silent() { 0 } else { frames_to_silence(&mut synth) };
             sounding += u32::from(found > 0);
-            // Of what blooms, an upper bound is told.
-            let over = if patch.get(Param::Bloom) > 0.0 { found / 50 } else { 0 };
-            let is_told = found <= told + CONTROL_FRAMES as u64 && told <= found + over + CONTROL_FRAMES as u64;
-            assert!(is_told, "{}: {told} told, {found} found", preset.name);
+            assert!(told.abs_diff(found) <= CONTROL_FRAMES as u64, "{}: {told} told, {found} found", preset.name);
             assert_eq!(synth.tail_frames(), 0);
         }
     }

@@ -96,7 +96,7 @@ impl Energy {
 
     /// Frames until the voice is over if no event comes, `now` frames after its start and `to_tick` frames before the
     /// next control tick. Exact to a tick after the strike has ended and while neither decay nor gain changes; an upper
-    /// bound during a strike, and if the voice `blooms`.
+    /// bound during a strike, and while the voice `blooms`.
     pub(super) fn tail_frames(
         &mut self,
         bank: &Cells,
