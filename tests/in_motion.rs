@@ -1,5 +1,4 @@
-//! Tension, bloom and touch: pitch that follows the energy, energy that climbs, and a finger that damps modes by their
-//! shapes.
+//! Tension, bloom and touch: pitch and spectrum that follow the energy, and a finger that damps modes by their shapes.
 
 mod events;
 
@@ -136,19 +135,19 @@ fn gong() -> Patch {
 
 #[test]
 fn a_hard_stroke_blooms_for_some_tenths_of_a_second_and_a_soft_one_does_not() {
-    let patch = gong().with(Param::Bloom, 70.0).with(Param::BloomTime, 1.5);
+    let patch = gong().with(Param::Bloom, 70.0).with(Param::BloomTime, 0.3);
     let centroids = |velocity| {
         let sound = render(&patch, &[strike(0, 45, velocity)], 1.0);
         [0.03, 0.15, 0.3, 0.5].map(|start| centroid(&sound, start, 0.1))
     };
     let hard = centroids(1.0);
     assert!(hard.windows(2).take(2).all(|pair| pair[1] > 1.1 * pair[0]), "{hard:?}");
-    assert!(hard[2] > 2.0 * hard[0], "{hard:?}");
+    assert!(hard[3] > 1.8 * hard[0], "{hard:?}");
     let soft = centroids(0.25);
     assert!(soft.windows(2).all(|pair| pair[1] < 1.02 * pair[0]), "{soft:?}");
 }
 
-/// The tail is an upper bound, and the voice does end.
+/// The tail is an upper bound while the voice blooms and then exact, and the voice does end.
 #[test]
 fn a_blooming_voice_ends_within_its_tail() {
     let patch = gong().with(Param::Bloom, 80.0).with(Param::Decay, 1.5).with(Param::Tension, 1.0);
@@ -165,8 +164,10 @@ fn a_blooming_voice_ends_within_its_tail() {
         frames += CONTROL_FRAMES as u64;
         assert!(frames < 10 * RATE as u64, "it never ends");
     }
-    assert!(ends.iter().all(|end| *end >= frames), "{frames}: {ends:?}");
-    assert!(ends.len() > 10 && ends[ends.len() - 1] < frames + RATE as u64, "{frames}: {ends:?}");
+    // To a tick.
+    let tick = CONTROL_FRAMES as u64;
+    assert!(ends.iter().all(|end| end + tick >= frames), "{frames}: {ends:?}");
+    assert!(ends.len() > 10 && ends[ends.len() / 2] <= frames, "{frames}: {ends:?}");
 }
 
 /// Amplitude of a partial in dB, over a tenth of a second from `start`.

@@ -34,9 +34,13 @@ pub struct Climb {
 /// The largest part that goes up in a control tick.
 const MOST: f64 = 0.25;
 
-/// Energies in units of full energy: more counts as the first, and below the second nothing climbs.
+/// More full energies than this count as this many.
 const MOST_ENERGY: f64 = 4.0;
-const LEAST_ENERGY: f64 = 1e-4;
+
+impl Climb {
+    /// Below this part of full energy, nothing climbs.
+    pub const LEAST_ENERGY: f64 = 1e-4;
+}
 
 /// In a control tick a band at most doubles its energy, apart from this part of the total for each mode: so no mode starts
 /// with a click.
@@ -65,7 +69,7 @@ impl Cells {
         self.iter().for_each(|cell| cell.bank.add_energies(&cell.bands, &mut bands));
         let total: f64 = bands.iter().map(|band| band.energy).sum();
         let energy = (total / climb.full).min(MOST_ENERGY);
-        if energy < LEAST_ENERGY || energy.is_nan() {
+        if energy < Climb::LEAST_ENERGY || energy.is_nan() {
             return;
         }
         let exchange = exchange(&bands, total, Climb { speed: climb.speed * energy, ..*climb });

@@ -31,6 +31,12 @@ impl Bloom {
         self.key = key;
     }
 
+    /// Whether energy climbs as long as nothing changes, at an energy in units of a full strike.
+    pub(super) fn acts(controls: &Controls, energy: f64) -> bool {
+        // Measured energy has rounding errors of single precision.
+        controls.bloom > 0.0 && energy > 0.99 * Climb::LEAST_ENERGY
+    }
+
     /// Lets energy climb for one control tick, if the sound blooms. `full` is the energy of a full strike.
     pub(super) fn climb(&mut self, controls: &Controls, full: f64, sample_rate: f64, bank: &mut Cells) {
         if controls.bloom == 0.0 {

@@ -96,7 +96,7 @@ impl Energy {
 
     /// Frames until the voice is over if no event comes, `now` frames after its start and `to_tick` frames before the
     /// next control tick. Exact to a tick after the strike has ended and while neither decay nor gain changes; an upper
-    /// bound during a strike, and if the voice `blooms`.
+    /// bound during a strike, and while the voice `blooms`.
     pub(super) fn tail_frames(
         &mut self,
         bank: &Cells,
@@ -118,9 +118,9 @@ impl Energy {
         end.saturating_sub(now).min(fade)
     }
 
-    /// Frames until the end is detected. The energy is measured every [`MEASURING_TICKS`] ticks or at every tick, and at every tick
-    /// after it was found to be nearly silent: the voice ends at the first of these times at which it is below the
-    /// limit.
+    /// Frames until the end is detected. The energy is measured every [`MEASURING_TICKS`] ticks, or at every tick if it is
+    /// always measured or was found to be nearly silent: the voice ends at the first of these times at which it is below
+    /// the limit.
     fn find_end(&self, bank: &Cells, strike: &Strike, fader: &Fader, blooms: bool, to_tick: u64) -> u64 {
         let gain = f64::from(fader.loudest()).max(1.0);
         let share = 1.0 / (bank.len().max(1) as f64 * gain * gain);

@@ -248,7 +248,7 @@ impl SynthVoice {
         } else if self.modulators.move_the_end() || self.is_driven() {
             u64::MAX
         } else {
-            let blooms = self.controls.bloom > 0.0;
+            let blooms = Bloom::acts(&self.controls, self.energy.now() / self.strike.full_energy());
             let times = [self.clock.total, to_tick];
             self.energy.tail_frames(&self.bank, &self.strike, &self.fader, blooms, times)
         }
