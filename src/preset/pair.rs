@@ -193,9 +193,7 @@ mod tests {
             ),
             (&format!("{both}strike = 2\n[joint]\nkind = \"rigid\""), "x: second.strike: 2 is out of range"),
             (
-                &format!(
-                    "[body]\nmodel = \"string\"\ncount = 500\n[second]\nmodel = \"plate\"\n[joint]\nkind = \"rigid\""
-                ),
+                "[body]\nmodel = \"string\"\ncount = 500\n[second]\nmodel = \"plate\"\n[joint]\nkind = \"rigid\"",
                 "x: count: both bodies have 564 modes",
             ),
         ] {
