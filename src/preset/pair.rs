@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(pair.link, Link::Spring { stiffness: 2000.0, damping: 0.0 });
         assert_eq!((pair.heard, pair.keys, pair.second.follows_key), (0.8, [50, 52], false));
         assert_eq!(f64::from(preset.patch.get(Param::Decay)), f64::from(pair.t60() as f32));
-        assert_eq!(parse(&preset.to_toml().split_once("name = \"a\"\n").unwrap().1).unwrap(), preset);
+        assert_eq!(parse(preset.to_toml().split_once("name = \"a\"\n").unwrap().1).unwrap(), preset);
         preset.patch.modes.make_tables();
         assert_eq!(preset.patch.modes.keys(), Some(50..=52));
     }
