@@ -5,6 +5,8 @@ use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synt
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use sprung::render::Meter;
+use sprung::sound::bodies::{Body, Model};
+use sprung::sound::pairs::{Link, Pair};
 use sprung::sound::{Kit, Pad, Shelf, Sound, Tuning};
 use std::sync::Arc;
 
@@ -52,7 +54,7 @@ fn storm(block: u32) -> Vec<Event> {
 #[test]
 fn processing_does_not_allocate() {
     let patch = Patch { modes: ModeTable::new(&[Mode { strike: 0.5, ..Mode::UNIT }; 64]), ..Patch::default() };
-    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[patch.clone(), Patch::default(), patch]);
+    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[patch.clone(), Patch::default(), patch, pair()]);
     let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
     let blocks: Vec<_> = (0..40).map(storm).collect();
     let mut loudest = 0.0_f32;
@@ -65,6 +67,7 @@ fn processing_does_not_allocate() {
     assert!(loudest > 0.1, "something sounded");
     assert_no_alloc(|| std::hint::black_box((ensemble.is_silent(), ensemble.voices_used())));
     let mut synth = Synth::new(48_000.0, 1);
+    synth.set_patch(&pair());
     for events in &blocks {
         assert_no_alloc(|| {
             synth.process_with_input(events, &[0.1; 480], &mut left, &mut right);
@@ -184,6 +187,15 @@ fn spaces_come_and_go_without_allocating() {
     assert_no_alloc(|| synth.reset());
     assert!(loudest > 0.1, "something sounded");
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
+}
+
+/// A string that follows the keys on a plate that does not: a table for each key.
+fn pair() -> Patch {
+    let body = |model, modes| Body { modes, ..Body::new(Model::find(model).unwrap().clone()) };
+    let plate = Body { follows_key: false, ..body("plate", 9) };
+    let link = Link::Spring { stiffness: 500.0, damping: 0.1 };
+    let pair = Pair { keys: [40, 70], ..Pair::new(body("string", 9), plate, link) };
+    Patch { modes: pair.table().unwrap(), ..Patch::default() }
 }
 
 fn modes(count: usize) -> Patch {

@@ -9,7 +9,9 @@ use sprung::params::{PARAMS, Param};
 use sprung::patch::routes::{Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
+use sprung::sound::bodies::{Body, Model};
 use sprung::sound::kit::{KEYS, Pad};
+use sprung::sound::pairs::{Link, Pair};
 use sprung::sound::{Kit, Sound};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
@@ -138,7 +140,7 @@ fn patch(stream: &mut Stream, seed: u64) -> Patch {
             pan: ((stream.next() * 2.0 - 1.0) * pan) as f32,
         })
         .collect();
-    patch.modes = ModeTable::new(&modes);
+    patch.modes = if seed % 8 == 6 { pair(stream) } else { ModeTable::new(&modes) };
     for place in 0..(stream.next() * stream.next() * 17.0) as usize {
         let mut one_of = |count: usize| (stream.next() * count as f64) as usize % count;
         let source = Source::ALL[one_of(Source::ALL.len())];
@@ -149,6 +151,16 @@ fn patch(stream: &mut Stream, seed: u64) -> Patch {
         patch.set(amount_param(place), (stream.next() * 60.0 - 30.0) as f32);
     }
     patch
+}
+
+/// A random string that follows the keys on a plate that does not: a table for each key, with phases.
+fn pair(stream: &mut Stream) -> ModeTable {
+    let body = |model, modes| Body { modes, ..Body::new(Model::find(model).unwrap().clone()) };
+    let plate = Body { follows_key: false, ..body("plate", 2 + (stream.next() * 40.0) as usize) };
+    let link = Link::Spring { stiffness: 1000.0 * stream.next().max(0.01), damping: stream.next() };
+    let string = body("string", 2 + (stream.next() * 20.0) as usize);
+    let pair = Pair { polarisation: stream.next(), keys: [50, 60], ..Pair::new(string, plate, link) };
+    pair.table().unwrap()
 }
 
 /// A random kit of three sounds. Some keys are silent; some have a pitch, gain or choke group of their own.

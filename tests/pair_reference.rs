@@ -100,8 +100,7 @@ fn rendered_pairs_are_those_of_scipy() {
                     let t60 = f64::from(mode.decay) * decay / line.t60 - 1.0;
                     let level = f64::from(mode.level) / levels - amplitude(line) / total;
                     assert!(cents.abs() < 0.001, "{place}: {cents} cents");
-                    // A mode of the joint that decays in milliseconds is at the end of a table's range.
-                    assert!(t60.abs() < 1e-4 || line.t60 < 0.01, "{place}: T60 is off by {t60}");
+                    assert!(t60.abs() < 1e-4, "{place}: T60 is off by {t60}");
                     assert!(level.abs() < 1e-6, "{place}: the level is off by {level}");
                 }
                 let found = render(table.clone(), decay, key);

@@ -86,10 +86,15 @@ impl fmt::Debug for ByKey {
     }
 }
 
-/// Tables by key are compared by the text they were made from.
+/// Tables by key are equal if they were made from the same text, or if they are the same.
 impl PartialEq for ModeTable {
     fn eq(&self, other: &Self) -> bool {
-        self.modes == other.modes && self.phases == other.phases && self.origin == other.origin
+        let is_same = match (&self.by_key, &other.by_key) {
+            (None, None) => true,
+            (Some(one), Some(other)) => self.origin.is_some() || Arc::ptr_eq(one, other),
+            _ => false,
+        };
+        is_same && self.modes == other.modes && self.phases == other.phases && self.origin == other.origin
     }
 }
 
@@ -136,8 +141,9 @@ impl ModeTable {
         self.origin.as_deref()
     }
 
-    /// The table with another table for each of the `keys` (MIDI keys at A4 = 440 Hz). `make` makes them, in the order of
-    /// the keys, when they are first needed: at least one, each with as many modes as this table. Allocates.
+    /// The table with another one for each key from the MIDI key `lowest` on, at A4 = 440 Hz. `make` makes them in the order
+    /// of the keys, when [`ModeTable::make_tables`] is called: at least one, each with as many modes as this table.
+    /// Allocates.
     #[must_use]
     pub fn with_keys(self, lowest: u8, make: impl Fn() -> Vec<ModeTable> + Send + Sync + 'static) -> Self {
         let by_key = ByKey { lowest, make: Box::new(make), made: OnceLock::new() };

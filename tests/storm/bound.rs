@@ -14,7 +14,7 @@ use crate::noise::Noise;
 use libm::{fabs, hypot, pow, sin, sqrt};
 use sprung::engine::{Event, EventKind, Expression};
 use sprung::params::{PARAM_COUNT, PARAMS, Param};
-use sprung::patch::{Mode, Patch};
+use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::units::gain_from_db;
 use std::f64::consts::{LOG2_10, PI, SQRT_2};
 
@@ -119,6 +119,18 @@ struct Reach {
     struck: [f64; 3],
     plucked: [f64; 3],
     noise: [f64; 3],
+}
+
+impl Reach {
+    /// Whichever reaches further, for each force and side.
+    fn max(self, other: Self) -> Self {
+        let further = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i].max(b[i]));
+        Self {
+            struck: further(self.struck, other.struck),
+            plucked: further(self.plucked, other.plucked),
+            noise: further(self.noise, other.noise),
+        }
+    }
 }
 
 /// A strike, and the end of its force.
@@ -313,7 +325,17 @@ impl Part {
         if let Some(reach) = self.reach {
             return reach;
         }
-        let modes = self.patch.modes.as_slice();
+        // A note may be played by the table of any key.
+        self.patch.modes.make_tables();
+        let tables: Vec<Reach> = self.patch.modes.tables().iter().map(|table| self.reach_of(table)).collect();
+        let reach = tables.into_iter().fold(Reach::default(), Reach::max);
+        self.reach = Some(reach);
+        reach
+    }
+
+    /// The reach with one table of modes.
+    fn reach_of(&self, table: &ModeTable) -> Reach {
+        let modes = table.as_slice();
         let noise_gain = self.level(Param::NoiseLevel);
         let varied = gain_from_db(self.value(Param::VaryModes));
         let tilt = self.value(Param::Tilt) / (20.0 / LOG2_10);
@@ -331,7 +353,8 @@ impl Part {
             let reached = 1.0 - f64::from(mode.strike) * (1.0 - 0.01 * self.value(Param::NoiseReach));
             let noise = level * reached * noise_gain;
             let point = sin(PI * self.value(Param::PluckPosition) * 0.01 * f64::from(mode.ratio));
-            let plucked = struck * if self.value(Param::VaryPosition) > 0.0 { 1.0 } else { fabs(point) };
+            let plucked =
+                struck * if self.value(Param::VaryPosition) > 0.0 || table.has_phases() { 1.0 } else { fabs(point) };
             reach.struck = add(reach.struck, gains.map(|gain| gain * struck));
             reach.plucked = add(reach.plucked, gains.map(|gain| gain * plucked));
             reach.noise = add(reach.noise, gains.map(|gain| gain * noise));
@@ -341,7 +364,6 @@ impl Part {
             let most = widest.map(|gain| gain * plain * varied);
             reach = Reach { struck: most, plucked: most, noise: most.map(|most| most * noise_gain) };
         }
-        self.reach = Some(reach);
         reach
     }
 

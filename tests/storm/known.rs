@@ -7,6 +7,8 @@ use sprung::engine::{Event, EventKind};
 use sprung::params::Param;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
+use sprung::sound::bodies::{Body, Model};
+use sprung::sound::pairs::{Link, Pair};
 use sprung::units::key_from_frequency;
 
 /// A case on one synth at 48 kHz.
@@ -79,6 +81,22 @@ fn quick_strikes_in_mono_that_are_never_let_go() {
             let patch = preset.patch.clone().with(Param::Mode, 1.0).with(Param::Sweep, 16.7);
             let events = (0..300).map(|n| on(n * interval, 48 + (n * 7 % 40) as u8)).collect();
             stays_bounded(&preset.name, &case(patch, events, 300 * interval as usize + 48_000), 0.0);
+        }
+    }
+}
+
+/// A string on a plate, whose notes change the table of modes while they ring.
+#[test]
+fn joined_bodies_slide_from_key_to_key() {
+    let body = |model, modes| Body { modes, ..Body::new(Model::find(model).unwrap().clone()) };
+    let plate = Body { follows_key: false, ..body("plate", 20) };
+    for (link, mode) in [(Link::Rigid, 1.0), (Link::Spring { stiffness: 900.0, damping: 1.0 }, 2.0)] {
+        let pair = Pair { polarisation: 0.5, keys: [40, 80], ..Pair::new(body("string", 20), plate.clone(), link) };
+        let patch = Patch { modes: pair.table().unwrap(), ..Patch::default() };
+        for (glide, level) in [(0.0, -60.0), (0.2, 0.0)] {
+            let patch = patch.clone().with(Param::Mode, mode).with(Param::Glide, glide).with(Param::NoiseLevel, level);
+            let events = (0..100).map(|n| on(n * 301, 40 + (n * 7 % 40) as u8)).collect();
+            stays_bounded("string on a plate", &case(patch, events, 96_000), 0.01);
         }
     }
 }

@@ -15,6 +15,9 @@ use std::f64::consts::TAU;
 /// The stream of the random pans, beside those that a body draws from its seed.
 const PAN_STREAM: u64 = 0x5041_4952_5041_4E00;
 
+/// The shortest T60 of a mode, as a multiple of the pair's. A voice limits it further.
+const LEAST_DECAY: f32 = 1e-6;
+
 /// Modes with less than this share of the sum of all levels (−120 dB) are left out of a table for all keys.
 const INAUDIBLE: f64 = 1e-6;
 
@@ -158,7 +161,9 @@ impl Pair {
             strike,
             if sum > 0.0 { random * pan / sum } else { 0.0 },
         ];
-        let ranges = Mode::FIELDS;
+        let mut ranges = Mode::FIELDS;
+        // A joint has modes that decay within milliseconds, faster than a file may ask for.
+        ranges[2].1 = LEAST_DECAY;
         let within = |field: usize| (fields[field] as f32).clamp(ranges[field].1, ranges[field].2);
         (Mode::from_fields([0, 1, 2, 3, 4].map(within)), atan2(cosine, sine) as f32)
     }
