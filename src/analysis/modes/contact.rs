@@ -21,6 +21,8 @@ const PAUSE: usize = 2;
 const FOLLOWING: usize = 6;
 /// Error in energy over that of later, relative to the sound: 15 dB.
 const STANDS_OUT: f64 = 30.0;
+/// The same, below which errors are those of rounding.
+const LEAST: f64 = 1e-8;
 /// Error in energy over what follows: 6 dB. Modes that are not predicted fall more slowly.
 const FALLS: f64 = 4.0;
 /// Predictions that are fitted one after the other.
@@ -63,7 +65,7 @@ pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
         let at_work = |index: &usize| {
             let following = &errors[index + PAUSE..index + PAUSE + FOLLOWING];
             let mean = following.iter().sum::<f64>() / following.len() as f64;
-            errors[*index] > FALLS * mean && errors[*index] > STANDS_OUT * median * levels[*index]
+            errors[*index] > FALLS * mean && errors[*index] > (STANDS_OUT * median).max(LEAST) * levels[*index]
         };
         let last = (0..latest).rfind(at_work);
         if last == work {
