@@ -34,6 +34,9 @@ use take::Prepared;
 /// Frequency in Hz of A4 in a new patch.
 const A4: f64 = 440.0;
 
+/// Distance in dB from which on a table of modes hardly sounds like its recording.
+const FAR_DB: f64 = 6.0;
+
 /// How to fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -131,10 +134,17 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         let key = key_from_frequency(layer.draft.note, A4);
         log_mel::distance(&audition.mean(&patch, key, take.velocity, take.mean.len()), &take.mean)
     };
-    let distances = layers.iter().zip(&prepared).map(distance).collect();
+    let distances: Vec<f64> = layers.iter().zip(&prepared).map(distance).collect();
     let mut warnings: Vec<String> = prepared.iter().filter_map(|take| take.warning.clone()).collect();
     if draft.partials.iter().all(|partial| !partial.struck) {
         let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
+        warnings.push(format!("{}: {message}", takes[base].name));
+    }
+    if distances[base] > FAR_DB {
+        let message = format!(
+            "the preset is {:.1} dB from it: expected a dry stroke that rings, no speech, vibrato or phrase",
+            distances[base]
+        );
         warnings.push(format!("{}: {message}", takes[base].name));
     }
     Ok(Fitted {
