@@ -20,9 +20,11 @@ mod take;
 pub use body::{Explained, Family};
 pub use take::{Take, VELOCITY};
 
+use super::level::{dbfs, rms};
 use super::log_mel::{self, RATE};
 use super::modes::Strike;
 use crate::error::{Error, Result};
+use crate::params::Param;
 use crate::patch::Patch;
 use crate::preset::Preset;
 use crate::units::{key_from_frequency, note_name};
@@ -127,8 +129,12 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
             )
         })?,
     };
-    let patch = layers::route(patch, &layers, base);
+    let mut patch = layers::route(patch, &layers, base);
     let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
+    if explained.is_some() {
+        let played = audition.mean(&patch, key, draft.velocity, take.mean.len());
+        level(&mut patch, &played, &take.mean);
+    }
     let played = audition.play(&patch, key, draft.velocity, take.mean.len());
     let distance = |(layer, take): (&Layer, &Prepared)| {
         let key = key_from_frequency(layer.draft.note, A4);
@@ -159,6 +165,13 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         explained,
         warnings,
     })
+}
+
+/// Sets the gain of a patch so that what it plays becomes as loud as a recording.
+fn level(patch: &mut Patch, played: &[f32], recording: &[f32]) {
+    let more = dbfs(rms(recording)) - dbfs(rms(played));
+    let gain = f64::from(patch.get(Param::Gain)) + (100.0 * more).round() / 100.0;
+    patch.set(Param::Gain, Param::Gain.info().clamp(gain as f32));
 }
 
 impl Fitted {
