@@ -36,6 +36,8 @@ use take::Prepared;
 /// Frequency in Hz of A4 in a new patch.
 const A4: f64 = 440.0;
 
+/// Hardnesses of the mallet in per cent that are tried with a body.
+const HARDNESSES: [f32; 6] = [25.0, 40.0, 55.0, 70.0, 85.0, 100.0];
 /// Distance in dB from which on a table of modes hardly sounds like its recording.
 const FAR_DB: f64 = 6.0;
 
@@ -132,8 +134,18 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     let mut patch = layers::route(patch, &layers, base);
     let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
     if explained.is_some() {
-        let played = audition.mean(&patch, key, draft.velocity, take.mean.len());
-        level(&mut patch, &played, &take.mean);
+        // A body's levels ask for a mallet of their own.
+        let candidates = HARDNESSES.iter().map(|hardness| patch.clone().with(Param::MalletHardness, *hardness));
+        let mut least = f64::INFINITY;
+        for mut other in candidates.chain([patch.clone()]).collect::<Vec<_>>() {
+            let played = audition.mean(&other, key, draft.velocity, take.mean.len());
+            level(&mut other, &played, &take.mean);
+            let played = audition.mean(&other, key, draft.velocity, take.mean.len());
+            let distance = log_mel::distance(&played, &take.mean);
+            if distance < least {
+                (patch, least) = (other, distance);
+            }
+        }
     }
     let played = audition.play(&patch, key, draft.velocity, take.mean.len());
     let distance = |(layer, take): (&Layer, &Prepared)| {
