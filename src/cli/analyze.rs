@@ -88,7 +88,6 @@ pub(super) fn run(args: &Args) -> Result<()> {
     })
 }
 
-/// A T60 that is infinite is null, and so is what is not known of it.
 fn mode_json(mode: &Mode) -> serde_json::Value {
     let channels: Vec<_> =
         mode.channels.iter().map(|(level, phase)| json!({"level_db": level, "phase": phase})).collect();
@@ -128,6 +127,7 @@ fn strike_json(strike: &Strike) -> serde_json::Value {
         "onset": strike.onset,
         "seconds": strike.seconds,
         "damped": strike.damped,
+        "steady": strike.steady,
         "residual_db": strike.residual_db,
         "modes": strike.modes.iter().map(onset).collect::<Vec<_>>(),
         "groups": strike.groups.iter()
@@ -168,16 +168,11 @@ fn to_csv(found: &Analysis) -> String {
                 deviation.level_db,
                 deviation.phase,
             ];
-            let cells: Vec<String> = numbers.into_iter().map(cell).collect();
+            let cells = numbers.map(|number| number.to_string());
             writeln!(text, "{},{}", index + 1, cells.join(",")).expect("a String takes all");
         }
     }
     text
-}
-
-/// A number of a CSV; empty where there is none, as for the T60 of what does not decay.
-fn cell(number: f64) -> String {
-    if number.is_finite() { number.to_string() } else { String::new() }
 }
 
 fn to_text(found: &Analysis, shared: &[Common]) -> String {
@@ -223,7 +218,6 @@ fn to_text(found: &Analysis, shared: &[Common]) -> String {
 fn t60(value: f64, deviation: Option<f64>) -> String {
     let text = |value: f64| if value < 1e-3 { format!("{value:.0e}") } else { format!("{value:.3}") };
     match deviation {
-        _ if !value.is_finite() => "no decay".to_owned(),
         Some(deviation) => format!("{value:>8.4} ± {:<5} s", text(deviation)),
         None => format!("{value:>8.4} s"),
     }

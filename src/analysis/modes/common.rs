@@ -7,7 +7,7 @@ use super::mode::{Mode, Strike};
 pub struct Common {
     /// Hz: the mean of all, weighted by their certainty.
     pub frequency: f64,
-    /// Seconds, likewise; infinite if it decays in none.
+    /// Seconds, likewise.
     pub t60: f64,
     /// Its level in dBFS in each strike; none where it was not found.
     pub levels_db: Vec<Option<f64>>,
@@ -50,13 +50,11 @@ pub fn common(strikes: &[Strike]) -> Vec<Common> {
                 let (sum, weights) = members.iter().map(|member| value(of(member))).fold(
                     (0.0, 0.0),
                     |(sum, weights), (value, deviation)| {
-                        // What does not decay has no T60 that could be averaged.
-                        let known = value.is_finite() && deviation.is_finite();
-                        let weight = if known { 1.0 / (deviation * deviation).max(1e-18) } else { 0.0 };
-                        (sum + if known { weight * value } else { 0.0 }, weights + weight)
+                        let weight = 1.0 / (deviation * deviation).max(1e-18);
+                        (sum + weight * value, weights + weight)
                     },
                 );
-                if weights > 0.0 { sum / weights } else { f64::INFINITY }
+                sum / weights
             };
             let mut levels_db = vec![None; strikes.len()];
             members.iter().for_each(|member| levels_db[member.0] = Some(of(member).level_db));

@@ -1,12 +1,12 @@
 //! When the exciter of a strike has let go.
 //!
-//! Modes that ring freely are predicted by what they did before (linear prediction; Makhoul 1975): `M` modes exactly by
-//! `2M` samples. What a mallet or a burst of noise adds is not. So the exciter is at work wherever the error of the best
-//! prediction is much larger than soon after.
+//! Each sample of modes that ring freely is a weighted sum of those that come after it (backward linear prediction; Makhoul
+//! 1975): for `M` modes, of `2M` samples. While a mallet or a burst of noise drives them, it is not. So the exciter is at
+//! work wherever the error of the best weights is much larger than soon after.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix};
 
-/// Samples that the next one is predicted from.
+/// Samples that the one before them is predicted from.
 const ORDER: usize = 160;
 /// Seconds of the strike that predictions are fitted to.
 const FITTED: f64 = 0.2;
@@ -21,6 +21,8 @@ const PAUSE: usize = 2;
 const FOLLOWING: usize = 6;
 /// Error in energy over that of later, relative to the sound: 15 dB.
 const STANDS_OUT: f64 = 30.0;
+/// The same, below which errors are those of rounding.
+const LEAST: f64 = 1e-8;
 /// Error in energy over what follows: 6 dB. Modes that are not predicted fall more slowly.
 const FALLS: f64 = 4.0;
 /// Predictions that are fitted one after the other.
@@ -36,14 +38,14 @@ const RIDGE: f64 = 1e-12;
 pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
     let block = ((BLOCK * sample_rate) as usize).max(8);
     let samples = &samples[..samples.len().min((FITTED * sample_rate) as usize)];
-    let (blocks, latest) = (samples.len() / block, (LONGEST / BLOCK) as usize);
-    if samples.len() < 4 * ORDER || blocks < 2 * latest {
+    let (blocks, latest) = (samples.len().saturating_sub(ORDER) / block, (LONGEST / BLOCK) as usize);
+    if blocks < 2 * latest {
         return 0;
     }
     let energies = |values: &[f64]| -> Vec<f64> {
         values.chunks_exact(block).map(|block| block.iter().map(|x| x * x).sum::<f64>().max(1e-300)).collect()
     };
-    let sound = energies(samples);
+    let sound = energies(&samples[..blocks * block]);
     // Where the sound is over, rounding alone is left.
     let least = FAINTEST * sound.iter().copied().fold(0.0, f64::max);
     let levels: Vec<f64> = (0..blocks)
@@ -63,7 +65,7 @@ pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
         let at_work = |index: &usize| {
             let following = &errors[index + PAUSE..index + PAUSE + FOLLOWING];
             let mean = following.iter().sum::<f64>() / following.len() as f64;
-            errors[*index] > FALLS * mean && errors[*index] > STANDS_OUT * median * levels[*index]
+            errors[*index] > FALLS * mean && errors[*index] > (STANDS_OUT * median).max(LEAST) * levels[*index]
         };
         let last = (0..latest).rfind(at_work);
         if last == work {
@@ -77,16 +79,16 @@ pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
     work.map_or(0, |index| (index + 1) * block)
 }
 
-/// Errors of the linear prediction whose squares, weighted by `weight` of each sample, have the least sum; silence is
-/// before the first sample.
+/// Errors of the prediction whose squares, weighted by `weight` of each sample, have the least sum; of all samples that are
+/// followed by as many as it takes.
 fn errors(samples: &[f64], weight: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
-    let past = |n: usize, lag: usize| n.checked_sub(lag).map_or(0.0, |n| samples[n]);
+    let count = samples.len() - ORDER;
     // Lag 0 is the sample that is predicted.
     let mut products = DMatrix::<f64>::zeros(ORDER + 1, ORDER + 1);
-    for from in (0..samples.len()).step_by(ROWS) {
-        let count = ROWS.min(samples.len() - from);
-        let rows = DMatrix::from_fn(ORDER + 1, count, |lag, row| past(from + row, lag));
-        let weighted = DMatrix::from_fn(count, ORDER + 1, |row, lag| weight(from + row) * rows[(lag, row)]);
+    for from in (0..count).step_by(ROWS) {
+        let rows = ROWS.min(count - from);
+        let weighted = DMatrix::from_fn(rows, ORDER + 1, |row, lag| weight(from + row) * samples[from + row + lag]);
+        let rows = DMatrix::from_fn(ORDER + 1, rows, |lag, row| samples[from + row + lag]);
         products.gemm(1.0, &rows, &weighted, 1.0);
     }
     let mut normal = products.view((1, 1), (ORDER, ORDER)).into_owned();
@@ -94,8 +96,8 @@ fn errors(samples: &[f64], weight: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
     (0..ORDER).for_each(|lag| normal[(lag, lag)] += ridge);
     let right = products.column(0).rows(1, ORDER).into_owned();
     let predictor = Cholesky::new(normal)?.solve(&right);
-    let error = |n: usize| samples[n] - (0..ORDER).map(|lag| predictor[lag] * past(n, lag + 1)).sum::<f64>();
-    Some((0..samples.len()).map(error).collect())
+    let error = |n: usize| samples[n] - (0..ORDER).map(|lag| predictor[lag] * samples[n + 1 + lag]).sum::<f64>();
+    Some((0..count).map(error).collect())
 }
 
 #[cfg(test)]

@@ -24,8 +24,9 @@ const NO_RETURN_DB: f64 = 2.0;
 const RISING: f64 = 0.02;
 /// dB above the quietest level at which levels tell nothing.
 const FLOOR_DB: f64 = 6.0;
-/// Seconds before the place that are left out: the place is not known better.
-const GUARD: f64 = 0.012;
+/// Seconds before the place that are left out, since the place is not known better, and at most which share of all.
+const GUARD: f64 = 0.05;
+const GUARD_SHARE: f64 = 0.2;
 /// Seconds after the place in which modes are compared with the sound.
 const COMPARED: f64 = 0.15;
 /// Energy that modes which explain the sound leave of it at most.
@@ -73,7 +74,8 @@ pub(super) fn damped_from(samples: &[f64], sample_rate: f64) -> Option<usize> {
         .filter_map(|(reach, place)| Some((significance(&levels, place, reach, quietest)?, place)))
         .max_by(|a, b| a.0.total_cmp(&b.0))?
         .1;
-    Some((place * step).saturating_sub((GUARD * sample_rate) as usize))
+    let place = place * step;
+    Some(place - ((GUARD * sample_rate) as usize).min((GUARD_SHARE * place as f64) as usize))
 }
 
 /// How clearly the levels turn down for good at a place, in mean deviations from the lines before and after. `None` if they
@@ -101,7 +103,7 @@ fn significance(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Op
 
 /// Whether the sound after the samples that a fit was made of is not what its modes would have become.
 pub(super) fn confirmed(fit: &Fit, len: usize, after: &[f64], sample_rate: f64) -> bool {
-    let skipped = (2.0 * GUARD * sample_rate) as usize;
+    let skipped = (1.5 * GUARD * sample_rate) as usize;
     let compared = (COMPARED * sample_rate) as usize;
     let Some(after) = after.get(skipped..).map(|after| &after[..compared.min(after.len())]) else { return false };
     let mut expected = vec![fit.constant; after.len()];

@@ -63,8 +63,9 @@ pub struct Analysis {
 
 /// Quietest peak of a recording that is not silent: −100 dBFS.
 const SILENCE: f64 = 1e-5;
-/// T60 in seconds beyond which a mode does not decay.
+/// T60 in seconds beyond which a tone does not decay, and standard deviations by which its decay must differ from none.
 const ENDLESS: f64 = 2000.0;
+const DEVIATIONS: f64 = 2.0;
 /// Residual in dB above which the sound is hardly made of modes.
 const HARDLY_MODES_DB: f64 = -6.0;
 
@@ -110,10 +111,11 @@ pub fn modes(
         strike.damped = damped.map(|frame| frame as f64 / sample_rate);
         if let Some(seconds) = strike.damped {
             warnings.push(format!(
-                "the strike at {:.3} s is damped from about {seconds:.3} s on: its modes are those of what comes before",
+                "the strike at {:.3} s is damped soon after {seconds:.3} s: its modes are those of what comes before",
                 strike.onset
             ));
         }
+        warnings.extend(steady(&strike));
         if strike.residual_db > HARDLY_MODES_DB {
             warnings.push(format!(
                 "the modes of the strike at {:.3} s explain little of it ({:.1} dB are left): expected something that is \
@@ -180,6 +182,16 @@ fn clipping(channels: &[Vec<f32>]) -> Option<String> {
     (count > 0).then(|| format!("the sound is clipped in {count} places: levels and high modes are doubtful"))
 }
 
+/// A warning of tones that do not decay.
+fn steady(strike: &Strike) -> Option<String> {
+    let (first, more) = (strike.steady.first()?, strike.steady.len() - 1);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let (onset, verb) = (strike.onset, if more.is_empty() { "does" } else { "do" });
+    Some(format!(
+        "a tone of {first:.2} Hz{more} {verb} not decay that could be told: no modes of the strike at {onset:.3} s"
+    ))
+}
+
 fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: &Stretch, sample_rate: f64) -> Strike {
     let samples = &sound[stretch.start..stretch.end];
     let residual = found.fit.residual(samples);
@@ -196,9 +208,18 @@ fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: 
     };
     // Where the exciter has let go the modes have been ringing for a while.
     let late = (stretch.start - stretch.onset) as f64;
-    let audible = |k: &usize| found.fit.poles[*k].theta * sample_rate >= 2.0 * PI * AUDIBLE;
-    let mut modes: Vec<Mode> = (0..found.fit.poles.len())
-        .filter(audible)
+    // Both quadratures of noise are in the floor.
+    let variance = |k: usize| found.floors[k] / 2.0;
+    let deviation = |k: usize, index: usize| sqrt(found.certainty.variances[k][index] * variance(k));
+    let frequency = |k: usize| found.fit.poles[k].theta * sample_rate / (2.0 * PI);
+    let decays = |k: &usize| {
+        let decay = found.fit.poles[*k].decay;
+        decay > DEVIATIONS * deviation(*k, 0) && LN_60_DB / (decay * sample_rate) < ENDLESS
+    };
+    let (decaying, steady): (Vec<usize>, Vec<usize>) =
+        (0..found.fit.poles.len()).filter(|k| frequency(*k) >= AUDIBLE).partition(decays);
+    let mut modes: Vec<Mode> = decaying
+        .into_iter()
         .map(|k| {
             let pole = found.fit.poles[k];
             let at_onset = |fit: &Fit| {
@@ -208,32 +229,31 @@ fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: 
                 (level, libm::remainder(cosine + 0.5 * PI, 2.0 * PI))
             };
             let (level_db, phase) = at_onset(&found.fit);
-            // Both quadratures of noise are in the floor.
-            let variance = found.floors[k] / 2.0;
-            let deviation = |index: usize| sqrt(found.certainty.variances[k][index] * variance);
             let t60 = LN_60_DB / (pole.decay * sample_rate);
             Mode {
-                frequency: pole.theta * sample_rate / (2.0 * PI),
-                t60: if t60 < ENDLESS { t60 } else { f64::INFINITY },
+                frequency: frequency(k),
+                t60,
                 level_db,
                 phase,
                 uncertainty: Uncertainty {
-                    frequency: deviation(1) * sample_rate / (2.0 * PI),
-                    t60: deviation(0) / pole.decay.max(1e-300) * t60.min(ENDLESS),
-                    level_db: 20.0 / LN_10 * deviation(2),
-                    phase: deviation(3),
+                    frequency: deviation(k, 1) * sample_rate / (2.0 * PI),
+                    t60: deviation(k, 0) / pole.decay * t60,
+                    level_db: 20.0 / LN_10 * deviation(k, 2),
+                    phase: deviation(k, 3),
                 },
-                snr_db: 10.0 * log10(found.certainty.explained[k] / variance.max(1e-300)),
+                snr_db: 10.0 * log10(found.certainty.explained[k] / variance(k).max(1e-300)),
                 channels: fits.iter().flatten().map(at_onset).collect(),
             }
         })
         .collect();
+    modes.retain(Mode::is_finite);
     modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     let single = |samples: &[f64]| samples.iter().map(|sample| *sample as f32).collect();
     Strike {
         onset: stretch.onset as f64 / sample_rate,
         damped: None,
         seconds: (stretch.end - stretch.onset) as f64 / sample_rate,
+        steady: steady.into_iter().map(frequency).collect(),
         groups: groups(&modes),
         modes,
         residual_db: 10.0 * log10((energy(&residual) / energy(samples).max(1e-300)).max(1e-30)),

@@ -37,7 +37,7 @@ pub struct Uncertainty {
 pub struct Mode {
     /// Hz.
     pub frequency: f64,
-    /// Seconds in which it decays by 60 dB; infinite if it does not within what can be told.
+    /// Seconds in which it decays by 60 dB.
     pub t60: f64,
     /// `a` in dBFS: 0 dB is a sine of full scale.
     pub level_db: f64,
@@ -49,6 +49,16 @@ pub struct Mode {
     pub snr_db: f64,
     /// Level in dBFS and phase in each channel, where there are several.
     pub channels: Vec<(f64, f64)>,
+}
+
+impl Mode {
+    /// Whether all of its numbers are known.
+    pub(super) fn is_finite(&self) -> bool {
+        let Uncertainty { frequency, t60, level_db, phase } = self.uncertainty;
+        let own = [self.frequency, self.t60, self.level_db, self.phase, self.snr_db, frequency, t60, level_db, phase];
+        let channels = self.channels.iter().flat_map(|(level, phase)| [*level, *phase]);
+        own.into_iter().chain(channels).all(f64::is_finite)
+    }
 }
 
 /// One strike and its modes.
@@ -63,6 +73,8 @@ pub struct Strike {
     pub damped: Option<f64>,
     /// By rising frequency.
     pub modes: Vec<Mode>,
+    /// Hz: tones that do not decay, or not by what could be told, such as hum and what is played on. They are no modes.
+    pub steady: Vec<f64>,
     /// Modes that are heard as one: by their places in `modes`.
     pub groups: Vec<Group>,
     /// Energy that the modes leave unexplained, in dB relative to the whole.
