@@ -158,7 +158,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
         warnings.push(format!("{}: {message}", takes[base].name));
     }
-    if distances[base] > FAR_DB {
+    if explained.is_none() && distances[base] > FAR_DB {
         let message = format!(
             "the preset is {:.1} dB from it: expected a dry stroke that rings, no speech, vibrato or phrase",
             distances[base]
