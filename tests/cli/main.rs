@@ -3,6 +3,7 @@
 mod bad_input;
 #[cfg(unix)]
 mod completion;
+mod fits;
 mod inputs;
 #[cfg(unix)]
 mod interrupts;

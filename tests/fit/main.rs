@@ -60,8 +60,8 @@ fn round_trip_of_some_presets() -> Result<(), Failed> {
     Ok(())
 }
 
-/// Median and greatest distance in dB over all presets and keys, a little above what was measured. Below 1 and 3 dB would be
-/// better: noise that is made anew differs from itself by more.
+/// Median and greatest distance in dB over all presets and keys. Measured at C4: 0.6 and 13.7, 34 of 40 below 3. The greatest is
+/// that of a laser, whose vibrato within a sweep is not looked for.
 const MEDIAN: f64 = 1.0;
 const WORST: f64 = 14.0;
 

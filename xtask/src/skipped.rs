@@ -6,6 +6,12 @@ const EXCUSED: &[(&str, &str)] = &[
     ("level::avx2", "x86-64 CPUs since 2013 have AVX2"),
     ("level::avx512", "some x86-64 CPUs have AVX-512"),
     ("level::neon", "AArch64 CPUs have NEON"),
+    ("round_trip_of_every_preset", "it takes minutes: ‘cargo test --release --test fit -- --include-ignored’ runs it"),
+    ("recordings_of_drums", "it takes minutes of a release build, and 140 MB of Debian’s hydrogen-drumkits"),
+    (
+        "recordings_of_instruments",
+        "it takes minutes of a release build, and 120 MB of Debian’s fluid-soundfont-gm with fluidsynth",
+    ),
 ];
 
 /// Stands for a test that a harness counted as ignored without printing its name.

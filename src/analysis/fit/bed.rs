@@ -16,10 +16,13 @@ const T60: (f64, f64) = (0.01, 20.0);
 const FOLLOWED_DB: f64 = 45.0;
 /// Windows in which a band can come to its loudest: 60 ms.
 const RISE: usize = 11;
+<<<<<<< HEAD
 /// By what the main lobe of a Hann window multiplies a sine's power, and a triangular band the power of sines in it.
 const HANN: f64 = 1.5;
 const TRIANGLE: f64 = 2.0 / 3.0;
 const LOBE: f64 = HANN * TRIANGLE;
+=======
+>>>>>>> fit
 /// Modes of a band.
 const FEWEST: f64 = 2.0;
 const MOST: f64 = 6.0;
@@ -78,7 +81,8 @@ fn fill(target: &LogMel, draft: &LogMel, band: usize, floor: f64, seed: u64) -> 
     // As many as it takes that their resonances meet.
     let width = 0.5 * (centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1)));
     let modes = (0.5 * width * t60 / BANDWIDTH).clamp(FEWEST, MOST).round();
-    let amplitude = sqrt(pow(10.0, 0.1 * at_onset) / (modes * LOBE));
+    // The main lobe of a Hann window has 3/2 of a sine's power, of which a triangular band has 2/3 on average.
+    let amplitude = sqrt(pow(10.0, 0.1 * at_onset) / modes);
     let partial = |n: usize| {
         let chance = f64::from(uniform(key(seed, band as u64), n as u64));
         let share = (n as f64 + 0.5 + 0.45 * chance) / modes - 0.5;

@@ -1,6 +1,6 @@
 //! The physical body that explains the modes of a sound best, with its numbers, and what remains.
 
-use super::draft::{Draft, Partial, contact_share, digits, share_of_mean};
+use super::draft::{Draft, Partial, contact_share, digits};
 use crate::params::Param;
 use crate::patch::Patch;
 use crate::preset::modes_of_body;
@@ -166,8 +166,11 @@ pub(super) fn find(draft: &Draft, family: Family) -> Option<(Patch, Explained)> 
     let frequency = found.body.frequency() * pow(2.0, off / weights.max(1e-9) / 1200.0);
     found = lay(&found.body, digits(frequency, 6), &partials);
     found.body.material.loss = loss(&found, &partials);
-    place(&mut found, &partials);
-    Some((patch(draft, &found, &partials), explained(model, &found, &partials)))
+    place(&mut found, &partials, draft.hardness.map(contact_time));
+    // What the model has above the highest mode of the sound is only guessed.
+    let highest = pairs(&found, &partials).map(|(_, mode, _)| mode.frequency).fold(0.0, f64::max);
+    found.body.modes = found.body.modes().iter().filter(|mode| mode.frequency <= 1.001 * highest).count().max(1);
+    Some((patch(draft, &found), explained(model, &found, &partials)))
 }
 
 /// Partials with their modes, and the cents between them.
@@ -200,8 +203,8 @@ fn loss(found: &Match, partials: &[Partial]) -> Loss {
     Loss { b0: digits(b0, 4), b1: digits(b1, 4), power: 1.0 }
 }
 
-/// Chooses place of the strike and tilt by the levels.
-fn place(found: &mut Match, partials: &[Partial]) {
+/// Chooses place of the strike and tilt by the levels that are left of a contact of so many seconds.
+fn place(found: &mut Match, partials: &[Partial], contact: Option<f64>) {
     let mut best = (f64::INFINITY, found.body.strike, 0.0);
     for step in 1..50 {
         let strike = Point { x: f64::from(step) / 50.0, ..found.body.strike };
@@ -210,7 +213,8 @@ fn place(found: &mut Match, partials: &[Partial]) {
         let points: Vec<[f64; 3]> = pairs(found, partials)
             .filter_map(|(partial, met, _)| {
                 let mode = modes.iter().find(|mode| fabs(mode.ratio - met.ratio) < 1e-9 * met.ratio)?;
-                let more = 20.0 * log10(fabs(partial.amplitude) / fabs(mode.level).max(1e-4));
+                let share = contact.map_or(1.0, |seconds| fabs(contact_share(partial.frequency, seconds)).max(0.01));
+                let more = 20.0 * log10(fabs(partial.amplitude) / (share * fabs(mode.level).max(1e-4)));
                 Some([log2(mode.ratio), more, weight(partial)])
             })
             .collect();
@@ -231,25 +235,15 @@ fn place(found: &mut Match, partials: &[Partial]) {
     (found.body.strike, found.body.tilt) = (best.1, digits(best.2, 3));
 }
 
-fn patch(draft: &Draft, found: &Match, partials: &[Partial]) -> Patch {
+/// The patch, of any gain.
+fn patch(draft: &Draft, found: &Match) -> Patch {
     let body = &found.body;
     let mut patch = Patch { modes: modes_of_body(body), ..draft.patch() };
     patch.set(Param::Decay, Param::Decay.info().clamp(body.t60() as f32));
-    // Contacts are softer for high modes: the levels of the body are to be what is left.
     let semitones = 12.0 * log2(body.frequency() / draft.note);
     let tune = semitones.round().clamp(-48.0, 48.0);
     patch.set(Param::Tune, tune as f32);
     patch.set(Param::Fine, Param::Fine.info().clamp(digits(100.0 * (semitones - tune), 4) as f32));
-    let table = patch.modes.as_slice();
-    let energy = |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>();
-    let wanted = energy(&mut partials.iter().map(|partial| partial.amplitude * sqrt(partial.t60)));
-    let seconds = draft.hardness.map(contact_time);
-    let has = energy(&mut table.iter().map(|mode| {
-        let share = seconds.map_or(1.0, |seconds| contact_share(f64::from(mode.ratio) * body.frequency(), seconds));
-        f64::from(mode.level) * share * share_of_mean(mode.pan.into()) * sqrt(f64::from(mode.decay) * body.t60())
-    }));
-    let gain = 10.0 * log10(wanted / has.max(1e-12)) - 20.0 * log10(draft.force());
-    patch.set(Param::Gain, Param::Gain.info().clamp(digits(gain, 4) as f32));
     patch
 }
 

@@ -1,15 +1,16 @@
 //! One take becomes a draft: its modes, then a bed, then corrections.
 
-use super::draft::Draft;
+use super::draft::{Draft, Sweep};
 use super::refine::Listener;
 use super::take::Prepared;
 use super::{bed, start, sweep};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
 
-/// Shares of the work until the sweep and the modes are known.
+/// Share of the work until a sweep is found.
 const SEARCH: f64 = 0.15;
-const ANALYSIS: f64 = 0.6;
+/// Residual of the modes in dB below which they explain the sound, and so the sweep that was taken out is one.
+const EXPLAINS_DB: f64 = -6.0;
 /// What a bed has to gain in dB to be kept.
 const WORTH_A_BED: f64 = 0.02;
 /// Rounds of corrections at a time.
@@ -22,27 +23,44 @@ pub(super) fn fit(
     progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(Draft, Option<Strike>)> {
     let mut tell = |share: f64| if progress(share) { Ok(()) } else { Err(Error::Interrupted) };
-    let sweep = sweep::find(&take.mean);
+    let swept = sweep::find(&take.mean);
     tell(SEARCH)?;
     let mut listener = Listener::new(take);
-    let count = most.div_ceil(2);
-    let part = |from: f64, to: f64, share: f64| from + (to - from) * share;
-    let middle = if sweep.semitones == 0.0 { ANALYSIS } else { 0.5 * (SEARCH + ANALYSIS) };
-    let (mut draft, mut strike) =
-        start::draft(take, sweep, count, &mut |share| tell(part(SEARCH, middle, share)).is_ok())?;
-    if sweep.semitones != 0.0 {
-        // What was found with a better sweep is better, too.
-        listener.choose_hardness(&mut draft);
-        listener.choose_sweep(&mut draft);
-        let (mut other, other_strike) =
-            start::draft(take, draft.sweep, count, &mut |share| tell(part(middle, ANALYSIS, share)).is_ok())?;
-        listener.choose_hardness(&mut other);
-        if listener.distance(&other, usize::MAX) < listener.distance(&draft, usize::MAX) {
-            (draft, strike) = (other, other_strike);
+    let mut drafts = Vec::new();
+    if swept.semitones != 0.0 {
+        let (mut draft, strike) = analysed(take, swept, most, [SEARCH, 0.3], &mut tell)?;
+        if strike.as_ref().is_some_and(|strike| strike.residual_db < EXPLAINS_DB) {
+            drafts.push((draft.clone(), strike));
+            // What was found with a better sweep may be better, too.
+            listener.choose_hardness(&mut draft);
+            listener.choose_sweep(&mut draft);
+            drafts.push(analysed(take, draft.sweep, most, [0.3, 0.45], &mut tell)?);
         }
     }
-    let draft = improved(draft, &mut listener, most, &mut |share| tell(part(ANALYSIS, 1.0, share)))?;
-    Ok((draft, strike))
+    if drafts.is_empty() {
+        drafts.push(analysed(take, Sweep::NONE, most, [SEARCH, 0.45], &mut tell)?);
+    }
+    let (count, mut best, mut least) = (drafts.len() as f64, None, f64::INFINITY);
+    for (n, (draft, strike)) in drafts.into_iter().enumerate() {
+        let part = |share: f64| 0.45 + 0.55 * (n as f64 + share) / count;
+        let draft = improved(draft, &mut listener, most, &mut |share| tell(part(share)))?;
+        let distance = listener.distance(&draft, usize::MAX);
+        if distance < least {
+            (best, least) = (Some((draft, strike)), distance);
+        }
+    }
+    best.ok_or(Error::Interrupted)
+}
+
+/// The draft of a take's modes alone, as [`start::draft`], which is from one share of the work to another.
+fn analysed(
+    take: &Prepared,
+    sweep: Sweep,
+    most: usize,
+    [from, to]: [f64; 2],
+    tell: &mut dyn FnMut(f64) -> Result<()>,
+) -> Result<(Draft, Option<Strike>)> {
+    start::draft(take, sweep, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
 }
 
 fn improved(

@@ -10,7 +10,9 @@ use libm::{exp, pow};
 /// Hardnesses that are tried.
 const HARDNESSES: [f64; 10] = [0.95, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25, 0.15, 0.05];
 /// Lengths and rises in seconds of the noise that are tried.
-const LENGTHS: [f64; 9] = [0.001, 0.003, 0.006, 0.012, 0.025, 0.05, 0.11, 0.23, 0.5];
+const LENGTHS: [f64; 7] = [0.002, 0.006, 0.015, 0.04, 0.1, 0.23, 0.5];
+/// A longer burst takes part in the decay.
+const SHORT: f64 = 0.02;
 const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
 /// Windows of the attack: 150 ms.
 const ATTACK: usize = 26;
@@ -97,7 +99,9 @@ impl<'a> Listener<'a> {
         let mut least = self.distance(draft, usize::MAX);
         for seconds in LENGTHS {
             let mut other = with(draft, Noise { seconds, ..noise });
-            self.correct(&mut other, 2);
+            if seconds > SHORT {
+                self.correct(&mut other, 2);
+            }
             let distance = self.distance(&other, usize::MAX);
             if distance < least {
                 (found, least) = (other, distance);

@@ -20,6 +20,9 @@ const CLEARLY: f64 = 1.25;
 const SEMITONES: [f64; 15] = [-18.0, -12.0, -5.0, -2.0, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 18.0, 24.0, 32.0, 44.0, 60.0];
 const SECONDS: [f64; 8] = [0.02, 0.04, 0.07, 0.11, 0.16, 0.25, 0.4, 0.7];
 const CURVES: [f64; 4] = [-0.3, 0.2, 0.5, 0.8];
+/// Coarse sweeps that are refined, and the shortest time in seconds of what is a sweep and no attack.
+const REFINED: usize = 5;
+const SHORTEST: f64 = 0.015;
 /// Rounds of the fine search.
 const ROUNDS: usize = 7;
 
@@ -117,21 +120,26 @@ pub(super) fn find(samples: &[f32]) -> Sweep {
     let fft = RealFftPlanner::new().plan_fft_forward(POINTS);
     let mut peaks = Peaks { samples, input: fft.make_input_vec(), fft };
     let still = peaks.height(&Sweep::NONE);
-    let (mut best, mut height) = (Sweep::NONE, still);
+    let mut coarse = Vec::new();
     for semitones in SEMITONES {
         for seconds in SECONDS {
-            for curve in CURVES {
-                let sweep = Sweep { semitones, seconds, curve };
-                let found = peaks.height(&sweep);
-                if found > height {
-                    (best, height) = (sweep, found);
-                }
-            }
+            // The best curve of each is enough.
+            let curved =
+                CURVES.map(|curve| Sweep { semitones, seconds, curve }).map(|sweep| (peaks.height(&sweep), sweep));
+            coarse.extend(curved.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)));
         }
     }
-    if height < CLEARLY * still {
-        return Sweep::NONE;
+    coarse.sort_by(|a, b| b.0.total_cmp(&a.0));
+    coarse.truncate(REFINED);
+    let refined = coarse.into_iter().map(|(height, sweep)| refine(&mut peaks, sweep, height));
+    match refined.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((height, sweep)) if height > CLEARLY * still => sweep,
+        _ => Sweep::NONE,
     }
+}
+
+/// Moves a sweep to where the peaks are tallest. Gives their height, too.
+fn refine(peaks: &mut Peaks, mut best: Sweep, mut height: f64) -> (f64, Sweep) {
     let mut step = 0.5;
     for _ in 0..ROUNDS {
         for number in 0..3 {
@@ -139,7 +147,7 @@ pub(super) fn find(samples: &[f32]) -> Sweep {
                 let mut sweep = best;
                 match number {
                     0 => sweep.semitones = (best.semitones * (1.0 + 0.4 * sign * step)).clamp(-60.0, 60.0),
-                    1 => sweep.seconds = (best.seconds * (1.0 + 0.6 * sign * step)).clamp(0.005, 2.0),
+                    1 => sweep.seconds = (best.seconds * (1.0 + 0.6 * sign * step)).clamp(SHORTEST, 2.0),
                     _ => sweep.curve = (best.curve + 0.3 * sign * step).clamp(-1.0, 1.0),
                 }
                 let found = peaks.height(&sweep);
@@ -150,7 +158,7 @@ pub(super) fn find(samples: &[f32]) -> Sweep {
         }
         step *= 0.65;
     }
-    best
+    (height, best)
 }
 
 #[cfg(test)]

@@ -29,9 +29,9 @@ const SHORTEST: f64 = 0.03;
 const SILENCE: f64 = 1e-4;
 /// The onset is the first sample above this share of the peak.
 const AUDIBLE: f32 = 0.01;
-/// Seconds of a block whose level tells whether the sound is over, and that level in relation to the loudest: −70 dB.
+/// Seconds of a block whose level tells whether the sound is over, and that level in relation to the loudest: −64 dB.
 const BLOCK: f64 = 0.03;
-const OVER: f64 = 3e-4;
+const OVER: f64 = 6e-4;
 /// Energy of the last third of a sound over that of the first, from which on it does not decay: −3 dB.
 const STEADY: f64 = 0.5;
 

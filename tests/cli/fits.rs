@@ -1,0 +1,129 @@
+//! `sprung fit`, and figures of sounds.
+
+use crate::Sandbox;
+use sprung::io::sound_file::read;
+use std::f64::consts::TAU;
+
+/// A strike with three modes of the ratios of a bar, at 44.1 kHz.
+fn bar(fundamental: f64, gain: f64) -> Vec<f32> {
+    let mode = |n: usize, ratio: f64, amplitude: f64, t60: f64| {
+        let t = n as f64 / 44_100.0;
+        gain * amplitude * libm::exp(-6.9 * t / t60) * libm::sin(TAU * fundamental * ratio * t)
+    };
+    let sample = |n| mode(n, 1.0, 0.4, 0.6) + mode(n, 2.756, 0.2, 0.3) + mode(n, 5.404, 0.1, 0.15);
+    (0..26_460).map(|n| sample(n) as f32).collect()
+}
+
+fn wav(samples: &[f32]) -> Vec<u8> {
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: 44_100,
+        bits_per_sample: 32,
+        sample_format: hound::SampleFormat::Float,
+    };
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let mut writer = hound::WavWriter::new(&mut bytes, spec).unwrap();
+    samples.iter().for_each(|sample| writer.write_sample(*sample).unwrap());
+    writer.finalize().unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn a_recording_becomes_a_preset_that_plays() {
+    let sandbox = Sandbox::new();
+    sandbox.write("bar.wav", wav(&bar(440.0, 1.0)));
+    let said = String::from_utf8(sandbox.succeeds("fit bar.wav -o bar.toml --report bar.html --modes 12")).unwrap();
+    assert!(said.starts_with("Key estimated as A4 (440 Hz)"), "{said}");
+    let preset = String::from_utf8(sandbox.read("bar.toml")).unwrap();
+    assert!(preset.contains("name = \"bar\"") && preset.contains("Fitted to bar.wav."), "{preset}");
+    let page = String::from_utf8(sandbox.read("bar.html")).unwrap();
+    assert_eq!((page.matches("data:audio/wav").count(), page.matches("data:image/png").count()), (2, 2));
+    assert!(!page.contains("{{") && !page.contains("http"), "the page needs nothing from elsewhere");
+    sandbox.succeeds("presets check bar.toml");
+    sandbox.succeeds("render --preset bar.toml --note A4 --length 0.5 --tail none --rate 44100 -o again.wav");
+    let again = read(std::fs::File::open(sandbox.path("again.wav")).unwrap(), "again.wav").unwrap();
+    let peak = again.channels[0].iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+    assert!((0.3..0.8).contains(&peak), "{peak}");
+    sandbox.fails("fit bar.wav -o bar.toml", 1, "bar.toml: the file exists; add --force to overwrite it");
+    sandbox.fails("fit bar.wav -o bar.wav --force", 1, "--output: bar.wav: expected a name that ends in .toml");
+}
+
+#[test]
+fn takes_make_a_preset_follow_velocity_and_key() {
+    let sandbox = Sandbox::new();
+    sandbox.write("soft.wav", wav(&bar(440.0, 0.25)));
+    sandbox.write("hard.wav", wav(&bar(440.0, 1.0)));
+    sandbox.succeeds("fit soft.wav@A4@50 hard.wav@A4@100 -o bar.toml --modes 6");
+    let preset = String::from_utf8(sandbox.read("bar.toml")).unwrap();
+    // Four times as loud at twice the velocity: its square, which is what a new patch has.
+    assert!(!preset.contains("\nvelocity = "), "{preset}");
+    let said = String::from_utf8(sandbox.succeeds("fit hard.wav -o body.toml --body bar --note A4 --modes 6")).unwrap();
+    assert!(said.contains("As a free bar: 3 of 3 modes are its own"), "{said}");
+    assert!(String::from_utf8(sandbox.read("body.toml")).unwrap().contains("model = \"free_bar\""));
+}
+
+#[test]
+fn what_cannot_be_fitted_is_refused() {
+    let sandbox = Sandbox::new();
+    sandbox.write("a.wav", wav(&bar(440.0, 1.0)));
+    sandbox.write("nan.wav", wav(&[0.0, f32::NAN]));
+    sandbox.write("silent.wav", wav(&[0.0; 10_000]));
+    sandbox.write("short.wav", wav(&bar(440.0, 1.0)[..500]));
+    for (args, code, message) in [
+        (
+            "fit nan.wav -o b.toml",
+            1,
+            "nan.wav: frame 1 (0.000 s) of channel 1 is not a number: expected finite samples",
+        ),
+        ("fit silent.wav -o b.toml", 1, "silent.wav: it is silent: expected a strike above −80 dBFS"),
+        ("fit short.wav -o b.toml", 1, "short.wav: it is shorter than 30 ms: expected a strike that rings"),
+        ("fit none.wav -o b.toml", 1, "none.wav: "),
+        ("fit a.wav -o b.txt", 1, "--output: b.txt: expected a name that ends in .toml"),
+        ("fit a.wav -o b.toml --report b.txt", 1, "--report: b.txt: expected a name that ends in .html"),
+        ("fit a.wav@C4 -o b.toml --note C4", 1, "its key is given twice: expected @KEY or --note"),
+        ("fit a.wav -o b.toml --velocity 40,80", 1, "--velocity: 2 of them for 1 recordings: expected one for each"),
+        ("fit a.wav -o b.toml --body drum", 2, "invalid value 'drum'"),
+        ("fit a.wav", 2, "--output"),
+    ] {
+        sandbox.fails(args, code, message);
+    }
+}
+
+#[test]
+fn noise_and_sounds_that_do_not_decay_are_warned_of() {
+    let sandbox = Sandbox::new();
+    let mut state = 1_u32;
+    let mut noise = || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        f64::from(state) / f64::from(u32::MAX) - 0.5
+    };
+    let burst: Vec<f32> = (0..22_050).map(|n| (noise() * libm::exp(-2e-4 * f64::from(n))) as f32).collect();
+    sandbox.write("noise.wav", wav(&burst));
+    let steady: Vec<f32> = (0..22_050).map(|_| noise() as f32).collect();
+    sandbox.write("steady.wav", wav(&steady));
+    for (file, warning) in
+        [("noise", ""), ("steady", "steady.wav: the sound does not decay: expected something that is struck")]
+    {
+        let output = sandbox.sprung(&format!("fit {file}.wav -o {file}.toml --modes 48")).assert().success();
+        let said = String::from_utf8(output.get_output().stderr.clone()).unwrap();
+        assert!(said.contains(warning), "{said}");
+        sandbox.succeeds(&format!("presets check {file}.toml"));
+    }
+}
+
+#[test]
+fn sounds_are_drawn() {
+    let sandbox = Sandbox::new();
+    sandbox.succeeds("render --preset Marimba --note C4 --length 0.2 -o a.wav --figure a.svg");
+    assert!(String::from_utf8(sandbox.read("a.svg")).unwrap().contains("T60 / s"));
+    sandbox.succeeds("presets show Blip --figure blip.png");
+    assert!(sandbox.read("blip.png").starts_with(b"\x89PNG"));
+    sandbox.fails("presets show Blip --figure blip.png", 1, "blip.png: the file exists");
+    sandbox.fails(
+        "render --preset Blip --note C4 -o b.wav --figure b.gif",
+        1,
+        "expected a name that ends in .png or .svg",
+    );
+}
