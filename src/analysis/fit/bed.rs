@@ -16,13 +16,6 @@ const T60: (f64, f64) = (0.01, 20.0);
 const FOLLOWED_DB: f64 = 45.0;
 /// Windows in which a band can come to its loudest: 60 ms.
 const RISE: usize = 11;
-<<<<<<< HEAD
-/// By what the main lobe of a Hann window multiplies a sine's power, and a triangular band the power of sines in it.
-const HANN: f64 = 1.5;
-const TRIANGLE: f64 = 2.0 / 3.0;
-const LOBE: f64 = HANN * TRIANGLE;
-=======
->>>>>>> fit
 /// Modes of a band.
 const FEWEST: f64 = 2.0;
 const MOST: f64 = 6.0;
