@@ -52,6 +52,9 @@ const FILES: &[(&str, &str)] = embed! {
     "37-church-bell"
     "38-gong"
     "39-wine-glass"
+    "40-resonator-marimba"
+    "41-guitar"
+    "42-shell-tom"
 };
 
 impl Preset {
