@@ -56,6 +56,9 @@ const FILES: &[(&str, &str)] = embed! {
     "41-opera-gong"
     "42-floor-tom"
     "43-slack-string"
+    "44-resonator-marimba"
+    "45-guitar"
+    "46-shell-tom"
 };
 
 impl Preset {
