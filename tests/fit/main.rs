@@ -31,11 +31,11 @@ const KEYS: [u8; 3] = [48, 60, 72];
 const SAMPLE: [(&str, f64); 8] = [
     ("init", 0.1),
     ("Glockenspiel", 0.2),
-    ("Marimba", 0.5),
+    ("Marimba", 0.8),
     ("Rim", 1.2),
     ("Cowbell", 0.5),
     ("Blip", 0.2),
-    ("Low Tom", 2.0),
+    ("Low Tom", 2.5),
     ("Closed Hat", 3.0),
 ];
 

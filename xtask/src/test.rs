@@ -78,6 +78,12 @@ const STEPS: &[Step] = &[
         shows: Shows::Tests,
     },
     Step {
+        name: "fit, release",
+        arguments: "test --release --package sprung --no-default-features --features analysis --test fit",
+        environment: &[],
+        shows: Shows::Tests,
+    },
+    Step {
         name: "documentation",
         arguments: "doc --workspace --no-deps --all-features",
         environment: &[DENY],

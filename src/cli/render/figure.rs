@@ -1,6 +1,5 @@
 //! The figure of a rendering: waveform, spectrogram, and the modes of a single note.
 
-use super::Args;
 use crate::cli::figure::drawn;
 use sprung::Result;
 use sprung::analysis::figure::sound::{DrawnMode, modes_of};
@@ -9,12 +8,12 @@ use sprung::render::Job;
 use sprung::units::{frequency_from_key, parse_key};
 
 /// Draws what a job renders, before its level is changed for the file, in `format`.
-pub(super) fn draw(args: &Args, job: &Job, format: &str) -> Result<Vec<u8>> {
-    let modes = match &args.note[..] {
+pub(super) fn draw(notes: &[String], title: &str, job: &Job, format: &str) -> Result<Vec<u8>> {
+    let modes = match notes {
         [note] => modes(job, note),
         _ => Vec::new(),
     };
-    drawn(job, &args.output.display().to_string(), &modes, format)
+    drawn(job, title, &modes, format)
 }
 
 /// The modes of the sound that plays a note; none if there is no such key or no sound on it.

@@ -148,7 +148,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let report = on_threads(args.threads, || to_wav(&job, &delivery, &mut output, progress))??;
     drop(bar);
     if let Some(figure) = figure {
-        figure.write(|format| figure::draw(args, &job, format))?;
+        let title = target.name();
+        figure.write(|format| figure::draw(&args.note, &title, &job, format))?;
     }
     output.commit()?;
     report::tell(&report, &target, args.json)
