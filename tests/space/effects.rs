@@ -210,6 +210,33 @@ fn skipped_frames_are_silence() {
     }
 }
 
+/// Also between the end of a movement and the control tick at which the tremolo is off: its clock stops there.
+#[test]
+fn skipped_frames_are_silence_just_before_the_tremolo_is_off() {
+    let is_idle = |chain: &Chain| chain.0.is_idle() && chain.1.is_idle() && chain.2.is_idle() && chain.3.is_idle();
+    for frames in [1, 5, 31, 32, 33, 100] {
+        let mut played = Chain::new();
+        played.turn(0.6);
+        played.process(&mut vec![0.0; 5000], &mut vec![0.0; 5000]);
+        played.0.set_depth(0.0);
+        while !is_idle(&played) {
+            played.process(&mut [0.0], &mut [0.0]);
+        }
+        assert!(!played.0.is_off(), "there is a time between");
+        let mut skipped = played.clone();
+        played.process(&mut vec![0.0; frames], &mut vec![0.0; frames]);
+        skipped.0.skip(frames);
+        skipped.2.skip(frames);
+        let [played, skipped] = [played, skipped].map(|mut chain| {
+            chain.turn(0.6);
+            let [mut left, mut right] = noise(0.5, 1000, 6007);
+            chain.process(&mut left, &mut right);
+            [left, right].map(|side| side.into_iter().map(f32::to_bits).collect::<Vec<_>>())
+        });
+        assert!(played == skipped, "{frames}");
+    }
+}
+
 #[test]
 fn nonsense_is_survived_and_nothing_allocated() {
     let mut chain = Chain::new();

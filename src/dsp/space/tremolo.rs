@@ -86,7 +86,11 @@ impl Tremolo {
 
     /// Whether it touches nothing.
     pub fn is_off(&self) -> bool {
-        self.depth.rests_at(0.0) && self.gains[1] == [1.0; 2] && self.ticks.is_due()
+        self.is_flat() && self.ticks.is_due()
+    }
+
+    fn is_flat(&self) -> bool {
+        self.depth.rests_at(0.0) && self.gains[1] == [1.0; 2]
     }
 
     /// Whether silence that comes in changes nothing but the time: [`Tremolo::skip`] does the same.
@@ -105,6 +109,8 @@ impl Tremolo {
             return;
         }
         let to_tick = if self.ticks.is_due() { 0 } else { CONTROL_FRAMES - self.passed };
+        // Without depth it is off from the next control tick on, and its clock stands still there.
+        let frames = if self.is_flat() { frames.min(to_tick) } else { frames };
         self.ticks.advance(frames);
         if frames <= to_tick {
             self.passed += frames;
