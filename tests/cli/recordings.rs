@@ -5,8 +5,12 @@ use std::f64::consts::TAU;
 
 /// A mono WAV of floats.
 fn wav(samples: &[f32], sample_rate: u32) -> Vec<u8> {
-    let spec =
-        hound::WavSpec { channels: 1, sample_rate, bits_per_sample: 32, sample_format: hound::SampleFormat::Float };
+    wav_of(samples, sample_rate, 1)
+}
+
+/// A WAV of interleaved floats.
+fn wav_of(samples: &[f32], sample_rate: u32, channels: u16) -> Vec<u8> {
+    let spec = hound::WavSpec { channels, sample_rate, bits_per_sample: 32, sample_format: hound::SampleFormat::Float };
     let mut bytes = std::io::Cursor::new(Vec::new());
     let mut writer = hound::WavWriter::new(&mut bytes, spec).unwrap();
     samples.iter().for_each(|sample| writer.write_sample(*sample).unwrap());
@@ -36,10 +40,95 @@ fn a_strike_is_taken_apart_into_its_modes() {
     let csv = String::from_utf8(sandbox.succeeds("analyze a.wav --csv --figure modes.png")).unwrap();
     assert!(csv.lines().count() == 2 && csv.starts_with("hit,onset_s,frequency_hz"), "{csv}");
     assert!(sandbox.read("modes.png").starts_with(b"\x89PNG"));
-    assert!(String::from_utf8(sandbox.succeeds("analyze a.wav")).unwrap().contains("440.000 Hz"));
+    let text = String::from_utf8(sandbox.succeeds("analyze a.wav")).unwrap();
+    assert!(text.contains("s of it: 1 mode, ") && text.contains("  440.000 Hz    0.5000 ± "), "{text}");
     let hits: serde_json::Value = serde_json::from_slice(&sandbox.succeeds("analyze a.wav --hits --json")).unwrap();
     assert_eq!(hits["hits"].as_array().unwrap().len(), 1);
     sandbox.fails("analyze a.wav --figure modes.png", 1, "modes.png: the file exists; add --force to overwrite it");
+}
+
+/// Every number of a JSON text, which has no others than finite ones; NaN and infinities are no JSON.
+fn is_json(text: &[u8]) -> bool {
+    serde_json::from_slice::<serde_json::Value>(text).is_ok()
+}
+
+#[test]
+fn whatever_sounds_is_described_without_numbers_that_are_none() {
+    let sandbox = Sandbox::new();
+    let mut state = 1_u32;
+    let mut noise = || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        state as f32 / u32::MAX as f32 - 0.5
+    };
+    let hum = |n: usize| 0.01 * libm::sin(TAU * 50.0 * n as f64 / 44_100.0) as f32;
+    // Pulses of a voice that glides.
+    let voice =
+        |n: usize| libm::exp(30.0 * libm::sin(TAU * (120.0 + 1e-4 * n as f64) * n as f64 / 44_100.0) - 31.0) as f32;
+    let strike = strike(0.5);
+    let sounds: [(&str, Vec<f32>, u16); 7] = [
+        ("noise", (0..22_050).map(|_| noise()).collect(), 1),
+        ("late", [vec![0.0; 9_000], strike.clone()].concat(), 1),
+        ("stereo", strike.iter().flat_map(|sample| [*sample, -0.5 * sample]).collect(), 2),
+        ("clipped", strike.iter().map(|sample| (4.0 * sample).clamp(-1.0, 1.0)).collect(), 1),
+        ("offset", strike.iter().map(|sample| 0.2 + sample).collect(), 1),
+        ("hum", strike.iter().enumerate().map(|(n, sample)| sample + hum(n)).collect(), 1),
+        ("voice", (0..22_050).map(voice).collect(), 1),
+    ];
+    for (name, samples, channels) in sounds {
+        sandbox.write(&format!("{name}.wav"), wav_of(&samples, 44_100, channels));
+        let json = sandbox.succeeds(&format!("analyze {name}.wav --modes 16 --hits --json"));
+        assert!(is_json(&json), "{name}: {}", String::from_utf8_lossy(&json));
+        let printed = ["", "--csv"].map(|kind| sandbox.succeeds(&format!("analyze {name}.wav --modes 16 {kind}")));
+        for text in printed.map(|bytes| String::from_utf8(bytes).unwrap()) {
+            assert!(!text.contains("NaN") && !text.contains("inf"), "{name}: {text}");
+        }
+    }
+    let warns = |name: &str, warning: &str| {
+        let output = sandbox.sprung(&format!("analyze {name}.wav --modes 16")).assert().success().get_output().clone();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert!(stderr.contains(warning), "{name}: {stderr}");
+    };
+    warns("noise", "explain little of it");
+    warns("clipped", "the sound is clipped in ");
+    warns("hum", "a tone of 50.0");
+}
+
+#[test]
+fn ten_minutes_are_looked_at_as_far_as_the_first_strike_goes() {
+    let sandbox = Sandbox::new();
+    let mut samples = strike(0.5);
+    samples.resize(600 * 8_000, 0.0);
+    sandbox.write("long.wav", wav(&samples, 8_000));
+    let json: serde_json::Value = serde_json::from_slice(&sandbox.succeeds("analyze long.wav --json")).unwrap();
+    assert!(json["seconds"].as_f64().unwrap() < 13.0 && json["modes"].as_array().unwrap().len() == 1, "{json}");
+}
+
+#[test]
+fn what_is_compared_is_said() {
+    let sandbox = Sandbox::new();
+    let sound = strike(0.5);
+    sandbox.write("a.wav", wav(&sound, 44_100));
+    sandbox.write("twice.wav", wav_of(&sound.iter().flat_map(|sample| [*sample; 2]).collect::<Vec<_>>(), 44_100, 2));
+    sandbox.write("short.wav", wav(&sound[..11_025], 44_100));
+    let run = |args: &str| {
+        let output = sandbox.sprung(args).write_stdin("").assert().get_output().clone();
+        (output.status.code(), String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (code, text, _) = run("diff a.wav twice.wav");
+    assert_eq!(code, Some(1));
+    assert_eq!(
+        text,
+        "1 channel → 2: the mono sound is compared with each channel\n\
+         different, but the same samples: 22050 frames, every sample\n"
+    );
+    let (code, text, _) = run("diff a.wav short.wav");
+    let lengths =
+        "length 0.500 s → 0.250 s (22050 → 11025 frames): what is beyond the shorter one is compared with silence";
+    assert!(code == Some(1) && text.starts_with(lengths), "{text}");
+    let (code, _, stderr) = run("diff - -");
+    assert!(code == Some(2) && stderr.contains("stdin: both sounds are read from it: expected a file"), "{stderr}");
 }
 
 #[test]
@@ -65,7 +154,7 @@ fn files_are_compared() {
     assert_eq!(run("diff a.wav near.wav --tolerance-db -99").0, Some(0));
     assert_eq!(run("diff a.wav near.wav --tolerance-db -101").0, Some(1));
     let (code, text) = run("diff a.wav faster.wav");
-    assert!(code == Some(1) && text.contains("sample rate 44100 Hz → 48000 Hz"), "{text}");
+    assert!(code == Some(1) && text.contains("sample rate 44100 Hz → 48000 Hz: compared at 44100 Hz"), "{text}");
     let (_, json) = run("diff a.wav half.wav --json --figure d.svg");
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(

@@ -14,6 +14,9 @@ const LONGEST_STEP: f64 = 0.7;
 /// solved for.
 const RIDGES: [f64; 6] = [1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4];
 
+/// Share of a quadrature's norm that rounding leaves of it.
+const CANCELLED: f64 = 1e-10;
+
 /// Modes with the amplitudes that fit best.
 #[derive(Clone)]
 pub(super) struct Fit {
@@ -67,6 +70,12 @@ impl Gram {
         0.5 * sum.re
     }
 
+    /// Mean square norm of a direction and the one a quarter turn from it.
+    fn whole(&self, direction: Direction) -> f64 {
+        let at = direction.pole * self.count + direction.pole;
+        0.5 * direction.factor.norm_sqr() * self.conjugated[at][2 * direction.power].re
+    }
+
     fn normal(&self, directions: &[Direction]) -> DMatrix<f64> {
         let len = directions.len();
         let mut matrix = DMatrix::zeros(len, len);
@@ -75,6 +84,9 @@ impl Gram {
                 let product = self.product(directions[row], directions[column]);
                 (matrix[(row, column)], matrix[(column, row)]) = (product, product);
             }
+            // A quadrature of what hardly vibrates is the difference of two sums: rounding, if they are all but equal.
+            let least = CANCELLED * self.whole(directions[column]);
+            matrix[(column, column)] = matrix[(column, column)].max(least);
         }
         matrix
     }

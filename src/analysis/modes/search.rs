@@ -53,7 +53,7 @@ pub(super) fn find(
     };
     let energy: f64 = samples.iter().map(|sample| sample * sample).sum();
     let least = LEAST_SHARE * energy;
-    let pruned = |fit| prune(fit, samples, sample_rate, least).ok_or_else(unsolvable);
+    let pruned = |fit| prune(fit, samples, sample_rate, least);
     let mut fit = Fit::new(samples, Vec::new()).ok_or_else(unsolvable)?;
     let (mut best, mut idle, mut split) = (fit.clone(), 0, false);
     for round in 0..MOST_ROUNDS {
@@ -66,16 +66,20 @@ pub(super) fn find(
         let poles = resolve(&fit, samples, sample_rate, most_modes, place);
         let next = if split {
             // What hides beneath another mode explains nothing before it has found its place.
-            Fit::new(samples, poles).ok_or_else(unsolvable)?.refine(samples, 1e-2, 8, &mut go_on)
+            Fit::new(samples, poles).map(|fit| fit.refine(samples, 1e-2, 8, &mut go_on))
         } else if poles.is_empty() || idle == PATIENCE {
             // Modes that are a little off leave more than what is hidden beneath.
-            (fit, idle, split) = (pruned(best.refine(samples, 1e-7, 40, &mut go_on))?, 0, true);
-            best = fit.clone();
+            (best, idle, split) = (best.refine(samples, 1e-7, 40, &mut go_on), 0, true);
+            let Some(refined) = pruned(best.clone()) else { break };
+            (fit, best) = (refined.clone(), refined);
             continue;
         } else {
-            pruned(Fit::new(samples, poles).ok_or_else(unsolvable)?)?.refine(samples, 1e-2, 5, &mut go_on)
+            let next = Fit::new(samples, poles).and_then(pruned);
+            next.map(|fit| fit.refine(samples, 1e-2, 5, &mut go_on))
         };
-        fit = pruned(next)?;
+        // Poles that all but coincide can make equations without a solution: then the best so far is what is found.
+        let Some(next) = next.and_then(pruned) else { break };
+        fit = next;
         let better = fit.unexplained < best.unexplained;
         if better {
             best = fit.clone();
@@ -87,10 +91,11 @@ pub(super) fn find(
     fit = best;
     let mut share = 0.9;
     let mut go_on = || {
-        share += 0.002;
+        share = (share + 0.002_f64).min(1.0);
         progress(share)
     };
-    fit = pruned(fit.refine(samples, 1e-7, 40, &mut go_on))?;
+    fit = fit.refine(samples, 1e-7, 40, &mut go_on);
+    fit = pruned(fit.clone()).unwrap_or(fit);
     for _ in 0..MOST_REMOVALS {
         let dropped = implausible(&fit, &floors(&fit, samples, sample_rate), samples.len(), limits);
         if dropped.is_empty() {
