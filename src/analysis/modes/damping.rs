@@ -22,6 +22,8 @@ const LEAST_DEVIATIONS: f64 = 4.0;
 const NO_RETURN_DB: f64 = 2.0;
 /// Slope in dB per step above which a sound is driven, and does not ring freely.
 const RISING: f64 = 0.02;
+/// dB below the loudest level beyond which levels count as that: a sound that ends in digital silence is not damped there.
+const RANGE_DB: f64 = 90.0;
 /// dB above the quietest level at which levels tell nothing.
 const FLOOR_DB: f64 = 6.0;
 /// Seconds before the place that are left out, since the place is not known better, and at most which share of all.
@@ -66,7 +68,9 @@ pub(super) fn damped_from(samples: &[f64], sample_rate: f64) -> Option<usize> {
     let energies: Vec<f64> =
         samples.chunks_exact(step).map(|block| block.iter().map(|x| x * x).sum::<f64>() / step as f64).collect();
     let level = |blocks: &[f64]| 10.0 * log10((blocks.iter().sum::<f64>() / SMOOTH as f64).max(1e-30));
-    let levels: Vec<f64> = energies.windows(SMOOTH).map(level).collect();
+    let mut levels: Vec<f64> = energies.windows(SMOOTH).map(level).collect();
+    let loudest = levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    levels.iter_mut().for_each(|level| *level = level.max(loudest - RANGE_DB));
     let quietest = levels.iter().copied().fold(f64::INFINITY, f64::min);
     let place = REACHES
         .iter()

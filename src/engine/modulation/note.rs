@@ -36,8 +36,10 @@ pub(crate) struct NoteModulation {
 #[derive(Clone, Copy, Debug)]
 struct Moved {
     param: Param,
-    /// None once the note follows the instrument's value again.
-    offset: Option<f32>,
+    /// False once the note follows the instrument's value again. Not an `Option` of the offset: in this order the fields
+    /// take a sixth less, and every voice has room for all parameters.
+    has_offset: bool,
+    offset: f32,
     value: Ramp,
 }
 
@@ -55,13 +57,13 @@ impl NoteModulation {
         let is_free = |moved: &Option<Moved>| moved.is_none_or(|moved| moved.param == param);
         if let Some(slot) = self.moved.iter_mut().find(|moved| is_free(moved)) {
             let value = slot.map_or(Ramp::at_rest(from), |moved| moved.value);
-            *slot = Some(Moved { param, offset: Some(offset), value });
+            *slot = Some(Moved { param, has_offset: true, offset, value });
         }
     }
 
     /// Drops all offsets: from the next [`NoteModulation::aim`] the note follows the instrument.
     pub(crate) fn let_go(&mut self) {
-        self.moved.iter_mut().flatten().for_each(|moved| moved.offset = None);
+        self.moved.iter_mut().flatten().for_each(|moved| moved.has_offset = false);
     }
 
     /// Starts a ramp to the target of each parameter that has or had an offset: its value in `base` plus the offset,
@@ -69,9 +71,9 @@ impl NoteModulation {
     /// for a note that has not sounded yet, the value jumps.
     pub(crate) fn aim(&mut self, base: &Values, played: &Values, sample_rate: f64, at_once: bool) {
         for moved in self.moved.iter_mut().flatten() {
-            let target = match moved.offset {
-                Some(offset) => modulated(base, moved.param, offset),
-                None => played.get(moved.param),
+            let target = match moved.has_offset {
+                true => modulated(base, moved.param, moved.offset),
+                false => played.get(moved.param),
             };
             if at_once {
                 moved.value = Ramp::at_rest(target);
