@@ -372,6 +372,11 @@ impl Part {
         let mut levels = vec![self.patch.get(Param::Gain)];
         let mut pans = vec![self.patch.get(Param::Pan)];
         let (mut level_offsets, mut pan_offsets) = (vec![0.0], vec![0.0]);
+        // A route to the gain can move it all the way, since events can change its amount.
+        let mut patches = std::iter::once(&self.patch).chain(&case.programs);
+        if patches.any(|patch| patch.routes.iter().any(|(_, route)| route.destination == Param::Gain)) {
+            level_offsets.push(1.0);
+        }
         let mut volume = 1.0_f32;
         let mut positions = vec![0.5_f32];
         // The highest values on channels that can be masters, and on all channels.
