@@ -11,7 +11,6 @@ use sprung::analysis::figure::modes::ModesFigure;
 use sprung::analysis::modes::{Analysis, Common, Kind, Mode, Settings, Strike, common, modes};
 use sprung::figure;
 use sprung::io::Inputs;
-use sprung::render::Progress;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -42,9 +41,6 @@ pub(super) struct Args {
     figure: FigureArgs,
 }
 
-/// Steps of the progress bar.
-const STEPS: u64 = 1000;
-
 pub(super) fn run(args: &Args) -> Result<()> {
     let mut inputs = Inputs::default();
     let (recording, name) = read(&args.recording, &mut inputs)?;
@@ -53,12 +49,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let figure = args.figure.open(&inputs)?;
     let settings = Settings { most_modes: args.modes.into(), all_strikes: args.hits, ..Settings::default() };
     let mut bar = Bar::new();
-    let mut progress = |share: f64| {
-        bar.show(Progress { frames: (share * STEPS as f64) as u64, expected: STEPS });
-        interrupt::check().is_ok()
-    };
     let sample_rate = f64::from(recording.sample_rate);
-    let found = modes(&recording.channels, sample_rate, &settings, &mut progress);
+    let found = modes(&recording.channels, sample_rate, &settings, &mut |share| bar.show_share(share));
     drop(bar);
     let found = found.map_err(|error| match error {
         sprung::Error::Value { message, .. } => sprung::Error::format(&name, message),

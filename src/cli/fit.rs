@@ -7,7 +7,6 @@ use super::recording::read;
 use super::terminal::{complain, print};
 use sprung::analysis::fit::{Family, Fitted, Settings, Take, VELOCITY, fit, report};
 use sprung::io::{Inputs, Output, Target};
-use sprung::render::Progress;
 use sprung::units::parse_key;
 use sprung::{Error, Result};
 use std::ffi::OsStr;
@@ -57,8 +56,6 @@ pub(super) struct Args {
     output: PathBuf,
 }
 
-/// Steps of the progress bar.
-const STEPS: u64 = 1000;
 /// Most characters of a preset's name.
 const LONGEST_NAME: usize = 60;
 
@@ -85,11 +82,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let family = Family::ALL.iter().find(|(name, _)| *name == args.body).map_or(Family::Table, |(_, family)| *family);
     let settings = Settings { most_modes: args.modes.into(), family };
     let mut bar = Bar::new();
-    let mut progress = |share: f64| {
-        bar.show(Progress { frames: (share * STEPS as f64) as u64, expected: STEPS });
-        interrupt::check().is_ok()
-    };
-    let fitted = fit(&takes, &settings, &mut progress);
+    let fitted = fit(&takes, &settings, &mut |share| bar.show_share(share));
     drop(bar);
     let fitted = fitted?;
     fitted.warnings.iter().for_each(|warning| complain("warning", warning));

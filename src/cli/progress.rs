@@ -1,10 +1,13 @@
 //! A progress bar on stderr.
 
+use super::interrupt;
 use indicatif::{ProgressBar, ProgressStyle};
 use sprung::render::Progress;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
+/// Steps of a bar that shows shares.
+const STEPS: u64 = 1000;
 /// The bar appears only after this time.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -17,6 +20,12 @@ pub(super) struct Bar {
 impl Bar {
     pub(super) fn new() -> Self {
         Self { started: Instant::now(), wanted: std::io::stderr().is_terminal(), bar: None }
+    }
+
+    /// Shows which share of the work is done. Returns whether to go on: not after Ctrl-C.
+    pub(super) fn show_share(&mut self, share: f64) -> bool {
+        self.show(Progress { frames: (share * STEPS as f64) as u64, expected: STEPS });
+        interrupt::check().is_ok()
     }
 
     pub(super) fn show(&mut self, progress: Progress) {

@@ -9,6 +9,8 @@ use std::f64::consts::PI;
 
 /// Most modes of a fit.
 pub(super) const MOST_MODES: usize = 256;
+/// Shortest and longest T60 in seconds of a mode that is struck.
+pub(super) const T60: (f64, f64) = (0.004, 60.0);
 /// Where the spectrum of a contact has less than this left, its modes are struck no harder: −40 dB.
 const LEAST_OF_CONTACT: f64 = 0.01;
 /// Points at which the spectrum of a contact is summed up.

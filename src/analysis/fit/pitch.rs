@@ -1,10 +1,9 @@
 //! The pitch of a sound by its modes.
 
 use super::draft::Partial;
+use crate::sound::bodies::DEFAULT_FREQUENCY;
 use libm::{fabs, log2, sqrt};
 
-/// Frequency in Hz of a sound that has no modes: C4.
-pub(super) const DEFAULT: f64 = 261.625_565_300_598_6;
 /// Lowest and highest pitch in Hz.
 const RANGE: (f64, f64) = (25.0, 6000.0);
 /// Cents by which a partial may be off its harmonic.
@@ -20,7 +19,8 @@ fn weight(partial: &Partial) -> f64 {
 }
 
 /// The frequency in Hz that is heard as the pitch: of the mode that, with those that are its harmonics, is the strongest. A bar
-/// or a bell has the pitch of one mode, and a string that of its lowest.
+/// or a bell has the pitch of one mode, and a string that of its lowest. Without modes,
+/// as of noise, it is [`DEFAULT_FREQUENCY`].
 pub(super) fn estimate(partials: &[Partial]) -> f64 {
     let score = |candidate: &Partial| {
         let mut sum = weight(candidate);
@@ -34,7 +34,7 @@ pub(super) fn estimate(partials: &[Partial]) -> f64 {
         sum
     };
     let heard = partials.iter().filter(|partial| (RANGE.0..=RANGE.1).contains(&partial.frequency));
-    heard.max_by(|a, b| score(a).total_cmp(&score(b))).map_or(DEFAULT, |partial| partial.frequency)
+    heard.max_by(|a, b| score(a).total_cmp(&score(b))).map_or(DEFAULT_FREQUENCY, |partial| partial.frequency)
 }
 
 #[cfg(test)]
@@ -58,6 +58,6 @@ mod tests {
         assert_eq!(estimate(&string), 110.0);
         let marimba = partials(&[(261.6, 0.5, 0.8), (1046.0, 0.3, 0.2), (2600.0, 0.2, 0.05), (90.0, 0.02, 0.05)]);
         assert_eq!(estimate(&marimba), 261.6);
-        assert_eq!(estimate(&[]), DEFAULT);
+        assert_eq!(estimate(&[]), DEFAULT_FREQUENCY);
     }
 }

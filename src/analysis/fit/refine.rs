@@ -1,7 +1,7 @@
 //! Brings a draft nearer to its recording by listening: it is played, compared band by band, and corrected.
 
 use super::audition::Audition;
-use super::draft::{Draft, Noise, Sweep};
+use super::draft::{Draft, Noise, Sweep, T60};
 use super::take::Prepared;
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, MelBands, RATE, SPAN_DB, weights};
 use crate::units::key_from_frequency;
@@ -21,8 +21,6 @@ const SIMPLEX_STEPS: usize = 36;
 /// Largest correction of a level in dB and of a decay in dB/s at a time, as a share of its own.
 const MOST_DB: f64 = 12.0;
 const MOST_SHARE: f64 = 0.6;
-/// Shortest and longest T60 in seconds.
-const T60: (f64, f64) = (0.004, 60.0);
 
 /// Plays drafts and measures how far they are from a recording.
 pub(super) struct Listener<'a> {

@@ -1,6 +1,6 @@
 //! The first draft of a sound: the modes that it was taken apart into.
 
-use super::draft::{Draft, MOST_MODES, Noise, Partial, Sweep};
+use super::draft::{Draft, MOST_MODES, Noise, Partial, Sweep, T60};
 use super::take::Prepared;
 use super::{pitch, sweep};
 use crate::analysis::log_mel::RATE;
@@ -9,8 +9,6 @@ use crate::error::{Error, Result};
 use libm::{cos, fabs, pow};
 use std::f64::consts::PI;
 
-/// Shortest and longest T60 in seconds of a mode that is taken over.
-const T60: (f64, f64) = (0.004, 60.0);
 /// Highest frequency in Hz.
 const HIGHEST: f64 = 20_000.0;
 /// A mode that is louder than the whole sound by this much in dB was not found, but made up.
