@@ -51,35 +51,39 @@ const OVERLAPPING: usize = 4;
 pub struct Exciter {
     blows: [Blow; OVERLAPPING],
     next: usize,
+    /// Frames until no force is left to come.
+    frames_left: u32,
 }
 
 impl Exciter {
     /// An exciter at rest.
-    pub const REST: Exciter = Exciter { blows: [Blow::REST; OVERLAPPING], next: 0 };
+    pub const REST: Exciter = Exciter { blows: [Blow::REST; OVERLAPPING], next: 0, frames_left: 0 };
 
     /// Starts a strike, beside what may be left of those before.
     pub fn strike(&mut self, stroke: &Stroke, sample_rate: f64) {
         self.blows[self.next] = Blow::new(stroke, sample_rate);
         self.next = (self.next + 1) % OVERLAPPING;
+        self.frames_left = self.blows.iter().map(Blow::frames_left).max().unwrap_or(0);
     }
 
     /// Whether any force is still to come.
     pub fn is_active(&self) -> bool {
-        self.blows.iter().any(Blow::is_active)
+        self.frames_left > 0
     }
 
     /// Frames until it is not.
     pub fn frames_left(&self) -> u32 {
-        self.blows.iter().map(Blow::frames_left).max().unwrap_or(0)
+        self.frames_left
     }
 
     /// Writes the forces of the next `frames` frames, at most [`CONTROL_FRAMES`], and moves on.
     pub fn fill(&mut self, frames: usize, drive: &mut Drive) {
         let Drive { push, pull, noise } = drive;
         [push, pull, noise].into_iter().for_each(|force| force[..frames].fill(0.0));
-        for blow in self.blows.iter_mut().filter(|blow| blow.is_active()) {
+        for blow in self.blows.iter_mut().filter(|blow| blow.frames_left() > 0) {
             blow.add_to(frames, drive);
         }
+        self.frames_left = self.frames_left.saturating_sub(frames as u32);
     }
 }
 
@@ -103,10 +107,6 @@ impl Blow {
             noise: Burst::new(stroke.noise, sample_rate),
             frame: 0,
         }
-    }
-
-    fn is_active(&self) -> bool {
-        self.frames_left() > 0
     }
 
     fn frames_left(&self) -> u32 {

@@ -11,7 +11,7 @@ use super::tuning::stair;
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::exciter::Drive;
 use crate::dsp::simd::Kernel;
-use crate::dsp::simd::vector::{LANES, Partial, Vector};
+use crate::dsp::simd::vector::{Folded, LANES, Vector};
 
 /// How much of a [`Drive`] is read: nothing, one force that acts on `y`, noise and one force that acts on both
 /// coordinates, all that there is, or all with noise that acts on both coordinates too.
@@ -83,7 +83,7 @@ impl Step<'_> {
     fn all<V: Vector, const MOVING: u8, const FORCE: u8, const RIGHT: usize>(self, proof: V::Proof) {
         let Self { form, modes, state, drive, out } = self;
         let (live, frames) = (form.live.min(MAX_MODES), form.frames.min(CONTROL_FRAMES));
-        let (mut left, mut right) = ([Partial([0.0; LANES]); CONTROL_FRAMES], [Partial([0.0; LANES]); RIGHT]);
+        let (mut left, mut right) = ([Folded::ZERO; CONTROL_FRAMES], [Folded::ZERO; RIGHT]);
         macro_rules! run {
             ($groups:literal, $vectors:literal, $lane:expr) => {
                 step_some::<V, $groups, $vectors, MOVING, FORCE, RIGHT>(
@@ -91,24 +91,28 @@ impl Step<'_> {
                 )
             };
         }
-        let mut lane = 0;
-        while lane < live.min(LANES) {
-            // Modes beyond the live ones are at rest, so three groups may be stepped as four.
-            let mut vectors = 1;
-            match live.div_ceil(LANES) {
-                1 => run!(1, 1, lane),
-                2 => run!(2, 1, lane),
-                _ if const { V::SIDE_BY_SIDE == 2 } => {
-                    vectors = 2;
-                    run!(4, 2, lane);
-                }
-                _ => run!(4, 1, lane),
+        // Modes beyond the live ones are at rest, so three groups may be stepped as four.
+        let groups = live.div_ceil(LANES);
+        if const { V::SIDE_BY_SIDE == 2 && FORCE != FREE } {
+            match groups {
+                1 => run!(1, 2, 0),
+                2 => run!(2, 2, 0),
+                _ => run!(4, 2, 0),
             }
-            lane += vectors * V::WIDTH;
+        } else {
+            let mut lane = 0;
+            while lane < live.min(LANES) {
+                match groups {
+                    1 => run!(1, 1, lane),
+                    2 => run!(2, 1, lane),
+                    _ => run!(4, 1, lane),
+                }
+                lane += V::WIDTH;
+            }
         }
-        V::sum_lanes(proof, &left[..frames], &mut out[0]);
+        V::sum_folded(proof, &left[..frames], &mut out[0]);
         if RIGHT > 0 {
-            V::sum_lanes(proof, &right[..frames.min(RIGHT)], &mut out[1]);
+            V::sum_folded(proof, &right[..frames.min(RIGHT)], &mut out[1]);
         }
     }
 }
@@ -146,8 +150,8 @@ fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const 
     state: &mut State,
     lane: usize,
     drive: &Drive,
-    partial_left: &mut [Partial; CONTROL_FRAMES],
-    partial_right: &mut [Partial; RIGHT],
+    partial_left: &mut [Folded; CONTROL_FRAMES],
+    partial_right: &mut [Folded; RIGHT],
 ) {
     let (stereo, frames) = (RIGHT > 0, form.frames.min(CONTROL_FRAMES));
     macro_rules! rows {
@@ -223,9 +227,9 @@ fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const 
                     sum_right = if g == 0 { x_now.mul(right) } else { x_now.mul_add(right, sum_right) };
                 }
                 let lane = lane + n * V::WIDTH;
-                sum_left.store(&mut partial_left[i].0[lane..]);
+                sum_left.fold(proof, lane, &mut partial_left[i]);
                 if stereo {
-                    sum_right.store(&mut partial_right[i].0[lane..]);
+                    sum_right.fold(proof, lane, &mut partial_right[i]);
                 }
             }
         }

@@ -3,7 +3,7 @@
 //! SAFETY, throughout: making a vector requires a proof, and a proof exists only if the CPU was found to have the
 //! instructions. So an operation on a vector, or with a proof, may execute them.
 
-use super::vector::{LANES, Partial, Vector};
+use super::vector::{Folded, LANES, Partial, Vector, sum_folded_frames, sum_frames};
 use std::arch::x86_64::*;
 
 /// Proof that this CPU has AVX2 and FMA.
@@ -85,7 +85,7 @@ macro_rules! common {
 pub(super) struct Avx2(__m256);
 
 impl Vector for Avx2 {
-    // Eight vectors in sixteen registers: waiting for results costs more than reading constants from memory.
+    // Eight vectors in sixteen registers: under a force, waiting for results costs more than reading constants from memory.
     const SIDE_BY_SIDE: usize = 2;
     common!(
         HasAvx2,
@@ -143,7 +143,11 @@ impl Vector for Avx2 {
     }
     #[inline(always)]
     fn sum_lanes(proof: HasAvx2, frames: &[Partial], sums: &mut [f32]) {
-        sum_lanes_avx2(proof, frames, sums);
+        sum_partials(proof, frames, sums);
+    }
+    #[inline(always)]
+    fn sum_folded(proof: HasAvx2, frames: &[Folded], sums: &mut [f32]) {
+        sum_folded(proof, frames, sums);
     }
 }
 
@@ -208,8 +212,20 @@ impl Vector for Avx512 {
         Self(unsafe { _mm512_fnmadd_ps(self.0, factor.0, term.0) })
     }
     #[inline(always)]
+    fn fold(self, _: HasAvx512, _: usize, row: &mut Folded) {
+        // SAFETY: see the top of the file; a row has eight numbers.
+        unsafe {
+            let upper = _mm256_castpd_ps(_mm512_extractf64x4_pd::<1>(_mm512_castps_pd(self.0)));
+            _mm256_storeu_ps(row.0.as_mut_ptr(), _mm256_add_ps(_mm512_castps512_ps256(self.0), upper));
+        }
+    }
+    #[inline(always)]
     fn sum_lanes(HasAvx512(proof): HasAvx512, frames: &[Partial], sums: &mut [f32]) {
-        sum_lanes_avx2(proof, frames, sums);
+        sum_partials(proof, frames, sums);
+    }
+    #[inline(always)]
+    fn sum_folded(HasAvx512(proof): HasAvx512, frames: &[Folded], sums: &mut [f32]) {
+        sum_folded(proof, frames, sums);
     }
 }
 
@@ -227,18 +243,34 @@ fn quarters(_: HasAvx2, a: __m256, b: __m256) -> __m256 {
     unsafe { _mm256_add_ps(_mm256_shuffle_ps::<0b01_00_01_00>(a, b), _mm256_shuffle_ps::<0b11_10_11_10>(a, b)) }
 }
 
-/// [`Vector::sum_lanes`] for eight frames at a time, which saves 4.5 shuffles per frame.
+/// [`Vector::sum_lanes`].
 #[inline(always)]
-fn sum_lanes_avx2(proof: HasAvx2, frames: &[Partial], sums: &mut [f32]) {
-    let (eights, rest) = frames.as_chunks::<8>();
-    let (sums, rest_sums) = sums[..frames.len()].as_chunks_mut::<8>();
-    for (rows, sums) in eights.iter().zip(sums) {
-        // SAFETY: see the top of the file; every row has sixteen numbers and `sums` eight.
+fn sum_partials(proof: HasAvx2, frames: &[Partial], sums: &mut [f32]) {
+    let rest = sum_eights(proof, frames, sums, halves);
+    sum_frames(&frames[rest..], &mut sums[rest..]);
+}
+
+/// [`Vector::sum_folded`].
+#[inline(always)]
+fn sum_folded(proof: HasAvx2, frames: &[Folded], sums: &mut [f32]) {
+    // SAFETY: see the top of the file; a row has eight numbers.
+    let whole = |_, row: &Folded| unsafe { _mm256_add_ps(_mm256_loadu_ps(row.0.as_ptr()), _mm256_setzero_ps()) };
+    let rest = sum_eights(proof, frames, sums, whole);
+    sum_folded_frames(&frames[rest..], &mut sums[rest..]);
+}
+
+/// Sums the lanes of eight frames at a time, which saves 4.5 shuffles per frame. `fold` makes eight sums of a frame. Returns
+/// the number of frames that were summed: all but a rest of less than eight.
+#[inline(always)]
+fn sum_eights<R>(proof: HasAvx2, frames: &[R], sums: &mut [f32], fold: impl Fn(HasAvx2, &R) -> __m256) -> usize {
+    let eights = frames.as_chunks::<8>().0;
+    for (rows, sums) in eights.iter().zip(sums.as_chunks_mut::<8>().0) {
+        // SAFETY: see the top of the file; `sums` has eight numbers.
         unsafe {
             // Pairs such as (row 0, row 4), so that the last step leaves the rows in order.
             let mut fours = [_mm256_setzero_ps(); 4];
             for i in 0..4 {
-                let (a, b) = (halves(proof, &rows[i]), halves(proof, &rows[i + 4]));
+                let (a, b) = (fold(proof, &rows[i]), fold(proof, &rows[i + 4]));
                 // Lanes l and l + 4 of both rows.
                 let low = _mm256_permute2f128_ps::<0x20>(a, b);
                 fours[i] = _mm256_add_ps(low, _mm256_permute2f128_ps::<0x31>(a, b));
@@ -251,5 +283,5 @@ fn sum_lanes_avx2(proof: HasAvx2, frames: &[Partial], sums: &mut [f32]) {
             _mm256_storeu_ps(sums.as_mut_ptr(), sum);
         }
     }
-    super::vector::sum_frames(rest, rest_sums);
+    8 * eights.len()
 }

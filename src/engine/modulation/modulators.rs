@@ -14,7 +14,7 @@ use crate::patch::routes::{MAX_ROUTES, Source};
 const STRIKE_STREAM: u64 = 0x5354_5249_4b45;
 
 /// Positions of the controllers that routes can read.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Positions {
     pub(crate) pressure: f32,
     pub(crate) timbre: f32,
@@ -44,6 +44,8 @@ pub(crate) struct Modulators {
     sources: Sources,
     /// Amounts of the routes, including what routes add to them.
     amounts: Amounts,
+    /// The controllers at the last control tick.
+    positions: Positions,
     /// Sources that have changed since the last control tick, one bit each.
     changed: u32,
     /// The next control tick must compute every destination, since the settings have changed or the controls were
@@ -68,6 +70,7 @@ impl Modulators {
             settings: Settings::STILL,
             sources: SOURCES_AT_REST,
             amounts: [0.0; MAX_ROUTES],
+            positions: Positions::default(),
             changed: 0,
             unsettled: true,
             offsets: [0.0; MAX_ROUTES],
@@ -194,6 +197,11 @@ impl Modulators {
         &self.bus
     }
 
+    /// Whether [`Modulators::control`] would change nothing, since no source has moved since the last control tick.
+    pub(crate) fn are_still(&self, positions: &Positions) -> bool {
+        !self.unsettled && self.changed == 0 && !self.bus.reads_moving() && *positions == self.positions
+    }
+
     /// Computes the destinations for a time `seconds` from now. Calls `set` with the parameter and the value of each
     /// destination that may have changed since the control tick before.
     pub(crate) fn control(&mut self, seconds: f64, positions: &Positions, mut set: impl FnMut(Param, f32)) {
@@ -235,6 +243,7 @@ impl Modulators {
     /// Reads the sources as they will be in some seconds, and applies the routes that modulate macros and amounts.
     /// Returns a bit for each destination whose offset may have changed.
     fn look_ahead(&mut self, seconds: f64, positions: &Positions) -> u32 {
+        self.positions = *positions;
         for (source, value) in [
             (Source::Pressure, positions.pressure),
             (Source::Timbre, positions.timbre),

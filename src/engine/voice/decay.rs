@@ -79,19 +79,24 @@ impl Decay {
         self.released = !self.rings_on;
     }
 
-    /// Sets the T60s of the bank if they have changed. `modes` are the patch's, for a new tilt and a new place of touch;
-    /// none if the patch was replaced. Returns whether anything has changed.
-    pub(super) fn control(&mut self, controls: &Controls, modes: Option<&[Mode]>, bank: &mut Cells) -> bool {
-        let tilted = modes.filter(|_| controls.decay_tilt != self.tilt);
+    /// Sets the T60s of the bank if they have changed. `modes` gives the patch's, for a new tilt and a new place of touch;
+    /// none if the patch was replaced. It is called only for these. Returns whether anything has changed.
+    pub(super) fn control<'a>(
+        &mut self,
+        controls: &Controls,
+        modes: impl Fn() -> Option<&'a [Mode]>,
+        bank: &mut Cells,
+    ) -> bool {
+        let tilted = if controls.decay_tilt == self.tilt { None } else { modes() };
         tilted.into_iter().for_each(|modes| self.set_tilt(controls.decay_tilt, modes, bank));
         let amount = if self.released { 1.0 } else { controls.damper };
         let release = if amount == 0.0 { 0.0 } else { controls.release };
-        let mut touch = touch_rate(controls.touch);
-        let moved = modes.filter(|_| touch > 0.0 && self.place != Some(controls.touch_position));
-        moved.into_iter().for_each(|modes| self.set_place(controls.touch_position, modes, bank));
-        if self.place.is_none() {
-            // The modes' shapes are unknown.
-            touch = 0.0;
+        let (mut touch, mut moved) = (0.0, None);
+        if controls.touch > 0.0 {
+            moved = if self.place == Some(controls.touch_position) { None } else { modes() };
+            moved.into_iter().for_each(|modes| self.set_place(controls.touch_position, modes, bank));
+            // Without a place the modes' shapes are unknown.
+            touch = self.place.map_or(0.0, |_| touch_rate(controls.touch));
         }
         let damping = Damping { decay: controls.decay, release, amount, touch };
         let changes = tilted.is_some() || moved.is_some() || damping != self.damping;

@@ -36,7 +36,7 @@ impl Line {
 
     /// Whether it is 0 and stays there.
     pub(super) fn is_zero(&self) -> bool {
-        self.to == 0.0 && self.now() == 0.0
+        self.to == 0.0 && (self.from == 0.0 || self.passed >= self.frames)
     }
 
     /// Where it was at its start, its change a frame, and the frames that have passed since.

@@ -145,7 +145,8 @@ impl SynthVoice {
             self.move_controls(base, wheels, if self.fresh { 0 } else { frames });
         }
 
-        let modes = instrument.map(|instrument| instrument.sound.patch().modes.at(self.table).as_slice());
+        let table = self.table;
+        let modes = || instrument.map(|instrument| instrument.sound.patch().modes.at(table).as_slice());
         if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
@@ -213,6 +214,9 @@ impl SynthVoice {
         let mut positions = wheels.positions(self.brightness, |source| self.modulators.reads(source));
         positions.pressure = positions.pressure.max(self.expressions.pressure);
         positions.wheel = positions.wheel.max(self.expressions.vibrato);
+        if self.modulators.are_still(&positions) {
+            return;
+        }
         let (seconds, controls) = (self.clock.seconds(frames as u64), &mut self.controls);
         let (before, mut has_moved) = (controls.level_and_pan(), false);
         self.modulators.control(seconds, &positions, |param, value| {
