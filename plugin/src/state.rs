@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use sprung::params::retired::Retired;
 use sprung::params::{PARAM_COUNT, PARAMS, Param, Unit, Values};
 use sprung::patch::Patch;
-use sprung::preset::{Playable, Preset, Replaced};
+use sprung::preset::{Guide, Playable, Preset, Replaced};
 use std::collections::BTreeMap;
 
 /// The wrapper's name for the state.
@@ -75,7 +75,8 @@ struct Saved {
 impl Default for State {
     fn default() -> Self {
         let (name, author, tags, comment) = ("Init".to_owned(), String::new(), Vec::new(), String::new());
-        let preset = Preset { name, author, tags, comment, patch: Patch::default(), tuning: None };
+        let (guide, patch) = (Guide::default(), Patch::default());
+        let preset = Preset { name, author, tags, comment, guide, patch, tuning: None };
         Self::new(Playable::Preset(preset), 0, WINDOW)
     }
 }

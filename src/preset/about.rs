@@ -55,7 +55,7 @@ pub(super) fn label(table: &Table, key: &str, place: &str, complaints: &mut Comp
     complaints.take("", label).unwrap_or_default()
 }
 
-fn check_label(key: &str, label: String) -> Result<String, String> {
+pub(super) fn check_label(key: &str, label: String) -> Result<String, String> {
     if label.trim() == label && label.chars().count() <= MAX_LABEL && !label.chars().any(char::is_control) {
         Ok(label)
     } else {

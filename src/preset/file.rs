@@ -2,19 +2,25 @@
 
 use super::about::{About, about_to_toml};
 use super::complaints::Complaints;
+use super::guide::Guide;
 use super::migration::{self, Replaced};
 use super::value::{check_keys, param_value, table, unexpected};
 use super::{FORMAT_VERSION, Preset};
 use super::{body, one_exciter, routes, tuning};
 use crate::error::Error;
 use crate::params::retired::RETIRED;
-use crate::params::{PARAMS, Param, Unit};
+use crate::params::{PARAMS, Param, ParamInfo, Unit};
 use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use std::fmt::Write;
 use toml::{Table, Value};
 
 const KEYS: [&str; 12] =
     ["format", "name", "author", "tags", "comment", "modes", "body", "second", "joint", "routes", "params", "tuning"];
+
+/// All keys.
+fn known_keys() -> Vec<&'static str> {
+    KEYS.into_iter().chain(Guide::KEYS).collect()
+}
 
 /// Reads as much of a preset as possible. Returns an error only if the text is no preset at all.
 pub(super) fn parse(
@@ -49,7 +55,7 @@ pub(super) fn read(
     };
     let levelled = (format < one_exciter::FIRST_WITH_LEVELS).then(|| one_exciter::with_levels(table, complaints));
     let table = levelled.as_ref().unwrap_or(table);
-    check_keys(table, "", &KEYS, complaints);
+    check_keys(table, "", &known_keys(), complaints);
     let About { name, author, tags, comment } = About::read(table, complaints);
     let mut params = match table.get("params") {
         Some(Value::Table(params)) => params.clone(),
@@ -70,7 +76,8 @@ pub(super) fn read(
         migration::migrate(&retired, &params, &mut patch, replaced);
     }
     let tuning = tuning::read(table, complaints);
-    Ok(Preset { name, author, tags, comment, patch, tuning })
+    let guide = Guide::read(table, complaints);
+    Ok(Preset { name, author, tags, comment, guide, patch, tuning })
 }
 
 fn read_params(params: &Table, patch: &mut Patch, complaints: &mut Complaints) {
@@ -139,6 +146,7 @@ pub(super) fn to_toml(preset: &Preset) -> String {
     let mut out = format!("format = {FORMAT_VERSION}\n");
     let Preset { name, author, tags, comment, .. } = preset;
     out.push_str(&about_to_toml([name, author, comment], tags));
+    out.push_str(&preset.guide.to_toml());
     let modes = preset.patch.modes.as_slice();
     if modes != [Mode::UNIT] && preset.patch.modes.origin().is_none() {
         out.push_str("modes = [\n");
@@ -154,15 +162,20 @@ pub(super) fn to_toml(preset: &Preset) -> String {
         let value = preset.patch.get(info.param);
         let is_news = value != info.default || body::writes(&preset.patch, info.param);
         if is_news && !routes::writes(&preset.patch, info.param) {
-            let _ = match info.unit {
-                Unit::Choice => writeln!(out, "{} = \"{}\"", info.id, info.choices[value as usize]),
-                Unit::Count => writeln!(out, "{} = {value}", info.id),
-                _ => writeln!(out, "{} = {value:?}", info.id),
-            };
+            write_value(&mut out, info, value);
         }
     }
     out.push_str(&tuning::to_toml(preset.tuning.as_ref()));
     out
+}
+
+/// Writes a line with a parameter and its value.
+pub(super) fn write_value(out: &mut String, info: &ParamInfo, value: f32) {
+    let _ = match info.unit {
+        Unit::Choice => writeln!(out, "{} = \"{}\"", info.id, info.choices[value as usize]),
+        Unit::Count => writeln!(out, "{} = {value}", info.id),
+        _ => writeln!(out, "{} = {value:?}", info.id),
+    };
 }
 
 /// The ratio, and the fields that differ from [`Mode::UNIT`]. `{:?}` writes an `f32` as the shortest text that reads
@@ -308,7 +321,8 @@ mod tests {
             }
             routes.into_iter().enumerate().for_each(|(place, route)| patch.routes.set(place, route));
             let [name, author, tag] = <[String; 3]>::try_from(texts).unwrap();
-            let preset = Preset { name, author, tags: vec![tag], comment, patch, tuning: None };
+            let guide = Guide::default();
+            let preset = Preset { name, author, tags: vec![tag], comment, guide, patch, tuning: None };
             let text = preset.to_toml();
             prop_assert_eq!(read_text(&text).map_err(|e| TestCaseError::fail(format!("{e}\n{text}")))?, preset);
         }

@@ -173,7 +173,7 @@ fn parameters_that_a_state_does_not_name_have_their_defaults() {
     params.deserialize_fields(&fields(old.to_owned()));
     let patch = Patch::default().with(Param::Gain, -3.0);
     let (name, author, tags, comment) = ("Old".to_owned(), String::new(), Vec::new(), String::new());
-    let preset = Preset { name, author, tags, comment, patch, tuning: None };
+    let preset = Preset { name, author, tags, comment, guide: Guide::default(), patch, tuning: None };
     assert_eq!(params.state(), State::new(Playable::Preset(preset), 0, WINDOW));
     assert!(params.complaints().is_empty());
 }
