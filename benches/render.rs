@@ -2,16 +2,19 @@
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use sprung::io::Song;
-use sprung::preset::Preset;
+use sprung::preset::{Playable, Preset, Programs};
 use sprung::render::{Job, Options, Tail, on_threads};
 use std::time::Duration;
 
 fn render(criterion: &mut Criterion) {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/midi/suite.mid");
-    let song = Song::read(std::fs::File::open(file).unwrap(), file).unwrap();
-    let programs: Vec<_> = Preset::factory().iter().map(Preset::kit).collect();
+    let mut song = Song::read(std::fs::File::open(file).unwrap(), file).unwrap();
+    song.select_by_bank();
+    let kit = Preset::find("init").unwrap().kit();
+    let load = |name: &str| Playable::find(name).map(|playable| playable.kit());
+    let programs = Programs::general_midi().kits(|_| true, &kit, load).unwrap();
     let options = Options { sample_rate: 48_000, seed: 0, block: 4096, tail: Tail::None };
-    let job = Job { programs: &programs, ..Job::new(&song, &programs[0], options) };
+    let job = Job { programs: &programs, ..Job::new(&song, &kit, options) };
     let mut group = criterion.benchmark_group("suite.mid");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(job.song_frames()));
     for threads in [1, 2] {

@@ -12,6 +12,7 @@ mod parameters;
 #[cfg(feature = "realtime")]
 mod play;
 mod presets;
+mod programs;
 mod progress;
 mod quantity;
 mod recording;

@@ -6,11 +6,13 @@ use super::terminal::{complain, complain_lines, print};
 use super::{completion, interrupt, quantity};
 use sprung::engine::telemetry::Load;
 use sprung::io::{Inputs, Output, Target};
+use sprung::preset::{Playable, Preset};
 use sprung::realtime::{
     Choice, Found, JackMidi, KitSender, LiveInputs, LiveSender, MidiPorts, Player, Recording, Session, Setup, Status,
     Wanted, device, midi_ports, view,
 };
 use sprung::render::BLOCKS;
+use sprung::sound::Kit;
 use sprung::text::printable;
 use sprung::{Error, Result};
 use std::io::IsTerminal;
@@ -76,12 +78,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let record = args.record.as_ref().map(Target::new);
     record.as_ref().map_or(Ok(()), Target::check_wav)?;
     let mut inputs = Inputs::default();
-    let sounds = args.sound.load(&mut inputs)?;
-    let song = args.song.as_deref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
+    let mut song = args.song.as_deref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
+    // Keyboards may select any program at any time.
+    let sounds = args.sound.load(song.as_mut(), true, &mut inputs)?;
     if let Some(song) = &song {
-        args.reading.warn_of_programs(song, args.sound.asked_for(&sounds), &sounds.programs);
-        args.sound.tuning.warn_of_unmapped(song, &sounds.tuning);
-        SoundArgs::warn_of_silence(song, &sounds, args.reading.programs(&sounds.programs));
+        args.sound.warn(song, &sounds);
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;
@@ -98,8 +99,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let status = Arc::new(Status::default());
     let ([keys, midi, closing], inputs) = LiveInputs::new();
     let has_song = song.is_some();
-    let Sounds { kit, channels, programs, tuning } = &sounds;
-    let programs = args.reading.programs(programs);
+    let Sounds { kit, channels, programs, tuning, .. } = &sounds;
+    let midi = if programs.is_empty() { midi } else { midi.with_banks() };
     let (sample_rate, seed) = (found.sample_rate(), args.sound.seed);
     let setup = Setup { sample_rate, seed, kit, channels, programs, tuning, song };
     let (player, kits) = Player::new(setup, inputs, tap, status.clone());
@@ -119,7 +120,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
         status,
         has_song,
     };
-    if headless { stage.headless(closing) } else { stage.on_terminal(keys, kits, closing, sounds) }
+    let settings = args.sound.clone();
+    let make = Box::new(move |preset: &Preset| settings.kit(Playable::Preset(preset.clone())));
+    if headless { stage.headless(closing) } else { stage.on_terminal(keys, kits, closing, sounds, make) }
 }
 
 fn list() -> Result<()> {
@@ -204,10 +207,17 @@ impl Stage {
         self.finish(closing)
     }
 
-    fn on_terminal(mut self, keys: LiveSender, kits: KitSender, closing: LiveSender, sounds: Sounds) -> Result<()> {
+    fn on_terminal(
+        mut self,
+        keys: LiveSender,
+        kits: KitSender,
+        closing: LiveSender,
+        sounds: Sounds,
+        make: Box<dyn Fn(&Preset) -> Arc<Kit>>,
+    ) -> Result<()> {
         let (device, status) = (self.session.description().to_owned(), self.status.clone());
         let Sounds { kit, channels, programs, .. } = sounds;
-        let desk = view::Desk { device, status, keys, kits, kit, channels, programs };
+        let desk = view::Desk { device, status, keys, kits, kit, channels, programs, make };
         let news = view::run(desk, || interrupt::check().is_err(), || self.poll());
         let ended = self.finish(closing);
         news.and(ended)

@@ -1,13 +1,15 @@
 //! The sounds that a command plays: presets and kits, parameter settings, the tuning, and the seed.
 
+use super::programs::{ProgramArgs, used};
 use super::terminal::complain;
 use super::tuning::TuningArgs;
-use super::{completion, presets, quantity};
+use super::{completion, presets, programs, quantity};
 use clap_complete::ArgValueCompleter;
 use sprung::engine::EventKind;
+use sprung::engine::banks::DRUM_CHANNEL;
 use sprung::io::{Inputs, Song};
 use sprung::params::Param;
-use sprung::preset::{Playable, Preset};
+use sprung::preset::{Playable, Programs};
 use sprung::sound::{Kit, Tuning};
 use sprung::units::note_name;
 use sprung::{Error, Result};
@@ -16,14 +18,17 @@ use std::ffi::{OsStr, OsString};
 use std::sync::Arc;
 
 /// What sounds a song is played with.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub(super) struct SoundArgs {
-    /// Factory preset, or preset or kit file (.toml), that plays what nothing else says otherwise [default: init]
+    /// Factory preset or kit, or preset or kit file (.toml), that plays what nothing else says otherwise [default: for
+    /// songs the first of --programs, for notes init]
     #[arg(long, value_name = "NAME|FILE.toml", add = ArgValueCompleter::new(completion::presets))]
     preset: Option<OsString>,
-    /// Factory preset, or preset or kit file, that a channel (1-16) starts with, as in 10=drums.toml; may be repeated
+    /// Factory preset or kit, or preset or kit file, that a channel (1-16) starts with, as in 10=drums.toml; may be repeated
     #[arg(long, value_name = "CHANNEL=NAME|FILE.toml", value_parser = quantity::channel)]
     channel: Vec<(u8, String)>,
+    #[command(flatten)]
+    programs: ProgramArgs,
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
     #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
         add = ArgValueCompleter::new(completion::settings))]
@@ -42,17 +47,32 @@ pub(super) struct Sounds {
     pub(super) kit: Arc<Kit>,
     /// Initial kits of single channels, from 0.
     pub(super) channels: Vec<(u8, Arc<Kit>)>,
-    /// Kits of the factory presets, in the order of their program numbers.
+    /// The kits that program changes select: melodic sounds, then drum kits. None if they select nothing.
     pub(super) programs: Vec<Arc<Kit>>,
+    /// The list that they come from.
+    list: Option<Programs>,
     /// The tuning of the keys.
     pub(super) tuning: Tuning,
 }
 
 impl SoundArgs {
-    /// Loads the presets and kits, sets the parameters of all sounds, and reads the tuning.
-    pub(super) fn load(&self, inputs: &mut Inputs) -> Result<Sounds> {
-        let kit = self.kit(presets::load(self.preset.as_deref().unwrap_or(OsStr::new("init")), inputs)?);
-        let mut channels = Vec::with_capacity(self.channel.len());
+    /// Loads the presets and kits, sets the parameters of all sounds, and reads the tuning. Program changes of the `song`
+    /// then have the numbers of their kits; without a song, all programs are loaded if it `is_live`.
+    pub(super) fn load(&self, song: Option<&mut Song>, is_live: bool, inputs: &mut Inputs) -> Result<Sounds> {
+        let list = if song.is_some() || is_live { self.programs.read(inputs)? } else { None };
+        let has_song = song.is_some();
+        let used = song.map(|song| {
+            match list {
+                Some(_) => song.select_by_bank(),
+                None => song.events.retain(|event| !matches!(event.kind, EventKind::Program(_))),
+            }
+            used(song)
+        });
+        let first = list.as_ref().filter(|_| has_song && self.preset.is_none());
+        let name = self.preset.as_deref().or(first.and_then(|list| list.sound(0)).map(OsStr::new));
+        let name = name.unwrap_or(OsStr::new("init"));
+        let kit = self.kit(presets::load(name, inputs)?);
+        let mut channels = Vec::with_capacity(self.channel.len() + 1);
         for (channel, name) in &self.channel {
             if channels.iter().any(|(taken, _)| taken == channel) {
                 let message = format!("channel {} is there twice: expected each channel once", channel + 1);
@@ -60,22 +80,46 @@ impl SoundArgs {
             }
             channels.push((*channel, self.kit(presets::load(OsStr::new(name), inputs)?)));
         }
-        let programs = Preset::factory().iter().map(|preset| self.kit(Playable::Preset(preset.clone()))).collect();
-        Ok(Sounds { kit, channels, programs, tuning: self.tuning.read(inputs)? })
+        let drums = list.as_ref().filter(|_| self.preset.is_none()).and_then(|list| list.drums(0));
+        if let Some(drums) = drums.filter(|_| channels.iter().all(|(taken, _)| *taken != DRUM_CHANNEL)) {
+            channels.push((DRUM_CHANNEL, self.kit(presets::load(OsStr::new(drums), inputs)?)));
+        }
+        let programs = match &list {
+            None => Vec::new(),
+            Some(list) => {
+                let wanted = |number| used.as_ref().is_none_or(|used: &BTreeSet<u8>| used.contains(&number));
+                programs::kits(list, wanted, &kit, |playable| self.kit(playable), inputs)?
+            }
+        };
+        Ok(Sounds { kit, channels, programs, list, tuning: self.tuning.read(inputs)? })
+    }
+
+    /// Warns of program changes that have no sound or lead away from what the user asked for, of keys that the tuning does
+    /// not map, and of what stays silent.
+    pub(super) fn warn(&self, song: &Song, sounds: &Sounds) {
+        if let Some(list) = &sounds.list {
+            programs::warn_of_missing(song, list, "what channels start with");
+        }
+        programs::warn_of_changes(song, self.asked_for(sounds), &sounds.programs);
+        self.tuning.warn_of_unmapped(song, &sounds.tuning);
+        self.warn_of_silence(song, sounds);
     }
 
     /// The kit that the user chose for each channel; none if neither a preset for all channels nor one for this channel
     /// was given.
-    pub(super) fn asked_for<'a>(&self, sounds: &'a Sounds) -> [Option<&'a Arc<Kit>>; 16] {
+    fn asked_for<'a>(&self, sounds: &'a Sounds) -> [Option<&'a Arc<Kit>>; 16] {
         let mut asked = [self.preset.is_some().then_some(&sounds.kit); 16];
-        sounds.channels.iter().for_each(|(channel, kit)| asked[usize::from(*channel)] = Some(kit));
+        sounds.channels[..self.channel.len()]
+            .iter()
+            .for_each(|(channel, kit)| asked[usize::from(*channel)] = Some(kit));
         asked
     }
 
     /// Warns of channels that were given a sound but have no events, and of notes on keys without a pad in their kit.
-    /// `programs` are the kits that program changes select. Notes are not enough to tell that a channel is used: those of
+    /// Notes are not enough to tell that a channel is used: those of
     /// an MPE zone are on other channels than their master's.
-    pub(super) fn warn_of_silence(song: &Song, sounds: &Sounds, programs: &[Arc<Kit>]) {
+    fn warn_of_silence(&self, song: &Song, sounds: &Sounds) {
+        let programs = &sounds.programs;
         let mut playing = [&sounds.kit; 16];
         sounds.channels.iter().for_each(|(channel, kit)| playing[usize::from(*channel)] = kit);
         let (mut is_used, mut all) = ([false; 16], 0);
@@ -96,7 +140,7 @@ impl SoundArgs {
                 _ => {}
             }
         }
-        for (channel, _) in sounds.channels.iter().filter(|(channel, _)| !is_used[usize::from(*channel)]) {
+        for (channel, _) in self.channel.iter().filter(|(channel, _)| !is_used[usize::from(*channel)]) {
             complain("warning", format_args!("--channel {0}: the song has nothing on channel {0}", channel + 1));
         }
         if silent > 0 {
@@ -111,7 +155,8 @@ impl SoundArgs {
         }
     }
 
-    fn kit(&self, mut playable: Playable) -> Arc<Kit> {
+    /// The kit of a preset or kit, with the parameters that the user has set.
+    pub(super) fn kit(&self, mut playable: Playable) -> Arc<Kit> {
         for preset in playable.presets_mut() {
             self.set.iter().for_each(|(param, value)| preset.patch.set(*param, *value));
         }

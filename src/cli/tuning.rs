@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 /// How the keys are tuned.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub(super) struct TuningArgs {
     /// Scala scale (.scl) to tune the keys to. Without --keymap, degree 0 is on C4 (key 60), every key is the next
     /// degree, and A4 (key 69) keeps the frequency that the parameter `tuning` gives it

@@ -2,6 +2,7 @@
 //!
 //! Does not depend on files, the command line or audio devices. Real-time safe once built, except where noted.
 
+pub mod banks;
 mod channel;
 mod controls;
 mod damping;

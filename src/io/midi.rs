@@ -3,6 +3,7 @@
 mod container;
 mod fault;
 mod reader;
+mod system_exclusive;
 
 use super::song::{Song, SongEvent};
 use super::tempo::TempoMap;

@@ -1,5 +1,6 @@
 //! Songs: events in order of time, from a MIDI file or from a chord.
 
+use crate::engine::banks::Banks;
 use crate::engine::{Event, EventKind, NoteId};
 
 /// An event of a song.
@@ -63,6 +64,12 @@ impl Song {
         }
         on.extend(off);
         Self { events: on, seconds }
+    }
+
+    /// Lets program changes select from a list of melodic sounds and drum kits, by bank: see [`Banks`].
+    pub fn select_by_bank(&mut self) {
+        let mut banks = Banks::default();
+        self.events.iter_mut().for_each(|event| event.kind = banks.resolve(event.channel, event.kind));
     }
 
     /// The song's length in frames.

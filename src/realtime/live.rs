@@ -1,6 +1,7 @@
 //! Passes live events to the audio thread through lock-free queues of fixed size, merged in order of time.
 
 use super::{BlockClock, Stamp};
+use crate::engine::banks::Banks;
 use crate::engine::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF, SOSTENUTO, SUSTAIN};
 use crate::engine::note::{nearest_channel, nearest_key};
 use crate::engine::{Event, EventKind};
@@ -28,11 +29,22 @@ pub struct LiveSender {
     /// is.
     keys: [u128; 16],
     pedals: u16,
+    /// The banks by which program changes select sounds, if they do.
+    banks: Option<Banks>,
 }
 
 impl LiveSender {
+    /// The same sender, whose program changes select from a list of melodic sounds and drum kits, by bank.
+    #[must_use]
+    pub fn with_banks(self) -> Self {
+        Self { banks: Some(Banks::default()), ..self }
+    }
+
     /// Sends an event. Returns false if the queue is full: the event is then lost.
-    pub fn send(&mut self, event: LiveEvent) -> bool {
+    pub fn send(&mut self, mut event: LiveEvent) -> bool {
+        if let Some(banks) = &mut self.banks {
+            event.kind = banks.resolve(event.channel, event.kind);
+        }
         let channel = usize::from(nearest_channel(event.channel));
         let bit = 1 << channel;
         match event.kind {
@@ -90,7 +102,7 @@ impl LiveInputs {
         let senders = std::array::from_fn(|_| {
             let (producer, consumer) = RingBuffer::new(CAPACITY);
             inputs.push(consumer);
-            LiveSender { queue: producer, keys: [0; 16], pedals: 0 }
+            LiveSender { queue: producer, keys: [0; 16], pedals: 0, banks: None }
         });
         (senders, Self(inputs))
     }

@@ -2,6 +2,8 @@
 
 use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::patch::Patch;
+use sprung::sound::Kit;
+use std::sync::Arc;
 
 /// A block as long as the score.
 pub(crate) const WHOLE: usize = usize::MAX;
@@ -14,8 +16,8 @@ pub(crate) struct Score {
     pub(crate) sample_rate: f64,
     pub(crate) seed: u64,
     pub(crate) patch: Patch,
-    /// The patches that program changes select from.
-    pub(crate) programs: Vec<Patch>,
+    /// The kits that program changes select from.
+    pub(crate) programs: Vec<Arc<Kit>>,
     /// Events as frame, channel and kind, in order of time.
     events: Vec<(u64, u8, EventKind)>,
     pub(crate) frames: usize,
@@ -47,7 +49,11 @@ impl Score {
         self
     }
 
-    pub(crate) fn with_programs(mut self, programs: Vec<Patch>) -> Self {
+    pub(crate) fn with_programs(self, programs: Vec<Patch>) -> Self {
+        self.with_kits(programs.iter().map(Kit::of_patch).collect())
+    }
+
+    pub(crate) fn with_kits(mut self, programs: Vec<Arc<Kit>>) -> Self {
         self.programs = programs;
         self
     }
@@ -94,7 +100,8 @@ impl Score {
 
     /// Renders left and right in blocks of at most `block` frames.
     pub(crate) fn render(&self, block: usize) -> [Vec<f32>; 2] {
-        let mut ensemble = Ensemble::new(self.sample_rate, self.seed, &self.patch, &self.programs);
+        let mut ensemble =
+            Ensemble::of_kits(self.sample_rate, self.seed, &Kit::of_patch(&self.patch), self.programs.clone());
         // Not zero, so that samples which a block does not write are noticed.
         let [mut left, mut right] = [(); 2].map(|()| vec![f32::NAN; self.frames]);
         let mut events = self.events.iter().peekable();

@@ -1,9 +1,10 @@
-//! Every song in `assets/midi`, played with the factory presets as its programs.
+//! Every song in `assets/midi`, played with the factory's sounds for General MIDI.
 
 use crate::score::Score;
 use sprung::io::Song;
 use sprung::patch::Patch;
-use sprung::preset::Preset;
+use sprung::preset::{Playable, Programs};
+use sprung::sound::Kit;
 use std::path::Path;
 
 /// Seconds rendered after a song's last event.
@@ -23,8 +24,11 @@ pub(crate) fn all() -> Vec<Score> {
 fn song(path: &Path) -> Score {
     let stem = path.file_stem().and_then(|stem| stem.to_str()).expect("songs have plain names");
     let bytes = std::fs::read(path).expect("a song can be read");
-    let song = Song::parse(&bytes, stem).unwrap_or_else(|error| panic!("{error}"));
-    let programs = Preset::factory().iter().map(|preset| preset.patch.clone()).collect();
-    let score = Score::new(format!("song-{stem}"), Patch::default(), song.seconds + TAIL).with_programs(programs);
+    let mut song = Song::parse(&bytes, stem).unwrap_or_else(|error| panic!("{error}"));
+    song.select_by_bank();
+    let load = |name: &str| Playable::find(name).map(|playable| playable.kit());
+    let programs = Programs::general_midi().kits(|_| true, &Kit::of_patch(&Patch::default()), load);
+    let score = Score::new(format!("song-{stem}"), Patch::default(), song.seconds + TAIL);
+    let score = score.with_kits(programs.unwrap_or_else(|error| panic!("{error}")));
     song.events.iter().fold(score, |score, event| score.then(event.seconds, event.channel, event.kind))
 }

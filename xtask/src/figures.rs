@@ -3,7 +3,7 @@
 use crate::shell::root;
 use sprung::analysis::figure::{Render, waveform_and_spectrogram};
 use sprung::io::Song;
-use sprung::preset::Preset;
+use sprung::preset::{Playable, Preset, Programs};
 use sprung::render::{Job, Options, Tail};
 use std::fs::File;
 
@@ -15,10 +15,13 @@ pub(crate) fn run() -> Result<(), String> {
 fn draw() -> sprung::Result<()> {
     let origin = "assets/midi/suite.mid";
     let file = File::open(root().join(origin)).map_err(|error| sprung::Error::io(origin, error))?;
-    let song = Song::read(file, origin)?;
-    let programs: Vec<_> = Preset::factory().iter().map(Preset::kit).collect();
+    let mut song = Song::read(file, origin)?;
+    song.select_by_bank();
+    let kit = Preset::find("init")?.kit();
+    let load = |name: &str| Playable::find(name).map(|playable| playable.kit());
+    let programs = Programs::general_midi().kits(|_| true, &kit, load)?;
     let options = Options { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::Auto };
-    let job = Job { programs: &programs, ..Job::new(&song, &programs[0], options) };
+    let job = Job { programs: &programs, ..Job::new(&song, &kit, options) };
     let (mut left, mut right) = (Vec::new(), Vec::new());
     job.render(|block_left, block_right| {
         left.extend(block_left);

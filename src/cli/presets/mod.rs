@@ -1,44 +1,51 @@
-//! `sprung presets`: lists and shows factory presets, and checks preset and kit files.
+//! `sprung presets`: lists, shows and auditions factory presets and kits, and checks files of them.
 
-use super::completion;
-use super::figure;
-use super::recording::FigureArgs;
-use super::terminal::{complain, print};
+mod audition;
+mod list;
+mod select;
+
+use crate::cli::completion;
+use crate::cli::figure;
+use crate::cli::recording::FigureArgs;
+use crate::cli::terminal::{complain, print};
 use clap::Subcommand;
 use clap_complete::ArgValueCompleter;
 use sprung::analysis::figure::sound::modes_of;
 use sprung::io::{Inputs, Song};
 use sprung::params::Param;
-use sprung::preset::{Playable, Preset, Replaced, is_file_name};
+use sprung::preset::{Playable, Replaced, is_file_name};
 use sprung::render::{Job, Options, Tail};
 use sprung::text::printable;
 use sprung::units::frequency_from_key;
 use sprung::{Error, Result};
 use std::ffi::{OsStr, OsString};
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-pub(super) const EXAMPLES: &str = "\
+pub(in crate::cli) const EXAMPLES: &str = "\
 Examples:
-  sprung presets list
+  sprung presets list --family mallet
+  sprung presets list --gm
+  sprung presets audition --out sounds
   sprung presets show Kick > mine.toml
   sprung presets show Marimba --figure marimba.png
   sprung presets check *.toml";
 
 #[derive(clap::Args)]
 #[command(arg_required_else_help = true)]
-pub(super) struct Args {
+pub(in crate::cli) struct Args {
     #[command(subcommand)]
     action: Action,
 }
 
 #[derive(Subcommand)]
 enum Action {
-    /// List the factory presets: MIDI program number, name, tags, what it is
-    List,
+    /// List the factory presets and kits: name, family, keys, what it is
+    List(list::Args),
+    /// Render the factory's sounds, with a page that plays them and shows how they measure
+    Audition(audition::Args),
     /// Print a preset's file, to start one's own from
     Show {
-        /// Name of a factory preset, or a preset or kit file ending in .toml
+        /// Name of a factory preset or kit, or a preset or kit file ending in .toml
         #[arg(add = ArgValueCompleter::new(completion::presets))]
         name: OsString,
         #[command(flatten)]
@@ -52,9 +59,10 @@ enum Action {
     },
 }
 
-pub(super) fn run(args: &Args) -> Result<()> {
+pub(in crate::cli) fn run(args: &Args) -> Result<()> {
     match &args.action {
-        Action::List => print(&list(Preset::factory())),
+        Action::List(args) => print(&list::list(args)),
+        Action::Audition(args) => audition::run(args),
         Action::Show { name, figure } => {
             let mut inputs = Inputs::default();
             let playable = load(name, &mut inputs)?;
@@ -69,13 +77,9 @@ pub(super) fn run(args: &Args) -> Result<()> {
 }
 
 /// Loads the preset or kit that the user names: a file if it looks like a file name, else a factory preset.
-pub(super) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
+pub(in crate::cli) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
     let path = Path::new(name);
-    if is_file_name(path) {
-        read(path, inputs)
-    } else {
-        Preset::find(&name.to_string_lossy()).cloned().map(Playable::Preset)
-    }
+    if is_file_name(path) { read(path, inputs) } else { Playable::find(&name.to_string_lossy()) }
 }
 
 /// Key and velocity of the note that a preset is drawn with, and how many seconds it is held.
@@ -108,18 +112,6 @@ fn warn(origin: &str, replaced: Replaced) {
     complain("warning", format_args!("{origin}: {replaced}"));
 }
 
-fn list(presets: &[Preset]) -> String {
-    let tags = |preset: &Preset| preset.tags.join(", ");
-    let names = presets.iter().map(|preset| preset.name.chars().count()).max().unwrap_or(0);
-    let tag_width = presets.iter().map(|preset| tags(preset).chars().count()).max().unwrap_or(0);
-    let mut out = String::new();
-    for (number, preset) in presets.iter().enumerate() {
-        let comment = preset.comment.lines().next().unwrap_or_default();
-        let _ = writeln!(out, "{number:3}  {:names$}  {:tag_width$}  {comment}", preset.name, tags(preset));
-    }
-    out
-}
-
 fn check(files: &[PathBuf]) -> Result<()> {
     let (mut wrong, mut inputs) = (0, Inputs::default());
     for path in files {
@@ -138,18 +130,4 @@ fn check(files: &[PathBuf]) -> Result<()> {
         complaints.iter().for_each(|line| complain("error", line));
     }
     if wrong == 0 { Ok(()) } else { Err(Error::value("presets", format!("{wrong} of {} cannot be used", files.len()))) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_list_is_aligned_and_numbered() {
-        let list = list(Preset::factory());
-        let column = |line: &str| line.chars().skip(5).collect::<String>();
-        assert!(list.lines().next().is_some_and(|line| line.starts_with("  0  init")), "{list}");
-        assert_eq!(list.lines().count(), Preset::factory().len());
-        assert!(list.lines().zip(Preset::factory()).all(|(line, preset)| column(line).starts_with(&preset.name)));
-    }
 }

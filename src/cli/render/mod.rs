@@ -23,7 +23,7 @@ Examples:
   sprung render song.mid --preset mine.toml --normalize lufs=-14 --bits 16 --dither -o song.wav
   sprung render --note C2 --preset Kick --tail none --length 0.5 -o kick.wav
   sprung render --note C4,E4,67.5,440Hz --set decay=\"3 s\" --set mallet_pulse=contact -o chord.wav
-  sprung render song.mid --preset Marimba --channel 10=drums.toml --ignore-programs -o song.wav
+  sprung render song.mid --preset Marimba --channel 10=drums.toml --programs none -o song.wav
   sprung render --note C4 --preset Marimba --figure marimba.png -o marimba.wav
   sprung render --note C3 --preset Gong --set input_level=0 --input voice.wav -o spoken.wav
   sprung render song.mid --scale mine.scl --keymap mine.kbm -o song.wav
@@ -107,14 +107,13 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     target.check_wav()?;
     let mut inputs = Inputs::default();
-    let sounds = args.sound.load(&mut inputs)?;
-    let song = match &args.song {
-        Some(path) => args.reading.read(path, &mut inputs)?,
+    let mut song = args.song.as_ref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
+    let sounds = args.sound.load(song.as_mut(), false, &mut inputs)?;
+    let song = match song {
+        Some(song) => song,
         None => chord(args, &sounds.kit)?,
     };
-    args.reading.warn_of_programs(&song, args.sound.asked_for(&sounds), &sounds.programs);
-    args.sound.tuning.warn_of_unmapped(&song, &sounds.tuning);
-    SoundArgs::warn_of_silence(&song, &sounds, args.reading.programs(&sounds.programs));
+    args.sound.warn(&song, &sounds);
 
     let input = match &args.input {
         Some(path) => {
@@ -125,9 +124,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     };
     let options =
         Options { sample_rate: args.rate, seed: args.sound.seed, block: args.block as usize, tail: args.tail };
-    let Sounds { kit, channels, programs, tuning } = &sounds;
-    let job =
-        Job { song: &song, kit, channels, programs: args.reading.programs(programs), tuning, input: &input, options };
+    let Sounds { kit, channels, programs, tuning, .. } = &sounds;
+    let job = Job { song: &song, kit, channels, programs, tuning, input: &input, options };
     let delivery = Delivery {
         samples: args.bits,
         dither: args.dither,

@@ -2,6 +2,7 @@
 
 use super::container::Track;
 use super::fault::{Fault, Found};
+use super::system_exclusive::system_exclusive;
 use crate::engine::EventKind;
 use crate::engine::midi::parse_message;
 use crate::io::bars::Bars;
@@ -116,6 +117,9 @@ impl TrackReader {
         match event.kind {
             TrackEventKind::Midi { channel, message } => {
                 self.events.extend(translate(channel, message).map(|(channel, kind)| (tick, channel, kind)));
+            }
+            TrackEventKind::SysEx(message) => {
+                self.events.extend(system_exclusive(message).into_iter().map(|(channel, kind)| (tick, channel, kind)));
             }
             TrackEventKind::Meta(MetaMessage::Tempo(tempo)) if tempo == 0 => {
                 self.repair(spot, "the tempo is 0 µs per quarter note: expected at least 1", "left out")?;

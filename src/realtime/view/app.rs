@@ -56,8 +56,9 @@ pub(super) struct App {
     pub(super) status: Arc<Status>,
     pub(super) keyboard: Keyboard,
     kits: KitSender,
-    /// Kits of the factory presets, with the parameters from the command line.
+    /// The kits that program changes select.
     programs: Vec<Arc<Kit>>,
+    make: Box<dyn Fn(&Preset) -> Arc<Kit>>,
     playing: Vec<Playing>,
     pub(super) channel: u8,
     pub(super) list: List,
@@ -75,7 +76,7 @@ pub(super) struct App {
 
 impl App {
     pub(super) fn new(desk: Desk) -> Self {
-        let Desk { device, status, keys, kits, kit, channels, programs } = desk;
+        let Desk { device, status, keys, kits, kit, channels, programs, make } = desk;
         // Nor must text from devices.
         let device = printable(&device).into_owned();
         let mut playing: Vec<Playing> = (0..16).map(|_| Playing::new(&kit, None)).collect();
@@ -86,6 +87,7 @@ impl App {
             keyboard: Keyboard::new(keys),
             kits,
             programs,
+            make,
             playing,
             channel: 0,
             list: List::Presets,
@@ -119,7 +121,7 @@ impl App {
         &self.search[self.list as usize]
     }
 
-    /// Presets that match the search, with their program numbers.
+    /// Presets that match the search, with their numbers in the list of all.
     pub(super) fn presets(&self) -> Vec<(usize, &'static Preset)> {
         let search = self.search[List::Presets as usize].to_lowercase();
         let matches = |preset: &Preset| {
@@ -255,11 +257,11 @@ impl App {
     }
 
     fn load_preset(&mut self) {
-        let Some((number, _)) = self.selected().and_then(|row| self.presets().get(row).copied()) else { return };
-        let Some(kit) = self.programs.get(number) else { return };
-        if self.kits.send(self.channel, kit) {
+        let Some((_, preset)) = self.selected().and_then(|row| self.presets().get(row).copied()) else { return };
+        let kit = (self.make)(preset);
+        if self.kits.send(self.channel, &kit) {
             let playing = &mut self.playing[usize::from(self.channel)];
-            *playing = Playing::new(kit, playing.program);
+            *playing = Playing::new(&kit, playing.program);
             let told = format!("channel {} plays ‘{}’", self.channel + 1, playing.name);
             self.tell(told);
         }

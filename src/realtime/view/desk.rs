@@ -1,5 +1,6 @@
 //! The data that the view shows, and the senders through which it plays.
 
+use crate::preset::Preset;
 use crate::realtime::{KitSender, LiveSender, Status};
 use crate::sound::Kit;
 use std::sync::Arc;
@@ -18,6 +19,8 @@ pub struct Desk {
     pub kit: Arc<Kit>,
     /// Initial kits of single channels, 0–15.
     pub channels: Vec<(u8, Arc<Kit>)>,
-    /// The kits that program changes select, in the order of the factory presets.
+    /// The kits that program changes select.
     pub programs: Vec<Arc<Kit>>,
+    /// Makes the kit of a preset that is chosen from the list.
+    pub make: Box<dyn Fn(&Preset) -> Arc<Kit>>,
 }

@@ -41,7 +41,8 @@ impl Stand {
             song: None,
         };
         let (player, kits) = Player::new(setup, inputs, None, status.clone());
-        let desk = Desk { device: device.into(), status, keys, kits, kit, channels, programs };
+        let make = Box::new(Preset::kit);
+        let desk = Desk { device: device.into(), status, keys, kits, kit, channels, programs, make };
         Self { app: App::new(desk), player, epoch: Instant::now(), played: Duration::ZERO }
     }
 

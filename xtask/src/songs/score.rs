@@ -3,10 +3,32 @@
 use midly::num::{u4, u7, u15, u24, u28};
 use midly::{Format, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, Track, TrackEvent, TrackEventKind};
 use sprung::dsp::random::uniform;
-use sprung::preset::Preset;
+use sprung::engine::banks::DRUM_CHANNEL;
+use sprung::preset::Programs;
 
 /// Ticks per beat: a quarter note.
 const TICKS: u16 = 480;
+
+/// Keys of drums in General MIDI.
+pub(super) mod drum {
+    pub(in super::super) const DEEP_KICK: u8 = 35;
+    pub(in super::super) const KICK: u8 = 36;
+    pub(in super::super) const SIDE_STICK: u8 = 37;
+    pub(in super::super) const SNARE: u8 = 38;
+    pub(in super::super) const CLAP: u8 = 39;
+    pub(in super::super) const FLOOR_TOM: u8 = 41;
+    pub(in super::super) const CLOSED_HAT: u8 = 42;
+    pub(in super::super) const LOW_TOM: u8 = 45;
+    pub(in super::super) const OPEN_HAT: u8 = 46;
+    pub(in super::super) const MIDDLE_TOM: u8 = 48;
+    pub(in super::super) const CRASH: u8 = 49;
+    pub(in super::super) const HIGH_TOM: u8 = 50;
+    pub(in super::super) const RIDE: u8 = 51;
+    pub(in super::super) const COWBELL: u8 = 56;
+    pub(in super::super) const MARACAS: u8 = 70;
+    pub(in super::super) const CLAVES: u8 = 75;
+    pub(in super::super) const TRIANGLE: u8 = 81;
+}
 
 /// MIDI controllers that the songs use.
 pub(super) mod controller {
@@ -33,16 +55,25 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// A part that plays a factory preset, with a volume (controller 7) and a pan position (controller 10, 64 is the
+    /// A part that plays a sound of General MIDI, with a volume (controller 7) and a pan position (controller 10, 64 is the
     /// middle).
     pub(super) fn new(name: &'static str, channel: u8, preset: &str, volume: u8, pan: u8) -> Result<Self, String> {
-        let program = Preset::factory().iter().position(|factory| factory.name == preset);
-        let program = program.ok_or_else(|| format!("there is no factory preset ‘{preset}’"))?;
+        let programs = Programs::general_midi();
+        let program = (0..128).find(|number| programs.sound(*number) == Some(preset));
+        let program = program.ok_or_else(|| format!("no program of General MIDI plays ‘{preset}’"))?;
         let mut part = Self { name, channel, bend_range: 2.0, looseness: (0.0, 0.0), events: Vec::new() };
-        part.add(0.0, 1, MidiMessage::ProgramChange { program: u7::new(program as u8) });
+        part.add(0.0, 1, MidiMessage::ProgramChange { program: u7::new(program) });
         part.control(0.0, controller::VOLUME, volume);
         part.control(0.0, controller::PAN, pan);
         Ok(part)
+    }
+
+    /// A part that plays drums on channel 10, each with the key that General MIDI gives it, with a volume (controller 7).
+    pub(super) fn drums(name: &'static str, volume: u8) -> Self {
+        let mut part = Self { name, channel: DRUM_CHANNEL, bend_range: 2.0, looseness: (0.0, 0.0), events: Vec::new() };
+        part.add(0.0, 1, MidiMessage::ProgramChange { program: u7::new(0) });
+        part.control(0.0, controller::VOLUME, volume);
+        part
     }
 
     /// Lets notes deviate by up to `beats`, and by up to `percent` of their velocity, in the same way each time.

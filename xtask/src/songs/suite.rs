@@ -1,6 +1,6 @@
 //! "Suite": marimba, vibraphone, a voice of one mass and others, in D minor and, after a slow bar, in D major.
 
-use super::score::{Part, controller, file};
+use super::score::{Part, controller, drum, file};
 use sprung::units::key_from_note_name;
 
 /// The harmony of a bar: the bass note, and a voicing of five notes around middle C, from low to high.
@@ -84,10 +84,10 @@ pub(super) fn compose() -> Result<Vec<u8>, String> {
         swell()?,
         kalimba()?,
         timpani()?,
-        shaker()?,
-        rim()?,
-        kick()?,
-        triangle()?,
+        shaker(),
+        rim(),
+        kick(),
+        triangle(),
     ];
     file("Suite", &tempo(), parts)
 }
@@ -144,7 +144,7 @@ fn vibraphone() -> Result<Part, String> {
 /// The melody: struck again in each bar and slurred within it, because a struck mass decays. Phrases begin with a bend
 /// from below, and long notes have vibrato from the wheel.
 fn lead() -> Result<Part, String> {
-    let mut part = Part::new("Lead", 2, "Sine Lead", 108, 64)?;
+    let mut part = Part::new("Lead", 2, "Flute", 108, 64)?;
     part.bend_range(4);
     let (mut at, mut rested) = (SECOND_AT, true);
     let words: Vec<&str> = MELODY.iter().flat_map(|bar| bar.split(' ')).collect();
@@ -176,7 +176,7 @@ fn lead() -> Result<Part, String> {
 
 /// Root notes: first whole notes, then the rhythm of a slow dance.
 fn bass() -> Result<Part, String> {
-    let mut part = Part::new("Bass", 3, "Sub Bass", 85, 64)?;
+    let mut part = Part::new("Bass", 3, "Upright Bass", 85, 64)?;
     for (at, (root, _)) in bars().filter(|(at, _)| *at >= 8.0) {
         if !(THIRD_AT..CLOSE_AT).contains(&at) {
             part.note(at, 3.8, *root, 78);
@@ -192,7 +192,7 @@ fn bass() -> Result<Part, String> {
 
 /// Answers the marimba on the off-beats, from bar 5.
 fn string() -> Result<Part, String> {
-    let mut part = Part::new("String", 4, "Plucked String", 104, 88)?.loosen(0.015, 9.0);
+    let mut part = Part::new("String", 4, "Nylon Guitar", 104, 88)?.loosen(0.015, 9.0);
     for (at, (root, chord)) in bars().filter(|(at, _)| (16.0..CLOSE_AT).contains(at)) {
         part.note(at, 1.8, root + 12, 74);
         for (beat, note) in [(0.5, 2), (1.0, 3), (1.75, 4), (2.5, 3), (3.0, 2), (3.5, 1)] {
@@ -207,7 +207,7 @@ fn string() -> Result<Part, String> {
 
 /// A distant bell opens the two sections in minor.
 fn bell() -> Result<Part, String> {
-    let mut part = Part::new("Bell", 5, "Church Bell", 84, 30)?;
+    let mut part = Part::new("Bell", 5, "Tubular Bells", 84, 30)?;
     for (beat, velocity) in [(0.0, 84), (8.0, 70), (32.0, 80)] {
         part.note(beat, 1.0, 62, velocity);
     }
@@ -216,7 +216,7 @@ fn bell() -> Result<Part, String> {
 
 /// Breath noise under the second section and under the last bars.
 fn swell() -> Result<Part, String> {
-    let mut part = Part::new("Swell", 6, "Swell", 98, 64)?;
+    let mut part = Part::new("Pad", 6, "Warm Pad", 98, 64)?;
     part.ramp(controller::EXPRESSION, (SECOND_AT, 70), (THIRD_AT, 115));
     for (at, (_, chord)) in bars().filter(|(at, _)| (SECOND_AT..THIRD_AT).contains(at) || *at >= CLOSE_AT) {
         part.chord(at, 3.7, &chord[1..4], 60);
@@ -247,40 +247,40 @@ fn timpani() -> Result<Part, String> {
     Ok(part)
 }
 
-fn shaker() -> Result<Part, String> {
-    let mut part = Part::new("Shaker", 9, "Shaker", 92, 100)?.loosen(0.012, 12.0);
+fn shaker() -> Part {
+    let mut part = Part::drums("Shaker", 108).loosen(0.012, 12.0);
     for n in 0..64u32 {
-        part.note(THIRD_AT + 0.5 * f64::from(n), 0.1, 60, if n % 2 == 0 { 56 } else { 84 });
+        part.note(THIRD_AT + 0.5 * f64::from(n), 0.1, drum::MARACAS, if n % 2 == 0 { 56 } else { 84 });
     }
-    Ok(part)
+    part
 }
 
-fn rim() -> Result<Part, String> {
-    let mut part = Part::new("Rim", 10, "Rim", 118, 58)?.loosen(0.01, 8.0);
+fn rim() -> Part {
+    let mut part = Part::drums("Rim", 108).loosen(0.01, 8.0);
     for bar in 0..8u32 {
         let at = THIRD_AT + 4.0 * f64::from(bar);
-        part.note(at + 1.0, 0.1, 60, 62);
-        part.note(at + 3.0, 0.1, 60, 70);
-        part.note(at + 3.75, 0.1, 60, 34);
+        part.note(at + 1.0, 0.1, drum::SIDE_STICK, 62);
+        part.note(at + 3.0, 0.1, drum::SIDE_STICK, 70);
+        part.note(at + 3.75, 0.1, drum::SIDE_STICK, 34);
     }
-    Ok(part)
+    part
 }
 
-fn kick() -> Result<Part, String> {
-    let mut part = Part::new("Kick", 11, "Deep Kick", 86, 64)?.loosen(0.006, 6.0);
+fn kick() -> Part {
+    let mut part = Part::drums("Kick", 108).loosen(0.006, 6.0);
     for bar in 0..8u32 {
         let at = THIRD_AT + 4.0 * f64::from(bar);
-        part.note(at, 0.1, 60, 84);
-        part.note(at + 2.5, 0.1, 60, 68);
+        part.note(at, 0.1, drum::DEEP_KICK, 84);
+        part.note(at + 2.5, 0.1, drum::DEEP_KICK, 68);
     }
-    part.note(CLOSE_AT, 0.1, 60, 70);
-    Ok(part)
+    part.note(CLOSE_AT, 0.1, drum::DEEP_KICK, 70);
+    part
 }
 
-fn triangle() -> Result<Part, String> {
-    let mut part = Part::new("Triangle", 12, "Triangle", 88, 96)?;
+fn triangle() -> Part {
+    let mut part = Part::drums("Triangle", 108);
     for beat in [THIRD_AT, 80.0, CLOSE_AT, END - 4.0] {
-        part.note(beat, 0.1, 60, 76);
+        part.note(beat, 0.1, drum::TRIANGLE, 76);
     }
-    Ok(part)
+    part
 }

@@ -1,0 +1,78 @@
+//! System exclusive messages that say which channels play drums: resets of General MIDI, GS and XG, and GS drum parts.
+
+use crate::engine::EventKind;
+use crate::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL, MELODIC_BANK};
+
+/// Resets, without the first byte F0 and without numbers of devices: General MIDI 1 and 2 on, and off (Universal
+/// Non-Real Time messages), Yamaha's XG System On.
+const GENERAL_MIDI: [u8; 2] = [0x7E, 0x09];
+const XG_RESET: [u8; 6] = [0x4C, 0x00, 0x00, 0x7E, 0x00, 0xF7];
+
+/// Roland's GS: the start of a message that sets data, GS reset, and the address of “use for rhythm part” (40 1x 15), in
+/// which part 0 is channel 10 and parts 1 to 9 are channels 1 to 9 (Roland SC-55 manual, 1991).
+const GS_SET: [u8; 2] = [0x42, 0x12];
+const GS_RESET: [u8; 3] = [0x40, 0x00, 0x7F];
+
+/// The channels and events that a message stands for: bank selects and program changes. `message` is what follows the byte
+/// F0. Messages that say nothing of drums stand for nothing.
+pub(super) fn system_exclusive(message: &[u8]) -> Vec<(u8, EventKind)> {
+    match message {
+        [universal, _, id, 0x01..=0x03, ..] if [*universal, *id] == GENERAL_MIDI => reset(),
+        [0x43, _, rest @ ..] if rest.starts_with(&XG_RESET) => reset(),
+        [0x41, _, model, set, rest @ ..] if [*model, *set] == GS_SET => match rest {
+            _ if rest.starts_with(&GS_RESET) => reset(),
+            [0x40, part @ 0x10..=0x1F, 0x15, map, ..] => drum_part(part & 15, *map > 0),
+            _ => Vec::new(),
+        },
+        _ => Vec::new(),
+    }
+}
+
+fn bank(value: u8) -> EventKind {
+    EventKind::Control { controller: BANK_SELECT, value: f32::from(value) / 127.0 }
+}
+
+/// All channels return to their first bank; what they play changes with their next program change.
+fn reset() -> Vec<(u8, EventKind)> {
+    (0..16).map(|channel| (channel, bank(0))).collect()
+}
+
+/// A part of a GS device becomes one for drums or for melodies, at once.
+fn drum_part(part: u8, has_drums: bool) -> Vec<(u8, EventKind)> {
+    let channel = match part {
+        0 => DRUM_CHANNEL,
+        1..=9 => part - 1,
+        _ => part,
+    };
+    vec![(channel, bank(if has_drums { DRUM_BANK } else { MELODIC_BANK })), (channel, EventKind::Program(0))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::banks::{Banks, MELODIC};
+
+    #[test]
+    fn a_gs_part_for_drums_plays_drums_until_a_reset() {
+        let mut banks = Banks::default();
+        let mut send = |message: &[u8]| {
+            let events = system_exclusive(message);
+            events.into_iter().map(|(channel, kind)| (channel, banks.resolve(channel, kind))).collect::<Vec<_>>()
+        };
+        // Part 10 of sixteen, counted from 0 as 1A, is channel 11; part 1 is channel 1.
+        let drums = send(&[0x41, 0x10, 0x42, 0x12, 0x40, 0x1A, 0x15, 0x02, 0x0F, 0xF7]);
+        assert_eq!(drums[1], (10, EventKind::Program(MELODIC)));
+        assert_eq!(send(&[0x41, 0x10, 0x42, 0x12, 0x40, 0x11, 0x15, 0x01, 0x19, 0xF7])[1].0, 0);
+        let off = send(&[0x41, 0x10, 0x42, 0x12, 0x40, 0x10, 0x15, 0x00, 0x1B, 0xF7]);
+        assert_eq!(off[1], (DRUM_CHANNEL, EventKind::Program(0)));
+        for reset in [
+            &[0x7E, 0x7F, 0x09, 0x01, 0xF7][..],
+            &[0x41, 0x10, 0x42, 0x12, 0x40, 0x00, 0x7F, 0x00, 0x41, 0xF7],
+            &[0x43, 0x10, 0x4C, 0x00, 0x00, 0x7E, 0x00, 0xF7],
+        ] {
+            assert_eq!(send(reset).len(), 16);
+        }
+        assert!(send(&[0x7E, 0x7F, 0x06, 0x01, 0xF7]).is_empty(), "an identity request");
+        assert!(send(&[]).is_empty());
+    }
+}

@@ -1,0 +1,180 @@
+//! The sounds that MIDI's program changes select: melodic ones, and drum kits.
+
+use super::about::{check_label, label};
+use super::complaints::Complaints;
+use super::value::{check_keys, table, unexpected};
+use crate::error::{Error, Result};
+use crate::sound::Kit;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::sync::{Arc, OnceLock};
+use toml::Value;
+
+/// The version of program files that is read.
+const VERSION: i64 = 1;
+
+/// Number of programs of each kind.
+const PROGRAMS: usize = 128;
+
+/// Drum kits whose program numbers differ by less are variations of one, as in Roland's GS.
+const VARIATIONS: usize = 8;
+
+const KEYS: [&str; 4] = ["programs", "name", "sounds", "drums"];
+
+/// Names of the sounds that program changes select: factory presets and kits, or files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Programs {
+    /// Name of the list; never empty.
+    pub name: String,
+    sounds: Vec<String>,
+    drums: Vec<Option<String>>,
+}
+
+impl Programs {
+    /// The factory's sounds for General MIDI.
+    pub fn general_midi() -> &'static Self {
+        const TEXT: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/programs/general-midi.toml"));
+        static PROGRAMS: OnceLock<Programs> = OnceLock::new();
+        PROGRAMS.get_or_init(|| Self::parse(TEXT, "general-midi.toml").expect("the embedded list is checked by a test"))
+    }
+
+    /// Reads a list of programs. `origin` names the text in errors. Sounds are not looked up.
+    ///
+    /// # Errors
+    /// [`Error::Format`] naming the place and what would be right.
+    pub fn parse(text: &str, origin: &str) -> Result<Self> {
+        let mut complaints = Complaints::default();
+        let programs =
+            read(&table(text, origin)?, &mut complaints).map_err(|message| Error::format(origin, message))?;
+        complaints.into_first(origin).map(|()| programs)
+    }
+
+    /// The name of the sound of a melodic program, counted from 0; none if the list has none.
+    pub fn sound(&self, number: u8) -> Option<&str> {
+        self.sounds.get(usize::from(number)).map(String::as_str).filter(|name| !name.is_empty())
+    }
+
+    /// The name of the kit of a drum program, counted from 0: that of the number, or else of the kit that it is a variation
+    /// of, or else the first one.
+    pub fn drums(&self, number: u8) -> Option<&str> {
+        let number = usize::from(number);
+        let places = [number, number / VARIATIONS * VARIATIONS, 0];
+        places.into_iter().find_map(|place| self.drums.get(place)?.as_deref())
+    }
+}
+
+impl Programs {
+    /// The name of the sound of a program: first the melodic ones, and from 128 on the drum kits.
+    pub fn name_of(&self, number: u8) -> Option<&str> {
+        match number.checked_sub(PROGRAMS as u8) {
+            None => self.sound(number),
+            Some(drums) => self.drums(drums),
+        }
+    }
+
+    /// The kits of all programs, as [`Programs::name_of`] counts them. `load` makes them by name; it is called once for each
+    /// name. Programs that are not `wanted`, and those without a sound, get `instead`. Allocates.
+    ///
+    /// # Errors
+    /// Those of `load`.
+    pub fn kits(
+        &self,
+        wanted: impl Fn(u8) -> bool,
+        instead: &Arc<Kit>,
+        mut load: impl FnMut(&str) -> Result<Arc<Kit>>,
+    ) -> Result<Vec<Arc<Kit>>> {
+        let mut made: BTreeMap<&str, Arc<Kit>> = BTreeMap::new();
+        let mut kit = |number| {
+            let Some(name) = self.name_of(number).filter(|_| wanted(number)) else { return Ok(instead.clone()) };
+            Ok(match made.entry(name) {
+                Entry::Occupied(known) => known.get().clone(),
+                Entry::Vacant(place) => place.insert(load(name)?).clone(),
+            })
+        };
+        (0..=u8::MAX).map(&mut kit).collect()
+    }
+}
+
+fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result<Programs, String> {
+    match table.get("programs") {
+        Some(Value::Integer(VERSION)) => {}
+        Some(other) => return Err(format!("programs {other} is unknown: this version reads programs = {VERSION}")),
+        None => {
+            return Err(format!(
+                "there is no ‘programs’: expected a list of programs, which begins with programs = {VERSION}"
+            ));
+        }
+    }
+    check_keys(table, "", &KEYS, complaints);
+    let name = label(table, "name", "", complaints);
+    let name = if name.is_empty() { "Unnamed".to_owned() } else { name };
+    let mut programs = Programs { name, sounds: Vec::new(), drums: vec![None; PROGRAMS] };
+    let text = |place: &str, value: &Value| match value {
+        Value::String(name) => check_label(place, name.clone()),
+        other => Err(unexpected(place, "the name of a preset or kit", other)),
+    };
+    match table.get("sounds") {
+        None => {}
+        Some(Value::Array(names)) if names.len() <= PROGRAMS => {
+            let sound = |(index, value): (usize, &Value)| text(&format!("sounds[{index}]"), value);
+            programs.sounds =
+                names.iter().enumerate().map(|each| complaints.take("", sound(each)).unwrap_or_default()).collect();
+        }
+        Some(other) => complaints.add(unexpected("sounds", "a list of at most 128 names, from program 1 on", other)),
+    }
+    match table.get("drums") {
+        None => {}
+        Some(Value::Table(kits)) => {
+            for (number, value) in kits {
+                let place = format!("drums.{number}");
+                match number.parse::<usize>() {
+                    Ok(number @ 1..=PROGRAMS) => programs.drums[number - 1] = complaints.take("", text(&place, value)),
+                    _ => complaints.add(format!("{place}: expected a program number from 1 to {PROGRAMS}")),
+                }
+            }
+        }
+        Some(other) => complaints.add(unexpected("drums", "a table [drums] of kits by program number", other)),
+    }
+    Ok(programs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Playable;
+    use super::*;
+
+    #[test]
+    fn general_midi_has_a_sound_for_every_program() {
+        let programs = Programs::general_midi();
+        for number in 0..128 {
+            for name in [programs.sound(number), programs.drums(number)] {
+                let name = name.unwrap_or_else(|| panic!("program {}", number + 1));
+                assert!(Playable::find(name).is_ok(), "program {}: {name}", number + 1);
+            }
+        }
+    }
+
+    #[test]
+    fn kits_of_unknown_numbers_are_those_that_they_vary() {
+        let text = "programs = 1\nname = \"a\"\nsounds = [\"Kick\", \"\"]\n[drums]\n1 = \"A\"\n25 = \"B\"\n26 = \"C\"";
+        let programs = Programs::parse(text, "x").unwrap();
+        assert_eq!([0, 1, 2].map(|number| programs.sound(number)), [Some("Kick"), None, None]);
+        let drums = [0, 9, 24, 25, 27, 127].map(|number| programs.drums(number).unwrap());
+        assert_eq!(drums, ["A", "A", "B", "C", "B", "A"]);
+        assert_eq!(Programs::parse("programs = 1\nname = \"a\"", "x").unwrap().drums(3), None);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (text, expected) in [
+            ("name = \"a\"", "begins with programs = 1"),
+            ("programs = 2", "reads programs = 1"),
+            ("programs = 1\nsounds = [3]", "sounds[0]: expected the name"),
+            ("programs = 1\ndrums = { 0 = \"A\" }", "drums.0: expected a program number from 1 to 128"),
+            ("programs = 1\nkits = 1", "unknown key ‘kits’"),
+        ] {
+            let error = Programs::parse(text, "x").unwrap_err().to_string();
+            assert!(error.contains(expected), "{text}: {error}");
+        }
+    }
+}
