@@ -1,72 +1,16 @@
-//! The presets built into the library.
+//! The presets and kits built into the library.
 
-use super::Preset;
+use super::factory_files::{KITS, PRESETS};
+use super::{KitPreset, Playable, Preset};
 use crate::error::{Error, Result, nearest};
 use std::sync::OnceLock;
 
-macro_rules! embed {
-    ($($name:literal)*) => {
-        &[$(($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/presets/", $name, ".toml"))),)*]
-    };
-}
-
-/// File names (without `.toml`) and texts. The index is the MIDI program number, so only append to the list.
-const FILES: &[(&str, &str)] = embed! {
-    "00-init"
-    "01-kick"
-    "02-deep-kick"
-    "03-click-kick"
-    "04-long-kick"
-    "05-low-tom"
-    "06-high-tom"
-    "07-snare"
-    "08-tight-snare"
-    "09-closed-hat"
-    "10-open-hat"
-    "11-clap"
-    "12-rim"
-    "13-cowbell"
-    "14-woodblock"
-    "15-clave"
-    "16-shaker"
-    "17-triangle"
-    "18-blip"
-    "19-zap"
-    "20-laser"
-    "21-droplet"
-    "22-sine-lead"
-    "23-sub-bass"
-    "24-pluck-bass"
-    "25-plucked-string"
-    "26-swell"
-    "27-marimba"
-    "28-vibraphone"
-    "29-xylophone"
-    "30-glockenspiel"
-    "31-kalimba"
-    "32-music-box"
-    "33-chimes"
-    "34-timpani"
-    "35-membrane"
-    "36-free-bar"
-    "37-church-bell"
-    "38-gong"
-    "39-wine-glass"
-    "40-tam-tam"
-    "41-opera-gong"
-    "42-floor-tom"
-    "43-slack-string"
-    "44-resonator-marimba"
-    "45-guitar"
-    "46-shell-tom"
-};
-
 impl Preset {
-    /// The presets built into the library, in the order of their MIDI program numbers from 0.
+    /// The presets built into the library, by family, after `init`.
     pub fn factory() -> &'static [Preset] {
-        static PRESETS: OnceLock<Vec<Preset>> = OnceLock::new();
-        PRESETS.get_or_init(|| {
-            let parsed = FILES.iter().map(|(name, text)| Self::parse(text, name));
+        static FACTORY: OnceLock<Vec<Preset>> = OnceLock::new();
+        FACTORY.get_or_init(|| {
+            let parsed = PRESETS.iter().map(|(name, text)| Self::parse(text, name));
             parsed.collect::<Result<_>>().expect("the embedded presets are checked by a test")
         })
     }
@@ -77,58 +21,135 @@ impl Preset {
     /// [`Error::Value`] naming the nearest name if there is none.
     pub fn find(name: &str) -> Result<&'static Preset> {
         let presets = Self::factory();
-        presets.iter().find(|preset| preset.name.eq_ignore_ascii_case(name.trim())).ok_or_else(|| {
-            let hint = match nearest(name, presets.iter().map(|preset| preset.name.as_str())) {
-                Some(near) => format!("; the nearest is {near}"),
-                None => "; ‘sprung presets list’ shows them all".to_owned(),
-            };
-            Error::value("preset", format!("there is no factory preset ‘{name}’{hint}"))
+        presets
+            .iter()
+            .find(|preset| is_named(name, &preset.name))
+            .ok_or_else(|| unknown("factory preset", name, presets.iter().map(|preset| preset.name.as_str())))
+    }
+}
+
+impl KitPreset {
+    /// The kits built into the library.
+    pub fn factory() -> &'static [KitPreset] {
+        static FACTORY: OnceLock<Vec<KitPreset>> = OnceLock::new();
+        let parsed = |(origin, text): &(&str, &str)| match Playable::parse(text, origin, &mut |name| {
+            Preset::find(name).cloned()
+        })? {
+            Playable::Kit(kit) => Ok(kit),
+            Playable::Preset(_) => Err(Error::format(*origin, "this is a preset: expected a kit")),
+        };
+        FACTORY.get_or_init(|| {
+            KITS.iter().map(parsed).collect::<Result<_>>().expect("the embedded kits are checked by a test")
         })
     }
+}
+
+impl Playable {
+    /// The factory preset or kit of this name; case does not matter.
+    ///
+    /// # Errors
+    /// [`Error::Value`] naming the nearest name if there is none.
+    pub fn find(name: &str) -> Result<Self> {
+        let kits = KitPreset::factory();
+        if let Some(kit) = kits.iter().find(|kit| is_named(name, &kit.name)) {
+            return Ok(Self::Kit(kit.clone()));
+        }
+        let presets = Preset::factory();
+        let preset = presets.iter().find(|preset| is_named(name, &preset.name)).cloned().map(Self::Preset);
+        let names = presets.iter().map(|preset| preset.name.as_str()).chain(kits.iter().map(|kit| kit.name.as_str()));
+        preset.ok_or_else(|| unknown("factory preset or kit", name, names))
+    }
+}
+
+fn is_named(wanted: &str, name: &str) -> bool {
+    name.eq_ignore_ascii_case(wanted.trim())
+}
+
+fn unknown<'a>(kind: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Error {
+    let hint = match nearest(name, names) {
+        Some(near) => format!("; the nearest is {near}"),
+        None => "; ‘sprung presets list’ shows them all".to_owned(),
+    };
+    Error::value("preset", format!("there is no {kind} ‘{name}’{hint}"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::patch::Patch;
+    use std::path::Path;
 
     #[test]
-    fn factory_presets_are_found_by_name() {
+    fn factory_presets_and_kits_are_found_by_name() {
         assert_eq!(Preset::find("INIT").unwrap().patch, Patch::default());
         assert_eq!(Preset::find("kick").unwrap().name, "Kick");
         let error = Preset::find("kcik").unwrap_err().to_string();
         assert_eq!(error, "preset: there is no factory preset ‘kcik’; the nearest is ‘Kick’");
         assert!(Preset::find("").is_err());
+        for kit in KitPreset::factory() {
+            assert_eq!(Playable::find(&kit.name.to_uppercase()).unwrap(), Playable::Kit(kit.clone()));
+        }
+        assert!(matches!(Playable::find("kick"), Ok(Playable::Preset(_))));
+        let error = Playable::find("Acoustic Kitt").unwrap_err().to_string();
+        assert!(error.ends_with("the nearest is ‘Acoustic Kit’"), "{error}");
     }
 
     #[test]
-    fn every_factory_preset_is_complete_and_named_once() {
+    fn every_factory_sound_is_complete_and_named_once() {
         let mut names = Vec::new();
-        for (index, (file, text)) in FILES.iter().enumerate() {
+        for (file, text) in PRESETS {
             let preset = Preset::parse(text, file).unwrap_or_else(|error| panic!("{error}"));
-            assert!(file.starts_with(&format!("{index:02}-")), "{file} is not program {index}");
-            for (field, value) in [("author", &preset.author), ("comment", &preset.comment)] {
-                assert!(!value.is_empty(), "{file} has no {field}");
+            for (field, is_there) in [
+                ("author", !preset.author.is_empty()),
+                ("comment", !preset.comment.is_empty()),
+                ("tags", !preset.tags.is_empty()),
+                ("family", preset.guide.family.is_some()),
+                ("macros", !preset.guide.macros.is_empty()),
+                ("phrase", preset.guide.phrase.is_some()),
+            ] {
+                assert!(is_there || preset.name == "init", "{file} has no {field}");
             }
-            assert!(!preset.tags.is_empty(), "{file} has no tags");
+            let family = preset.guide.family.map_or(String::new(), |family| format!("{family}/"));
+            assert_eq!(*file, format!("{family}{}", slug(&preset.name)), "a file is named like its preset");
             names.push(preset.name.to_lowercase());
         }
         assert_eq!(names[0], "init");
+        for (file, kit) in KITS.iter().zip(KitPreset::factory()) {
+            assert!(!kit.author.is_empty() && !kit.comment.is_empty() && !kit.tags.is_empty(), "{}", kit.name);
+            assert_eq!(file.0, slug(&kit.name));
+            names.push(kit.name.to_lowercase());
+        }
+        let count = names.len();
         names.sort();
         names.dedup();
-        assert_eq!(names.len(), FILES.len(), "two presets have one name");
-        assert_eq!(Preset::factory().len(), FILES.len());
+        assert_eq!(names.len(), count, "two sounds have one name");
     }
 
     #[test]
-    fn every_preset_file_is_embedded() {
-        let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/presets");
-        let mut files: Vec<String> = std::fs::read_dir(directory)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
-            .collect();
-        files.sort();
-        assert_eq!(files, FILES.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+    fn every_file_is_embedded() {
+        let assets = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/assets"));
+        for (folder, embedded) in [("presets", PRESETS), ("kits", KITS)] {
+            let root = assets.join(folder);
+            let mut files: Vec<String> = walkdir(&root)
+                .into_iter()
+                .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+                .map(|path| path.strip_prefix(&root).unwrap().with_extension("").to_str().unwrap().to_owned())
+                .collect();
+            let mut listed: Vec<&str> = embedded.iter().map(|(name, _)| *name).collect();
+            files.sort();
+            listed.sort();
+            assert_eq!(files, listed);
+        }
+    }
+
+    fn walkdir(folder: &Path) -> Vec<std::path::PathBuf> {
+        let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        entries.flat_map(|path| if path.is_dir() { walkdir(&path) } else { vec![path] }).collect()
+    }
+
+    /// Lower case, with dashes in place of anything but letters and digits.
+    fn slug(name: &str) -> String {
+        let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+        words.collect::<Vec<_>>().join("-").to_ascii_lowercase()
     }
 }

@@ -1,6 +1,7 @@
 //! Kits as they are saved: the preset that each key plays.
 
 use super::Preset;
+use crate::params::Param;
 use crate::sound::kit::KEYS;
 use crate::sound::{Kit, Pad};
 use std::sync::Arc;
@@ -21,6 +22,8 @@ pub struct KitPreset {
     pub comment: String,
     /// Maximum number of notes that sound at once.
     pub voices: u8,
+    /// Values of effects behind the voices, in place of those that the sounds have in common.
+    pub params: Vec<(Param, f32)>,
     /// The presets of the pads, each with the name by which the file refers to it.
     pub sounds: Vec<(String, Preset)>,
     /// Keys from 0 to 127 with their pads, in the order of the file. Each key occurs once.
@@ -47,7 +50,8 @@ impl KitPreset {
                 *place = Some(pad.clone());
             }
         }
-        Arc::new(Kit::new(self.name.clone(), sounds, pads).with_voices(self.voices))
+        let kit = Kit::new(self.name.clone(), sounds, pads).with_voices(self.voices);
+        Arc::new(self.params.iter().fold(kit, |kit, (param, value)| kit.with_effect(*param, *value)))
     }
 }
 

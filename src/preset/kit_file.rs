@@ -2,18 +2,18 @@
 
 use super::about::{About, about_to_toml, label, toml_string};
 use super::complaints::Complaints;
-use super::file;
+use super::file::{self, write_value};
 use super::kit::{KIT_VERSION, KitPreset, Playable};
 use super::value::{check_keys, param_value, table, unexpected};
 use super::{MAX_FILE_SIZE, Preset, Replaced};
 use crate::error::Error;
-use crate::params::Param;
+use crate::params::{PARAMS, Param, ParamInfo};
 use crate::sound::Pad;
 use crate::units::{key_from_note_name, note_name, parse_key};
 use std::fmt::Write;
 use toml::{Table, Value};
 
-const KEYS: [&str; 7] = ["kit", "name", "author", "tags", "comment", "voices", "keys"];
+const KEYS: [&str; 8] = ["kit", "name", "author", "tags", "comment", "voices", "params", "keys"];
 const PAD_KEYS: [&str; 7] = ["key", "name", "sound", "pitch", "gain", "pan", "choke"];
 
 /// Finds the preset with the name that a kit uses.
@@ -50,7 +50,16 @@ fn read(table: &Table, version: &Value, find: Find, complaints: &mut Complaints)
     check_keys(table, "", &KEYS, complaints);
     let About { name, author, tags, comment } = About::read(table, complaints);
     let voices = number(table, "voices", Param::Voices, "", complaints).unwrap_or(Param::Voices.info().max);
-    let mut kit = KitPreset { name, author, tags, comment, voices: voices as u8, sounds: vec![], pads: vec![] };
+    let mut kit = KitPreset {
+        name,
+        author,
+        tags,
+        comment,
+        voices: voices as u8,
+        params: read_effects(table.get("params"), complaints),
+        sounds: vec![],
+        pads: vec![],
+    };
     let pads = match table.get("keys") {
         Some(Value::Array(pads)) if !pads.is_empty() => &pads[..],
         Some(Value::Array(_)) | None => {
@@ -70,6 +79,25 @@ fn read(table: &Table, version: &Value, find: Find, complaints: &mut Complaints)
         }
     }
     Ok(kit)
+}
+
+/// Reads the values of effects behind the voices.
+fn read_effects(params: Option<&Value>, complaints: &mut Complaints) -> Vec<(Param, f32)> {
+    let params = match params {
+        None => return Vec::new(),
+        Some(Value::Table(params)) => params,
+        Some(other) => {
+            complaints.add(unexpected("params", "a table [params]", other));
+            return Vec::new();
+        }
+    };
+    let effects = PARAMS.iter().filter(|info| info.param.is_behind_voices());
+    check_keys(params, "params.", &effects.clone().map(|info| info.id).collect::<Vec<_>>(), complaints);
+    let value = |info: &ParamInfo| {
+        let value = param_value(info, params.get(info.id)?);
+        Some((info.param, complaints.take(&format!("params.{}: ", info.id), value)?))
+    };
+    effects.filter_map(value).collect()
 }
 
 /// Reads a pad and adds it to the kit, if it has a key and a sound.
@@ -156,10 +184,14 @@ fn read_pan(value: Option<&Value>) -> Result<f32, String> {
 
 /// Writes a kit. `{:?}` writes a float as the shortest text that reads back as the same number, and that is valid TOML.
 pub(super) fn to_toml(kit: &KitPreset) -> String {
-    let KitPreset { name, author, tags, comment, voices, sounds, pads } = kit;
+    let KitPreset { name, author, tags, comment, voices, params, sounds, pads } = kit;
     let mut out = format!("kit = {KIT_VERSION}\n{}", about_to_toml([name, author, comment], tags));
     if f32::from(*voices) != Param::Voices.info().max {
         let _ = writeln!(out, "voices = {voices}");
+    }
+    if !params.is_empty() {
+        out.push_str("\n[params]\n");
+        params.iter().for_each(|(param, value)| write_value(&mut out, param.info(), *value));
     }
     for (key, pad) in pads {
         let Some((sound, _)) = sounds.get(pad.sound) else { continue };

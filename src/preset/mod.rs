@@ -5,7 +5,9 @@ mod body;
 mod body_table;
 mod complaints;
 mod factory;
+mod factory_files;
 mod file;
+mod guide;
 mod kit;
 mod kit_file;
 mod kit_load;
@@ -13,6 +15,8 @@ mod load;
 mod migration;
 mod one_exciter;
 mod pair;
+mod phrase;
+mod programs;
 mod routes;
 mod tuning;
 mod value;
@@ -22,11 +26,14 @@ use crate::sound::{Kit, Sound};
 use std::sync::Arc;
 
 pub use body::{body_of_modes, modes_of_body};
+pub use guide::{Family, Guide};
 pub use kit::{KIT_VERSION, KitPreset, Playable};
 pub use kit_load::is_file_name;
 pub use load::MAX_FILE_SIZE;
 pub use migration::Replaced;
 pub use pair::{modes_of_pair, pair_of_modes};
+pub use phrase::{Phrase, PhraseNote};
+pub use programs::Programs;
 pub use tuning::OwnTuning;
 
 /// The preset format that is written. Older formats are read too: format 1 had no routes, formats 1 and 2 had
@@ -44,6 +51,8 @@ pub struct Preset {
     pub tags: Vec<String>,
     /// Description, and how to play it.
     pub comment: String,
+    /// What it is and how it is played, beside its sound.
+    pub guide: Guide,
     /// The sound.
     pub patch: Patch,
     /// Its own tuning; none for the instrument's.

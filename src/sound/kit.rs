@@ -124,6 +124,15 @@ impl Kit {
         self
     }
 
+    /// The kit with a value of an effect behind the voices, whatever its sounds have. Other parameters stay as they are.
+    #[must_use]
+    pub fn with_effect(mut self, param: Param, value: f32) -> Self {
+        if param.is_behind_voices() {
+            self.values.set(param, value);
+        }
+        self
+    }
+
     /// The name of the kit.
     pub fn name(&self) -> &str {
         &self.name

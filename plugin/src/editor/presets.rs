@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn kits_are_read_and_what_was_not_understood_is_told_in_a_line() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/kits/drums.toml");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/kits/acoustic-kit.toml");
         let path = std::fs::canonicalize(path).unwrap().display().to_string();
         assert!(matches!(read(&path), Ok((Playable::Kit(_), _))));
         let lines = ["a", "b", "c"].map(str::to_owned);

@@ -58,7 +58,7 @@ pub(crate) fn state_of_text(preset: &str) -> Vec<u8> {
 
 /// The kit in this repository, as the command reads it.
 pub(crate) fn drums() -> Playable {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/kits/drums.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/kits/acoustic-kit.toml");
     let mut open = |path: &Path| Ok(File::open(path).expect("the file is there"));
     Playable::read(&path, &mut open, &mut |_, _| {}).unwrap()
 }
