@@ -282,6 +282,16 @@ fn frames_to_silence(synth: &mut Synth) -> u64 {
     frames - 1
 }
 
+/// Whether oscillators or envelopes move a patch, or its keys drive it as long as they are held: then its end cannot be told.
+fn is_moving(patch: &Patch) -> bool {
+    use Source::{Envelope1, Envelope2, Lfo1, Lfo2, Lfo3};
+    let moves = |source| matches!(source, Lfo1 | Lfo2 | Lfo3 | Envelope1 | Envelope2);
+    let drives =
+        |param: &Param| patch.get(*param) > -60.0 || patch.routes.iter().any(|(_, route)| route.destination == *param);
+    [Param::BowLevel, Param::InputLevel].iter().any(drives)
+        || patch.routes.iter().any(|(_, route)| moves(route.source) || route.scale.is_some_and(moves))
+}
+
 #[test]
 fn tails_are_told_exactly() {
     let mut sounding = 0;
@@ -295,6 +305,10 @@ fn tails_are_told_exactly() {
             let events = [on(0, 0, 60, 1), on(8_000, 0, 67, 2), event(59_000, release)];
             synth.process(&events[..if off { 3 } else { 2 }], &mut left, &mut right);
             let told = synth.tail_frames();
+            if told == u64::MAX {
+                assert!(is_moving(&preset.patch), "{}: no end is told", preset.name);
+                continue;
+            }
             let found = if synth.is_silent() { 0 } else { frames_to_silence(&mut synth) };
             sounding += u32::from(found > 0);
             assert!(told.abs_diff(found) <= CONTROL_FRAMES as u64, "{}: {told} told, {found} found", preset.name);

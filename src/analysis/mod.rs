@@ -12,5 +12,6 @@ pub mod figure;
 pub mod fit;
 pub mod level;
 pub mod log_mel;
+pub mod measures;
 pub mod modes;
 pub mod spectrum;

@@ -7,6 +7,8 @@ mod callgrind;
 mod figures;
 mod files;
 mod install;
+mod level;
+mod measure;
 mod patch;
 mod python;
 mod setup;
@@ -71,6 +73,14 @@ enum Chore {
     /// What `callgrind` counts.
     #[command(hide = true)]
     CallgrindWork { name: String, rounds: usize },
+    /// Measure how loud the factory's presets are, and propose gains that bring them to one loudness.
+    Level {
+        /// Write the gains into the presets' files.
+        #[arg(long)]
+        write: bool,
+    },
+    /// Measure the factory's presets and write the results to assets/measures/results.md.
+    Measure,
     /// Write the demo songs to assets/midi.
     Songs {
         /// Write nothing; fail if the files are not what would be written.
@@ -108,6 +118,8 @@ fn main() -> ExitCode {
         Chore::BenchTable { again } => bench_table::run(again),
         Chore::Callgrind { accept } => callgrind::run(accept).map(|_| ()),
         Chore::CallgrindWork { name, rounds } => callgrind::work(&name, rounds),
+        Chore::Level { write } => level::run(write),
+        Chore::Measure => measure::run(),
         Chore::Songs { check } => songs::run(check),
     };
     match result {

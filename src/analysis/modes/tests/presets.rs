@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::engine::{Ensemble, Event, EventKind};
+use crate::params::Param;
 use crate::preset::Preset;
 use rayon::prelude::*;
 
@@ -12,27 +13,20 @@ const SECONDS: f64 = 1.5;
 const KEYS: [u8; 3] = [36, 60, 84];
 
 /// What is struck once and rings freely, and whether the release damps it.
-const STRUCK: [(&str, bool); 16] = [
+const STRUCK: [(&str, bool); 6] = [
     ("init", true),
-    ("Rim", false),
-    ("Cowbell", false),
-    ("Woodblock", false),
-    ("Clave", false),
-    ("Triangle", false),
     ("Blip", false),
-    ("Plucked String", true),
-    ("Marimba", false),
-    ("Vibraphone", true),
-    ("Xylophone", false),
+    ("Free Bar", false),
     ("Glockenspiel", false),
-    ("Kalimba", false),
-    ("Music Box", false),
-    ("Chimes", false),
-    ("Wine Glass", false),
+    ("Marimba", false),
+    ("Plucked String", true),
 ];
 
 fn played(preset: &Preset, key: u8) -> Vec<Vec<f32>> {
-    let mut ensemble = Ensemble::new(RATE, 1, &preset.patch, &[]);
+    // Noise is nothing that modes could explain.
+    let is_struck = STRUCK.iter().any(|(name, _)| *name == preset.name);
+    let noise = if is_struck { -60.0 } else { preset.patch.get(Param::NoiseLevel) };
+    let mut ensemble = Ensemble::new(RATE, 1, &preset.patch.clone().with(Param::NoiseLevel, noise), &[]);
     let (frames, off) = ((SECONDS * RATE) as usize, (HELD * RATE) as usize);
     let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
     let event = |kind| [Event { frame: 0, channel: 0, kind }];
@@ -73,9 +67,9 @@ fn faults(preset: &Preset, key: u8) -> Vec<String> {
 #[test]
 fn modes_of_presets_are_plausible_and_those_of_struck_ones_explain_them() {
     let presets = Preset::factory();
-    let wanted = |index: &usize| {
-        !cfg!(debug_assertions) || ["init", "Marimba", "Vibraphone"].contains(&&presets[*index].name[..])
-    };
+    // The bank is large: every eighth preset, and without optimisation only the struck ones.
+    let is_struck = |name: &str| STRUCK.iter().any(|(struck, _)| *struck == name);
+    let wanted = |index: &usize| is_struck(&presets[*index].name) || (!cfg!(debug_assertions) && index % 8 == 0);
     let faults: Vec<String> = (0..presets.len())
         .into_par_iter()
         .filter(wanted)

@@ -1,0 +1,60 @@
+//! Notes of presets, and what is heard in them.
+
+use sprung::analysis::spectrum::{Spectrum, peaks, spectrum};
+use sprung::engine::{Event, EventKind, Synth};
+use sprung::preset::Preset;
+use sprung::units::mono_from_stereo;
+
+pub(crate) const RATE: f64 = 48_000.0;
+
+/// A key that goes down, or comes up.
+pub(crate) fn event(seconds: f64, key: u8, velocity: Option<f32>) -> Event {
+    let kind = match velocity {
+        Some(velocity) => EventKind::NoteOn { key, detune: 0.0, velocity: velocity / 127.0, id: None },
+        None => EventKind::NoteOff { key, velocity: 0.5, id: None },
+    };
+    Event { frame: (seconds * RATE) as u32, channel: 0, kind }
+}
+
+/// The mean of both sides of a note at velocity 100 that is held for some seconds.
+pub(crate) fn note(preset: &Preset, key: u8, velocity: f32, held: f64, seconds: f64) -> Vec<f32> {
+    let mut synth = Synth::new(RATE, 1);
+    synth.set_kit(&preset.kit());
+    synth.reset();
+    let [mut left, mut right] = [0, 1].map(|_| vec![0.0; (seconds * RATE) as usize]);
+    let events = [event(0.0, key, Some(velocity)), event(held, key, None)];
+    synth.process(&events[..if held < seconds { 2 } else { 1 }], &mut left, &mut right);
+    left.iter().zip(&right).map(|(left, right)| mono_from_stereo(*left, *right)).collect()
+}
+
+/// The spectrum of half a second from `start` seconds on, under a window that is highest at its start.
+pub(crate) fn spectrum_from(sound: &[f32], start: f64) -> Spectrum {
+    let (start, half) = ((start * RATE) as usize, (0.5 * RATE) as usize);
+    let mut samples = vec![0.0; half];
+    samples.extend_from_slice(&sound[start.min(sound.len())..(start + half).min(sound.len())]);
+    samples.resize(2 * half, 0.0);
+    spectrum(&samples, RATE)
+}
+
+/// The strongest partial within a ratio of a frequency in Hz.
+pub(crate) fn partial_near(spectrum: &Spectrum, frequency: f64, ratio: f64) -> Option<f64> {
+    let found = peaks(spectrum, -110.0);
+    found.iter().map(|peak| peak.frequency).find(|found| *found < frequency * ratio && *found > frequency / ratio)
+}
+
+/// Seconds until the energy that is still to come has fallen by some decibels (Schroeder 1965), and the T60 in between −5 and
+/// −25 dB.
+pub(crate) fn decay(sound: &[f32], db: f64) -> (f64, f64) {
+    let mut left: Vec<f64> = sound.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).collect();
+    for n in (0..left.len() - 1).rev() {
+        left[n] += left[n + 1];
+    }
+    let falls_to = |db: f64| left.partition_point(|energy| *energy > left[0] * libm::exp10(db / 10.0)) as f64 / RATE;
+    (falls_to(-db), 3.0 * (falls_to(-25.0) - falls_to(-5.0)))
+}
+
+/// Energy from one time in seconds to another.
+pub(crate) fn energy(sound: &[f32], from: f64, to: f64) -> f64 {
+    let place = |seconds: f64| ((seconds * RATE) as usize).min(sound.len());
+    sound[place(from)..place(to)].iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum()
+}

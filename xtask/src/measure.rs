@@ -1,0 +1,68 @@
+//! `cargo xtask measure`: the page that says how every factory preset measures.
+
+use crate::shell::root;
+use sprung::analysis::measures::preset::{Measure, SYNTHESIS, measure};
+use sprung::preset::{Family, Preset};
+use std::fmt::Write;
+use std::fs;
+
+/// The page, from the top of the project.
+const PAGE: &str = "assets/measures/results.md";
+
+/// Measures the bank and writes the page.
+pub(crate) fn run() -> Result<(), String> {
+    let mut page = String::from(
+        "# How the factory's presets measure\n\n\
+         Written by `cargo xtask measure`. `cargo test --release --test bank` holds every preset to these figures, but for those\n\
+         tagged *synthesis*, which are no instruments and need no noise, motion or partials. A figure that is not as it is to be is\n\
+         bold. Recordings are those of `recordings.toml`, beside this page.\n",
+    );
+    for family in Family::ALL {
+        let presets = Preset::factory().iter().filter(|preset| preset.guide.family == Some(*family));
+        let rows = presets.map(row).collect::<Result<Vec<_>, _>>()?;
+        if rows.is_empty() {
+            continue;
+        }
+        let _ = write!(
+            page,
+            "\n## {}\n\n| preset | attack flatness, dB | above 2 kHz, dB | motion, dB | partials | T60 ÷ recording | timbre by velocity, dB | \
+             repeated strike, dB | loudness, LUFS | over keys, LU | chord’s peak, dBFS | limited, dB |\n\
+             |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n{}",
+            family.name().replace('_', " "),
+            rows.concat()
+        );
+    }
+    let path = root().join(PAGE);
+    fs::write(&path, page).map_err(|error| format!("{}: {error}", path.display()))?;
+    println!("{}", path.display());
+    Ok(())
+}
+
+/// A row of the table.
+fn row(preset: &Preset) -> Result<String, String> {
+    let measures = measure(preset).map_err(|error| format!("{}: {error}", preset.name))?;
+    let figure = |name: &str| match measures.iter().find(|measure| measure.name == name) {
+        Some(measure @ Measure { value: Some(value), .. }) => {
+            let digits = usize::from(measure.unit == "times") + usize::from(!measure.unit.is_empty());
+            let text = format!("{value:.digits$}");
+            if measure.is_kept() { text } else { format!("**{text}**") }
+        }
+        _ => "–".to_owned(),
+    };
+    let is_free = preset.tags.iter().any(|tag| tag == SYNTHESIS);
+    let figures = [
+        "attack flatness",
+        "energy above 2 kHz",
+        "motion",
+        "partials",
+        "T60 against a recording",
+        "timbre by velocity",
+        "repeated strike",
+        "loudness",
+        "loudness over keys",
+        "chord’s true peak",
+        "limiter on a chord",
+    ];
+    let cells: Vec<String> = figures.into_iter().map(figure).collect();
+    Ok(format!("| {}{} | {} |\n", preset.name, if is_free { " *(synthesis)*" } else { "" }, cells.join(" | ")))
+}
