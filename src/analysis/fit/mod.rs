@@ -26,7 +26,7 @@ use super::modes::Strike;
 use crate::error::{Error, Result};
 use crate::params::Param;
 use crate::patch::Patch;
-use crate::preset::Preset;
+use crate::preset::{Guide, Preset};
 use crate::units::{key_from_frequency, note_name};
 use audition::Audition;
 use draft::MOST_MODES;
@@ -194,6 +194,7 @@ impl Fitted {
             author: String::new(),
             tags: vec!["fitted".to_owned()],
             comment: comment.to_owned(),
+            guide: Guide { home: self.key.round().clamp(0.0, 127.0) as u8, ..Guide::default() },
             patch: self.patch.clone(),
             tuning: None,
         }
