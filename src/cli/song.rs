@@ -1,6 +1,6 @@
 //! Reads the song that a command plays, and warns if its program changes conflict with `--preset` and `--channel`.
 
-use super::terminal::complain;
+use super::terminal::{complain, counted};
 use sprung::Result;
 use sprung::engine::EventKind;
 use sprung::io::{Inputs, Song};
@@ -59,14 +59,14 @@ impl SongArgs {
         warn_of_missing_programs(song, programs.len());
         let Elsewhere { channels, notes, all } = Elsewhere::count(song, asked, programs);
         if notes > 0 {
-            let (them, one) = (channels.len(), channels.len() == 1);
+            let (all, them) = (counted(all, "note"), counted(channels.len(), "channel"));
+            let verb = if notes == 1 { "does" } else { "do" };
             let all_alike = asked.iter().all(|kit| *kit == asked[0]);
             let given = if all_alike { "--preset" } else { "--preset or --channel" };
-            let s = if one { "" } else { "s" };
             complain(
                 "warning",
                 format_args!(
-                    "{notes} of {all} notes, on {them} channel{s}, do not play on {given} because of program changes; \
+                    "{notes} of {all}, on {them}, {verb} not play on {given} because of program changes; \
                      --ignore-programs plays them on it"
                 ),
             );
