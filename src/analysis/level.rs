@@ -17,6 +17,13 @@ pub fn rms(samples: &[f32]) -> f64 {
     sqrt(energy / samples.len().max(1) as f64)
 }
 
+/// The mean of some channels, as long as the shortest.
+pub fn mean_of<C: AsRef<[f32]>>(channels: &[C]) -> Vec<f64> {
+    let len = channels.iter().map(|channel| channel.as_ref().len()).min().unwrap_or(0);
+    let count = channels.len() as f64;
+    (0..len).map(|n| channels.iter().map(|channel| f64::from(channel.as_ref()[n])).sum::<f64>() / count).collect()
+}
+
 /// Mean; 0 for no samples.
 pub fn dc(samples: &[f32]) -> f64 {
     samples.iter().map(|sample| f64::from(*sample)).sum::<f64>() / samples.len().max(1) as f64

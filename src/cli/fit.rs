@@ -3,7 +3,7 @@
 use super::interrupt;
 use super::progress::Bar;
 use super::quantity;
-use super::recording::read;
+use super::recording::{ending, read};
 use super::terminal::{complain, print};
 use sprung::analysis::fit::{Family, Fitted, Settings, Take, VELOCITY, fit, report};
 use sprung::io::{Inputs, Output, Target};
@@ -62,10 +62,10 @@ const LONGEST_NAME: usize = 60;
 pub(super) fn run(args: &Args) -> Result<()> {
     let target = Target::new(&args.output);
     if let Target::Path(path) = &target {
-        check_ending("--output", path, "toml")?;
+        ending("--output", path, &["toml"])?;
     }
     if let Some(path) = &args.report {
-        check_ending("--report", path, "html")?;
+        ending("--report", path, &["html"])?;
     }
     if !args.velocity.is_empty() && args.velocity.len() != args.recordings.len() {
         let (given, expected) = (args.velocity.len(), args.recordings.len());
@@ -97,13 +97,6 @@ pub(super) fn run(args: &Args) -> Result<()> {
     output.commit()?;
     // What goes to stdout is the preset.
     if target == Target::Stdout { Ok(()) } else { print(&text(&takes, &fitted)) }
-}
-
-fn check_ending(option: &str, path: &Path, ending: &str) -> Result<()> {
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending)) {
-        return Ok(());
-    }
-    Err(Error::value(option, format!("{}: expected a name that ends in .{ending}", path.display())))
 }
 
 fn write(output: &mut Output, bytes: &[u8]) -> Result<()> {

@@ -1,7 +1,7 @@
 //! What the program changes of MIDI select, and warnings where that is not what the user asked for.
 
 use super::presets;
-use super::terminal::complain;
+use super::terminal::{complain, counted};
 use sprung::engine::EventKind;
 use sprung::engine::banks::MELODIC;
 use sprung::io::{Inputs, Song};
@@ -102,14 +102,14 @@ pub(super) fn warn_of_missing(song: &Song, programs: &Programs, instead: &str) {
 pub(super) fn warn_of_changes(song: &Song, asked: [Option<&Arc<Kit>>; 16], programs: &[Arc<Kit>]) {
     let Elsewhere { channels, notes, all } = Elsewhere::count(song, asked, programs);
     if notes > 0 {
-        let (them, one) = (channels.len(), channels.len() == 1);
+        let (all, them) = (counted(all, "note"), counted(channels.len(), "channel"));
+        let verb = if notes == 1 { "does" } else { "do" };
         let all_alike = asked.iter().all(|kit| *kit == asked[0]);
         let given = if all_alike { "--preset" } else { "--preset or --channel" };
-        let s = if one { "" } else { "s" };
         complain(
             "warning",
             format_args!(
-                "{notes} of {all} notes, on {them} channel{s}, do not play on {given} because of program changes; \
+                "{notes} of {all}, on {them}, {verb} not play on {given} because of program changes; \
                  --programs none plays them on it"
             ),
         );

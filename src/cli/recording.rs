@@ -25,6 +25,17 @@ pub(super) fn read(path: &Path, inputs: &mut Inputs) -> Result<(Recording, Strin
     Ok((recording, name))
 }
 
+/// The ending of a path in lower case, if it is one of those that are possible; `option` names it in the error.
+pub(super) fn ending(option: &str, path: &Path, possible: &[&str]) -> Result<String> {
+    let ending = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
+    if possible.contains(&ending.as_str()) {
+        return Ok(ending);
+    }
+    let expected: Vec<String> = possible.iter().map(|ending| format!(".{ending}")).collect();
+    let message = format!("{}: expected a name that ends in {}", path.display(), expected.join(" or "));
+    Err(Error::value(option, message))
+}
+
 /// Where a figure is to go.
 #[derive(clap::Args)]
 pub(super) struct FigureArgs {
@@ -52,11 +63,7 @@ impl FigureArgs {
 /// Opens a figure's file, if one is wanted.
 pub(super) fn open_figure(path: Option<&Path>, force: bool, inputs: &Inputs) -> Result<Option<FigureFile>> {
     let Some(path) = path else { return Ok(None) };
-    let format = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
-    if !["png", "svg"].contains(&format.as_str()) {
-        let message = format!("{}: expected a name that ends in .png or .svg", path.display());
-        return Err(Error::value("--figure", message));
-    }
+    let format = ending("--figure", path, &["png", "svg"])?;
     let output = Output::create(&Target::Path(path.to_owned()), force, inputs)?;
     interrupt::remove(&output);
     Ok(Some(FigureFile { output, format }))

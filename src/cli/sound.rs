@@ -1,7 +1,7 @@
 //! The sounds that a command plays: presets and kits, parameter settings, the tuning, and the seed.
 
 use super::programs::{ProgramArgs, used};
-use super::terminal::complain;
+use super::terminal::{complain, counted};
 use super::tuning::TuningArgs;
 use super::{completion, presets, programs, quantity};
 use clap_complete::ArgValueCompleter;
@@ -149,8 +149,8 @@ impl SoundArgs {
                 format!("channel {}: {}", channel + 1, names.join(" "))
             };
             let where_to = keys.iter().map(list).collect::<Vec<_>>().join("; ");
-            let message =
-                format!("{silent} of {all} notes are silent: their kits have no pad on their keys ({where_to})");
+            let (all, are) = (counted(all, "note"), if all == 1 { "is" } else { "are" });
+            let message = format!("{silent} of {all} {are} silent: their kits have no pad on their keys ({where_to})");
             complain("warning", message);
         }
     }

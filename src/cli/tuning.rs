@@ -1,6 +1,6 @@
 //! The tuning that a command uses: Scala's files, given with `--scale` and `--keymap`.
 
-use super::terminal::complain;
+use super::terminal::{complain, counted};
 use sprung::engine::EventKind;
 use sprung::io::{Inputs, Song};
 use sprung::sound::Tuning;
@@ -62,7 +62,8 @@ impl TuningArgs {
         };
         let (all, silent) = (keys().count(), keys().filter(|key| tuning.pitch(*key).is_none()).count());
         if silent > 0 {
-            complain("warning", format_args!("{silent} of {all} notes are silent: the keymap leaves their keys out"));
+            let (all, are) = (counted(all, "note"), if all == 1 { "is" } else { "are" });
+            complain("warning", format_args!("{silent} of {all} {are} silent: the keymap leaves their keys out"));
         }
     }
 }

@@ -1,8 +1,9 @@
-//! Recordings of real instruments that are installed: a drum kit of Hydrogen's, and a sound font that FluidSynth plays.
+//! Recordings of real instruments that are installed: drum kits of Hydrogen's, and a sound font that FluidSynth plays.
 //!
-//! `SPRUNG_SOUNDS` names a folder that Debian's packages were unpacked to, if not `/`.
+//! `SPRUNG_SOUNDS` names a folder that Debian's packages `hydrogen-drumkits` and `fluid-soundfont-gm` were unpacked to, if not `/`.
+//! What is not installed is skipped by name.
 
-use crate::played::Stereo;
+use crate::played::{Played, Stereo};
 use sprung::analysis::log_mel::RATE;
 use sprung::io::sound_file::{read, resampled};
 use std::fs::File;
@@ -12,11 +13,13 @@ use std::process::{Command, Stdio};
 /// A recording, and others of the same instrument.
 pub(crate) struct Pair {
     pub(crate) name: String,
+    pub(crate) source: &'static str,
     pub(crate) sound: Stereo,
     /// Of another key or velocity.
     pub(crate) others: Vec<Stereo>,
     /// The key that it is fitted on.
     pub(crate) key: f64,
+    pub(crate) is_drum: bool,
 }
 
 fn installed(path: &str) -> PathBuf {
@@ -48,14 +51,19 @@ const DRUMS: [(&str, &str, &str); 14] = [
     ("Gimme A Hand 1.0", "CajonSlaps-Hard.wav", "CajonSlaps-Soft.wav"),
 ];
 
-/// The drums that are installed.
-pub(crate) fn drums() -> Vec<Pair> {
-    let pair = |(kit, file, other): &(&str, &str, &str)| {
-        let folder = installed("usr/share/hydrogen/data/drumkits").join(kit);
-        let (sound, other) = (stereo(&folder.join(file))?, stereo(&folder.join(other))?);
-        Some(Pair { name: (*file).to_owned(), sound, others: vec![other], key: 60.0 })
-    };
-    DRUMS.iter().filter_map(pair).collect()
+/// A drum of a kit; the name of one that is not installed.
+fn drum((kit, file, other): &(&'static str, &str, &str)) -> Result<Pair, String> {
+    let folder = installed("usr/share/hydrogen/data/drumkits").join(kit);
+    let pair = stereo(&folder.join(file)).zip(stereo(&folder.join(other)));
+    let (sound, other) = pair.ok_or_else(|| format!("{kit}: {file}"))?;
+    let name = file.trim_end_matches(".wav").to_owned();
+    Ok(Pair { name, source: kit, sound, others: vec![other], key: 60.0, is_drum: true })
+}
+
+/// All recordings that are installed; says which are not.
+pub(crate) fn all() -> Vec<Pair> {
+    let all = DRUMS.iter().map(drum).chain(INSTRUMENTS.iter().map(instrument));
+    all.filter_map(|pair| pair.map_err(|name| println!("skipped: {name} is not installed")).ok()).collect()
 }
 
 /// Name, channel, program, key and another key.
@@ -79,28 +87,35 @@ const INSTRUMENTS: [(&str, u8, u8, u8, u8); 18] = [
     ("triangle", 9, 0, 81, 80),
     ("cowbell", 9, 0, 56, 67),
 ];
+const DRUMS_OF_THE_FONT: [&str; 6] = ["wood block", "taiko", "timpani", "kick", "triangle", "cowbell"];
 /// Velocities of a recording and of another one.
 const VELOCITIES: [u8; 2] = [100, 60];
 
 const FONT: &str = "usr/share/sounds/sf2/FluidR3_GM.sf2";
 
-/// Whether the sound font and its player are installed.
-pub(crate) fn instruments() -> bool {
-    let version = Command::new("fluidsynth").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
-    installed(FONT).is_file() && version.is_ok_and(|status| status.success())
+/// A note of the sound font's; its name if it is not installed.
+fn instrument((name, channel, program, key, other): &(&str, u8, u8, u8, u8)) -> Result<Pair, String> {
+    let note = |key, velocity| note(*channel, *program, key, velocity).ok_or_else(|| (*name).to_owned());
+    let others = vec![note(*other, VELOCITIES[0])?, note(*key, VELOCITIES[1])?];
+    let sound = note(*key, VELOCITIES[0])?;
+    let is_drum = DRUMS_OF_THE_FONT.contains(name);
+    Ok(Pair { name: (*name).to_owned(), source: "FluidR3", sound, others, key: f64::from(*key), is_drum })
 }
 
-/// Notes of the sound font's instruments.
-pub(crate) fn played_instruments() -> impl Iterator<Item = Pair> {
-    INSTRUMENTS.iter().filter_map(|(name, channel, program, key, other)| {
-        let note = |key, velocity| note(*channel, *program, key, velocity);
-        let others = vec![note(*other, VELOCITIES[0])?, note(*key, VELOCITIES[1])?];
-        Some(Pair { name: (*name).to_owned(), sound: note(*key, VELOCITIES[0])?, others, key: f64::from(*key) })
+/// Instruments of the sound font that have layers of velocity and key, and what plays them: key and velocity to a note.
+pub(crate) fn layered() -> impl Iterator<Item = (&'static str, impl Fn((u8, u8)) -> Option<Played> + Copy)> {
+    const LAYERED: [(&str, u8); 3] = [("marimba", 12), ("vibraphone", 11), ("nylon guitar", 24)];
+    LAYERED.into_iter().map(|(name, program)| {
+        let play = move |(key, velocity): (u8, u8)| {
+            note(0, program, key, velocity).map(|sound| Played { sound, key, velocity })
+        };
+        (name, play)
     })
 }
 
 /// A note of four seconds without reverberation and chorus.
 fn note(channel: u8, program: u8, key: u8, velocity: u8) -> Option<Stereo> {
+    let font = Some(installed(FONT)).filter(|font| font.is_file())?;
     let folder = tempfile::tempdir().ok()?;
     let (song, sound) = (folder.path().join("note.mid"), folder.path().join("note.wav"));
     let mut track = vec![0, 0xc0 | channel, program, 0, 0x90 | channel, key, velocity];
@@ -112,7 +127,7 @@ fn note(channel: u8, program: u8, key: u8, velocity: u8) -> Option<Stereo> {
     std::fs::write(&song, file).ok()?;
     let options = ["-ni", "-r", "44100", "-R", "0", "-C", "0", "-g", "0.8", "-O", "float", "-T", "wav", "-F"];
     let mut command = Command::new("fluidsynth");
-    command.args(options).arg(&sound).arg(installed(FONT)).arg(&song).stdout(Stdio::null()).stderr(Stdio::null());
+    command.args(options).arg(&sound).arg(font).arg(&song).stdout(Stdio::null()).stderr(Stdio::null());
     command.status().ok().filter(std::process::ExitStatus::success)?;
     stereo(&sound)
 }

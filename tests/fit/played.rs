@@ -6,6 +6,7 @@ use sprung::engine::{Event, EventKind, Synth};
 use sprung::io::sound_file::Recording;
 use sprung::preset::Preset;
 use sprung::units::mono_from_stereo;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Left and right.
 pub(crate) type Stereo = [Vec<f32>; 2];
@@ -13,29 +14,77 @@ pub(crate) type Stereo = [Vec<f32>; 2];
 /// Seconds of a preset's note, which is held.
 const SECONDS: usize = 4;
 
-/// A note of a preset.
+/// A note of a preset at the velocity of takes that nothing is known of.
 pub(crate) fn preset_at(preset: &Preset, key: u8) -> Stereo {
+    preset_struck(preset, key, VELOCITY as u8)
+}
+
+/// A note of a preset.
+pub(crate) fn preset_struck(preset: &Preset, key: u8, velocity: u8) -> Stereo {
     let mut synth = Synth::new(RATE.into(), 0);
     synth.set_kit(&preset.kit());
     synth.reset();
     let [mut left, mut right] = [0, 1].map(|_| vec![0.0; SECONDS * RATE as usize]);
-    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: (VELOCITY / 127.0) as f32, id: None };
+    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: f32::from(velocity) / 127.0, id: None };
     synth.process(&[Event { frame: 0, channel: 0, kind }], &mut left, &mut right);
     [left, right]
 }
 
+fn recording(sound: &Stereo) -> Recording {
+    Recording { sample_rate: RATE, channels: sound.to_vec(), encoding: String::new(), warnings: Vec::new() }
+}
+
 /// The fit of a sound at [`RATE`].
 pub(crate) fn fitted(sound: &Stereo, key: f64) -> sprung::Result<Fitted> {
-    let recording =
-        Recording { sample_rate: RATE, channels: sound.to_vec(), encoding: String::new(), warnings: Vec::new() };
-    let take = Take { name: "sound".to_owned(), recording, key: Some(key), velocity: VELOCITY };
+    let take = Take { name: "sound".to_owned(), recording: recording(sound), key: Some(key), velocity: VELOCITY };
     fit(&[take], &Settings::default(), &mut |_| true)
+}
+
+/// A note of an instrument.
+pub(crate) struct Played {
+    pub(crate) sound: Stereo,
+    pub(crate) key: u8,
+    pub(crate) velocity: u8,
+}
+
+/// The fit of several notes of an instrument.
+pub(crate) fn fitted_to(notes: &[Played]) -> sprung::Result<Fitted> {
+    let take = |Played { sound, key, velocity }: &Played| Take {
+        name: format!("key {key}, velocity {velocity}"),
+        recording: recording(sound),
+        key: Some((*key).into()),
+        velocity: (*velocity).into(),
+    };
+    fit(&notes.iter().map(take).collect::<Vec<_>>(), &Settings::default(), &mut |_| true)
+}
+
+/// The mean of both channels.
+pub(crate) fn mean([left, right]: &Stereo) -> Vec<f32> {
+    left.iter().zip(right).map(|(left, right)| mono_from_stereo(*left, *right)).collect()
 }
 
 /// Distance of the means of two sounds in dB.
 pub(crate) fn log_mel_distance(first: &Stereo, second: &Stereo) -> f64 {
-    let mean = |[left, right]: &Stereo| -> Vec<f32> {
-        left.iter().zip(right).map(|(left, right)| mono_from_stereo(*left, *right)).collect()
-    };
     distance(&mean(first), &mean(second))
+}
+
+/// What a function makes of each item, in their order, on all processors.
+pub(crate) fn in_parallel<'a, T: Sync, R: Send>(items: &'a [T], make: impl Fn(&'a T) -> R + Sync) -> Vec<R> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut made = Vec::new();
+        while let Some((index, item)) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|n| Some((n, items.get(n)?)))
+        {
+            made.push((index, make(item)));
+        }
+        made
+    };
+    let mut all: Vec<(usize, R)> = std::thread::scope(|scope| {
+        let count = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads: Vec<_> = (0..count).map(|_| scope.spawn(&work)).collect();
+        threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
+    });
+    all.sort_by_key(|(index, _)| *index);
+    all.into_iter().map(|(_, made)| made).collect()
 }

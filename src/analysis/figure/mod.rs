@@ -4,10 +4,10 @@ pub mod modes;
 mod panel;
 pub mod sound;
 
+use super::level::mean_of;
 use crate::error::{Error, Result};
 use crate::figure::colour::{BLUE, VERMILLION};
 use crate::figure::{Area, Drawn, Picture, png, svg, text};
-use crate::units::mono_from_stereo;
 use panel::{Trace, spectrogram_panel, waveform};
 use plotters::prelude::*;
 use std::path::Path;
@@ -123,7 +123,7 @@ fn bytes(sheet: Sheet, format: &str) -> Result<Vec<u8>> {
 
 /// The mean of two channels.
 fn mean(left: &[f32], right: &[f32]) -> Vec<f32> {
-    left.iter().zip(right).map(|(left, right)| mono_from_stereo(*left, *right)).collect()
+    mean_of(&[left, right]).into_iter().map(|sample| sample as f32).collect()
 }
 
 #[cfg(test)]

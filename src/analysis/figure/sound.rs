@@ -38,7 +38,7 @@ pub fn modes_of(patch: &Patch, frequency: f64) -> Vec<DrawnMode> {
     use crate::params::Param::{Decay, DecayTilt, Fine, KeyTrack, Stretch, Tilt, Tune};
     let value = |param| f64::from(patch.get(param));
     let moved = pow(2.0, (value(Tune) + 0.01 * value(Fine)) / 12.0);
-    let middle = 261.625_565_300_598_6;
+    let middle = crate::sound::bodies::DEFAULT_FREQUENCY;
     let note = moved * middle * pow(frequency / middle, 0.01 * value(KeyTrack));
     let mode = |mode: &crate::patch::Mode| {
         let ratio = f64::from(mode.ratio);

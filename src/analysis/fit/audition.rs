@@ -1,9 +1,9 @@
 //! Plays a patch, as it will be heard.
 
+use crate::analysis::level::mean_of;
 use crate::analysis::log_mel::RATE;
 use crate::engine::{Event, EventKind, Synth};
 use crate::patch::Patch;
-use crate::units::mono_from_stereo;
 
 /// Frames that are rendered at a time.
 const BLOCK: usize = 512;
@@ -41,6 +41,6 @@ impl Audition {
     /// As [`Audition::play`], the mean of both channels.
     pub(super) fn mean(&mut self, patch: &Patch, key: f64, velocity: f64, frames: usize) -> Vec<f32> {
         let [left, right] = self.play(patch, key, velocity, frames);
-        left.iter().zip(&right).map(|(left, right)| mono_from_stereo(*left, *right)).collect()
+        mean_of(&[left, right]).into_iter().map(|sample| sample as f32).collect()
     }
 }

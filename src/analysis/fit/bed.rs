@@ -1,12 +1,13 @@
 //! What the modes do not explain, as a bed of modes that noise moves.
 //!
-//! In each mel band, what the recording has more than the draft decays by a law of its own; a few modes at random places of the
-//! band get that level and that decay.
+//! In each mel band, what the recording has more than the draft decays by a law of its own; a few modes get that level and that
+//! decay. They lie where the band's spectrum is highest: what noise moves may be a body with modes of its own.
 
 use super::draft::{Partial, Sweep, speed};
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, centre};
 use crate::dsp::random::{key, uniform};
 use libm::{log10, pow, sqrt};
+use realfft::RealFftPlanner;
 
 /// Excess in dB of the recording over the draft that is filled up.
 const EXCESS_DB: f64 = 1.5;
@@ -14,19 +15,21 @@ const EXCESS_DB: f64 = 1.5;
 const T60: (f64, f64) = (0.01, 20.0);
 /// dB by which a band is followed down from where it is loudest.
 const FOLLOWED_DB: f64 = 45.0;
-/// Windows in which a band can come to its loudest: 60 ms.
-const RISE: usize = 11;
+/// Windows in which a band can come to its loudest: 1.2 s.
+const RISE: usize = 207;
 /// Modes of a band.
 const FEWEST: f64 = 2.0;
 const MOST: f64 = 6.0;
+/// Power of a line in relation to the highest of its band that is left out: −13 dB.
+const FAINT: f64 = 0.05;
 /// Bandwidth in Hz of a mode with a T60 of 1 s.
 const BANDWIDTH: f64 = 2.2;
 
-/// The bed that fills `draft` up to `target`, of at most `most` modes. `seed` sets where they lie.
-pub(super) fn bed(target: &LogMel, draft: &LogMel, sweep: &Sweep, most: usize, seed: u64) -> Vec<Partial> {
+/// The bed that fills `draft` up to `target`, of at most `most` modes, where `lines` are high. `seed` sets their pans.
+pub(super) fn bed([target, draft]: [&LogMel; 2], lines: &Lines, sweep: &Sweep, most: usize, seed: u64) -> Vec<Partial> {
     let floor = target.loudest() - SPAN_DB - 6.0;
     let mut bands: Vec<(f64, Vec<Partial>)> =
-        (0..BANDS).filter_map(|band| fill(target, draft, band, floor, seed)).collect();
+        (0..BANDS).filter_map(|band| fill([target, draft], lines, band, floor, seed)).collect();
     bands.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut bed = Vec::new();
     for (_, partials) in bands {
@@ -41,7 +44,13 @@ pub(super) fn bed(target: &LogMel, draft: &LogMel, sweep: &Sweep, most: usize, s
 }
 
 /// The modes of one band and their energy.
-fn fill(target: &LogMel, draft: &LogMel, band: usize, floor: f64, seed: u64) -> Option<(f64, Vec<Partial>)> {
+fn fill(
+    [target, draft]: [&LogMel; 2],
+    lines: &Lines,
+    band: usize,
+    floor: f64,
+    seed: u64,
+) -> Option<(f64, Vec<Partial>)> {
     let level = |n: usize| {
         let wanted = target.columns[n][band];
         let has = draft.columns.get(n).map_or(-300.0, |column| column[band]);
@@ -73,15 +82,67 @@ fn fill(target: &LogMel, draft: &LogMel, band: usize, floor: f64, seed: u64) -> 
     let at_onset = if count >= 4.0 { (y - slope * t).min(top + 6.0) } else { top };
     // As many as it takes that their resonances meet.
     let width = 0.5 * (centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1)));
-    let modes = (0.5 * width * t60 / BANDWIDTH).clamp(FEWEST, MOST).round();
-    // The main lobe of a Hann window has 3/2 of a sine's power, of which a triangular band has 2/3 on average.
-    let amplitude = sqrt(pow(10.0, 0.1 * at_onset) / modes);
-    let partial = |n: usize| {
-        let chance = f64::from(uniform(key(seed, band as u64), n as u64));
-        let share = (n as f64 + 0.5 + 0.45 * chance) / modes - 0.5;
-        let pan = 0.4 * f64::from(uniform(key(seed, band as u64), 100 + n as u64));
-        Partial { frequency: centre(band) + width * share, t60, amplitude, pan, struck: false }
+    let most = (0.5 * width * t60 / BANDWIDTH).clamp(FEWEST, MOST).round();
+    let range = (centre(band) - 0.5 * width, centre(band) + 0.5 * width);
+    let places = lines.highest(range, BANDWIDTH / t60, most as usize);
+    let all: f64 = places.iter().map(|(_, power)| power).sum();
+    let partial = |(n, (frequency, power)): (usize, &(f64, f64))| {
+        // The main lobe of a Hann window has 3/2 of a sine's power, of which a triangular band has 2/3 on average.
+        let amplitude = sqrt(pow(10.0, 0.1 * at_onset) * power / all);
+        let pan = 0.4 * f64::from(uniform(key(seed, band as u64), n as u64));
+        Partial { frequency: *frequency, t60, amplitude, pan, struck: false }
     };
-    let partials: Vec<Partial> = (0..modes as usize).map(partial).collect();
+    let partials: Vec<Partial> = places.iter().enumerate().map(partial).collect();
     Some((pow(10.0, 0.1 * at_onset) * t60, partials))
+}
+
+/// The spectrum of a sound as a whole.
+pub(super) struct Lines {
+    /// Hz from one value to the next.
+    step: f64,
+    /// The power up to each frequency: what a stretch has is a difference.
+    sums: Vec<f64>,
+}
+
+impl Lines {
+    /// Of samples at [`RATE`].
+    pub(super) fn new(samples: &[f32]) -> Self {
+        let points = (2 * samples.len()).next_power_of_two();
+        let transform = RealFftPlanner::new().plan_fft_forward(points);
+        let mut input = transform.make_input_vec();
+        input.iter_mut().zip(samples).for_each(|(input, sample)| *input = f64::from(*sample));
+        let mut output = transform.make_output_vec();
+        transform.process(&mut input, &mut output).expect("the buffers are the transform's own");
+        let sums = output.iter().scan(0.0, |sum, bin| {
+            *sum += bin.norm_sqr();
+            Some(*sum)
+        });
+        Self { step: f64::from(RATE) / points as f64, sums: sums.collect() }
+    }
+
+    /// Power within half a width of a frequency.
+    fn power(&self, frequency: f64, width: f64) -> f64 {
+        let at = |frequency: f64| self.sums[((frequency / self.step).max(0.0) as usize).min(self.sums.len() - 1)];
+        at(frequency + 0.5 * width) - at(frequency - 0.5 * width - self.step)
+    }
+
+    /// The frequencies with the most power around them, at most so many of a range, no two within a width; with that power.
+    fn highest(&self, range: (f64, f64), width: f64, most: usize) -> Vec<(f64, f64)> {
+        let step = (0.25 * width).max(self.step);
+        let count = ((range.1 - range.0) / step) as usize + 1;
+        let frequency = |n: usize| range.0 + (n as f64 + 0.5) * (range.1 - range.0) / count as f64;
+        let mut all: Vec<(f64, f64)> =
+            (0..count).map(frequency).map(|frequency| (frequency, self.power(frequency, width))).collect();
+        all.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut kept: Vec<(f64, f64)> = Vec::new();
+        for (frequency, power) in all {
+            if kept.len() == most || kept.first().is_some_and(|first| power < FAINT * first.1) {
+                break;
+            }
+            if kept.iter().all(|other| (other.0 - frequency).abs() >= width) {
+                kept.push((frequency, power.max(1e-30)));
+            }
+        }
+        kept
+    }
 }

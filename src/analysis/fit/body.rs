@@ -141,7 +141,7 @@ fn lay(body: &Body, frequency: f64, partials: &[Partial]) -> Match {
 }
 
 /// Finds the body of a family that explains a draft best. None if it has no modes.
-pub(super) fn find(draft: &Draft, family: Family) -> Option<(Patch, Explained)> {
+pub(super) fn find(draft: &Draft, family: Family) -> Option<(Body, Explained)> {
     let mut partials: Vec<Partial> = draft.partials.iter().copied().filter(|partial| partial.struck).collect();
     partials.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     partials.truncate(2 * MODES);
@@ -170,7 +170,8 @@ pub(super) fn find(draft: &Draft, family: Family) -> Option<(Patch, Explained)> 
     // What the model has above the highest mode of the sound is only guessed.
     let highest = pairs(&found, &partials).map(|(_, mode, _)| mode.frequency).fold(0.0, f64::max);
     found.body.modes = found.body.modes().iter().filter(|mode| mode.frequency <= 1.001 * highest).count().max(1);
-    Some((patch(draft, &found), explained(model, &found, &partials)))
+    let explained = explained(model, &found, &partials);
+    Some((found.body, explained))
 }
 
 /// Partials with their modes, and the cents between them.
@@ -235,9 +236,8 @@ fn place(found: &mut Match, partials: &[Partial], contact: Option<f64>) {
     (found.body.strike, found.body.tilt) = (best.1, digits(best.2, 3));
 }
 
-/// The patch, of any gain.
-fn patch(draft: &Draft, found: &Match) -> Patch {
-    let body = &found.body;
+/// The patch of a body that plays a draft's note, of any gain.
+pub(super) fn patch(draft: &Draft, body: &Body) -> Patch {
     let mut patch = Patch { modes: modes_of_body(body), ..draft.patch() };
     patch.set(Param::Decay, Param::Decay.info().clamp(body.t60() as f32));
     let semitones = 12.0 * log2(body.frequency() / draft.note);

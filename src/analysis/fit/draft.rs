@@ -4,7 +4,7 @@ use crate::dsp::pitch::SweepEnvelope;
 use crate::params::{Choice, MalletPulse, NoiseDecay, NoteOff, Param};
 use crate::patch::{Mode, ModeTable, Patch};
 use crate::sound::contact_time;
-use libm::{cos, fabs, log10, pow};
+use libm::{cos, exp, fabs, log10, pow, sin};
 use std::f64::consts::PI;
 
 /// Most modes of a fit.
@@ -31,20 +31,56 @@ pub(super) struct Partial {
     pub(super) struck: bool,
 }
 
-/// A fall (or rise) of the pitch after the strike.
+/// How the pitch moves after the strike: it falls (or rises), and trembles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sweep {
     pub(super) semitones: f64,
     pub(super) seconds: f64,
     /// −1 to 1.
     pub(super) curve: f64,
+    pub(super) vibrato: Vibrato,
+}
+
+/// A pitch that goes up and down, up first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Vibrato {
+    /// Each way.
+    pub(super) semitones: f64,
+    /// Hz.
+    pub(super) rate: f64,
+    /// Seconds in which it fades in.
+    pub(super) delay: f64,
 }
 
 impl Sweep {
-    pub(super) const NONE: Self = Self { semitones: 0.0, seconds: 0.1, curve: 0.5 };
+    pub(super) const NONE: Self =
+        Self { semitones: 0.0, seconds: 0.1, curve: 0.5, vibrato: Vibrato { semitones: 0.0, rate: 5.0, delay: 0.0 } };
 
     pub(super) fn envelope(&self) -> SweepEnvelope {
         SweepEnvelope::new(self.semitones, self.seconds, self.curve)
+    }
+
+    /// The sweep with other numbers: the first is a share of the semitones, the second an exponent of the time.
+    pub(super) fn moved(&self, [semitones, seconds, curve]: [f64; 3]) -> Self {
+        Self {
+            semitones: (self.semitones * (1.0 + semitones)).clamp(-60.0, 60.0),
+            seconds: (self.seconds * exp(seconds)).clamp(0.002, 5.0),
+            curve: (self.curve + curve).clamp(-1.0, 1.0),
+            ..*self
+        }
+    }
+
+    /// Whether the pitch stands still.
+    pub(super) fn is_none(&self) -> bool {
+        self.semitones == 0.0 && self.vibrato.semitones == 0.0
+    }
+}
+
+impl Vibrato {
+    /// Semitones, `time` seconds after the strike.
+    pub(super) fn at(&self, time: f64) -> f64 {
+        let fade = if self.delay > 0.0 { (time / self.delay).min(1.0) } else { 1.0 };
+        if self.semitones == 0.0 { 0.0 } else { self.semitones * fade * sin(2.0 * PI * self.rate * time) }
     }
 }
 
@@ -52,7 +88,17 @@ impl Sweep {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Noise {
     pub(super) seconds: f64,
+    pub(super) decay: NoiseDecay,
     pub(super) attack: f64,
+    /// Number of bursts, and seconds from each to the next.
+    pub(super) hits: u8,
+    pub(super) spacing: f64,
+}
+
+impl Noise {
+    /// A click.
+    pub(super) const SHORT: Self =
+        Self { seconds: 0.004, decay: NoiseDecay::Quadratic, attack: 0.0, hits: 1, spacing: 0.012 };
 }
 
 /// All of a sound.
@@ -117,7 +163,9 @@ impl Draft {
     fn demand(&self, partial: &Partial) -> f64 {
         let share = match self.hardness {
             Some(hardness) if partial.struck => {
-                let share = contact_share(partial.frequency, contact_time(hardness));
+                // The contact is over before the pitch has moved far.
+                let struck_at = partial.frequency * pow(2.0, self.sweep.semitones / 12.0);
+                let share = contact_share(struck_at, contact_time(hardness));
                 if share < 0.0 { share.min(-LEAST_OF_CONTACT) } else { share.max(LEAST_OF_CONTACT) }
             }
             _ => 1.0,
@@ -157,7 +205,11 @@ impl Draft {
         set(Param::NoteOff, f64::from(NoteOff::Ring.value()));
         set(Param::NoiseTime, self.noise.seconds);
         set(Param::NoiseAttack, self.noise.attack);
-        set(Param::NoiseDecay, f64::from(NoiseDecay::Quadratic.value()));
+        set(Param::NoiseDecay, f64::from(self.noise.decay.value()));
+        if self.noise.hits > 1 {
+            set(Param::NoiseHits, f64::from(self.noise.hits));
+            set(Param::NoiseSpacing, self.noise.spacing);
+        }
         if let Some(hardness) = self.hardness {
             set(Param::MalletPulse, f64::from(MalletPulse::Contact.value()));
             set(Param::MalletHardness, 100.0 * hardness);
@@ -166,6 +218,11 @@ impl Draft {
             set(Param::Sweep, self.sweep.semitones);
             set(Param::SweepTime, self.sweep.seconds);
             set(Param::SweepCurve, 100.0 * self.sweep.curve);
+        }
+        if self.sweep.vibrato.semitones != 0.0 {
+            set(Param::Vibrato, 100.0 * self.sweep.vibrato.semitones);
+            set(Param::VibratoRate, self.sweep.vibrato.rate);
+            set(Param::VibratoDelay, self.sweep.vibrato.delay);
         }
         patch
     }

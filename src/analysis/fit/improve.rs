@@ -1,5 +1,6 @@
 //! One take becomes a draft: its modes, then a bed, then corrections.
 
+use super::bed::Lines;
 use super::draft::{Draft, Sweep};
 use super::refine::Listener;
 use super::take::Prepared;
@@ -7,43 +8,38 @@ use super::{bed, start, sweep};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
 
-/// Share of the work until a sweep is found.
-const SEARCH: f64 = 0.15;
-/// Residual of the modes in dB below which they explain the sound, and so the sweep that was taken out is one.
-const EXPLAINS_DB: f64 = -6.0;
+/// Share of the work until the first drafts are made.
+const ANALYSED: f64 = 0.45;
+/// Drafts with modes that are improved.
+const MOST_DRAFTS: usize = 2;
+/// Residual of the modes in dB above which noise alone may explain the sound better.
+const NOISE_DB: f64 = -10.0;
+/// Share of a sound after which what noise has moved rings by itself.
+const LATE: f64 = 0.2;
+/// Residual of the modes in dB below which the pitch stands still, and by how much less a sweep has to leave.
+const EXPLAINED_DB: f64 = -50.0;
+const WORTH_A_SWEEP_DB: f64 = 2.0;
 /// What a bed has to gain in dB to be kept.
 const WORTH_A_BED: f64 = 0.02;
 /// Rounds of corrections at a time.
 const ROUNDS: usize = 8;
 
+/// A draft with the strike that its modes were found in.
+type Found = (Draft, Option<Strike>);
+
 /// The draft of a take with at most `most` modes, and the strike that its modes were found in.
-pub(super) fn fit(
-    take: &Prepared,
-    most: usize,
-    progress: &mut dyn FnMut(f64) -> bool,
-) -> Result<(Draft, Option<Strike>)> {
+pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) -> bool) -> Result<Found> {
     let mut tell = |share: f64| if progress(share) { Ok(()) } else { Err(Error::Interrupted) };
-    let swept = sweep::find(&take.mean);
-    tell(SEARCH)?;
     let mut listener = Listener::new(take);
-    let mut drafts = Vec::new();
-    if swept.semitones != 0.0 {
-        let (mut draft, strike) = analysed(take, swept, most, [SEARCH, 0.3], &mut tell)?;
-        if strike.as_ref().is_some_and(|strike| strike.residual_db < EXPLAINS_DB) {
-            drafts.push((draft.clone(), strike));
-            // What was found with a better sweep may be better, too.
-            listener.choose_hardness(&mut draft);
-            listener.choose_sweep(&mut draft);
-            drafts.push(analysed(take, draft.sweep, most, [0.3, 0.45], &mut tell)?);
-        }
-    }
-    if drafts.is_empty() {
-        drafts.push(analysed(take, Sweep::NONE, most, [SEARCH, 0.45], &mut tell)?);
-    }
-    let (count, mut best, mut least) = (drafts.len() as f64, None, f64::INFINITY);
-    for (n, (draft, strike)) in drafts.into_iter().enumerate() {
-        let part = |share: f64| 0.45 + 0.55 * (n as f64 + share) / count;
-        let draft = improved(draft, &mut listener, most, &mut |share| tell(part(share)))?;
+    let found = drafts(take, most, &mut |share| tell(ANALYSED * share))?;
+    let (count, mut best, mut least) = (found.len() as f64, None, f64::INFINITY);
+    for (n, (draft, strike)) in found.into_iter().enumerate() {
+        let lines = match &strike {
+            Some(strike) if draft.partials.iter().any(|partial| partial.struck) => Lines::new(&strike.residual),
+            _ => Lines::new(&take.mean),
+        };
+        let part = |share: f64| ANALYSED + (1.0 - ANALYSED) * (n as f64 + share) / count;
+        let draft = improved(draft, &mut listener, &lines, most, &mut |share| tell(part(share)))?;
         let distance = listener.distance(&draft, usize::MAX);
         if distance < least {
             (best, least) = (Some((draft, strike)), distance);
@@ -52,33 +48,51 @@ pub(super) fn fit(
     best.ok_or(Error::Interrupted)
 }
 
-/// The draft of a take's modes alone, as [`start::draft`], which is from one share of the work to another.
-fn analysed(
-    take: &Prepared,
-    sweep: Sweep,
-    most: usize,
-    [from, to]: [f64; 2],
-    tell: &mut dyn FnMut(f64) -> Result<()>,
-) -> Result<(Draft, Option<Strike>)> {
-    start::draft(take, sweep, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
+/// What a take may be: its modes, with the movements of the pitch that explain it best, and, if these explain little, modes
+/// that noise alone has moved: those that are left when it is over.
+fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
+    let mut analysed = |sweep: Sweep, late: f64, [from, to]: [f64; 2]| {
+        start::draft(take, sweep, late, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
+    };
+    let mut found = vec![analysed(Sweep::NONE, 0.0, [0.0, 0.4])?];
+    let still = residual_db(&found[0]);
+    if still > EXPLAINED_DB {
+        let sweeps = sweep::find(&take.mean);
+        for (sweep, part) in sweeps.into_iter().zip([[0.5, 0.75], [0.75, 1.0]]) {
+            let swept = analysed(sweep, 0.0, part)?;
+            found.extend(Some(swept).filter(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB));
+        }
+    }
+    found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
+    found.truncate(MOST_DRAFTS);
+    if residual_db(&found[0]) > NOISE_DB {
+        let (driven, _) = analysed(Sweep::NONE, LATE * take.seconds(), [0.75, 1.0])?;
+        let strike = found[0].1.clone();
+        found.push((driven, strike));
+    }
+    Ok(found)
+}
+
+/// What the modes leave of a strike, in dB.
+fn residual_db((_, strike): &Found) -> f64 {
+    strike.as_ref().map_or(0.0, |strike| strike.residual_db)
 }
 
 fn improved(
     mut draft: Draft,
     listener: &mut Listener,
+    lines: &Lines,
     most: usize,
     tell: &mut dyn FnMut(f64) -> Result<()>,
 ) -> Result<Draft> {
     listener.choose_hardness(&mut draft);
-    tell(0.2)?;
-    listener.choose_sweep(&mut draft);
     tell(0.3)?;
     // Twice: what decays in two stages gets two beds.
     for (pass, seed) in [(1.0, 11), (2.0, 12)] {
         let heard = listener.hear(&draft);
         let room = most.saturating_sub(draft.partials.len());
         let mut other = draft.clone();
-        other.partials.extend(bed::bed(&listener.target, &heard, &draft.sweep, room, seed));
+        other.partials.extend(bed::bed([&listener.target, &heard], lines, &draft.sweep, room, seed));
         if other.partials.is_empty() {
             break;
         }

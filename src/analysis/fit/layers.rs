@@ -90,7 +90,7 @@ fn rounded(value: f64) -> f32 {
 }
 
 /// The slope of a line through some points; none if they do not differ in `x`.
-fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+pub(super) fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let points: Vec<(f64, f64)> = points.collect();
     let count = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));

@@ -7,24 +7,25 @@
 mod audition;
 mod bed;
 mod body;
+mod course;
 mod draft;
 mod improve;
 mod layers;
 mod pitch;
 mod refine;
 pub mod report;
+mod simplex;
 mod start;
 mod sweep;
 mod take;
+mod tuned;
 
 pub use body::{Explained, Family};
 pub use take::{Take, VELOCITY};
 
-use super::level::{dbfs, rms};
 use super::log_mel::{self, RATE};
 use super::modes::Strike;
 use crate::error::{Error, Result};
-use crate::params::Param;
 use crate::patch::Patch;
 use crate::preset::{Guide, Preset};
 use crate::units::{key_from_frequency, note_name};
@@ -36,8 +37,6 @@ use take::Prepared;
 /// Frequency in Hz of A4 in a new patch.
 const A4: f64 = 440.0;
 
-/// Hardnesses of the mallet in per cent that are tried with a body.
-const HARDNESSES: [f32; 6] = [25.0, 40.0, 55.0, 70.0, 85.0, 100.0];
 /// Distance in dB from which on a table of modes hardly sounds like its recording.
 const FAR_DB: f64 = 6.0;
 
@@ -124,29 +123,18 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     let (take, draft) = (&prepared[base], layers[base].draft.clone());
     let (patch, explained) = match settings.family {
         Family::Table => (draft.patch(), None),
-        family => body::find(&draft, family).map(|(patch, explained)| (patch, Some(explained))).ok_or_else(|| {
-            Error::format(
-                &takes[base].name,
-                "no mode rings in it: expected a sound that a body can explain, or the body table",
-            )
-        })?,
-    };
-    let mut patch = layers::route(patch, &layers, base);
-    let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
-    if explained.is_some() {
-        // A body's levels ask for a mallet of their own.
-        let candidates = HARDNESSES.iter().map(|hardness| patch.clone().with(Param::MalletHardness, *hardness));
-        let mut least = f64::INFINITY;
-        for mut other in candidates.chain([patch.clone()]).collect::<Vec<_>>() {
-            let played = audition.mean(&other, key, draft.velocity, take.mean.len());
-            level(&mut other, &played, &take.mean);
-            let played = audition.mean(&other, key, draft.velocity, take.mean.len());
-            let distance = log_mel::distance(&played, &take.mean);
-            if distance < least {
-                (patch, least) = (other, distance);
-            }
+        family => {
+            let (body, explained) = body::find(&draft, family).ok_or_else(|| {
+                Error::format(
+                    &takes[base].name,
+                    "no mode rings in it: expected a sound that a body can explain, or the body table",
+                )
+            })?;
+            (tuned::patch(&draft, &body, take), Some(explained))
         }
-    }
+    };
+    let patch = layers::route(patch, &layers, base);
+    let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
     let played = audition.play(&patch, key, draft.velocity, take.mean.len());
     let distance = |(layer, take): (&Layer, &Prepared)| {
         let key = key_from_frequency(layer.draft.note, A4);
@@ -177,13 +165,6 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         explained,
         warnings,
     })
-}
-
-/// Sets the gain of a patch so that what it plays becomes as loud as a recording.
-fn level(patch: &mut Patch, played: &[f32], recording: &[f32]) {
-    let more = dbfs(rms(recording)) - dbfs(rms(played));
-    let gain = f64::from(patch.get(Param::Gain)) + (100.0 * more).round() / 100.0;
-    patch.set(Param::Gain, Param::Gain.info().clamp(gain as f32));
 }
 
 impl Fitted {

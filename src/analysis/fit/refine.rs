@@ -1,19 +1,29 @@
 //! Brings a draft nearer to its recording by listening: it is played, compared band by band, and corrected.
 
 use super::audition::Audition;
-use super::draft::{Draft, Noise, Sweep, T60};
+use super::draft::{Draft, Noise, T60};
+use super::simplex;
 use super::take::Prepared;
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, MelBands, RATE, SPAN_DB, weights};
+use crate::params::NoiseDecay;
 use crate::units::key_from_frequency;
-use libm::{exp, pow};
+use libm::pow;
 
 /// Hardnesses that are tried.
 const HARDNESSES: [f64; 10] = [0.95, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25, 0.15, 0.05];
 /// Lengths and rises in seconds of the noise that are tried.
-const LENGTHS: [f64; 7] = [0.002, 0.006, 0.015, 0.04, 0.1, 0.23, 0.5];
+const LENGTHS: [f64; 8] = [0.002, 0.006, 0.015, 0.04, 0.1, 0.23, 0.5, 1.0];
 /// A longer burst takes part in the decay.
 const SHORT: f64 = 0.02;
 const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
+/// Time in which an exponential burst falls by 60 dB over that of a parabola with the same energy: these are the sixth part of
+/// the one over ln 10, and the fifth of the other.
+const EXPONENTIAL: f64 = 2.76;
+/// Bursts that follow each other, and seconds between them, that are tried.
+const HITS: [u8; 3] = [2, 3, 4];
+const SPACINGS: [f64; 4] = [0.008, 0.0105, 0.0135, 0.018];
+/// What several bursts have to gain in dB over the attack.
+const WORTH_HITS: f64 = 0.3;
 /// Windows of the attack: 150 ms.
 const ATTACK: usize = 26;
 /// Steps of the search for a sweep.
@@ -93,70 +103,51 @@ impl<'a> Listener<'a> {
         let with = |draft: &Draft, noise| Draft { noise, ..draft.clone() };
         let noise = draft.noise;
         // Decays of the modes were measured on the whole: what the burst takes is to be left out of them.
-        let mut found = draft.clone();
+        let bursts = LENGTHS.map(|seconds| Noise { seconds, ..noise });
+        self.best_corrected(draft, bursts);
+        let noise = draft.noise;
+        self.best_corrected(
+            draft,
+            [Noise { seconds: (EXPONENTIAL * noise.seconds).min(1.0), decay: NoiseDecay::Exponential, ..noise }],
+        );
+        let noise = draft.noise;
+        let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
+        self.best(draft, usize::MAX, rises);
+        let noise = draft.noise;
+        let several = HITS.map(|hits| SPACINGS.map(|spacing| with(draft, Noise { hits, spacing, ..noise })));
+        let mut other = draft.clone();
+        self.best(&mut other, ATTACK, several.into_iter().flatten());
+        if self.distance(&other, ATTACK) < self.distance(draft, ATTACK) - WORTH_HITS {
+            *draft = other;
+        }
+    }
+
+    /// The best of some bursts of noise, each with the levels and decays that it asks for, and the present one.
+    fn best_corrected(&mut self, draft: &mut Draft, bursts: impl IntoIterator<Item = Noise>) {
         let mut least = self.distance(draft, usize::MAX);
-        for seconds in LENGTHS {
-            let mut other = with(draft, Noise { seconds, ..noise });
-            if seconds > SHORT {
+        let before = draft.clone();
+        for noise in bursts {
+            let mut other = Draft { noise, ..before.clone() };
+            if noise.seconds > SHORT {
                 self.correct(&mut other, 2);
             }
             let distance = self.distance(&other, usize::MAX);
             if distance < least {
-                (found, least) = (other, distance);
+                (*draft, least) = (other, distance);
             }
         }
-        *draft = found;
-        let noise = draft.noise;
-        let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
-        self.best(draft, usize::MAX, rises);
     }
 
-    /// Moves the sweep to where the distance is least (downhill simplex, Nelder & Mead 1965).
+    /// Moves the sweep to where the distance is least.
     pub(super) fn choose_sweep(&mut self, draft: &mut Draft) {
         if draft.sweep.semitones == 0.0 {
             return;
         }
         let start = draft.sweep;
-        let sweep = |[semitones, seconds, curve]: [f64; 3]| Sweep {
-            semitones: (start.semitones * (1.0 + semitones)).clamp(-60.0, 60.0),
-            seconds: (start.seconds * exp(seconds)).clamp(0.002, 5.0),
-            curve: (start.curve + curve).clamp(-1.0, 1.0),
-        };
-        let mut distance = |place: [f64; 3]| self.distance(&Draft { sweep: sweep(place), ..draft.clone() }, usize::MAX);
-        let mut simplex: Vec<([f64; 3], f64)> = vec![([0.0; 3], distance([0.0; 3]))];
-        for number in 0..3 {
-            let mut place = [0.0; 3];
-            place[number] = 0.2;
-            simplex.push((place, distance(place)));
-        }
-        for _ in 0..SIMPLEX_STEPS {
-            simplex.sort_by(|a, b| a.1.total_cmp(&b.1));
-            let middle: [f64; 3] =
-                std::array::from_fn(|n| simplex[..3].iter().map(|(place, _)| place[n]).sum::<f64>() / 3.0);
-            let worst = simplex[3];
-            let along =
-                |share: f64| -> [f64; 3] { std::array::from_fn(|n| middle[n] + share * (worst.0[n] - middle[n])) };
-            let mirrored = (along(-1.0), distance(along(-1.0)));
-            simplex[3] = if mirrored.1 < simplex[0].1 {
-                let further = (along(-2.0), distance(along(-2.0)));
-                if further.1 < mirrored.1 { further } else { mirrored }
-            } else if mirrored.1 < simplex[2].1 {
-                mirrored
-            } else {
-                let nearer = (along(0.5), distance(along(0.5)));
-                if nearer.1 >= worst.1 {
-                    let best = simplex[0].0;
-                    for corner in &mut simplex[1..3] {
-                        let place: [f64; 3] = std::array::from_fn(|n| 0.5 * (best[n] + corner.0[n]));
-                        *corner = (place, distance(place));
-                    }
-                }
-                nearer
-            };
-        }
-        if let Some((place, _)) = simplex.iter().min_by(|a, b| a.1.total_cmp(&b.1)) {
-            draft.sweep = sweep(*place);
-        }
+        let (place, _) = simplex::least(SIMPLEX_STEPS, |place| {
+            self.distance(&Draft { sweep: start.moved(place), ..draft.clone() }, usize::MAX)
+        });
+        draft.sweep = start.moved(place);
     }
 
     /// Corrects level and decay of the modes by their bands, as long as the distance falls.

@@ -15,20 +15,26 @@ const HIGHEST: f64 = 20_000.0;
 const TOO_LOUD_DB: f64 = 12.0;
 /// Modes below the loudest by this much in dB are left to the noise.
 const FAINT_DB: f64 = 75.0;
+/// dB by which a mode can have been louder at the onset than where it was found.
+const MOST_BEFORE_DB: f64 = 40.0;
 /// Seconds that are taken apart, at most.
 const LONGEST: f64 = 5.0;
 /// Seconds by which a strike may be felt after the onset, for the phases of modes.
 const LATEST: f64 = 0.006;
 
-/// A draft of a sound's modes alone when a sweep is taken out, and the strike that they were found in. No modes are no error:
-/// noise has none.
+/// A draft of a sound's modes alone when a sweep is taken out, and the strike that they were found in. Modes of what sounds
+/// `late` seconds after the onset were not struck, if these are not 0. No modes are no error: noise has none.
 pub(super) fn draft(
     take: &Prepared,
     swept: Sweep,
+    late: f64,
     most_modes: usize,
     progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(Draft, Option<Strike>)> {
-    let still: Vec<Vec<f32>> = take.channels.iter().map(|channel| sweep::stilled(channel, &swept)).collect();
+    let decay = sweep::decay(&take.mean);
+    let start = (late * f64::from(RATE)) as usize;
+    let still = |channel: &Vec<f32>| sweep::stilled(&channel[start..], &swept, decay);
+    let still: Vec<Vec<f32>> = take.channels.iter().map(still).collect();
     let settings =
         modes::Settings { most_modes: most_modes.min(MOST_MODES), longest: LONGEST, ..modes::Settings::default() };
     let strike = match modes::modes(&still, RATE.into(), &settings, progress) {
@@ -48,11 +54,24 @@ pub(super) fn draft(
         let loudest = kept.iter().map(|mode| mode.level_db).fold(f64::NEG_INFINITY, f64::max);
         let kept: Vec<&Mode> = kept.into_iter().filter(|mode| mode.level_db > loudest - FAINT_DB).collect();
         let delay = delay(&kept);
-        partials.extend(kept.iter().map(|mode| partial(mode, delay)));
+        let at_onset = |mode: &&Mode| {
+            let partial = partial(mode, delay);
+            let before = 60.0 * late / partial.t60;
+            let amplitude = partial.amplitude * pow(10.0, before.min(MOST_BEFORE_DB) / 20.0);
+            Partial { amplitude, struck: late == 0.0, ..partial }
+        };
+        partials.extend(kept.iter().map(at_onset));
     }
     let note = take.key.map_or_else(|| pitch::estimate(&partials), |key| take.frequency_of(key));
-    let noise = Noise { seconds: 0.004, attack: 0.0 };
-    let draft = Draft { note, velocity: take.velocity, follow: 1.0, partials, hardness: None, sweep: swept, noise };
+    let draft = Draft {
+        note,
+        velocity: take.velocity,
+        follow: 1.0,
+        partials,
+        hardness: None,
+        sweep: swept,
+        noise: Noise::SHORT,
+    };
     Ok((draft, strike))
 }
 

@@ -3,32 +3,41 @@
 //! A sweep moves all modes alike. Played against a clock that runs as their pitch does, their frequencies are constant, and the
 //! spectrum has the tallest peaks.
 
-use super::draft::Sweep;
+use super::course;
+use super::draft::{Sweep, Vibrato};
+use super::layers::slope;
+use super::simplex;
+use crate::analysis::level::rms;
 use crate::analysis::log_mel::RATE;
-use libm::{cos, pow, sqrt};
+use libm::{cos, exp, log, pow, sqrt};
 use realfft::{RealFftPlanner, RealToComplex};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Seconds of the sound that are looked at.
-const STRETCH: f64 = 0.45;
+/// Seconds of the sound that are looked at, by the coarse and by the fine search.
+const STRETCHES: (f64, f64) = (0.45, 1.2);
 /// Points of the transform.
-const POINTS: usize = 1 << 16;
+const POINTS: usize = 1 << 17;
 /// How much taller the peaks must be than without a sweep.
-const CLEARLY: f64 = 1.25;
+const CLEARLY: f64 = 1.08;
 /// Steps of the coarse search.
-const SEMITONES: [f64; 15] = [-18.0, -12.0, -5.0, -2.0, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 18.0, 24.0, 32.0, 44.0, 60.0];
-const SECONDS: [f64; 8] = [0.02, 0.04, 0.07, 0.11, 0.16, 0.25, 0.4, 0.7];
-const CURVES: [f64; 4] = [-0.3, 0.2, 0.5, 0.8];
-/// Coarse sweeps that are refined, and the shortest time in seconds of what is a sweep and no attack.
-const REFINED: usize = 5;
-const SHORTEST: f64 = 0.015;
-/// Rounds of the fine search.
-const ROUNDS: usize = 7;
+const SEMITONES: [f64; 17] =
+    [-18.0, -12.0, -5.0, -2.0, -0.5, 0.4, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 18.0, 24.0, 32.0, 44.0, 60.0];
+const SECONDS: [f64; 9] = [0.02, 0.04, 0.07, 0.11, 0.16, 0.25, 0.4, 0.7, 1.4];
+const CURVES: [f64; 3] = [-0.3, 0.2, 0.6];
+/// Coarse sweeps that are refined.
+const REFINED: usize = 4;
+/// Blocks in a second whose levels show the decay, and how far down: 40 dB.
+const BLOCKS: usize = 100;
+const HEARD: f64 = 4.6;
+/// Steps of the fine search.
+const STEPS: usize = 40;
 
 /// Measures how tall the peaks of a sound are.
 struct Peaks<'a> {
     samples: &'a [f32],
+    /// Seconds that are looked at.
+    stretch: f64,
     fft: Arc<dyn RealToComplex<f64>>,
     input: Vec<f64>,
 }
@@ -37,12 +46,12 @@ impl Peaks<'_> {
     /// Integral of the squared density of power over the logarithm of frequency. How narrow a peak is against its frequency
     /// depends on the number of its cycles, and so not on how fast the clock runs.
     fn height(&mut self, sweep: &Sweep) -> f64 {
-        let len = ((STRETCH * f64::from(RATE)) as usize).min(self.samples.len());
+        let len = ((self.stretch * f64::from(RATE)) as usize).min(self.samples.len());
         self.input.fill(0.0);
         let mut end = 0;
         for (sample, speed) in Clock::new(&self.samples[..len], sweep) {
             if end == POINTS {
-                return 0.0;
+                break;
             }
             // The root of the speed keeps the energy.
             self.input[end] = f64::from(sample) / sqrt(speed);
@@ -89,7 +98,8 @@ impl Iterator for Clock<'_> {
             return None;
         }
         let seconds = self.time / f64::from(RATE);
-        let speed = if seconds < self.sweep.seconds { pow(2.0, self.envelope.at(seconds) / 12.0) } else { 1.0 };
+        let semitones = self.envelope.at(seconds) + self.sweep.vibrato.at(seconds);
+        let speed = if semitones == 0.0 { 1.0 } else { pow(2.0, semitones / 12.0) };
         let sample = |index: usize| f64::from(self.samples.get(index).copied().unwrap_or(0.0));
         let u = self.time - at as f64;
         let (before, a, b, after) =
@@ -106,65 +116,80 @@ impl Iterator for Clock<'_> {
     }
 }
 
-/// The sound as if its pitch had stood still.
-pub(super) fn stilled(samples: &[f32], sweep: &Sweep) -> Vec<f32> {
-    if sweep.semitones == 0.0 {
-        samples.to_vec()
-    } else {
-        Clock::new(samples, sweep).map(|(sample, _)| sample).collect()
+/// The sound as if its pitch had stood still. Its clock stretches the decay, which does not follow the pitch: `decay`, that of
+/// the whole in 1/s ([`decay`]), is brought back.
+pub(super) fn stilled(samples: &[f32], sweep: &Sweep, decay: f64) -> Vec<f32> {
+    if sweep.is_none() {
+        return samples.to_vec();
     }
+    let mut clock = Clock::new(samples, sweep);
+    let mut still = Vec::new();
+    while let Some((time, (sample, _))) = Some(clock.time).zip(clock.next()) {
+        let late = (still.len() as f64 - time) / f64::from(RATE);
+        still.push((f64::from(sample) * exp(-decay * late)) as f32);
+    }
+    still
 }
 
-/// Finds the sweep of samples at [`RATE`], from their onset on; [`Sweep::NONE`] if none makes them clearly stiller.
-pub(super) fn find(samples: &[f32]) -> Sweep {
+/// How fast the amplitude of a sound falls, in 1/s: a line through the logarithm of its level.
+pub(super) fn decay(samples: &[f32]) -> f64 {
+    let levels: Vec<f64> = samples.chunks(RATE as usize / BLOCKS).map(|block| log(rms(block).max(1e-9))).collect();
+    let loudest = levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let heard = levels.iter().rposition(|level| *level > loudest - HEARD).map_or(0, |last| last + 1);
+    let points = levels[..heard].iter().enumerate().map(|(n, level)| (n as f64 / BLOCKS as f64, *level));
+    slope(points).map_or(0.0, |slope| (-slope).max(0.0))
+}
+
+/// The movements of the pitch that samples at [`RATE`] may have, from their onset on; none if it stands still.
+pub(super) fn find(samples: &[f32]) -> Vec<Sweep> {
     let fft = RealFftPlanner::new().plan_fft_forward(POINTS);
-    let mut peaks = Peaks { samples, input: fft.make_input_vec(), fft };
-    let still = peaks.height(&Sweep::NONE);
+    let mut peaks = Peaks { samples, stretch: STRETCHES.0, input: fft.make_input_vec(), fft };
     let mut coarse = Vec::new();
     for semitones in SEMITONES {
         for seconds in SECONDS {
             // The best curve of each is enough.
-            let curved =
-                CURVES.map(|curve| Sweep { semitones, seconds, curve }).map(|sweep| (peaks.height(&sweep), sweep));
+            let curved = CURVES.map(|curve| Sweep { semitones, seconds, curve, ..Sweep::NONE });
+            let curved = curved.map(|sweep| (peaks.height(&sweep), sweep));
             coarse.extend(curved.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)));
         }
     }
     coarse.sort_by(|a, b| b.0.total_cmp(&a.0));
     coarse.truncate(REFINED);
-    let refined = coarse.into_iter().map(|(height, sweep)| refine(&mut peaks, sweep, height));
-    match refined.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((height, sweep)) if height > CLEARLY * still => sweep,
-        _ => Sweep::NONE,
+    peaks.stretch = STRETCHES.1;
+    let still = peaks.height(&Sweep::NONE);
+    let refined = coarse.into_iter().map(|(_, sweep)| refine(&mut peaks, sweep));
+    let mut found: Vec<Sweep> = refined
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|(height, _)| *height > CLEARLY * still)
+        .map(|(_, sweep)| sweep)
+        .into_iter()
+        .collect();
+    // What the strongest partial does is a sweep of all if it makes the others stand still, too.
+    let followed = course::find(samples);
+    if !followed.is_none() && peaks.height(&followed) > still {
+        found.push(refine(&mut peaks, followed).1);
     }
+    found
 }
 
 /// Moves a sweep to where the peaks are tallest. Gives their height, too.
-fn refine(peaks: &mut Peaks, mut best: Sweep, mut height: f64) -> (f64, Sweep) {
-    let mut step = 0.5;
-    for _ in 0..ROUNDS {
-        for number in 0..3 {
-            for sign in [-1.0, 1.0] {
-                let mut sweep = best;
-                match number {
-                    0 => sweep.semitones = (best.semitones * (1.0 + 0.4 * sign * step)).clamp(-60.0, 60.0),
-                    1 => sweep.seconds = (best.seconds * (1.0 + 0.6 * sign * step)).clamp(SHORTEST, 2.0),
-                    _ => sweep.curve = (best.curve + 0.3 * sign * step).clamp(-1.0, 1.0),
-                }
-                let found = peaks.height(&sweep);
-                if found > height {
-                    (best, height) = (sweep, found);
-                }
-            }
-        }
-        step *= 0.65;
-    }
-    (height, best)
+fn refine(peaks: &mut Peaks, start: Sweep) -> (f64, Sweep) {
+    let (place, _) = simplex::least(STEPS, |place| -peaks.height(&start.moved(place)));
+    let swept = start.moved(place);
+    let trembling = |[depth, rate]: [f64; 2]| {
+        let Vibrato { semitones, rate: before, delay } = swept.vibrato;
+        let vibrato = Vibrato { semitones: semitones * (1.0 + depth), rate: before * (1.0 + 0.1 * rate), delay };
+        Sweep { vibrato, ..swept }
+    };
+    let still = swept.vibrato.semitones == 0.0;
+    let best = if still { swept } else { trembling(simplex::least(STEPS, |place| -peaks.height(&trembling(place))).0) };
+    (peaks.height(&best), best)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use libm::{exp, sin};
+    use libm::sin;
 
     fn swept(sweep: &Sweep) -> Vec<f32> {
         let (mut phases, envelope) = ([0.0; 2], sweep.envelope());
@@ -181,13 +206,13 @@ mod tests {
 
     #[test]
     fn a_sweep_is_found_and_a_still_sound_has_none() {
-        let sweep = Sweep { semitones: 15.0, seconds: 0.09, curve: 0.6 };
-        let found = find(&swept(&sweep));
+        let sweep = Sweep { semitones: 15.0, seconds: 0.09, curve: 0.6, ..Sweep::NONE };
+        let found = *find(&swept(&sweep)).last().unwrap();
         // The same fall can be had from slightly different numbers: what counts is where the pitch is.
         for t in [0.0, 0.02, 0.05] {
             let off = (found.envelope().at(t) - sweep.envelope().at(t)).abs();
             assert!(off < 1.5, "{found:?} at {t} s: {off} semitones off");
         }
-        assert_eq!(find(&swept(&Sweep::NONE)), Sweep::NONE);
+        assert_eq!(find(&swept(&Sweep::NONE)), []);
     }
 }

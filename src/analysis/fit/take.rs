@@ -1,6 +1,6 @@
 //! A recording that is fitted: what is known of it, and its samples made ready.
 
-use crate::analysis::level::rms;
+use crate::analysis::level::{mean_of, rms};
 use crate::analysis::log_mel::RATE;
 use crate::error::{Error, Result};
 use crate::io::sound_file::{Recording, resampled};
@@ -94,6 +94,11 @@ impl Prepared {
         self.mean.iter().fold(0.0, |peak, sample| f64::from(sample.abs()).max(peak))
     }
 
+    /// Its length.
+    pub(super) fn seconds(&self) -> f64 {
+        self.mean.len() as f64 / f64::from(RATE)
+    }
+
     /// RMS of its first 50 ms.
     pub(super) fn level(&self) -> f64 {
         rms(&self.mean[..self.mean.len().min(RATE as usize / 20)])
@@ -106,7 +111,5 @@ impl Prepared {
 }
 
 fn mean(channels: &[Vec<f32>]) -> Vec<f32> {
-    let len = channels.iter().map(Vec::len).min().unwrap_or(0);
-    let count = channels.len().max(1) as f32;
-    (0..len).map(|n| channels.iter().map(|channel| channel[n]).sum::<f32>() / count).collect()
+    mean_of(channels).into_iter().map(|sample| sample as f32).collect()
 }

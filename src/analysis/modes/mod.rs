@@ -23,7 +23,7 @@ mod strikes;
 pub use common::{Common, common};
 pub use mode::{Group, Kind, Mode, Strike, Uncertainty};
 
-use super::level::dbfs;
+use super::level::{dbfs, mean_of};
 use crate::error::{Error, Result};
 use fit::Fit;
 use groups::groups;
@@ -156,9 +156,7 @@ fn search(
 
 /// The mean of the channels, or the loudest where they all but cancel.
 fn mono(channels: &[Vec<f32>], warnings: &mut Vec<String>) -> Vec<f64> {
-    let len = channels.iter().map(Vec::len).min().unwrap_or(0);
-    let mean = |n: usize| channels.iter().map(|channel| f64::from(channel[n])).sum::<f64>() / channels.len() as f64;
-    let mean: Vec<f64> = (0..len).map(mean).collect();
+    let mean = mean_of(channels);
     let energy = |channel: &Vec<f32>| channel.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
     let loudest = channels.iter().enumerate().max_by(|a, b| energy(a.1).total_cmp(&energy(b.1)));
     let of_mean: f64 = mean.iter().map(|sample| sample * sample).sum();

@@ -101,6 +101,9 @@ pub(super) fn find(
         if dropped.is_empty() {
             break;
         }
+        if !go_on() {
+            return Err(Error::Interrupted);
+        }
         let left = (0..fit.poles.len()).filter(|k| !dropped.contains(k)).map(|k| fit.poles[k]).collect();
         fit = Fit::new(samples, left).ok_or_else(unsolvable)?.refine(samples, 1e-7, 20, &mut go_on);
     }

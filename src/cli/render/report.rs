@@ -1,6 +1,6 @@
 //! The report that `sprung render` prints.
 
-use crate::cli::terminal::{complain, complain_lines, print};
+use crate::cli::terminal::{complain, complain_lines, counted, print};
 use serde_json::json;
 use sprung::Result;
 use sprung::io::{SampleFormat, Target};
@@ -51,7 +51,7 @@ pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()
 fn summary(report: &Report, target: &Target) -> String {
     let level = |value: Option<f64>, unit: &str| value.map_or(String::new(), |value| format!(", {value:.1} {unit}"));
     format!(
-        "{}: {:.3} s (tail {:.3} s) at {} Hz{}{}, at most {} notes at once, {:.0}x real time",
+        "{}: {:.3} s (tail {:.3} s) at {} Hz{}{}, at most {} at once, {:.0}x real time",
         target.name(),
         report.seconds,
         report.tail_seconds,
@@ -61,7 +61,7 @@ fn summary(report: &Report, target: &Target) -> String {
             peak => level(peak, "dBFS peak"),
         },
         level(report.lufs, "LUFS"),
-        report.voices_used,
+        counted(report.voices_used, "note"),
         report.realtime_factor,
     )
 }

@@ -23,7 +23,6 @@ pub(super) mod drum {
     pub(in super::super) const MIDDLE_TOM: u8 = 48;
     pub(in super::super) const CRASH: u8 = 49;
     pub(in super::super) const HIGH_TOM: u8 = 50;
-    pub(in super::super) const RIDE: u8 = 51;
     pub(in super::super) const COWBELL: u8 = 56;
     pub(in super::super) const MARACAS: u8 = 70;
     pub(in super::super) const CLAVES: u8 = 75;
