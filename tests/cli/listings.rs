@@ -2,15 +2,19 @@
 
 use crate::Sandbox;
 use sprung::params::PARAMS;
-use sprung::preset::Preset;
+use sprung::preset::{KitPreset, Preset};
 use std::process::{Command, Stdio};
 
 #[test]
 fn presets_are_listed_shown_and_checked() {
     let sandbox = Sandbox::new();
     let list = String::from_utf8(sandbox.succeeds("presets list")).unwrap();
-    assert_eq!(list.lines().count(), Preset::factory().len());
-    assert!(list.contains("  1  Kick  "), "{list}");
+    assert_eq!(list.lines().count(), Preset::factory().len() + KitPreset::factory().len());
+    assert!(list.lines().any(|line| line.starts_with("Kick ")), "{list}");
+    let programs = String::from_utf8(sandbox.succeeds("presets list --gm")).unwrap();
+    assert!(programs.contains("\n 13  Marimba"), "{programs}");
+    let found: serde_json::Value = serde_json::from_slice(&sandbox.succeeds("presets list --family kit --json")).unwrap();
+    assert_eq!(found.as_array().unwrap().len(), KitPreset::factory().len());
 
     let kick = String::from_utf8(sandbox.succeeds("presets show kick")).unwrap();
     assert_eq!(&Preset::parse(&kick, "kick").unwrap(), Preset::find("Kick").unwrap());
@@ -129,4 +133,18 @@ fn a_full_disk_behind_stdout_is_an_error() {
         assert_eq!(output.status.code(), Some(1), "{args}");
         assert_eq!(stderr, "sprung: error: stdout: No space left on device (os error 28)\n", "{args}");
     }
+}
+
+#[test]
+fn an_audition_plays_shows_and_measures_what_is_meant() {
+    let sandbox = Sandbox::new();
+    sandbox.succeeds("presets audition --family snare --search brush --out page");
+    let page = String::from_utf8(sandbox.read("page/index.html")).unwrap();
+    assert!(page.contains("<h2>Brush Snare</h2>") && page.contains("attack flatness"), "{page}");
+    assert!(sandbox.read("page/brush-snare.wav").starts_with(b"RIFF"));
+    assert!(sandbox.read("page/brush-snare.png").starts_with(b"\x89PNG"));
+    let again = "presets audition --family snare --search brush --out page";
+    sandbox.fails(again, 1, "index.html: the file exists");
+    sandbox.succeeds(&format!("{again} --force"));
+    sandbox.fails("presets audition --search nothing-like-it --out none", 1, "no sound is meant");
 }

@@ -1,7 +1,7 @@
 //! MIDI files that violate the standard, and program changes together with `--preset`.
 
 use crate::{Sandbox, end, midi, note_on, song};
-use midly::MidiMessage;
+use midly::{MidiMessage, TrackEvent};
 
 /// Runs the command, which must succeed, and returns its stderr.
 fn said(sandbox: &Sandbox, args: &str) -> String {
@@ -78,15 +78,44 @@ fn program_changes_are_told_and_can_be_left_out() {
     assert!(!plain.contains("warning"), "{plain}");
     let told = said(&sandbox, &format!("render changes.mid --preset Kalimba {base} changes.wav"));
     let expected = "sprung: warning: 2 of 4 notes, on 2 channels, do not play on --preset because of program changes; \
-                    --ignore-programs plays them on it\n";
+                    --programs none plays them on it\n";
     assert!(told.starts_with(expected), "{told}");
     assert!(sandbox.read("changes.wav") != sandbox.read("plain.wav"));
-    let ignored = said(&sandbox, &format!("render changes.mid --preset Kalimba --ignore-programs {base} changes.wav"));
+    let ignored = said(&sandbox, &format!("render changes.mid --preset Kalimba --programs none {base} changes.wav"));
     assert!(!ignored.contains("warning"), "{ignored}");
     assert!(sandbox.read("changes.wav") == sandbox.read("plain.wav"));
     // Without --preset there is no warning, because no single sound was requested for all programs.
-    for args in ["changes.mid", "changes.mid --ignore-programs"] {
+    for args in ["changes.mid", "changes.mid --programs none"] {
         let told = said(&sandbox, &format!("render {args} {base} out.wav"));
         assert!(!told.contains("warning"), "{told}");
     }
+}
+
+#[test]
+fn general_midi_needs_no_option() {
+    let sandbox = Sandbox::new();
+    let program = |channel, number: u8| midi(0, channel, MidiMessage::ProgramChange { program: number.into() });
+    let render = |name: &str, args: &str, events: &[TrackEvent<'static>]| {
+        sandbox.write(&format!("{name}.mid"), song(&[events, &[end(480)]].concat()));
+        let told = said(&sandbox, &format!("render {name}.mid {args} --bits 32f --force -o {name}.wav"));
+        assert!(!told.contains("warning"), "{told}");
+        sandbox.read(&format!("{name}.wav"))
+    };
+    // Program 13, a marimba, and drums on channel 10.
+    let marimba = render("marimba", "", &[program(2, 12), note_on(0, 2, 60)]);
+    let named = render("named", "--channel 3=Marimba", &[note_on(0, 2, 60)]);
+    assert!(marimba == named);
+    let drums = render("drums", "", &[note_on(0, 9, 36)]);
+    let mut named = sandbox.sprung("render drums.mid --bits 32f --force -o kit.wav");
+    named.args(["--channel", "10=Acoustic Kit"]).assert().success();
+    assert!(drums == sandbox.read("kit.wav") && drums != marimba);
+    sandbox.write("mine.toml", "programs = 1\nname = \"Mine\"\nsounds = [\"\", \"Marimba\"]");
+    let mine = render("mine", "--programs mine.toml", &[program(2, 1), note_on(0, 2, 60)]);
+    assert!(mine == marimba);
+    sandbox.write("mine.mid", song(&[program(2, 0), note_on(0, 2, 60), end(480)]));
+    let told = said(&sandbox, "render mine.mid --programs mine.toml --force -o mine.wav");
+    assert!(told.contains("program 1: ‘Mine’ has no sound for it; it plays what channels start with"), "{told}");
+    sandbox.write("bad.toml", "programs = 1\nname = \"Bad\"\nsounds = [\"Marimbo\"]");
+    sandbox.fails("render mine.mid --programs bad.toml --force -o mine.wav", 1, "the nearest is ‘Marimba’");
+    sandbox.fails("render mine.mid --programs gs --force -o mine.wav", 1, "expected gm, none or a file ending in .toml");
 }

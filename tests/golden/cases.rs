@@ -1,6 +1,6 @@
 //! The golden cases: every factory preset, every song in `assets/midi`, and the engine's other features.
 
-use crate::score::Score;
+use crate::score::{BLOCKS, Score};
 use sprung::engine::{EventKind, NoteId};
 use sprung::params::Param;
 use sprung::patch::routes::Source;
@@ -14,7 +14,9 @@ pub(crate) const INIT: &str = "preset-init";
 pub(crate) fn all() -> Vec<Score> {
     // The longest come first, so that no core waits for them at the end.
     let mut cases = crate::songs::all();
-    cases.extend(Preset::factory().iter().map(preset));
+    // The bank is large: each preset is played in one block size more, and all sizes take turns.
+    let turns = (0..BLOCKS.len()).cycle().map(|turn| &BLOCKS[turn..=turn]);
+    cases.extend(Preset::factory().iter().zip(turns).map(|(one, blocks)| Score { blocks, ..preset(one) }));
     cases.extend(engine());
     cases
 }

@@ -6,8 +6,6 @@ use sprung::analysis::{diff, digest::Digest, level};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Block sizes that must all give the same bits as one block of the whole length.
-const BLOCKS: [usize; 5] = [1, 7, 64, 480, 4096];
 /// Number of frames in the kept audio, for cases that keep audio.
 const KEPT_FRAMES: usize = 12_000;
 
@@ -77,7 +75,7 @@ pub(crate) fn bless(store: &Store, case: &Score) {
 pub(crate) fn check(store: &Store, case: &Score) -> Result<(), String> {
     let audio = case.render(WHOLE);
     check_audio(store, case, &audio)?;
-    for block in BLOCKS {
+    for &block in case.blocks {
         let blocks = case.render(block);
         if let Some(difference) = diff::compare(&audio, &blocks) {
             let message = format!("{}: blocks of {block} differ from one block: {difference}", case.name);

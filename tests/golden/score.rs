@@ -8,6 +8,9 @@ use std::sync::Arc;
 /// A block as long as the score.
 pub(crate) const WHOLE: usize = usize::MAX;
 
+/// Block sizes that must all give the same bits as one block of the whole length.
+pub(crate) const BLOCKS: &[usize] = &[1, 7, 64, 480, 4096];
+
 /// What a golden case plays.
 #[derive(Clone)]
 pub(crate) struct Score {
@@ -21,6 +24,8 @@ pub(crate) struct Score {
     /// Events as frame, channel and kind, in order of time.
     events: Vec<(u64, u8, EventKind)>,
     pub(crate) frames: usize,
+    /// Block sizes that it is played in, beside one block.
+    pub(crate) blocks: &'static [usize],
     /// Whether the beginning of the audio is kept in addition to the digest.
     pub(crate) keeps_audio: bool,
 }
@@ -37,6 +42,7 @@ impl Score {
             programs: Vec::new(),
             events: Vec::new(),
             frames: (seconds * sample_rate) as usize,
+            blocks: BLOCKS,
             keeps_audio: false,
         }
     }

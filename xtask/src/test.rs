@@ -84,6 +84,12 @@ const STEPS: &[Step] = &[
         shows: Shows::Tests,
     },
     Step {
+        name: "bank, release",
+        arguments: "test --release --package sprung --no-default-features --features analysis --test bank",
+        environment: &[],
+        shows: Shows::Tests,
+    },
+    Step {
         name: "documentation",
         arguments: "doc --workspace --no-deps --all-features",
         environment: &[DENY],
