@@ -1,6 +1,6 @@
 //! `sprung fit`, and figures of sounds.
 
-use crate::Sandbox;
+use crate::{Sandbox, signals};
 use sprung::io::sound_file::read;
 use std::f64::consts::TAU;
 
@@ -15,17 +15,7 @@ fn bar(fundamental: f64, gain: f64) -> Vec<f32> {
 }
 
 fn wav(samples: &[f32]) -> Vec<u8> {
-    let spec = hound::WavSpec {
-        channels: 1,
-        sample_rate: 44_100,
-        bits_per_sample: 32,
-        sample_format: hound::SampleFormat::Float,
-    };
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let mut writer = hound::WavWriter::new(&mut bytes, spec).unwrap();
-    samples.iter().for_each(|sample| writer.write_sample(*sample).unwrap());
-    writer.finalize().unwrap();
-    bytes.into_inner()
+    signals::wav(samples, 44_100, 1)
 }
 
 #[test]
@@ -92,17 +82,11 @@ fn what_cannot_be_fitted_is_refused() {
 #[test]
 fn noise_and_sounds_that_do_not_decay_are_warned_of() {
     let sandbox = Sandbox::new();
-    let mut state = 1_u32;
-    let mut noise = || {
-        state ^= state << 13;
-        state ^= state >> 17;
-        state ^= state << 5;
-        f64::from(state) / f64::from(u32::MAX) - 0.5
-    };
-    let burst: Vec<f32> = (0..22_050).map(|n| (noise() * libm::exp(-2e-4 * f64::from(n))) as f32).collect();
-    sandbox.write("noise.wav", wav(&burst));
-    let steady: Vec<f32> = (0..22_050).map(|_| noise() as f32).collect();
-    sandbox.write("steady.wav", wav(&steady));
+    let noise = signals::noise(44_100);
+    let (first, second) = noise.split_at(22_050);
+    let burst = first.iter().enumerate().map(|(n, sample)| sample * libm::exp(-2e-4 * n as f64) as f32);
+    sandbox.write("noise.wav", wav(&burst.collect::<Vec<_>>()));
+    sandbox.write("steady.wav", wav(second));
     for (file, warning) in
         [("noise", ""), ("steady", "steady.wav: the sound does not decay: expected something that is struck")]
     {

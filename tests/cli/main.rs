@@ -12,6 +12,7 @@ mod listings;
 mod messages;
 mod outputs;
 mod recordings;
+mod signals;
 mod songs;
 mod sound;
 mod tuning;

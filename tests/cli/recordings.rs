@@ -1,21 +1,11 @@
 //! `sprung analyze` and `sprung diff`.
 
-use crate::Sandbox;
+use crate::{Sandbox, signals};
 use std::f64::consts::TAU;
 
 /// A mono WAV of floats.
 fn wav(samples: &[f32], sample_rate: u32) -> Vec<u8> {
-    wav_of(samples, sample_rate, 1)
-}
-
-/// A WAV of interleaved floats.
-fn wav_of(samples: &[f32], sample_rate: u32, channels: u16) -> Vec<u8> {
-    let spec = hound::WavSpec { channels, sample_rate, bits_per_sample: 32, sample_format: hound::SampleFormat::Float };
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let mut writer = hound::WavWriter::new(&mut bytes, spec).unwrap();
-    samples.iter().for_each(|sample| writer.write_sample(*sample).unwrap());
-    writer.finalize().unwrap();
-    bytes.into_inner()
+    signals::wav(samples, sample_rate, 1)
 }
 
 /// Half a second of a mode of 440 Hz and a T60 of 0.5 s.
@@ -55,20 +45,13 @@ fn is_json(text: &[u8]) -> bool {
 #[test]
 fn whatever_sounds_is_described_without_numbers_that_are_none() {
     let sandbox = Sandbox::new();
-    let mut state = 1_u32;
-    let mut noise = || {
-        state ^= state << 13;
-        state ^= state >> 17;
-        state ^= state << 5;
-        state as f32 / u32::MAX as f32 - 0.5
-    };
     let hum = |n: usize| 0.01 * libm::sin(TAU * 50.0 * n as f64 / 44_100.0) as f32;
     // Pulses of a voice that glides.
     let voice =
         |n: usize| libm::exp(30.0 * libm::sin(TAU * (120.0 + 1e-4 * n as f64) * n as f64 / 44_100.0) - 31.0) as f32;
     let strike = strike(0.5);
     let sounds: [(&str, Vec<f32>, u16); 7] = [
-        ("noise", (0..22_050).map(|_| noise()).collect(), 1),
+        ("noise", signals::noise(22_050), 1),
         ("late", [vec![0.0; 9_000], strike.clone()].concat(), 1),
         ("stereo", strike.iter().flat_map(|sample| [*sample, -0.5 * sample]).collect(), 2),
         ("clipped", strike.iter().map(|sample| (4.0 * sample).clamp(-1.0, 1.0)).collect(), 1),
@@ -77,7 +60,7 @@ fn whatever_sounds_is_described_without_numbers_that_are_none() {
         ("voice", (0..22_050).map(voice).collect(), 1),
     ];
     for (name, samples, channels) in sounds {
-        sandbox.write(&format!("{name}.wav"), wav_of(&samples, 44_100, channels));
+        sandbox.write(&format!("{name}.wav"), signals::wav(&samples, 44_100, channels));
         let json = sandbox.succeeds(&format!("analyze {name}.wav --modes 16 --hits --json"));
         assert!(is_json(&json), "{name}: {}", String::from_utf8_lossy(&json));
         let printed = ["", "--csv"].map(|kind| sandbox.succeeds(&format!("analyze {name}.wav --modes 16 {kind}")));
@@ -110,7 +93,8 @@ fn what_is_compared_is_said() {
     let sandbox = Sandbox::new();
     let sound = strike(0.5);
     sandbox.write("a.wav", wav(&sound, 44_100));
-    sandbox.write("twice.wav", wav_of(&sound.iter().flat_map(|sample| [*sample; 2]).collect::<Vec<_>>(), 44_100, 2));
+    sandbox
+        .write("twice.wav", signals::wav(&sound.iter().flat_map(|sample| [*sample; 2]).collect::<Vec<_>>(), 44_100, 2));
     sandbox.write("short.wav", wav(&sound[..11_025], 44_100));
     let run = |args: &str| {
         let output = sandbox.sprung(args).write_stdin("").assert().get_output().clone();

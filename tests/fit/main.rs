@@ -46,7 +46,7 @@ fn every() -> Vec<Note> {
 /// Median distance in dB of a fit from its preset, and that from which on it is far; and the share of notes that may be.
 const MEDIAN: f64 = 1.0;
 const FAR: f64 = 3.0;
-const FEW: f64 = 0.1;
+const FEW: f64 = 0.15;
 /// Greatest distance in dB.
 const WORST: f64 = 10.0;
 

@@ -82,7 +82,7 @@ pub(crate) fn in_parallel<'a, T: Sync, R: Send>(items: &'a [T], make: impl Fn(&'
     };
     let mut all: Vec<(usize, R)> = std::thread::scope(|scope| {
         let count = std::thread::available_parallelism().map_or(1, usize::from);
-        let threads: Vec<_> = (0..count).map(|_| scope.spawn(&work)).collect();
+        let threads: Vec<_> = (0..count).map(|_| scope.spawn(work)).collect();
         threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
     });
     all.sort_by_key(|(index, _)| *index);

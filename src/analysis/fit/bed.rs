@@ -17,7 +17,9 @@ const T60: (f64, f64) = (0.01, 20.0);
 const FOLLOWED_DB: f64 = 45.0;
 /// Windows in which a band can come to its loudest: 1.2 s.
 const RISE: usize = 207;
-/// Modes of a band.
+/// RMS deviation of a band's level from a line up to which it falls smoothly.
+const SMOOTH_DB: f64 = 2.0;
+/// Modes of a band that does not.
 const FEWEST: f64 = 2.0;
 const MOST: f64 = 6.0;
 /// Power of a line in relation to the highest of its band that is left out: −13 dB.
@@ -80,9 +82,11 @@ fn fill(
     let slope = if count >= 4.0 { (product / square).min(-60.0 / T60.1) } else { -60.0 / 0.03 };
     let t60 = (-60.0 / slope).clamp(T60.0, T60.1);
     let at_onset = if count >= 4.0 { (y - slope * t).min(top + 6.0) } else { top };
-    // As many as it takes that their resonances meet.
+    // What falls smoothly is one mode: several would beat. Of noise, there are as many as it takes that their resonances meet.
+    let off = points.iter().map(|point| point.1 - y - slope * (point.0 - t)).map(|off| off * off).sum::<f64>();
+    let is_smooth = count >= 4.0 && off < SMOOTH_DB * SMOOTH_DB * count;
     let width = 0.5 * (centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1)));
-    let most = (0.5 * width * t60 / BANDWIDTH).clamp(FEWEST, MOST).round();
+    let most = if is_smooth { 1.0 } else { (0.5 * width * t60 / BANDWIDTH).clamp(FEWEST, MOST).round() };
     let range = (centre(band) - 0.5 * width, centre(band) + 0.5 * width);
     let places = lines.highest(range, BANDWIDTH / t60, most as usize);
     let all: f64 = places.iter().map(|(_, power)| power).sum();

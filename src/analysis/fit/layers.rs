@@ -5,13 +5,14 @@ use crate::params::Param;
 use crate::patch::Patch;
 use crate::patch::routes::Source;
 use crate::units::key_from_frequency;
-use libm::log;
+use libm::{log, log10};
 
 /// Semitones within which two takes are of one key.
 const SAME_KEY: f64 = 0.5;
 /// Places of the routes: those of a new patch are behind them.
 const HARDNESS_ROUTE: usize = 0;
 const DECAY_ROUTE: usize = 1;
+const GAIN_ROUTE: usize = 2;
 
 /// A take's draft and what was measured of it.
 pub(super) struct Layer {
@@ -21,7 +22,8 @@ pub(super) struct Layer {
 }
 
 impl Layer {
-    fn key(&self) -> f64 {
+    /// Its key as a fractional MIDI key.
+    pub(super) fn key(&self) -> f64 {
         key_from_frequency(self.draft.note, 440.0)
     }
 
@@ -80,6 +82,30 @@ pub(super) fn route(mut patch: Patch, layers: &[Layer], base: usize) -> Patch {
         if amount != 0.0 {
             patch.set(Param::Decay, info.clamp(at_c4 as f32));
             patch = patch.with_route(DECAY_ROUTE, Source::Key, Param::Decay, amount);
+        }
+    }
+    patch
+}
+
+/// Adds the route by which the patch of layer `base` becomes louder or softer over the keys, as the layers do. `played` gives the
+/// RMS of a patch's first 50 ms when it plays a layer's note.
+pub(super) fn route_gain(
+    mut patch: Patch,
+    layers: &[Layer],
+    base: usize,
+    played: &mut dyn FnMut(&Patch, &Layer) -> f64,
+) -> Patch {
+    let middle = |layer: &Layer| (layer.key() - 60.0) / 60.0;
+    let missing = |layer| (middle(layer), 20.0 * log10(layer.level.max(1e-9) / played(&patch, layer).max(1e-9)));
+    if let Some(slope) = slope(layers.iter().map(missing)) {
+        let info = Param::Gain.info();
+        let range = f64::from(info.max) - f64::from(info.min);
+        let amount = rounded((100.0 * slope / range).clamp(-100.0, 100.0));
+        if amount != 0.0 {
+            // At its own key the layer stays as loud as it was.
+            let at_c4 = f64::from(patch.get(Param::Gain)) - 0.01 * f64::from(amount) * range * middle(&layers[base]);
+            patch.set(Param::Gain, info.clamp(rounded(at_c4)));
+            patch = patch.with_route(GAIN_ROUTE, Source::Key, Param::Gain, amount);
         }
     }
     patch

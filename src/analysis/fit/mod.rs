@@ -23,6 +23,7 @@ mod tuned;
 pub use body::{Explained, Family};
 pub use take::{Take, VELOCITY};
 
+use super::level::rms;
 use super::log_mel::{self, RATE};
 use super::modes::Strike;
 use crate::error::{Error, Result};
@@ -133,8 +134,11 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
             (tuned::patch(&draft, &body, take), Some(explained))
         }
     };
-    let patch = layers::route(patch, &layers, base);
     let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
+    let patch = layers::route(patch, &layers, base);
+    let patch = layers::route_gain(patch, &layers, base, &mut |patch, layer| {
+        rms(&audition.mean(patch, layer.key(), layer.draft.velocity, take::LEVEL_FRAMES))
+    });
     let played = audition.play(&patch, key, draft.velocity, take.mean.len());
     let distance = |(layer, take): (&Layer, &Prepared)| {
         let key = key_from_frequency(layer.draft.note, A4);

@@ -20,6 +20,8 @@ const STRETCHES: (f64, f64) = (0.45, 1.2);
 const POINTS: usize = 1 << 17;
 /// How much taller the peaks must be than without a sweep.
 const CLEARLY: f64 = 1.08;
+/// The same for the course of the strongest partial, which is more certain: what dies before its pitch has arrived has broad peaks.
+const HARDLY: f64 = 0.5;
 /// Steps of the coarse search.
 const SEMITONES: [f64; 17] =
     [-18.0, -12.0, -5.0, -2.0, -0.5, 0.4, 1.0, 2.0, 3.0, 5.0, 8.0, 12.0, 18.0, 24.0, 32.0, 44.0, 60.0];
@@ -166,7 +168,7 @@ pub(super) fn find(samples: &[f32]) -> Vec<Sweep> {
         .collect();
     // What the strongest partial does is a sweep of all if it makes the others stand still, too.
     let followed = course::find(samples);
-    if !followed.is_none() && peaks.height(&followed) > still {
+    if !followed.is_none() && peaks.height(&followed) > HARDLY * still {
         found.push(refine(&mut peaks, followed).1);
     }
     found

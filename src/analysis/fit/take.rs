@@ -35,6 +35,9 @@ const OVER: f64 = 6e-4;
 /// Energy of the last third of a sound over that of the first, from which on it does not decay: −3 dB.
 const STEADY: f64 = 0.5;
 
+/// Frames whose RMS is the level of a take: 50 ms.
+pub(super) const LEVEL_FRAMES: usize = RATE as usize / 20;
+
 /// A take at [`RATE`], from its onset to its end.
 pub(super) struct Prepared {
     pub(super) channels: Vec<Vec<f32>>,
@@ -101,7 +104,7 @@ impl Prepared {
 
     /// RMS of its first 50 ms.
     pub(super) fn level(&self) -> f64 {
-        rms(&self.mean[..self.mean.len().min(RATE as usize / 20)])
+        rms(&self.mean[..self.mean.len().min(LEVEL_FRAMES)])
     }
 
     /// The frequency of a key in Hz, at the tuning of a new patch.
