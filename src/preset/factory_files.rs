@@ -120,7 +120,6 @@ pub(super) const PRESETS: &[(&str, &str)] = embed! { "presets":
     "mallet/vibraphone"
     "mallet/xylophone"
     "bell/bowed-bell"
-    "bell/chimes"
     "bell/church-bell"
     "bell/crotales"
     "bell/hand-bell"

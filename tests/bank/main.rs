@@ -82,5 +82,9 @@ fn families_are_as_large_as_a_bank_needs() {
     }
     assert!(whole_bank().len() >= 128);
     let synthetic = whole_bank().iter().filter(|preset| preset.tags.iter().any(|tag| tag == SYNTHESIS)).count();
-    assert!(synthetic * 3 < whole_bank().len(), "{synthetic} of {} are exempt from what instruments measure", whole_bank().len());
+    assert!(
+        synthetic * 3 < whole_bank().len(),
+        "{synthetic} of {} are exempt from what instruments measure",
+        whole_bank().len()
+    );
 }

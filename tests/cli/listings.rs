@@ -13,7 +13,8 @@ fn presets_are_listed_shown_and_checked() {
     assert!(list.lines().any(|line| line.starts_with("Kick ")), "{list}");
     let programs = String::from_utf8(sandbox.succeeds("presets list --gm")).unwrap();
     assert!(programs.contains("\n 13  Marimba"), "{programs}");
-    let found: serde_json::Value = serde_json::from_slice(&sandbox.succeeds("presets list --family kit --json")).unwrap();
+    let found: serde_json::Value =
+        serde_json::from_slice(&sandbox.succeeds("presets list --family kit --json")).unwrap();
     assert_eq!(found.as_array().unwrap().len(), KitPreset::factory().len());
 
     let kick = String::from_utf8(sandbox.succeeds("presets show kick")).unwrap();

@@ -117,5 +117,9 @@ fn general_midi_needs_no_option() {
     assert!(told.contains("program 1: ‘Mine’ has no sound for it; it plays what channels start with"), "{told}");
     sandbox.write("bad.toml", "programs = 1\nname = \"Bad\"\nsounds = [\"Marimbo\"]");
     sandbox.fails("render mine.mid --programs bad.toml --force -o mine.wav", 1, "the nearest is ‘Marimba’");
-    sandbox.fails("render mine.mid --programs gs --force -o mine.wav", 1, "expected gm, none or a file ending in .toml");
+    sandbox.fails(
+        "render mine.mid --programs gs --force -o mine.wav",
+        1,
+        "expected gm, none or a file ending in .toml",
+    );
 }

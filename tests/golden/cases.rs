@@ -16,7 +16,7 @@ pub(crate) fn all() -> Vec<Score> {
     let mut cases = crate::songs::all();
     // The bank is large: each preset is played in one block size more, and all sizes take turns.
     let turns = (0..BLOCKS.len()).cycle().map(|turn| &BLOCKS[turn..=turn]);
-    cases.extend(Preset::factory().iter().zip(turns).map(|(one, blocks)| Score { blocks, ..preset(one) }));
+    cases.extend(Preset::factory().iter().zip(turns).map(|(one, blocks)| preset(one).in_blocks(blocks)));
     cases.extend(engine());
     cases
 }

@@ -64,6 +64,11 @@ impl Score {
         self
     }
 
+    /// Plays it in these block sizes only, beside one block.
+    pub(crate) fn in_blocks(self, blocks: &'static [usize]) -> Self {
+        Self { blocks, ..self }
+    }
+
     pub(crate) fn keeping_audio(mut self) -> Self {
         self.keeps_audio = true;
         self

@@ -139,7 +139,7 @@ pub fn wanted_loudness(preset: &Preset) -> RangeInclusive<f64> {
     match preset.guide.family {
         Some(Family::Hat) => -30.5..=-26.5,
         // A click is over before it is loud.
-        Some(Family::Percussion) => -29.0..=-19.0,
+        Some(Family::Percussion | Family::Effect) => -29.0..=-19.0,
         _ => -25.0..=-19.0,
     }
 }
