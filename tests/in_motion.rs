@@ -252,7 +252,8 @@ fn touching_and_blooming_does_not_click() {
 #[test]
 fn off_is_off() {
     for preset in [Preset::find("Gong"), Preset::find("Low Tom"), Preset::find("Plucked String")] {
-        let patch = &preset.expect("a factory preset").patch;
+        let patch = preset.expect("a factory preset").patch.clone();
+        let patch = &patch.with(Param::Tension, 0.0).with(Param::Bloom, 0.0).with(Param::Touch, 0.0);
         let plain = render(patch, &[strike(0, 57, 1.0)], 0.5);
         let moved = patch.clone().with(Param::BloomTime, 0.1).with(Param::TouchPosition, 17.0);
         assert_eq!(render(&moved, &[strike(0, 57, 1.0)], 0.5), plain);

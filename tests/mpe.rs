@@ -83,7 +83,7 @@ fn render(folder: &Path, midi: &[u8]) -> Vec<f32> {
         .arg(&song)
         .arg("-o")
         .arg(&sound)
-        .args(["--force", "--mono", "--bits", "32f", "--tail", "none"]);
+        .args(["--preset", "init", "--force", "--mono", "--bits", "32f", "--tail", "none"]);
     command.args(["--set", "decay=60", "--set", "limiter=off", "--rate", "48000"]);
     let output = command.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

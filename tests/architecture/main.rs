@@ -39,7 +39,7 @@ const OUTSIDE: &[Row] = &[
     ("nalgebra", &["analysis"]),
     ("toml", &["preset", "analysis"]),
     ("plotters", &["figure", "analysis", "lab"]),
-    ("ebur128", &["render"]),
+    ("ebur128", &["render", "analysis"]),
     ("rayon", &["render"]),
     ("std::fs", &["io", "preset", "analysis", "cli"]),
     ("alsa", &["realtime"]),

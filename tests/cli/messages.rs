@@ -36,8 +36,8 @@ fn options_say_what_would_be_right() {
 fn presets_are_suggested_by_their_words() {
     let sandbox = Sandbox::new();
     for (name, message) in [
-        ("Bell", "there is no factory preset ‘Bell’; the nearest is ‘Church Bell’"),
-        ("hat", "the nearest is ‘Closed Hat’ or ‘Open Hat’"),
+        ("Bell", "there is no factory preset or kit ‘Bell’; the nearest is ‘"),
+        ("glass", "Glass"),
         ("kcik", "the nearest is ‘Kick’"),
         ("zzzz", "‘sprung presets list’ shows them all"),
     ] {
@@ -95,7 +95,7 @@ fn nothing_from_a_file_or_its_name_steers_the_terminal() {
         (&["render", &mid, "-o", "x.wav"], format!("{shown}.mid: not a whole MIDI file")),
         (&["render", "none.mid", &mid, "-o", "x.wav"], "\\u202e".to_owned()),
         (&["render", "--note", evil, "-o", "x.wav"], "is not a note".to_owned()),
-        (&["render", "--note", "60", "--preset", evil, "-o", "x.wav"], format!("no factory preset ‘{shown}’")),
+        (&["render", "--note", "60", "--preset", evil, "-o", "x.wav"], format!("no factory preset or kit ‘{shown}’")),
         (&["render", "--note", "60", "--length", "0.01", "-o", &named(".wav")], format!("{shown}.wav: ")),
         (&["render", "--note", "60", "--length", "0.01", "--json", "--force", "-o", &named(".wav")], shown.to_owned()),
         (&["lab", "listen", evil, "--methods", "rk4", "--seconds", "0.01"], format!("{shown}/rk4.wav")),

@@ -45,7 +45,7 @@ fn keys_sound_at_the_scale_and_the_frequency_of_the_files() {
 fn unmapped_keys_are_silent() {
     let sandbox = sandbox();
     sandbox.write("song.mid", song(&[note_on(0, 0, 61), note_on(0, 9, 62), end(240)]));
-    let args = "render song.mid --scale fifths.scl --keymap c-and-g.kbm --json -o out.wav";
+    let args = "render song.mid --preset init --scale fifths.scl --keymap c-and-g.kbm --json -o out.wav";
     let report: serde_json::Value = serde_json::from_slice(&sandbox.succeeds(args)).unwrap();
     assert_eq!(report["voices_used"], 0);
     assert_eq!(sandbox.wav("out.wav").peak(), 0.0);

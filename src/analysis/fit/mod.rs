@@ -131,7 +131,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
                     "no mode rings in it: expected a sound that a body can explain, or the body table",
                 )
             })?;
-            (tuned::patch(&draft, &body, take), Some(explained))
+            (tuned::patch(&draft, &body, take, key_from_frequency(draft.note, A4)), Some(explained))
         }
     };
     let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));

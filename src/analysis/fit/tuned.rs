@@ -13,7 +13,7 @@ use crate::analysis::log_mel::{MelBands, from_onset};
 use crate::params::{Choice, MalletPulse, Param};
 use crate::patch::Patch;
 use crate::sound::bodies::{Body, Loss, Point};
-use crate::units::{gain_from_db, key_from_frequency};
+use crate::units::gain_from_db;
 use libm::exp;
 
 /// Hardnesses of the mallet, 0–1, from which the search begins: it would not leave the slope of a wrong one.
@@ -25,11 +25,10 @@ const TILT: f64 = 15.0;
 /// Least and greatest tilt.
 const TILTS: (f64, f64) = (-24.0, 24.0);
 
-/// The patch of a body struck so, with such losses and such a mallet, that it is nearest to a take.
-pub(super) fn patch(draft: &Draft, body: &Body, take: &Prepared) -> Patch {
+/// The patch of a body, played on a fractional MIDI key, struck so, with such losses and such a mallet, that it is nearest to a take.
+pub(super) fn patch(draft: &Draft, body: &Body, take: &Prepared, key: f64) -> Patch {
     let (mut audition, mut bands) = (Audition::new(), MelBands::new());
     let target = bands.measure(from_onset(&take.mean));
-    let key = key_from_frequency(draft.note, super::A4);
     let mut heard = |patch: &mut Patch| {
         let mut played = audition.mean(patch, key, draft.velocity, take.mean.len());
         // As loud as the recording.
