@@ -12,7 +12,6 @@ use sprung::realtime::{
     Wanted, device, midi_ports, view,
 };
 use sprung::render::BLOCKS;
-use sprung::sound::Kit;
 use sprung::text::printable;
 use sprung::{Error, Result};
 use std::io::IsTerminal;
@@ -213,7 +212,7 @@ impl Stage {
         kits: KitSender,
         closing: LiveSender,
         sounds: Sounds,
-        make: Box<dyn Fn(&Preset) -> Arc<Kit>>,
+        make: view::MakeKit,
     ) -> Result<()> {
         let (device, status) = (self.session.description().to_owned(), self.status.clone());
         let Sounds { kit, channels, programs, .. } = sounds;

@@ -14,6 +14,10 @@ fn preset(name: &str) -> &'static Preset {
     Preset::find(name).unwrap_or_else(|error| panic!("{error}"))
 }
 
+fn decibels(energy: f64) -> f64 {
+    10.0 * libm::log10(energy)
+}
+
 fn cents(frequency: f64, from: f64) -> f64 {
     1200.0 * libm::log2(frequency / from)
 }
@@ -88,7 +92,7 @@ fn gongs_bloom_and_their_highs_last() {
         let sound = note(preset, preset.guide.home, 115.0, 0.5, 3.0);
         let high: Vec<f32> = sound.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let (strike, after) = (energy(&high, 0.0, 0.05) / 0.05, energy(&high, 0.25, 0.65) / 0.4);
-        assert!(after > strike * 0.1, "{name}: its highs fall by {:.1} dB", 10.0 * (after / strike).log10());
+        assert!(after > strike * 0.1, "{name}: its highs fall by {:.1} dB", decibels(after / strike));
     }
 }
 
@@ -101,9 +105,9 @@ fn what_is_held_lasts_as_long_as_its_key() {
         }
         let sound = note(preset, preset.guide.home, 100.0, 5.0, 8.0);
         let (early, late) = (energy(&sound, 1.0, 2.0), energy(&sound, 3.5, 4.5));
-        let change = 10.0 * (late / early).log10();
+        let change = decibels(late / early);
         assert!(change > -8.0, "{}: {change:.1} dB while its key is held", preset.name);
-        let after = 10.0 * (energy(&sound, 7.0, 8.0) / early).log10();
+        let after = decibels(energy(&sound, 7.0, 8.0) / early);
         assert!(after < -25.0, "{}: {after:.1} dB after its key came up", preset.name);
     }
 }
@@ -112,7 +116,7 @@ fn what_is_held_lasts_as_long_as_its_key() {
 fn soft_notes_are_softer() {
     for preset in bank() {
         let level = |velocity| energy(&note(preset, preset.guide.home, velocity, 0.5, 1.5), 0.0, 1.5);
-        let db = 10.0 * (level(100.0) / level(40.0)).log10();
+        let db = decibels(level(100.0) / level(40.0));
         // Organs, bagpipes and harpsichords know no velocity.
         let least = if matches!(preset.guide.family, Some(Family::Keys | Family::Wind | Family::StruckString)) {
             -1.0
@@ -135,6 +139,6 @@ fn a_closed_hat_chokes_an_open_one() {
         let events = [event(0.0, open, Some(100.0)), event(0.5, closed, Some(1.0))];
         synth.process(&events, &mut left, &mut right);
         let (ringing, choked) = (energy(&left, 0.4, 0.5), energy(&left, 0.6, 0.7));
-        assert!(choked < 0.1 * ringing, "{}: {:.1} dB are left", kit.name, 10.0 * (choked / ringing).log10());
+        assert!(choked < 0.1 * ringing, "{}: {:.1} dB are left", kit.name, decibels(choked / ringing));
     }
 }

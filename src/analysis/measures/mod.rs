@@ -144,9 +144,9 @@ fn from_parabola(numbers: &[f64]) -> f64 {
     let count = numbers.len();
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let mut rest = numbers.to_vec();
-    for degree in 0..3 {
-        let place = |n: usize| 2.0 * n as f64 / (count - 1).max(1) as f64 - 1.0;
-        let mut polynomial: Vec<f64> = (0..count).map(|n| place(n).powi(degree)).collect();
+    let place = |n: usize| 2.0 * n as f64 / (count - 1).max(1) as f64 - 1.0;
+    for power in [|_| 1.0, |x: f64| x, |x: f64| x * x] {
+        let mut polynomial: Vec<f64> = (0..count).map(|n| power(place(n))).collect();
         basis.iter().for_each(|known| remove(&mut polynomial, known));
         remove(&mut rest, &polynomial);
         basis.push(polynomial);

@@ -214,7 +214,7 @@ mod tests {
     #[test]
     fn folded_sums_have_the_bits_of_all_lanes() {
         for frame in [
-            std::array::from_fn(|l| (l as f32).sin() * 1e3),
+            std::array::from_fn(|l| libm::sinf(l as f32) * 1e3),
             [-0.0; LANES],
             std::array::from_fn(|l| if l < LANES / 2 { -0.0 } else { 0.0 }),
         ] {

@@ -1,6 +1,6 @@
 //! The state of the view, and how keys change it.
 
-use super::desk::Desk;
+use super::desk::{Desk, MakeKit};
 use super::keyboard::Keyboard;
 use crate::engine::telemetry::Load;
 use crate::engine::{EventKind, Snapshot};
@@ -58,7 +58,7 @@ pub(super) struct App {
     kits: KitSender,
     /// The kits that program changes select.
     programs: Vec<Arc<Kit>>,
-    make: Box<dyn Fn(&Preset) -> Arc<Kit>>,
+    make: MakeKit,
     playing: Vec<Playing>,
     pub(super) channel: u8,
     pub(super) list: List,

@@ -5,6 +5,9 @@ use crate::realtime::{KitSender, LiveSender, Status};
 use crate::sound::Kit;
 use std::sync::Arc;
 
+/// Makes the kit of a preset.
+pub type MakeKit = Box<dyn Fn(&Preset) -> Arc<Kit>>;
+
 /// The data that the view shows, and the senders through which it plays.
 pub struct Desk {
     /// The device, as text.
@@ -22,5 +25,5 @@ pub struct Desk {
     /// The kits that program changes select.
     pub programs: Vec<Arc<Kit>>,
     /// Makes the kit of a preset that is chosen from the list.
-    pub make: Box<dyn Fn(&Preset) -> Arc<Kit>>,
+    pub make: MakeKit,
 }

@@ -16,7 +16,7 @@ use ratatui::crossterm::{event::PushKeyboardEnhancementFlags, execute, terminal}
 use std::io::stdout;
 use std::time::{Duration, Instant};
 
-pub use desk::Desk;
+pub use desk::{Desk, MakeKit};
 
 /// Time between two frames of the screen. A computer key may wait this long for effects other than its note.
 const FRAME: Duration = Duration::from_millis(33);
