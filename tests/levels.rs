@@ -247,7 +247,7 @@ fn has_the_bits_of_scalar_code(level: Level) -> Result<(), Failed> {
 
 /// Changes one bit of one sample of the last preset, which must be reported.
 fn a_difference_is_named() -> Result<(), Failed> {
-    let preset = Preset::factory().last().expect("there are factory presets");
+    let preset = factory().last().expect("there are factory presets");
     let planted = |case: &Case| {
         let mut audio = reference().iter().find(|(other, _)| other.name == case.name).expect("it is a case").1.clone();
         if case.name.contains(&preset.name) {

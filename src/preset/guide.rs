@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn mistakes_are_named() {
         for (lines, expected) in [
-            ("family = \"malet\"", "the nearest is mallet"),
+            ("family = \"malet\"", "the nearest is ‘mallet’"),
             ("range = { lowest = \"C5\", highest = \"C2\" }", "in this order"),
             ("range = { lowest = \"H9\" }", "expected a key"),
             ("range = 3", "expected { lowest"),

@@ -10,7 +10,7 @@ pub(super) fn check_keys(table: &Table, place: &str, known: &[&str], complaints:
     for key in table.keys().filter(|key| !known.contains(&key.as_str())) {
         complaints.add(match nearest(key, known.iter().copied()) {
             Some(near) => format!("unknown key ‘{place}{key}’; the nearest is {near}"),
-            None if known.len() <= 12 => format!("unknown key ‘{place}{key}’: expected one of {}", known.join(", ")),
+            None if known.len() <= 16 => format!("unknown key ‘{place}{key}’: expected one of {}", known.join(", ")),
             None => format!("unknown key ‘{place}{key}’; ‘sprung params’ shows them all"),
         });
     }

@@ -40,7 +40,7 @@ const OUTSIDE: &[Row] = &[
     ("toml", &["preset", "analysis"]),
     ("plotters", &["figure", "analysis", "lab"]),
     ("ebur128", &["render", "analysis"]),
-    ("rayon", &["render"]),
+    ("rayon", &["render", "cli"]),
     ("std::fs", &["io", "preset", "analysis", "cli"]),
     ("alsa", &["realtime"]),
     ("cpal", &["realtime"]),

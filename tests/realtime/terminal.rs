@@ -64,7 +64,7 @@ pub(crate) fn the_view_plays_loads_turns_and_resizes() {
     terminal.keys(&["z", "c", "b"]);
     terminal.shows("3 voices");
     terminal.keys(&["/", "k", "i", "c", "k", "Enter", "Enter"]);
-    terminal.shows("channel 1 plays ‘Click Kick’");
+    terminal.shows("channel 1 plays ‘Kick’");
     terminal.keys(&["Tab", "/", "d", "a", "m", "p", "e", "r", "Enter", "Enter"]);
     terminal.keys(&["2", "5", "Space", "%", "Enter"]);
     terminal.shows("25 %");

@@ -4,7 +4,7 @@ use crate::host::Instance;
 use sprung::params::Param;
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
-use sprung::preset::{Playable, Preset};
+use sprung::preset::{Guide, Playable, Preset};
 use std::fs::File;
 use std::path::Path;
 
@@ -44,6 +44,7 @@ pub(crate) fn state(patch: &Patch) -> Vec<u8> {
         author: String::new(),
         tags: Vec::new(),
         comment: String::new(),
+        guide: Guide::default(),
         patch: patch.clone(),
         tuning: None,
     };

@@ -121,14 +121,17 @@ impl App {
         &self.search[self.list as usize]
     }
 
-    /// Presets that match the search, with their numbers in the list of all.
+    /// Presets that match the search, with their numbers in the list of all: first the one of just this name.
     pub(super) fn presets(&self) -> Vec<(usize, &'static Preset)> {
         let search = self.search[List::Presets as usize].to_lowercase();
         let matches = |preset: &Preset| {
             let words = [&preset.name].into_iter().chain(&preset.tags);
             words.map(|word| word.to_lowercase()).any(|word| word.contains(&search))
         };
-        Preset::factory().iter().enumerate().filter(|(_, preset)| matches(preset)).collect()
+        let mut found: Vec<_> = Preset::factory().iter().enumerate().filter(|(_, preset)| matches(preset)).collect();
+        // The preset of just this name comes first.
+        found.sort_by_key(|(_, preset)| !preset.name.eq_ignore_ascii_case(&search));
+        found
     }
 
     /// Parameters that match the search.
