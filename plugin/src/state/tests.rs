@@ -22,7 +22,7 @@ fn wrapped(params: &SprungParams) -> PluginState {
 /// A sound that has, for each kind of parameter, a value that its knob position would not give back, and a knob
 /// position that its value would not give.
 fn odd() -> State {
-    let bell = Preset::find("Church Bell").unwrap();
+    let bell = Preset::find("Glockenspiel").unwrap();
     let patch = bell.patch.clone().with(Param::Decay, 0.123_456_79).with(Param::Fine, -0.1).with(Param::Voices, 7.0);
     let mut state = State::new(Playable::Preset(Preset { patch, ..bell.clone() }), 42, [1000, 500]);
     state.positions[Param::Gain as usize] = 0.123_456_78;
