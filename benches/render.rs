@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use sprung::io::Song;
-use sprung::preset::{Playable, Preset, Programs};
+use sprung::preset::{Preset, Programs};
 use sprung::render::{Job, Options, Tail, on_threads};
 use std::time::Duration;
 
@@ -11,8 +11,7 @@ fn render(criterion: &mut Criterion) {
     let mut song = Song::read(std::fs::File::open(file).unwrap(), file).unwrap();
     song.select_by_bank();
     let kit = Preset::find("init").unwrap().kit();
-    let load = |name: &str| Playable::find(name).map(|playable| playable.kit());
-    let programs = Programs::general_midi().kits(|_| true, &kit, load).unwrap();
+    let programs = Programs::factory_kits();
     let options = Options { sample_rate: 48_000, seed: 0, block: 4096, tail: Tail::None };
     let job = Job { programs: &programs, ..Job::new(&song, &kit, options) };
     let mut group = criterion.benchmark_group("suite.mid");

@@ -1,4 +1,4 @@
-//! Makes text from outside (files, names, devices) safe to show in a terminal.
+//! Makes text from outside (files, names, devices) safe to show in a terminal or to call a file by.
 
 use std::borrow::Cow;
 
@@ -13,6 +13,12 @@ pub fn printable(text: &str) -> Cow<'_, str> {
 /// [`printable`] for several lines: keeps line ends (`\n`) and tabs.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escape(text, |character| matches!(character, '\n' | '\t') || is_printable(character))
+}
+
+/// A name as a file is called after it: in lower case, with dashes in place of anything but letters and digits.
+pub fn slug(name: &str) -> String {
+    let words = name.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join("-").to_ascii_lowercase()
 }
 
 fn escape(text: &str, stays: impl Fn(char) -> bool) -> Cow<'_, str> {

@@ -63,20 +63,18 @@ pub(super) fn used(song: &Song) -> BTreeSet<u8> {
     programs.collect()
 }
 
-/// The kits of all programs of a list, of which only the `wanted` ones are made: the others, and programs without a sound, get
-/// `instead`. `kit` makes one of what was loaded.
+/// The kits of all programs of a list that are `wanted` and have a sound. `kit` makes one of what was loaded.
 pub(super) fn kits(
     programs: &Programs,
     wanted: impl Fn(u8) -> bool,
-    instead: &Arc<Kit>,
     kit: impl Fn(Playable) -> Arc<Kit>,
     inputs: &mut Inputs,
-) -> Result<Vec<Arc<Kit>>> {
+) -> Result<Vec<Option<Arc<Kit>>>> {
     let load = |name: &str| {
         let loaded = presets::load(OsStr::new(name), inputs);
         loaded.map(&kit).map_err(|error| Error::value(&programs.name, error.to_string()))
     };
-    programs.kits(wanted, instead, load)
+    programs.kits(wanted, load)
 }
 
 /// The number of a program as musicians count: from 1.

@@ -6,7 +6,7 @@ use super::tuning::TuningArgs;
 use super::{completion, presets, programs, quantity};
 use clap_complete::ArgValueCompleter;
 use sprung::engine::EventKind;
-use sprung::engine::banks::DRUM_CHANNEL;
+use sprung::engine::banks::{DRUM_CHANNEL, MELODIC};
 use sprung::io::{Inputs, Song};
 use sprung::params::Param;
 use sprung::preset::{Playable, Programs};
@@ -60,18 +60,32 @@ impl SoundArgs {
     /// then have the numbers of their kits; without a song, all programs are loaded if it `is_live`.
     pub(super) fn load(&self, song: Option<&mut Song>, is_live: bool, inputs: &mut Inputs) -> Result<Sounds> {
         let list = if song.is_some() || is_live { self.programs.read(inputs)? } else { None };
-        let has_song = song.is_some();
-        let used = song.map(|song| {
+        let has_drums = song.as_ref().is_none_or(|song| song.events.iter().any(|event| event.channel == DRUM_CHANNEL));
+        let (is_free, has_song) = (self.preset.is_none(), song.is_some());
+        let mut used = song.map(|song| {
             match list {
                 Some(_) => song.select_by_bank(),
                 None => song.events.retain(|event| !matches!(event.kind, EventKind::Program(_))),
             }
             used(song)
         });
-        let first = list.as_ref().filter(|_| has_song && self.preset.is_none());
-        let name = self.preset.as_deref().or(first.and_then(|list| list.sound(0)).map(OsStr::new));
-        let name = name.unwrap_or(OsStr::new("init"));
-        let kit = self.kit(presets::load(name, inputs)?);
+        // What channels start with is made once, even if program changes select it, too.
+        let starts_with_first = is_free && has_song;
+        let starts_with_drums = is_free && has_drums && self.channel.iter().all(|(taken, _)| *taken != DRUM_CHANNEL);
+        if let Some(used) = &mut used {
+            used.extend(starts_with_first.then_some(0));
+            used.extend(starts_with_drums.then_some(MELODIC));
+        }
+        let wanted = |number| used.as_ref().is_none_or(|used: &BTreeSet<u8>| used.contains(&number));
+        let made = match &list {
+            None => Vec::new(),
+            Some(list) => programs::kits(list, wanted, |playable| self.kit(playable), inputs)?,
+        };
+        let program = |number: u8| made.get(usize::from(number)).cloned().flatten();
+        let kit = match program(0).filter(|_| starts_with_first) {
+            Some(first) => first,
+            None => self.kit(presets::load(self.preset.as_deref().unwrap_or(OsStr::new("init")), inputs)?),
+        };
         let mut channels = Vec::with_capacity(self.channel.len() + 1);
         for (channel, name) in &self.channel {
             if channels.iter().any(|(taken, _)| taken == channel) {
@@ -80,17 +94,8 @@ impl SoundArgs {
             }
             channels.push((*channel, self.kit(presets::load(OsStr::new(name), inputs)?)));
         }
-        let drums = list.as_ref().filter(|_| self.preset.is_none()).and_then(|list| list.drums(0));
-        if let Some(drums) = drums.filter(|_| channels.iter().all(|(taken, _)| *taken != DRUM_CHANNEL)) {
-            channels.push((DRUM_CHANNEL, self.kit(presets::load(OsStr::new(drums), inputs)?)));
-        }
-        let programs = match &list {
-            None => Vec::new(),
-            Some(list) => {
-                let wanted = |number| used.as_ref().is_none_or(|used: &BTreeSet<u8>| used.contains(&number));
-                programs::kits(list, wanted, &kit, |playable| self.kit(playable), inputs)?
-            }
-        };
+        channels.extend(program(MELODIC).filter(|_| starts_with_drums).map(|drums| (DRUM_CHANNEL, drums)));
+        let programs = made.into_iter().map(|made| made.unwrap_or_else(|| kit.clone())).collect();
         Ok(Sounds { kit, channels, programs, list, tuning: self.tuning.read(inputs)? })
     }
 

@@ -2,6 +2,7 @@
 
 use super::about::{check_label, label};
 use super::complaints::Complaints;
+use super::kit::Playable;
 use super::value::{check_keys, table, unexpected};
 use crate::error::{Error, Result};
 use crate::sound::Kit;
@@ -73,25 +74,31 @@ impl Programs {
     }
 
     /// The kits of all programs, as [`Programs::name_of`] counts them. `load` makes them by name; it is called once for each
-    /// name. Programs that are not `wanted`, and those without a sound, get `instead`. Allocates.
+    /// name. Programs that are not `wanted` have none, nor have those without a sound. Allocates.
     ///
     /// # Errors
     /// Those of `load`.
     pub fn kits(
         &self,
         wanted: impl Fn(u8) -> bool,
-        instead: &Arc<Kit>,
         mut load: impl FnMut(&str) -> Result<Arc<Kit>>,
-    ) -> Result<Vec<Arc<Kit>>> {
+    ) -> Result<Vec<Option<Arc<Kit>>>> {
         let mut made: BTreeMap<&str, Arc<Kit>> = BTreeMap::new();
         let mut kit = |number| {
-            let Some(name) = self.name_of(number).filter(|_| wanted(number)) else { return Ok(instead.clone()) };
-            Ok(match made.entry(name) {
+            let Some(name) = self.name_of(number).filter(|_| wanted(number)) else { return Ok(None) };
+            Ok(Some(match made.entry(name) {
                 Entry::Occupied(known) => known.get().clone(),
                 Entry::Vacant(place) => place.insert(load(name)?).clone(),
-            })
+            }))
         };
         (0..=u8::MAX).map(&mut kit).collect()
+    }
+
+    /// The kits of all programs of General MIDI, as the factory has them. Reads most of the bank, and allocates.
+    pub fn factory_kits() -> Vec<Arc<Kit>> {
+        let load = |name: &str| Playable::find(name).map(|playable| playable.kit());
+        let kits = Self::general_midi().kits(|_| true, load).expect("a test finds all of them");
+        kits.into_iter().flatten().collect()
     }
 }
 
@@ -140,7 +147,6 @@ fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result
 
 #[cfg(test)]
 mod tests {
-    use super::super::Playable;
     use super::*;
 
     #[test]

@@ -6,6 +6,7 @@ use sprung::params::Param;
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
+use sprung::text::slug;
 
 /// Name of the case that plays the preset `init`.
 pub(crate) const INIT: &str = "preset-init";
@@ -28,8 +29,7 @@ pub(crate) fn init() -> Score {
 
 /// A strike, the same key again while it sounds, then a higher note bent up and down.
 fn preset(preset: &Preset) -> Score {
-    let words = preset.name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
-    let name = format!("preset-{}", words.collect::<Vec<_>>().join("-").to_ascii_lowercase());
+    let name = format!("preset-{}", slug(&preset.name));
     let mut score = Score::new(&name, preset.patch.clone(), 2.0).on(0.001, 48, 100).on(0.4003, 48, 60).off(0.8, 48);
     score = score.on(1.0, 67, 100);
     for step in 1..=20_u8 {

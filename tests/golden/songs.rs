@@ -3,8 +3,7 @@
 use crate::score::Score;
 use sprung::io::Song;
 use sprung::patch::Patch;
-use sprung::preset::{Playable, Programs};
-use sprung::sound::Kit;
+use sprung::preset::Programs;
 use std::path::Path;
 
 /// Seconds rendered after a song's last event.
@@ -26,9 +25,7 @@ fn song(path: &Path) -> Score {
     let bytes = std::fs::read(path).expect("a song can be read");
     let mut song = Song::parse(&bytes, stem).unwrap_or_else(|error| panic!("{error}"));
     song.select_by_bank();
-    let load = |name: &str| Playable::find(name).map(|playable| playable.kit());
-    let programs = Programs::general_midi().kits(|_| true, &Kit::of_patch(&Patch::default()), load);
     let score = Score::new(format!("song-{stem}"), Patch::default(), song.seconds + TAIL);
-    let score = score.with_kits(programs.unwrap_or_else(|error| panic!("{error}")));
+    let score = score.with_kits(Programs::factory_kits());
     song.events.iter().fold(score, |score, event| score.then(event.seconds, event.channel, event.kind))
 }

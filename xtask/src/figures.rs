@@ -3,7 +3,7 @@
 use crate::shell::root;
 use sprung::analysis::figure::{Render, waveform_and_spectrogram};
 use sprung::io::Song;
-use sprung::preset::{Playable, Preset, Programs};
+use sprung::preset::{Preset, Programs};
 use sprung::render::{Job, Options, Tail};
 use std::fs::File;
 
@@ -18,8 +18,7 @@ fn draw() -> sprung::Result<()> {
     let mut song = Song::read(file, origin)?;
     song.select_by_bank();
     let kit = Preset::find("init")?.kit();
-    let load = |name: &str| Playable::find(name).map(|playable| playable.kit());
-    let programs = Programs::general_midi().kits(|_| true, &kit, load)?;
+    let programs = Programs::factory_kits();
     let options = Options { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::Auto };
     let job = Job { programs: &programs, ..Job::new(&song, &kit, options) };
     let (mut left, mut right) = (Vec::new(), Vec::new());

@@ -4,6 +4,7 @@ use crate::shell::root;
 use sprung::analysis::measures::preset::{chord_peaks, loudness, wanted_loudness};
 use sprung::params::Param;
 use sprung::preset::Preset;
+use sprung::text::slug;
 use std::fs;
 
 /// Most that the limiter is to lower a loud chord, in dB: half a decibel less than the bank's test allows.
@@ -42,10 +43,8 @@ pub(crate) fn run(write: bool) -> Result<(), String> {
 
 /// Replaces the gain in a preset's file, or adds it.
 fn set_gain(preset: &Preset, gain: &str) -> Result<(), String> {
-    let slug: Vec<&str> =
-        preset.name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect();
     let family = preset.guide.family.map_or("", |family| family.name());
-    let path = root().join("assets/presets").join(family).join(format!("{}.toml", slug.join("-").to_ascii_lowercase()));
+    let path = root().join("assets/presets").join(family).join(format!("{}.toml", slug(&preset.name)));
     let at = |error: std::io::Error| format!("{}: {error}", path.display());
     let text = fs::read_to_string(&path).map_err(at)?;
     let line = format!("gain = {gain}");

@@ -14,6 +14,7 @@ use sprung::params::Param;
 use sprung::preset::{Family, KitPreset, Preset};
 use sprung::render::{Delivery, Job, Level, Options, Tail, to_wav};
 use sprung::sound::Kit;
+use sprung::text::slug;
 use sprung::units::{frequency_from_key, note_name};
 use sprung::{Error, Result};
 use std::io::Write;
@@ -112,7 +113,7 @@ fn kit(found: Found) -> Arc<Kit> {
 /// Renders a sound to its files and measures it.
 fn audition(found: Found, args: &Args, done: &AtomicUsize) -> Result<Auditioned> {
     interrupt::check()?;
-    let file = found.name().to_lowercase().replace(|letter: char| !letter.is_ascii_alphanumeric(), "-");
+    let file = slug(found.name());
     let (song, modes) = match found {
         Found::Preset(preset) => {
             let a4_hz = f64::from(preset.patch.get(Param::Tuning));
