@@ -40,13 +40,18 @@ pub struct MelBands {
 }
 
 /// Mel of a frequency in Hz (O'Shaughnessy, "Speech Communication", 1987).
-fn mel(frequency: f64) -> f64 {
+pub(super) fn mel(frequency: f64) -> f64 {
     2595.0 * log10(1.0 + frequency / 700.0)
+}
+
+/// The frequency in Hz of a number of mel.
+pub(super) fn hertz(mel: f64) -> f64 {
+    700.0 * (pow(10.0, mel / 2595.0) - 1.0)
 }
 
 /// The frequency in Hz of the edge before band `edge`; a band reaches from its edge to the next but one.
 fn edge(edge: usize) -> f64 {
-    700.0 * (pow(10.0, mel(HIGHEST) * edge as f64 / (BANDS + 1) as f64 / 2595.0) - 1.0)
+    hertz(mel(HIGHEST) * edge as f64 / (BANDS + 1) as f64)
 }
 
 /// The frequency in Hz at which a band weighs most.

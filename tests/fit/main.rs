@@ -9,8 +9,9 @@ mod played;
 
 use installed::Pair;
 use libtest_mimic::{Arguments, Failed, Trial};
-use measures::{DRUM, Measures, TUNED};
+use measures::Measures;
 use played::{fitted, in_parallel, log_mel_distance, preset_at};
+use sprung::analysis::measures::{DRUMS, TUNED};
 use sprung::preset::Preset;
 use std::process::ExitCode;
 
@@ -90,7 +91,7 @@ fn compared(Pair { name, source, sound, others, key, is_drum }: &Pair) -> Result
     let fit = fitted(sound, *key)?;
     let own = log_mel_distance(sound, &fit.played);
     let other = others.iter().map(|other| log_mel_distance(sound, other)).fold(f64::INFINITY, f64::min);
-    let least = if *is_drum { &DRUM } else { &TUNED };
+    let least = if *is_drum { &DRUMS } else { &TUNED };
     let (recording, played) = (Measures::of(sound), Measures::of(&fit.played));
     let short = played.short_of(&recording, least);
     let pair = |value: fn(&Measures) -> String| format!("{} → {}", value(&recording), value(&played));

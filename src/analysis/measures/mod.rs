@@ -8,10 +8,28 @@ pub mod preset;
 pub mod recordings;
 
 use super::level::peak;
-use super::log_mel::RATE;
-use libm::{cos, log, log10, pow, sqrt};
+use super::log_mel::{RATE, hertz, mel};
+use libm::{cos, log, log10, sqrt};
 use realfft::RealFftPlanner;
 use std::f64::consts::PI;
+
+/// The least of some measures: the 10th percentile of the recordings.
+#[derive(Clone, Copy, Debug)]
+pub struct Least {
+    /// [`attack_flatness`] in dB.
+    pub attack_flatness: f64,
+    /// [`high_share`] in dB.
+    pub high_share: f64,
+    /// [`motion`] in dB.
+    pub motion: f64,
+    /// [`partials`].
+    pub partials: usize,
+}
+
+/// Of mallets, plucks and bells.
+pub const TUNED: Least = Least { attack_flatness: -48.0, high_share: -42.0, motion: 0.48, partials: 6 };
+/// Of drums and percussion.
+pub const DRUMS: Least = Least { attack_flatness: -29.0, high_share: -39.0, motion: 1.2, partials: 9 };
 
 /// A sound begins at its first sample above this share of its peak.
 const AUDIBLE: f64 = 0.03;
@@ -81,9 +99,8 @@ pub fn high_share(sound: &[f32]) -> f64 {
 /// Weights of the bins of a transform in `count` mel bands from 40 Hz to 16 kHz: for each band its first bin and the
 /// weights from there.
 fn mel_bands(count: usize, length: usize) -> Vec<(usize, Vec<f64>)> {
-    let mel = |frequency: f64| 2595.0 * log10(1.0 + frequency / 700.0);
     let (low, high) = (mel(40.0), mel(16_000.0));
-    let edge = |n: usize| 700.0 * (pow(10.0, (low + (high - low) * n as f64 / (count + 1) as f64) / 2595.0) - 1.0);
+    let edge = |n: usize| hertz(low + (high - low) * n as f64 / (count + 1) as f64);
     let width = f64::from(RATE) / length as f64;
     let band = |n: usize| {
         let (from, centre, to) = (edge(n), edge(n + 1), edge(n + 2));
@@ -221,6 +238,7 @@ pub fn difference(first: &[f32], second: &[f32]) -> f64 {
 mod tests {
     use super::*;
     use crate::dsp::random::uniform;
+    use libm::pow;
 
     fn tone(frequencies: &[f64], t60: f64, seconds: f64) -> Vec<f32> {
         let at = |n: usize| {

@@ -2,14 +2,17 @@
 
 use super::octaves::{CENTRES, octaves};
 use super::recordings::{self, Recording};
-use super::{attack_flatness, difference, from_onset, high_share, motion, partials, samples, timbre_change};
+use super::{
+    DRUMS, TUNED, attack_flatness, difference, from_onset, high_share, motion, partials, samples, timbre_change,
+};
+use crate::analysis::level::mean_of;
 use crate::analysis::log_mel::RATE;
 use crate::engine::{Event, EventKind, Notes, Synth};
 use crate::error::{Error, Result};
 use crate::params::Param;
 use crate::preset::{Family, Preset};
 use crate::sound::Kit;
-use crate::units::{db_from_gain, frequency_from_key, mono_from_stereo, note_name};
+use crate::units::{db_from_gain, frequency_from_key, note_name};
 use ebur128::{EbuR128, Mode};
 use libm::{fabs, log};
 use std::ops::RangeInclusive;
@@ -90,8 +93,8 @@ impl Player {
 }
 
 /// The mean of both sides.
-pub fn mono([left, right]: &Stereo) -> Vec<f32> {
-    left.iter().zip(right).map(|(left, right)| mono_from_stereo(*left, *right)).collect()
+fn mono(sound: &Stereo) -> Vec<f32> {
+    mean_of(sound).into_iter().map(|sample| sample as f32).collect()
 }
 
 /// The loudest 400 ms in LUFS (ITU-R BS.1770); none if it is silent.
@@ -125,13 +128,13 @@ fn true_peak(sound: &Stereo) -> Result<f64> {
 }
 
 /// Tag of drums that are played in tune, and measured like mallets.
-const TUNED: &str = "tuned";
+const IN_TUNE: &str = "tuned";
 
 /// Whether a preset is a drum or other percussion without a melody.
 fn is_drum(preset: &Preset) -> bool {
     use Family::{Cymbal, HandDrum, Hat, Kick, Percussion, Snare, Tom};
     matches!(preset.guide.family, Some(Kick | Snare | Tom | Hat | Cymbal | HandDrum | Percussion))
-        && preset.tags.iter().all(|tag| tag != TUNED)
+        && preset.tags.iter().all(|tag| tag != IN_TUNE)
 }
 
 /// How loud a preset is to be, in LUFS.
@@ -174,6 +177,7 @@ pub fn measure(preset: &Preset) -> Result<Vec<Measure>> {
     let player = Player { kit: preset.kit() };
     let (guide, recording) = (&preset.guide, recordings::of(&preset.name));
     let (drum, home) = (is_drum(preset), guide.home);
+    let least = if drum { DRUMS } else { TUNED };
     let (is_free, sustained) = (preset.tags.iter().any(|tag| tag == SYNTHESIS), is_sustained(preset));
     let acoustic = |wanted: RangeInclusive<f64>| (!is_free).then_some(wanted);
     let struck = |wanted: RangeInclusive<f64>| (!is_free && !sustained).then_some(wanted);
@@ -183,10 +187,10 @@ pub fn measure(preset: &Preset) -> Result<Vec<Measure>> {
     let long = note(100, 4.0);
     let sound = from_onset(&long);
     let mut all = vec![
-        new("attack flatness", "dB", Some(attack_flatness(sound)), struck(if drum { -29.0 } else { -48.0 }..=0.0)),
-        new("energy above 2 kHz", "dB", Some(high_share(sound)), acoustic(if drum { -39.0 } else { -42.0 }..=0.0)),
-        new("motion", "dB", motion(sound), struck(if drum { 1.2 } else { 0.48 }..=f64::INFINITY)),
-        new("partials", "", Some(partials(sound) as f64), struck(if drum { 9.0 } else { 6.0 }..=f64::INFINITY)),
+        new("attack flatness", "dB", Some(attack_flatness(sound)), struck(least.attack_flatness..=0.0)),
+        new("energy above 2 kHz", "dB", Some(high_share(sound)), acoustic(least.high_share..=0.0)),
+        new("motion", "dB", motion(sound), struck(least.motion..=f64::INFINITY)),
+        new("partials", "", Some(partials(sound) as f64), struck(least.partials as f64..=f64::INFINITY)),
     ];
     if let Some(recording) = recording {
         let (from, to) = (recording.high_share.start() - HIGH_SHARE_DB, recording.high_share.end() + HIGH_SHARE_DB);
