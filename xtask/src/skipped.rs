@@ -7,12 +7,12 @@ const EXCUSED: &[(&str, &str)] = &[
     ("level::avx512", "some x86-64 CPUs have AVX-512"),
     ("level::neon", "AArch64 CPUs have NEON"),
     ("round_trip_of_every_preset", "it takes minutes: ‘cargo test --release --test fit -- --include-ignored’ runs it"),
-    ("recordings_of_drums", "it takes minutes of a release build, and 140 MB of Debian’s hydrogen-drumkits"),
-    (
-        "recordings_of_instruments",
-        "it takes minutes of a release build, and 120 MB of Debian’s fluid-soundfont-gm with fluidsynth",
-    ),
+    ("recordings", RECORDINGS),
+    ("layers_of_recordings", RECORDINGS),
 ];
+
+const RECORDINGS: &str =
+    "it takes minutes of a release build, and Debian’s fluid-soundfont-gm, fluidsynth and hydrogen-drumkits";
 
 /// Stands for a test that a harness counted as ignored without printing its name.
 const NAMELESS: &str = "a test whose name was not shown";
