@@ -29,7 +29,7 @@ fn storm(block: u32) -> Vec<Event> {
             EventKind::ChannelPressure(value),
             EventKind::PolyPressure { key, pressure: value },
             EventKind::Control {
-                controller: [1, 6, 7, 10, 11, 64, 66, 67, 74, 100, 101, 120, 121, 123][n as usize % 14],
+                controller: [1, 6, 7, 10, 11, 64, 66, 67, 74, 91, 100, 101, 120, 121, 123][n as usize % 15],
                 value,
             },
             EventKind::Param { param: param.param, value: param.denormalise(value.into()) },
@@ -54,7 +54,8 @@ fn storm(block: u32) -> Vec<Event> {
 #[test]
 fn processing_does_not_allocate() {
     let patch = Patch { modes: ModeTable::new(&[Mode { strike: 0.5, ..Mode::UNIT }; 64]), ..Patch::default() };
-    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[patch.clone(), Patch::default(), patch, pair()]);
+    let programs = [patch.clone(), Patch::default(), patch, pair()];
+    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &programs).with_space(&[(Param::Space, 1.0)]);
     let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
     let blocks: Vec<_> = (0..40).map(storm).collect();
     let mut loudest = 0.0_f32;

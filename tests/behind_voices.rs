@@ -1,8 +1,10 @@
 //! What is behind the voices, played by the engine: blocks, sleep, tails, clicks, kits, and that what is off is not there.
 
 mod events;
+mod in_blocks;
 
 use events::{event, off, on};
+use in_blocks::in_blocks;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -56,22 +58,6 @@ fn synth_bits(patch: &Patch, events: &[Event], frames: usize, block: usize) -> (
     let process = |events: &[Event], left: &mut [f32], right: &mut [f32]| synth.process(events, left, right);
     let bits = in_blocks(events, frames, block, process);
     (bits, synth.is_silent(), synth.tail_frames())
-}
-
-fn in_blocks(
-    events: &[Event],
-    frames: usize,
-    block: usize,
-    mut process: impl FnMut(&[Event], &mut [f32], &mut [f32]),
-) -> Vec<u32> {
-    let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
-    for start in (0..frames).step_by(block) {
-        let end = frames.min(start + block);
-        let within = |event: &&Event| (start..end).contains(&(event.frame as usize));
-        let now = events.iter().filter(within).map(|event| Event { frame: event.frame - start as u32, ..*event });
-        process(&now.collect::<Vec<_>>(), &mut left[start..end], &mut right[start..end]);
-    }
-    left.into_iter().chain(right).map(f32::to_bits).collect()
 }
 
 /// Notes with silence between, and every parameter of every section, moved while they ring, while tails do and in silence.

@@ -275,7 +275,10 @@ fn check(case: &Case) -> Result<bool, TestCaseError> {
         synth.set_kit(&case.kit);
         synth
     };
-    let ensemble = || Ensemble::of_kits(case.sample_rate, case.seed, &case.kit, case.programs.clone());
+    let ensemble = || {
+        let ensemble = Ensemble::of_kits(case.sample_rate, case.seed, &case.kit, case.programs.clone());
+        if case.seed % 2 == 0 { ensemble } else { ensemble.with_space(&[(Param::Space, 3.0)]) }
+    };
     let mut sounds = false;
     for (what, whole, parts) in [
         ("synth", render(&mut synth(), &case.events, &[FRAMES]), render(&mut synth(), &case.events, &case.blocks)),

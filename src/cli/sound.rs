@@ -49,6 +49,8 @@ pub(super) struct Sounds {
     pub(super) channels: Vec<(u8, Arc<Kit>)>,
     /// The kits that program changes select: melodic sounds, then drum kits. None if they select nothing.
     pub(super) programs: Vec<Arc<Kit>>,
+    /// Parameters of the space that all channels share; empty for none.
+    pub(super) space: Vec<(Param, f32)>,
     /// The list that they come from.
     list: Option<Programs>,
     /// The tuning of the keys.
@@ -96,7 +98,11 @@ impl SoundArgs {
         }
         channels.extend(program(MELODIC).filter(|_| starts_with_drums).map(|drums| (DRUM_CHANNEL, drums)));
         let programs = made.into_iter().map(|made| made.unwrap_or_else(|| kit.clone())).collect();
-        Ok(Sounds { kit, channels, programs, list, tuning: self.tuning.read(inputs)? })
+        // Whoever sets a space gives each channel one of its own.
+        let sets_space = self.set.iter().any(|(param, _)| *param == Param::Space);
+        let shared = list.as_ref().filter(|_| has_song && !sets_space);
+        let space = shared.map_or(Vec::new(), |list| list.space.clone());
+        Ok(Sounds { kit, channels, programs, space, list, tuning: self.tuning.read(inputs)? })
     }
 
     /// Warns of program changes that have no sound or lead away from what the user asked for, of keys that the tuning does

@@ -161,6 +161,11 @@ impl Param {
         Self::StringsLevel as usize <= self as usize && self as usize <= Self::StereoWidth as usize
     }
 
+    /// Whether it is one of the space, the body that reverberates behind the voices. Real-time safe.
+    pub const fn is_of_space(self) -> bool {
+        Self::Space as usize <= self as usize && self as usize <= Self::SpaceMix as usize
+    }
+
     /// The parameter with this id.
     pub fn from_id(id: &str) -> Option<Param> {
         PARAMS.iter().find(|info| info.id == id).map(|info| info.param)

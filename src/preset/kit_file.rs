@@ -4,10 +4,10 @@ use super::about::{About, about_to_toml, label, toml_string};
 use super::complaints::Complaints;
 use super::file::{self, write_value};
 use super::kit::{KIT_VERSION, KitPreset, Playable};
-use super::value::{check_keys, param_value, table, unexpected};
+use super::value::{check_keys, param_value, read_params, table, unexpected};
 use super::{MAX_FILE_SIZE, Preset, Replaced};
 use crate::error::Error;
-use crate::params::{PARAMS, Param, ParamInfo};
+use crate::params::Param;
 use crate::sound::Pad;
 use crate::units::{key_from_note_name, note_name, parse_key};
 use std::fmt::Write;
@@ -56,7 +56,7 @@ fn read(table: &Table, version: &Value, find: Find, complaints: &mut Complaints)
         tags,
         comment,
         voices: voices as u8,
-        params: read_effects(table.get("params"), complaints),
+        params: read_params("params", table.get("params"), Param::is_behind_voices, complaints),
         sounds: vec![],
         pads: vec![],
     };
@@ -79,25 +79,6 @@ fn read(table: &Table, version: &Value, find: Find, complaints: &mut Complaints)
         }
     }
     Ok(kit)
-}
-
-/// Reads the values of effects behind the voices.
-fn read_effects(params: Option<&Value>, complaints: &mut Complaints) -> Vec<(Param, f32)> {
-    let params = match params {
-        None => return Vec::new(),
-        Some(Value::Table(params)) => params,
-        Some(other) => {
-            complaints.add(unexpected("params", "a table [params]", other));
-            return Vec::new();
-        }
-    };
-    let effects = PARAMS.iter().filter(|info| info.param.is_behind_voices());
-    check_keys(params, "params.", &effects.clone().map(|info| info.id).collect::<Vec<_>>(), complaints);
-    let value = |info: &ParamInfo| {
-        let value = param_value(info, params.get(info.id)?);
-        Some((info.param, complaints.take(&format!("params.{}: ", info.id), value)?))
-    };
-    effects.filter_map(value).collect()
 }
 
 /// Reads a pad and adds it to the kit, if it has a key and a sound.

@@ -1,10 +1,11 @@
-//! The sounds that MIDI's program changes select: melodic ones, and drum kits.
+//! The sounds that MIDI's program changes select, melodic ones and drum kits, and the space that they share.
 
 use super::about::{check_label, label};
 use super::complaints::Complaints;
 use super::kit::Playable;
-use super::value::{check_keys, table, unexpected};
+use super::value::{check_keys, read_params, table, unexpected};
 use crate::error::{Error, Result};
+use crate::params::Param;
 use crate::sound::Kit;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -20,13 +21,16 @@ const PROGRAMS: usize = 128;
 /// Drum kits whose program numbers differ by less are variations of one, as in Roland's GS.
 const VARIATIONS: usize = 8;
 
-const KEYS: [&str; 4] = ["programs", "name", "sounds", "drums"];
+const KEYS: [&str; 5] = ["programs", "name", "sounds", "drums", "space"];
 
-/// Names of the sounds that program changes select: factory presets and kits, or files.
+/// Names of the sounds that program changes select: factory presets and kits, or files; and the space they share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Programs {
     /// Name of the list; never empty.
     pub name: String,
+    /// Parameters of the space that all channels share ([`Ensemble::with_space`](crate::engine::Ensemble::with_space));
+    /// empty for none.
+    pub space: Vec<(Param, f32)>,
     sounds: Vec<String>,
     drums: Vec<Option<String>>,
 }
@@ -115,7 +119,9 @@ fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result
     check_keys(table, "", &KEYS, complaints);
     let name = label(table, "name", "", complaints);
     let name = if name.is_empty() { "Unnamed".to_owned() } else { name };
-    let mut programs = Programs { name, sounds: Vec::new(), drums: vec![None; PROGRAMS] };
+    let space =
+        read_params("space", table.get("space"), |param| param.is_of_space() && param != Param::SpaceMix, complaints);
+    let mut programs = Programs { name, space, sounds: Vec::new(), drums: vec![None; PROGRAMS] };
     let text = |place: &str, value: &Value| match value {
         Value::String(name) => check_label(place, name.clone()),
         other => Err(unexpected(place, "the name of a preset or kit", other)),
@@ -177,6 +183,9 @@ mod tests {
             ("programs = 2", "reads programs = 1"),
             ("programs = 1\nsounds = [3]", "sounds[0]: expected the name"),
             ("programs = 1\ndrums = { 0 = \"A\" }", "drums.0: expected a program number from 1 to 128"),
+            ("programs = 1\nspace = \"plate\"", "space: expected a table [space]"),
+            ("programs = 1\n[space]\nspace = \"cave\"", "space.space: ‘cave’ is not one of"),
+            ("programs = 1\n[space]\nspace_mix = 20", "unknown key ‘space.space_mix’"),
             ("programs = 1\nkits = 1", "unknown key ‘kits’"),
         ] {
             let error = Programs::parse(text, "x").unwrap_err().to_string();

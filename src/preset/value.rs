@@ -2,7 +2,7 @@
 
 use super::complaints::Complaints;
 use crate::error::{Error, nearest};
-use crate::params::{ParamInfo, Unit};
+use crate::params::{PARAMS, Param, ParamInfo, Unit};
 use toml::{Table, Value};
 
 /// Checks that a table has no other keys than `known`. `place` is its path: empty, or ending in a dot.
@@ -30,6 +30,31 @@ pub(super) fn param_value(info: &ParamInfo, value: &Value) -> Result<f32, String
         (Value::Float(number), _) => info.check(*number as f32),
         (other, _) => Err(format!("expected a number or a text with a unit, found {}", other.type_str())),
     }
+}
+
+/// The parameters of the table `name` by their ids, in the order of [`PARAMS`]; of those that are `wanted`. None if the
+/// table is missing.
+pub(super) fn read_params(
+    name: &str,
+    found: Option<&Value>,
+    wanted: impl Fn(Param) -> bool,
+    complaints: &mut Complaints,
+) -> Vec<(Param, f32)> {
+    let params = match found {
+        None => return Vec::new(),
+        Some(Value::Table(params)) => params,
+        Some(other) => {
+            complaints.add(unexpected(name, &format!("a table [{name}]"), other));
+            return Vec::new();
+        }
+    };
+    let wanted = PARAMS.iter().filter(|info| wanted(info.param));
+    check_keys(params, &format!("{name}."), &wanted.clone().map(|info| info.id).collect::<Vec<_>>(), complaints);
+    let value = |info: &ParamInfo| {
+        let value = param_value(info, params.get(info.id)?);
+        Some((info.param, complaints.take(&format!("{name}.{}: ", info.id), value)?))
+    };
+    wanted.filter_map(value).collect()
 }
 
 /// Parses TOML. `origin` names the text in errors.

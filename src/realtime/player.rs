@@ -7,6 +7,7 @@ use super::recorder::Tap;
 use super::status::Status;
 use crate::engine::{Ensemble, Event, EventKind, TelemetryWriter};
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
+use crate::params::Param;
 use crate::sound::kit::KEYS;
 use crate::sound::{Kit, Shelf, Tuning};
 use rtrb::{Consumer, Producer, RingBuffer};
@@ -30,6 +31,8 @@ pub struct Setup<'a> {
     pub channels: &'a [(u8, Arc<Kit>)],
     /// The kits that program changes select.
     pub programs: &'a [Arc<Kit>],
+    /// Parameters of the space that all channels share ([`Ensemble::with_space`]); empty for none.
+    pub space: &'a [(Param, f32)],
     /// The tuning of all channels.
     pub tuning: &'a Tuning,
     /// A song that is played from the first frame on.
@@ -86,6 +89,9 @@ impl Player {
         // So that any kit finds room on the audio thread.
         ensemble.reserve(KEYS);
         ensemble.reserve_space();
+        if !setup.space.is_empty() {
+            ensemble = ensemble.with_space(setup.space);
+        }
         ensemble.set_tuning(setup.tuning);
         let player = Self {
             ensemble,

@@ -61,6 +61,9 @@ impl<'a> Stream<'a> {
         let mut ensemble = channels
             .fold(ensemble, |ensemble, (channel, kit)| ensemble.with_kit(*channel, kit))
             .with_chunk(options.block);
+        if !job.space.is_empty() {
+            ensemble = ensemble.with_space(job.space);
+        }
         ensemble.set_tuning(job.tuning);
         Self {
             ensemble,

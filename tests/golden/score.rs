@@ -1,6 +1,7 @@
 //! A score: a patch, events at frames, and a length; can be rendered in blocks of any size.
 
 use sprung::engine::{Ensemble, Event, EventKind};
+use sprung::params::Param;
 use sprung::patch::Patch;
 use sprung::sound::Kit;
 use std::sync::Arc;
@@ -21,6 +22,8 @@ pub(crate) struct Score {
     pub(crate) patch: Patch,
     /// The kits that program changes select from.
     pub(crate) programs: Vec<Arc<Kit>>,
+    /// The space that the channels share.
+    pub(crate) space: Vec<(Param, f32)>,
     /// Events as frame, channel and kind, in order of time.
     events: Vec<(u64, u8, EventKind)>,
     pub(crate) frames: usize,
@@ -40,6 +43,7 @@ impl Score {
             seed: 1,
             patch,
             programs: Vec::new(),
+            space: Vec::new(),
             events: Vec::new(),
             frames: (seconds * sample_rate) as usize,
             blocks: BLOCKS,
@@ -62,6 +66,10 @@ impl Score {
     pub(crate) fn with_kits(mut self, programs: Vec<Arc<Kit>>) -> Self {
         self.programs = programs;
         self
+    }
+
+    pub(crate) fn with_space(self, space: &[(Param, f32)]) -> Self {
+        Self { space: space.to_vec(), ..self }
     }
 
     /// Plays it in these block sizes only, beside one block.
@@ -113,6 +121,9 @@ impl Score {
     pub(crate) fn render(&self, block: usize) -> [Vec<f32>; 2] {
         let mut ensemble =
             Ensemble::of_kits(self.sample_rate, self.seed, &Kit::of_patch(&self.patch), self.programs.clone());
+        if !self.space.is_empty() {
+            ensemble = ensemble.with_space(&self.space);
+        }
         // Not zero, so that samples which a block does not write are noticed.
         let [mut left, mut right] = [(); 2].map(|()| vec![f32::NAN; self.frames]);
         let mut events = self.events.iter().peekable();

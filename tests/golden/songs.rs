@@ -26,6 +26,6 @@ fn song(path: &Path) -> Score {
     let mut song = Song::parse(&bytes, stem).unwrap_or_else(|error| panic!("{error}"));
     song.select_by_bank();
     let score = Score::new(format!("song-{stem}"), Patch::default(), song.seconds + TAIL);
-    let score = score.with_kits(Programs::factory_kits());
+    let score = score.with_kits(Programs::factory_kits()).with_space(&Programs::general_midi().space);
     song.events.iter().fold(score, |score, event| score.then(event.seconds, event.channel, event.kind))
 }

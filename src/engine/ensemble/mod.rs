@@ -6,6 +6,7 @@ mod lender;
 mod mix_limiter;
 mod part;
 mod process;
+mod shared_space;
 
 use super::note::nearest_channel;
 use super::space::needs_bodies;
@@ -13,12 +14,14 @@ use super::synth::allowed;
 use super::zones::Owners;
 use super::{Snapshot, Synth};
 use crate::dsp::limiter::Work;
+use crate::params::Param;
 use crate::patch::Patch;
 use crate::sound::{Kit, Tuning};
 use choke::Playing;
 use lender::Lender;
 use mix_limiter::MixLimiter;
 pub use part::Part;
+use shared_space::SharedSpace;
 use std::sync::Arc;
 
 /// Frames that are rendered and mixed at a time, unless [`Ensemble::with_chunk`] sets another number.
@@ -29,7 +32,9 @@ const CHUNK: usize = 1024;
 /// Each channel has its own kit, controllers and polyphony. An MPE configuration message makes a zone, whose members
 /// play on the instrument of their master channel. A note of a choke group silences that group on every
 /// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a kit that
-/// switches it on. Each channel has its own effects, and only those that are on take time. Gives the same bits however the frames are divided into blocks. Real-time safe once built.
+/// switches it on. Each channel has its own effects, and only those that are on take time; beside them the channels can
+/// share one space ([`Ensemble::with_space`]). Gives the same bits however the frames are divided into blocks. Real-time
+/// safe once built.
 pub struct Ensemble {
     parts: Vec<Part>,
     programs: Vec<Arc<Kit>>,
@@ -42,6 +47,8 @@ pub struct Ensemble {
     /// Index of the part that plays each channel.
     owners: Owners,
     lender: Lender,
+    /// Boxed, because most ensembles have none.
+    shared_space: Option<Box<SharedSpace>>,
     limiter: MixLimiter,
 }
 
@@ -67,6 +74,7 @@ impl Ensemble {
             chunk_frames: CHUNK,
             owners: Owners::default(),
             lender: Lender::new(sample_rate),
+            shared_space: None,
             limiter: MixLimiter::new(allowed(sample_rate)),
         };
         ensemble.reserve(largest);
@@ -103,6 +111,20 @@ impl Ensemble {
     pub fn with_chunk(mut self, frames: usize) -> Self {
         self.chunk_frames = frames.max(1);
         self.parts.iter_mut().for_each(|part| part.resize(self.chunk_frames));
+        if let Some(space) = &mut self.shared_space {
+            space.resize(self.chunk_frames);
+        }
+        self
+    }
+
+    /// The same ensemble with a space that all channels share, of the parameters of the section "Space"; others are not
+    /// looked at, and the mix is that of the channels' sends: their controllers 91, which begin at 40 as General MIDI 2 has
+    /// it. A body at full send is as loud as white noise that is sent to it. Takes as much time as the space of one
+    /// channel. Allocates.
+    #[must_use]
+    pub fn with_space(mut self, params: &[(Param, f32)]) -> Self {
+        let sample_rate = self.parts[0].synth.sample_rate();
+        self.shared_space = Some(Box::new(SharedSpace::new(sample_rate, params, self.chunk_frames)));
         self
     }
 
@@ -134,9 +156,10 @@ impl Ensemble {
         self.limiter.work()
     }
 
-    /// Whether no note sounds on any channel. Real-time safe.
+    /// Whether nothing sounds, neither on any channel nor in the shared space. Real-time safe.
     pub fn is_silent(&self) -> bool {
-        self.parts.iter().all(|part| part.synth.is_silent())
+        let is_space_silent = self.shared_space.as_ref().is_none_or(|space| space.is_silent());
+        is_space_silent && self.parts.iter().all(|part| part.synth.is_silent())
     }
 
     /// The largest number of notes that sounded at once on each channel, added up over the channels.

@@ -79,6 +79,11 @@ impl Part {
         }
     }
 
+    /// What it has played in the chunk, if it is heard.
+    pub(super) fn output(&self) -> [&[f32]; 2] {
+        [&self.left, &self.right]
+    }
+
     /// Adds the part's frames to the mix.
     pub(super) fn add_to(&self, left: &mut [f32], right: &mut [f32]) {
         if self.is_heard {

@@ -92,7 +92,9 @@ impl Ensemble {
             right.fill(0.0);
             // In channel order: the sum's bits depend on the order of the additions.
             self.parts.iter().for_each(|part| part.add_to(left, right));
-            self.limiter.process(&chunk, is_heard, [left, right]);
+            let mix = [&mut *left, &mut *right];
+            let rings = self.shared_space.as_mut().is_some_and(|space| space.process(&chunk, &self.parts, mix));
+            self.limiter.process(&chunk, is_heard || rings, [left, right]);
             (events, start) = (later, cut.end);
             match cut.cause {
                 Cause::Length if cut.end == frames => break,

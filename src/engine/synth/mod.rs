@@ -21,7 +21,7 @@ use channels::Channels;
 use instruments::{DEFAULT_BEAT_RATE, Instruments};
 use std::sync::Arc;
 
-pub(super) use process::part;
+pub(super) use process::{flush, part};
 
 /// Sample rates that the engine runs at, in Hz.
 pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
@@ -128,6 +128,11 @@ impl Synth {
     /// pitch. Real-time safe.
     pub fn set_tuning(&mut self, tuning: &Tuning) {
         self.instruments.set_tuning(tuning);
+    }
+
+    /// Frames per second.
+    pub(super) fn sample_rate(&self) -> f64 {
+        self.instruments.sample_rate()
     }
 
     /// The tuning in use. Real-time safe.

@@ -127,7 +127,7 @@ pub(in crate::engine) fn part(input: &[f32], start: usize, end: usize) -> &[f32]
 }
 
 /// Replaces subnormal numbers in both slices.
-fn flush(left: &mut [f32], right: &mut [f32]) {
+pub(in crate::engine) fn flush(left: &mut [f32], right: &mut [f32]) {
     left.iter_mut().chain(right).for_each(|sample| *sample = without_subnormals(*sample));
 }
 

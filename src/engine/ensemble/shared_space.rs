@@ -1,0 +1,106 @@
+//! The space that all channels of an ensemble share: each sends it as much as its controller 91 says.
+
+use super::chunk::Chunk;
+use super::part::Part;
+use crate::dsp::ramp::Ramp;
+use crate::engine::EventKind;
+use crate::engine::space::Space;
+use crate::engine::synth::flush;
+use crate::params::{Param, Values};
+
+/// Controller number of a channel's send (General MIDI 2, 1999: reverb send level).
+const SEND: u8 = 91;
+
+/// The send of a channel before its controller says anything (General MIDI 2).
+const DEFAULT_SEND: f32 = 40.0 / 127.0;
+
+/// Time in which a send moves to another value.
+const SMOOTHING_SECONDS: f64 = 0.02;
+
+/// One space for sixteen channels. It hears them after their own effects, and only what it adds is mixed to them.
+/// Real-time safe once built.
+pub(super) struct SharedSpace {
+    space: Space,
+    sends: [Ramp; 16],
+    smoothing_frames: u32,
+    left: Vec<f32>,
+    right: Vec<f32>,
+}
+
+impl SharedSpace {
+    /// The space of these parameters, for chunks of up to `frames` frames. Allocates.
+    pub(super) fn new(sample_rate: f64, params: &[(Param, f32)], frames: usize) -> Self {
+        let mut values = Values::default();
+        params.iter().filter(|(param, _)| param.is_of_space()).for_each(|(param, value)| values.set(*param, *value));
+        // What is dry is in the mix already.
+        values.set(Param::SpaceMix, Param::SpaceMix.info().max);
+        let mut space = Space::new(sample_rate);
+        space.reserve();
+        space.set_all(&values, true);
+        Self {
+            space,
+            sends: [Ramp::at_rest(DEFAULT_SEND); 16],
+            smoothing_frames: (SMOOTHING_SECONDS * sample_rate) as u32,
+            left: vec![0.0; frames],
+            right: vec![0.0; frames],
+        }
+    }
+
+    /// Makes room for chunks of up to `frames` frames. Allocates.
+    pub(super) fn resize(&mut self, frames: usize) {
+        self.left.resize(frames, 0.0);
+        self.right.resize(frames, 0.0);
+    }
+
+    /// Whether it is still, or rings below −120 dBFS.
+    pub(super) fn is_silent(&self) -> bool {
+        !self.space.is_awake()
+    }
+
+    /// Hears what the parts have played in a chunk, and adds its own sound to their mix. Returns whether it sounds.
+    pub(super) fn process(&mut self, chunk: &Chunk, parts: &[Part], [left, right]: [&mut [f32]; 2]) -> bool {
+        self.left[..chunk.frames].fill(0.0);
+        self.right[..chunk.frames].fill(0.0);
+        let mut frame = 0;
+        for event in chunk.events {
+            if let EventKind::Control { controller: SEND, value } = event.kind {
+                let at = chunk.frame(event).max(frame);
+                self.gather(parts, frame, at);
+                self.sends[usize::from(chunk.owner(event))].set(value, self.smoothing_frames);
+                frame = at;
+            }
+        }
+        self.gather(parts, frame, chunk.frames);
+        if self.is_silent() && parts.iter().all(|part| !part.is_heard) {
+            self.space.skip(chunk.frames);
+            return false;
+        }
+        let (own_left, own_right) = (&mut self.left[..chunk.frames], &mut self.right[..chunk.frames]);
+        if !self.space.process(own_left, own_right) {
+            return false;
+        }
+        flush(own_left, own_right);
+        for (mix, own) in [(left, own_left), (right, own_right)] {
+            mix.iter_mut().zip(own).for_each(|(mix, own)| *mix += *own);
+        }
+        true
+    }
+
+    /// Adds up what the channels send between two frames of a chunk, in channel order.
+    fn gather(&mut self, parts: &[Part], from: usize, to: usize) {
+        let Self { sends, left, right, .. } = self;
+        for (send, part) in sends.iter_mut().zip(parts) {
+            if part.is_heard {
+                let [part_left, part_right] = part.output();
+                add(&mut left[from..to], &part_left[from..to], |frame| send.after(frame));
+                add(&mut right[from..to], &part_right[from..to], |frame| send.after(frame));
+            }
+            send.advance((to - from) as u32);
+        }
+    }
+}
+
+/// Adds frames to a sum, each with its gain.
+fn add(sum: &mut [f32], frames: &[f32], gain: impl Fn(u32) -> f32) {
+    sum.iter_mut().zip(frames).zip(0..).for_each(|((sum, sample), frame)| *sum += gain(frame) * sample);
+}

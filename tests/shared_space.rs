@@ -1,0 +1,85 @@
+//! The space that the channels of an ensemble share: what is sent, blocks and threads, and its tail.
+
+mod events;
+mod in_blocks;
+
+use events::on;
+use in_blocks::in_blocks;
+use sprung::engine::{Ensemble, Event, EventKind};
+use sprung::params::Param;
+use sprung::patch::Patch;
+
+const RATE: f64 = 48_000.0;
+const ROOM: [(Param, f32); 3] = [(Param::Space, 3.0), (Param::SpaceLowDecay, 0.3), (Param::SpaceHighDecay, 0.2)];
+
+fn dry() -> Ensemble {
+    let patch = Patch::default().with(Param::Decay, 0.1).with(Param::Gain, -12.0).with(Param::Limiter, 0.0);
+    Ensemble::new(RATE, 1, &patch, &[])
+}
+
+fn send(frame: u32, channel: u8, value: u8) -> Event {
+    Event { frame, channel, kind: EventKind::Control { controller: 91, value: f32::from(value) / 127.0 } }
+}
+
+fn samples(mut ensemble: Ensemble, events: &[Event], frames: usize, block: usize) -> Vec<f32> {
+    let process = |events: &[Event], left: &mut [f32], right: &mut [f32]| ensemble.process(events, left, right);
+    in_blocks(events, frames, block, process).into_iter().map(f32::from_bits).collect()
+}
+
+/// What the space adds to a note, sent as much as `value` says.
+fn added(value: Option<u8>) -> Vec<f32> {
+    let events: Vec<Event> = value.map(|value| send(0, 0, value)).into_iter().chain([on(2000, 60)]).collect();
+    let (with, without) = (dry().with_space(&ROOM), dry());
+    let [with, without] = [with, without].map(|ensemble| samples(ensemble, &events, 12_000, 12_000));
+    with.iter().zip(&without).map(|(with, without)| with - without).collect()
+}
+
+#[test]
+fn a_channel_sends_what_its_controller_says() {
+    assert!(added(Some(0)).iter().all(|sample| *sample == 0.0), "without a send the mix keeps its bits");
+    assert_eq!(added(None), added(Some(40)), "the send of General MIDI 2");
+    let power = |value| added(Some(value)).iter().map(|sample| f64::from(*sample).powi(2)).sum::<f64>();
+    let ratio = power(127) / power(40);
+    assert!((ratio / (127.0_f64 / 40.0).powi(2) - 1.0).abs() < 1e-3, "{ratio}");
+}
+
+#[test]
+fn blocks_chunks_and_the_order_of_parts_make_no_difference() {
+    let channels = (0..16).map(|channel| Event { channel, ..on(100 * u32::from(channel), 40 + 2 * channel) });
+    let sends = (0..16).map(|channel| send(1500 + 7 * u32::from(channel), channel, 8 * channel));
+    let events: Vec<Event> = channels.chain(sends).chain([on(9000, 60), send(9001, 0, 127)]).collect();
+    let whole = samples(dry().with_space(&ROOM), &events, 24_000, 24_000);
+    assert!(whole.iter().any(|sample| sample.abs() > 0.01));
+    for (chunk, block) in [(1024, 37), (77, 24_000), (4096, 4096)] {
+        let parts = samples(dry().with_space(&ROOM).with_chunk(chunk), &events, 24_000, block);
+        assert_eq!(whole.iter().zip(&parts).position(|(a, b)| a != b), None, "chunks of {chunk}, blocks of {block}");
+    }
+    let mut ensemble = dry().with_space(&ROOM);
+    let backwards = in_blocks(&events, 24_000, 512, |events, left, right| {
+        ensemble.process_by(|parts, play| parts.iter_mut().rev().for_each(play), events, &[], left, right);
+    });
+    assert!(backwards.into_iter().map(f32::from_bits).eq(whole));
+}
+
+#[test]
+fn it_rings_on_after_the_notes_and_then_falls_silent() {
+    let mut ensemble = dry().with_space(&ROOM);
+    let (mut left, mut right) = ([0.0; 4800], [0.0; 4800]);
+    ensemble.process(&[send(0, 0, 127), on(0, 60)], &mut left, &mut right);
+    let mut alone = dry();
+    alone.process(&[on(0, 60)], &mut [0.0; 4800], &mut [0.0; 4800]);
+    let tenths = (1..100).find(|_| {
+        alone.process(&[], &mut [0.0; 4800], &mut [0.0; 4800]);
+        ensemble.process(&[], &mut left, &mut right);
+        alone.is_silent()
+    });
+    assert!(tenths.is_some() && !ensemble.is_silent());
+    assert!(left.iter().any(|sample| sample.abs() > 1e-6));
+    let more = (1..20).find(|_| {
+        ensemble.process(&[], &mut left, &mut right);
+        ensemble.is_silent()
+    });
+    assert!(more.is_some(), "0.3 s of T60 take less than 2 s to −120 dBFS");
+    ensemble.process(&[], &mut left, &mut right);
+    assert!(left.iter().chain(&right).all(|sample| *sample == 0.0));
+}
