@@ -277,7 +277,7 @@ fn check(case: &Case) -> Result<bool, TestCaseError> {
     };
     let ensemble = || {
         let ensemble = Ensemble::of_kits(case.sample_rate, case.seed, &case.kit, case.programs.clone());
-        if case.seed % 2 == 0 { ensemble } else { ensemble.with_space(&[(Param::Space, 3.0)]) }
+        if case.seed.is_multiple_of(2) { ensemble } else { ensemble.with_space(&[(Param::Space, 3.0)]) }
     };
     let mut sounds = false;
     for (what, whole, parts) in [

@@ -190,6 +190,7 @@ mod tests {
             kit: &Kit::of_patch(patch),
             channels: &[],
             programs: &[],
+            space: &[],
             tuning: &Tuning::EQUAL,
             song,
         };

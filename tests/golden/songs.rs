@@ -26,6 +26,7 @@ fn song(path: &Path) -> Score {
     let mut song = Song::parse(&bytes, stem).unwrap_or_else(|error| panic!("{error}"));
     song.select_by_bank();
     let score = Score::new(format!("song-{stem}"), Patch::default(), song.seconds + TAIL);
-    let score = score.with_kits(Programs::factory_kits()).with_space(&Programs::general_midi().space);
+    // A plate is slow on every level, and `tests/blocks.rs` plays blocks of all sizes.
+    let score = score.in_blocks(&[480]).with_kits(Programs::factory_kits()).with_space(&Programs::general_midi().space);
     song.events.iter().fold(score, |score, event| score.then(event.seconds, event.channel, event.kind))
 }

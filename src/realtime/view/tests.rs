@@ -37,6 +37,7 @@ impl Stand {
             kit: &kit,
             channels: &channels,
             programs: &programs,
+            space: &[],
             tuning: &Tuning::EQUAL,
             song: None,
         };
