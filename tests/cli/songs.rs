@@ -83,6 +83,7 @@ fn program_changes_are_told_and_can_be_left_out() {
     assert!(sandbox.read("changes.wav") != sandbox.read("plain.wav"));
     let ignored = said(&sandbox, &format!("render changes.mid --preset Kalimba --programs none {base} changes.wav"));
     assert!(!ignored.contains("warning"), "{ignored}");
+    said(&sandbox, &format!("render plain.mid --preset Kalimba --programs none {base} plain.wav"));
     assert!(sandbox.read("changes.wav") == sandbox.read("plain.wav"));
     // Without --preset there is no warning, because no single sound was requested for all programs.
     for args in ["changes.mid", "changes.mid --programs none"] {
@@ -111,7 +112,8 @@ fn general_midi_needs_no_option() {
     assert!(drums == sandbox.read("kit.wav") && drums != marimba);
     sandbox.write("mine.toml", "programs = 1\nname = \"Mine\"\nsounds = [\"\", \"Marimba\"]");
     let mine = render("mine", "--programs mine.toml", &[program(2, 1), note_on(0, 2, 60)]);
-    assert!(mine == marimba);
+    let dry = render("marimba", "--set space=none", &[program(2, 12), note_on(0, 2, 60)]);
+    assert!(mine == dry && dry != marimba, "the list has no space that channels share");
     sandbox.write("mine.mid", song(&[program(2, 0), note_on(0, 2, 60), end(480)]));
     let told = said(&sandbox, "render mine.mid --programs mine.toml --force -o mine.wav");
     assert!(told.contains("program 1: ‘Mine’ has no sound for it; it plays what channels start with"), "{told}");
