@@ -119,7 +119,7 @@ impl Ensemble {
 
     /// The same ensemble with a space that all channels share, of the parameters of the section "Space"; others are not
     /// looked at, and the mix is that of the channels' sends: their controllers 91, which begin at 40 as General MIDI 2 has
-    /// it. A body at full send is as loud as white noise that is sent to it. Takes as much time as the space of one
+    /// it. At a full send it is 8 dB softer than white noise that is sent to it. Takes as much time as the space of one
     /// channel. Allocates.
     #[must_use]
     pub fn with_space(mut self, params: &[(Param, f32)]) -> Self {
