@@ -1,47 +1,13 @@
 //! Compares bodies with independent numbers from SciPy, made by `bodies/scipy_reference.py`.
 
-use sprung::sound::bodies::{Body, FIELDS, Model};
+mod bodies;
 
-const NUMBERS: &str = include_str!("bodies/scipy_reference.csv");
-
-/// One line: a mode of a body with these values.
-struct Line {
-    model: String,
-    set: String,
-    place: usize,
-    ratio: f64,
-    product: f64,
-    t60: f64,
-    tolerance: f64,
-}
-
-fn read(line: &str) -> Line {
-    let cells: Vec<&str> = line.split(',').collect();
-    let [model, set, place, ratio, product, t60, tolerance] = cells[..] else { panic!("{line}: 7 cells") };
-    let number = |cell: &str| cell.parse().expect("a number");
-    Line {
-        model: model.to_owned(),
-        set: set.to_owned(),
-        place: place.parse().expect("a place"),
-        ratio: number(ratio),
-        product: number(product),
-        t60: number(t60),
-        tolerance: number(tolerance),
-    }
-}
-
-fn body(model: &str, set: &str) -> Body {
-    let mut body = Body::new(Model::find(model).expect("a model").clone());
-    for (name, value) in set.split(';').filter_map(|pair| pair.split_once('=')) {
-        let field = FIELDS.iter().find(|field| field.name == name).expect("a field");
-        (field.set)(&mut body, value.parse().expect("a number"));
-    }
-    body
-}
+use bodies::{Line, NUMBERS, body, lines};
+use sprung::sound::bodies::Model;
 
 #[test]
 fn bodies_agree_with_scipy() {
-    let lines: Vec<Line> = NUMBERS.lines().filter(|line| !line.starts_with('#')).skip(1).map(read).collect();
+    let lines: Vec<Line> = lines();
     assert!(lines.len() > 300, "{} lines", lines.len());
     let mut breaches = Vec::new();
     for group in lines.chunk_by(|a, b| (&a.model, &a.set) == (&b.model, &b.set)) {

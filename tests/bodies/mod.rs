@@ -1,0 +1,45 @@
+//! Bodies and their modes as SciPy has them: the numbers of `scipy_reference.csv`.
+
+use sprung::sound::bodies::{Body, FIELDS, Model};
+
+pub(crate) const NUMBERS: &str = include_str!("scipy_reference.csv");
+
+/// One line: a mode of a body with these values.
+pub(crate) struct Line {
+    pub(crate) model: String,
+    pub(crate) set: String,
+    pub(crate) place: usize,
+    pub(crate) ratio: f64,
+    pub(crate) product: f64,
+    pub(crate) t60: f64,
+    pub(crate) tolerance: f64,
+}
+
+fn read(line: &str) -> Line {
+    let cells: Vec<&str> = line.split(',').collect();
+    let [model, set, place, ratio, product, t60, tolerance] = cells[..] else { panic!("{line}: 7 cells") };
+    let number = |cell: &str| cell.parse().expect("a number");
+    Line {
+        model: model.to_owned(),
+        set: set.to_owned(),
+        place: place.parse().expect("a place"),
+        ratio: number(ratio),
+        product: number(product),
+        t60: number(t60),
+        tolerance: number(tolerance),
+    }
+}
+
+/// The lines, those of one body after each other.
+pub(crate) fn lines() -> Vec<Line> {
+    NUMBERS.lines().filter(|line| !line.starts_with('#')).skip(1).map(read).collect()
+}
+
+pub(crate) fn body(model: &str, set: &str) -> Body {
+    let mut body = Body::new(Model::find(model).expect("a model").clone());
+    for (name, value) in set.split(';').filter_map(|pair| pair.split_once('=')) {
+        let field = FIELDS.iter().find(|field| field.name == name).expect("a field");
+        (field.set)(&mut body, value.parse().expect("a number"));
+    }
+    body
+}
