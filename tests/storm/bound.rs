@@ -102,8 +102,8 @@ struct Part {
     soft: [bool; 16],
     /// The largest number of unison voices of a note.
     unison: f64,
-    /// Whether brightness changes; if so, the strike's tilt is unknown.
-    bright: bool,
+    /// Whether brightness changes or a route moves the tilt; if so, the strike's tilt is unknown.
+    moves_tilt: bool,
     /// The amplitude of all modes together that a bow of speed 1 gives until the end of the case at most, times the highest
     /// level of the bow.
     bow: f64,
@@ -122,6 +122,16 @@ struct Reach {
 }
 
 impl Reach {
+    /// With another reach, times a level.
+    fn plus(self, other: Self, level: f64) -> Self {
+        let sum = |a: [f64; 3], b: [f64; 3]| add(a, b.map(|b| level * b));
+        Self {
+            struck: sum(self.struck, other.struck),
+            plucked: sum(self.plucked, other.plucked),
+            noise: sum(self.noise, other.noise),
+        }
+    }
+
     /// Whichever reaches further, for each force and side.
     fn max(self, other: Self) -> Self {
         let further = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i].max(b[i]));
@@ -164,7 +174,7 @@ impl Part {
             offsets,
             soft,
             unison: 1.0,
-            bright: false,
+            moves_tilt: false,
             bow: 0.0,
             bloom: None,
             reach: None,
@@ -172,11 +182,14 @@ impl Part {
         part.unison = part.most_unison(case);
         part.bow = part.most_bow(case);
         part.bloom = part.most_bloom(case);
-        part.bright = part.events(case).any(|event| match event.kind {
+        let has_route = |patch: &Patch| patch.routes.iter().any(|(_, route)| route.destination == Param::Tilt);
+        let is_routed = has_route(&case.patch) || case.programs.iter().any(has_route);
+        let is_bright = |event: &Event| match event.kind {
             EventKind::Express { expression, .. } => expression == Expression::Brightness,
             EventKind::Control { controller, .. } => controller == 74,
             _ => false,
-        });
+        };
+        part.moves_tilt = is_routed || part.events(case).any(is_bright);
         part
     }
 
@@ -233,7 +246,7 @@ impl Part {
         for event in self.events(case) {
             self.apply(case, event);
             let strike = self.strike(event, case.sample_rate);
-            if strike.is_none() && !self.bright {
+            if strike.is_none() && !self.moves_tilt {
                 continue;
             }
             let reach = self.reach();
@@ -343,26 +356,23 @@ impl Part {
         let plain: f64 = modes.iter().map(|mode| fabs(f64::from(mode.level))).sum();
         let total: f64 = modes.iter().map(tilted).sum();
         let balance = if tilt != 0.0 && total > 0.0 { plain / total } else { 1.0 };
-        let mut reach = Reach::default();
-        let mut widest = [0.0_f64, 0.0, 1.0];
+        let (mut reach, mut furthest) = (Reach::default(), Reach::default());
         for mode in modes {
             let gains = if self.unison > 1.0 { [SQRT_2, SQRT_2, 1.0] } else { heard(mode, self.value(Param::Width)) };
-            widest = [0, 1, 2].map(|i| widest[i].max(gains[i]));
             let level = tilted(mode) * balance * varied;
-            let struck = level * f64::from(mode.strike);
-            let reached = 1.0 - f64::from(mode.strike) * (1.0 - 0.01 * self.value(Param::NoiseReach));
-            let noise = level * reached * noise_gain;
+            let struck = f64::from(mode.strike);
+            let reached = 1.0 - struck * (1.0 - 0.01 * self.value(Param::NoiseReach));
             let point = sin(PI * self.value(Param::PluckPosition) * 0.01 * f64::from(mode.ratio));
             let plucked =
                 struck * if self.value(Param::VaryPosition) > 0.0 || table.has_phases() { 1.0 } else { fabs(point) };
-            reach.struck = add(reach.struck, gains.map(|gain| gain * struck));
-            reach.plucked = add(reach.plucked, gains.map(|gain| gain * plucked));
-            reach.noise = add(reach.noise, gains.map(|gain| gain * noise));
+            let heard = |share: f64| gains.map(|gain| gain * share);
+            let own = Reach { struck: heard(struck), plucked: heard(plucked), noise: heard(reached * noise_gain) };
+            reach = reach.plus(own, level);
+            furthest = furthest.max(own);
         }
-        if self.bright {
+        if self.moves_tilt {
             // Any tilt distributes the same sum of levels in another way.
-            let most = widest.map(|gain| gain * plain * varied);
-            reach = Reach { struck: most, plucked: most, noise: most.map(|most| most * noise_gain) };
+            return Reach::default().plus(furthest, plain * varied);
         }
         reach
     }

@@ -170,7 +170,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Case {
     let factory = Preset::factory();
     let base = match base.checked_sub(128) {
         None => Patch::default(),
-        Some(number) => without_moving_tilt(factory[usize::from(number) % factory.len()].patch.clone()),
+        Some(number) => factory[usize::from(number) % factory.len()].patch.clone(),
     };
     let records = || {
         let rest = bytes.get(RECORD..).unwrap_or(&[]);
@@ -231,22 +231,11 @@ pub(crate) fn decode(bytes: &[u8]) -> Case {
     }
     events.retain(|event| event.frame < MAX_FRAMES);
     let frames = now.saturating_add(1 + wait(tail)).min(MAX_FRAMES) as usize;
-    let program = |preset: &Preset| without_limiter(without_moving_tilt(preset.patch.clone()));
+    let program = |preset: &Preset| without_limiter(preset.patch.clone());
     let programs = factory.iter().take(8).map(program).collect();
     let (ensemble, block) = (form & 128 != 0, BLOCKS[usize::from(form & 7)]);
     let (sample_rate, seed, patch) = (sample_rate(rate), u64::from(seed), without_limiter(patch));
     Case { sample_rate, seed, ensemble, patch, programs, block, events, frames }
-}
-
-/// The patch without routes to the tilt of a strike: the bound takes tilt as the patch has it.
-fn without_moving_tilt(mut patch: Patch) -> Patch {
-    for place in 0..MAX_ROUTES {
-        let tilts = patch.routes.iter().any(|(at, route)| at == place && route.destination == Param::Tilt);
-        if tilts {
-            patch.routes.set(place, None);
-        }
-    }
-    patch
 }
 
 fn sample_rate(byte: u8) -> f64 {
