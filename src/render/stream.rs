@@ -49,6 +49,8 @@ struct Stream<'a> {
     events: Vec<Event>,
     /// What comes in as sound.
     input: &'a [f32],
+    /// The frames of it that are being rendered now, with silence after its end.
+    input_now: Vec<f32>,
     known_frames: Option<u64>,
 }
 
@@ -70,6 +72,7 @@ impl<'a> Stream<'a> {
             song: SongCursor::new(job.song, sample_rate),
             events: Vec::new(),
             input: job.input,
+            input_now: Vec::new(),
             known_frames: job.known_frames(),
         }
     }
@@ -108,16 +111,26 @@ impl<'a> Stream<'a> {
 
     fn render(&mut self, left: &mut [f32], right: &mut [f32]) {
         self.events.clear();
-        let from = usize::try_from(self.song.frame()).unwrap_or(usize::MAX);
-        let input = self.input.get(from..).unwrap_or(&[]);
+        self.follow_input(left.len());
         self.song.advance(left.len(), &mut self.events);
         if left.len() < SHARED_FRAMES {
-            self.ensemble.process_with_input(&self.events, input, left, right);
+            self.ensemble.process_with_input(&self.events, &self.input_now, left, right);
         } else {
             // One part at a time: only few channels sound, and no two of them should wait for the same core.
             let each =
                 |parts: &mut [_], play: &(dyn Fn(&mut _) + Sync)| parts.par_iter_mut().with_max_len(1).for_each(play);
-            self.ensemble.process_by(each, &self.events, input, left, right);
+            self.ensemble.process_by(each, &self.events, &self.input_now, left, right);
+        }
+    }
+
+    /// Takes the next frames of the input. Silence comes in after its end, as in a host: a note that nothing drives moves in
+    /// other steps than one that silence drives, so their bits differ.
+    fn follow_input(&mut self, frames: usize) {
+        self.input_now.clear();
+        if !self.input.is_empty() {
+            let from = usize::try_from(self.song.frame()).unwrap_or(usize::MAX);
+            self.input_now.extend(self.input.iter().skip(from).take(frames));
+            self.input_now.resize(frames, 0.0);
         }
     }
 

@@ -115,32 +115,38 @@ pub(crate) fn instances_on_several_threads_play_at_once() {
     });
 }
 
+/// The layouts of ports: number, input buses, and channels of the output.
+pub(crate) fn layouts() -> Vec<(ClapId, u32, u32)> {
+    let mut instance = Instance::new();
+    let handle = instance.clack.plugin_handle();
+    let extension: PluginAudioPortsConfig = handle.get_extension().unwrap();
+    let mut buffer = AudioPortsConfigBuffer::new();
+    (0..extension.count(&handle))
+        .map(|index| {
+            let layout = extension.get(&handle, index, &mut buffer).unwrap();
+            (layout.id, layout.input_port_count, layout.main_output.unwrap().channel_count)
+        })
+        .collect()
+}
+
+/// An instance with one of the layouts.
+pub(crate) fn of_layout(id: ClapId) -> Instance {
+    let mut instance = Instance::new();
+    let handle = instance.clack.plugin_handle();
+    let extension: PluginAudioPortsConfig = handle.get_extension().unwrap();
+    extension.select(&handle, id).unwrap();
+    instance
+}
+
 /// Stereo is the engine's output; mono is the mean of both sides; the input is ignored, even in the same memory.
 pub(crate) fn every_layout_plays_and_ignores_its_input() {
     let patch = patches().swap_remove(1).1;
     let (sent, events) = two_notes();
     let stereo = render(&patch, RATE, &events, FRAMES);
     let mean: Vec<f32> = stereo[0].iter().zip(&stereo[1]).map(|(left, right)| 0.5 * (left + right)).collect();
-    let layouts: Vec<(ClapId, u32, u32)> = {
-        let mut instance = Instance::new();
-        let handle = instance.clack.plugin_handle();
-        let extension: PluginAudioPortsConfig = handle.get_extension().unwrap();
-        let mut buffer = AudioPortsConfigBuffer::new();
-        (0..extension.count(&handle))
-            .map(|index| {
-                let layout = extension.get(&handle, index, &mut buffer).unwrap();
-                (layout.id, layout.input_port_count, layout.main_output.unwrap().channel_count)
-            })
-            .collect()
-    };
-    for (id, inputs, channels) in layouts {
+    for (id, inputs, channels) in layouts() {
         for in_place in [false, true] {
-            let mut instance = Instance::new();
-            {
-                let handle = instance.clack.plugin_handle();
-                let extension: PluginAudioPortsConfig = handle.get_extension().unwrap();
-                extension.select(&handle, id).unwrap();
-            }
+            let mut instance = of_layout(id);
             load(&mut instance, &patch);
             let mut player = instance.play(RATE, 480);
             player.audio.feed_noise();

@@ -162,6 +162,7 @@ fn main() -> ExitCode {
             one_channel_has_the_bits_of_the_command
             an_mpe_performance_has_the_bits_of_the_command
             a_kit_has_the_bits_of_the_command
+            sound_that_comes_in_has_the_bits_of_the_command
             sixteen_channels_have_the_bits_of_one_synth
         }
         Nothing: growth {

@@ -2,6 +2,7 @@
 
 use crate::host::reference::{assert_same_bits, assert_sound};
 use crate::host::{Instance, Player, Timed};
+use crate::lifecycle::{layouts, of_layout};
 use crate::patches::{drums, load, patches, state_of_kit};
 use crate::phrase::{self, Dialect, FRAMES, SAMPLE_RATE};
 use sprung::dsp::random::{key, uniform};
@@ -37,7 +38,10 @@ fn divisions() -> Vec<Division> {
 pub(crate) fn rendered_by_the_command(midi: &[u8], kit: &Arc<Kit>) -> Vec<Vec<f32>> {
     let song = phrase::song(midi);
     let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 1024, tail: Tail::None };
-    let job = Job::new(&song, kit, options);
+    rendered(&Job::new(&song, kit, options))
+}
+
+fn rendered(job: &Job) -> Vec<Vec<f32>> {
     let mut channels = vec![Vec::new(), Vec::new()];
     job.render(|left, right| {
         channels[0].extend(left);
@@ -101,6 +105,31 @@ pub(crate) fn a_kit_has_the_bits_of_the_command() {
             let mut player = instance.play(f64::from(SAMPLE_RATE), 8192);
             let found = player.render(&sent, FRAMES, block).channels;
             assert_same_bits(&format!("drums, {dialect:?}, {division}"), &found, &expected);
+        }
+    }
+}
+
+/// Sound that comes in on the plugin's input and, as a file, in the command.
+pub(crate) fn sound_that_comes_in_has_the_bits_of_the_command() {
+    let midi = phrase::midi_file();
+    let song = phrase::song(&midi);
+    let input: Vec<f32> = (0..FRAMES as u64 / 2).map(|n| 0.2 * uniform(key(9, 0), n)).collect();
+    let (id, ..) =
+        layouts().into_iter().find(|(_, inputs, channels)| (*inputs, *channels) == (1, 2)).expect("a layout");
+    for (name, patch) in patches() {
+        let silent = rendered_by_the_command(&midi, &Kit::of_patch(&patch));
+        let patch = patch.with(Param::InputLevel, -6.0);
+        let options = Options { sample_rate: SAMPLE_RATE, seed: 0, block: 1024, tail: Tail::None };
+        let kit = Kit::of_patch(&patch);
+        let expected = rendered(&Job { input: &input, ..Job::new(&song, &kit, options) });
+        assert!(expected != silent, "{name}: what comes in is heard");
+        for (division, block) in divisions() {
+            let mut instance = of_layout(id);
+            load(&mut instance, &patch);
+            let mut player = instance.play(f64::from(SAMPLE_RATE), 8192);
+            player.audio.feed(input.clone());
+            let found = player.render(&phrase::sent(&phrase::messages(), Dialect::Midi), FRAMES, block).channels;
+            assert_same_bits(&format!("{name} with input, {division}"), &found, &expected);
         }
     }
 }

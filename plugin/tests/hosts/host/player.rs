@@ -33,6 +33,8 @@ pub(crate) struct Audio {
     outputs: Vec<Vec<f32>>,
     input_ports: AudioPorts,
     output_ports: AudioPorts,
+    /// What comes in on all channels from the first frame on, then silence. Empty: the input stays as it is.
+    incoming: Vec<f32>,
     /// Whether the input is passed in the memory of the output.
     in_place: bool,
     sent_back: Ends,
@@ -128,6 +130,7 @@ impl Audio {
             output_ports: AudioPorts::with_capacity(outputs.len(), 1),
             inputs,
             outputs,
+            incoming: Vec::new(),
             in_place: false,
             sent_back: Ends { notes: Vec::with_capacity(16_384) },
             clock: 0,
@@ -138,6 +141,12 @@ impl Audio {
     pub(crate) fn work_in_place(&mut self) {
         assert_eq!(self.inputs.len(), self.outputs.len(), "in place, there are as many inputs as outputs");
         self.in_place = true;
+    }
+
+    /// Lets sound come in on all channels of the input.
+    pub(crate) fn feed(&mut self, incoming: Vec<f32>) {
+        assert!(!self.inputs.is_empty(), "the layout has an input");
+        self.incoming = incoming;
     }
 
     /// Fills the input bus with loud noise.
@@ -164,6 +173,14 @@ impl Audio {
         // Samples that the plugin does not write must be noticed.
         let unwritten = if self.in_place { 0.9 } else { f32::NAN };
         self.outputs.iter_mut().for_each(|channel| channel[..frames].fill(unwritten));
+        if !self.incoming.is_empty() {
+            let rest = self.incoming.get(self.clock as usize..).unwrap_or(&[]);
+            for channel in &mut self.inputs {
+                let now = frames.min(rest.len());
+                channel[..now].copy_from_slice(&rest[..now]);
+                channel[now..frames].fill(0.0);
+            }
+        }
         let mut outputs = self.output_ports.with_output_buffers([AudioPortBuffer {
             latency: 0,
             channels: AudioPortBufferType::f32_output_only(
