@@ -1,0 +1,32 @@
+//! Keys of drums in General MIDI.
+
+pub(super) const DEEP_KICK: u8 = 35;
+pub(super) const KICK: u8 = 36;
+pub(super) const SIDE_STICK: u8 = 37;
+pub(super) const SNARE: u8 = 38;
+pub(super) const CLAP: u8 = 39;
+pub(super) const FLOOR_TOM: u8 = 41;
+pub(super) const CLOSED_HAT: u8 = 42;
+pub(super) const PEDAL_HAT: u8 = 44;
+pub(super) const LOW_TOM: u8 = 45;
+pub(super) const OPEN_HAT: u8 = 46;
+pub(super) const MIDDLE_TOM: u8 = 48;
+pub(super) const CRASH: u8 = 49;
+pub(super) const HIGH_TOM: u8 = 50;
+pub(super) const RIDE: u8 = 51;
+pub(super) const TAMBOURINE: u8 = 54;
+pub(super) const COWBELL: u8 = 56;
+pub(super) const MUTE_CONGA: u8 = 62;
+pub(super) const CONGA: u8 = 63;
+pub(super) const LOW_CONGA: u8 = 64;
+pub(super) const CLAVES: u8 = 75;
+pub(super) const TRIANGLE: u8 = 81;
+pub(super) const SHAKER: u8 = 82;
+
+/// Those of the orchestra's kit.
+pub(super) mod orchestra {
+    pub(in super::super) const CLASH: u8 = 59;
+    pub(in super::super) const BELL_TREE: u8 = 84;
+    pub(in super::super) const GONG: u8 = 85;
+    pub(in super::super) const TAM_TAM: u8 = 88;
+}
