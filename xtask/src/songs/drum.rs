@@ -5,6 +5,7 @@ pub(super) const KICK: u8 = 36;
 pub(super) const SIDE_STICK: u8 = 37;
 pub(super) const SNARE: u8 = 38;
 pub(super) const CLAP: u8 = 39;
+pub(super) const SECOND_SNARE: u8 = 40;
 pub(super) const FLOOR_TOM: u8 = 41;
 pub(super) const CLOSED_HAT: u8 = 42;
 pub(super) const PEDAL_HAT: u8 = 44;
@@ -25,8 +26,17 @@ pub(super) const SHAKER: u8 = 82;
 
 /// Those of the orchestra's kit.
 pub(super) mod orchestra {
+    /// On D, A, G and F.
+    pub(in super::super) const TIMPANI: [u8; 4] = [50, 45, 43, 41];
     pub(in super::super) const CLASH: u8 = 59;
     pub(in super::super) const BELL_TREE: u8 = 84;
     pub(in super::super) const GONG: u8 = 85;
     pub(in super::super) const TAM_TAM: u8 = 88;
+}
+
+/// Those of the kit of metal and glass.
+pub(super) mod metal {
+    pub(in super::super) const BOTTLE: u8 = 70;
+    /// On C, F, C and F.
+    pub(in super::super) const GLASSES: [u8; 4] = [69, 66, 64, 61];
 }

@@ -43,12 +43,12 @@ const DRUMS: [Line; 18] = [
     (8..11, drum::SIDE_STICK, [".... 5... .... 5..3", ".... 5..2 .... 5..."]),
     (8..11, drum::RIDE, ["4.2. 4.23 4.2. 4.2.", "4.2. 4.2. 4.2. 4.23"]),
     (11..12, drum::SNARE, ["", "1.1. 2.2. 3233 4567"]),
-    (12..16, drum::KICK, ["9..5 ..8. ..8. ...5", "9..5 ..8. 6.7. 6..."]),
-    (12..16, drum::SNARE, ["...2 9..3 .3.. 9..2", "..3. 9..3 .2.3 9.34"]),
+    (12..16, drum::KICK, ["8..5 ..8. ..8. ...5", "8..5 ..8. 6.7. 6..."]),
+    (12..16, drum::SNARE, ["...2 8..3 .3.. 8..2", "..3. 8..3 .2.3 8.34"]),
     (12..16, drum::CLAP, [".... 7... .... 7...", ".... 7... .... 7..."]),
     (12..16, drum::CLOSED_HAT, ["7364 73.4 7364 7364", "7364 7364 7364 73.."]),
     (12..16, drum::OPEN_HAT, [".... ..7. .... ....", ".... .... .... ..7."]),
-    (16..17, drum::KICK, ["9... 7... 8... 8...", ""]),
+    (16..17, drum::KICK, ["8... 7... 8... 8...", ""]),
     (16..17, drum::SNARE, ["7456 .... .... ....", ""]),
 ];
 
@@ -90,7 +90,7 @@ pub(super) fn compose() -> Result<Vec<u8>, String> {
 }
 
 fn drums() -> Part {
-    let mut part = Part::kit("Drums", 9, 1, 113).send(44).loosen(0.01, 8.0);
+    let mut part = Part::kit("Drums", 9, 1, 109).send(44).loosen(0.01, 8.0);
     for (bars, key, patterns) in HANDS.iter().chain(&DRUMS) {
         for bar in bars.clone() {
             part.sixteenths(f64::from(bar) * 4.0, SWING, *key, patterns[bar as usize % 2]);
@@ -150,7 +150,7 @@ fn marimba() -> Result<Part, String> {
 
 /// Chords off the beat, held in the middle.
 fn electric_piano() -> Result<Part, String> {
-    let mut part = Part::new("Electric Piano", 2, "Electric Piano 1", 127, 108)?.send(48).loosen(0.01, 8.0);
+    let mut part = Part::new("Electric Piano", 2, "Electric Piano 1", 123, 108)?.send(48).loosen(0.01, 8.0);
     for (at, [_, chord]) in turn(KIT..MIDDLE).chain(turn(ALL..LAST)) {
         let loud = if at < 48.0 { 84 } else { 102 };
         for (step, length, softer) in [(0.0, 5.0, 0), (6.0, 1.5, 14), (9.0, 4.0, 4), (14.0, 1.5, 18)] {

@@ -1,6 +1,6 @@
 //! "Kits": one rhythm, handed through the seven kits of channel 10 over the pulse of a marimba.
 
-use super::drum::{self, orchestra};
+use super::drum::{self, metal, orchestra};
 use super::score::{Part, controller, file};
 
 /// Beats that each kit has: three bars.
@@ -49,9 +49,10 @@ const PLAYERS: [Player; 7] = [
     Player { number: 1, chord: [62, 65, 69, 72, 77], bass: 34, ..COMMON },
     // The tight kit; G minor.
     Player { number: 17, chord: [62, 65, 67, 70, 74], bass: 43, ..COMMON },
-    // Brushes: taps, slaps and a ride; A minor.
+    // Brushes: taps, swirls and a ride; A minor.
     Player {
         number: 33,
+        ghost: drum::SECOND_SNARE,
         pulse: drum::RIDE,
         open: drum::PEDAL_HAT,
         loudness: 96,
@@ -59,12 +60,12 @@ const PLAYERS: [Player; 7] = [
         bass: 45,
         ..COMMON
     },
-    // Metal: sheets, a brake drum, glasses, bowls; F.
+    // Metal: sheets, a brake drum, triangles, a bottle, glasses on C and F; F.
     Player {
         number: 57,
-        ghost: 70,
-        open: 58,
-        fill: [69, 66, 64, 61],
+        ghost: metal::BOTTLE,
+        pulse: drum::PEDAL_HAT,
+        fill: metal::GLASSES,
         loudness: 108,
         chord: [60, 64, 65, 69, 76],
         bass: 41,
@@ -72,12 +73,12 @@ const PLAYERS: [Player; 7] = [
     },
     // The drum machine; C.
     Player { number: 25, ghost: drum::SIDE_STICK, chord: [60, 64, 67, 70, 74], bass: 36, loudness: 120, ..COMMON },
-    // The orchestra: bass drum, snare, castanets, timpani on A, G, F and D; D minor.
+    // The orchestra: bass drum, snare, castanets, timpani on D, A, G and F; D minor.
     Player {
         number: 49,
         pulse: drum::CLAP,
         open: drum::TRIANGLE,
-        fill: [50, 45, 43, 41],
+        fill: orchestra::TIMPANI,
         crash: Some(orchestra::CLASH),
         loudness: 127,
         ..COMMON
@@ -131,8 +132,9 @@ fn drums() -> Part {
         }
     }
     // Timpani on D, the bass drum and the tam-tam.
-    part.roll((END, 56), (END + 2.0, 112), 8.0, 50);
-    for (key, velocity) in [(50, 118), (drum::KICK, 118), (orchestra::CLASH, 110), (orchestra::TAM_TAM, 104)] {
+    let [timpani, ..] = orchestra::TIMPANI;
+    part.roll((END, 56), (END + 2.0, 112), 8.0, timpani);
+    for (key, velocity) in [(timpani, 118), (drum::KICK, 118), (orchestra::CLASH, 110), (orchestra::TAM_TAM, 104)] {
         part.note(END + 2.0, 2.0, key, velocity);
     }
     part

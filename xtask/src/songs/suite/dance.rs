@@ -72,17 +72,21 @@ fn bass(part: &mut Part) {
     }
 }
 
-/// The melody. Its left hand pulls some notes up from below; vibrato on the longest.
+/// The melody, which swells and falls with its phrases. Its left hand pulls some notes up from below; vibrato on the longest.
 fn koto(part: &mut Part) -> Result<(), String> {
     part.bend_to(DANCE, 0.0);
     for (line, text) in MELODY.iter().enumerate() {
-        part.phrase(DANCE + 8.0 + 16.0 * line as f64, 0.5, text)?;
+        let at = DANCE + 8.0 + 16.0 * line as f64;
+        part.phrase(at, 0.5, text)?;
+        let top = (at + 8.0).min(TUTTI);
+        part.ramp(controller::EXPRESSION, (at, 104), (top, 127));
+        part.ramp(controller::EXPRESSION, (top, 127), (top + 7.0, 108));
     }
     for (beat, semitones) in PULLS {
         let at = DANCE + beat;
         part.bend((at, semitones), (at + 0.3, 0.0));
     }
-    for (from, length) in [(14.5, 1.4), (38.0, 1.9), (56.5, 1.4)] {
+    for (from, length) in [(14.4, 1.5), (30.4, 1.5), (44.4, 1.5)] {
         part.ramp(controller::WHEEL, (DANCE + from, 0), (DANCE + from + length, 90));
         part.control(DANCE + from + length, controller::WHEEL, 0);
     }

@@ -70,7 +70,8 @@ fn piano(part: &mut Part) -> Result<(), String> {
     part.phrase(TUTTI, 1.0, MELODY)?;
     for (at, (root, chord)) in bars(TUTTI, &CHORDS) {
         part.pedal(at, if at == ECHO - 4.0 { 7.5 } else { 3.85 });
-        part.chord(at, 2.0, &[root - 12 + 12 * u8::from(*root < 34), *root], 116);
+        let low = if *root < 36 { *root } else { root - 12 };
+        part.chord(at, 2.0, &[low, low + 12], 112);
         part.chord(at + 1.0, 1.0, chord, 104);
         part.chord(at + 2.0, 1.0, &[root + 12, chord[1], chord[3]], 100);
         part.chord(at + 3.0, 1.0, chord, 106);
@@ -115,19 +116,19 @@ fn vibraphone(part: &mut Part) {
 fn timpani(part: &mut Part) {
     part.bend_to(TUTTI, 0.0);
     for ((at, _), key) in bars(TUTTI, &CHORDS).zip(TIMPANI) {
-        part.note(at, 1.0, key, 118);
+        part.note(at, 1.0, key, 110);
         part.note(at + 1.5, 0.5, key, 92);
         part.note(at + 2.0, 1.0, key, 108);
     }
     part.roll((TUTTI + 15.0, 60), (TUTTI + 16.0, 110), 8.0, 41);
-    part.roll((TUTTI + 22.0, 60), (ECHO - 4.0, 120), 8.0, 46);
+    part.roll((TUTTI + 22.0, 60), (ECHO - 4.0, 110), 8.0, 46);
     part.roll((ECHO - 3.0, 96), (ECHO, 24), 8.0, 48);
 }
 
 fn drums(part: &mut Part) {
     for at in [TUTTI, TUTTI + 16.0, ECHO - 4.0] {
-        part.note(at, 1.0, orchestra::CLASH, 112);
-        part.note(at, 1.0, drum::DEEP_KICK, 118);
+        part.note(at, 1.0, orchestra::CLASH, 104);
+        part.note(at, 1.0, drum::DEEP_KICK, 106);
     }
     for at in [TUTTI + 8.0, TUTTI + 20.0] {
         part.note(at, 1.0, drum::KICK, 104);
@@ -136,7 +137,7 @@ fn drums(part: &mut Part) {
     part.note(TUTTI + 16.0, 4.0, orchestra::GONG, 104);
     part.note(ECHO - 4.0, 4.0, orchestra::TAM_TAM, 122);
     for bar in 0..6u32 {
-        part.sixteenths(TUTTI + 4.0 * f64::from(bar), 0.0, drum::SNARE, "7..4 5.44 7.44 5444");
+        part.sixteenths(TUTTI + 4.0 * f64::from(bar), 0.0, drum::SNARE, "6..3 4.34 6.34 4344");
     }
-    part.roll((TUTTI + 22.0, 56), (ECHO - 4.0, 118), 8.0, drum::SNARE);
+    part.roll((TUTTI + 22.0, 56), (ECHO - 4.0, 106), 8.0, drum::SNARE);
 }
