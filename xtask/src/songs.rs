@@ -1,6 +1,8 @@
 //! `cargo xtask songs`: the demo songs, composed in code and written to `assets/midi`.
 
+mod drum;
 mod groove;
+mod kits;
 mod score;
 mod suite;
 
@@ -11,7 +13,8 @@ use std::fs;
 type Compose = fn() -> Result<Vec<u8>, String>;
 
 /// Names of the files, with the functions that compose them.
-const SONGS: [(&str, Compose); 2] = [("groove.mid", groove::compose), ("suite.mid", suite::compose)];
+const SONGS: [(&str, Compose); 3] =
+    [("groove.mid", groove::compose), ("kits.mid", kits::compose), ("suite.mid", suite::compose)];
 
 /// Writes the songs. With `check`, compares the existing files with what would be written instead.
 pub(crate) fn run(check: bool) -> Result<(), String> {

@@ -3,31 +3,11 @@
 use midly::num::{u4, u7, u15, u24, u28};
 use midly::{Format, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, Track, TrackEvent, TrackEventKind};
 use sprung::dsp::random::uniform;
-use sprung::engine::banks::DRUM_CHANNEL;
-use sprung::preset::Programs;
+use sprung::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL};
+use sprung::preset::{Phrase, Programs};
 
 /// Ticks per beat: a quarter note.
 const TICKS: u16 = 480;
-
-/// Keys of drums in General MIDI.
-pub(super) mod drum {
-    pub(in super::super) const DEEP_KICK: u8 = 35;
-    pub(in super::super) const KICK: u8 = 36;
-    pub(in super::super) const SIDE_STICK: u8 = 37;
-    pub(in super::super) const SNARE: u8 = 38;
-    pub(in super::super) const CLAP: u8 = 39;
-    pub(in super::super) const FLOOR_TOM: u8 = 41;
-    pub(in super::super) const CLOSED_HAT: u8 = 42;
-    pub(in super::super) const LOW_TOM: u8 = 45;
-    pub(in super::super) const OPEN_HAT: u8 = 46;
-    pub(in super::super) const MIDDLE_TOM: u8 = 48;
-    pub(in super::super) const CRASH: u8 = 49;
-    pub(in super::super) const HIGH_TOM: u8 = 50;
-    pub(in super::super) const COWBELL: u8 = 56;
-    pub(in super::super) const MARACAS: u8 = 70;
-    pub(in super::super) const CLAVES: u8 = 75;
-    pub(in super::super) const TRIANGLE: u8 = 81;
-}
 
 /// MIDI controllers that the songs use.
 pub(super) mod controller {
@@ -38,6 +18,8 @@ pub(super) mod controller {
     pub(in super::super) const EXPRESSION: u8 = 11;
     pub(super) const DATA_FINE: u8 = 38;
     pub(in super::super) const PEDAL: u8 = 64;
+    pub(in super::super) const BRIGHTNESS: u8 = 74;
+    pub(super) const SEND: u8 = 91;
     pub(super) const RPN_FINE: u8 = 100;
     pub(super) const RPN: u8 = 101;
 }
@@ -60,19 +42,34 @@ impl Part {
         let programs = Programs::general_midi();
         let program = (0..128).find(|number| programs.sound(*number) == Some(preset));
         let program = program.ok_or_else(|| format!("no program of General MIDI plays ‘{preset}’"))?;
-        let mut part = Self { name, channel, bend_range: 2.0, looseness: (0.0, 0.0), events: Vec::new() };
-        part.add(0.0, 1, MidiMessage::ProgramChange { program: u7::new(program) });
-        part.control(0.0, controller::VOLUME, volume);
+        let mut part = Self::silent(name, channel, volume);
+        part.program(0.0, program + 1);
         part.control(0.0, controller::PAN, pan);
         Ok(part)
     }
 
-    /// A part that plays drums on channel 10, each with the key that General MIDI gives it, with a volume (controller 7).
-    pub(super) fn drums(name: &'static str, volume: u8) -> Self {
-        let mut part = Self { name, channel: DRUM_CHANNEL, bend_range: 2.0, looseness: (0.0, 0.0), events: Vec::new() };
-        part.add(0.0, 1, MidiMessage::ProgramChange { program: u7::new(0) });
+    /// A part that plays a kit of drums by its number in Roland's GS, from 1, on any channel, with a volume (controller 7).
+    pub(super) fn kit(name: &'static str, channel: u8, kit: u8, volume: u8) -> Self {
+        let mut part = Self::silent(name, channel, volume);
+        if channel != DRUM_CHANNEL {
+            // The bank has to be known when the program changes: rank 0.
+            let (controller, value) = (u7::new(BANK_SELECT), u7::new(DRUM_BANK));
+            part.add(0.0, 0, MidiMessage::Controller { controller, value });
+        }
+        part.program(0.0, kit);
+        part
+    }
+
+    fn silent(name: &'static str, channel: u8, volume: u8) -> Self {
+        let mut part = Self { name, channel, bend_range: 2.0, looseness: (0.0, 0.0), events: Vec::new() };
         part.control(0.0, controller::VOLUME, volume);
         part
+    }
+
+    /// Sends this much of the part to the space that all channels share (controller 91).
+    pub(super) fn send(mut self, amount: u8) -> Self {
+        self.control(0.0, controller::SEND, amount);
+        self
     }
 
     /// Lets notes deviate by up to `beats`, and by up to `percent` of their velocity, in the same way each time.
@@ -95,6 +92,43 @@ impl Part {
         let (key, vel) = (u7::new(key), u7::new(velocity as u8));
         self.add(beat, 3, MidiMessage::NoteOn { key, vel });
         self.add(beat + length, 0, MidiMessage::NoteOff { key, vel: u7::new(64) });
+    }
+
+    /// Selects a program or, on a channel of drums, a kit by its number from 1.
+    pub(super) fn program(&mut self, beat: f64, number: u8) {
+        self.add(beat, 1, MidiMessage::ProgramChange { program: u7::new(number - 1) });
+    }
+
+    /// A phrase in the notation of presets, such as `C4@40 - E4+G4@110*2`, with steps of `step` beats.
+    pub(super) fn phrase(&mut self, beat: f64, step: f64, text: &str) -> Result<(), String> {
+        let phrase: Phrase = text.parse()?;
+        for note in phrase.notes() {
+            let (start, steps) = (note.start / Phrase::STEP, note.seconds / Phrase::STEP);
+            self.note(beat + start * step, steps * step * 0.95, note.key, note.velocity);
+        }
+        Ok(())
+    }
+
+    /// Sixteenths from `beat` on: a digit is the velocity in ninths of the maximum, anything else but a space is a rest.
+    /// Every second one is late by `swing` beats.
+    pub(super) fn sixteenths(&mut self, beat: f64, swing: f64, key: u8, pattern: &str) {
+        for (step, strength) in pattern.chars().filter(|c| *c != ' ').enumerate() {
+            if let Some(strength) = strength.to_digit(10) {
+                let late = if step % 2 == 1 { swing } else { 0.0 };
+                self.note(beat + step as f64 * 0.25 + late, 0.1, key, (127 * strength / 9) as u8);
+            }
+        }
+    }
+
+    /// Strikes a key evenly from one beat to another, `rate` times a beat, with velocities that go from one value to
+    /// another.
+    pub(super) fn roll(&mut self, from: (f64, u8), to: (f64, u8), rate: f64, key: u8) {
+        let strokes = ((to.0 - from.0) * rate + 0.5) as u32;
+        for stroke in 0..strokes {
+            let progress = f64::from(stroke) / f64::from(strokes);
+            let velocity = f64::from(from.1) + (f64::from(to.1) - f64::from(from.1)) * progress;
+            self.note(from.0 + f64::from(stroke) / rate, 0.8 / rate, key, velocity as u8);
+        }
     }
 
     /// Several notes struck together.
@@ -136,13 +170,15 @@ impl Part {
         }
     }
 
+    /// Sets the pitch wheel, in semitones.
+    pub(super) fn bend_to(&mut self, beat: f64, semitones: f64) {
+        let bend = PitchBend::from_f64(semitones / self.bend_range);
+        self.add(beat, 2, MidiMessage::PitchBend { bend });
+    }
+
     /// Moves the pitch wheel evenly between two pitches in semitones.
     pub(super) fn bend(&mut self, from: (f64, f64), to: (f64, f64)) {
-        let range = self.bend_range;
-        sixteenths(from.0, to.0, |beat, progress| {
-            let bend = PitchBend::from_f64((from.1 + (to.1 - from.1) * progress) / range);
-            self.add(beat, 2, MidiMessage::PitchBend { bend });
-        });
+        sixteenths(from.0, to.0, |beat, progress| self.bend_to(beat, from.1 + (to.1 - from.1) * progress));
     }
 
     fn track(mut self) -> Track<'static> {
