@@ -1,7 +1,7 @@
 //! The audio thread never allocates, and neither does the loudness meter: tested with an allocator that forbids it.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
-use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synth};
+use sprung::engine::{Ensemble, Event, EventKind, Expression, Mix, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use sprung::render::Meter;
@@ -55,7 +55,8 @@ fn storm(block: u32) -> Vec<Event> {
 fn processing_does_not_allocate() {
     let patch = Patch { modes: ModeTable::new(&[Mode { strike: 0.5, ..Mode::UNIT }; 64]), ..Patch::default() };
     let programs = [patch.clone(), Patch::default(), patch, pair()];
-    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &programs).with_space(&[(Param::Space, 1.0)]);
+    let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &programs)
+        .with_mix(&Mix { gain: -6.0, space: vec![(Param::Space, 1.0)] });
     let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
     let blocks: Vec<_> = (0..40).map(storm).collect();
     let mut loudest = 0.0_f32;

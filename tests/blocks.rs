@@ -5,7 +5,7 @@ use proptest::sample::select;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use sprung::engine::midi::parse_message;
-use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synth};
+use sprung::engine::{Ensemble, Event, EventKind, Expression, Mix, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::routes::{Response, Route, Source, amount_param};
 use sprung::patch::{Mode, ModeTable, Patch};
@@ -277,7 +277,11 @@ fn check(case: &Case) -> Result<bool, TestCaseError> {
     };
     let ensemble = || {
         let ensemble = Ensemble::of_kits(case.sample_rate, case.seed, &case.kit, case.programs.clone());
-        if case.seed.is_multiple_of(2) { ensemble } else { ensemble.with_space(&[(Param::Space, 3.0)]) }
+        if case.seed.is_multiple_of(2) {
+            ensemble
+        } else {
+            ensemble.with_mix(&Mix { gain: -3.0, space: vec![(Param::Space, 3.0)] })
+        }
     };
     let mut sounds = false;
     for (what, whole, parts) in [

@@ -28,7 +28,7 @@ fn play<T: DeviceSample>(frames: usize, channels: usize) {
         kit: &kit,
         channels: &[],
         programs: &[kit.clone(), kit.clone(), kit.clone()],
-        space: &[],
+        mix: None,
         tuning: &Tuning::EQUAL,
         song: Some(song),
     };

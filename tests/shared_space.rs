@@ -5,16 +5,20 @@ mod in_blocks;
 
 use events::{off, on};
 use in_blocks::in_blocks;
-use sprung::engine::{Ensemble, Event, EventKind};
+use sprung::engine::{Ensemble, Event, EventKind, Mix};
 use sprung::params::Param;
 use sprung::patch::Patch;
 
 const RATE: f64 = 48_000.0;
-const ROOM: [(Param, f32); 3] = [(Param::Space, 3.0), (Param::SpaceLowDecay, 0.3), (Param::SpaceHighDecay, 0.2)];
 
 fn dry() -> Ensemble {
     let patch = Patch::default().with(Param::Decay, 0.1).with(Param::Gain, -12.0).with(Param::Limiter, 0.0);
     Ensemble::new(RATE, 1, &patch, &[])
+}
+
+fn room() -> Mix {
+    let space = vec![(Param::Space, 3.0), (Param::SpaceLowDecay, 0.3), (Param::SpaceHighDecay, 0.2)];
+    Mix { space, ..Mix::default() }
 }
 
 fn send(frame: u32, channel: u8, value: u8) -> Event {
@@ -29,7 +33,7 @@ fn samples(mut ensemble: Ensemble, events: &[Event], frames: usize, block: usize
 /// What the space adds to a note, sent as much as `value` says.
 fn added(value: Option<u8>) -> Vec<f32> {
     let events: Vec<Event> = value.map(|value| send(0, 0, value)).into_iter().chain([on(2000, 60)]).collect();
-    let (with, without) = (dry().with_space(&ROOM), dry());
+    let (with, without) = (dry().with_mix(&room()), dry());
     let [with, without] = [with, without].map(|ensemble| samples(ensemble, &events, 12_000, 12_000));
     with.iter().zip(&without).map(|(with, without)| with - without).collect()
 }
@@ -48,13 +52,13 @@ fn blocks_chunks_and_the_order_of_parts_make_no_difference() {
     let channels = (0..16).map(|channel| Event { channel, ..on(100 * u32::from(channel), 40 + 2 * channel) });
     let sends = (0..16).map(|channel| send(1500 + 7 * u32::from(channel), channel, 8 * channel));
     let events: Vec<Event> = channels.chain(sends).chain([off(5000, 40), on(9000, 60), send(9001, 0, 127)]).collect();
-    let whole = samples(dry().with_space(&ROOM), &events, 24_000, 24_000);
+    let whole = samples(dry().with_mix(&room()), &events, 24_000, 24_000);
     assert!(whole.iter().any(|sample| sample.abs() > 0.01));
     for (chunk, block) in [(1024, 37), (77, 24_000), (4096, 4096)] {
-        let parts = samples(dry().with_space(&ROOM).with_chunk(chunk), &events, 24_000, block);
+        let parts = samples(dry().with_mix(&room()).with_chunk(chunk), &events, 24_000, block);
         assert_eq!(whole.iter().zip(&parts).position(|(a, b)| a != b), None, "chunks of {chunk}, blocks of {block}");
     }
-    let mut ensemble = dry().with_space(&ROOM);
+    let mut ensemble = dry().with_mix(&room());
     let backwards = in_blocks(&events, 24_000, 512, |events, left, right| {
         ensemble.process_by(|parts, play| parts.iter_mut().rev().for_each(play), events, &[], left, right);
     });
@@ -63,7 +67,7 @@ fn blocks_chunks_and_the_order_of_parts_make_no_difference() {
 
 #[test]
 fn it_rings_on_after_the_notes_and_then_falls_silent() {
-    let mut ensemble = dry().with_space(&ROOM);
+    let mut ensemble = dry().with_mix(&room());
     let (mut left, mut right) = ([0.0; 4800], [0.0; 4800]);
     ensemble.process(&[send(0, 0, 127), on(0, 60)], &mut left, &mut right);
     let mut alone = dry();
@@ -82,4 +86,13 @@ fn it_rings_on_after_the_notes_and_then_falls_silent() {
     assert!(more.is_some(), "0.3 s of T60 take less than 2 s to −120 dBFS");
     ensemble.process(&[], &mut left, &mut right);
     assert!(left.iter().chain(&right).all(|sample| *sample == 0.0));
+}
+
+#[test]
+fn the_gain_of_a_mix_is_that_of_all_that_sounds() {
+    let events = [send(0, 0, 127), on(10, 60)];
+    let plain = samples(dry().with_mix(&room()), &events, 9600, 480);
+    let softer = samples(dry().with_mix(&Mix { gain: -20.0, ..room() }), &events, 9600, 480);
+    assert!(plain.iter().zip(&softer).all(|(plain, softer)| (0.1 * plain - softer).abs() <= 1e-6 * plain.abs()));
+    assert!(softer.iter().any(|sample| sample.abs() > 0.001));
 }

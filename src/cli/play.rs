@@ -98,10 +98,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let status = Arc::new(Status::default());
     let ([keys, midi, closing], inputs) = LiveInputs::new();
     let has_song = song.is_some();
-    let Sounds { kit, channels, programs, space, tuning, .. } = &sounds;
+    let Sounds { kit, channels, programs, mix, tuning, .. } = &sounds;
     let midi = if programs.is_empty() { midi } else { midi.with_banks() };
     let (sample_rate, seed) = (found.sample_rate(), args.sound.seed);
-    let setup = Setup { sample_rate, seed, kit, channels, programs, space, tuning, song };
+    let setup = Setup { sample_rate, seed, kit, channels, programs, mix: mix.as_ref(), tuning, song };
     let (player, kits) = Player::new(setup, inputs, tap, status.clone());
     let session = match Session::start(&found, choice, player, status.clone()) {
         Ok(session) => session,

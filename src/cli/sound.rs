@@ -5,8 +5,8 @@ use super::terminal::{complain, counted};
 use super::tuning::TuningArgs;
 use super::{completion, presets, programs, quantity};
 use clap_complete::ArgValueCompleter;
-use sprung::engine::EventKind;
 use sprung::engine::banks::{DRUM_CHANNEL, MELODIC};
+use sprung::engine::{EventKind, Mix};
 use sprung::io::{Inputs, Song};
 use sprung::params::Param;
 use sprung::preset::{Playable, Programs};
@@ -49,8 +49,8 @@ pub(super) struct Sounds {
     pub(super) channels: Vec<(u8, Arc<Kit>)>,
     /// The kits that program changes select: melodic sounds, then drum kits. None if they select nothing.
     pub(super) programs: Vec<Arc<Kit>>,
-    /// Parameters of the space that all channels share; empty for none.
-    pub(super) space: Vec<(Param, f32)>,
+    /// How the channels of a song are mixed; none for their plain sum.
+    pub(super) mix: Option<Mix>,
     /// The list that they come from.
     list: Option<Programs>,
     /// The tuning of the keys.
@@ -100,9 +100,11 @@ impl SoundArgs {
         let programs = made.into_iter().map(|made| made.unwrap_or_else(|| kit.clone())).collect();
         // Whoever sets a space gives each channel one of its own.
         let sets_space = self.set.iter().any(|(param, _)| *param == Param::Space);
-        let shared = list.as_ref().filter(|_| has_song && !sets_space);
-        let space = shared.map_or(Vec::new(), |list| list.space.clone());
-        Ok(Sounds { kit, channels, programs, space, list, tuning: self.tuning.read(inputs)? })
+        let mut mix = list.as_ref().filter(|_| has_song).map(|list| list.mix.clone());
+        if let Some(mix) = mix.as_mut().filter(|_| sets_space) {
+            mix.space.clear();
+        }
+        Ok(Sounds { kit, channels, programs, mix, list, tuning: self.tuning.read(inputs)? })
     }
 
     /// Warns of program changes that have no sound or lead away from what the user asked for, of keys that the tuning does

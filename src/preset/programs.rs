@@ -1,14 +1,16 @@
-//! The sounds that MIDI's program changes select, melodic ones and drum kits, and the space that they share.
+//! The sounds that MIDI's program changes select, melodic ones and drum kits, and how songs with them are mixed.
 
 use super::about::{check_label, label};
 use super::complaints::Complaints;
 use super::kit::Playable;
 use super::value::{check_keys, read_params, table, unexpected};
+use crate::engine::Mix;
 use crate::error::{Error, Result};
 use crate::params::Param;
 use crate::sound::Kit;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 use toml::Value;
 
@@ -21,16 +23,18 @@ const PROGRAMS: usize = 128;
 /// Drum kits whose program numbers differ by less are variations of one, as in Roland's GS.
 const VARIATIONS: usize = 8;
 
-const KEYS: [&str; 5] = ["programs", "name", "sounds", "drums", "space"];
+const KEYS: [&str; 6] = ["programs", "name", "sounds", "drums", "gain", "space"];
 
-/// Names of the sounds that program changes select: factory presets and kits, or files; and the space they share.
+/// Gains of a mix in dB.
+const GAINS: RangeInclusive<f64> = -60.0..=24.0;
+
+/// Names of the sounds that program changes select: factory presets and kits, or files; and how they are mixed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Programs {
     /// Name of the list; never empty.
     pub name: String,
-    /// Parameters of the space that all channels share ([`Ensemble::with_space`](crate::engine::Ensemble::with_space));
-    /// empty for none.
-    pub space: Vec<(Param, f32)>,
+    /// How songs with these sounds are mixed.
+    pub mix: Mix,
     sounds: Vec<String>,
     drums: Vec<Option<String>>,
 }
@@ -119,9 +123,13 @@ fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result
     check_keys(table, "", &KEYS, complaints);
     let name = label(table, "name", "", complaints);
     let name = if name.is_empty() { "Unnamed".to_owned() } else { name };
-    let space =
-        read_params("space", table.get("space"), |param| param.is_of_space() && param != Param::SpaceMix, complaints);
-    let mut programs = Programs { name, space, sounds: Vec::new(), drums: vec![None; PROGRAMS] };
+    let is_wanted = |param: Param| param.is_of_space() && param != Param::SpaceMix;
+    let space = read_params("space", table.get("space"), is_wanted, complaints);
+    let gain = match table.get("gain") {
+        None => 0.0,
+        Some(value) => complaints.take("", read_gain(value)).unwrap_or(0.0),
+    };
+    let mut programs = Programs { name, mix: Mix { gain, space }, sounds: Vec::new(), drums: vec![None; PROGRAMS] };
     let text = |place: &str, value: &Value| match value {
         Value::String(name) => check_label(place, name.clone()),
         other => Err(unexpected(place, "the name of a preset or kit", other)),
@@ -149,6 +157,14 @@ fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result
         Some(other) => complaints.add(unexpected("drums", "a table [drums] of kits by program number", other)),
     }
     Ok(programs)
+}
+
+fn read_gain(value: &Value) -> std::result::Result<f32, String> {
+    let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+    number
+        .filter(|gain| GAINS.contains(gain))
+        .map(|gain| gain as f32)
+        .ok_or_else(|| unexpected("gain", &format!("dB from {} to {}", GAINS.start(), GAINS.end()), value))
 }
 
 #[cfg(test)]
@@ -183,6 +199,8 @@ mod tests {
             ("programs = 2", "reads programs = 1"),
             ("programs = 1\nsounds = [3]", "sounds[0]: expected the name"),
             ("programs = 1\ndrums = { 0 = \"A\" }", "drums.0: expected a program number from 1 to 128"),
+            ("programs = 1\ngain = \"loud\"", "gain: expected dB from -60 to 24, found string"),
+            ("programs = 1\ngain = 30", "gain: expected dB from -60 to 24, found integer"),
             ("programs = 1\nspace = \"plate\"", "space: expected a table [space]"),
             ("programs = 1\n[space]\nspace = \"cave\"", "space.space: ‘cave’ is not one of"),
             ("programs = 1\n[space]\nspace_mix = 20", "unknown key ‘space.space_mix’"),

@@ -5,9 +5,8 @@ use super::convert::{DeviceSample, interleave};
 use super::live::LiveInputs;
 use super::recorder::Tap;
 use super::status::Status;
-use crate::engine::{Ensemble, Event, EventKind, TelemetryWriter};
+use crate::engine::{Ensemble, Event, EventKind, Mix, TelemetryWriter};
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
-use crate::params::Param;
 use crate::sound::kit::KEYS;
 use crate::sound::{Kit, Shelf, Tuning};
 use rtrb::{Consumer, Producer, RingBuffer};
@@ -31,8 +30,8 @@ pub struct Setup<'a> {
     pub channels: &'a [(u8, Arc<Kit>)],
     /// The kits that program changes select.
     pub programs: &'a [Arc<Kit>],
-    /// Parameters of the space that all channels share ([`Ensemble::with_space`]); empty for none.
-    pub space: &'a [(Param, f32)],
+    /// How channels are mixed; none for their plain sum.
+    pub mix: Option<&'a Mix>,
     /// The tuning of all channels.
     pub tuning: &'a Tuning,
     /// A song that is played from the first frame on.
@@ -89,8 +88,8 @@ impl Player {
         // So that any kit finds room on the audio thread.
         ensemble.reserve(KEYS);
         ensemble.reserve_space();
-        if !setup.space.is_empty() {
-            ensemble = ensemble.with_space(setup.space);
+        if let Some(mix) = setup.mix {
+            ensemble = ensemble.with_mix(mix);
         }
         ensemble.set_tuning(setup.tuning);
         let player = Self {
@@ -190,7 +189,7 @@ mod tests {
             kit: &Kit::of_patch(patch),
             channels: &[],
             programs: &[],
-            space: &[],
+            mix: None,
             tuning: &Tuning::EQUAL,
             song,
         };

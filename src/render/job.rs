@@ -1,11 +1,11 @@
 //! What to render and how, and the result of a rendering.
 
 use crate::dsp::limiter::Work as LimiterWork;
+use crate::engine::Mix;
 use crate::engine::synth::SAMPLE_RATES;
 use crate::error::{Error, Result};
 use crate::io::Song;
 use crate::io::song;
-use crate::params::Param;
 use crate::sound::{Kit, Tuning};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -48,9 +48,8 @@ pub struct Job<'a> {
     pub channels: &'a [(u8, Arc<Kit>)],
     /// The kits that program changes select from.
     pub programs: &'a [Arc<Kit>],
-    /// Parameters of the space that all channels share ([`Ensemble::with_space`](crate::engine::Ensemble::with_space));
-    /// empty for none.
-    pub space: &'a [(Param, f32)],
+    /// How channels are mixed; none for their plain sum.
+    pub mix: Option<&'a Mix>,
     /// The pitches of the keys, on all channels.
     pub tuning: &'a Tuning,
     /// Sound that comes in with the first frame, at the sample rate of the options: it drives the notes of sounds that have
@@ -77,7 +76,7 @@ pub struct Rendered {
 impl<'a> Job<'a> {
     /// A song that one kit plays on all channels, at equal temperament, without program changes and without input.
     pub fn new(song: &'a Song, kit: &'a Arc<Kit>, options: Options) -> Self {
-        Self { song, kit, channels: &[], programs: &[], space: &[], tuning: &Tuning::EQUAL, input: &[], options }
+        Self { song, kit, channels: &[], programs: &[], mix: None, tuning: &Tuning::EQUAL, input: &[], options }
     }
 
     /// Length of the song alone, in frames.

@@ -63,8 +63,8 @@ impl<'a> Stream<'a> {
         let mut ensemble = channels
             .fold(ensemble, |ensemble, (channel, kit)| ensemble.with_kit(*channel, kit))
             .with_chunk(options.block);
-        if !job.space.is_empty() {
-            ensemble = ensemble.with_space(job.space);
+        if let Some(mix) = job.mix {
+            ensemble = ensemble.with_mix(mix);
         }
         ensemble.set_tuning(job.tuning);
         Self {

@@ -1,7 +1,6 @@
 //! A score: a patch, events at frames, and a length; can be rendered in blocks of any size.
 
-use sprung::engine::{Ensemble, Event, EventKind};
-use sprung::params::Param;
+use sprung::engine::{Ensemble, Event, EventKind, Mix};
 use sprung::patch::Patch;
 use sprung::sound::Kit;
 use std::sync::Arc;
@@ -22,8 +21,7 @@ pub(crate) struct Score {
     pub(crate) patch: Patch,
     /// The kits that program changes select from.
     pub(crate) programs: Vec<Arc<Kit>>,
-    /// The space that the channels share.
-    pub(crate) space: Vec<(Param, f32)>,
+    pub(crate) mix: Mix,
     /// Events as frame, channel and kind, in order of time.
     events: Vec<(u64, u8, EventKind)>,
     pub(crate) frames: usize,
@@ -43,7 +41,7 @@ impl Score {
             seed: 1,
             patch,
             programs: Vec::new(),
-            space: Vec::new(),
+            mix: Mix::default(),
             events: Vec::new(),
             frames: (seconds * sample_rate) as usize,
             blocks: BLOCKS,
@@ -68,8 +66,8 @@ impl Score {
         self
     }
 
-    pub(crate) fn with_space(self, space: &[(Param, f32)]) -> Self {
-        Self { space: space.to_vec(), ..self }
+    pub(crate) fn with_mix(self, mix: Mix) -> Self {
+        Self { mix, ..self }
     }
 
     /// Plays it in these block sizes only, beside one block.
@@ -120,10 +118,8 @@ impl Score {
     /// Renders left and right in blocks of at most `block` frames.
     pub(crate) fn render(&self, block: usize) -> [Vec<f32>; 2] {
         let mut ensemble =
-            Ensemble::of_kits(self.sample_rate, self.seed, &Kit::of_patch(&self.patch), self.programs.clone());
-        if !self.space.is_empty() {
-            ensemble = ensemble.with_space(&self.space);
-        }
+            Ensemble::of_kits(self.sample_rate, self.seed, &Kit::of_patch(&self.patch), self.programs.clone())
+                .with_mix(&self.mix);
         // Not zero, so that samples which a block does not write are noticed.
         let [mut left, mut right] = [(); 2].map(|()| vec![f32::NAN; self.frames]);
         let mut events = self.events.iter().peekable();

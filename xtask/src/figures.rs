@@ -20,7 +20,7 @@ fn draw() -> sprung::Result<()> {
     let kit = Preset::find("init")?.kit();
     let programs = Programs::factory_kits();
     let options = Options { sample_rate: 48_000, seed: 0, block: 1024, tail: Tail::Auto };
-    let job = Job { programs: &programs, space: &Programs::general_midi().space, ..Job::new(&song, &kit, options) };
+    let job = Job { programs: &programs, mix: Some(&Programs::general_midi().mix), ..Job::new(&song, &kit, options) };
     let (mut left, mut right) = (Vec::new(), Vec::new());
     job.render(|block_left, block_right| {
         left.extend(block_left);

@@ -124,8 +124,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
     };
     let options =
         Options { sample_rate: args.rate, seed: args.sound.seed, block: args.block as usize, tail: args.tail };
-    let Sounds { kit, channels, programs, space, tuning, .. } = &sounds;
-    let job = Job { song: &song, kit, channels, programs, space, tuning, input: &input, options };
+    let Sounds { kit, channels, programs, mix, tuning, .. } = &sounds;
+    let job = Job { song: &song, kit, channels, programs, mix: mix.as_ref(), tuning, input: &input, options };
     let delivery = Delivery {
         samples: args.bits,
         dither: args.dither,

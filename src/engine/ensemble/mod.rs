@@ -3,6 +3,7 @@
 mod choke;
 mod chunk;
 mod lender;
+mod mix;
 mod mix_limiter;
 mod part;
 mod process;
@@ -14,11 +15,12 @@ use super::synth::allowed;
 use super::zones::Owners;
 use super::{Snapshot, Synth};
 use crate::dsp::limiter::Work;
-use crate::params::Param;
 use crate::patch::Patch;
 use crate::sound::{Kit, Tuning};
+use crate::units::gain_from_db;
 use choke::Playing;
 use lender::Lender;
+pub use mix::Mix;
 use mix_limiter::MixLimiter;
 pub use part::Part;
 use shared_space::SharedSpace;
@@ -33,7 +35,7 @@ const CHUNK: usize = 1024;
 /// play on the instrument of their master channel. A note of a choke group silences that group on every
 /// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a kit that
 /// switches it on. Each channel has its own effects, and only those that are on take time; beside them the channels can
-/// share one space ([`Ensemble::with_space`]). Gives the same bits however the frames are divided into blocks. Real-time
+/// share one space ([`Mix::space`]). Gives the same bits however the frames are divided into blocks. Real-time
 /// safe once built.
 pub struct Ensemble {
     parts: Vec<Part>,
@@ -49,6 +51,8 @@ pub struct Ensemble {
     lender: Lender,
     /// Boxed, because most ensembles have none.
     shared_space: Option<Box<SharedSpace>>,
+    /// Amplitude ratio of the mix.
+    gain: f32,
     limiter: MixLimiter,
 }
 
@@ -75,6 +79,7 @@ impl Ensemble {
             owners: Owners::default(),
             lender: Lender::new(sample_rate),
             shared_space: None,
+            gain: 1.0,
             limiter: MixLimiter::new(allowed(sample_rate)),
         };
         ensemble.reserve(largest);
@@ -117,14 +122,13 @@ impl Ensemble {
         self
     }
 
-    /// The same ensemble with a space that all channels share, of the parameters of the section "Space"; others are not
-    /// looked at, and the mix is that of the channels' sends: their controllers 91, which begin at 40 as General MIDI 2 has
-    /// it. At a full send it is 8 dB softer than white noise that is sent to it. Takes as much time as the space of one
-    /// channel. Allocates.
+    /// The same ensemble, mixed in another way. Allocates.
     #[must_use]
-    pub fn with_space(mut self, params: &[(Param, f32)]) -> Self {
+    pub fn with_mix(mut self, mix: &Mix) -> Self {
         let sample_rate = self.parts[0].synth.sample_rate();
-        self.shared_space = Some(Box::new(SharedSpace::new(sample_rate, params, self.chunk_frames)));
+        let space = || Box::new(SharedSpace::new(sample_rate, &mix.space, self.chunk_frames));
+        self.shared_space = (!mix.space.is_empty()).then(space);
+        self.gain = gain_from_db(mix.gain.into()) as f32;
         self
     }
 

@@ -37,7 +37,7 @@ impl Stand {
             kit: &kit,
             channels: &channels,
             programs: &programs,
-            space: &[],
+            mix: None,
             tuning: &Tuning::EQUAL,
             song: None,
         };
