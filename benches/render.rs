@@ -13,7 +13,7 @@ fn render(criterion: &mut Criterion) {
     let kit = Preset::find("init").unwrap().kit();
     let programs = Programs::factory_kits();
     let options = Options { sample_rate: 48_000, seed: 0, block: 4096, tail: Tail::None };
-    let job = Job { programs: &programs, ..Job::new(&song, &kit, options) };
+    let job = Job { programs: &programs, mix: Some(&Programs::general_midi().mix), ..Job::new(&song, &kit, options) };
     let mut group = criterion.benchmark_group("suite.mid");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(job.song_frames()));
     for threads in [1, 2] {

@@ -1,4 +1,4 @@
-//! Renders notes of bodies over three octaves and compares their partials with SciPy's numbers: pitch, T60 and level.
+//! Renders notes of bodies at C3 and C6 and compares their partials with SciPy’s numbers: pitch, T60 and relative level.
 
 mod bodies;
 

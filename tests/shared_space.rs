@@ -5,6 +5,7 @@ mod in_blocks;
 
 use events::{off, on};
 use in_blocks::in_blocks;
+use sprung::engine::midi::controller::REVERB_SEND;
 use sprung::engine::{Ensemble, Event, EventKind, Mix};
 use sprung::params::Param;
 use sprung::patch::Patch;
@@ -22,7 +23,7 @@ fn room() -> Mix {
 }
 
 fn send(frame: u32, channel: u8, value: u8) -> Event {
-    Event { frame, channel, kind: EventKind::Control { controller: 91, value: f32::from(value) / 127.0 } }
+    Event { frame, channel, kind: EventKind::Control { controller: REVERB_SEND, value: f32::from(value) / 127.0 } }
 }
 
 fn samples(mut ensemble: Ensemble, events: &[Event], frames: usize, block: usize) -> Vec<f32> {
@@ -45,6 +46,54 @@ fn a_channel_sends_what_its_controller_says() {
     let power = |value| added(Some(value)).iter().map(|sample| f64::from(*sample * *sample)).sum::<f64>();
     let ratio = (power(127) / power(40)).sqrt();
     assert!((ratio / (127.0 / 40.0) - 1.0).abs() < 1e-3, "{ratio}");
+}
+
+#[test]
+fn each_channel_has_a_send_of_its_own() {
+    let notes = [Event { channel: 3, ..on(100, 60) }, Event { channel: 5, ..on(100, 67) }];
+    let heard = |ensemble: Ensemble, sends: &[Event]| samples(ensemble, &[sends, &notes].concat(), 9600, 480);
+    let none = [3, 5].map(|channel| send(0, channel, 0));
+    assert_eq!(heard(dry().with_mix(&room()), &none), heard(dry(), &[]));
+    let only = |channel: u8| heard(dry().with_mix(&room()), &[send(0, 3, 0), send(1, 5, 0), send(2, channel, 127)]);
+    let (third, fifth) = (only(3), only(5));
+    assert!(third != fifth && third != heard(dry(), &[]));
+}
+
+#[test]
+fn values_out_of_range_are_taken_as_the_nearest() {
+    let sent = |value: f32| {
+        let kind = EventKind::Control { controller: REVERB_SEND, value };
+        samples(dry().with_mix(&room()), &[Event { kind, ..on(0, 0) }, on(2000, 60)], 9600, 480)
+    };
+    for (odd, plain) in [(f32::NAN, 0.0), (-1.0, 0.0), (2.0, 1.0)] {
+        assert_eq!(sent(odd), sent(plain), "{odd}");
+    }
+}
+
+#[test]
+fn a_send_that_jumps_under_a_note_does_not_click() {
+    let jump = [on(0, 60), send(1, 0, 0), send(6000, 0, 127)];
+    let added = samples(dry().with_mix(&room()), &jump, 9000, 480);
+    let plain = samples(dry(), &jump, 9000, 480);
+    let wet: Vec<f32> = added.iter().zip(&plain).map(|(with, without)| with - without).collect();
+    let largest = |part: &[f32]| part.windows(2).fold(0.0_f32, |most, pair| most.max((pair[1] - pair[0]).abs()));
+    let later = largest(&wet[7500..9000]);
+    assert!(later > 0.0 && largest(&wet[5900..6200]) < later, "{} and {later}", largest(&wet[5900..6200]));
+}
+
+#[test]
+fn it_falls_asleep_and_wakes_at_the_same_frame_in_all_blocks() {
+    let space = [(Param::Space, 3.0), (Param::SpaceLowDecay, 0.05), (Param::SpaceHighDecay, 0.05)];
+    let mix = Mix { space: space.to_vec(), ..Mix::default() };
+    let events = [send(0, 0, 127), on(10, 60), off(20, 60), send(30_000, 0, 60), on(40_001, 72)];
+    let mut asleep = dry().with_mix(&mix);
+    asleep.process(&events[..3], &mut [0.0; 30_000], &mut [0.0; 30_000]);
+    assert!(asleep.is_silent(), "it sleeps between the notes");
+    let whole = samples(dry().with_mix(&mix), &events, 48_000, 48_000);
+    for block in [1, 37, 480] {
+        let parts = samples(dry().with_mix(&mix), &events, 48_000, block);
+        assert_eq!(whole.iter().zip(&parts).position(|(a, b)| a != b), None, "blocks of {block}");
+    }
 }
 
 #[test]

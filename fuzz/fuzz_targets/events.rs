@@ -12,6 +12,8 @@ mod case;
 mod check;
 #[path = "../../tests/storm/noise.rs"]
 mod noise;
+#[path = "../../tests/storm/reach.rs"]
+mod reach;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     if let Err(failure) = check::check(&case::decode(bytes)) {

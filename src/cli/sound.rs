@@ -49,10 +49,10 @@ pub(super) struct Sounds {
     pub(super) channels: Vec<(u8, Arc<Kit>)>,
     /// The kits that program changes select: melodic sounds, then drum kits. None if they select nothing.
     pub(super) programs: Vec<Arc<Kit>>,
-    /// How the channels of a song are mixed; none for their plain sum.
-    pub(super) mix: Option<Mix>,
     /// The list that they come from.
     list: Option<Programs>,
+    /// How the channels of a song are mixed; none for their plain sum.
+    pub(super) mix: Option<Mix>,
     /// The tuning of the keys.
     pub(super) tuning: Tuning,
 }

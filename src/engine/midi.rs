@@ -26,6 +26,8 @@ pub mod controller {
     pub const SOFT: u8 = 67;
     /// Brightness.
     pub const BRIGHTNESS: u8 = 74;
+    /// How much of a channel is sent to the space that a song's channels share.
+    pub const REVERB_SEND: u8 = 91;
     /// Selects a non-registered parameter, least significant seven bits.
     pub const NRPN_FINE: u8 = 98;
     /// Selects a non-registered parameter, most significant seven bits.

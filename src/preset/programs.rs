@@ -125,6 +125,9 @@ fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result
     let name = if name.is_empty() { "Unnamed".to_owned() } else { name };
     let is_wanted = |param: Param| param.is_of_space() && param != Param::SpaceMix;
     let space = read_params("space", table.get("space"), is_wanted, complaints);
+    if table.contains_key("space") && !space.iter().any(|(param, value)| *param == Param::Space && *value > 0.0) {
+        complaints.add("space.space: expected the body that all channels share, such as \"plate\"".to_owned());
+    }
     let gain = match table.get("gain") {
         None => 0.0,
         Some(value) => complaints.take("", read_gain(value)).unwrap_or(0.0),
@@ -193,6 +196,17 @@ mod tests {
     }
 
     #[test]
+    fn a_list_says_how_songs_are_mixed() {
+        let mix = |text: &str| Programs::parse(&format!("programs = 1\n{text}"), "x").unwrap().mix;
+        assert_eq!(mix(""), Mix::default());
+        let room = mix("gain = -6\n[space]\nspace = \"room\"\nspace_size = 50");
+        assert_eq!((room.gain, &room.space[..]), (-6.0, &[(Param::Space, 3.0), (Param::SpaceSize, 50.0)][..]));
+        assert_eq!(mix("gain = 1.5").gain, 1.5);
+        let general = &Programs::general_midi().mix;
+        assert_eq!((general.gain, general.space[0]), (-6.0, (Param::Space, 1.0)));
+    }
+
+    #[test]
     fn mistakes_are_named() {
         for (text, expected) in [
             ("name = \"a\"", "begins with programs = 1"),
@@ -203,7 +217,8 @@ mod tests {
             ("programs = 1\ngain = 30", "gain: expected dB from -60 to 24, found integer"),
             ("programs = 1\nspace = \"plate\"", "space: expected a table [space]"),
             ("programs = 1\n[space]\nspace = \"cave\"", "space.space: ‘cave’ is not one of"),
-            ("programs = 1\n[space]\nspace_mix = 20", "unknown key ‘space.space_mix’"),
+            ("programs = 1\n[space]\nspace_size = 90", "space.space: expected the body that all channels share"),
+            ("programs = 1\n[space]\nspace = \"plate\"\nspace_mix = 20", "unknown key ‘space.space_mix’"),
             ("programs = 1\nkits = 1", "unknown key ‘kits’"),
         ] {
             let error = Programs::parse(text, "x").unwrap_err().to_string();

@@ -32,7 +32,7 @@ pub(super) fn param_value(info: &ParamInfo, value: &Value) -> Result<f32, String
     }
 }
 
-/// The parameters of the table `name` by their ids, in the order of [`PARAMS`]; of those that are `wanted`. None if the
+/// The parameters of the table `name` by their ids, in the order of [`PARAMS`]; of those that are `wanted`. Empty if the
 /// table is missing.
 pub(super) fn read_params(
     name: &str,

@@ -11,6 +11,7 @@
 
 use crate::case::Case;
 use crate::noise::Noise;
+use crate::reach::{Reach, add};
 use libm::{fabs, hypot, pow, sin, sqrt};
 use sprung::engine::{Event, EventKind, Expression};
 use sprung::params::{PARAM_COUNT, PARAMS, Param};
@@ -111,36 +112,6 @@ struct Part {
     bloom: Option<f64>,
     /// What a strike reaches, until the patch changes.
     reach: Option<Reach>,
-}
-
-/// What mallet, pluck and noise of force 1 give all modes together, as heard and as displacement.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Reach {
-    struck: [f64; 3],
-    plucked: [f64; 3],
-    noise: [f64; 3],
-}
-
-impl Reach {
-    /// With another reach, times a level.
-    fn plus(self, other: Self, level: f64) -> Self {
-        let sum = |a: [f64; 3], b: [f64; 3]| add(a, b.map(|b| level * b));
-        Self {
-            struck: sum(self.struck, other.struck),
-            plucked: sum(self.plucked, other.plucked),
-            noise: sum(self.noise, other.noise),
-        }
-    }
-
-    /// Whichever reaches further, for each force and side.
-    fn max(self, other: Self) -> Self {
-        let further = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i].max(b[i]));
-        Self {
-            struck: further(self.struck, other.struck),
-            plucked: further(self.plucked, other.plucked),
-            noise: further(self.noise, other.noise),
-        }
-    }
 }
 
 /// A strike, and the end of its force.
@@ -439,10 +410,6 @@ impl Part {
             gain * widest(&pans) * widest(&positions) * widest(&channels) * widest(&masters)
         })
     }
-}
-
-fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|i| a[i] + b[i])
 }
 
 /// The gains of a mode, left and right, and 1 for its displacement.

@@ -14,6 +14,7 @@ mod check;
 mod events;
 mod known;
 mod noise;
+mod reach;
 mod shrink;
 
 use case::{PARAM_IDS, decode};

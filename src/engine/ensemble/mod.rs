@@ -126,8 +126,7 @@ impl Ensemble {
     #[must_use]
     pub fn with_mix(mut self, mix: &Mix) -> Self {
         let sample_rate = self.parts[0].synth.sample_rate();
-        let space = || Box::new(SharedSpace::new(sample_rate, &mix.space, self.chunk_frames));
-        self.shared_space = (!mix.space.is_empty()).then(space);
+        self.shared_space = SharedSpace::new(sample_rate, &mix.space, self.chunk_frames).map(Box::new);
         self.gain = gain_from_db(mix.gain.into()) as f32;
         self
     }
@@ -162,7 +161,7 @@ impl Ensemble {
 
     /// Whether nothing sounds, neither on any channel nor in the shared space. Real-time safe.
     pub fn is_silent(&self) -> bool {
-        let is_space_silent = self.shared_space.as_ref().is_none_or(|space| space.is_silent());
+        let is_space_silent = self.shared_space.as_ref().is_none_or(|space| space.is_idle());
         is_space_silent && self.parts.iter().all(|part| part.synth.is_silent())
     }
 

@@ -94,7 +94,7 @@ impl Ensemble {
             self.parts.iter().for_each(|part| part.add_to(left, right));
             let mix = [&mut *left, &mut *right];
             let rings = self.shared_space.as_mut().is_some_and(|space| space.process(&chunk, &self.parts, mix));
-            if self.gain != 1.0 {
+            if self.gain != 1.0 && (is_heard || rings) {
                 left.iter_mut().chain(&mut *right).for_each(|sample| *sample *= self.gain);
             }
             self.limiter.process(&chunk, is_heard || rings, [left, right]);

@@ -2,6 +2,7 @@
 
 use crate::engine::EventKind;
 use crate::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL, MELODIC_BANK};
+use crate::engine::midi::controller::REVERB_SEND;
 
 /// Resets, without the first byte F0 and without numbers of devices: General MIDI 1 and 2 on, and off (Universal
 /// Non-Real Time messages), Yamaha's XG System On.
@@ -32,9 +33,11 @@ fn bank(value: u8) -> EventKind {
     EventKind::Control { controller: BANK_SELECT, value: f32::from(value) / 127.0 }
 }
 
-/// All channels return to their first bank; what they play changes with their next program change.
+/// All channels return to their first bank, and what they send to the shared space to its default (General MIDI 2). What they
+/// play changes with their next program change.
 fn reset() -> Vec<(u8, EventKind)> {
-    (0..16).map(|channel| (channel, bank(0))).collect()
+    let send = EventKind::Control { controller: REVERB_SEND, value: 40.0 / 127.0 };
+    (0..16).flat_map(|channel| [(channel, bank(0)), (channel, send)]).collect()
 }
 
 /// A part of a GS device becomes one for drums or for melodies, at once.
@@ -70,7 +73,7 @@ mod tests {
             &[0x41, 0x10, 0x42, 0x12, 0x40, 0x00, 0x7F, 0x00, 0x41, 0xF7],
             &[0x43, 0x10, 0x4C, 0x00, 0x00, 0x7E, 0x00, 0xF7],
         ] {
-            assert_eq!(send(reset).len(), 16);
+            assert_eq!(send(reset).len(), 32);
         }
         assert!(send(&[0x7E, 0x7F, 0x06, 0x01, 0xF7]).is_empty(), "an identity request");
         assert!(send(&[]).is_empty());

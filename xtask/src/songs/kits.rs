@@ -93,6 +93,9 @@ const PULSE: [&str; 3] = ["7354 7353 7354 7353", "7354 7353 7354 73..", "7354 73
 const OPEN: [&str; 3] = ["", ".... .... .... ..6.", ""];
 const FILL: [&str; 4] = [".... .... 8.67 ....", ".... .... ...7 8...", ".... .... .... .68.", ".... .... .... ..79"];
 
+/// Beats by which a kit is there before its first stroke.
+const EARLY: f64 = 0.02;
+
 /// First beat of the last bars, in which the orchestra ends.
 const END: f64 = TURN * 7.0;
 
@@ -110,8 +113,10 @@ fn turns() -> impl Iterator<Item = (f64, &'static Player)> {
 fn drums() -> Part {
     let mut part = Part::kit("Drums", 9, PLAYERS[0].number, 115).send(50).loosen(0.009, 8.0);
     for (at, player) in turns() {
-        part.program(at, player.number);
-        part.control(at, controller::EXPRESSION, player.loudness);
+        // Before the first stroke, which may come early.
+        let before = (at - EARLY).max(0.0);
+        part.program(before, player.number);
+        part.control(before, controller::EXPRESSION, player.loudness);
         for bar in 0..3usize {
             let roles = [
                 (player.low, LOW),

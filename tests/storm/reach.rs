@@ -1,0 +1,35 @@
+//! How far forces of 1 move all modes together.
+
+/// What mallet, pluck and noise of force 1 give all modes together, as heard and as displacement.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Reach {
+    pub(crate) struck: [f64; 3],
+    pub(crate) plucked: [f64; 3],
+    pub(crate) noise: [f64; 3],
+}
+
+impl Reach {
+    /// With another reach, times a level.
+    pub(crate) fn plus(self, other: Self, level: f64) -> Self {
+        let sum = |a: [f64; 3], b: [f64; 3]| add(a, b.map(|b| level * b));
+        Self {
+            struck: sum(self.struck, other.struck),
+            plucked: sum(self.plucked, other.plucked),
+            noise: sum(self.noise, other.noise),
+        }
+    }
+
+    /// Whichever reaches further, for each force and side.
+    pub(crate) fn max(self, other: Self) -> Self {
+        let further = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i].max(b[i]));
+        Self {
+            struck: further(self.struck, other.struck),
+            plucked: further(self.plucked, other.plucked),
+            noise: further(self.noise, other.noise),
+        }
+    }
+}
+
+pub(crate) fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| a[i] + b[i])
+}
