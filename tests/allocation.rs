@@ -1,13 +1,13 @@
 //! The audio thread never allocates, and neither does the loudness meter: tested with an allocator that forbids it.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
-use sprung::engine::{Ensemble, Event, EventKind, Expression, Mix, NoteId, Notes, Synth};
+use sprung::engine::{Ensemble, Event, EventKind, Expression, NoteId, Notes, Synth};
 use sprung::params::{PARAMS, Param};
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use sprung::render::Meter;
 use sprung::sound::bodies::{Body, Model};
 use sprung::sound::pairs::{Link, Pair};
-use sprung::sound::{Kit, Pad, Shelf, Sound, Tuning};
+use sprung::sound::{Kit, Mix, Pad, Shelf, Sound, Tuning};
 use std::sync::Arc;
 
 #[global_allocator]

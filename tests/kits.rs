@@ -243,7 +243,8 @@ fn swapped_kits() -> [Arc<Kit>; 3] {
         &[factory("Vibraphone"), factory("Wine Glass").with(Param::Vibrato, 30.0)],
         (0..KEYS).map(|key| Some(Pad::of(key % 2))).collect(),
     );
-    let drums = drums().kit();
+    // Effects behind the voices change for what rings, too.
+    let drums = KitPreset { params: vec![], ..drums().clone() }.kit();
     [first, drums, Preset::find("Church Bell").unwrap().kit()]
 }
 

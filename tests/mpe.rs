@@ -84,7 +84,7 @@ fn render(folder: &Path, midi: &[u8]) -> Vec<f32> {
         .arg("-o")
         .arg(&sound)
         .args(["--preset", "init", "--force", "--mono", "--bits", "32f", "--tail", "none"]);
-    command.args(["--set", "decay=60", "--set", "limiter=off", "--rate", "48000"]);
+    command.args(["--set", "decay=60", "--set", "limiter=off", "--rate", "48000", "--programs", "none"]);
     let output = command.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     hound::WavReader::open(sound).unwrap().into_samples().map(|sample| sample.unwrap()).collect()

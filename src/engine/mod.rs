@@ -22,7 +22,7 @@ mod voice;
 pub mod voice_manager;
 mod zones;
 
-pub use ensemble::{Ensemble, Mix};
+pub use ensemble::Ensemble;
 pub use event::{Event, EventKind, Expression};
 pub use note::{Note, NoteId, Notes};
 pub use snapshot::Snapshot;

@@ -5,10 +5,10 @@ use super::convert::{DeviceSample, interleave};
 use super::live::LiveInputs;
 use super::recorder::Tap;
 use super::status::Status;
-use crate::engine::{Ensemble, Event, EventKind, Mix, TelemetryWriter};
+use crate::engine::{Ensemble, Event, EventKind, TelemetryWriter};
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use crate::sound::kit::KEYS;
-use crate::sound::{Kit, Shelf, Tuning};
+use crate::sound::{Kit, Mix, Shelf, Tuning};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::sync::Arc;
 

@@ -1,12 +1,11 @@
 //! What to render and how, and the result of a rendering.
 
 use crate::dsp::limiter::Work as LimiterWork;
-use crate::engine::Mix;
 use crate::engine::synth::SAMPLE_RATES;
 use crate::error::{Error, Result};
 use crate::io::Song;
 use crate::io::song;
-use crate::sound::{Kit, Tuning};
+use crate::sound::{Kit, Mix, Tuning};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 

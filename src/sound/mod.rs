@@ -1,15 +1,17 @@
-//! Sounds and kits that an engine plays, the bodies and pairs of bodies they are made of, and the tuning of the keys.
+//! Sounds and kits that an engine plays, the bodies and pairs of bodies they are made of, the tuning of the keys, and the mix.
 
 pub mod bodies;
 pub(crate) mod contact;
 pub mod coupled;
 pub mod kit;
+mod mix;
 pub mod pairs;
 mod shelf;
 pub mod tuning;
 
 pub use contact::{Contact, contact_time};
 pub use kit::{Kit, Pad};
+pub use mix::Mix;
 pub use shelf::Shelf;
 pub use tuning::Tuning;
 

@@ -1,8 +1,8 @@
 //! A score: a patch, events at frames, and a length; can be rendered in blocks of any size.
 
-use sprung::engine::{Ensemble, Event, EventKind, Mix};
+use sprung::engine::{Ensemble, Event, EventKind};
 use sprung::patch::Patch;
-use sprung::sound::Kit;
+use sprung::sound::{Kit, Mix};
 use std::sync::Arc;
 
 /// A block as long as the score.

@@ -1,5 +1,6 @@
-//! "Groove": eighteen bars in E dorian for a drum kit, hands, a bass and keys. Hands begin, the kit takes over, a quiet middle
-//! leaves room, and everybody ends it.
+//! "Groove": eighteen bars in E dorian for a drum kit, hands, a bass and keys.
+//!
+//! Hands begin, the kit takes over, a quiet middle leaves room, and everybody ends it.
 
 use super::drum;
 use super::score::{Part, controller, file};

@@ -1,7 +1,7 @@
 //! Beats 16–64, in A minor: the marimba turns in threes and twos, and one part after another joins in.
 
+use super::form::{Chord, DANCE, TUTTI, bars};
 use super::orchestra::Orchestra;
-use super::{Chord, DANCE, TUTTI, bars};
 use crate::songs::drum;
 use crate::songs::score::{Part, controller};
 

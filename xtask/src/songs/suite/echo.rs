@@ -1,8 +1,8 @@
 //! Beats 92–104, in C: what is left in the hall, and the opening's bowls again.
 
+use super::form::{ECHO, END};
 use super::opening::{Pluck, pluck};
 use super::orchestra::Orchestra;
-use super::{ECHO, END};
 use crate::songs::drum::orchestra as drum;
 use crate::songs::score::controller;
 

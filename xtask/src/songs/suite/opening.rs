@@ -1,7 +1,7 @@
 //! Beats 0–16, in C with a raised fourth: bowls, glasses, a bell and a tam-tam, and a sitar that bends its string.
 
+use super::form::{DANCE, OPENING};
 use super::orchestra::Orchestra;
-use super::{DANCE, OPENING};
 use crate::songs::drum::orchestra as drum;
 use crate::songs::score::{Part, controller};
 

@@ -1,7 +1,7 @@
 //! Beats 64–92, in C: everybody, as loud as they can, and a step aside to A flat.
 
+use super::form::{Chord, ECHO, TUTTI, bars};
 use super::orchestra::Orchestra;
-use super::{Chord, ECHO, TUTTI, bars};
 use crate::songs::drum::{self, orchestra};
 use crate::songs::score::{Part, controller};
 

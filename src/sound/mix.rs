@@ -1,4 +1,4 @@
-//! How the channels of an ensemble are mixed.
+//! How the sounds of a song are mixed.
 
 use crate::params::Param;
 
