@@ -2,7 +2,7 @@
 
 mod bodies;
 
-use bodies::{Line, NUMBERS, body, lines};
+use bodies::{Line, NUMBERS, body, groups, lines};
 use sprung::sound::bodies::Model;
 
 #[test]
@@ -10,7 +10,7 @@ fn bodies_agree_with_scipy() {
     let lines: Vec<Line> = lines();
     assert!(lines.len() > 300, "{} lines", lines.len());
     let mut breaches = Vec::new();
-    for group in lines.chunk_by(|a, b| (&a.model, &a.set) == (&b.model, &b.set)) {
+    for group in groups(&lines) {
         let modes = body(&group[0].model, &group[0].set).modes();
         for line in group {
             let mode = &modes[line.place];

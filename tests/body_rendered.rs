@@ -2,7 +2,7 @@
 
 mod bodies;
 
-use bodies::{Line, body, lines};
+use bodies::{Line, body, groups, lines};
 use sprung::analysis::modes::{Mode, Settings, modes};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::params::{MalletPulse, Param};
@@ -115,7 +115,7 @@ fn difference_db(group: &[Line], pitch: f64, note: &[f32]) -> f64 {
 #[test]
 fn rendered_notes_are_sums_of_the_modes_of_scipy() {
     let (lines, mut compared) = (lines(), 0);
-    for group in lines.chunk_by(|a, b| (&a.model, &a.set) == (&b.model, &b.set)) {
+    for group in groups(&lines) {
         for key in KEYS.into_iter().filter(|key| highest(group) * pitch(*key) < HIGHEST) {
             if is_exact(group) && group.len() == most(group) {
                 let db = difference_db(group, pitch(key), &render(group, key));
@@ -158,7 +158,7 @@ fn partials(group: &[Line], key: u8) -> Vec<(String, Off)> {
 #[test]
 fn partials_of_rendered_notes_are_those_of_scipy() {
     let (lines, mut compared, mut worst) = (lines(), 0, [0.0_f64; 3]);
-    for group in lines.chunk_by(|a, b| (&a.model, &a.set) == (&b.model, &b.set)) {
+    for group in groups(&lines) {
         if DENSE.contains(&group[0].model.as_str()) {
             continue;
         }

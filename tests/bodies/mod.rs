@@ -35,6 +35,11 @@ pub(crate) fn lines() -> Vec<Line> {
     NUMBERS.lines().filter(|line| !line.starts_with('#')).skip(1).map(read).collect()
 }
 
+/// The lines of each body.
+pub(crate) fn groups(lines: &[Line]) -> impl Iterator<Item = &[Line]> {
+    lines.chunk_by(|a, b| (&a.model, &a.set) == (&b.model, &b.set))
+}
+
 pub(crate) fn body(model: &str, set: &str) -> Body {
     let mut body = Body::new(Model::find(model).expect("a model").clone());
     for (name, value) in set.split(';').filter_map(|pair| pair.split_once('=')) {

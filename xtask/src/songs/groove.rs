@@ -3,7 +3,8 @@
 //! Hands begin, the kit takes over, a quiet middle leaves room, and everybody ends it.
 
 use super::drum;
-use super::score::{Part, controller, file};
+use super::score::{Part, file};
+use sprung::engine::midi::controller;
 use std::ops::Range;
 
 /// Delay in beats of the second of two sixteenths.

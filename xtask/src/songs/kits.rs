@@ -1,7 +1,8 @@
 //! "Kits": one rhythm, handed through the seven kits of channel 10 over the pulse of a marimba.
 
 use super::drum::{self, metal, orchestra};
-use super::score::{Part, controller, file};
+use super::score::{Part, file};
+use sprung::engine::midi::controller;
 
 /// Beats that each kit has: three bars.
 const TURN: f64 = 12.0;
@@ -147,13 +148,11 @@ fn drums() -> Part {
 
 /// Eighths that turn through the chord in threes and twos, softer where the kit is.
 fn marimba() -> Result<Part, String> {
-    const STEPS: [usize; 8] = [0, 2, 4, 1, 3, 4, 2, 3];
     let mut part = Part::new("Marimba", 0, "Marimba", 108, 30)?.send(50).loosen(0.008, 7.0);
     for (at, player) in turns() {
         part.control(at, controller::EXPRESSION, player.loudness);
-        for eighth in 0..24usize {
-            let accent = if [0, 3, 6].contains(&(eighth % 8)) { 100 } else { 72 };
-            part.note(at + eighth as f64 * 0.5, 0.4, player.chord[STEPS[eighth % 8]], accent);
+        for bar in 0..3u32 {
+            part.broken_chord(at + 4.0 * f64::from(bar), &player.chord);
         }
     }
     part.roll((END, 60), (END + 2.0, 108), 8.0, 69);

@@ -4,25 +4,14 @@ use midly::num::{u4, u7, u15, u24, u28};
 use midly::{Format, Header, MetaMessage, MidiMessage, PitchBend, Smf, Timing, Track, TrackEvent, TrackEventKind};
 use sprung::dsp::random::uniform;
 use sprung::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL};
+use sprung::engine::midi::controller;
 use sprung::preset::{Phrase, Programs};
 
 /// Ticks per beat: a quarter note.
 const TICKS: u16 = 480;
 
-/// MIDI controllers that the songs use.
-pub(super) mod controller {
-    pub(in super::super) const WHEEL: u8 = 1;
-    pub(super) const DATA: u8 = 6;
-    pub(in super::super) const VOLUME: u8 = 7;
-    pub(in super::super) const PAN: u8 = 10;
-    pub(in super::super) const EXPRESSION: u8 = 11;
-    pub(super) const DATA_FINE: u8 = 38;
-    pub(in super::super) const PEDAL: u8 = 64;
-    pub(in super::super) const BRIGHTNESS: u8 = 74;
-    pub(super) const SEND: u8 = 91;
-    pub(super) const RPN_FINE: u8 = 100;
-    pub(super) const RPN: u8 = 101;
-}
+/// The order in which the eighths of a bar turn through a chord of five notes, in groups of three, three and two.
+pub(super) const BROKEN_CHORD: [usize; 8] = [0, 2, 4, 1, 3, 4, 2, 3];
 
 /// One player, with a track and a channel of its own.
 pub(super) struct Part {
@@ -68,7 +57,7 @@ impl Part {
 
     /// Sends this much of the part to the space that all channels share (controller 91).
     pub(super) fn send(mut self, amount: u8) -> Self {
-        self.control(0.0, controller::SEND, amount);
+        self.control(0.0, controller::REVERB_SEND, amount);
         self
     }
 
@@ -131,6 +120,14 @@ impl Part {
         }
     }
 
+    /// A bar of eighths that turn through a chord, with an accent on the first of each group.
+    pub(super) fn broken_chord(&mut self, beat: f64, chord: &[u8; 5]) {
+        for (step, note) in BROKEN_CHORD.into_iter().enumerate() {
+            let velocity = if [0, 3, 6].contains(&step) { 100 } else { 72 };
+            self.note(beat + step as f64 * 0.5, 0.4, chord[note], velocity);
+        }
+    }
+
     /// Several notes struck together.
     pub(super) fn chord(&mut self, beat: f64, length: f64, keys: &[u8], velocity: u8) {
         keys.iter().for_each(|key| self.note(beat, length, *key, velocity));
@@ -151,8 +148,8 @@ impl Part {
 
     /// Presses the sustain pedal at `beat` and releases it after `length` beats.
     pub(super) fn pedal(&mut self, beat: f64, length: f64) {
-        self.control(beat, controller::PEDAL, 127);
-        self.control(beat + length, controller::PEDAL, 0);
+        self.control(beat, controller::SUSTAIN, 127);
+        self.control(beat + length, controller::SUSTAIN, 0);
     }
 
     /// Sets the range of the pitch wheel in semitones, with registered parameter 0.

@@ -3,7 +3,8 @@
 use super::form::{Chord, DANCE, TUTTI, bars};
 use super::orchestra::Orchestra;
 use crate::songs::drum;
-use crate::songs::score::{Part, controller};
+use crate::songs::score::Part;
+use sprung::engine::midi::controller;
 
 const CHORDS: [Chord; 12] = [
     (45, [57, 60, 64, 67, 71]), // Am9
@@ -51,14 +52,10 @@ fn from_bar(bar: usize) -> impl Iterator<Item = (f64, &'static Chord)> {
 
 /// Broken chords in eighths, with accents in groups of three, three and two.
 fn marimba(part: &mut Part) {
-    const TURN: [usize; 8] = [0, 2, 4, 1, 3, 4, 2, 3];
     part.ramp(controller::EXPRESSION, (DANCE, 84), (DANCE + 16.0, 104));
     part.ramp(controller::EXPRESSION, (DANCE + 32.0, 104), (TUTTI, 127));
     for (at, (_, chord)) in from_bar(1) {
-        for (step, note) in TURN.iter().enumerate() {
-            let accent = if [0, 3, 6].contains(&step) { 100 } else { 72 };
-            part.note(at + step as f64 * 0.5, 0.4, chord[*note], accent);
-        }
+        part.broken_chord(at, chord);
     }
 }
 

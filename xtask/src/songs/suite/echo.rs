@@ -4,7 +4,7 @@ use super::form::{ECHO, END};
 use super::opening::{Pluck, pluck};
 use super::orchestra::Orchestra;
 use crate::songs::drum::orchestra as drum;
-use crate::songs::score::controller;
+use sprung::engine::midi::controller;
 
 /// The sitar's last words fall to C.
 const SITAR: [Pluck; 4] = [

@@ -3,7 +3,8 @@
 use super::form::{DANCE, OPENING};
 use super::orchestra::Orchestra;
 use crate::songs::drum::orchestra as drum;
-use crate::songs::score::{Part, controller};
+use crate::songs::score::Part;
+use sprung::engine::midi::controller;
 
 /// A pluck: beat, length, key, velocity, and where its string is pulled to (beats after the pluck, semitones).
 pub(super) type Pluck = (f64, f64, u8, u8, &'static [(f64, f64)]);

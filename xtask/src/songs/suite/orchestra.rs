@@ -1,6 +1,7 @@
 //! Who plays the suite: where each part sits, how loud it is, and how much of it the hall hears.
 
-use crate::songs::score::{Part, controller};
+use crate::songs::score::Part;
+use sprung::engine::midi::controller;
 
 /// Kits of Roland's GS.
 const ORCHESTRA_KIT: u8 = 49;

@@ -3,7 +3,8 @@
 use super::form::{Chord, ECHO, TUTTI, bars};
 use super::orchestra::Orchestra;
 use crate::songs::drum::{self, orchestra};
-use crate::songs::score::{Part, controller};
+use crate::songs::score::{BROKEN_CHORD, Part};
+use sprung::engine::midi::controller;
 
 const CHORDS: [Chord; 7] = [
     (36, [55, 60, 64, 67, 72]), // C
@@ -93,12 +94,11 @@ fn harp(part: &mut Part) {
 
 /// Broken chords in sixteenths, with the same accents as in the dance.
 fn marimba(part: &mut Part) {
-    const TURN: [usize; 8] = [0, 2, 4, 1, 3, 4, 2, 3];
     part.control(TUTTI, controller::EXPRESSION, 94);
     for (at, (_, chord)) in bars(TUTTI, &CHORDS).take(6) {
         for step in 0..16usize {
             let accent = if [0, 6, 12].contains(&step) { 112 } else { 84 };
-            part.note(at + step as f64 * 0.25, 0.2, chord[TURN[step % 8]] + 12 * u8::from(step >= 8), accent);
+            part.note(at + step as f64 * 0.25, 0.2, chord[BROKEN_CHORD[step % 8]] + 12 * u8::from(step >= 8), accent);
         }
     }
     part.roll((ECHO - 4.0, 100), (ECHO - 0.5, 40), 12.0, 72);
