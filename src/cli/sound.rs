@@ -57,6 +57,18 @@ pub(super) struct Sounds {
     pub(super) tuning: Tuning,
 }
 
+impl Sounds {
+    /// Whether any of the sounds can be driven by sound that comes in.
+    pub(super) fn take_input(&self) -> bool {
+        let kits = [&self.kit].into_iter().chain(self.channels.iter().map(|(_, kit)| kit)).chain(&self.programs);
+        let level = Param::InputLevel.info();
+        kits.flat_map(|kit| kit.sounds()).map(|sound| sound.patch()).any(|patch| {
+            let is_moved = patch.routes.iter().any(|(_, route)| route.destination == level.param);
+            is_moved || patch.get(level.param) > level.min
+        })
+    }
+}
+
 impl SoundArgs {
     /// Loads the presets and kits, sets the parameters of all sounds, and reads the tuning. Program changes of the `song`
     /// then have the numbers of their kits; without a song, all programs are loaded if it `is_live`.

@@ -95,6 +95,22 @@ mod tests {
     }
 
     #[test]
+    fn a_list_of_modes_is_a_body_too() {
+        let modes = "modes = [{ ratio = 1.0 }, { ratio = 2.7, level = -0.5, decay = 0.25 }]";
+        let text = format!("[body]\nmodel = \"custom\"\n{modes}\nloss_b0 = 6.9\nloss_b1 = 0");
+        let preset = parse(&text).unwrap();
+        let body = body_of_modes(&preset.patch.modes).unwrap();
+        let [first, second] = [0, 1].map(|m| preset.patch.modes.as_slice()[m]);
+        assert!((second.level / first.level + 0.5).abs() < 1e-6 && (second.decay - 0.25).abs() < 1e-6);
+        assert!((body.t60() - 1.001).abs() < 0.001 && body.modes == 2);
+        assert_eq!(Preset::parse(&preset.to_toml(), "x").unwrap(), preset);
+        let second = "[second]\nmodel = \"box\"\n[joint]\nkind = \"apart\"";
+        let pair = parse(&format!("{text}\n{second}")).unwrap();
+        assert_eq!(pair.patch.modes.as_slice().len(), 2 + 64);
+        assert_eq!(Preset::parse(&pair.to_toml(), "x").unwrap(), pair);
+    }
+
+    #[test]
     fn numbers_are_read_in_their_unit() {
         let text =
             "[body]\nmodel = \"string\"\nlength = \"62 cm\"\nthickness = \"1 mm\"\ntension = 670\nstrike = \"12 %\"";
@@ -117,6 +133,14 @@ mod tests {
             ("[body]\nmodel = 1", "x: body.model: expected a text, found integer ‘1’"),
             ("[body]\nmodel = \"marimbo\"", "x: body.model: there is no ‘marimbo’; the nearest is"),
             ("[body]\nmodel = \"qqq\"", "x: body.model: ‘qqq’ is not one of mass, string"),
+            ("[body]\nmodel = \"custom\"", "x: body: the model custom has no ‘modes’: expected a list of modes"),
+            ("[body]\nmodel = \"mass\"\nmodes = []", "x: body.modes: the model mass has modes of its own"),
+            ("[body]\nmodel = \"custom\"\nmodes = []", "x: body.modes: 0 of them is out of range: expected 1 to 512"),
+            ("[body]\nmodel = \"custom\"\nmodes = [{ level = 1 }]", "x: body.modes[0]: there is no ‘ratio’"),
+            (
+                "[body]\nmodel = \"custom\"\nmodes = [{ ratio = 1, decay = 0 }]",
+                "x: body.modes[0].decay: 0 is out of range: expected 0.001 to 1000",
+            ),
             ("[body]\nmodel = \"mass\"\nmaterial = \"cheese\"", "x: body.material: "),
             ("[body]\nmodel = \"mass\"\nstryke = 1", "x: unknown key ‘body.stryke’; the nearest is"),
             ("[body]\nmodel = \"mass\"\nstrike = 2", "x: body.strike: 2 is out of range: expected from 0 to 1"),

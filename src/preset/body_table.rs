@@ -1,6 +1,7 @@
 //! Reads and writes the table of one body in a preset file.
 
 use super::complaints::Complaints;
+use super::custom_modes;
 use super::value::unexpected;
 use crate::error::nearest;
 use crate::sound::bodies::{Body, FIELDS, MATERIALS, Material, Model};
@@ -11,7 +12,8 @@ use toml::{Table, Value};
 /// Reads the body in the table of this name, if its model is known and it has a frequency. Numbers that cannot be read keep
 /// the model's values.
 pub(super) fn read_body(table: &Table, place: &str, complaints: &mut Complaints) -> Option<Body> {
-    let names = || ["model", "material", "follows_key"].into_iter().chain(FIELDS.iter().map(|field| field.name));
+    let names =
+        || ["model", "modes", "material", "follows_key"].into_iter().chain(FIELDS.iter().map(|field| field.name));
     for unknown in table.keys().filter(|key| !names().any(|name| name == *key)) {
         complaints.add(match nearest(unknown, names()) {
             Some(near) => format!("unknown key ‘{place}.{unknown}’; the nearest is {near}"),
@@ -20,12 +22,7 @@ pub(super) fn read_body(table: &Table, place: &str, complaints: &mut Complaints)
             }
         });
     }
-    let models = || Model::ALL.iter().map(|(id, _)| *id);
-    let model = named(table, place, "model", Model::find, models).and_then(|model| {
-        let expected = || models().collect::<Vec<_>>().join(", ");
-        model.ok_or_else(|| format!("{place}: there is no ‘model’: expected one of {}", expected()))
-    });
-    let mut body = Body::new(complaints.take("", model)?.clone());
+    let mut body = Body::new(read_model(table, place, complaints)?);
     let material = named(table, place, "material", Material::find, || MATERIALS.iter().map(|material| material.id));
     if let Some(material) = complaints.take("", material).flatten() {
         body.material = *material;
@@ -58,6 +55,23 @@ pub(super) fn read_body(table: &Table, place: &str, complaints: &mut Complaints)
         return None;
     }
     Some(body)
+}
+
+fn read_model(table: &Table, place: &str, complaints: &mut Complaints) -> Option<Model> {
+    if table.get("model").and_then(Value::as_str) == Some(Model::CUSTOM) {
+        return custom_modes::read(table.get("modes"), place, complaints).map(Model::Custom);
+    }
+    let models = || Model::ALL.iter().map(|(id, _)| *id).chain([Model::CUSTOM]);
+    let model = named(table, place, "model", Model::find, models).and_then(|model| {
+        let expected = || models().collect::<Vec<_>>().join(", ");
+        model.ok_or_else(|| format!("{place}: there is no ‘model’: expected one of {}", expected()))
+    });
+    let model = complaints.take("", model)?;
+    if table.contains_key("modes") {
+        complaints
+            .add(format!("{place}.modes: the model {} has modes of its own: expected model = \"custom\"", model.id()));
+    }
+    Some(model.clone())
 }
 
 /// Finds what the text at a key names; none if the key is missing.
@@ -111,6 +125,9 @@ fn quantity(own: &str, text: &str) -> Option<f64> {
 /// The lines of `[body]`: the model, and the values that differ from the model's own.
 pub(super) fn text(body: &Body) -> String {
     let mut out = format!("model = \"{}\"\n", body.model.id());
+    if let Model::Custom(modes) = &body.model {
+        out.push_str(&custom_modes::text(modes));
+    }
     if !body.follows_key {
         out.push_str("follows_key = false\n");
     }

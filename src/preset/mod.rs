@@ -4,6 +4,7 @@ mod about;
 mod body;
 mod body_table;
 mod complaints;
+mod custom_modes;
 mod factory;
 mod factory_files;
 mod file;

@@ -108,3 +108,16 @@ fn nothing_from_a_file_or_its_name_steers_the_terminal() {
     let (before, after) = (sprung::preset::Preset::parse(preset, "x"), sprung::preset::Preset::parse(&shown, "x"));
     assert_eq!(after.unwrap(), before.unwrap());
 }
+
+#[test]
+fn an_input_that_drives_nothing_is_told() {
+    let sandbox = Sandbox::new();
+    sandbox.succeeds("render --note 60 --length 0.1 --tail none -o in.wav");
+    let said = |args: &str| {
+        let out = sandbox.sprung(&format!("render --note 60 --input in.wav --force -o x.wav {args}")).output().unwrap();
+        String::from_utf8(out.stderr).unwrap()
+    };
+    let told = "warning: --input: no sound has an input_level, so it drives nothing: --set input_level=0 sets one";
+    assert!(said("").contains(told), "{}", said(""));
+    assert!(!said("--set input_level=-6").contains(told));
+}

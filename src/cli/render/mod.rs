@@ -6,6 +6,7 @@ mod report;
 use super::progress::Bar;
 use super::song::SongArgs;
 use super::sound::{SoundArgs, Sounds};
+use super::terminal::complain;
 use super::{completion, interrupt, quantity, recording};
 use clap::ArgGroup;
 use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
@@ -118,6 +119,11 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let input = match &args.input {
         Some(path) => {
             let (recording, name) = recording::read(path, &mut inputs)?;
+            if !sounds.take_input() {
+                let message =
+                    "--input: no sound has an input_level, so it drives nothing: --set input_level=0 sets one";
+                complain("warning", message);
+            }
             recording.mono_at(args.rate, &name)?
         }
         None => vec![],

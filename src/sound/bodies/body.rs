@@ -5,6 +5,7 @@ use super::material::{LN_1000, Loss, Material};
 use super::model::Model;
 use super::partial::Point;
 use super::size::Size;
+use crate::patch::MAX_MODES;
 
 /// Default frequency of a body in Hz: C4.
 pub const DEFAULT_FREQUENCY: f64 = 261.625_565_300_598_6;
@@ -80,6 +81,7 @@ impl Body {
             _ => [(0.7, 0.0), (0.9, 0.05), (0.95, 0.0)],
         };
         let point = |(x, y)| Point { x, y };
+        let modes = if let Model::Custom(modes) = &model { modes.len().clamp(1, MAX_MODES) } else { 64 };
         Self {
             model,
             pitch: Pitch::Frequency(DEFAULT_FREQUENCY),
@@ -95,7 +97,7 @@ impl Body {
             pan: 0.0,
             strike_share: 1.0,
             follows_key: true,
-            modes: 64,
+            modes,
             seed: 0,
         }
     }

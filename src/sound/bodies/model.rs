@@ -87,8 +87,11 @@ pub enum Model {
 }
 
 impl Model {
-    /// One of each model with its starting values, and its name in presets. [`Model::Custom`] is not among them:
-    /// presets write it as a list of `modes`.
+    /// The name of [`Model::Custom`] in presets, which give it a list of modes.
+    pub const CUSTOM: &str = "custom";
+
+    /// One of each model with its starting values, and its name in presets. [`Model::Custom`] is not among them, because
+    /// it has no modes to start with.
     pub const ALL: &[(&str, Model)] = &[
         ("mass", Model::Mass),
         ("string", Model::String),
@@ -125,7 +128,7 @@ impl Model {
 
     /// Its name in presets, whatever its values.
     pub fn id(&self) -> &'static str {
-        Self::ALL.iter().find(|(_, model)| model.is_same_kind(self)).map_or("custom", |(id, _)| id)
+        Self::ALL.iter().find(|(_, model)| model.is_same_kind(self)).map_or(Self::CUSTOM, |(id, _)| id)
     }
 
     fn is_same_kind(&self, other: &Model) -> bool {

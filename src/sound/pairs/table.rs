@@ -25,20 +25,28 @@ const INAUDIBLE: f64 = 1e-6;
 struct Heard {
     frequency: f64,
     modes: Vec<CoupledMode>,
-    on: [Vec<Partial>; 2],
+    /// On each body, after the strike and after the noise: they may fall on different bodies.
+    on: [[Vec<Partial>; 2]; 2],
 }
 
 impl Heard {
     /// The sum of all amplitudes on one of the bodies.
     fn sum(&self, body: usize) -> f64 {
-        self.on[body].iter().map(|heard| hypot(heard.cosine, heard.sine)).sum()
+        (0..self.modes.len()).map(|m| self.amplitude(m, body)).sum()
     }
 
-    /// What is heard of mode `m` with these gains of the bodies.
-    fn mixed(&self, m: usize, gains: [f64; 2]) -> Partial {
-        let [one, other] = [0, 1].map(|body| self.on[body][m]);
-        let of = |part: fn(&Partial) -> f64| gains[0] * part(&one) + gains[1] * part(&other);
-        Partial { cosine: of(|heard| heard.cosine), sine: of(|heard| heard.sine) }
+    /// The amplitude of mode `m` on one of the bodies.
+    fn amplitude(&self, m: usize, body: usize) -> f64 {
+        self.on[body].iter().map(|heard| amplitude(&heard[m])).sum()
+    }
+
+    /// What is heard of mode `m` with these gains of the bodies: after the strike, and after the noise.
+    fn mixed(&self, m: usize, gains: [f64; 2]) -> [Partial; 2] {
+        [0, 1].map(|exciter| {
+            let [one, other] = [0, 1].map(|body| self.on[body][exciter][m]);
+            let of = |part: fn(&Partial) -> f64| gains[0] * part(&one) + gains[1] * part(&other);
+            Partial { cosine: of(|heard| heard.cosine), sine: of(|heard| heard.sine) }
+        })
     }
 }
 
@@ -103,13 +111,17 @@ impl Pair {
 
     fn heard_of(&self, frequency: f64, modes: Vec<CoupledMode>) -> Heard {
         let struck = [1.0 - self.struck, self.struck];
+        let strike = [self.first.strike_share, self.second.strike_share];
         let on = [[1.0, 0.0], [0.0, 1.0]].map(|body| {
-            let heard = |mode: &CoupledMode| {
-                let Partial { cosine, sine } = mode.displacement(struck, body);
-                let scale = if is_playable(mode, frequency) { mode.angular_frequency } else { 0.0 };
-                Partial { cosine: scale * cosine, sine: scale * sine }
-            };
-            modes.iter().map(heard).collect()
+            [strike, strike.map(|share| 1.0 - share)].map(|exciter| {
+                let force = [struck[0] * exciter[0], struck[1] * exciter[1]];
+                let heard = |mode: &CoupledMode| {
+                    let Partial { cosine, sine } = mode.displacement(force, body);
+                    let scale = if is_playable(mode, frequency) { mode.angular_frequency } else { 0.0 };
+                    Partial { cosine: scale * cosine, sine: scale * sine }
+                };
+                modes.iter().map(heard).collect()
+            })
         });
         Heard { frequency, modes, on }
     }
@@ -122,10 +134,7 @@ impl Pair {
             let mean = all.iter().map(|heard| heard.sum(body)).sum::<f64>() / all.len() as f64;
             if mean > 0.0 { share[body] / mean } else { 0.0 }
         });
-        let level = |heard: &Heard, m| {
-            let Partial { cosine, sine } = heard.mixed(m, gains);
-            hypot(cosine, sine)
-        };
+        let level = |heard: &Heard, m| heard.mixed(m, gains).iter().map(amplitude).sum::<f64>();
         let total = |heard: &Heard| (0..heard.modes.len()).map(|m| level(heard, m)).sum::<f64>();
         let most = all.iter().map(total).fold(0.0, f64::max);
         let t60 = self.t60();
@@ -144,29 +153,31 @@ impl Pair {
     /// Mode `m` and its phase.
     fn mode(&self, heard: &Heard, m: usize, gains: [f64; 2], most: f64, t60: f64) -> (Mode, f32) {
         let mode = &heard.modes[m];
-        let Partial { cosine, sine } = heard.mixed(m, gains);
-        let amounts = [0, 1].map(|body| {
-            let Partial { cosine, sine } = heard.on[body][m];
-            gains[body] * hypot(cosine, sine)
-        });
+        let after = heard.mixed(m, gains);
+        let [strike, noise] = [0, 1].map(|exciter| amplitude(&after[exciter]));
+        let amounts = [0, 1].map(|body| gains[body] * heard.amplitude(m, body));
         let sum = amounts[0] + amounts[1];
         let random = if m == 0 { 0.0 } else { f64::from(uniform(key(self.first.seed, PAN_STREAM), m as u64)) };
         let pan = amounts[0] * self.first.pan + amounts[1] * self.second.pan;
-        let strike = (1.0 - self.struck) * self.first.strike_share + self.struck * self.second.strike_share;
-        let level = if most > 0.0 { hypot(cosine, sine) / most } else { 0.0 };
+        let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
         let fields = [
             mode.angular_frequency / (TAU * heard.frequency),
-            level,
+            share(strike + noise, most),
             LN_1000 / (mode.decay_rate * t60),
-            strike,
-            if sum > 0.0 { random * pan / sum } else { 0.0 },
+            share(strike, strike + noise),
+            share(random * pan, sum),
         ];
         let mut ranges = Mode::FIELDS;
         // A joint has modes that decay within milliseconds, faster than a file may ask for.
         ranges[2].1 = LEAST_DECAY;
         let within = |field: usize| (fields[field] as f32).clamp(ranges[field].1, ranges[field].2);
-        (Mode::from_fields([0, 1, 2, 3, 4].map(within)), atan2(cosine, sine) as f32)
+        // Noise has no phase of its own.
+        (Mode::from_fields([0, 1, 2, 3, 4].map(within)), atan2(after[0].cosine, after[0].sine) as f32)
     }
+}
+
+fn amplitude(partial: &Partial) -> f64 {
+    hypot(partial.cosine, partial.sine)
 }
 
 /// Whether a bank can play the mode: it rings, and its ratio to the note is in range.

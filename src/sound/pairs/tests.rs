@@ -45,6 +45,19 @@ fn a_pair_apart_has_the_levels_of_both_bodies() {
 }
 
 #[test]
+fn strike_and_noise_move_each_body_by_its_own_share() {
+    let (first, mut second) = (body("marimba", 6), body("box", 20));
+    second.strike_share = 0.25;
+    let apart = Pair::new(first.clone(), second.clone(), Link::Apart).table().unwrap();
+    let shares = |table: &ModeTable| table.as_slice().iter().map(|mode| mode.strike).collect::<Vec<_>>();
+    let count = |expected: f32| shares(&apart).iter().filter(|share| (**share - expected).abs() < 1e-4).count();
+    assert_eq!([count(1.0), count(0.25)], [6, 20]);
+    // In series, the second body is moved through the first one alone, so the first one's share counts.
+    let table = Pair::new(first, second, Link::Series).table().unwrap();
+    assert!(shares(&table).iter().all(|share| (share - 1.0).abs() < 1e-6), "{:?}", shares(&table));
+}
+
+#[test]
 fn bodies_that_both_follow_the_keys_need_one_table() {
     let pair = Pair::new(body("marimba", 8), body("stopped_tube", 8), Link::Series);
     let table = pair.table().unwrap();

@@ -1,0 +1,74 @@
+//! Reads and writes the list of modes of a body in a preset file: `model = "custom"`, `modes = [{ ratio = 1 }, …]`.
+
+use super::complaints::Complaints;
+use super::value::{check_keys, unexpected};
+use crate::patch::MAX_MODES;
+use crate::sound::bodies::{CustomMode, RATIO_RANGE};
+use std::fmt::Write;
+use std::sync::Arc;
+use toml::{Table, Value};
+
+/// The numbers of a mode by name, with their ranges and, unless a file must give them, their default.
+const FIELDS: [(&str, (f64, f64), Option<f64>); 3] =
+    [("ratio", RATIO_RANGE, None), ("level", (-1.0, 1.0), Some(1.0)), ("decay", (0.001, 1000.0), Some(1.0))];
+
+/// Reads the modes of the custom body at `place`, if all of them can be read.
+pub(super) fn read(found: Option<&Value>, place: &str, complaints: &mut Complaints) -> Option<Arc<[CustomMode]>> {
+    let expected = "a list of modes, [{ ratio = … }, …]";
+    let modes = match found {
+        Some(Value::Array(modes)) => modes,
+        Some(other) => {
+            complaints.add(unexpected(&format!("{place}.modes"), expected, other));
+            return None;
+        }
+        None => {
+            complaints.add(format!("{place}: the model custom has no ‘modes’: expected {expected}"));
+            return None;
+        }
+    };
+    if !(1..=MAX_MODES).contains(&modes.len()) {
+        complaints.add(format!("{place}.modes: {} of them is out of range: expected 1 to {MAX_MODES}", modes.len()));
+        return None;
+    }
+    let mut read = |(index, mode): (usize, &Value)| read_mode(&format!("{place}.modes[{index}]"), mode, complaints);
+    // Every mode is read, so that the mistakes of all are told.
+    let modes: Vec<Option<CustomMode>> = modes.iter().enumerate().map(&mut read).collect();
+    modes.into_iter().collect()
+}
+
+fn read_mode(place: &str, mode: &Value, complaints: &mut Complaints) -> Option<CustomMode> {
+    let Value::Table(mode) = mode else {
+        complaints.add(unexpected(place, "a mode, { ratio = … }", mode));
+        return None;
+    };
+    check_keys(mode, &format!("{place}."), &FIELDS.map(|(name, ..)| name), complaints);
+    let [ratio, level, decay] = FIELDS.map(|field| complaints.take(place, number(mode, field)));
+    Some(CustomMode { ratio: ratio?, level: level?, decay: decay? })
+}
+
+fn number(mode: &Table, (name, (min, max), default): (&str, (f64, f64), Option<f64>)) -> Result<f64, String> {
+    let number = match mode.get(name) {
+        Some(Value::Integer(number)) => *number as f64,
+        Some(Value::Float(number)) => *number,
+        Some(other) => return Err(unexpected(&format!(".{name}"), "a number", other)),
+        None => return default.ok_or_else(|| format!(": there is no ‘{name}’")),
+    };
+    if (min..=max).contains(&number) {
+        return Ok(number);
+    }
+    Err(format!(".{name}: {number} is out of range: expected {min} to {max}"))
+}
+
+/// The line of a custom body's modes.
+pub(super) fn text(modes: &[CustomMode]) -> String {
+    let mut out = String::from("modes = [");
+    for mode in modes {
+        out.push_str(if out.ends_with('[') { "{ " } else { ", { " });
+        let numbers = FIELDS.iter().zip([mode.ratio, mode.level, mode.decay]);
+        let given = numbers.filter(|((.., default), value)| Some(*value) != *default);
+        let given: Vec<_> = given.map(|((name, ..), value)| format!("{name} = {value:?}")).collect();
+        let _ = write!(out, "{} }}", given.join(", "));
+    }
+    out.push_str("]\n");
+    out
+}
