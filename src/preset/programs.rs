@@ -6,6 +6,7 @@ use super::kit::Playable;
 use super::value::{check_keys, read_params, table, unexpected};
 use crate::error::{Error, Result};
 use crate::params::Param;
+use crate::sound::kit::GAINS_DB;
 use crate::sound::{Kit, Mix};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -34,8 +35,17 @@ pub struct Programs {
     pub name: String,
     /// How songs with these sounds are mixed.
     pub mix: Mix,
-    sounds: Vec<String>,
-    drums: Vec<Option<String>>,
+    sounds: Vec<Option<Program>>,
+    drums: Vec<Option<Program>>,
+}
+
+/// What a program plays.
+#[derive(Clone, Debug, PartialEq)]
+struct Program {
+    /// Name of a preset or kit; never empty.
+    sound: String,
+    /// Gain in dB, in addition to the sound's own.
+    gain: f32,
 }
 
 impl Programs {
@@ -59,29 +69,41 @@ impl Programs {
 
     /// The name of the sound of a melodic program, counted from 0; none if the list has none.
     pub fn sound(&self, number: u8) -> Option<&str> {
-        self.sounds.get(usize::from(number)).map(String::as_str).filter(|name| !name.is_empty())
+        self.program(number).map(|program| &*program.sound)
+    }
+
+    fn program(&self, number: u8) -> Option<&Program> {
+        self.sounds.get(usize::from(number))?.as_ref()
     }
 
     /// The name of the kit of a drum program, counted from 0: that of the number, or else of the kit that it is a variation
     /// of, or else the first one.
     pub fn drums(&self, number: u8) -> Option<&str> {
+        self.drum_program(number).map(|program| &*program.sound)
+    }
+
+    fn drum_program(&self, number: u8) -> Option<&Program> {
         let number = usize::from(number);
         let places = [number, number / VARIATIONS * VARIATIONS, 0];
-        places.into_iter().find_map(|place| self.drums.get(place)?.as_deref())
+        places.into_iter().find_map(|place| self.drums.get(place)?.as_ref())
     }
 }
 
 impl Programs {
     /// The name of the sound of a program: first the melodic ones, and from 128 on the drum kits.
     pub fn name_of(&self, number: u8) -> Option<&str> {
+        self.any(number).map(|program| &*program.sound)
+    }
+
+    fn any(&self, number: u8) -> Option<&Program> {
         match number.checked_sub(PROGRAMS as u8) {
-            None => self.sound(number),
-            Some(drums) => self.drums(drums),
+            None => self.program(number),
+            Some(drums) => self.drum_program(drums),
         }
     }
 
-    /// The kits of all programs, as [`Programs::name_of`] counts them. `load` makes them by name; it is called once for each
-    /// name. Programs that are not `wanted` have none, nor have those without a sound. Allocates.
+    /// The kits of all programs, as [`Programs::name_of`] counts them, with their gains. `load` makes them by name; it is
+    /// called once for each name and gain. Programs that are not `wanted` have none, nor have those without a sound. Allocates.
     ///
     /// # Errors
     /// Those of `load`.
@@ -90,12 +112,15 @@ impl Programs {
         wanted: impl Fn(u8) -> bool,
         mut load: impl FnMut(&str) -> Result<Arc<Kit>>,
     ) -> Result<Vec<Option<Arc<Kit>>>> {
-        let mut made: BTreeMap<&str, Arc<Kit>> = BTreeMap::new();
+        let mut made: BTreeMap<(&str, u32), Arc<Kit>> = BTreeMap::new();
         let mut kit = |number| {
-            let Some(name) = self.name_of(number).filter(|_| wanted(number)) else { return Ok(None) };
-            Ok(Some(match made.entry(name) {
+            let Some(Program { sound, gain }) = self.any(number).filter(|_| wanted(number)) else { return Ok(None) };
+            Ok(Some(match made.entry((sound, gain.to_bits())) {
                 Entry::Occupied(known) => known.get().clone(),
-                Entry::Vacant(place) => place.insert(load(name)?).clone(),
+                Entry::Vacant(place) => {
+                    let kit = load(sound)?;
+                    place.insert(if *gain == 0.0 { kit } else { Arc::new(kit.with_gain(*gain)) }).clone()
+                }
             }))
         };
         (0..=u8::MAX).map(&mut kit).collect()
@@ -129,19 +154,15 @@ fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result
     }
     let gain = match table.get("gain") {
         None => 0.0,
-        Some(value) => complaints.take("", read_gain(value)).unwrap_or(0.0),
+        Some(value) => complaints.take("", read_gain("gain", value, GAINS)).unwrap_or(0.0),
     };
     let mut programs = Programs { name, mix: Mix { gain, space }, sounds: Vec::new(), drums: vec![None; PROGRAMS] };
-    let text = |place: &str, value: &Value| match value {
-        Value::String(name) => check_label(place, name.clone()),
-        other => Err(unexpected(place, "the name of a preset or kit", other)),
-    };
     match table.get("sounds") {
         None => {}
         Some(Value::Array(names)) if names.len() <= PROGRAMS => {
-            let sound = |(index, value): (usize, &Value)| text(&format!("sounds[{index}]"), value);
-            programs.sounds =
-                names.iter().enumerate().map(|each| complaints.take("", sound(each)).unwrap_or_default()).collect();
+            let mut sound =
+                |(index, value): (usize, &Value)| read_program(&format!("sounds[{index}]"), value, complaints);
+            programs.sounds = names.iter().enumerate().map(&mut sound).collect();
         }
         Some(other) => complaints.add(unexpected("sounds", "a list of at most 128 names, from program 1 on", other)),
     }
@@ -151,7 +172,7 @@ fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result
             for (number, value) in kits {
                 let place = format!("drums.{number}");
                 match number.parse::<usize>() {
-                    Ok(number @ 1..=PROGRAMS) => programs.drums[number - 1] = complaints.take("", text(&place, value)),
+                    Ok(number @ 1..=PROGRAMS) => programs.drums[number - 1] = read_program(&place, value, complaints),
                     _ => complaints.add(format!("{place}: expected a program number from 1 to {PROGRAMS}")),
                 }
             }
@@ -161,12 +182,34 @@ fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result
     Ok(programs)
 }
 
-fn read_gain(value: &Value) -> std::result::Result<f32, String> {
+/// Reads what a program plays: a name, or a name and a gain. None for an empty name, or if it cannot be read.
+fn read_program(place: &str, value: &Value, complaints: &mut Complaints) -> Option<Program> {
+    let name = |place: &str, value: &Value| match value {
+        Value::String(name) => check_label(place, name.clone()),
+        other => Err(unexpected(place, "the name of a preset or kit", other)),
+    };
+    let (sound, gain) = match value {
+        Value::Table(both) => {
+            let inner = format!("{place}.");
+            check_keys(both, &inner, &["sound", "gain"], complaints);
+            let missing = || Err(format!("{place}: there is no ‘sound’: expected the name of a preset or kit"));
+            let sound = both.get("sound").map_or_else(missing, |value| name(&format!("{inner}sound"), value));
+            let range = f64::from(*GAINS_DB.start())..=f64::from(*GAINS_DB.end());
+            let gain = both.get("gain").map_or(Ok(0.0), |value| read_gain(&format!("{inner}gain"), value, range));
+            (sound, complaints.take("", gain).unwrap_or(0.0))
+        }
+        single => (name(place, single), 0.0),
+    };
+    let sound = complaints.take("", sound).filter(|name| !name.is_empty())?;
+    Some(Program { sound, gain })
+}
+
+fn read_gain(place: &str, value: &Value, range: RangeInclusive<f64>) -> std::result::Result<f32, String> {
     let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
     number
-        .filter(|gain| GAINS.contains(gain))
+        .filter(|gain| range.contains(gain))
         .map(|gain| gain as f32)
-        .ok_or_else(|| unexpected("gain", &format!("dB from {} to {}", GAINS.start(), GAINS.end()), value))
+        .ok_or_else(|| unexpected(place, &format!("dB from {} to {}", range.start(), range.end()), value))
 }
 
 #[cfg(test)]
@@ -181,6 +224,19 @@ mod tests {
                 let name = name.unwrap_or_else(|| panic!("program {}", number + 1));
                 assert!(Playable::find(name).is_ok(), "program {}: {name}", number + 1);
             }
+        }
+    }
+
+    #[test]
+    fn the_readme_has_a_table_of_the_programs() {
+        let readme = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md"));
+        for first in (0..128).step_by(8) {
+            let names: Vec<_> =
+                (first..first + 8).map(|number| Programs::general_midi().sound(number).unwrap()).collect();
+            let (from, to, names) = (first + 1, first + 8, names.join(", "));
+            let row =
+                |line: &str| line.starts_with(&format!("| {from}–{to} |")) && line.ends_with(&format!("| {names} |"));
+            assert!(readme.lines().any(row), "programs {from} to {to}: {names}");
         }
     }
 
@@ -206,11 +262,26 @@ mod tests {
     }
 
     #[test]
+    fn a_program_may_be_softer_than_its_sound() {
+        let text = "programs = 1\nsounds = [\"Marimba\", { sound = \"Marimba\", gain = -4 }, { sound = \"Acoustic Kit\", gain = 2.5 }]";
+        let kits = Programs::parse(text, "x").unwrap();
+        let load = |name: &str| Playable::find(name).map(|playable| playable.kit());
+        let kits = kits.kits(|number| number < 3, load).unwrap();
+        let gain = |kit: usize| kits[kit].as_ref().unwrap().pad(38).unwrap().gain_db;
+        let snare = Playable::find("Acoustic Kit").unwrap().kit().pad(38).unwrap().gain_db;
+        assert_eq!([0, 1, 2].map(gain), [0.0, -4.0, snare + 2.5]);
+    }
+
+    #[test]
     fn mistakes_are_named() {
         for (text, expected) in [
             ("name = \"a\"", "begins with programs = 1"),
             ("programs = 2", "reads programs = 1"),
             ("programs = 1\nsounds = [3]", "sounds[0]: expected the name"),
+            ("programs = 1\nsounds = [{ gain = 3 }]", "sounds[0]: there is no ‘sound’"),
+            ("programs = 1\nsounds = [{ sound = 3 }]", "sounds[0].sound: expected the name"),
+            ("programs = 1\nsounds = [{ sound = \"A\", gain = 13 }]", "sounds[0].gain: expected dB from -60 to 12"),
+            ("programs = 1\nsounds = [{ sound = \"A\", pan = 1 }]", "unknown key ‘sounds[0].pan’"),
             ("programs = 1\ndrums = { 0 = \"A\" }", "drums.0: expected a program number from 1 to 128"),
             ("programs = 1\ngain = \"loud\"", "gain: expected dB from -60 to 24, found string"),
             ("programs = 1\ngain = 30", "gain: expected dB from -60 to 24, found integer"),

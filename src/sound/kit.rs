@@ -124,6 +124,17 @@ impl Kit {
         self
     }
 
+    /// The kit with all of its pads louder by a gain in dB, within [`GAINS_DB`]. Allocates.
+    #[must_use]
+    pub fn with_gain(&self, gain_db: f32) -> Self {
+        let mut kit = self.clone();
+        for pad in kit.pads.iter_mut().flatten() {
+            pad.gain_db += gain_db;
+            pad.confine();
+        }
+        kit
+    }
+
     /// The kit with a value of an effect behind the voices, whatever its sounds have. Other parameters stay as they are.
     #[must_use]
     pub fn with_effect(mut self, param: Param, value: f32) -> Self {
