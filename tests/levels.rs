@@ -1,6 +1,7 @@
 //! Every level of vector instructions gives the bits of scalar code: one test per level, ignored if the CPU lacks it.
 
 use libtest_mimic::{Arguments, Failed, Trial};
+use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use sprung::analysis::{diff, level};
 use sprung::dsp::Level;
 use sprung::dsp::random::{key, uniform};
@@ -217,18 +218,18 @@ fn reference() -> &'static [(Case, Stereo)] {
             let audio = case.render();
             (case, audio)
         };
-        Case::all().into_iter().map(rendered).collect()
+        Case::all().into_par_iter().map(rendered).collect()
     })
 }
 
 /// A line for each case that differs from scalar code.
-fn differences(level: Level, found: impl Fn(&Case) -> Stereo) -> Vec<String> {
+fn differences(level: Level, found: impl Fn(&Case) -> Stereo + Sync) -> Vec<String> {
     let line = |(case, expected): &(Case, Stereo)| {
         let found = found(case);
         let difference = diff::compare(expected, &found)?;
         Some(format!("{}: scalar and {} differ: {difference}", case.name, level.name()))
     };
-    reference().iter().filter_map(line).collect()
+    reference().par_iter().filter_map(line).collect()
 }
 
 fn has_the_bits_of_scalar_code(level: Level) -> Result<(), Failed> {
