@@ -11,6 +11,8 @@ mod lab;
 mod listings;
 mod messages;
 mod outputs;
+#[cfg(unix)]
+mod recipes;
 mod recordings;
 mod signals;
 mod songs;

@@ -97,7 +97,7 @@ const STEPS: &[Step] = &[
     },
     Step {
         name: "benches run",
-        arguments: "bench --package sprung --all-features --benches -- --test",
+        arguments: "test --package sprung --all-features --benches",
         environment: &[],
         shows: Shows::Benches,
     },
