@@ -42,7 +42,7 @@ impl Job<'_> {
 }
 
 /// Renders a job from its start, as many frames at a time as the slices have room for.
-struct Stream<'a> {
+pub(super) struct Stream<'a> {
     ensemble: Ensemble,
     song: SongCursor<&'a Song>,
     /// Events of the frames that are being rendered now.
@@ -55,7 +55,7 @@ struct Stream<'a> {
 }
 
 impl<'a> Stream<'a> {
-    fn new(job: &Job<'a>) -> Self {
+    pub(super) fn new(job: &Job<'a>) -> Self {
         let options = &job.options;
         let sample_rate = f64::from(options.sample_rate);
         let ensemble = Ensemble::of_kits(sample_rate, options.seed, job.kit, job.programs.to_vec());
@@ -79,7 +79,7 @@ impl<'a> Stream<'a> {
 
     /// Fills both slices, which have the same length, and returns the number of frames. It is smaller than their length
     /// only at the end.
-    fn fill(&mut self, left: &mut [f32], right: &mut [f32]) -> usize {
+    pub(super) fn fill(&mut self, left: &mut [f32], right: &mut [f32]) -> usize {
         let mut filled = 0;
         while filled < left.len()
             && let Some(end) = self.next_end()
@@ -89,6 +89,11 @@ impl<'a> Stream<'a> {
             filled += frames;
         }
         filled
+    }
+
+    /// What plays the job.
+    pub(super) fn ensemble(&mut self) -> &mut Ensemble {
+        &mut self.ensemble
     }
 
     /// The frame up to which the rendering certainly continues; `None` at the end.
