@@ -11,6 +11,7 @@
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
 //! | [`io`] | songs, and files that are written whole or not at all; MIDI files in and WAV files out (feature `render`), sound files in (features `recordings` and `codecs`) |
 //! | `render` | the offline renderer (feature `render`) |
+//! | `request` | what to render and how, by the names of the command (feature `request`) |
 //! | `analysis` | what sound is measured with: the modes of a recorded strike, differences, spectra (feature `analysis`) |
 //! | `lab` | ways to integrate a mass on a spring, side by side: what the oscillator is measured against (feature `lab`) |
 //! | `realtime` | sound devices, MIDI ports and a terminal to play from (feature `realtime`) |
@@ -54,6 +55,8 @@ pub mod preset;
 pub mod realtime;
 #[cfg(feature = "render")]
 pub mod render;
+#[cfg(feature = "request")]
+pub mod request;
 pub mod sound;
 pub mod text;
 pub mod units;

@@ -12,9 +12,7 @@ mod parameters;
 #[cfg(feature = "realtime")]
 mod play;
 mod presets;
-mod programs;
 mod progress;
-mod quantity;
 mod recording;
 mod render;
 mod song;
@@ -25,6 +23,7 @@ mod usage;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use interrupt::INTERRUPTED;
+use sprung::request::quantity;
 use sprung::{Error, Result};
 use std::io::Write;
 use std::process::ExitCode;

@@ -22,6 +22,7 @@ const ALLOWED: &[Row] = &[
     ("preset", &["error", "params", "patch", "sound", "text", "units"]),
     ("engine", &["dsp", "params", "patch", "sound", "units"]),
     ("io", &["dsp", "engine", "error", "units"]),
+    ("request", &["engine", "error", "io", "params", "preset", "render", "sound", "text", "units"]),
     ("render", &["dsp", "engine", "error", "io", "params", "patch", "preset", "sound", "units"]),
     ("realtime", &["engine", "error", "io", "params", "patch", "preset", "render", "sound", "text", "units"]),
     ("figure", &["error"]),
