@@ -1,15 +1,10 @@
 //! Exact labels of a rendering: each note's onset, and the frequency, T60 and level of each of its modes.
 
 use super::job::Job;
-use super::stream::Stream;
 use crate::dsp::CONTROL_FRAMES;
-use crate::engine::{EventKind, Struck, StruckMode};
-use crate::error::Result;
-use crate::units::{db_from_gain, note_name};
+use crate::engine::{Ensemble, Struck, StruckMode};
+use crate::units::db_from_gain;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Frames that are rendered at a time while no strike is under way.
-const STEP: usize = 4096;
 
 /// A mode of a note.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,54 +40,11 @@ pub struct NoteLabel {
     pub modes: Vec<ModeLabel>,
 }
 
-impl NoteLabel {
-    /// The name of its key.
-    pub fn name(&self) -> String {
-        note_name(self.key)
-    }
-}
-
-impl Job<'_> {
-    /// The labels of all notes, in order of their onsets. They are read from the engine while it plays the job, so they are
-    /// as exact as its state. Plays only as far as the last strike. Allocates.
-    ///
-    /// # Errors
-    /// As [`Job::render`].
-    pub fn labels(&self) -> Result<Vec<NoteLabel>> {
-        self.options.check()?;
-        let sample_rate = f64::from(self.options.sample_rate);
-        let mut events = self.song.events.iter().map(|event| event.frame(sample_rate)).peekable();
-        let is_strike = |kind: &EventKind| matches!(kind, EventKind::NoteOn { .. } | EventKind::Strike { .. });
-        let strikes = self.song.events.iter().filter(|event| is_strike(&event.kind));
-        let Some(last) = strikes.map(|event| event.frame(sample_rate)).max() else { return Ok(Vec::new()) };
-        let mut stream = Stream::new(self);
-        let [mut left, mut right] = [vec![0.0; STEP], vec![0.0; STEP]];
-        let (mut labels, mut frame) = (Labels::default(), 0);
-        while frame <= last || labels.has_open() {
-            // A piece begins with an event or ends before the next, and is short if it may begin with a strike, so that a
-            // label is read before anything changes the note.
-            let mut piece = if labels.has_open() { CONTROL_FRAMES } else { STEP };
-            while events.next_if(|event| *event <= frame).is_some() {
-                piece = CONTROL_FRAMES;
-            }
-            if let Some(next) = events.peek() {
-                piece = piece.min(usize::try_from(next - frame).unwrap_or(STEP));
-            }
-            if stream.fill(&mut left[..piece], &mut right[..piece]) < piece {
-                break;
-            }
-            let start = frame;
-            frame += piece as u64;
-            let gain = stream.ensemble().gain();
-            stream.ensemble().each_struck(&mut |part, struck| labels.look(part, &struck, gain, [start, frame]));
-        }
-        Ok(labels.finish())
-    }
-}
-
-/// Labels in the making.
-#[derive(Default)]
-struct Labels {
+/// Reads labels from the engine while it plays a job, so they are as exact as its state.
+pub(super) struct Labels {
+    /// The frames of the song's events that are still to come, the next one last.
+    events: Vec<u64>,
+    frame: u64,
     /// By the number of the part, of the note and of the unison voice.
     all: BTreeMap<(usize, u64, usize), NoteLabel>,
     /// Of these, the ones whose strike is under way.
@@ -100,8 +52,39 @@ struct Labels {
 }
 
 impl Labels {
-    fn has_open(&self) -> bool {
-        !self.open.is_empty()
+    /// Of a job that has not begun.
+    pub(super) fn new(job: &Job) -> Self {
+        let sample_rate = f64::from(job.options.sample_rate);
+        let events = job.song.events.iter().rev().map(|event| event.frame(sample_rate)).collect();
+        Self { events, frame: 0, all: BTreeMap::new(), open: BTreeSet::new() }
+    }
+
+    /// The next piece to play, at most so many frames. It begins with an event or ends before the next, and is short if it
+    /// may begin with a strike, so that a label is read before anything changes the note.
+    pub(super) fn piece(&mut self, most: usize) -> usize {
+        let mut piece = most;
+        if self.pass_events() || !self.open.is_empty() {
+            piece = piece.min(CONTROL_FRAMES);
+        }
+        match self.events.last() {
+            Some(next) => piece.min(usize::try_from(next - self.frame).unwrap_or(piece)),
+            None => piece,
+        }
+    }
+
+    /// Looks at the voices after the frames of a piece.
+    pub(super) fn read(&mut self, ensemble: &mut Ensemble, frames: usize) {
+        let piece = [self.frame, self.frame + frames as u64];
+        self.frame = piece[1];
+        let gain = ensemble.gain();
+        ensemble.each_struck(&mut |part, struck| self.look(part, &struck, gain, piece));
+    }
+
+    /// Passes the events of the present frame. Returns whether there are any.
+    fn pass_events(&mut self) -> bool {
+        let before = self.events.len();
+        while self.events.pop_if(|event| *event <= self.frame).is_some() {}
+        self.events.len() < before
     }
 
     /// Looks at a voice of a part after the frames of a piece. `gain` is that of the mix.
@@ -135,8 +118,9 @@ impl Labels {
         }
     }
 
-    /// All labels. Voices that were silenced during their strike have the levels that they had last.
-    fn finish(self) -> Vec<NoteLabel> {
+    /// All labels, in order of their onsets. Voices that were silenced during their strike have the levels that they had
+    /// last.
+    pub(super) fn finish(self) -> Vec<NoteLabel> {
         let mut labels: Vec<NoteLabel> = self.all.into_values().collect();
         labels.sort_by_key(|label| (label.onset, label.channel));
         labels
@@ -154,9 +138,27 @@ mod tests {
 
     const OPTIONS: Options = Options { sample_rate: 48_000, seed: 0, block: 256, tail: Tail::None };
 
+    /// The labels of a song. Reading them changes no sample.
+    fn of(song: &Song, patch: &Patch) -> Vec<NoteLabel> {
+        let kit = Kit::of_patch(patch);
+        let job = Job::new(song, &kit, OPTIONS);
+        let render = |labels: Option<&mut Labels>| {
+            let mut samples = Vec::new();
+            let sink = |left: &[f32], right: &[f32]| {
+                samples.extend(left.iter().chain(right).map(|sample| sample.to_bits()));
+                Ok(())
+            };
+            job.render_labelled(labels, sink).unwrap();
+            samples
+        };
+        let mut labels = Labels::new(&job);
+        assert!(render(Some(&mut labels)) == render(None));
+        labels.finish()
+    }
+
     fn labels(patch: &Patch, keys: &[f64]) -> Vec<NoteLabel> {
         let song = Song::chord(keys, 1.0, 1.0);
-        Job::new(&song, &Kit::of_patch(patch), OPTIONS).labels().unwrap()
+        of(&song, patch)
     }
 
     #[test]
@@ -184,7 +186,7 @@ mod tests {
         assert!((4800..4900).contains(&long.free), "{}", long.free);
         let song = Song::chord(&[60.0], 1.0, 0.0005);
         let patch = Patch::default().with(Param::Decay, 3.0).with(Param::Release, 0.05);
-        let labels = Job::new(&song, &Kit::of_patch(&patch), OPTIONS).labels().unwrap();
+        let labels = of(&song, &patch);
         assert_eq!(labels[0].modes[0].t60, 3.0);
     }
 
@@ -195,7 +197,7 @@ mod tests {
             song.events.clone().into_iter().map(|event| crate::io::SongEvent { seconds: event.seconds + 0.5, ..event });
         song.events.extend(again.collect::<Vec<_>>());
         song.seconds = 1.0;
-        let labels = Job::new(&song, &Kit::of_patch(&Patch::default()), OPTIONS).labels().unwrap();
+        let labels = of(&song, &Patch::default());
         assert_eq!(labels.iter().map(|label| label.onset).collect::<Vec<_>>(), [0, 24_000]);
     }
 }

@@ -15,4 +15,4 @@ pub use job::{BLOCKS, Job, Options, Rendered, Tail};
 pub use labels::{ModeLabel, NoteLabel};
 pub use meter::{Levels, Meter};
 pub use threads::{THREADS, on_threads};
-pub use wav::{Delivery, Level, Progress, Report, to_wav};
+pub use wav::{Delivery, Level, Progress, Report, to_labelled_wav, to_wav};

@@ -1,6 +1,7 @@
 //! Renders a job block by block, on as many cores as there are channels that sound.
 
 use super::job::{Job, Rendered};
+use super::labels::Labels;
 use crate::engine::{Ensemble, Event};
 use crate::error::Result;
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
@@ -20,12 +21,24 @@ impl Job<'_> {
     ///
     /// # Errors
     /// [`Error::Value`](crate::Error::Value) if an option is out of range, and the errors of `sink`.
-    pub fn render(&self, mut sink: impl FnMut(&[f32], &[f32]) -> Result<()> + Send) -> Result<Rendered> {
+    pub fn render(&self, sink: impl FnMut(&[f32], &[f32]) -> Result<()> + Send) -> Result<Rendered> {
+        self.render_labelled(None, sink)
+    }
+
+    /// As [`Job::render`], and reads labels on the way.
+    pub(super) fn render_labelled(
+        &self,
+        mut labels: Option<&mut Labels>,
+        mut sink: impl FnMut(&[f32], &[f32]) -> Result<()> + Send,
+    ) -> Result<Rendered> {
         self.options.check()?;
         let mut stream = Stream::new(self);
         let block = || [vec![0.0; self.options.block], vec![0.0; self.options.block]];
         let [mut now, mut next] = [block(), block()];
-        let fill = |stream: &mut Stream, [left, right]: &mut [Vec<f32>; 2]| stream.fill(left, right);
+        let mut fill = |stream: &mut Stream, [left, right]: &mut [Vec<f32>; 2]| match &mut labels {
+            None => stream.fill(left, right),
+            Some(labels) => stream.fill_labelled(labels, left, right),
+        };
         let mut frames = fill(&mut stream, &mut now);
         while frames > 0 {
             let [left, right] = &now;
@@ -42,7 +55,7 @@ impl Job<'_> {
 }
 
 /// Renders a job from its start, as many frames at a time as the slices have room for.
-pub(super) struct Stream<'a> {
+struct Stream<'a> {
     ensemble: Ensemble,
     song: SongCursor<&'a Song>,
     /// Events of the frames that are being rendered now.
@@ -55,7 +68,7 @@ pub(super) struct Stream<'a> {
 }
 
 impl<'a> Stream<'a> {
-    pub(super) fn new(job: &Job<'a>) -> Self {
+    fn new(job: &Job<'a>) -> Self {
         let options = &job.options;
         let sample_rate = f64::from(options.sample_rate);
         let ensemble = Ensemble::of_kits(sample_rate, options.seed, job.kit, job.programs.to_vec());
@@ -79,7 +92,7 @@ impl<'a> Stream<'a> {
 
     /// Fills both slices, which have the same length, and returns the number of frames. It is smaller than their length
     /// only at the end.
-    pub(super) fn fill(&mut self, left: &mut [f32], right: &mut [f32]) -> usize {
+    fn fill(&mut self, left: &mut [f32], right: &mut [f32]) -> usize {
         let mut filled = 0;
         while filled < left.len()
             && let Some(end) = self.next_end()
@@ -91,9 +104,19 @@ impl<'a> Stream<'a> {
         filled
     }
 
-    /// What plays the job.
-    pub(super) fn ensemble(&mut self) -> &mut Ensemble {
-        &mut self.ensemble
+    /// As [`Stream::fill`], from the start on, and reads labels. The samples are the same.
+    fn fill_labelled(&mut self, labels: &mut Labels, left: &mut [f32], right: &mut [f32]) -> usize {
+        let mut filled = 0;
+        while filled < left.len() {
+            let piece = labels.piece(left.len() - filled);
+            let frames = self.fill(&mut left[filled..][..piece], &mut right[filled..][..piece]);
+            labels.read(&mut self.ensemble, frames);
+            filled += frames;
+            if frames < piece {
+                break;
+            }
+        }
+        filled
     }
 
     /// The frame up to which the rendering certainly continues; `None` at the end.
