@@ -11,6 +11,8 @@
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
 //! | [`io`] | songs, and files that are written whole or not at all; MIDI files in and WAV files out (feature `render`), sound files in (features `recordings` and `codecs`) |
 //! | `render` | the offline renderer (feature `render`) |
+//! | `request` | what to render and how, by the names that the command, batches and Python share (feature `batch`) |
+//! | `batch` | sounds by the thousand, from a file of jobs, with exact labels (feature `batch`) |
 //! | `analysis` | what sound is measured with: the modes of a recorded strike, differences, spectra (feature `analysis`) |
 //! | `lab` | ways to integrate a mass on a spring, side by side: what the oscillator is measured against (feature `lab`) |
 //! | `realtime` | sound devices, MIDI ports and a terminal to play from (feature `realtime`) |
@@ -39,6 +41,8 @@
 
 #[cfg(feature = "analysis")]
 pub mod analysis;
+#[cfg(feature = "batch")]
+pub mod batch;
 pub mod dsp;
 pub mod engine;
 pub mod error;
@@ -54,6 +58,8 @@ pub mod preset;
 pub mod realtime;
 #[cfg(feature = "render")]
 pub mod render;
+#[cfg(feature = "batch")]
+pub mod request;
 pub mod sound;
 pub mod text;
 pub mod units;

@@ -47,6 +47,11 @@ fn is_printable(character: char) -> bool {
     !(character.is_control() || reorders || matches!(character, '\u{2028}' | '\u{2029}'))
 }
 
+/// A number with its noun, which gets an s unless there is one of it.
+pub fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,7 @@
 //! The command line. Each subcommand has a file of its own.
 
 mod analyze;
+mod batch;
 mod completion;
 mod diff;
 mod figure;
@@ -12,9 +13,7 @@ mod parameters;
 #[cfg(feature = "realtime")]
 mod play;
 mod presets;
-mod programs;
 mod progress;
-mod quantity;
 mod recording;
 mod render;
 mod song;
@@ -25,6 +24,7 @@ mod usage;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use interrupt::INTERRUPTED;
+use sprung::request::quantity;
 use sprung::{Error, Result};
 use std::io::Write;
 use std::process::ExitCode;
@@ -47,6 +47,7 @@ const EXAMPLES: &str = "\
 Examples:
   sprung render song.mid -o song.wav
   sprung render --note C2 --preset Kick -o kick.wav
+  sprung batch jobs.jsonl --out sounds
   sprung presets list
   sprung params
   sprung analyze strike.wav
@@ -61,6 +62,9 @@ enum Command {
     /// Render a MIDI file or some notes to a WAV file
     #[command(after_help = render::EXAMPLES)]
     Render(Box<render::Args>),
+    /// Render thousands of sounds from a file of jobs, with exact labels
+    #[command(after_help = batch::EXAMPLES)]
+    Batch(batch::Args),
     /// Play live: a MIDI file, a keyboard, or the terminal
     #[cfg(feature = "realtime")]
     #[command(after_help = play::EXAMPLES)]
@@ -108,6 +112,8 @@ pub(crate) fn run() -> ExitCode {
     match Cli::try_parse() {
         // That it is different is no error.
         Ok(Cli { command: Command::Diff(args) }) => diff::run(&args),
+        // What is finished stays, whatever ends it.
+        Ok(Cli { command: Command::Batch(args) }) => batch::run(&args),
         Ok(cli) => finish(execute(&cli.command)),
         // `--help` and `--version` are no errors, and go to stdout.
         Err(error) if !error.use_stderr() => finish(checked(error.print().and_then(|()| std::io::stdout().flush()))),
@@ -130,7 +136,7 @@ fn execute(command: &Command) -> Result<()> {
         Command::Params(args) => parameters::run(args),
         Command::Analyze(args) => analyze::run(args),
         Command::Fit(args) => fit::run(args),
-        Command::Diff(_) => unreachable!("it has exit codes of its own"),
+        Command::Batch(_) | Command::Diff(_) => unreachable!("they have exit codes of their own"),
         Command::Lab(args) => lab::run(args),
         Command::Completions(args) => completion::run(args),
         Command::Man(args) => manual::run(args, Cli::command()),

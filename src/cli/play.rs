@@ -1,8 +1,8 @@
 //! `sprung play`: plays the instrument live on a sound device.
 
 use super::song::SongArgs;
-use super::sound::{SoundArgs, Sounds};
-use super::terminal::{complain, complain_lines, print};
+use super::sound::SoundArgs;
+use super::terminal::{complain, complain_lines, print, warn};
 use super::{completion, interrupt, quantity};
 use sprung::engine::telemetry::Load;
 use sprung::io::{Inputs, Output, Target};
@@ -12,6 +12,7 @@ use sprung::realtime::{
     Wanted, device, midi_ports, view,
 };
 use sprung::render::BLOCKS;
+use sprung::request::Sounds;
 use sprung::text::printable;
 use sprung::{Error, Result};
 use std::io::IsTerminal;
@@ -77,11 +78,12 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let record = args.record.as_ref().map(Target::new);
     record.as_ref().map_or(Ok(()), Target::check_wav)?;
     let mut inputs = Inputs::default();
-    let mut song = args.song.as_deref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
+    let (reading, settings) = (args.reading.request(), args.sound.request());
+    let mut song = args.song.as_deref().map(|path| reading.read(path, &mut inputs, &mut warn)).transpose()?;
     // Keyboards may select any program at any time.
-    let sounds = args.sound.load(song.as_mut(), true, &mut inputs)?;
+    let sounds = settings.load(song.as_mut(), true, &mut inputs, &mut warn)?;
     if let Some(song) = &song {
-        args.sound.warn(song, &sounds);
+        settings.warn(song, &sounds, &mut warn);
     }
     let choice = Choice { host: args.host.clone(), device: args.device.clone(), rate: args.rate, buffer: args.buffer };
     let found = Found::find(&choice)?;
@@ -119,7 +121,6 @@ pub(super) fn run(args: &Args) -> Result<()> {
         status,
         has_song,
     };
-    let settings = args.sound.clone();
     let make = Box::new(move |preset: &Preset| settings.kit(Playable::Preset(preset.clone())));
     if headless { stage.headless(closing) } else { stage.on_terminal(keys, kits, closing, sounds, make) }
 }

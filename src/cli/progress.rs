@@ -42,6 +42,41 @@ impl Bar {
     }
 }
 
+/// A bar that counts jobs, with their rate and the time left.
+pub(super) struct Count {
+    bar: Option<ProgressBar>,
+}
+
+impl Count {
+    pub(super) fn new() -> Self {
+        Self { bar: std::io::stderr().is_terminal().then(ProgressBar::no_length) }
+    }
+
+    /// Shows how many jobs are done, of how many. Those that were `found` done do not count for the rate.
+    pub(super) fn show(&mut self, done: u64, found: u64, of: u64) {
+        let Some(bar) = &self.bar else { return };
+        if bar.length() != Some(of) {
+            let style = ProgressStyle::with_template("{wide_bar} {msg}{human_pos}/{human_len}  {per_sec}  {eta} left");
+            bar.set_style(style.expect("the template is a constant"));
+            bar.set_length(of);
+            bar.enable_steady_tick(Duration::from_millis(500));
+        }
+        if bar.position() == 0 && found > 0 {
+            bar.set_position(found);
+            bar.reset_eta();
+        }
+        bar.set_position(done);
+    }
+}
+
+impl Drop for Count {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 impl Drop for Bar {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {

@@ -1,28 +1,16 @@
 //! Recordings that commands are given, and figures that they write.
 
 use super::interrupt;
-use super::terminal::complain;
-use sprung::io::sound_file::{self, Recording};
+use super::terminal::warn;
+use sprung::io::sound_file::Recording;
 use sprung::io::{Inputs, Output, Target};
 use sprung::{Error, Result};
-use std::io::{Seek, SeekFrom, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Reads a sound file, or standard input for `-`, and warns of what is wrong with it. Gives what errors call it, too.
 pub(super) fn read(path: &Path, inputs: &mut Inputs) -> Result<(Recording, String)> {
-    let (file, name) = if path == Path::new("-") {
-        let failed = |source| Error::io("stdin", source);
-        // A sound file is not read from front to back.
-        let mut file = tempfile::tempfile().map_err(failed)?;
-        std::io::copy(&mut inputs.stdin()?.lock(), &mut file).map_err(failed)?;
-        file.seek(SeekFrom::Start(0)).map_err(failed)?;
-        (file, "stdin".to_owned())
-    } else {
-        (inputs.open(path)?, path.display().to_string())
-    };
-    let recording = sound_file::read(file, &name)?;
-    recording.warnings.iter().for_each(|warning| complain("warning", format_args!("{name}: {warning}")));
-    Ok((recording, name))
+    sprung::request::recording(path, inputs, &mut warn)
 }
 
 /// The ending of a path in lower case, if it is one of those that are possible; `option` names it in the error.

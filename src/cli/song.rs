@@ -1,12 +1,6 @@
-//! Reads the song that a command plays.
+//! How a command reads the song that it plays.
 
-use super::terminal::complain;
-use sprung::Result;
-use sprung::io::{Inputs, Song};
-use std::path::Path;
-
-/// Maximum number of repairs that are reported one by one.
-const MOST_REPAIRS: usize = 10;
+use sprung::request::SongRequest;
 
 /// How a song is read and played.
 #[derive(clap::Args)]
@@ -17,25 +11,7 @@ pub(super) struct SongArgs {
 }
 
 impl SongArgs {
-    /// Reads the song; `-` is stdin.
-    pub(super) fn read(&self, path: &Path, inputs: &mut Inputs) -> Result<Song> {
-        if path == Path::new("-") {
-            return self.parse(inputs.stdin()?.lock(), "stdin");
-        }
-        self.parse(inputs.open(path)?, &path.display().to_string())
-    }
-
-    fn parse(&self, reader: impl std::io::Read, origin: &str) -> Result<Song> {
-        if !self.lenient {
-            return Song::read(reader, origin);
-        }
-        let (song, repairs) = Song::read_leniently(reader, origin)?;
-        for repair in repairs.iter().take(MOST_REPAIRS) {
-            complain("warning", format_args!("{origin}: {repair}"));
-        }
-        if repairs.len() > MOST_REPAIRS {
-            complain("warning", format_args!("{origin}: {} repairs more", repairs.len() - MOST_REPAIRS));
-        }
-        Ok(song)
+    pub(super) fn request(&self) -> SongRequest {
+        SongRequest { lenient: self.lenient }
     }
 }

@@ -1,21 +1,11 @@
 //! The sounds that a command plays: presets and kits, parameter settings, the tuning, and the seed.
 
-use super::programs::{ProgramArgs, used};
-use super::terminal::{complain, counted};
+use super::completion;
 use super::tuning::TuningArgs;
-use super::{completion, presets, programs, quantity};
 use clap_complete::ArgValueCompleter;
-use sprung::engine::EventKind;
-use sprung::engine::banks::{DRUM_CHANNEL, MELODIC};
-use sprung::io::{Inputs, Song};
 use sprung::params::Param;
-use sprung::preset::{Playable, Programs};
-use sprung::sound::{Kit, Mix, Tuning};
-use sprung::units::note_name;
-use sprung::{Error, Result};
-use std::collections::{BTreeMap, BTreeSet};
-use std::ffi::{OsStr, OsString};
-use std::sync::Arc;
+use sprung::request::{SoundRequest, quantity};
+use std::ffi::OsString;
 
 /// What sounds a song is played with.
 #[derive(Clone, clap::Args)]
@@ -27,164 +17,30 @@ pub(super) struct SoundArgs {
     /// Factory preset or kit, or preset or kit file, that a channel (1-16) starts with, as in 10=drums.toml; may be repeated
     #[arg(long, value_name = "CHANNEL=NAME|FILE.toml", value_parser = quantity::channel)]
     channel: Vec<(u8, String)>,
-    #[command(flatten)]
-    programs: ProgramArgs,
+    /// What program changes select: gm is the factory's sounds for General MIDI, with drums on channel 10; none leaves
+    /// program changes out; or a list of one's own
+    #[arg(long, default_value = "gm", value_name = "gm|none|FILE.toml", add = completion::among(&["gm", "none"]))]
+    programs: OsString,
     /// Set a parameter of every preset used; may be repeated. See `sprung params`
     #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
         add = ArgValueCompleter::new(completion::settings))]
     set: Vec<(Param, f32)>,
     #[command(flatten)]
-    pub(super) tuning: TuningArgs,
+    tuning: TuningArgs,
     /// Seed of all randomness, 0-18446744073709551615
     #[arg(long, default_value_t = 0, value_name = "N", allow_hyphen_values = true,
         value_parser = quantity::whole::<u64>(0..=u64::MAX))]
     pub(super) seed: u64,
 }
 
-/// The sounds, with the parameters that the user has set.
-pub(super) struct Sounds {
-    /// The initial kit of the channels that are not in `channels`.
-    pub(super) kit: Arc<Kit>,
-    /// Initial kits of single channels, from 0.
-    pub(super) channels: Vec<(u8, Arc<Kit>)>,
-    /// The kits that program changes select: melodic sounds, then drum kits. None if they select nothing.
-    pub(super) programs: Vec<Arc<Kit>>,
-    /// The list that they come from.
-    list: Option<Programs>,
-    /// How the channels of a song are mixed; none for their plain sum.
-    pub(super) mix: Option<Mix>,
-    /// The tuning of the keys.
-    pub(super) tuning: Tuning,
-}
-
-impl Sounds {
-    /// Whether any of the sounds can be driven by sound that comes in.
-    pub(super) fn take_input(&self) -> bool {
-        let kits = [&self.kit].into_iter().chain(self.channels.iter().map(|(_, kit)| kit)).chain(&self.programs);
-        let level = Param::InputLevel.info();
-        kits.flat_map(|kit| kit.sounds()).map(|sound| sound.patch()).any(|patch| {
-            let is_moved = patch.routes.iter().any(|(_, route)| route.destination == level.param);
-            is_moved || patch.get(level.param) > level.min
-        })
-    }
-}
-
 impl SoundArgs {
-    /// Loads the presets and kits, sets the parameters of all sounds, and reads the tuning. Program changes of the `song`
-    /// then have the numbers of their kits; without a song, all programs are loaded if it `is_live`.
-    pub(super) fn load(&self, song: Option<&mut Song>, is_live: bool, inputs: &mut Inputs) -> Result<Sounds> {
-        let list = if song.is_some() || is_live { self.programs.read(inputs)? } else { None };
-        let has_drums = song.as_ref().is_none_or(|song| song.events.iter().any(|event| event.channel == DRUM_CHANNEL));
-        let (is_free, has_song) = (self.preset.is_none(), song.is_some());
-        let mut used = song.map(|song| {
-            match list {
-                Some(_) => song.select_by_bank(),
-                None => song.events.retain(|event| !matches!(event.kind, EventKind::Program(_))),
-            }
-            used(song)
-        });
-        // What channels start with is made once, even if program changes select it, too.
-        let starts_with_first = is_free && has_song;
-        let starts_with_drums = is_free && has_drums && self.channel.iter().all(|(taken, _)| *taken != DRUM_CHANNEL);
-        if let Some(used) = &mut used {
-            used.extend(starts_with_first.then_some(0));
-            used.extend(starts_with_drums.then_some(MELODIC));
+    pub(super) fn request(&self) -> SoundRequest {
+        SoundRequest {
+            preset: self.preset.clone(),
+            channels: self.channel.clone(),
+            programs: self.programs.clone(),
+            set: self.set.clone(),
+            tuning: self.tuning.request(),
         }
-        let wanted = |number| used.as_ref().is_none_or(|used: &BTreeSet<u8>| used.contains(&number));
-        let made = match &list {
-            None => Vec::new(),
-            Some(list) => programs::kits(list, wanted, |playable| self.kit(playable), inputs)?,
-        };
-        let program = |number: u8| made.get(usize::from(number)).cloned().flatten();
-        let kit = match program(0).filter(|_| starts_with_first) {
-            Some(first) => first,
-            None => self.kit(presets::load(self.preset.as_deref().unwrap_or(OsStr::new("init")), inputs)?),
-        };
-        let mut channels = Vec::with_capacity(self.channel.len() + 1);
-        for (channel, name) in &self.channel {
-            if channels.iter().any(|(taken, _)| taken == channel) {
-                let message = format!("channel {} is there twice: expected each channel once", channel + 1);
-                return Err(Error::value("--channel", message));
-            }
-            channels.push((*channel, self.kit(presets::load(OsStr::new(name), inputs)?)));
-        }
-        channels.extend(program(MELODIC).filter(|_| starts_with_drums).map(|drums| (DRUM_CHANNEL, drums)));
-        let programs = made.into_iter().map(|made| made.unwrap_or_else(|| kit.clone())).collect();
-        // Whoever sets a space gives each channel one of its own.
-        let sets_space = self.set.iter().any(|(param, _)| *param == Param::Space);
-        let mut mix = list.as_ref().filter(|_| has_song).map(|list| list.mix.clone());
-        if let Some(mix) = mix.as_mut().filter(|_| sets_space) {
-            mix.space.clear();
-        }
-        Ok(Sounds { kit, channels, programs, mix, list, tuning: self.tuning.read(inputs)? })
-    }
-
-    /// Warns of program changes that have no sound or lead away from what the user asked for, of keys that the tuning does
-    /// not map, and of what stays silent.
-    pub(super) fn warn(&self, song: &Song, sounds: &Sounds) {
-        if let Some(list) = &sounds.list {
-            programs::warn_of_missing(song, list, "what channels start with");
-        }
-        programs::warn_of_changes(song, self.asked_for(sounds), &sounds.programs);
-        self.tuning.warn_of_unmapped(song, &sounds.tuning);
-        self.warn_of_silence(song, sounds);
-    }
-
-    /// The kit that the user chose for each channel; none if neither a preset for all channels nor one for this channel
-    /// was given.
-    fn asked_for<'a>(&self, sounds: &'a Sounds) -> [Option<&'a Arc<Kit>>; 16] {
-        let mut asked = [self.preset.is_some().then_some(&sounds.kit); 16];
-        sounds.channels[..self.channel.len()]
-            .iter()
-            .for_each(|(channel, kit)| asked[usize::from(*channel)] = Some(kit));
-        asked
-    }
-
-    /// Warns of channels that were given a sound but have no events, and of notes on keys without a pad in their kit.
-    /// Notes are not enough to tell that a channel is used: those of
-    /// an MPE zone are on other channels than their master's.
-    fn warn_of_silence(&self, song: &Song, sounds: &Sounds) {
-        let programs = &sounds.programs;
-        let mut playing = [&sounds.kit; 16];
-        sounds.channels.iter().for_each(|(channel, kit)| playing[usize::from(*channel)] = kit);
-        let (mut is_used, mut all) = ([false; 16], 0);
-        let (mut silent, mut keys) = (0, BTreeMap::<u8, BTreeSet<u8>>::new());
-        for event in &song.events {
-            let channel = usize::from(event.channel);
-            let Some(playing) = playing.get_mut(channel) else { continue };
-            is_used[channel] = true;
-            match event.kind {
-                EventKind::Program(number) => *playing = programs.get(usize::from(number)).unwrap_or(playing),
-                EventKind::NoteOn { key, .. } => {
-                    all += 1;
-                    if playing.pad(key).is_none() {
-                        silent += 1;
-                        keys.entry(event.channel).or_default().insert(key);
-                    }
-                }
-                _ => {}
-            }
-        }
-        for (channel, _) in self.channel.iter().filter(|(channel, _)| !is_used[usize::from(*channel)]) {
-            complain("warning", format_args!("--channel {0}: the song has nothing on channel {0}", channel + 1));
-        }
-        if silent > 0 {
-            let list = |(channel, keys): (&u8, &BTreeSet<u8>)| {
-                let names: Vec<_> = keys.iter().map(|key| note_name(*key)).collect();
-                format!("channel {}: {}", channel + 1, names.join(" "))
-            };
-            let where_to = keys.iter().map(list).collect::<Vec<_>>().join("; ");
-            let (all, are) = (counted(all, "note"), if all == 1 { "is" } else { "are" });
-            let message = format!("{silent} of {all} {are} silent: their kits have no pad on their keys ({where_to})");
-            complain("warning", message);
-        }
-    }
-
-    /// The kit of a preset or kit, with the parameters that the user has set.
-    pub(super) fn kit(&self, mut playable: Playable) -> Arc<Kit> {
-        for preset in playable.presets_mut() {
-            self.set.iter().for_each(|(param, value)| preset.patch.set(*param, *value));
-        }
-        playable.kit()
     }
 }

@@ -1,5 +1,6 @@
 //! Writes to stdout and stderr, without control characters that would affect the terminal.
 
+pub(super) use sprung::text::counted;
 use sprung::text::{printable, printable_lines};
 use sprung::{Error, Result};
 use std::fmt::Display;
@@ -8,6 +9,11 @@ use std::io::{ErrorKind, Write};
 /// Prints one line on stderr, without control characters.
 pub(super) fn complain(severity: &str, message: impl Display) {
     complain_lines(&format!("sprung: {severity}: {}\n", printable(&message.to_string())));
+}
+
+/// Prints a warning.
+pub(super) fn warn(message: &str) {
+    complain("warning", message);
 }
 
 /// Writes lines to stderr, without control characters. If stderr is closed, nothing can be reported, so errors are
@@ -28,9 +34,4 @@ pub(super) fn checked(written: std::io::Result<()>) -> Result<()> {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("stdout", error)),
         _ => Ok(()),
     }
-}
-
-/// A number with its noun, which gets an s unless there is one of it.
-pub(super) fn counted(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }

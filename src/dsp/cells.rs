@@ -199,6 +199,16 @@ impl Cells {
         bank.into_iter().flat_map(|bank| (0..bank.len()).map(|m| bank.mass(m)))
     }
 
+    /// Each mode: its frequency as a multiple of the note's, its T60 as a multiple of the note's decay, how far it moves
+    /// where the body is touched, and its squared amplitude.
+    pub fn modes(&self) -> impl Iterator<Item = (f64, f64, f64, f64)> {
+        self.iter().flat_map(|cell| {
+            let energy = |m| f64::from(cell.bank.mass(m).1);
+            let row = move |m| (cell.ratios[m], cell.t60_scales[m], f64::from(cell.touched[m]), energy(m));
+            (0..cell.bank.len()).map(row)
+        })
+    }
+
     /// Like [`super::ModeBank::settle`].
     pub fn settle(&mut self) -> f64 {
         self.iter_mut().map(|cell| cell.bank.settle()).sum()

@@ -24,7 +24,7 @@ impl Fader {
     }
 
     /// The gain of the last frame.
-    fn now(&self) -> [f32; 2] {
+    pub(crate) fn now(&self) -> [f32; 2] {
         [0, 1].map(|side| self.from[side] + self.step[side] * self.elapsed as f32)
     }
 

@@ -1,7 +1,9 @@
-//! Files: reads MIDI songs and recordings, writes WAV sound, and replaces output files only when they are complete.
+//! Files: reads MIDI songs and recordings, writes WAV and FLAC sound, and replaces output files only when they are complete.
 
 #[cfg(feature = "render")]
 mod bars;
+#[cfg(feature = "batch")]
+pub mod flac;
 pub mod inputs;
 #[cfg(feature = "render")]
 pub mod midi;

@@ -1,6 +1,7 @@
 //! The offline renderer: turns songs into samples, block by block, as fast as the machine can.
 
 mod job;
+pub mod labels;
 pub mod meter;
 mod stream;
 #[cfg(test)]
@@ -11,6 +12,7 @@ mod wav;
 pub use crate::dsp::limiter::Work as LimiterWork;
 pub use crate::engine::synth::SAMPLE_RATES;
 pub use job::{BLOCKS, Job, Options, Rendered, Tail};
+pub use labels::{ModeLabel, NoteLabel};
 pub use meter::{Levels, Meter};
 pub use threads::{THREADS, on_threads};
-pub use wav::{Delivery, Level, Progress, Report, to_wav};
+pub use wav::{Delivery, Level, Progress, Report, to_labelled_wav, to_wav};

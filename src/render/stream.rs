@@ -1,6 +1,7 @@
 //! Renders a job block by block, on as many cores as there are channels that sound.
 
 use super::job::{Job, Rendered};
+use super::labels::Labels;
 use crate::engine::{Ensemble, Event};
 use crate::error::Result;
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
@@ -20,12 +21,24 @@ impl Job<'_> {
     ///
     /// # Errors
     /// [`Error::Value`](crate::Error::Value) if an option is out of range, and the errors of `sink`.
-    pub fn render(&self, mut sink: impl FnMut(&[f32], &[f32]) -> Result<()> + Send) -> Result<Rendered> {
+    pub fn render(&self, sink: impl FnMut(&[f32], &[f32]) -> Result<()> + Send) -> Result<Rendered> {
+        self.render_labelled(None, sink)
+    }
+
+    /// As [`Job::render`], and reads labels on the way.
+    pub(super) fn render_labelled(
+        &self,
+        mut labels: Option<&mut Labels>,
+        mut sink: impl FnMut(&[f32], &[f32]) -> Result<()> + Send,
+    ) -> Result<Rendered> {
         self.options.check()?;
         let mut stream = Stream::new(self);
         let block = || [vec![0.0; self.options.block], vec![0.0; self.options.block]];
         let [mut now, mut next] = [block(), block()];
-        let fill = |stream: &mut Stream, [left, right]: &mut [Vec<f32>; 2]| stream.fill(left, right);
+        let mut fill = |stream: &mut Stream, [left, right]: &mut [Vec<f32>; 2]| match &mut labels {
+            None => stream.fill(left, right),
+            Some(labels) => stream.fill_labelled(labels, left, right),
+        };
         let mut frames = fill(&mut stream, &mut now);
         while frames > 0 {
             let [left, right] = &now;
@@ -87,6 +100,21 @@ impl<'a> Stream<'a> {
             let frames = (end - self.song.frame()).min((left.len() - filled) as u64) as usize;
             self.render(&mut left[filled..][..frames], &mut right[filled..][..frames]);
             filled += frames;
+        }
+        filled
+    }
+
+    /// As [`Stream::fill`], from the start on, and reads labels. The samples are the same.
+    fn fill_labelled(&mut self, labels: &mut Labels, left: &mut [f32], right: &mut [f32]) -> usize {
+        let mut filled = 0;
+        while filled < left.len() {
+            let piece = labels.piece(left.len() - filled);
+            let frames = self.fill(&mut left[filled..][..piece], &mut right[filled..][..piece]);
+            labels.read(&mut self.ensemble, frames);
+            filled += frames;
+            if frames < piece {
+                break;
+            }
         }
         filled
     }

@@ -1,6 +1,7 @@
 //! Renders a job into a WAV file: sets channels, level and length, and reports figures of the result.
 
 use super::job::Job;
+use super::labels::{Labels, NoteLabel};
 use super::meter::{Levels, Meter};
 use crate::error::{Error, Result};
 use crate::io::{Output, SampleFormat, WavFormat, WavWriter};
@@ -86,6 +87,34 @@ pub fn to_wav(
     job: &Job,
     delivery: &Delivery,
     output: &mut Output,
+    progress: impl FnMut(Progress) -> Result<()> + Send,
+) -> Result<Report> {
+    write(job, delivery, output, None, progress)
+}
+
+/// As [`to_wav`], and gives the labels of all notes in order of their onsets. Their levels are those of the file.
+///
+/// # Errors
+/// As [`to_wav`].
+pub fn to_labelled_wav(
+    job: &Job,
+    delivery: &Delivery,
+    output: &mut Output,
+    progress: impl FnMut(Progress) -> Result<()> + Send,
+) -> Result<(Report, Vec<NoteLabel>)> {
+    let mut labels = Labels::new(job);
+    let report = write(job, delivery, output, Some(&mut labels), progress)?;
+    let mut labels = labels.finish();
+    let modes = labels.iter_mut().flat_map(|label| &mut label.modes);
+    modes.for_each(|mode| mode.level_db += report.gain_db);
+    Ok((report, labels))
+}
+
+fn write(
+    job: &Job,
+    delivery: &Delivery,
+    output: &mut Output,
+    labels: Option<&mut Labels>,
     mut progress: impl FnMut(Progress) -> Result<()> + Send,
 ) -> Result<Report> {
     let started = Instant::now();
@@ -124,7 +153,7 @@ pub fn to_wav(
     let name = output.name().to_owned();
     let announced = length.filter(|_| !output.is_seekable());
     let mut writer = WavWriter::new(output.stream(), &name, format, dither, announced)?;
-    let rendered = job.render(|left, right| {
+    let rendered = job.render_labelled(labels, |left, right| {
         let (left, right) = mix.apply(left, right);
         meter.add(left, right)?;
         writer.write(left, right)?;

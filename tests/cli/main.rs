@@ -1,6 +1,7 @@
 //! The command `sprung` as a program: its files, messages and exit codes.
 
 mod bad_input;
+mod batches;
 #[cfg(unix)]
 mod completion;
 mod fits;

@@ -7,19 +7,19 @@ mod select;
 use crate::cli::completion;
 use crate::cli::figure;
 use crate::cli::recording::FigureArgs;
-use crate::cli::terminal::{complain, print};
+use crate::cli::terminal::{self, complain, print};
 use clap::Subcommand;
 use clap_complete::ArgValueCompleter;
 use sprung::analysis::figure::sound::modes_of;
 use sprung::io::{Inputs, Song};
 use sprung::params::Param;
-use sprung::preset::{Playable, Replaced, is_file_name};
+use sprung::preset::{Playable, Replaced};
 use sprung::render::{Job, Options, Tail};
 use sprung::text::printable;
 use sprung::units::frequency_from_key;
 use sprung::{Error, Result};
 use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 pub(in crate::cli) const EXAMPLES: &str = "\
 Examples:
@@ -76,10 +76,9 @@ pub(in crate::cli) fn run(args: &Args) -> Result<()> {
     }
 }
 
-/// Loads the preset or kit that the user names: a file if it looks like a file name, else a factory preset.
-pub(in crate::cli) fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
-    let path = Path::new(name);
-    if is_file_name(path) { read(path, inputs) } else { Playable::find(&name.to_string_lossy()) }
+/// Loads the preset or kit that the user names.
+fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
+    sprung::request::playable(name, inputs, &mut terminal::warn)
 }
 
 /// Key and velocity of the note that a preset is drawn with, and how many seconds it is held.
@@ -102,10 +101,6 @@ fn drawn(playable: &Playable, format: &str) -> Result<Vec<u8>> {
     let a4_hz = f64::from(preset.patch.get(Param::Tuning));
     let modes = modes_of(&preset.patch, frequency_from_key(DRAWN_KEY, a4_hz));
     figure::drawn(&Job::new(&song, &kit, options), &format!("{}: C4", preset.name), &modes, format)
-}
-
-fn read(path: &Path, inputs: &mut Inputs) -> Result<Playable> {
-    Playable::read(path, &mut |path| inputs.open(path), &mut warn)
 }
 
 fn warn(origin: &str, replaced: Replaced) {

@@ -5,15 +5,13 @@ mod report;
 
 use super::progress::Bar;
 use super::song::SongArgs;
-use super::sound::{SoundArgs, Sounds};
-use super::terminal::complain;
+use super::sound::SoundArgs;
+use super::terminal::warn;
 use super::{completion, interrupt, quantity, recording};
 use clap::ArgGroup;
-use sprung::io::{Inputs, Output, SampleFormat, Song, Target};
-use sprung::params::Param;
-use sprung::render::{BLOCKS, Delivery, Job, Level, Options, THREADS, Tail, on_threads, to_wav};
-use sprung::sound::Kit;
-use sprung::units::parse_key;
+use sprung::io::{Inputs, Output, SampleFormat, Target};
+use sprung::render::{BLOCKS, Level, THREADS, Tail, on_threads, to_wav};
+use sprung::request::Request;
 use sprung::{Error, Result};
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -98,46 +96,40 @@ pub(super) struct Args {
     output: PathBuf,
 }
 
-pub(super) fn run(args: &Args) -> Result<()> {
-    if args.dither && args.bits == SampleFormat::Float32 {
-        return Err(Error::value("--dither", "floats are not rounded and need none: expected --bits 16 or 24"));
+impl Args {
+    fn request(&self) -> Request {
+        Request {
+            song: self.song.clone(),
+            note: self.note.clone(),
+            input: self.input.clone(),
+            velocity: self.velocity,
+            length: self.length,
+            reading: self.reading.request(),
+            sound: self.sound.request(),
+            seed: self.sound.seed,
+            rate: self.rate,
+            bits: self.bits,
+            dither: self.dither,
+            mono: self.mono,
+            tail: self.tail,
+            normalize: self.normalize,
+            gain_db: self.gain_db,
+            block: self.block as usize,
+        }
     }
+}
+
+pub(super) fn run(args: &Args) -> Result<()> {
+    let request = args.request();
+    request.check()?;
     let target = Target::new(&args.output);
     if target == Target::Stdout && std::io::stdout().is_terminal() {
         return Err(Error::value("--output", "stdout is a terminal: expected a file, or stdout sent to one"));
     }
     target.check_wav()?;
     let mut inputs = Inputs::default();
-    let mut song = args.song.as_ref().map(|path| args.reading.read(path, &mut inputs)).transpose()?;
-    let sounds = args.sound.load(song.as_mut(), false, &mut inputs)?;
-    let song = match song {
-        Some(song) => song,
-        None => chord(args, &sounds.kit)?,
-    };
-    args.sound.warn(&song, &sounds);
-
-    let input = match &args.input {
-        Some(path) => {
-            let (recording, name) = recording::read(path, &mut inputs)?;
-            if !sounds.take_input() {
-                let message =
-                    "--input: no sound has an input_level, so it drives nothing: --set input_level=0 sets one";
-                complain("warning", message);
-            }
-            recording.mono_at(args.rate, &name)?
-        }
-        None => vec![],
-    };
-    let options =
-        Options { sample_rate: args.rate, seed: args.sound.seed, block: args.block as usize, tail: args.tail };
-    let Sounds { kit, channels, programs, mix, tuning, .. } = &sounds;
-    let job = Job { song: &song, kit, channels, programs, mix: mix.as_ref(), tuning, input: &input, options };
-    let delivery = Delivery {
-        samples: args.bits,
-        dither: args.dither,
-        mono: args.mono,
-        level: args.normalize.unwrap_or(Level::Gain(args.gain_db)),
-    };
+    let prepared = request.prepare(&mut inputs, &mut warn)?;
+    let job = prepared.job();
     if args.json {
         inputs.check_stdout()?;
     }
@@ -149,7 +141,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         bar.show(progress);
         interrupt::check()
     };
-    let report = on_threads(args.threads, || to_wav(&job, &delivery, &mut output, progress))??;
+    let report = on_threads(args.threads, || to_wav(&job, &prepared.delivery, &mut output, progress))??;
     drop(bar);
     if let Some(figure) = figure {
         let title = target.name();
@@ -157,13 +149,4 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     output.commit()?;
     report::tell(&report, &target, args.json)
-}
-
-fn chord(args: &Args, kit: &Kit) -> Result<Song> {
-    args.sound.tuning.check_notes(&args.note)?;
-    // Frequencies are converted with the sound's own A4, so that 440 Hz is 440 Hz with every sound.
-    let a4_hz = f64::from(kit.values().get(Param::Tuning));
-    let keys: std::result::Result<Vec<f64>, String> = args.note.iter().map(|note| parse_key(note, a4_hz)).collect();
-    let keys = keys.map_err(|message| Error::value("--note", message))?;
-    Ok(Song::chord(&keys, f32::from(args.velocity) / 127.0, args.length))
 }

@@ -12,7 +12,7 @@ use super::note::nearest_channel;
 use super::space::needs_bodies;
 use super::synth::allowed;
 use super::zones::Owners;
-use super::{Snapshot, Synth};
+use super::{Snapshot, Struck, Synth};
 use crate::dsp::limiter::Work;
 use crate::patch::Patch;
 use crate::sound::{Kit, Mix, Tuning};
@@ -150,6 +150,19 @@ impl Ensemble {
         let mut snapshot = Snapshot::default();
         self.parts.iter().for_each(|part| part.synth.show(&mut snapshot));
         snapshot
+    }
+
+    /// Calls `visit` with each voice that sounds now, and the number of the part that plays it. The order is always the
+    /// same. Real-time safe if `visit` is.
+    pub fn each_struck(&mut self, visit: &mut dyn FnMut(usize, Struck<'_>)) {
+        for (part, Part { synth, .. }) in self.parts.iter_mut().enumerate() {
+            synth.each_struck(&mut |struck| visit(part, struck));
+        }
+    }
+
+    /// Amplitude ratio at which the channels are mixed, before the limiter.
+    pub fn gain(&self) -> f32 {
+        self.gain
     }
 
     /// How much the limiter has reduced the level so far. Real-time safe.

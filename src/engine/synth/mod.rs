@@ -6,12 +6,12 @@ mod events;
 mod instruments;
 mod process;
 
-use super::Snapshot;
 use super::controls::Smoother;
 use super::note::{Note, nearest_channel, nearest_key};
 use super::space::{Space, needs_bodies};
 use super::voice::SynthVoice;
 use super::voice_manager::{Footprint, PlayMode, Priority, VoiceManager, VoicePool};
+use super::{Snapshot, Struck};
 use crate::dsp::limiter::Work;
 use crate::dsp::{Cell, Limiter};
 use crate::params::{Choice, Param, Values};
@@ -198,6 +198,11 @@ impl Synth {
     /// Adds the voices that sound now to a snapshot. Real-time safe.
     pub fn show(&self, snapshot: &mut Snapshot) {
         self.manager.sounding_voices().for_each(|voice| snapshot.add(voice));
+    }
+
+    /// Calls `visit` with each voice that sounds now, in an order that is always the same. Real-time safe if `visit` is.
+    pub fn each_struck(&mut self, visit: &mut dyn FnMut(Struck<'_>)) {
+        self.manager.active().for_each(|(note, voice)| visit(Struck::new(note, voice)));
     }
 
     /// The largest number of notes that have sounded at once.

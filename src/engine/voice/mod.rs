@@ -11,6 +11,7 @@ mod line;
 mod notes;
 mod pitch;
 mod strike;
+pub(super) mod struck;
 mod tension;
 mod values;
 mod variation;

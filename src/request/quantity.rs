@@ -1,14 +1,16 @@
-//! Parses option values: ranges, units and pairs, with errors that say what would be right.
+//! Parses option values: ranges, units and pairs.
+//!
+//! Every error is a message that says what would be right.
 
-use sprung::io::SampleFormat;
-use sprung::params::retired::Retired;
-use sprung::params::{PARAMS, Param};
-use sprung::render::{Level, SAMPLE_RATES, Tail};
-use sprung::units::{split_quantity, with_decimal_point};
+use crate::io::SampleFormat;
+use crate::params::retired::Retired;
+use crate::params::{PARAMS, Param};
+use crate::render::{Level, SAMPLE_RATES, Tail};
+use crate::units::{split_quantity, with_decimal_point};
 use std::ops::RangeInclusive;
 
 /// Maximum length of notes and tails, in seconds.
-const LONGEST: f64 = 86_400.0;
+pub const LONGEST: f64 = 86_400.0;
 
 fn in_range(value: f64, range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     if range.contains(&value) {
@@ -39,12 +41,15 @@ fn number(text: &str, units: &[(&str, f64)], range: RangeInclusive<f64>, unit: &
 const HERTZ: [(&str, f64); 4] = [("", 1.0), ("Hz", 1.0), ("k", 1e3), ("kHz", 1e3)];
 
 /// Parses a frequency or rate in Hz, of any size: `440`, `44.1k`, `48 kHz`.
-pub(super) fn hertz(text: &str) -> Result<f64, String> {
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn hertz(text: &str) -> Result<f64, String> {
     quantity(text, &HERTZ, "Hz, as in 440 or 44.1k")
 }
 
 /// Returns a parser of whole numbers in a range.
-pub(super) fn whole<T: TryFrom<u64>>(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<T, String> + Clone {
+pub fn whole<T: TryFrom<u64>>(range: RangeInclusive<u64>) -> impl Fn(&str) -> Result<T, String> + Clone {
     move |text| {
         let expected = format!("expected {} to {}", range.start(), range.end());
         let value = text.trim().parse::<i128>().map_err(|_| format!("‘{text}’ is not a whole number: {expected}"))?;
@@ -54,7 +59,10 @@ pub(super) fn whole<T: TryFrom<u64>>(range: RangeInclusive<u64>) -> impl Fn(&str
 }
 
 /// Parses a sample rate in Hz: `48000`, `44100Hz`, `44.1k`, `48 kHz`.
-pub(super) fn rate(text: &str) -> Result<u32, String> {
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn rate(text: &str) -> Result<u32, String> {
     let (low, high) = SAMPLE_RATES.into_inner();
     let rate = number(text, &HERTZ, f64::from(low)..=f64::from(high), " Hz")?;
     let whole = rate.round();
@@ -66,11 +74,19 @@ pub(super) fn rate(text: &str) -> Result<u32, String> {
     }
 }
 
-pub(super) fn seconds(text: &str) -> Result<f64, String> {
+/// Parses a time in seconds, 0 to 86,400: `2`, `250 ms`.
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn seconds(text: &str) -> Result<f64, String> {
     number(text, &[("", 1.0), ("s", 1.0), ("ms", 1e-3)], 0.0..=LONGEST, " s")
 }
 
-pub(super) fn tail(text: &str) -> Result<Tail, String> {
+/// Parses a tail: `auto`, `none` or seconds.
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn tail(text: &str) -> Result<Tail, String> {
     match text {
         "auto" => Ok(Tail::Auto),
         "none" => Ok(Tail::None),
@@ -79,16 +95,27 @@ pub(super) fn tail(text: &str) -> Result<Tail, String> {
     }
 }
 
-pub(super) fn gain_db(text: &str) -> Result<f64, String> {
+/// Parses a gain in dB, −120 to 120: `-3`, `-3 dB`.
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn gain_db(text: &str) -> Result<f64, String> {
     number(text, &[("", 1.0), ("dB", 1.0)], -120.0..=120.0, " dB")
 }
 
 /// A level of error in dBFS.
-pub(super) fn tolerance_db(text: &str) -> Result<f64, String> {
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn tolerance_db(text: &str) -> Result<f64, String> {
     number(text, &[("", 1.0), ("dB", 1.0), ("dBFS", 1.0)], -300.0..=0.0, " dBFS")
 }
 
-pub(super) fn level(text: &str) -> Result<Level, String> {
+/// Parses a level to normalise to: `peak=DBFS` or `lufs=LUFS`.
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn level(text: &str) -> Result<Level, String> {
     match text.split_once('=') {
         Some(("peak", value)) => {
             number(value, &[("", 1.0), ("dB", 1.0), ("dBFS", 1.0)], -120.0..=0.0, " dBFS").map(Level::Peak)
@@ -105,7 +132,11 @@ pub(super) fn level(text: &str) -> Result<Level, String> {
     }
 }
 
-pub(super) fn bits(text: &str) -> Result<SampleFormat, String> {
+/// Parses a sample format: `16`, `24` or `32f`.
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn bits(text: &str) -> Result<SampleFormat, String> {
     match text {
         "16" => Ok(SampleFormat::Int16),
         "24" => Ok(SampleFormat::Int24),
@@ -116,12 +147,18 @@ pub(super) fn bits(text: &str) -> Result<SampleFormat, String> {
 
 /// Checks the form of a note for `--note`. Which key a frequency is depends on the patch, so the note stays a text
 /// here.
-pub(super) fn note(text: &str) -> Result<String, String> {
-    sprung::units::parse_key(text, f64::from(Param::Tuning.info().default)).map(|_| text.to_owned())
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn note(text: &str) -> Result<String, String> {
+    crate::units::parse_key(text, f64::from(Param::Tuning.info().default)).map(|_| text.to_owned())
 }
 
 /// Parses `channel=name`: a channel from 1 to 16, returned from 0, and the name of a preset or kit.
-pub(super) fn channel(text: &str) -> Result<(u8, String), String> {
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn channel(text: &str) -> Result<(u8, String), String> {
     let expected = "expected CHANNEL=NAME, as in 10=drums.toml";
     let (channel, name) = text.split_once('=').filter(|(_, name)| !name.trim().is_empty()).ok_or(expected)?;
     let number: u8 = whole(1..=16)(channel).map_err(|message| format!("channel {message}"))?;
@@ -129,7 +166,10 @@ pub(super) fn channel(text: &str) -> Result<(u8, String), String> {
 }
 
 /// Parses `id=value`, with the value in the form that the parameter table defines.
-pub(super) fn setting(text: &str) -> Result<(Param, f32), String> {
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn setting(text: &str) -> Result<(Param, f32), String> {
     let (id, value) = text.split_once('=').ok_or("expected ID=VALUE, as in decay=0.5")?;
     let id = id.trim();
     let retired = || Retired::from_id(id).map(Retired::message);
@@ -146,7 +186,7 @@ pub(super) fn setting(text: &str) -> Result<(Param, f32), String> {
 fn no_parameter(id: &str) -> String {
     // The user may have typed the name that windows show.
     let named = PARAMS.iter().find(|info| info.name.eq_ignore_ascii_case(id)).map(|info| format!("‘{}’", info.id));
-    match named.or_else(|| sprung::error::nearest(id, PARAMS.iter().map(|info| info.id))) {
+    match named.or_else(|| crate::error::nearest(id, PARAMS.iter().map(|info| info.id))) {
         Some(near) => format!("there is no parameter ‘{id}’; the nearest is {near}"),
         None => format!("there is no parameter ‘{id}’; ‘sprung params’ shows them all"),
     }

@@ -1,15 +1,15 @@
-//! What the program changes of MIDI select, and warnings where that is not what the user asked for.
+//! What the program changes of MIDI select, and warnings where that is not what was asked for.
 
-use super::presets;
-use super::terminal::{complain, counted};
-use sprung::engine::EventKind;
-use sprung::engine::banks::MELODIC;
-use sprung::io::{Inputs, Song};
-use sprung::preset::{Playable, Programs, is_file_name};
-use sprung::sound::Kit;
-use sprung::{Error, Result};
+use super::playable::playable;
+use crate::engine::EventKind;
+use crate::engine::banks::MELODIC;
+use crate::error::{Error, Result};
+use crate::io::{Inputs, Song};
+use crate::preset::{Playable, Programs, is_file_name};
+use crate::sound::Kit;
+use crate::text::counted;
 use std::collections::BTreeSet;
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsStr;
 use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
@@ -17,39 +17,24 @@ use std::sync::Arc;
 /// Largest list of programs that is read, in bytes.
 const MAX_FILE_SIZE: u64 = 1 << 20;
 
-/// What program changes select.
-#[derive(Clone, clap::Args)]
-pub(super) struct ProgramArgs {
-    /// What program changes select: gm is the factory's sounds for General MIDI, with drums on channel 10; none leaves
-    /// program changes out; or a list of one's own
-    #[arg(long, default_value = "gm", value_name = "gm|none|FILE.toml",
-        add = super::completion::among(&["gm", "none"]))]
-    programs: OsString,
-}
-
-impl ProgramArgs {
-    /// The list; none if program changes select nothing.
-    pub(super) fn read(&self, inputs: &mut Inputs) -> Result<Option<Programs>> {
-        let path = Path::new(&self.programs);
-        match self.programs.to_str() {
-            Some("gm") => Ok(Some(Programs::general_midi().clone())),
-            Some("none") => Ok(None),
-            _ if is_file_name(path) => {
-                let (origin, mut text) = (path.display().to_string(), String::new());
-                let read = inputs.open(path)?.take(MAX_FILE_SIZE + 1).read_to_string(&mut text);
-                read.map_err(|source| Error::io(&origin, source))?;
-                if text.len() as u64 > MAX_FILE_SIZE {
-                    return Err(Error::format(
-                        origin,
-                        "too large for a list of programs: expected at most 1 MiB of TOML",
-                    ));
-                }
-                Programs::parse(&text, &origin).map(Some)
+/// The list of programs with a name: `gm`, `none` or a file. None if program changes select nothing.
+pub(super) fn list(name: &OsStr, inputs: &mut Inputs) -> Result<Option<Programs>> {
+    let path = Path::new(name);
+    match name.to_str() {
+        Some("gm") => Ok(Some(Programs::general_midi().clone())),
+        Some("none") => Ok(None),
+        _ if is_file_name(path) => {
+            let (origin, mut text) = (path.display().to_string(), String::new());
+            let read = inputs.open(path)?.take(MAX_FILE_SIZE + 1).read_to_string(&mut text);
+            read.map_err(|source| Error::io(&origin, source))?;
+            if text.len() as u64 > MAX_FILE_SIZE {
+                return Err(Error::format(origin, "too large for a list of programs: expected at most 1 MiB of TOML"));
             }
-            _ => {
-                let message = format!("expected gm, none or a file ending in .toml, found ‘{}’", path.display());
-                Err(Error::value("--programs", message))
-            }
+            Programs::parse(&text, &origin).map(Some)
+        }
+        _ => {
+            let message = format!("expected gm, none or a file ending in .toml, found ‘{}’", path.display());
+            Err(Error::value("--programs", message))
         }
     }
 }
@@ -69,9 +54,10 @@ pub(super) fn kits(
     wanted: impl Fn(u8) -> bool,
     kit: impl Fn(Playable) -> Arc<Kit>,
     inputs: &mut Inputs,
+    warn: &mut dyn FnMut(&str),
 ) -> Result<Vec<Option<Arc<Kit>>>> {
     let load = |name: &str| {
-        let loaded = presets::load(OsStr::new(name), inputs);
+        let loaded = playable(OsStr::new(name), inputs, warn);
         loaded.map(&kit).map_err(|error| Error::value(&programs.name, error.to_string()))
     };
     programs.kits(wanted, load)
@@ -86,31 +72,30 @@ fn program(number: u8) -> String {
 }
 
 /// Warns of program changes of a song for which a list has no sound.
-pub(super) fn warn_of_missing(song: &Song, programs: &Programs, instead: &str) {
+pub(super) fn warn_of_missing(song: &Song, programs: &Programs, instead: &str, warn: &mut dyn FnMut(&str)) {
     for number in used(song).into_iter().filter(|number| programs.name_of(*number).is_none()) {
         let list = &programs.name;
-        complain(
-            "warning",
-            format_args!("program {}: ‘{list}’ has no sound for it; it plays {instead}", program(number)),
-        );
+        warn(&format!("program {}: ‘{list}’ has no sound for it; it plays {instead}", program(number)));
     }
 }
 
 /// Warns of notes that do not play with the kit that the user `asked` for, because of program changes.
-pub(super) fn warn_of_changes(song: &Song, asked: [Option<&Arc<Kit>>; 16], programs: &[Arc<Kit>]) {
+pub(super) fn warn_of_changes(
+    song: &Song,
+    asked: [Option<&Arc<Kit>>; 16],
+    programs: &[Arc<Kit>],
+    warn: &mut dyn FnMut(&str),
+) {
     let Elsewhere { channels, notes, all } = Elsewhere::count(song, asked, programs);
     if notes > 0 {
         let (all, them) = (counted(all, "note"), counted(channels.len(), "channel"));
         let verb = if notes == 1 { "does" } else { "do" };
         let all_alike = asked.iter().all(|kit| *kit == asked[0]);
         let given = if all_alike { "--preset" } else { "--preset or --channel" };
-        complain(
-            "warning",
-            format_args!(
-                "{notes} of {all}, on {them}, {verb} not play on {given} because of program changes; \
-                 --programs none plays them on it"
-            ),
-        );
+        warn(&format!(
+            "{notes} of {all}, on {them}, {verb} not play on {given} because of program changes; \
+             --programs none plays them on it"
+        ));
     }
 }
 
@@ -152,9 +137,9 @@ impl Elsewhere {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sprung::io::SongEvent;
-    use sprung::params::Param;
-    use sprung::patch::Patch;
+    use crate::io::SongEvent;
+    use crate::params::Param;
+    use crate::patch::Patch;
 
     #[test]
     fn notes_are_counted_from_the_program_change_on_that_leaves_the_preset() {

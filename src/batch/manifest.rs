@@ -1,0 +1,169 @@
+//! The manifest of a batch: a line of JSON for each finished job, in the order of their numbers.
+
+use crate::error::{Error, Result};
+use serde_json::{Map, Value};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// How the names of manifests start and end.
+const STEM: &str = "manifest";
+const ENDING: &str = ".jsonl";
+
+/// The name of the manifest of a shard, counted from 0: one of so many.
+pub(super) fn name([index, count]: [u64; 2]) -> String {
+    if count == 1 { format!("{STEM}{ENDING}") } else { format!("{STEM}-{}-of-{count}{ENDING}", index + 1) }
+}
+
+/// A line of a manifest, as far as it is needed to go on with a batch.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Entry {
+    pub(super) number: u64,
+    /// The file, relative to the folder.
+    pub(super) file: String,
+    pub(super) sha256: String,
+    /// The job as drawn, and the seed that it was rendered with.
+    pub(super) job: Map<String, Value>,
+    pub(super) seed: u64,
+    /// The whole line, without its end.
+    pub(super) line: String,
+}
+
+impl Entry {
+    fn parse(line: &str) -> Option<Self> {
+        let value: Value = serde_json::from_str(line).ok()?;
+        let text = |key: &str| value[key].as_str().map(str::to_owned);
+        Some(Self {
+            number: value["number"].as_u64()?,
+            file: text("file")?,
+            sha256: text("sha256")?,
+            job: value["job"].as_object()?.clone(),
+            seed: value["seed"].as_u64()?,
+            line: line.to_owned(),
+        })
+    }
+}
+
+/// The finished lines of one manifest, read one after the other.
+struct Finished {
+    path: PathBuf,
+    reader: BufReader<File>,
+    next: Option<Entry>,
+}
+
+impl Finished {
+    fn open(path: PathBuf) -> Result<Self> {
+        let file = File::open(&path).map_err(|source| Error::io(path.display().to_string(), source))?;
+        let mut finished = Self { path, reader: BufReader::new(file), next: None };
+        finished.advance()?;
+        Ok(finished)
+    }
+
+    /// Reads the next line. A line without an end was cut off when its writer was killed, and does not count.
+    fn advance(&mut self) -> Result<()> {
+        let mut line = String::new();
+        let read = self.reader.read_line(&mut line);
+        read.map_err(|source| Error::io(self.path.display().to_string(), source))?;
+        self.next = match line.strip_suffix('\n') {
+            None => None,
+            Some(line) => Some(Entry::parse(line).ok_or_else(|| {
+                Error::format(
+                    self.path.display().to_string(),
+                    "not a manifest: expected lines as this command writes them",
+                )
+            })?),
+        };
+        Ok(())
+    }
+}
+
+/// What the manifests in a folder say is finished. Manifests are in the order of numbers, so all are read side by side, and
+/// memory use does not grow with them.
+pub(super) struct Known(Vec<Finished>);
+
+impl Known {
+    /// Nothing.
+    pub(super) const NONE: Self = Self(Vec::new());
+
+    /// The manifests in a folder, of all shards.
+    pub(super) fn open(folder: &Path) -> Result<Self> {
+        let failed = |source| Error::io(folder.display().to_string(), source);
+        let mut paths = Vec::new();
+        for entry in fs::read_dir(folder).map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+            if name.starts_with(STEM) && name.ends_with(ENDING) {
+                paths.push(path);
+            }
+        }
+        paths.sort();
+        paths.into_iter().map(Finished::open).collect::<Result<_>>().map(Self)
+    }
+
+    /// The line of a job, if any manifest has it. Numbers must rise from call to call.
+    pub(super) fn find(&mut self, number: u64) -> Result<Option<Entry>> {
+        let mut found = None;
+        for manifest in &mut self.0 {
+            while manifest.next.as_ref().is_some_and(|entry| entry.number < number) {
+                manifest.advance()?;
+            }
+            if manifest.next.as_ref().is_some_and(|entry| entry.number == number) {
+                found = found.or(manifest.next.clone());
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// The manifest that is being written. While it is open, no other process can write it.
+pub(super) struct Manifest {
+    name: String,
+    file: File,
+    /// Lines that are there already.
+    pub(super) lines: u64,
+}
+
+impl Manifest {
+    /// Opens or creates a manifest. One that is there is gone on with if `resume`; what follows its last whole line is cut
+    /// off.
+    pub(super) fn open(path: &Path, resume: bool) -> Result<Self> {
+        let name = path.display().to_string();
+        let failed = |source| Error::io(&name, source);
+        let mut options = OpenOptions::new();
+        options.read(true).write(true);
+        let opened = if resume { options.create(true).truncate(false) } else { options.create_new(true) }.open(path);
+        let mut file = opened.map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => {
+                Error::value(&name, "a batch is there already: add --resume to go on with it, or choose another folder")
+            }
+            _ => failed(error),
+        })?;
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => return Err(Error::value(&name, "another process is writing it")),
+            // Some file systems have no locks.
+            Ok(()) | Err(TryLockError::Error(_)) => {}
+        }
+        let (mut lines, mut whole, mut block) = (0, 0, vec![0; 1 << 16]);
+        let mut at = 0;
+        loop {
+            let read = file.read(&mut block).map_err(failed)?;
+            if read == 0 {
+                break;
+            }
+            for (index, _) in block[..read].iter().enumerate().filter(|(_, byte)| **byte == b'\n') {
+                (lines, whole) = (lines + 1, at + index as u64 + 1);
+            }
+            at += read as u64;
+        }
+        file.set_len(whole).map_err(failed)?;
+        file.seek(SeekFrom::Start(whole)).map_err(failed)?;
+        Ok(Self { name, file, lines })
+    }
+
+    /// Appends a line.
+    pub(super) fn write(&mut self, line: &str) -> Result<()> {
+        // In one piece, so that a process that is killed leaves a whole line or a part of one.
+        let written = self.file.write_all(format!("{line}\n").as_bytes());
+        written.map_err(|source| Error::io(&self.name, source))
+    }
+}

@@ -1,0 +1,206 @@
+//! Makes the jobs of a batch on all cores, and writes their lines in order.
+
+use super::jobs::{Jobs, Task};
+use super::make::{file_of, has_sha256, make};
+use super::manifest::{self, Entry, Known, Manifest};
+use super::{Batch, Done};
+use crate::error::{Error, Result};
+use crate::render::on_threads;
+use std::collections::BTreeMap;
+use std::fs;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+/// How many jobs may be finished while an earlier one is not: their lines wait in memory.
+const WINDOW: u64 = 1024;
+
+impl Batch {
+    /// Makes all jobs of the part. Every line of the file of jobs is checked before the first is made. `progress` is called
+    /// after each job and within long ones, by several threads, and can end the work by returning an error.
+    ///
+    /// Memory use does not grow with the number of jobs.
+    ///
+    /// # Errors
+    /// [`Error::Format`] with file, line and key for a job that is wrong; [`Error::Value`] if there is a batch already and it
+    /// is not to be gone on with, or if it is of other jobs; [`Error::Io`]; and the errors of `progress`. What is finished
+    /// stays, and can be gone on with.
+    pub fn run(&self, progress: &(dyn Fn(Done) -> Result<()> + Sync)) -> Result<Done> {
+        let jobs = || Jobs::open(&self.jobs, self.seed, self.shard.of());
+        let of = jobs()?.count()?;
+        fs::create_dir_all(&self.folder).map_err(|source| Error::io(self.folder.display().to_string(), source))?;
+        let name = manifest::name(self.shard.of());
+        let manifest = Manifest::open(&self.folder.join(&name), self.resume)?;
+        let known = if self.resume { Known::open(&self.folder)? } else { Known::NONE };
+        if manifest.lines > of {
+            let message = format!("{} jobs are finished there, of {of}: expected the same jobs", manifest.lines);
+            return Err(Error::value(name, message));
+        }
+        let (written, next) = (manifest.lines, 0);
+        let desk = Desk {
+            batch: self,
+            state: Mutex::new(State { jobs: jobs()?, known, taken: 0, failed: None }),
+            rack: Mutex::new(Rack { manifest, written, next, waiting: BTreeMap::new(), found: 0 }),
+            moved: Condvar::new(),
+            of,
+            progress,
+        };
+        on_threads(self.at_once, || rayon::broadcast(|_| desk.work()))?;
+        let state = desk.state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let rack = desk.rack.into_inner().unwrap_or_else(PoisonError::into_inner);
+        match state.failed {
+            Some(error) => Err(error),
+            None => Ok(Done { jobs: rack.next, found: rack.found, of }),
+        }
+    }
+}
+
+/// What is still to do.
+struct State {
+    jobs: Jobs,
+    known: Known,
+    /// Jobs that have been taken.
+    taken: u64,
+    /// The first error, in order of time. Nothing is taken after it.
+    failed: Option<Error>,
+}
+
+/// What is finished.
+struct Rack {
+    manifest: Manifest,
+    /// Lines that the manifest had at the start.
+    written: u64,
+    /// The place of the next line, among the jobs of the part.
+    next: u64,
+    /// Finished lines that wait for earlier ones, by their places.
+    waiting: BTreeMap<u64, String>,
+    /// Jobs that were found finished.
+    found: u64,
+}
+
+/// Where threads take jobs and put finished lines.
+struct Desk<'a> {
+    batch: &'a Batch,
+    state: Mutex<State>,
+    rack: Mutex<Rack>,
+    /// The rack has moved on, or something has failed.
+    moved: Condvar,
+    of: u64,
+    progress: &'a (dyn Fn(Done) -> Result<()> + Sync),
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Desk<'_> {
+    /// Makes one job after the other until there are none, or one has failed.
+    fn work(&self) {
+        while let Some((place, task, known)) = self.take() {
+            if let Err(error) = self.make(place, &task, known) {
+                lock(&self.state).failed.get_or_insert(error);
+                // Whoever has just seen that nothing has failed still holds the rack, and is woken up once it waits.
+                drop(lock(&self.rack));
+                self.moved.notify_all();
+                return;
+            }
+        }
+    }
+
+    /// The next job, its place among those of the part, and its line if it was found finished.
+    fn take(&self) -> Option<(u64, Task, Option<Entry>)> {
+        let mut state = lock(&self.state);
+        if state.failed.is_some() {
+            return None;
+        }
+        let taken = state.jobs.next().and_then(|task| {
+            let Some(task) = task else { return Ok(None) };
+            let known = state.known.find(task.number)?;
+            Ok(Some((task, known)))
+        });
+        match taken {
+            Ok(Some((task, known))) => {
+                let place = state.taken;
+                state.taken += 1;
+                Some((place, task, known))
+            }
+            Ok(None) => None,
+            Err(error) => {
+                state.failed = Some(error);
+                None
+            }
+        }
+    }
+
+    fn make(&self, place: u64, task: &Task, known: Option<Entry>) -> Result<()> {
+        self.wait_for_room(place);
+        let check = || (self.progress)(self.done());
+        check()?;
+        let (line, was_found) = match known {
+            Some(entry) => {
+                self.check_same(task, &entry)?;
+                let is_whole = has_sha256(&self.batch.folder.join(&entry.file), &entry.sha256);
+                let line = if is_whole { entry.line.clone() } else { make(task, self.batch, &check)? };
+                if line != entry.line {
+                    let message = format!(
+                        "job {} gives another sound or other labels than its line says: they are of another version, or an input has changed; \
+                         choose another folder",
+                        task.number
+                    );
+                    return Err(Error::value(self.batch.folder.display().to_string(), message));
+                }
+                (line, is_whole)
+            }
+            None if place < lock(&self.rack).written => {
+                let message = format!("its manifest leaves out job {}: expected another folder", task.number);
+                return Err(Error::value(self.batch.folder.display().to_string(), message));
+            }
+            None => (make(task, self.batch, &check)?, false),
+        };
+        self.put(place, line, was_found)?;
+        (self.progress)(self.done())
+    }
+
+    /// Waits while too many lines wait for an earlier job.
+    fn wait_for_room(&self, place: u64) {
+        let mut rack = lock(&self.rack);
+        while place >= rack.next + WINDOW && lock(&self.state).failed.is_none() {
+            rack = self.moved.wait(rack).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Returns an error if a finished line is of another job.
+    fn check_same(&self, task: &Task, entry: &Entry) -> Result<()> {
+        let file = file_of(task.number, self.batch.format);
+        let is_same = entry.job == task.drawn.line && entry.seed == task.drawn.request.seed && entry.file == file;
+        if is_same {
+            return Ok(());
+        }
+        let message = format!(
+            "job {} is another there than in {}: expected the same jobs, --seed and --format, or another folder",
+            task.number, task.origin
+        );
+        Err(Error::value(self.batch.folder.display().to_string(), message))
+    }
+
+    /// Puts a finished line in its place, and writes all lines that wait for no other.
+    fn put(&self, place: u64, line: String, was_found: bool) -> Result<()> {
+        let mut rack = lock(&self.rack);
+        rack.found += u64::from(was_found);
+        rack.waiting.insert(place, line);
+        loop {
+            let next = rack.next;
+            let Some(line) = rack.waiting.remove(&next) else { break };
+            // The first lines may be there already, from before.
+            if next >= rack.written {
+                rack.manifest.write(&line)?;
+            }
+            rack.next += 1;
+        }
+        self.moved.notify_all();
+        Ok(())
+    }
+
+    fn done(&self) -> Done {
+        let rack = lock(&self.rack);
+        Done { jobs: rack.next + rack.waiting.len() as u64, found: rack.found, of: self.of }
+    }
+}

@@ -1,0 +1,188 @@
+//! A line of a file of jobs: the options of a request, some of them to be drawn.
+
+use super::draw::{Chance, Draw};
+use super::scalar::{Scale, text_of};
+use crate::params::{PARAMS, Param};
+use crate::request::Request;
+use serde_json::{Map, Value};
+
+/// How many jobs a line makes.
+const REPEAT: &str = "repeat";
+
+/// The options that hold others.
+const SET: &str = "set";
+const CHANNEL: &str = "channel";
+
+/// What is wrong with a line: a key, and a message.
+pub(super) type Fault = (String, String);
+
+/// A value of a line.
+#[derive(Clone, Debug)]
+enum Part {
+    Fixed(Value),
+    Drawn(Draw),
+}
+
+/// One of the options of a line.
+#[derive(Clone, Debug)]
+struct Entry {
+    /// Its keys in the line: an option, or an option and what it sets.
+    path: Vec<String>,
+    part: Part,
+}
+
+/// A line.
+#[derive(Clone, Debug)]
+pub(super) struct Template {
+    entries: Vec<Entry>,
+    /// How many jobs it makes.
+    pub(super) repeat: u64,
+}
+
+/// A job as drawn.
+#[derive(Clone, Debug)]
+pub(super) struct Drawn {
+    pub(super) request: Request,
+    /// The line with what was drawn in its place.
+    pub(super) line: Map<String, Value>,
+}
+
+impl Template {
+    /// Reads a line, and checks every value that it can have.
+    pub(super) fn parse(line: &str) -> Result<Self, Fault> {
+        let whole = |message: String| ("line".to_owned(), message);
+        let value: Value = serde_json::from_str(line).map_err(|error| whole(format!("no JSON: {error}")))?;
+        let Value::Object(object) = value else {
+            return Err(whole("expected an object, as in {\"preset\": \"Kick\", \"note\": \"C2\"}".to_owned()));
+        };
+        let (mut entries, mut repeat) = (Vec::new(), 1);
+        for (key, value) in object {
+            match (key.as_str(), value) {
+                (REPEAT, value) => {
+                    let count = value.as_u64().filter(|count| *count > 0);
+                    repeat = count.ok_or_else(|| (key, "expected a whole number from 1".to_owned()))?;
+                }
+                (SET | CHANNEL, Value::Object(inner)) => {
+                    for (name, value) in inner {
+                        entries.push(Entry::new(vec![key.clone(), name], value)?);
+                    }
+                }
+                (_, value) => entries.push(Entry::new(vec![key], value)?),
+            }
+        }
+        // In the order of names, whatever the order in the file: then the same job is written in the same way.
+        entries.sort_by(|a, b| a.path.cmp(&b.path));
+        let template = Self { entries, repeat };
+        template.check()?;
+        Ok(template)
+    }
+
+    /// Checks every end of what is drawn, every choice, and what the options say together.
+    fn check(&self) -> Result<(), Fault> {
+        let mut request = Request::default();
+        for entry in &self.entries {
+            let candidates = match &entry.part {
+                Part::Fixed(value) => vec![value.clone()],
+                Part::Drawn(Draw::Choice(values)) => values.clone(),
+                Part::Drawn(Draw::Uniform(low, high) | Draw::LogUniform(low, high) | Draw::Integer(low, high)) => {
+                    vec![(*low).into(), (*high).into()]
+                }
+                Part::Drawn(Draw::Normal(mean, ..)) => vec![(*mean).into()],
+            };
+            for candidate in candidates {
+                let mut one = Request::default();
+                entry.set(&mut one, &candidate)?;
+                entry.set(&mut request, &candidate)?;
+            }
+        }
+        request.check().map_err(|error| match error {
+            crate::Error::Value { name, message } => (key_of(&name), message),
+            error => ("line".to_owned(), error.to_string()),
+        })
+    }
+
+    /// Draws a job.
+    pub(super) fn draw(&self, chance: Chance) -> Result<Drawn, Fault> {
+        let mut request = Request { seed: chance.seed(), ..Request::default() };
+        let mut line = Map::new();
+        for entry in &self.entries {
+            let value = match &entry.part {
+                Part::Fixed(value) => value.clone(),
+                Part::Drawn(draw) => draw.draw(entry.name(), chance),
+            };
+            entry.set(&mut request, &value)?;
+            match &entry.path[..] {
+                [key, name] => {
+                    let inner = line.entry(key.clone()).or_insert_with(|| Value::Object(Map::new()));
+                    if let Value::Object(inner) = inner {
+                        inner.insert(name.clone(), value);
+                    }
+                }
+                path => drop(line.insert(path.join("."), value)),
+            }
+        }
+        Ok(Drawn { request, line })
+    }
+}
+
+impl Entry {
+    fn new(path: Vec<String>, value: Value) -> Result<Self, Fault> {
+        let key = path.join(".");
+        let fault = |message: String| (key.clone(), message);
+        if let [option] = &path[..]
+            && [SET, CHANNEL].contains(&option.as_str())
+        {
+            let expected = if option == SET { "{\"decay\": \"2 s\"}" } else { "{\"10\": \"drums.toml\"}" };
+            return Err(fault(format!("expected an object, as in {expected}")));
+        }
+        if let ["song" | "input"] = path.iter().map(String::as_str).collect::<Vec<_>>()[..]
+            && value.as_str() == Some("-")
+        {
+            return Err(fault("expected a file: many jobs cannot read standard input".to_owned()));
+        }
+        let part = match value {
+            Value::Object(object) => Part::Drawn(Scale::of(&path).read(object).map_err(fault)?),
+            value => Part::Fixed(value),
+        };
+        Ok(Self { path, part })
+    }
+
+    /// What is drawn: the parameter, or the option.
+    fn name(&self) -> &str {
+        self.path.last().map_or("", String::as_str)
+    }
+
+    /// Sets the option of a request to a value.
+    fn set(&self, request: &mut Request, value: &Value) -> Result<(), Fault> {
+        let fault = |message: String| (self.path.join("."), message);
+        let text = text_of(value).map_err(fault)?;
+        let set = match &self.path[..] {
+            [option, name] => request.set(option, &format!("{name}={text}")),
+            [name] if is_parameter(name) => request.set(SET, &format!("{name}={text}")),
+            [name] if !is_option(name) => Err(unknown(name)),
+            path => request.set(&path.join("."), &text),
+        };
+        // The message of a parameter begins with its name, which the key says already.
+        set.map_err(|message| fault(message.trim_start_matches(&format!("{}: ", self.name())).to_owned()))
+    }
+}
+
+fn is_option(name: &str) -> bool {
+    Request::NAMES.iter().any(|option| option.name == name)
+}
+
+/// Whether a key is a parameter, which may stand beside the options.
+fn is_parameter(name: &str) -> bool {
+    Param::from_id(name).is_some() && !is_option(name)
+}
+
+fn unknown(name: &str) -> String {
+    let known = Request::NAMES.iter().map(|option| option.name).chain(PARAMS.iter().map(|info| info.id));
+    let near = crate::error::nearest(name, known).map_or(String::new(), |near| format!("; the nearest is {near}"));
+    format!("there is no option or parameter ‘{name}’{near}")
+}
+
+/// The key of an option as the command calls it.
+pub(super) fn key_of(option: &str) -> String {
+    option.trim_start_matches("--").replace('-', "_")
+}

@@ -1,0 +1,37 @@
+//! A voice that sounds, and its modes as they are: what exact labels are made of.
+
+use super::note::Note;
+use super::voice::SynthVoice;
+pub use super::voice::struck::StruckMode;
+
+/// A voice that sounds, to be looked at between two blocks. A display needs a [`Snapshot`](super::Snapshot).
+pub struct Struck<'a> {
+    note: &'a Note,
+    voice: &'a SynthVoice,
+}
+
+impl<'a> Struck<'a> {
+    pub(super) fn new(note: &'a Note, voice: &'a SynthVoice) -> Self {
+        Self { note, voice }
+    }
+
+    /// Its note. Notes of one part are told apart by their serial numbers. Real-time safe.
+    pub fn note(&self) -> &Note {
+        self.note
+    }
+
+    /// Which of the note's unison voices it is, from 0. Real-time safe.
+    pub fn unison(&self) -> usize {
+        self.voice.unison_index()
+    }
+
+    /// Whether mallet, pluck or noise still act. Real-time safe.
+    pub fn is_being_struck(&self) -> bool {
+        self.voice.is_being_struck()
+    }
+
+    /// Its modes, in the order of the sound's table. Real-time safe.
+    pub fn modes(&self) -> impl Iterator<Item = StruckMode> {
+        self.voice.struck_modes()
+    }
+}

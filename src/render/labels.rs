@@ -1,0 +1,203 @@
+//! Exact labels of a rendering: each note's onset, and the frequency, T60 and level of each of its modes.
+
+use super::job::Job;
+use crate::dsp::CONTROL_FRAMES;
+use crate::engine::{Ensemble, Struck, StruckMode};
+use crate::units::db_from_gain;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A mode of a note.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModeLabel {
+    /// Hz, at rest: without what bends it for a while, as sweep, glide, vibrato, wheels and tension do.
+    pub frequency: f64,
+    /// T60 in seconds after the strike, before a release damps it.
+    pub t60: f64,
+    /// Amplitude in dB of full scale at [`NoteLabel::free`], with the gains of sound, note, channel and mix; before the pan
+    /// of single modes, the effects and the limiter. −∞ for a mode at rest.
+    pub level_db: f64,
+}
+
+/// A note, or one of its unison voices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoteLabel {
+    /// MIDI channel, 0–15.
+    pub channel: u8,
+    /// MIDI key, 0–127.
+    pub key: u8,
+    /// Offset from the key's pitch in semitones.
+    pub detune: f32,
+    /// 0–1.
+    pub velocity: f32,
+    /// Which of the note's unison voices it is, from 0.
+    pub unison: usize,
+    /// The frame at which it is struck.
+    pub onset: u64,
+    /// The frame at which levels are taken: mallet, pluck and noise have let go, and the modes ring freely unless a bow or
+    /// input drives them.
+    pub free: u64,
+    /// Its modes, in the order of the sound's table.
+    pub modes: Vec<ModeLabel>,
+}
+
+/// Reads labels from the engine while it plays a job, so they are as exact as its state.
+pub(super) struct Labels {
+    /// The frames of the song's events that are still to come, the next one last.
+    events: Vec<u64>,
+    frame: u64,
+    /// By the number of the part, of the note and of the unison voice.
+    all: BTreeMap<(usize, u64, usize), NoteLabel>,
+    /// Of these, the ones whose strike is under way.
+    open: BTreeSet<(usize, u64, usize)>,
+}
+
+impl Labels {
+    /// Of a job that has not begun.
+    pub(super) fn new(job: &Job) -> Self {
+        let sample_rate = f64::from(job.options.sample_rate);
+        let events = job.song.events.iter().rev().map(|event| event.frame(sample_rate)).collect();
+        Self { events, frame: 0, all: BTreeMap::new(), open: BTreeSet::new() }
+    }
+
+    /// The next piece to play, at most so many frames. It begins with an event or ends before the next, and is short if it
+    /// may begin with a strike, so that a label is read before anything changes the note.
+    pub(super) fn piece(&mut self, most: usize) -> usize {
+        let mut piece = most;
+        if self.pass_events() || !self.open.is_empty() {
+            piece = piece.min(CONTROL_FRAMES);
+        }
+        match self.events.last() {
+            Some(next) => piece.min(usize::try_from(next - self.frame).unwrap_or(piece)),
+            None => piece,
+        }
+    }
+
+    /// Looks at the voices after the frames of a piece.
+    pub(super) fn read(&mut self, ensemble: &mut Ensemble, frames: usize) {
+        let piece = [self.frame, self.frame + frames as u64];
+        self.frame = piece[1];
+        let gain = ensemble.gain();
+        ensemble.each_struck(&mut |part, struck| self.look(part, &struck, gain, piece));
+    }
+
+    /// Passes the events of the present frame. Returns whether there are any.
+    fn pass_events(&mut self) -> bool {
+        let before = self.events.len();
+        while self.events.pop_if(|event| *event <= self.frame).is_some() {}
+        self.events.len() < before
+    }
+
+    /// Looks at a voice of a part after the frames of a piece. `gain` is that of the mix.
+    fn look(&mut self, part: usize, struck: &Struck, gain: f32, piece: [u64; 2]) {
+        let note = struck.note();
+        let id = (part, note.serial, struck.unison());
+        if self.all.contains_key(&id) && !self.open.contains(&id) {
+            return;
+        }
+        let level = |amplitude: f64| db_from_gain(amplitude * f64::from(gain));
+        let label = self.all.entry(id).or_insert_with(|| {
+            let mode = |mode: StruckMode| ModeLabel { frequency: mode.frequency, t60: mode.t60, level_db: 0.0 };
+            NoteLabel {
+                channel: note.channel,
+                key: note.key,
+                detune: note.detune,
+                velocity: note.velocity,
+                unison: id.2,
+                onset: piece[0],
+                free: piece[1],
+                modes: struck.modes().map(mode).collect(),
+            }
+        });
+        label.free = piece[1];
+        let levels = label.modes.iter_mut().zip(struck.modes());
+        levels.for_each(|(label, mode)| label.level_db = level(mode.amplitude));
+        if struck.is_being_struck() {
+            self.open.insert(id);
+        } else {
+            self.open.remove(&id);
+        }
+    }
+
+    /// All labels, in order of their onsets. Voices that were silenced during their strike have the levels that they had
+    /// last.
+    pub(super) fn finish(self) -> Vec<NoteLabel> {
+        let mut labels: Vec<NoteLabel> = self.all.into_values().collect();
+        labels.sort_by_key(|label| (label.onset, label.channel));
+        labels
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::Song;
+    use crate::params::Param;
+    use crate::patch::{Mode, ModeTable, Patch};
+    use crate::render::{Options, Tail};
+    use crate::sound::Kit;
+
+    const OPTIONS: Options = Options { sample_rate: 48_000, seed: 0, block: 256, tail: Tail::None };
+
+    /// The labels of a song. Reading them changes no sample.
+    fn of(song: &Song, patch: &Patch) -> Vec<NoteLabel> {
+        let kit = Kit::of_patch(patch);
+        let job = Job::new(song, &kit, OPTIONS);
+        let render = |labels: Option<&mut Labels>| {
+            let mut samples = Vec::new();
+            let sink = |left: &[f32], right: &[f32]| {
+                samples.extend(left.iter().chain(right).map(|sample| sample.to_bits()));
+                Ok(())
+            };
+            job.render_labelled(labels, sink).unwrap();
+            samples
+        };
+        let mut labels = Labels::new(&job);
+        assert!(render(Some(&mut labels)) == render(None));
+        labels.finish()
+    }
+
+    fn labels(patch: &Patch, keys: &[f64]) -> Vec<NoteLabel> {
+        let song = Song::chord(keys, 1.0, 1.0);
+        of(&song, patch)
+    }
+
+    #[test]
+    fn an_impulse_has_the_levels_of_the_table() {
+        let high = Mode { ratio: 2.5, level: 0.5, decay: 0.5, ..Mode::UNIT };
+        let mut patch = Patch::default().with(Param::Decay, 2.0).with(Param::Gain, -6.0);
+        patch.modes = ModeTable::new(&[Mode::UNIT, high]);
+        let labels = labels(&patch, &[69.0, 81.0]);
+        assert_eq!(labels.iter().map(|label| label.key).collect::<Vec<_>>(), [69, 81]);
+        for (label, pitch) in labels.iter().zip([440.0, 880.0]) {
+            assert_eq!((label.onset, label.channel, label.unison), (0, 0, 0));
+            let passed = label.free as f64 / 48_000.0;
+            for (mode, (ratio, level_db, decay)) in label.modes.iter().zip([(1.0, -6.0, 2.0), (2.5, -12.0206, 1.0)]) {
+                assert!((mode.frequency / (pitch * ratio) - 1.0).abs() < 1e-12, "{mode:?}");
+                assert_eq!(mode.t60, decay);
+                assert!((mode.level_db - (level_db - 60.0 * passed / decay)).abs() < 0.01, "{mode:?} {passed}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_strike_is_waited_for_and_a_release_is_not() {
+        let noisy = Patch::default().with(Param::NoiseLevel, 0.0).with(Param::NoiseTime, 0.1);
+        let [long] = labels(&noisy, &[60.0]).try_into().unwrap();
+        assert!((4800..4900).contains(&long.free), "{}", long.free);
+        let song = Song::chord(&[60.0], 1.0, 0.0005);
+        let patch = Patch::default().with(Param::Decay, 3.0).with(Param::Release, 0.05);
+        let labels = of(&song, &patch);
+        assert_eq!(labels[0].modes[0].t60, 3.0);
+    }
+
+    #[test]
+    fn late_notes_are_labelled_at_their_frames() {
+        let mut song = Song::chord(&[60.0], 1.0, 0.1);
+        let again =
+            song.events.clone().into_iter().map(|event| crate::io::SongEvent { seconds: event.seconds + 0.5, ..event });
+        song.events.extend(again.collect::<Vec<_>>());
+        song.seconds = 1.0;
+        let labels = of(&song, &Patch::default());
+        assert_eq!(labels.iter().map(|label| label.onset).collect::<Vec<_>>(), [0, 24_000]);
+    }
+}

@@ -1,0 +1,70 @@
+//! The tuning of a request: Scala's files.
+
+use crate::engine::EventKind;
+use crate::error::{Error, Result};
+use crate::io::{Inputs, Song};
+use crate::sound::Tuning;
+use crate::sound::tuning::{Keymap, Scale};
+use crate::text::counted;
+use crate::units::key_from_note_name;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+/// How the keys are tuned: by the files of Scala, or in twelve equal steps without a scale.
+#[derive(Clone, Debug, Default)]
+pub struct TuningRequest {
+    /// Scale (.scl).
+    pub scale: Option<PathBuf>,
+    /// Keyboard mapping (.kbm), which needs a scale.
+    pub keymap: Option<PathBuf>,
+}
+
+impl TuningRequest {
+    /// Reads the files.
+    pub(super) fn read(&self, inputs: &mut Inputs) -> Result<Tuning> {
+        let Some(path) = &self.scale else {
+            return match self.keymap {
+                Some(_) => Err(Error::value("--keymap", "expected --scale beside it")),
+                None => Ok(Tuning::EQUAL),
+            };
+        };
+        let scale = Scale::read(inputs.open(path)?, &path.display().to_string())?;
+        let keymap = match &self.keymap {
+            Some(path) => Keymap::read(inputs.open(path)?, &path.display().to_string())?,
+            None => Keymap::LINEAR,
+        };
+        Ok(Tuning::new(&scale, &keymap))
+    }
+
+    /// Returns an error for notes that a scale cannot tune: those between two keys. A key that is given twice is an
+    /// error too, since the second note would sound on the key beside it.
+    pub(super) fn check_notes(&self, notes: &[String]) -> Result<()> {
+        let mut keys = BTreeSet::new();
+        for note in notes.iter().filter(|_| self.scale.is_some()) {
+            let key = key_from_note_name(note).or(note.trim().parse().ok());
+            let wrong = match key {
+                None => "is no key, and --scale tunes keys",
+                Some(key) if !keys.insert(key) => "is there twice",
+                Some(_) => continue,
+            };
+            let expected = "expected keys (C#4, 60), each once";
+            return Err(Error::value("--note", format!("‘{note}’ {wrong}: {expected}")));
+        }
+        Ok(())
+    }
+}
+
+/// Warns of notes whose keys the tuning leaves silent.
+pub(super) fn warn_of_unmapped(song: &Song, tuning: &Tuning, warn: &mut dyn FnMut(&str)) {
+    let keys = || {
+        song.events.iter().filter_map(|event| match event.kind {
+            EventKind::NoteOn { key, .. } => Some(key),
+            _ => None,
+        })
+    };
+    let (all, silent) = (keys().count(), keys().filter(|key| tuning.pitch(*key).is_none()).count());
+    if silent > 0 {
+        let (all, are) = (counted(all, "note"), if all == 1 { "is" } else { "are" });
+        warn(&format!("{silent} of {all} {are} silent: the keymap leaves their keys out"));
+    }
+}

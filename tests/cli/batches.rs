@@ -1,0 +1,221 @@
+//! `sprung batch`: files, manifest, going on after a kill, shards, and what is wrong with jobs.
+
+use crate::{Sandbox, Wav};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+/// Short sounds, since debug builds render them.
+const JOBS: &str = r#"{"preset": "Kick", "note": "C2", "length": 0.1, "tail": "none", "repeat": 20, "decay": {"log_uniform": ["50 ms", 2]}, "velocity": {"uniform": [40, 127]}}
+
+{"note": {"choice": [["C4", "E4"], "A4"]}, "length": "50 ms", "tail": 0.05, "rate": 8000, "bits": 16, "set": {"tune": {"normal": [0, 2]}}, "seed": 5}
+{"preset": "Marimba", "note": {"integer": [48, 72]}, "length": 0.1, "tail": "none", "mono": true, "repeat": 4}
+"#;
+const COUNT: usize = 25;
+
+/// Every file below a folder, with its contents.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(next) = open.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                all.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    all
+}
+
+fn lines(sandbox: &Sandbox, manifest: &str) -> Vec<Value> {
+    let text = String::from_utf8(sandbox.read(manifest)).unwrap();
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+fn start(sandbox: &Sandbox, args: &str) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sprung"));
+    command.current_dir(sandbox.path("")).args(args.split_whitespace()).stderr(Stdio::null());
+    command.spawn().unwrap()
+}
+
+#[test]
+fn a_manifest_says_what_every_file_is() {
+    let sandbox = Sandbox::new();
+    sandbox.write("jobs.jsonl", JOBS);
+    sandbox.succeeds("batch jobs.jsonl --out all --seed 3");
+    let lines = lines(&sandbox, "all/manifest.jsonl");
+    assert_eq!(lines.len(), COUNT);
+    assert_eq!(files(&sandbox.path("all")).len(), COUNT + 1, "nothing else is there");
+    for (number, line) in lines.iter().enumerate() {
+        let bytes = sandbox.read(&format!("all/{}", line["file"].as_str().unwrap()));
+        let hash: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!((line["number"].as_u64(), line["sha256"].as_str()), (Some(number as u64), Some(&*hash)));
+        let wav = Wav::read(&bytes);
+        assert_eq!(line["frames"].as_u64(), Some(wav.frames.into()));
+        let peak = 20.0 * wav.peak().log10();
+        assert!((line["peak_dbfs"].as_f64().unwrap() - peak).abs() < 0.01, "{line}");
+        let modes = line["notes"][0]["modes"].as_array().unwrap();
+        assert!(!modes.is_empty() && modes.iter().all(|mode| mode["frequency"].as_f64().unwrap() > 0.0), "{line}");
+    }
+    let decays: Vec<f64> = lines[..20].iter().map(|line| line["job"]["decay"].as_f64().unwrap()).collect();
+    assert!(decays.iter().all(|decay| (0.05..=2.0).contains(decay)), "{decays:?}");
+    assert!(decays.windows(2).any(|pair| pair[0] != pair[1]), "{decays:?}");
+    assert_eq!(lines[20]["seed"], 5);
+    // The patch's decay is the T60 of the mode that sets the pitch.
+    for (line, decay) in lines.iter().zip(decays) {
+        let modes = line["notes"][0]["modes"].as_array().unwrap();
+        let is_decay = |mode: &Value| (mode["t60"].as_f64().unwrap() / decay - 1.0).abs() < 1e-6;
+        assert_eq!(modes.iter().filter(|mode| is_decay(mode)).count(), 1, "{line}");
+    }
+}
+
+#[test]
+fn a_job_is_what_render_makes_of_it() {
+    let sandbox = Sandbox::new();
+    sandbox.write("jobs.jsonl", JOBS);
+    sandbox.succeeds("batch jobs.jsonl --out all");
+    let line = &lines(&sandbox, "all/manifest.jsonl")[7];
+    let [decay, velocity] = ["decay", "velocity"].map(|key| line["job"][key].to_string());
+    let seed = line["seed"].to_string();
+    sandbox.succeeds(&format!(
+        "render --preset Kick --note C2 --length 0.1 --tail none --set decay={decay} --velocity {velocity} --seed {seed} -o one.wav"
+    ));
+    assert!(sandbox.read("one.wav") == sandbox.read("all/0000/0000007.wav"));
+}
+
+#[test]
+fn killed_anywhere_and_gone_on_with_it_is_the_same() {
+    let sandbox = Sandbox::new();
+    sandbox.write("jobs.jsonl", JOBS);
+    sandbox.succeeds("batch jobs.jsonl --out whole");
+    let whole = files(&sandbox.path("whole"));
+    let mut broken_off = 0;
+    for delay in [0, 30, 60, 90, 130, 180, 250, 350] {
+        let mut child = start(&sandbox, "batch jobs.jsonl --out parts --resume");
+        std::thread::sleep(Duration::from_millis(delay));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let lines = fs::read(sandbox.path("parts/manifest.jsonl")).unwrap_or_default();
+        broken_off += usize::from(lines.iter().filter(|byte| **byte == b'\n').count() < COUNT);
+    }
+    assert!(broken_off > 0, "it was never killed in time");
+    // A line that was cut off, a file that is not whole, and one that is gone.
+    sandbox.succeeds("batch jobs.jsonl --out parts --resume");
+    let manifest = sandbox.read("parts/manifest.jsonl");
+    sandbox.write("parts/manifest.jsonl", &manifest[..manifest.len() / 2]);
+    fs::write(sandbox.path("parts/0000/0000001.wav"), "half").unwrap();
+    fs::remove_file(sandbox.path("parts/0000/0000000.wav")).unwrap();
+    sandbox.succeeds("batch jobs.jsonl --out parts --resume");
+    assert!(files(&sandbox.path("parts")) == whole);
+    // With nothing left to do, nothing changes.
+    sandbox.succeeds("batch jobs.jsonl --out parts --resume --jobs 1");
+    assert!(files(&sandbox.path("parts")) == whole);
+}
+
+#[test]
+fn four_shards_are_the_whole() {
+    let sandbox = Sandbox::new();
+    sandbox.write("jobs.jsonl", JOBS);
+    sandbox.succeeds("batch jobs.jsonl --out whole --jobs 3");
+    for shard in [3, 1, 4, 2] {
+        sandbox.succeeds(&format!("batch jobs.jsonl --out parts --shard {shard}/4"));
+    }
+    let kinds = |name: &str| -> Vec<String> {
+        fs::read_dir(sandbox.path(name))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect()
+    };
+    assert!(!kinds("parts").contains(&"manifest.jsonl".to_owned()));
+    // What the shards have made is taken over: nothing is rendered again, since a changed file would be noticed.
+    let output = sandbox.sprung("batch jobs.jsonl --out parts --resume").assert().success().get_output().clone();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("0 sounds") && told.contains("25 found finished"), "{told}");
+    let mut parts = files(&sandbox.path("parts"));
+    parts.retain(|path, _| !path.to_string_lossy().contains("-of-"));
+    assert!(parts == files(&sandbox.path("whole")));
+}
+
+#[test]
+fn a_flac_has_the_samples_of_the_wav() {
+    let sandbox = Sandbox::new();
+    sandbox.write("jobs.jsonl", JOBS);
+    sandbox.succeeds("batch jobs.jsonl --out wav");
+    sandbox.succeeds("batch jobs.jsonl --out flac --format flac");
+    for number in [0, 19, 20, 24] {
+        let path = |format: &str| sandbox.path(&format!("{format}/0000/{number:07}.{format}"));
+        let [wav, flac] = ["wav", "flac"].map(|format| {
+            let file = fs::File::open(path(format)).unwrap();
+            sprung::io::sound_file::read(file, format).unwrap()
+        });
+        assert_eq!(wav.sample_rate, flac.sample_rate);
+        assert!(wav.channels == flac.channels && wav.channels[0].iter().any(|sample| *sample != 0.0), "{number}");
+    }
+    let [wav, flac] = ["wav", "flac"].map(|format| lines(&sandbox, &format!("{format}/manifest.jsonl")));
+    assert!(wav.iter().zip(&flac).all(|(wav, flac)| wav["notes"] == flac["notes"] && wav["job"] == flac["job"]));
+}
+
+#[test]
+fn wrong_jobs_are_named_by_line_and_key() {
+    let sandbox = Sandbox::new();
+    for (line, message) in [
+        ("{", "jobs.jsonl:2: line: no JSON: "),
+        ("[1]", "jobs.jsonl:2: line: expected an object, as in"),
+        (r#"{"preset": "Kick"}"#, "jobs.jsonl:2: note: expected either a song or notes"),
+        (r#"{"note": "H9"}"#, "jobs.jsonl:2: note: "),
+        (
+            r#"{"note": "C2", "velocty": 3}"#,
+            "jobs.jsonl:2: velocty: there is no option or parameter ‘velocty’; the nearest is ‘velocity’",
+        ),
+        (r#"{"note": "C2", "decay": "2 m"}"#, "jobs.jsonl:2: decay: ‘2 m’ is not a number in s"),
+        (
+            r#"{"note": "C2", "set": {"deacy": 1}}"#,
+            "jobs.jsonl:2: set.deacy: there is no parameter ‘deacy’; the nearest is ‘decay’",
+        ),
+        (r#"{"note": "C2", "decay": {"uniform": [0, 2]}}"#, "jobs.jsonl:2: decay: 0 is out of range"),
+        (r#"{"note": "C2", "decay": {"uniform": [2, 1]}}"#, "jobs.jsonl:2: decay: 2 is above 1"),
+        (r#"{"note": "C2", "decay": {"gauss": [2, 1]}}"#, "jobs.jsonl:2: decay: ‘gauss’ is no way to draw"),
+        (r#"{"note": "C2", "gain": {"log_uniform": [-3, 1]}}"#, "jobs.jsonl:2: gain: log_uniform from -3"),
+        (r#"{"note": "C2", "preset": {"uniform": [1, 2]}}"#, "jobs.jsonl:2: preset: it is no number: expected choice"),
+        (
+            r#"{"note": "C2", "velocity": {"uniform": [0, 127]}}"#,
+            "jobs.jsonl:2: velocity: 0 is out of range: expected 1 to 127",
+        ),
+        (r#"{"note": "C2", "repeat": 0}"#, "jobs.jsonl:2: repeat: expected a whole number from 1"),
+        (r#"{"song": "-"}"#, "jobs.jsonl:2: song: expected a file"),
+        (r#"{"note": "C2", "dither": true, "bits": "32f"}"#, "jobs.jsonl:2: dither: floats are not rounded"),
+    ] {
+        sandbox.write("jobs.jsonl", format!("{{\"note\": \"C2\", \"length\": 0.01, \"tail\": \"none\"}}\n{line}\n"));
+        sandbox.fails("batch jobs.jsonl --out sounds", 1, message);
+    }
+    sandbox.fails("batch none.jsonl --out sounds", 1, "none.jsonl: ");
+    sandbox.fails("batch jobs.jsonl --out sounds --shard 5/4", 2, "there is no part 5 of 4: expected 1/4 to 4/4");
+}
+
+#[test]
+fn what_cannot_be_loaded_ends_the_batch_and_leaves_what_is_finished() {
+    let sandbox = Sandbox::new();
+    let first = r#"{"note": "C2", "length": 0.01, "tail": "none"}"#;
+    sandbox.write("jobs.jsonl", format!("{first}\n{{\"note\": \"C2\", \"preset\": \"Kcik\"}}\n"));
+    let output = sandbox.sprung("batch jobs.jsonl --out sounds --jobs 1").assert().code(1).get_output().clone();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("jobs.jsonl:2: ") && told.contains("‘Kick’"), "{told}");
+    assert_eq!(lines(&sandbox, "sounds/manifest.jsonl").len(), 1);
+    let again = "sounds/manifest.jsonl: a batch is there already: add --resume to go on with it";
+    sandbox.fails("batch jobs.jsonl --out sounds", 1, again);
+    sandbox.write("jobs.jsonl", format!("{first}\n{first}\n"));
+    sandbox.succeeds("batch jobs.jsonl --out sounds --resume");
+    assert_eq!(lines(&sandbox, "sounds/manifest.jsonl").len(), 2);
+    // Other jobs are not mixed with these.
+    sandbox.write("jobs.jsonl", first.replace("C2", "C3"));
+    sandbox.fails("batch jobs.jsonl --out sounds --resume", 1, "2 jobs are finished there, of 1");
+    sandbox.write("jobs.jsonl", format!("{0}\n{0}\n", first.replace("C2", "C3")));
+    sandbox.fails("batch jobs.jsonl --out sounds --resume", 1, "job 0 is another there than in jobs.jsonl:1");
+}
