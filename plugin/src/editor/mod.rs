@@ -1,7 +1,31 @@
-//! The plugin's window: parameters by section, a list of factory presets, and preset files.
+//! The plugin's window.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `window` | an open window: what it shows, and what the user asks for |
+//! | `theme`, `layout` | the table of colours and measures; where the parts are |
+//! | `controls`, `gestures`, `history` | what every widget needs; changes that hosts see; undo and redo |
+//! | `header`, `sections`, `status` | the parts of the window |
+//! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets, and what they are painted with |
+//! | `shown` | the sound that is shown |
 
+mod buttons;
+mod choice;
+mod controls;
+mod gestures;
+mod header;
+mod history;
+mod knob;
+mod knob_face;
+mod layout;
 mod presets;
-mod rows;
+mod sections;
+mod shown;
+mod status;
+#[cfg(test)]
+mod tests;
+mod text;
+pub(crate) mod theme;
 mod window;
 
 use crate::params::SprungParams;
@@ -11,7 +35,8 @@ use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint
 use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, RepaintNotifier, create_egui_editor};
 use std::error::Error;
 use std::sync::{Arc, Mutex, PoisonError};
-use window::{LEAST_SIZE, Window};
+use theme::LEAST_SIZE;
+use window::Window;
 
 /// Opens windows. Each opens in the size of the last one.
 pub struct SprungEditor {
@@ -29,8 +54,9 @@ impl SprungEditor {
 
 /// The wrapper's editor state for a new window, in the stored size.
 fn state(params: &SprungParams) -> Arc<EguiEditorState> {
-    let [width, height] = params.window().map(|side| side as f32);
-    EguiEditorState::from_size(LogicalSize { width, height }, 1.0)
+    let view = params.view();
+    let [width, height] = view.size.map(|side| side as f32);
+    EguiEditorState::from_size(LogicalSize { width, height }, view.zoom as f32 / 100.0)
 }
 
 impl Editor for SprungEditor {

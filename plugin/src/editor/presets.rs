@@ -1,6 +1,6 @@
 //! The top of the window: factory presets, preset and kit files, and the last message.
 
-use super::rows::announce;
+use super::gestures::{announce, positions};
 use crate::params::SprungParams;
 use crate::state::State;
 use egui::{ComboBox, TextEdit, Ui};
@@ -89,10 +89,11 @@ fn summary(complaints: &[String]) -> Option<String> {
 }
 
 /// Loads a preset or kit, and tells the host the new knob positions.
-fn load(playable: Playable, params: &SprungParams, host: &GuiContext) {
-    let State { seed, window, .. } = params.state();
-    params.load(State::new(playable, seed, window).into());
-    announce(params, host);
+pub(super) fn load(playable: Playable, params: &SprungParams, host: &GuiContext) {
+    let State { seed, view, .. } = params.state();
+    let before = positions(params);
+    params.load(State::new(playable, seed, view).into());
+    announce(params, host, &before);
 }
 
 /// Reads a preset or kit file. Returns it with a remark about each retired parameter in it.

@@ -1,0 +1,6 @@
+//! The window without a screen: driven by simulated input, compared with pictures.
+
+mod fake_host;
+mod gestures;
+mod pictures;
+mod renderer;
