@@ -2,6 +2,7 @@
 
 #![allow(unsafe_code, reason = "the wrapper takes parameters as pointers and has no safe way to set several at once")]
 
+use crate::link::Link;
 use crate::loaded::{Loaded, Slot};
 use crate::state::{self, Read, State, View};
 use nice_plug::prelude::*;
@@ -111,6 +112,7 @@ struct Kept {
 pub(crate) struct SprungParams {
     knobs: Vec<Knob>,
     slot: Slot,
+    link: Link,
     /// Locked while something is loaded or the whole state is read; never by the audio thread.
     kept: Mutex<Kept>,
 }
@@ -125,7 +127,7 @@ impl Default for SprungParams {
         let may_sound = Shelf::default();
         may_sound.keep(&loaded);
         let kept = Kept { playable, view, complaints: Arc::new([]), loaded: loaded.clone(), may_sound };
-        Self { knobs, slot: Slot::new(loaded), kept: Mutex::new(kept) }
+        Self { knobs, slot: Slot::new(loaded), link: Link::default(), kept: Mutex::new(kept) }
     }
 }
 
@@ -133,6 +135,11 @@ impl SprungParams {
     /// The knobs in the order of the table.
     pub(crate) fn knobs(&self) -> &[Knob] {
         &self.knobs
+    }
+
+    /// What the window and the audio thread tell each other.
+    pub(crate) fn link(&self) -> &Link {
+        &self.link
     }
 
     fn kept(&self) -> MutexGuard<'_, Kept> {

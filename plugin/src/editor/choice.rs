@@ -20,7 +20,8 @@ pub(super) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str
         about.current_text_value = Some(value.clone());
         about
     });
-    Popup::menu(&response).show(|ui| {
+    // The menu of a right click has the usual id.
+    Popup::menu(&response).id(response.id.with("list")).show(|ui| {
         ui.set_min_width(110.0);
         ui.label(info.name);
         let now = controls.value(info) as usize;

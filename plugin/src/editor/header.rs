@@ -2,6 +2,7 @@
 
 use super::buttons::{Look, button};
 use super::controls::{Controls, Hint};
+use super::meter;
 use super::text::line;
 use super::theme::{BRAND, GAP, Palette, RADIUS, SMALL, TEXT, Theme, ZOOMS};
 use crate::state::View;
@@ -33,8 +34,8 @@ pub(super) struct Header<'a> {
     /// Whether the second version is shown.
     pub(super) is_b: bool,
     pub(super) view: View,
-    /// Levels, left and right, from 0 to 1 of the meter's length, and whether they are above full scale.
-    pub(super) levels: [(f32, bool); 2],
+    /// Levels, left and right, as parts of the meter.
+    pub(super) levels: [f32; 2],
 }
 
 pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Controls) -> Option<Wish> {
@@ -102,7 +103,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
     wish = wish.or(view_menu(ui, next(52.0), header.view, palette));
     let meter = Rect::from_min_max(pos2(left + GAP, rect.top()), rect.max);
     if meter.width() >= 40.0 {
-        meters(ui, meter.with_min_x(meter.left().max(meter.right() - 150.0)), header.levels, palette);
+        meter::paint(ui.painter(), meter.with_min_x(meter.left().max(meter.right() - 150.0)), header.levels, palette);
     }
     wish
 }
@@ -158,15 +159,4 @@ fn view_menu(ui: &Ui, rect: Rect, view: View, palette: &Palette) -> Option<Wish>
         }
     });
     wish
-}
-
-fn meters(ui: &Ui, rect: Rect, levels: [(f32, bool); 2], palette: &Palette) {
-    for (place, (level, is_over)) in levels.into_iter().enumerate() {
-        let centre = pos2(rect.center().x, rect.center().y + if place == 0 { -4.5 } else { 4.5 });
-        let bar = Rect::from_center_size(centre, vec2(rect.width(), 6.0));
-        ui.painter().rect_filled(bar, 3.0, palette.raised);
-        let colour = if is_over { palette.warning } else { palette.level };
-        let filled = bar.with_max_x(bar.left() + bar.width() * level.clamp(0.0, 1.0));
-        ui.painter().rect_filled(filled, 3.0, colour);
-    }
 }

@@ -218,7 +218,11 @@ fn typed(ui: &mut Ui, rect: Rect, info: &'static ParamInfo, controls: &mut Contr
     let place = rect.expand2(vec2(6.0, 2.0));
     ui.painter().rect_filled(place, 3.0, controls.palette.raised);
     let response = ui.put(place, edit.frame(egui::Frame::NONE).align(Align2::CENTER_CENTER));
-    response.widget_info(|| WidgetInfo::text_edit(true, "", &typing.text, info.name));
+    response.widget_info(|| {
+        let mut about = WidgetInfo::text_edit(true, "", &typing.text, "");
+        about.label = Some(info.name.to_owned());
+        about
+    });
     if !typing.is_open {
         typing.is_open = true;
         response.request_focus();

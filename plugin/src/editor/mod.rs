@@ -6,6 +6,8 @@
 //! | `theme`, `layout` | the table of colours and measures; where the parts are |
 //! | `controls`, `gestures`, `history` | what every widget needs; changes that hosts see; undo and redo |
 //! | `header`, `sections`, `status` | the parts of the window |
+//! | `modes`, `modes_face`, `mode_axes`, `snap` | the modes: what the user does with them, their picture, its axes, series of ratios |
+//! | `motion`, `piano`, `meter` | phase plane and waveform; the keyboard; levels |
 //! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets, and what they are painted with |
 //! | `shown` | the sound that is shown |
 
@@ -18,9 +20,16 @@ mod history;
 mod knob;
 mod knob_face;
 mod layout;
+mod meter;
+mod mode_axes;
+mod modes;
+mod modes_face;
+mod motion;
+mod piano;
 mod presets;
 mod sections;
 mod shown;
+mod snap;
 mod status;
 #[cfg(test)]
 mod tests;
@@ -32,7 +41,7 @@ use crate::params::SprungParams;
 use nice_plug_core::context::gui::GuiContext;
 use nice_plug_core::editor::dpi::{LogicalSize, NativeSize};
 use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
-use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, RepaintNotifier, create_egui_editor};
+use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, create_egui_editor};
 use std::error::Error;
 use std::sync::{Arc, Mutex, PoisonError};
 use theme::LEAST_SIZE;
@@ -73,7 +82,7 @@ impl Editor for SprungEditor {
         let state = state(&self.params);
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = state.clone();
         let settings = EguiNiceSettings::new().with_tile("Sprung").with_resize_hint(self.resize_hint());
-        create_egui_editor(state, RepaintNotifier::new(), settings, Window::new(self.params.clone()))
+        create_egui_editor(state, self.params.link().repaint.clone(), settings, Window::new(self.params.clone()))
             .ok_or("the window cannot be made")?
             .spawn(parent, wait_for_parent, fallback_scale_factor, gui_context, host)
     }

@@ -50,14 +50,14 @@ fn short_name(info: &ParamInfo, guide: &Guide) -> String {
     }
 }
 
-/// `Wheel → Vibrato`, for the amount of a route; none for other parameters.
+/// `wheel › Vibrato`, for the amount of a route; none for other parameters.
 fn route_name(info: &ParamInfo, routes: &Routes) -> Option<String> {
     let place = sprung::patch::routes::place_of_amount(info.param)?;
     Some(match routes.get(place) {
         None => format!("{}: free", place + 1),
         Some(route) => {
             let scale = route.scale.map_or(String::new(), |scale| format!(" × {}", scale.id().replace('_', " ")));
-            format!("{}{scale} → {}", route.source.id().replace('_', " "), route.destination.info().name)
+            format!("{}{scale} › {}", route.source.id().replace('_', " "), route.destination.info().name)
         }
     })
 }

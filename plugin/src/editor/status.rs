@@ -1,13 +1,12 @@
 //! The lowest line of the window: what is under the pointer, the last message, and what the engine does.
 
-use super::controls::{Controls, Hint};
+use super::controls::Hint;
 use super::text::{line, width};
-use super::theme::SMALL;
+use super::theme::{Palette, SMALL};
 use egui::{Align2, Rect, Ui, pos2};
 
 /// Shows the line. A message stays until the next one; a hint hides it as long as the pointer is there.
-pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, right: &str, controls: &Controls) {
-    let palette = controls.palette;
+pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, right: &str, palette: &Palette) {
     let painter = ui.painter();
     let right_width = width(painter, right, SMALL);
     line(painter, rect, Align2::RIGHT_CENTER, right, SMALL, palette.muted);

@@ -5,6 +5,10 @@ use super::controls::{Controls, Hands};
 use super::header::{self, Header, Wish};
 use super::history::{History, restore};
 use super::layout::Layout;
+use super::meter::Meter;
+use super::modes::ModesView;
+use super::motion::Motion;
+use super::piano::Piano;
 use super::presets::{Presets, load};
 use super::shown::Shown;
 use super::theme::{GAP, LEAST_SIZE, Theme};
@@ -18,6 +22,10 @@ use nice_plug_egui::resizable_window::ResizableWindow;
 use nice_plug_egui::{Frame, KeyCapture, NiceEguiApp};
 use sprung::preset::{Playable, Preset};
 use std::sync::Arc;
+use std::time::Duration;
+
+/// Between two pictures while something moves.
+const FRAME: Duration = Duration::from_millis(16);
 
 /// An open window.
 pub(super) struct Window {
@@ -27,6 +35,10 @@ pub(super) struct Window {
     history: History,
     shown: Shown,
     presets: Presets,
+    modes: ModesView,
+    motion: Motion,
+    piano: Piano,
+    meter: Meter,
     /// The page of sections.
     page: usize,
     is_browsing: bool,
@@ -48,6 +60,10 @@ impl Window {
             history: History::default(),
             shown,
             presets: Presets::default(),
+            modes: ModesView::default(),
+            motion: Motion::default(),
+            piano: Piano::default(),
+            meter: Meter::default(),
             page: 0,
             is_browsing: false,
             other: None,
@@ -70,6 +86,13 @@ impl Window {
         let window = ui.ctx().content_rect();
         ui.painter().rect_filled(window, 0.0, palette.ground);
         let layout = Layout::of(window);
+        let telemetry = &params.link().telemetry;
+        let (snapshot, is_silent) = (telemetry.snapshot(), telemetry.is_silent());
+        let energies: Vec<f32> = snapshot.masses.iter().map(|mass| if is_silent { 0.0 } else { mass.energy }).collect();
+        let levels = self.meter.levels(telemetry.take_peaks(), ui.input(|input| input.stable_dt));
+        if !is_silent || self.meter.is_moving() {
+            ui.ctx().request_repaint_after(FRAME);
+        }
         let mut hint = None;
         let name = params.name();
         let mut controls = Controls {
@@ -87,31 +110,26 @@ impl Window {
             is_browsing: self.is_browsing,
             is_b: self.is_b,
             view,
-            levels: [(0.0, false); 2],
+            levels,
         };
         let wish = header::show(ui, layout.header, &header, &mut controls);
         if self.is_browsing {
             let mut page = ui.new_child(UiBuilder::new().id_salt("browser").max_rect(layout.page()));
             self.presets.show(&mut page, &params, host);
         } else {
+            let (patch, guide) = (self.shown.patch(), self.shown.guide());
+            let is_editable = self.shown.preset().is_some();
+            self.modes.show(ui, layout.modes, patch, &energies, guide.home, is_editable, &mut controls);
+            self.motion.show(ui, layout.motion, &energies, self.modes.selected(), telemetry, &controls);
             show_tabs(ui, layout.tabs, &mut self.page, &controls);
-            sections::show(ui, layout.sections, self.page, self.shown.patch(), self.shown.guide(), &mut controls);
+            sections::show(ui, layout.sections, self.page, patch, guide, &mut controls);
         }
-        status::show(
-            ui,
-            layout.status,
-            hint.as_ref(),
-            &self.message,
-            "",
-            &Controls {
-                params: &params,
-                host,
-                palette,
-                hands: &mut self.hands,
-                history: &mut self.history,
-                hint: &mut None,
-            },
-        );
+        let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));
+        self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);
+        let complaint = controls.hands.typing.as_ref().and_then(|typing| typing.complaint.clone());
+        let message = complaint.as_deref().unwrap_or(&self.message);
+        let engine = engine(if is_silent { 0 } else { snapshot.voices }, params.link().sample_rate());
+        status::show(ui, layout.status, hint.as_ref(), message, &engine, palette);
         if let Some(wish) = wish {
             self.grant(wish, ui, host);
         }
@@ -158,6 +176,15 @@ fn neighbour(name: &str, places: isize) -> Option<&'static Preset> {
     all.get((place as isize + places).rem_euclid(all.len() as isize) as usize)
 }
 
+/// What the engine does.
+fn engine(voices: u32, sample_rate: u32) -> String {
+    let plural = if voices == 1 { "" } else { "s" };
+    match sample_rate {
+        0 => "not playing".to_owned(),
+        rate => format!("{voices} voice{plural}   {} kHz", f64::from(rate) / 1000.0),
+    }
+}
+
 fn show_tabs(ui: &Ui, rect: Rect, page: &mut usize, controls: &Controls) {
     let mut left = rect.left();
     for (place, name) in sections::pages().enumerate() {
@@ -195,6 +222,7 @@ impl NiceEguiApp for Window {
     }
 
     fn editor_closed(&mut self) {
+        self.piano.release(self.params.link());
         self.host = None;
     }
 }

@@ -4,3 +4,4 @@ mod fake_host;
 mod gestures;
 mod pictures;
 mod renderer;
+mod sounding;

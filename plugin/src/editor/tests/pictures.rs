@@ -94,6 +94,6 @@ fn pictures_of_every_theme_and_scale_are_as_accepted() {
 }
 
 /// Fails if pictures were accepted.
-fn finish() {
+pub(super) fn finish() {
     assert!(std::env::var_os("SPRUNG_BLESS_PICTURES").is_none(), "pictures were accepted: run the tests again");
 }
