@@ -1,7 +1,7 @@
 //! State that the audio thread publishes for a display: voices, levels, keys, and the processing load.
 
-use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF};
 use super::atomic::AtomicF32;
+use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF};
 use super::note::{nearest_channel, nearest_key};
 use super::scope::Scope;
 use super::{Event, EventKind, Notes, Snapshot};

@@ -8,12 +8,18 @@
 //! | `header`, `sections`, `status` | the parts of the window |
 //! | `modes`, `modes_face`, `mode_axes`, `snap` | the modes: what the user does with them, their picture, its axes, series of ratios |
 //! | `motion`, `piano`, `meter` | phase plane and waveform; the keyboard; levels |
+//! | `browser`, `details`, `star`, `sounds`, `files` | the page on which sounds are found and saved; the sounds that there are |
 //! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets, and what they are painted with |
+//! | `focus` | who has the keyboard: the host, unless the user types |
 //! | `shown` | the sound that is shown |
 
+mod browser;
 mod buttons;
 mod choice;
 mod controls;
+mod details;
+mod files;
+mod focus;
 mod gestures;
 mod header;
 mod history;
@@ -26,10 +32,11 @@ mod modes;
 mod modes_face;
 mod motion;
 mod piano;
-mod presets;
 mod sections;
 mod shown;
 mod snap;
+mod sounds;
+mod star;
 mod status;
 #[cfg(test)]
 mod tests;
@@ -42,6 +49,7 @@ use nice_plug_core::context::gui::GuiContext;
 use nice_plug_core::editor::dpi::{LogicalSize, NativeSize};
 use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
 use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, create_egui_editor};
+use sprung::preset::library::Library;
 use std::error::Error;
 use std::sync::{Arc, Mutex, PoisonError};
 use theme::LEAST_SIZE;
@@ -82,9 +90,14 @@ impl Editor for SprungEditor {
         let state = state(&self.params);
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = state.clone();
         let settings = EguiNiceSettings::new().with_tile("Sprung").with_resize_hint(self.resize_hint());
-        create_egui_editor(state, self.params.link().repaint.clone(), settings, Window::new(self.params.clone()))
-            .ok_or("the window cannot be made")?
-            .spawn(parent, wait_for_parent, fallback_scale_factor, gui_context, host)
+        create_egui_editor(
+            state,
+            self.params.link().repaint.clone(),
+            settings,
+            Window::new(self.params.clone(), Library::of_user()),
+        )
+        .ok_or("the window cannot be made")?
+        .spawn(parent, wait_for_parent, fallback_scale_factor, gui_context, host)
     }
 
     fn size(&self) -> NativeSize<u32> {

@@ -4,8 +4,8 @@ use egui::{Pos2, Rect, pos2};
 use sprung::patch::Mode;
 use sprung::units::{db_from_gain, gain_from_db, ratio_from_semitones, semitones_from_ratio};
 
-/// The level at the lower end, in decibels. The upper end is 0.
-pub(super) const FLOOR: f64 = -60.0;
+/// How many decibels are on the axis.
+const RANGE: f64 = 60.0;
 
 /// Which ratios and which pixels the picture has.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,20 +14,35 @@ pub(super) struct Axes {
     /// Semitones above ratio 1 at the left and right end.
     lowest: f64,
     highest: f64,
+    /// The level at the upper end, in decibels.
+    ceiling: f64,
 }
 
 impl Axes {
-    /// Axes on which all modes have room, with at least two octaves.
+    /// Axes on which all modes have room, with at least two octaves and some decibels above the loudest mode.
     pub(super) fn around(modes: &[Mode], rect: Rect) -> Self {
         let ratios = || modes.iter().map(|mode| semitones_from_ratio(f64::from(mode.ratio)));
         let lowest = ratios().fold(0.0, f64::min) - 4.0;
         let highest = ratios().fold(20.0, f64::max) + 4.0;
-        Self { rect, lowest, highest }
+        let loudest = modes.iter().fold(1e-3_f32, |loudest, mode| loudest.max(mode.level.abs()));
+        let ceiling = ((db_from_gain(f64::from(loudest)) / 10.0).ceil() * 10.0 + 10.0).min(0.0);
+        Self { rect, lowest, highest, ceiling }
     }
 
     /// The same axes on other pixels.
     pub(super) fn on(self, rect: Rect) -> Self {
         Self { rect, ..self }
+    }
+
+    /// The level at the lower end, in decibels.
+    pub(super) fn floor(&self) -> f64 {
+        self.ceiling - RANGE
+    }
+
+    /// Levels for lines of a grid, in decibels.
+    pub(super) fn decades(&self) -> impl Iterator<Item = f64> + use<> {
+        let ceiling = self.ceiling;
+        (0..=3).map(move |step| ceiling - 20.0 * f64::from(step))
     }
 
     pub(super) fn x(&self, ratio: f32) -> f32 {
@@ -37,8 +52,8 @@ impl Axes {
 
     /// The height of a level in decibels; outside, the nearest end.
     pub(super) fn y_of_db(&self, db: f64) -> f32 {
-        let share = (db.clamp(FLOOR, 0.0) / FLOOR) as f32;
-        self.rect.top() + self.rect.height() * share
+        let share = (self.ceiling - db.clamp(self.floor(), self.ceiling)) / RANGE;
+        self.rect.top() + self.rect.height() * share as f32
     }
 
     /// The height of a level, whatever its sign.
@@ -57,8 +72,8 @@ impl Axes {
 
     /// The level at a height: 0 at the lower end.
     pub(super) fn level(&self, y: f32) -> f32 {
-        let db = f64::from((y - self.rect.top()) / self.rect.height()) * FLOOR;
-        if db <= FLOOR { 0.0 } else { gain_from_db(db.min(0.0)) as f32 }
+        let db = self.ceiling - f64::from((y - self.rect.top()) / self.rect.height()) * RANGE;
+        if db <= self.floor() { 0.0 } else { gain_from_db(db.min(0.0)) as f32 }
     }
 
     /// The powers of two that are on the axis.

@@ -145,7 +145,7 @@ fn scope(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], palette: &
     };
     painter.add(Shape::line(shown.iter().enumerate().map(point).collect(), Stroke::new(1.5, palette.accent)));
     if peak > 1e-6 {
-        let text = format!("±{:.1} dBFS", sprung::units::db_from_gain(f64::from(peak)));
+        let text = format!("peak {:.1} dBFS", sprung::units::db_from_gain(f64::from(peak)));
         line(painter, rect.shrink(4.0), Align2::RIGHT_TOP, &text, SMALL, palette.muted);
     }
 }

@@ -125,7 +125,7 @@ fn paint(painter: &Painter, keys: &Keys, down: u128, guide: &Guide, palette: &Pa
             let fill = match (is_down, is_black) {
                 (true, _) => palette.accent,
                 (_, true) => palette.black_key,
-                (_, false) if !is_meant => palette.white_key.lerp_to_gamma(palette.ground, 0.35),
+                (_, false) if !is_meant => palette.white_key.lerp_to_gamma(palette.ground, 0.22),
                 (_, false) => palette.white_key,
             };
             let shape = if is_black { rect } else { rect.shrink2(vec2(0.5, 0.0)) };

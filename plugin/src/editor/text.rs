@@ -1,11 +1,15 @@
-//! Lines of text that are cut off with an ellipsis where they do not fit.
+//! Lines of text that become a little smaller, and then are cut off, where they do not fit.
 
 use super::theme::font;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, Color32, Painter, Rect};
 
+/// The size of text that would be too wide.
+const SHRINK: f32 = 0.9;
+
 /// Draws a line of text into a rectangle, aligned within it. Returns where it ended up.
 pub(super) fn line(painter: &Painter, rect: Rect, align: Align2, text: &str, size: f32, colour: Color32) -> Rect {
+    let size = if width(painter, text, size) > rect.width() { size * SHRINK } else { size };
     let mut job = LayoutJob::simple_singleline(text.to_owned(), font(size), colour);
     job.wrap = TextWrapping::truncate_at_width(rect.width());
     let galley = painter.layout_job(job);

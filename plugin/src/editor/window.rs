@@ -1,7 +1,10 @@
 //! The contents of the window.
 
+use super::browser::Browser;
 use super::buttons::tab;
 use super::controls::{Controls, Hands};
+use super::files::{load, summary};
+use super::focus::Focus;
 use super::header::{self, Header, Wish};
 use super::history::{History, restore};
 use super::layout::Layout;
@@ -9,17 +12,17 @@ use super::meter::Meter;
 use super::modes::ModesView;
 use super::motion::Motion;
 use super::piano::Piano;
-use super::presets::{Presets, load};
 use super::shown::Shown;
 use super::theme::{GAP, LEAST_SIZE, Theme};
 use super::{sections, status};
 use crate::params::SprungParams;
 use crate::state::{State, View, WINDOW_RANGE};
-use egui::{Rect, Ui, UiBuilder, pos2, vec2};
+use egui::{Key, Rect, Ui, pos2, vec2};
 use nice_plug_core::context::gui::GuiContext;
 use nice_plug_egui::baseview::{HandlerError, WindowSize};
 use nice_plug_egui::resizable_window::ResizableWindow;
 use nice_plug_egui::{Frame, KeyCapture, NiceEguiApp};
+use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
 use std::sync::Arc;
 use std::time::Duration;
@@ -34,11 +37,12 @@ pub(super) struct Window {
     hands: Hands,
     history: History,
     shown: Shown,
-    presets: Presets,
+    browser: Browser,
     modes: ModesView,
     motion: Motion,
     piano: Piano,
     meter: Meter,
+    focus: Focus,
     /// The page of sections.
     page: usize,
     is_browsing: bool,
@@ -51,7 +55,8 @@ pub(super) struct Window {
 }
 
 impl Window {
-    pub(super) fn new(params: Arc<SprungParams>) -> Self {
+    /// A window that keeps the user's sounds in a library; none if the system has no place for one.
+    pub(super) fn new(params: Arc<SprungParams>, library: Option<Library>) -> Self {
         let shown = Shown::new(&params);
         Self {
             params,
@@ -59,11 +64,12 @@ impl Window {
             hands: Hands::default(),
             history: History::default(),
             shown,
-            presets: Presets::default(),
+            browser: Browser::new(library),
             modes: ModesView::default(),
             motion: Motion::default(),
             piano: Piano::default(),
             meter: Meter::default(),
+            focus: Focus::default(),
             page: 0,
             is_browsing: false,
             other: None,
@@ -114,8 +120,12 @@ impl Window {
         };
         let wish = header::show(ui, layout.header, &header, &mut controls);
         if self.is_browsing {
-            let mut page = ui.new_child(UiBuilder::new().id_salt("browser").max_rect(layout.page()));
-            self.presets.show(&mut page, &params, host);
+            if let Some(message) = self.browser.show(ui, layout.page(), &mut controls) {
+                self.message = message;
+            }
+            if ui.input(|input| input.key_pressed(Key::Escape)) {
+                self.is_browsing = false;
+            }
         } else {
             let (patch, guide) = (self.shown.patch(), self.shown.guide());
             let is_editable = self.shown.preset().is_some();
@@ -124,12 +134,15 @@ impl Window {
             show_tabs(ui, layout.tabs, &mut self.page, &controls);
             sections::show(ui, layout.sections, self.page, patch, guide, &mut controls);
         }
+        self.browser.follow_time(ui.input(|input| input.time), &controls);
         let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));
         self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);
         let complaint = controls.hands.typing.as_ref().and_then(|typing| typing.complaint.clone());
-        let message = complaint.as_deref().unwrap_or(&self.message);
+        let complaints = || summary(&params.complaints()).unwrap_or_default();
+        let message = if self.message.is_empty() { complaints() } else { self.message.clone() };
+        let message = complaint.unwrap_or(message);
         let engine = engine(if is_silent { 0 } else { snapshot.voices }, params.link().sample_rate());
-        status::show(ui, layout.status, hint.as_ref(), message, &engine, palette);
+        status::show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
         if let Some(wish) = wish {
             self.grant(wish, ui, host);
         }
@@ -145,7 +158,11 @@ impl Window {
 
     fn grant(&mut self, wish: Wish, ui: &Ui, host: &GuiContext) {
         match wish {
-            Wish::Browse => self.is_browsing = !self.is_browsing,
+            Wish::Browse | Wish::Save => {
+                self.is_browsing = !self.is_browsing || wish == Wish::Save;
+                self.message.clear();
+                self.browser.open(&self.params.name());
+            }
             Wish::Undo => drop(self.history.undo(&self.params, host)),
             Wish::Redo => drop(self.history.redo(&self.params, host)),
             Wish::Zoom(zoom) => {
@@ -154,7 +171,6 @@ impl Window {
             }
             Wish::Theme(theme) => self.params.set_view(|view| view.theme = theme),
             Wish::Step(places) => self.step(places, host),
-            Wish::Save => self.is_browsing = true,
             Wish::Swap => {
                 self.history.begin(&self.params);
                 let now = self.params.state();
@@ -207,11 +223,12 @@ impl NiceEguiApp for Window {
 
     fn ui(&mut self, ui: &mut Ui, frame: &mut Frame) {
         let Some(host) = self.host.clone() else { return };
+        let least = LEAST_SIZE.map(|side| side as f32);
+        ResizableWindow::new("sprung").min_size(least.into()).show(ui, |ui| self.contents(ui, &host));
         // Keys go to the host, except while the user is typing.
         let typing = ui.ctx().egui_wants_keyboard_input();
         frame.set_key_capture(if typing { KeyCapture::CaptureAll } else { KeyCapture::IgnoreAll });
-        let least = LEAST_SIZE.map(|side| side as f32);
-        ResizableWindow::new("sprung").min_size(least.into()).show(ui, |ui| self.contents(ui, &host));
+        self.focus.follow(frame, typing);
     }
 
     fn resized(&mut self, size: WindowSize) {

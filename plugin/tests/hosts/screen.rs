@@ -6,8 +6,10 @@ use std::io::BufRead as _;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use x11rb::connection::Connection as _;
+use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{
-    AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, MapState, WindowClass,
+    AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, InputFocus, MapState,
+    WindowClass,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
@@ -112,7 +114,7 @@ impl Onlooker {
     pub(crate) fn make_window(&self) -> u32 {
         let window = self.connection.generate_id().unwrap();
         let visual = self.connection.setup().roots[0].root_visual;
-        let aux = CreateWindowAux::new().background_pixel(0x00FF_00FF);
+        let aux = CreateWindowAux::new().background_pixel(0x00FF_00FF).event_mask(EventMask::KEY_PRESS);
         self.connection
             .create_window(24, window, self.root, 0, 0, 1_200, 760, 0, WindowClass::INPUT_OUTPUT, visual, &aux)
             .unwrap();
@@ -156,6 +158,30 @@ impl Onlooker {
             }
         }
         self.connection.flush().unwrap();
+    }
+
+    /// Gives a window the focus.
+    pub(crate) fn focus(&self, window: u32) {
+        self.connection.set_input_focus(InputFocus::PARENT, window, x11rb::CURRENT_TIME).unwrap().check().unwrap();
+    }
+
+    /// Presses a key and lets it go, by its number on the keyboard.
+    pub(crate) fn press_key(&self, key: u8) {
+        const PRESS: u8 = 2;
+        const RELEASE: u8 = 3;
+        for kind in [PRESS, RELEASE] {
+            self.connection.xtest_fake_input(kind, key, 0, self.root, 0, 0, 0).unwrap();
+        }
+        self.connection.flush().unwrap();
+    }
+
+    /// Whether a window of the host has heard this key since the last call.
+    pub(crate) fn heard_key(&self, key: u8) -> bool {
+        let mut heard = false;
+        while let Some(event) = self.connection.poll_for_event().unwrap() {
+            heard |= matches!(event, Event::KeyPress(press) if press.detail == key);
+        }
+        heard
     }
 
     /// Finds the visible window with this title.

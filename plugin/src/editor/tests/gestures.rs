@@ -47,7 +47,7 @@ impl Stage {
         self.steps(&events);
     }
 
-    fn button(&mut self, name: &str) {
+    pub(super) fn button(&mut self, name: &str) {
         self.harness.get_by_label(name).click();
         self.harness.run_steps(3);
     }

@@ -1,5 +1,6 @@
 //! The window without a screen: driven by simulated input, compared with pictures.
 
+mod browsing;
 mod fake_host;
 mod gestures;
 mod pictures;

@@ -12,6 +12,7 @@ use egui::vec2;
 use egui_kittest::Harness;
 use image::RgbaImage;
 use sprung::preset::Playable;
+use sprung::preset::library::Library;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -23,6 +24,8 @@ pub(super) struct Stage {
     pub(super) params: Arc<SprungParams>,
     pub(super) host: Arc<FakeHost>,
     pub(super) harness: Harness<'static>,
+    /// The user's library.
+    pub(super) folder: tempfile::TempDir,
 }
 
 /// A window with a factory sound.
@@ -31,7 +34,8 @@ pub(super) fn stage(sound: &str, size: [u32; 2], scale: f32, theme: Theme) -> St
     let State { seed, mut view, .. } = State::default();
     view.theme = theme;
     params.load(State::new(Playable::find(sound).unwrap(), seed, view).into());
-    let mut window = Window::new(params.clone());
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = Window::new(params.clone(), Some(Library::at(folder.path())));
     let context = host.context();
     let mut harness = Harness::builder()
         .with_size(vec2(size[0] as f32, size[1] as f32))
@@ -40,7 +44,7 @@ pub(super) fn stage(sound: &str, size: [u32; 2], scale: f32, theme: Theme) -> St
         .renderer(Renderer::default())
         .build_ui(move |ui| window.contents(ui, &context));
     harness.run_steps(3);
-    Stage { params, host, harness }
+    Stage { params, host, harness, folder }
 }
 
 /// Compares a picture with the accepted one, or accepts it.
