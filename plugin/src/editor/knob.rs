@@ -2,6 +2,7 @@
 
 use super::controls::{Controls, Hint, Typing};
 use super::knob_face::{self, Face};
+use super::routes;
 use super::text::line;
 use super::theme::{KNOB, SMALL, font};
 use egui::accesskit::{Action, ActionData};
@@ -30,6 +31,11 @@ impl Parts {
         let centre = pos2(cell.center().x, cell.top() + KNOB / 2.0 + 1.0);
         Self { face: Rect::from_center_size(centre, vec2(KNOB, KNOB)), name: line(KNOB), value: line(KNOB + 13.0) }
     }
+}
+
+/// Where the name is in a cell.
+pub(super) fn name_rect(cell: Rect) -> Rect {
+    Parts::of(cell).name
 }
 
 /// The widget's identity, of which a parameter has one in a window.
@@ -206,6 +212,7 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
         controls.set(info, info.default);
         ui.close();
     }
+    routes::menu(ui, info, controls);
 }
 
 /// Shows the field for a value while one is typed. Enter sets the value, Escape keeps the old one.

@@ -5,7 +5,7 @@
 //! | `window` | an open window: what it shows, and what the user asks for |
 //! | `theme`, `layout` | the table of colours and measures; where the parts are |
 //! | `controls`, `gestures`, `history` | what every widget needs; changes that hosts see; undo and redo |
-//! | `header`, `sections`, `status` | the parts of the window |
+//! | `header`, `sections`, `routes`, `curves`, `status` | the parts of the window; menus of routes; small pictures in sections |
 //! | `modes`, `modes_face`, `mode_axes`, `snap` | the modes: what the user does with them, their picture, its axes, series of ratios |
 //! | `motion`, `piano`, `meter` | phase plane and waveform; the keyboard; levels |
 //! | `browser`, `details`, `star`, `sounds`, `files` | the page on which sounds are found and saved; the sounds that there are |
@@ -17,6 +17,7 @@ mod browser;
 mod buttons;
 mod choice;
 mod controls;
+mod curves;
 mod details;
 mod files;
 mod focus;
@@ -32,6 +33,7 @@ mod modes;
 mod modes_face;
 mod motion;
 mod piano;
+mod routes;
 mod sections;
 mod shown;
 mod snap;

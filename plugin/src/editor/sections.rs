@@ -2,12 +2,12 @@
 
 use super::controls::Controls;
 use super::text::line;
-use super::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
-use super::{choice, knob};
+use super::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
+use super::{choice, curves, knob, routes};
 use egui::{Align2, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use sprung::params::{PARAMS, ParamInfo, Unit};
 use sprung::patch::Patch;
-use sprung::patch::routes::{Routes, amount_param};
+use sprung::patch::routes::place_of_amount;
 use sprung::preset::Guide;
 
 /// Pages with the sections on them, in the order in which sound is made. The last one has all other sections too.
@@ -50,28 +50,14 @@ fn short_name(info: &ParamInfo, guide: &Guide) -> String {
     }
 }
 
-/// `wheel › Vibrato`, for the amount of a route; none for other parameters.
-fn route_name(info: &ParamInfo, routes: &Routes) -> Option<String> {
-    let place = sprung::patch::routes::place_of_amount(info.param)?;
-    Some(match routes.get(place) {
-        None => format!("{}: free", place + 1),
-        Some(route) => {
-            let scale = route.scale.map_or(String::new(), |scale| format!(" × {}", scale.id().replace('_', " ")));
-            format!("{}{scale} › {}", route.source.id().replace('_', " "), route.destination.info().name)
-        }
-    })
-}
-
-/// The parts of a parameter's travel that routes modulate: from its position by each amount.
-fn ranges(info: &ParamInfo, routes: &Routes, controls: &Controls) -> Vec<[f32; 2]> {
-    let position = controls.params.knobs()[info.param as usize].position();
-    let to = |place: usize| position + controls.value(amount_param(place).info()) / 100.0;
-    let these = routes.iter().filter(|(_, route)| route.destination == info.param);
-    these.map(|(place, _)| [position, to(place).clamp(0.0, 1.0)]).filter(|[from, to]| from != to).collect()
-}
-
-/// Shows a page of sections.
-pub(super) fn show(ui: &mut Ui, rect: Rect, page: usize, patch: &Patch, guide: &Guide, controls: &mut Controls) {
+/// Shows a page of sections of a patch. `is_editable` is false for kits, whose sounds have routes of their own.
+pub(super) fn show(
+    ui: &mut Ui,
+    rect: Rect,
+    page: usize,
+    (patch, guide, is_editable): (&Patch, &Guide, bool),
+    controls: &mut Controls,
+) {
     let rows = (((rect.height() - TITLE_HEIGHT - PADDING) / CELL_HEIGHT) as usize).max(1);
     let columns = |section: Section| section.len().div_ceil(rows);
     let count: usize = sections(page).map(columns).sum();
@@ -94,16 +80,32 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, page: usize, patch: &Patch, guide: &
             ui.painter().rect_filled(panel, RADIUS, palette.panel);
             let title = Rect::from_min_size(panel.min + vec2(PADDING, 2.0), vec2(size.x - PADDING, TITLE_HEIGHT - 2.0));
             line(ui.painter(), title, Align2::LEFT_CENTER, &section[0].section.to_uppercase(), SMALL, palette.muted);
+            // A picture where the last row has room for one.
+            let free = (columns(section) - section.len() % columns(section)) % columns(section);
+            if free > 0 {
+                let row = panel.top() + TITLE_HEIGHT + (section.len() / columns(section)) as f32 * CELL_HEIGHT;
+                let left = panel.right() - PADDING - free as f32 * cell_width;
+                let place = Rect::from_min_size(pos2(left, row), vec2(free as f32 * cell_width, KNOB + 14.0));
+                curves::paint(ui.painter(), place.shrink2(vec2(6.0, 2.0)), section, controls);
+            }
             for (place, info) in section.iter().enumerate() {
                 let (column, row) = (place % columns(section), place / columns(section));
                 let offset = vec2(column as f32 * cell_width, row as f32 * CELL_HEIGHT);
                 let corner = panel.min + vec2(PADDING, TITLE_HEIGHT) + offset;
                 let cell = Rect::from_min_size(corner, vec2(cell_width, CELL_HEIGHT - 4.0)).shrink2(vec2(1.0, 0.0));
-                let name = route_name(info, &patch.routes).unwrap_or_else(|| short_name(info, guide));
-                if info.unit == Unit::Choice {
-                    choice::show(ui, cell, info, &name, controls);
-                } else {
-                    knob::show(ui, cell, info, &name, &ranges(info, &patch.routes, controls), controls);
+                let ranges = routes::ranges(info, &patch.routes, controls);
+                match place_of_amount(info.param) {
+                    Some(place) => {
+                        let name = routes::name(place, &patch.routes, guide);
+                        knob::show(ui, cell, info, &name, &ranges, controls);
+                        if is_editable {
+                            routes::show(ui, knob::name_rect(cell), place, &patch.routes, guide, controls);
+                        }
+                    }
+                    None if info.unit == Unit::Choice => {
+                        choice::show(ui, cell, info, &short_name(info, guide), controls);
+                    }
+                    None => knob::show(ui, cell, info, &short_name(info, guide), &ranges, controls),
                 }
             }
         }

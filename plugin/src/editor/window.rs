@@ -132,7 +132,7 @@ impl Window {
             self.modes.show(ui, layout.modes, patch, &energies, guide.home, is_editable, &mut controls);
             self.motion.show(ui, layout.motion, &energies, self.modes.selected(), telemetry, &controls);
             show_tabs(ui, layout.tabs, &mut self.page, &controls);
-            sections::show(ui, layout.sections, self.page, patch, guide, &mut controls);
+            sections::show(ui, layout.sections, self.page, (patch, guide, is_editable), &mut controls);
         }
         self.browser.follow_time(ui.input(|input| input.time), &controls);
         let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));

@@ -6,6 +6,7 @@ use crate::editor::theme::{SIZE, Theme};
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::params::Param;
+use sprung::patch::routes::{Source, amount_param};
 
 impl Stage {
     fn new() -> Self {
@@ -187,4 +188,30 @@ fn two_versions_are_compared() {
     assert_eq!(stage.params.state(), before);
     stage.button("A or B");
     assert_eq!(stage.params.state(), after);
+}
+
+#[test]
+fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
+    let mut stage = Stage::new();
+    let routes = |stage: &Stage| stage.params.loaded().kit.sounds()[0].patch().routes;
+    let before = (stage.params.state(), routes(&stage));
+    stage.harness.get_by_role_and_label(Role::Slider, "Mallet speed").click_secondary();
+    stage.harness.run_steps(3);
+    stage.harness.get_by_label_contains("Modulate by").click();
+    stage.harness.run_steps(3);
+    stage.button("lfo1");
+    let added = routes(&stage);
+    let (place, route) = added.iter().find(|(place, route)| before.1.get(*place) != Some(*route)).unwrap();
+    assert_eq!((route.source, route.destination), (Source::Lfo1, Param::MalletSpeed));
+    assert_eq!(stage.value(amount_param(place)), 25.0);
+    assert!(is_one_gesture(&stage.host.said(), amount_param(place).info().name));
+    stage.harness.get_by_role_and_label(Role::Tab, "Routes").click();
+    stage.harness.run_steps(3);
+    stage.button(&format!("Route {}: lfo1 › Mallet speed", place + 1));
+    stage.button("Remove");
+    assert_eq!(routes(&stage).get(place), None);
+    for _ in 0..2 {
+        stage.button("Undo");
+    }
+    assert_eq!(stage.params.state(), before.0);
 }
