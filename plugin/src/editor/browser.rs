@@ -7,7 +7,7 @@ use super::files::{load, read};
 use super::sounds::{Shelf, Sound, Sounds};
 use super::star;
 use super::text::line;
-use super::theme::{GAP, PADDING, Palette, RADIUS, SMALL, TEXT, font};
+use super::theme::{GAP, PADDING, Palette, SMALL, TEXT, font};
 use crate::link::Touch;
 use egui::{Align2, Id, Key, Rect, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use sprung::preset::library::Library;
@@ -57,7 +57,7 @@ impl Browser {
     pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> Option<String> {
         let palette = controls.palette;
         let mut sounds = self.sounds.take().unwrap_or_else(|| Sounds::read(self.library.clone()));
-        ui.painter().rect_filled(rect, RADIUS, palette.panel);
+        palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
         let details_width = if rect.width() < 900.0 { 190.0 } else { SIDE[1] };
         let shelves = Rect::from_min_max(inner.min, pos2(inner.left() + SIDE[0], inner.bottom()));

@@ -25,7 +25,7 @@ pub(super) fn button(ui: &Ui, rect: Rect, text: &str, name: &str, look: Look, pa
         Look::Plain if response.hovered() => (palette.raised, palette.text),
         Look::Plain => (palette.panel, palette.text),
     };
-    ui.painter().rect_filled(rect, 4.0, fill);
+    ui.painter().rect(rect, 4.0, fill, Stroke::new(1.0, palette.outline), StrokeKind::Inside);
     if response.has_focus() {
         ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.5, palette.accent), StrokeKind::Inside);
     }

@@ -4,7 +4,7 @@ use super::buttons::{Look, button};
 use super::controls::{Controls, Hint};
 use super::meter;
 use super::text::line;
-use super::theme::{BRAND, GAP, Palette, RADIUS, SMALL, TEXT, Theme, ZOOMS};
+use super::theme::{BRAND, GAP, Palette, SMALL, TEXT, Theme, ZOOMS};
 use crate::state::View;
 use egui::{Align2, Id, Popup, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
@@ -111,7 +111,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
 /// The name of the sound between arrows to the previous and the next one.
 fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &mut Controls) -> Option<Wish> {
     let palette = controls.palette;
-    ui.painter().rect_filled(rect, RADIUS, palette.panel);
+    palette.paint_panel(ui.painter(), rect);
     let arrow = vec2(24.0, rect.height());
     let previous = Rect::from_min_size(rect.min, arrow);
     let following = Rect::from_min_size(rect.right_top() - vec2(arrow.x, 0.0), arrow);

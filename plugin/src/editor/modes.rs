@@ -6,7 +6,7 @@ use super::mode_axes::Axes;
 use super::modes_face::{self, Face};
 use super::snap::Snap;
 use super::text::line;
-use super::theme::{PADDING, RADIUS, SMALL, TITLE_HEIGHT};
+use super::theme::{PADDING, SMALL, TITLE_HEIGHT};
 use crate::link::Touch;
 use crate::state::State;
 use egui::{Align2, CursorIcon, Id, Popup, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
@@ -69,7 +69,7 @@ impl ModesView {
         controls: &mut Controls,
     ) {
         let palette = controls.palette;
-        ui.painter().rect_filled(rect, RADIUS, palette.panel);
+        palette.paint_panel(ui.painter(), rect);
         let title =
             Rect::from_min_size(rect.min + vec2(PADDING, 2.0), vec2(rect.width() - 2.0 * PADDING, TITLE_HEIGHT));
         self.title(ui, title, patch, is_editable, controls);

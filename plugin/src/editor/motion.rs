@@ -3,7 +3,7 @@
 use super::buttons::tab;
 use super::controls::Controls;
 use super::text::line;
-use super::theme::{PADDING, Palette, RADIUS, SMALL, TITLE_HEIGHT};
+use super::theme::{PADDING, Palette, SMALL, TITLE_HEIGHT};
 use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, pos2, vec2};
 use sprung::engine::Telemetry;
 use sprung::engine::scope::SCOPE_FRAMES;
@@ -49,7 +49,7 @@ impl Motion {
         controls: &Controls,
     ) {
         let palette = controls.palette;
-        ui.painter().rect_filled(rect, RADIUS, palette.panel);
+        palette.paint_panel(ui.painter(), rect);
         let mut left = rect.left() + PADDING;
         for (picture, name, width) in [(Picture::Phase, "Phase", 48.0), (Picture::Scope, "Scope", 48.0)] {
             let place = Rect::from_min_size(pos2(left, rect.top() + 2.0), vec2(width, TITLE_HEIGHT));

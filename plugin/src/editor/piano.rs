@@ -132,7 +132,7 @@ fn paint(painter: &Painter, keys: &Keys, down: u128, guide: &Guide, palette: &Pa
             painter.rect_filled(shape, egui::CornerRadius { nw: 0, ne: 0, sw: 3, se: 3 }, fill);
             if is_black && !is_down {
                 let top = shape.with_max_y(shape.bottom() - 4.0).shrink2(vec2(2.0, 0.0));
-                painter.rect_filled(top, 1.0, palette.black_key.lerp_to_gamma(palette.raised, 0.7));
+                painter.rect_filled(top, 1.0, palette.black_key.lerp_to_gamma(palette.white_key, 0.1));
             }
             let label = Rect::from_min_max(pos2(rect.left(), rect.bottom() - 15.0), rect.max);
             if key % 12 == 0 && rect.width() >= 16.0 {

@@ -2,7 +2,7 @@
 
 use super::controls::Controls;
 use super::text::line;
-use super::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, RADIUS, SMALL, TITLE_HEIGHT};
+use super::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, SMALL, TITLE_HEIGHT};
 use super::{choice, curves, knob, routes};
 use egui::{Align2, Rect, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use sprung::params::{PARAMS, ParamInfo, Unit};
@@ -13,10 +13,10 @@ use sprung::preset::Guide;
 /// Pages with the sections on them, in the order in which sound is made. The last one has all other sections too.
 const PAGES: [(&str, &[&str]); 5] = [
     ("Exciters", &["Mallet", "Pluck", "Noise", "Bow", "Input", "Strike"]),
-    ("Body, Pitch", &["Body", "Pitch"]),
+    ("Body, Pitch, Voices", &["Body", "Pitch", "Voices"]),
     ("Modulation", &["Macros", "LFO 1", "LFO 2", "LFO 3", "Envelope 1", "Envelope 2"]),
     ("Routes", &["Routes"]),
-    ("Space, Output", &["Strings", "Tremolo", "Drive", "Tone", "Space", "Voices", "Control", "Output"]),
+    ("Space, Output", &["Strings", "Tremolo", "Drive", "Tone", "Space", "Control", "Output"]),
 ];
 
 /// The names of the pages.
@@ -77,7 +77,7 @@ pub(super) fn show(
             let panel = Rect::from_min_size(pos2(left, area.top()), size);
             left = panel.right() + GAP;
             let palette = controls.palette;
-            ui.painter().rect_filled(panel, RADIUS, palette.panel);
+            palette.paint_panel(ui.painter(), panel);
             let title = Rect::from_min_size(panel.min + vec2(PADDING, 2.0), vec2(size.x - PADDING, TITLE_HEIGHT - 2.0));
             line(ui.painter(), title, Align2::LEFT_CENTER, &section[0].section.to_uppercase(), SMALL, palette.muted);
             // A picture where the last row has room for one.

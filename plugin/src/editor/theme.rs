@@ -1,7 +1,7 @@
 //! The window's colours and measures, in one table.
 
 use egui::style::Selection;
-use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Visuals};
+use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Painter, Rect, Stroke, StrokeKind, TextStyle, Visuals};
 
 const fn grey(level: u8) -> Color32 {
     Color32::from_gray(level)
@@ -21,6 +21,8 @@ pub(super) struct Palette {
     pub(super) raised: Color32,
     /// Grids and outlines.
     pub(super) line: Color32,
+    /// Around panels and buttons, where their colour alone does not set them apart.
+    pub(super) outline: Color32,
     /// Names, and whatever is to be read.
     pub(super) text: Color32,
     /// Values, titles, and what is read less often.
@@ -49,6 +51,7 @@ impl Palette {
         panel: rgb(30, 30, 38),
         raised: rgb(44, 44, 55),
         line: rgb(56, 56, 68),
+        outline: Color32::TRANSPARENT,
         text: rgb(232, 231, 226),
         muted: rgb(160, 159, 170),
         accent: rgb(229, 178, 69),
@@ -67,6 +70,7 @@ impl Palette {
         panel: rgb(246, 245, 241),
         raised: rgb(228, 226, 220),
         line: rgb(204, 201, 193),
+        outline: Color32::TRANSPARENT,
         text: rgb(28, 28, 34),
         muted: rgb(84, 83, 92),
         accent: rgb(190, 118, 0),
@@ -85,6 +89,7 @@ impl Palette {
         panel: grey(0),
         raised: grey(38),
         line: grey(120),
+        outline: grey(120),
         text: grey(255),
         muted: grey(225),
         accent: rgb(255, 208, 0),
@@ -97,6 +102,11 @@ impl Palette {
         black_key: grey(0),
         key_text: grey(40),
     };
+
+    /// Paints the ground of a panel.
+    pub(super) fn paint_panel(&self, painter: &Painter, rect: Rect) {
+        painter.rect(rect, RADIUS, self.panel, Stroke::new(1.0, self.outline), StrokeKind::Inside);
+    }
 
     /// Every colour of text with every ground that it is drawn on.
     #[cfg(test)]

@@ -228,7 +228,8 @@ impl NiceEguiApp for Window {
         // Keys go to the host, except while the user is typing.
         let typing = ui.ctx().egui_wants_keyboard_input();
         frame.set_key_capture(if typing { KeyCapture::CaptureAll } else { KeyCapture::IgnoreAll });
-        self.focus.follow(frame, typing);
+        let is_pressed = ui.input(|input| input.pointer.any_down());
+        self.focus.follow(frame, typing, is_pressed);
     }
 
     fn resized(&mut self, size: WindowSize) {

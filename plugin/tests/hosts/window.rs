@@ -113,9 +113,10 @@ fn host_hears_keys(instance: &mut Instance, parent: &Parent) {
             onlooker.heard_key(SPACE) == expected
         });
     };
-    onlooker.focus(parent.window);
+    onlooker.focus(parent.proxy);
     hears("Space before anything was clicked", true);
     let empty = [550, 692];
+    onlooker.hover(empty);
     onlooker.drag_slowly(empty, empty);
     hears("Space after a click on an empty place", true);
     // ‘Browse’, whose field for words is open at once.
@@ -149,6 +150,8 @@ fn turn_something(instance: &mut Instance, parent: &Parent) {
 pub(crate) struct Parent {
     onlooker: Onlooker,
     window: u32,
+    /// A window for the host's keys beside the plugin's, as JUCE has one.
+    proxy: u32,
 }
 
 impl Parent {
@@ -156,7 +159,8 @@ impl Parent {
     pub(crate) fn new() -> Self {
         let onlooker = Onlooker::new(None);
         let window = onlooker.make_window();
-        Self { onlooker, window }
+        let proxy = onlooker.make_proxy(window);
+        Self { onlooker, window, proxy }
     }
 }
 
