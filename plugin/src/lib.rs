@@ -6,6 +6,7 @@
 //! | `params` | the host's parameters, made from [`sprung::params::PARAMS`] |
 //! | `loaded` | the loaded sound with exact values, and how the audio thread gets it without waiting |
 //! | `live` | the audio thread: follows parameters, passes events on, renders |
+//! | `link` | what the window and the audio thread tell each other |
 //! | `events` | converts the wrapper's note events to the engine's |
 //! | `tail` | how long the sound continues |
 //! | `state` | the state that a host stores in its project |
@@ -17,6 +18,7 @@
 mod editor;
 mod events;
 mod export;
+mod link;
 mod live;
 mod loaded;
 mod params;

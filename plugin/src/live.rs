@@ -1,12 +1,15 @@
 //! The audio thread: it follows the parameters, passes events on at their frames, and renders.
 
 use crate::events::translate;
+use crate::link::Touch;
 use crate::loaded::Loaded;
 use crate::params::{Look, SprungParams};
 use crate::tail::Tail;
 use nice_plug::prelude::*;
 use nice_plug_core::midi::{Channel, Key, VoiceID};
-use sprung::engine::{Event, EventKind, Synth};
+use nice_plug_egui::RepaintNotifier;
+use rtrb::Consumer;
+use sprung::engine::{Event, EventKind, Snapshot, Synth, TelemetryWriter};
 use sprung::params::{PARAM_COUNT, PARAMS, Param};
 use sprung::sound::kit::KEYS;
 use sprung::units::mono_from_stereo;
@@ -43,6 +46,10 @@ pub(crate) struct Live {
     early: Vec<NoteEvent<()>>,
     /// Buffers for the instrument's stereo output if the host has only one channel for it.
     stereo: [[f32; MONO_FRAMES]; 2],
+    /// Notes that are played in the window.
+    touches: Consumer<Touch>,
+    telemetry: TelemetryWriter,
+    repaint: RepaintNotifier,
 }
 
 impl Live {
@@ -66,6 +73,9 @@ impl Live {
             told: 0,
             early: Vec::with_capacity(EVENT_CAPACITY),
             stereo: [[0.0; MONO_FRAMES]; 2],
+            touches: params.link().connect(sample_rate),
+            telemetry: TelemetryWriter::new(params.link().telemetry.clone(), sample_rate),
+            repaint: params.link().repaint.clone(),
         };
         live.reset(params);
         live
@@ -77,6 +87,7 @@ impl Live {
         self.synth.reset();
         (self.offsets, self.tempo, self.told) = ([0.0; PARAM_COUNT], None, 0);
         self.early.clear();
+        self.telemetry.release_keys();
     }
 
     /// Applies changes of the sound, of the knobs, and of the modulation of the whole instrument. While another thread
@@ -124,7 +135,18 @@ impl Live {
 
     fn handle(&mut self, channel: u8, kind: EventKind) {
         self.tail.forget();
-        self.synth.handle(&Event { frame: 0, channel, kind });
+        let event = Event { frame: 0, channel, kind };
+        self.telemetry.note_event(&event);
+        self.synth.handle(&event);
+    }
+
+    /// Plays what the window has sent, at the first frame of the block.
+    fn follow_touches(&mut self) {
+        // No more than there is room for: the window may send while this runs.
+        for _ in 0..self.touches.buffer().capacity() {
+            let Ok(touch) = self.touches.pop() else { return };
+            self.handle(0, touch.event());
+        }
     }
 
     /// Renders a block and overwrites `outputs`, one channel or two. `input` is the incoming sound: empty, or one
@@ -138,6 +160,7 @@ impl Live {
     ) -> ProcessStatus {
         self.follow(params);
         self.follow_tempo(context.transport().tempo);
+        self.follow_touches();
         // A change of the play mode may have ended notes that were waiting for a key.
         self.tell(0, context);
         let voices = self.synth.values().get(Param::Voices) as u32;
@@ -166,6 +189,9 @@ impl Live {
             self.take(&event, frame, context);
         }
         self.render(input, outputs, frame..frames, context);
+        if !self.synth.is_silent() {
+            self.repaint.request_repaint();
+        }
         self.tail.status(&mut self.synth, frames)
     }
 
@@ -197,7 +223,9 @@ impl Live {
         let input = &input[frames.start.min(input.len())..frames.end.min(input.len())];
         match outputs {
             [left, right, ..] => {
-                self.synth.process_with_input(&[], input, &mut left[frames.clone()], &mut right[frames]);
+                let (left, right) = (&mut left[frames.clone()], &mut right[frames]);
+                self.synth.process_with_input(&[], input, left, right);
+                note_sound(&mut self.telemetry, &self.synth, left, right);
                 self.told = 0;
                 self.tell(last, context);
             }
@@ -207,6 +235,7 @@ impl Live {
                     let [left, right] = &mut self.stereo;
                     let (left, right) = (&mut left[..part.len()], &mut right[..part.len()]);
                     self.synth.process_with_input(&[], input, left, right);
+                    note_sound(&mut self.telemetry, &self.synth, left, right);
                     for ((mono, left), right) in part.iter_mut().zip(left).zip(right) {
                         *mono = mono_from_stereo(*left, *right);
                     }
@@ -232,6 +261,17 @@ impl Live {
             });
         }
         self.told = ended.len();
+    }
+}
+
+/// Tells the window what sounds, while there is one that looks.
+fn note_sound(telemetry: &mut TelemetryWriter, synth: &Synth, left: &[f32], right: &[f32]) {
+    if telemetry.is_watched() {
+        telemetry.note_sound(left, right, synth.is_silent(), || {
+            let mut snapshot = Snapshot::default();
+            synth.show(&mut snapshot);
+            snapshot
+        });
     }
 }
 

@@ -2,8 +2,9 @@
 
 #![allow(unsafe_code, reason = "the wrapper takes parameters as pointers and has no safe way to set several at once")]
 
+use crate::link::Link;
 use crate::loaded::{Loaded, Slot};
-use crate::state::{self, Read, State};
+use crate::state::{self, Read, State, View};
 use nice_plug::prelude::*;
 use nice_plug_core::params::InternalParamMut;
 use sprung::params::{Change, PARAM_COUNT, PARAMS, ParamInfo, Unit};
@@ -97,8 +98,8 @@ pub(crate) struct Look {
 struct Kept {
     /// The preset or kit as it was loaded.
     playable: Playable,
-    /// Width and height of the window.
-    window: [u32; 2],
+    /// How the window looks.
+    view: View,
     /// What was not understood of the last state, one line each.
     complaints: Arc<[String]>,
     /// The sound that was loaded last, which is also in the slot.
@@ -111,6 +112,7 @@ struct Kept {
 pub(crate) struct SprungParams {
     knobs: Vec<Knob>,
     slot: Slot,
+    link: Link,
     /// Locked while something is loaded or the whole state is read; never by the audio thread.
     kept: Mutex<Kept>,
 }
@@ -119,13 +121,13 @@ impl Default for SprungParams {
     fn default() -> Self {
         let state = State::default();
         let loaded = Arc::new(state.loaded());
-        let State { playable, positions, window, .. } = state;
+        let State { playable, positions, view, .. } = state;
         let knobs: Vec<Knob> = PARAMS.iter().map(Knob::new).collect();
         knobs.iter().zip(positions).for_each(|(knob, position)| knob.turn(position));
         let may_sound = Shelf::default();
         may_sound.keep(&loaded);
-        let kept = Kept { playable, window, complaints: Arc::new([]), loaded: loaded.clone(), may_sound };
-        Self { knobs, slot: Slot::new(loaded), kept: Mutex::new(kept) }
+        let kept = Kept { playable, view, complaints: Arc::new([]), loaded: loaded.clone(), may_sound };
+        Self { knobs, slot: Slot::new(loaded), link: Link::default(), kept: Mutex::new(kept) }
     }
 }
 
@@ -133,6 +135,11 @@ impl SprungParams {
     /// The knobs in the order of the table.
     pub(crate) fn knobs(&self) -> &[Knob] {
         &self.knobs
+    }
+
+    /// What the window and the audio thread tell each other.
+    pub(crate) fn link(&self) -> &Link {
+        &self.link
     }
 
     fn kept(&self) -> MutexGuard<'_, Kept> {
@@ -152,14 +159,14 @@ impl SprungParams {
         }
     }
 
-    /// Width and height of the window. Not for the audio thread.
-    pub(crate) fn window(&self) -> [u32; 2] {
-        self.kept().window
+    /// How the window looks. Not for the audio thread.
+    pub(crate) fn view(&self) -> View {
+        self.kept().view
     }
 
-    /// Stores the width and height of the window. Not for the audio thread.
-    pub(crate) fn set_window(&self, window: [u32; 2]) {
-        self.kept().window = window;
+    /// Changes how the window looks. Not for the audio thread.
+    pub(crate) fn set_view(&self, change: impl FnOnce(&mut View)) {
+        change(&mut self.kept().view);
     }
 
     /// What was not understood of the last state, one line each. Not for the audio thread.
@@ -173,7 +180,7 @@ impl SprungParams {
         let loaded = Arc::new(state.loaded());
         let mut kept = self.kept();
         kept.playable = state.playable;
-        kept.window = state.window;
+        kept.view = state.view;
         kept.complaints = complaints.into();
         kept.loaded = loaded.clone();
         kept.may_sound.keep(&loaded);
@@ -194,7 +201,7 @@ impl SprungParams {
         if let Playable::Preset(preset) = &mut playable {
             preset.patch.values = values;
         }
-        State { playable, values, positions, seed: kept.loaded.seed, window: kept.window }
+        State { playable, values, positions, seed: kept.loaded.seed, view: kept.view }
     }
 
     /// The sound that was loaded last. Not for the audio thread.

@@ -2,6 +2,7 @@
 //!
 //! A kit's presets are in the state too: a project must not depend on files that may disappear.
 
+use crate::editor::theme::{self, Theme};
 use crate::loaded::{Loaded, positions_of};
 use nice_plug::prelude::{PluginState, nice_error};
 use serde::Serialize;
@@ -19,10 +20,21 @@ pub(crate) const FIELD: &str = "sprung";
 const FORMAT: u64 = 2;
 
 /// The keys of a state.
-const KEYS: [&str; 8] = ["format", "preset", "kit", "sounds", "values", "positions", "seed", "window"];
+const KEYS: [&str; 10] =
+    ["format", "preset", "kit", "sounds", "values", "positions", "seed", "window", "zoom", "theme"];
 
-/// Width and height of a new window.
-pub(crate) const WINDOW: [u32; 2] = [880, 640];
+/// How the window looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct View {
+    /// Width and height at a zoom of 100 %.
+    pub(crate) size: [u32; 2],
+    /// In per cent.
+    pub(crate) zoom: u32,
+    pub(crate) theme: Theme,
+}
+
+/// A new window.
+pub(crate) const VIEW: View = View { size: theme::SIZE, zoom: 100, theme: Theme::Dark };
 
 /// Smallest and largest width and height of a window.
 pub(crate) const WINDOW_RANGE: [u32; 2] = [320, 8192];
@@ -38,8 +50,8 @@ pub(crate) struct State {
     pub(crate) positions: [f32; PARAM_COUNT],
     /// Seed of all random numbers.
     pub(crate) seed: u64,
-    /// Width and height of the window.
-    pub(crate) window: [u32; 2],
+    /// How the window looks.
+    pub(crate) view: View,
 }
 
 /// A state that was read, with a line for each part that was not understood.
@@ -70,6 +82,12 @@ struct Saved {
     positions: BTreeMap<&'static str, f32>,
     seed: u64,
     window: [u32; 2],
+    /// Left out at 100 %.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    zoom: Option<u32>,
+    /// Left out if it is that of a new window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    theme: Option<&'static str>,
 }
 
 impl Default for State {
@@ -77,7 +95,7 @@ impl Default for State {
         let (name, author, tags, comment) = ("Init".to_owned(), String::new(), Vec::new(), String::new());
         let (guide, patch) = (Guide::default(), Patch::default());
         let preset = Preset { name, author, tags, comment, guide, patch, tuning: None };
-        Self::new(Playable::Preset(preset), 0, WINDOW)
+        Self::new(Playable::Preset(preset), 0, VIEW)
     }
 }
 
@@ -89,12 +107,12 @@ impl From<State> for Read {
 
 impl State {
     /// The state of a preset or kit, with all knobs at the positions of its values.
-    pub(crate) fn new(playable: Playable, seed: u64, window: [u32; 2]) -> Self {
+    pub(crate) fn new(playable: Playable, seed: u64, view: View) -> Self {
         let values = match &playable {
             Playable::Preset(preset) => preset.patch.values,
             Playable::Kit(kit) => *kit.kit().values(),
         };
-        Self { playable, values, positions: positions_of(&values), seed, window }
+        Self { playable, values, positions: positions_of(&values), seed, view }
     }
 
     /// The part of the state for the audio thread. Makes the sounds.
@@ -115,7 +133,9 @@ impl State {
             values: BTreeMap::new(),
             positions,
             seed: self.seed,
-            window: self.window,
+            window: self.view.size,
+            zoom: Some(self.view.zoom).filter(|zoom| *zoom != VIEW.zoom),
+            theme: Some(self.view.theme).filter(|theme| *theme != VIEW.theme).map(Theme::id),
         };
         match &self.playable {
             Playable::Preset(preset) => saved.preset = Some(preset.to_toml()),
@@ -153,11 +173,8 @@ impl State {
                 None
             }),
         };
-        let window = read_window(saved.get("window")).unwrap_or_else(|complaint| {
-            complaints.push(complaint);
-            WINDOW
-        });
-        let mut state = Self::new(playable, seed.unwrap_or(0), window);
+        let view = read_view(&saved, &mut complaints);
+        let mut state = Self::new(playable, seed.unwrap_or(0), view);
         if let Playable::Kit(_) = state.playable {
             for (param, value) in numbers(&saved, "values", &mut complaints) {
                 match param.info().check(value) {
@@ -224,12 +241,34 @@ fn read_playable(
     Ok(playable)
 }
 
-fn read_window(window: Option<&Value>) -> Result<[u32; 2], String> {
-    let Some(window) = window else { return Ok(WINDOW) };
+/// How the window looks. What is missing or cannot be read is as in a new window.
+fn read_view(saved: &Map<String, Value>, complaints: &mut Vec<String>) -> View {
+    let mut view = VIEW;
     let [least, most] = WINDOW_RANGE;
-    let read = serde_json::from_value::<[u32; 2]>(window.clone()).ok();
-    read.filter(|sides| sides.iter().all(|side| (least..=most).contains(side)))
-        .ok_or_else(|| format!("window: {window} is out of range: expected two numbers from {least} to {most}"))
+    if let Some(window) = saved.get("window") {
+        let read = serde_json::from_value::<[u32; 2]>(window.clone()).ok();
+        match read.filter(|sides| sides.iter().all(|side| (least..=most).contains(side))) {
+            Some(size) => view.size = size,
+            None => complaints
+                .push(format!("window: {window} is out of range: expected two numbers from {least} to {most}")),
+        }
+    }
+    let [least, most] = theme::ZOOM_RANGE;
+    if let Some(zoom) = saved.get("zoom") {
+        match zoom.as_u64().and_then(|zoom| u32::try_from(zoom).ok()).filter(|zoom| (least..=most).contains(zoom)) {
+            Some(zoom) => view.zoom = zoom,
+            None => {
+                complaints.push(format!("zoom: {zoom} is out of range: expected a whole number from {least} to {most}"))
+            }
+        }
+    }
+    if let Some(theme) = saved.get("theme") {
+        match Theme::ALL.into_iter().find(|known| theme.as_str() == Some(known.id())) {
+            Some(theme) => view.theme = theme,
+            None => complaints.push(format!("theme: there is none called {theme}")),
+        }
+    }
+    view
 }
 
 /// The numbers by parameter id in a part of the state. Retired parameters are ignored, since routes have replaced them.

@@ -2,6 +2,7 @@
 //!
 //! Does not depend on files, the command line or audio devices. Real-time safe once built, except where noted.
 
+mod atomic;
 pub mod banks;
 mod channel;
 mod controls;
@@ -14,6 +15,7 @@ mod instrument;
 pub mod midi;
 mod modulation;
 pub mod note;
+pub mod scope;
 pub mod snapshot;
 mod space;
 pub mod struck;

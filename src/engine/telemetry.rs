@@ -1,8 +1,10 @@
 //! State that the audio thread publishes for a display: voices, levels, keys, and the processing load.
 
+use super::atomic::AtomicF32;
 use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF};
 use super::note::{nearest_channel, nearest_key};
-use super::{Event, EventKind, Snapshot};
+use super::scope::Scope;
+use super::{Event, EventKind, Notes, Snapshot};
 use crate::dsp::mode_bank::MAX_MODES;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -11,6 +13,9 @@ use std::time::Duration;
 
 /// How often per second the masses are published.
 const SNAPSHOT_RATE: f64 = 40.0;
+
+/// How many snapshots are published after somebody has looked, if nobody looks again: those of a second.
+const SNAPSHOTS_PER_LOOK: u32 = 40;
 
 /// State that the audio thread publishes through a [`TelemetryWriter`]. Any thread may read it at any time without
 /// waiting. Each number is consistent, but two numbers may come from different blocks.
@@ -30,7 +35,9 @@ pub struct Telemetry {
     /// Number of the selected program plus 1; 0 for none.
     programs: [AtomicU16; 16],
     sounding: AtomicBool,
-    watched: AtomicBool,
+    scope: Scope,
+    /// How many snapshots to publish before somebody looks again.
+    wanted: AtomicU32,
 }
 
 /// The processing load of the audio thread so far.
@@ -74,9 +81,10 @@ impl Telemetry {
         self.peaks.each_ref().map(AtomicF32::take)
     }
 
-    /// The voices and masses that sound. The audio thread publishes them only after the first call.
+    /// The voices and masses that sound. The audio thread publishes them, and the [`Telemetry::scope`], only for a second
+    /// after each call.
     pub fn snapshot(&self) -> Snapshot {
-        self.watched.store(true, Relaxed);
+        self.wanted.store(SNAPSHOTS_PER_LOOK, Relaxed);
         let mut snapshot = Snapshot { voices: self.voices.load(Relaxed), ..Snapshot::default() };
         for (mass, [displacement, energy]) in snapshot.masses.iter_mut().zip(&self.masses.0) {
             (mass.displacement, mass.energy) = (displacement.load(), energy.load());
@@ -94,6 +102,11 @@ impl Telemetry {
     pub fn program(&self, channel: u8) -> Option<u8> {
         let stored = self.programs[usize::from(nearest_channel(channel))].load(Relaxed);
         stored.checked_sub(1).map(|program| program as u8)
+    }
+
+    /// The last frames of the sound.
+    pub fn scope(&self) -> &Scope {
+        &self.scope
     }
 
     /// Whether nothing sounds.
@@ -128,6 +141,7 @@ impl TelemetryWriter {
                 let key = nearest_key(key);
                 keys[usize::from(key >> 6)].fetch_and(!(1 << (key & 63)), Relaxed);
             }
+            EventKind::Release { notes, .. } | EventKind::Silence { notes } => self.lift(notes),
             EventKind::Control { controller: ALL_SOUND_OFF | ALL_NOTES_OFF..=127, .. } => {
                 keys.iter().for_each(|half| half.store(0, Relaxed));
             }
@@ -136,8 +150,32 @@ impl TelemetryWriter {
         }
     }
 
-    /// Records the peaks of rendered frames, and whether the engine is silent after them. `snapshot` is called 40 times
-    /// a second, but only after [`Telemetry::snapshot`] was used once.
+    /// Records that no key is down, as after a reset.
+    pub fn release_keys(&self) {
+        self.lift(Notes::default());
+    }
+
+    /// The keys of these notes are up.
+    fn lift(&self, Notes { id, channel, key }: Notes) {
+        if id.is_some() && key.is_none() {
+            return;
+        }
+        let all = self.telemetry.keys.iter().enumerate();
+        for (_, keys) in all.filter(|(number, _)| channel.is_none_or(|channel| usize::from(channel) == *number)) {
+            match key.map(nearest_key) {
+                Some(key) => drop(keys[usize::from(key >> 6)].fetch_and(!(1 << (key & 63)), Relaxed)),
+                None => keys.iter().for_each(|half| half.store(0, Relaxed)),
+            }
+        }
+    }
+
+    /// Whether somebody has looked during the last second. If not, [`TelemetryWriter::note_sound`] need not be called.
+    pub fn is_watched(&self) -> bool {
+        self.telemetry.wanted.load(Relaxed) > 0
+    }
+
+    /// Records the peaks of rendered frames, and whether the engine is silent after them. While somebody looks, it records
+    /// the frames for the scope too, and calls `snapshot` 40 times a second.
     pub fn note_sound(&mut self, left: &[f32], right: &[f32], is_silent: bool, snapshot: impl FnOnce() -> Snapshot) {
         let telemetry = &*self.telemetry;
         for (kept, samples) in telemetry.peaks.iter().zip([left, right]) {
@@ -145,9 +183,15 @@ impl TelemetryWriter {
         }
         telemetry.sounding.store(!is_silent, Relaxed);
         self.frames_to_snapshot -= left.len() as f64;
-        if self.frames_to_snapshot > 0.0 || !telemetry.watched.load(Relaxed) {
+        let wanted = telemetry.wanted.load(Relaxed);
+        if wanted == 0 {
             return;
         }
+        telemetry.scope.write(left, right);
+        if self.frames_to_snapshot > 0.0 {
+            return;
+        }
+        telemetry.wanted.store(wanted - 1, Relaxed);
         self.frames_to_snapshot = self.sample_rate / SNAPSHOT_RATE;
         let snapshot = snapshot();
         telemetry.voices.store(snapshot.voices, Relaxed);
@@ -179,31 +223,6 @@ impl Default for Masses {
     /// At rest.
     fn default() -> Self {
         Self(std::array::from_fn(|_| Default::default()))
-    }
-}
-
-/// A float that threads share, stored as its bits.
-#[derive(Default)]
-struct AtomicF32(AtomicU32);
-
-impl AtomicF32 {
-    fn load(&self) -> f32 {
-        f32::from_bits(self.0.load(Relaxed))
-    }
-
-    fn store(&self, value: f32) {
-        self.0.store(value.to_bits(), Relaxed);
-    }
-
-    /// Stores the greater of the two values. Both must be at least 0: then their bits have the same order as the
-    /// values.
-    fn raise_to(&self, value: f32) {
-        self.0.fetch_max(value.to_bits(), Relaxed);
-    }
-
-    /// Returns the value and resets it to 0.
-    fn take(&self) -> f32 {
-        f32::from_bits(self.0.swap(0, Relaxed))
     }
 }
 
@@ -242,7 +261,15 @@ mod tests {
             tell(EventKind::Program(number));
             assert_eq!(telemetry.program(3), Some(number));
         }
+        let notes = Notes { id: None, channel: Some(3), key: Some(64) };
+        tell(EventKind::Release { notes, velocity: 0.5 });
+        assert_eq!(telemetry.keys(3), 1 | 1 << 127);
+        tell(EventKind::Silence { notes: Notes { key: Some(0), channel: Some(4), id: None } });
+        assert_eq!(telemetry.keys(3), 1 | 1 << 127, "of another channel");
         tell(EventKind::Control { controller: ALL_NOTES_OFF, value: 0.0 });
+        assert_eq!(telemetry.keys(3), 0);
+        tell(EventKind::NoteOn { key: 5, detune: 0.0, velocity: 1.0, id: None });
+        writer.release_keys();
         assert_eq!(telemetry.keys(3), 0);
     }
 

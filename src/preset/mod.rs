@@ -12,6 +12,7 @@ mod guide;
 mod kit;
 mod kit_file;
 mod kit_load;
+pub mod library;
 mod load;
 mod migration;
 mod one_exciter;

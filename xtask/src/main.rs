@@ -53,7 +53,7 @@ enum Chore {
     Uninstall(Place),
     /// Accept what the golden cases sound like now, and verify.
     Bless {
-        /// Only this case.
+        /// Only this case; `pictures` for what the plugin's window looks like.
         case: Option<String>,
     },
     /// Draw the README's picture of the demo song to assets/demo.png.

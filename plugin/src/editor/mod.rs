@@ -1,17 +1,61 @@
-//! The plugin's window: parameters by section, a list of factory presets, and preset files.
+//! The plugin's window.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `window` | an open window: what it shows, and what the user asks for |
+//! | `theme`, `layout` | the table of colours and measures; where the parts are |
+//! | `controls`, `gestures`, `history` | what every widget needs; changes that hosts see; undo and redo |
+//! | `header`, `sections`, `routes`, `curves`, `status` | the parts of the window; menus of routes; small pictures in sections |
+//! | `modes`, `modes_face`, `mode_axes`, `snap` | the modes: what the user does with them, their picture, its axes, series of ratios |
+//! | `motion`, `piano`, `meter` | phase plane and waveform; the keyboard; levels |
+//! | `browser`, `details`, `star`, `sounds`, `files` | the page on which sounds are found and saved; the sounds that there are |
+//! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets, and what they are painted with |
+//! | `focus` | who has the keyboard: the host, unless the user types |
+//! | `shown` | the sound that is shown |
 
-mod presets;
-mod rows;
+mod browser;
+mod buttons;
+mod choice;
+mod controls;
+mod curves;
+mod details;
+mod files;
+mod focus;
+mod gestures;
+mod header;
+mod history;
+mod knob;
+mod knob_face;
+mod layout;
+mod meter;
+mod mode_axes;
+mod modes;
+mod modes_face;
+mod motion;
+mod piano;
+mod routes;
+mod sections;
+mod shown;
+mod snap;
+mod sounds;
+mod star;
+mod status;
+#[cfg(test)]
+mod tests;
+mod text;
+pub(crate) mod theme;
 mod window;
 
 use crate::params::SprungParams;
 use nice_plug_core::context::gui::GuiContext;
 use nice_plug_core::editor::dpi::{LogicalSize, NativeSize};
 use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
-use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, RepaintNotifier, create_egui_editor};
+use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, create_egui_editor};
+use sprung::preset::library::Library;
 use std::error::Error;
 use std::sync::{Arc, Mutex, PoisonError};
-use window::{LEAST_SIZE, Window};
+use theme::LEAST_SIZE;
+use window::Window;
 
 /// Opens windows. Each opens in the size of the last one.
 pub struct SprungEditor {
@@ -29,8 +73,9 @@ impl SprungEditor {
 
 /// The wrapper's editor state for a new window, in the stored size.
 fn state(params: &SprungParams) -> Arc<EguiEditorState> {
-    let [width, height] = params.window().map(|side| side as f32);
-    EguiEditorState::from_size(LogicalSize { width, height }, 1.0)
+    let view = params.view();
+    let [width, height] = view.size.map(|side| side as f32);
+    EguiEditorState::from_size(LogicalSize { width, height }, view.zoom as f32 / 100.0)
 }
 
 impl Editor for SprungEditor {
@@ -47,9 +92,14 @@ impl Editor for SprungEditor {
         let state = state(&self.params);
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = state.clone();
         let settings = EguiNiceSettings::new().with_tile("Sprung").with_resize_hint(self.resize_hint());
-        create_egui_editor(state, RepaintNotifier::new(), settings, Window::new(self.params.clone()))
-            .ok_or("the window cannot be made")?
-            .spawn(parent, wait_for_parent, fallback_scale_factor, gui_context, host)
+        create_egui_editor(
+            state,
+            self.params.link().repaint.clone(),
+            settings,
+            Window::new(self.params.clone(), Library::of_user()),
+        )
+        .ok_or("the window cannot be made")?
+        .spawn(parent, wait_for_parent, fallback_scale_factor, gui_context, host)
     }
 
     fn size(&self) -> NativeSize<u32> {

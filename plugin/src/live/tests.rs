@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::plugin::Sprung;
-use crate::state::State;
+use crate::state::{State, VIEW};
 use sprung::engine::NoteId;
 use sprung::patch::Patch;
 use sprung::preset::{Playable, Preset};
@@ -71,7 +71,7 @@ fn off(timing: u32, id: i32) -> NoteEvent<()> {
 fn params(patch: Patch) -> SprungParams {
     let params = SprungParams::default();
     let preset = Preset { patch, ..Preset::find("Init").unwrap().clone() };
-    params.load(State::new(Playable::Preset(preset), 3, [800, 600]).into());
+    params.load(State::new(Playable::Preset(preset), 3, VIEW).into());
     params
 }
 
@@ -180,7 +180,7 @@ fn a_loaded_patch_and_seed_play_from_the_next_note_on() {
     let mut live = Live::new(RATE, false, &params);
     stereo(&mut live, &params, &mut Host::new(&[]), 64);
     let snare = Preset::find("Snare").unwrap();
-    params.load(State::new(Playable::Preset(snare.clone()), 4, [800, 600]).into());
+    params.load(State::new(Playable::Preset(snare.clone()), 4, VIEW).into());
     let (out, _) = stereo(&mut live, &params, &mut Host::new(&[on(0, 1, 60)]), FRAMES);
     assert_eq!(live.synth.kit(), &snare.kit());
     let with_seed = |seed| {
@@ -247,7 +247,7 @@ fn a_kit_takes_the_place_of_a_sound_while_that_rings_on() {
     };
     let (out, _) = stereo(&mut live, &params, &mut Host::new(&[on(0, 1, 60)]), 64);
     assert_eq!(out, play(&mut synth, 60, 1));
-    let mut state = State::new(kit.clone(), 3, [800, 600]);
+    let mut state = State::new(kit.clone(), 3, VIEW);
     state.values.set(Param::Gain, -12.0);
     state.positions[Param::Gain as usize] = Param::Gain.info().normalise(-12.0) as f32;
     let before = Arc::downgrade(&params.loaded());

@@ -19,12 +19,16 @@ fn wrapped(params: &SprungParams) -> PluginState {
     PluginState { version: env!("CARGO_PKG_VERSION").to_owned(), params: values.collect(), fields }
 }
 
+fn odd_view() -> View {
+    View { size: [1000, 500], zoom: 150, theme: Theme::Light }
+}
+
 /// A sound that has, for each kind of parameter, a value that its knob position would not give back, and a knob
 /// position that its value would not give.
 fn odd() -> State {
     let bell = Preset::find("Glockenspiel").unwrap();
     let patch = bell.patch.clone().with(Param::Decay, 0.123_456_79).with(Param::Fine, -0.1).with(Param::Voices, 7.0);
-    let mut state = State::new(Playable::Preset(Preset { patch, ..bell.clone() }), 42, [1000, 500]);
+    let mut state = State::new(Playable::Preset(Preset { patch, ..bell.clone() }), 42, odd_view());
     state.positions[Param::Gain as usize] = 0.123_456_78;
     state
 }
@@ -50,7 +54,7 @@ fn odd_kit() -> State {
         { key = 38, sound = \"mine.toml\", choke = 2 }, { key = 40, sound = \"Kick\", pitch = 50.5 }]";
     let Playable::Preset(bell) = odd().playable else { panic!("a preset") };
     let mut find = |name: &str| Preset::find(name).cloned().or_else(|_| Ok(bell.clone()));
-    let mut state = State::new(Playable::parse(text, "x", &mut find).unwrap(), 42, [1000, 500]);
+    let mut state = State::new(Playable::parse(text, "x", &mut find).unwrap(), 42, odd_view());
     assert_eq!(state.values.get(Param::Voices), 9.0);
     for (param, value) in [(Param::Decay, 0.123_456_79), (Param::Mode, 1.0), (Param::Voices, 3.0)] {
         state.values.set(param, value);
@@ -133,6 +137,7 @@ fn what_can_be_read_is_taken_over_and_the_rest_is_told() {
         preset.patch.values = state.values;
         state
     };
+    let sized = |size| State { view: View { size, ..odd_view() }, ..odd() };
     let knob = || State { positions: positions_of(&odd().values), ..odd() };
     let default = Param::Decay.info().default;
     for (from, to, expected, why) in [
@@ -140,8 +145,20 @@ fn what_can_be_read_is_taken_over_and_the_rest_is_told() {
         ("{\"format\":2,", "{", odd(), "state format null is unknown"),
         ("\"seed\":42", "\"seed\":-1", State { seed: 0, ..odd() }, "seed: -1 is none"),
         ("\"seed\":42", "\"sead\":42", State { seed: 0, ..odd() }, "unknown key ‘sead’"),
-        ("[1000,500]", "[1000,0]", State { window: WINDOW, ..odd() }, "window: [1000,0] is out of range: expected two"),
-        ("[1000,500]", "[1000]", State { window: WINDOW, ..odd() }, "window: [1000] is out of range"),
+        ("[1000,500]", "[1000,0]", sized(VIEW.size), "window: [1000,0] is out of range: expected two"),
+        ("[1000,500]", "[1000]", sized(VIEW.size), "window: [1000] is out of range"),
+        (
+            "\"zoom\":150",
+            "\"zoom\":10",
+            State { view: View { zoom: 100, ..odd_view() }, ..odd() },
+            "zoom: 10 is out of",
+        ),
+        (
+            "\"light\"",
+            "\"pink\"",
+            State { view: View { theme: VIEW.theme, ..odd_view() }, ..odd() },
+            "theme: there is none",
+        ),
         ("{\"gain\":0.12345678}", "[]", knob(), "positions: expected numbers by parameter, found []"),
         ("\"gain\":0.12345678", "\"gain\":1.5", knob(), "positions.gain: 1.5 is not a position of that knob"),
         ("\"gain\":0.12345678", "\"gain\":null", knob(), "positions.gain: expected a number, found null"),
@@ -174,7 +191,7 @@ fn parameters_that_a_state_does_not_name_have_their_defaults() {
     let patch = Patch::default().with(Param::Gain, -3.0);
     let (name, author, tags, comment) = ("Old".to_owned(), String::new(), Vec::new(), String::new());
     let preset = Preset { name, author, tags, comment, guide: Guide::default(), patch, tuning: None };
-    assert_eq!(params.state(), State::new(Playable::Preset(preset), 0, WINDOW));
+    assert_eq!(params.state(), State::new(Playable::Preset(preset), 0, View { size: [880, 640], ..VIEW }));
     assert!(params.complaints().is_empty());
 }
 
@@ -200,9 +217,9 @@ fn states_of_all_versions_load() {
         filter(&mut state);
         params.deserialize_fields(&state.fields);
         let expected = Preset::load(&path.with_extension("toml")).unwrap();
-        let State { playable, positions, seed, window, .. } = params.state();
+        let State { playable, positions, seed, view, .. } = params.state();
         assert_eq!(playable, Playable::Preset(expected), "{}", path.display());
-        assert_eq!((seed, window), (42, [1000, 500]), "{}", path.display());
+        assert_eq!((seed, view.size), (42, [1000, 500]), "{}", path.display());
         assert_eq!(positions[Param::Gain as usize], 0.123_456_78, "{}", path.display());
     }
 }

@@ -79,7 +79,7 @@ fn main() -> ExitCode {
         return match work.as_str() {
             "growth" | "reopen" => growth::work(&work),
             "storm" | "endings" => storm::work(&work),
-            "window" | "window-playing" => window::work(&work),
+            "window" | "window-keys" | "window-playing" => window::work(&work),
             _ => realtime::work(&work),
         };
     }
@@ -181,6 +181,7 @@ fn main() -> ExitCode {
         Screen: window {
             opens_and_closes_fifty_times
             opens_and_closes_while_audio_runs
+            keys_go_to_the_host_unless_somebody_types
         }
         Nothing: vst3_state {
             parameters_have_the_numbers_of_their_ids

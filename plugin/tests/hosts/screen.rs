@@ -6,8 +6,10 @@ use std::io::BufRead as _;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use x11rb::connection::Connection as _;
+use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{
-    AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, MapState, WindowClass,
+    AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, InputFocus, MapState,
+    WindowClass,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
@@ -121,6 +123,19 @@ impl Onlooker {
         window
     }
 
+    /// Creates a window inside another one, beside the plugin's, that hears keys.
+    pub(crate) fn make_proxy(&self, parent: u32) -> u32 {
+        let window = self.connection.generate_id().unwrap();
+        let visual = self.connection.setup().roots[0].root_visual;
+        let aux = CreateWindowAux::new().event_mask(EventMask::KEY_PRESS);
+        self.connection
+            .create_window(24, window, parent, 1_199, 759, 1, 1, 0, WindowClass::INPUT_OUTPUT, visual, &aux)
+            .unwrap();
+        self.connection.map_window(window).unwrap();
+        self.connection.flush().unwrap();
+        window
+    }
+
     /// Blue, green and red of each pixel in the upper left corner of the screen.
     pub(crate) fn pixels(&self, width: u32, height: u32) -> Vec<[u8; 3]> {
         let (width, height) = (width as u16, height as u16);
@@ -141,14 +156,18 @@ impl Onlooker {
 
     /// Drags the mouse slowly, as a hand does, so that a window sees each step separately.
     pub(crate) fn drag_slowly(&self, from: [i16; 2], to: [i16; 2]) {
-        self.drag_with_pauses(from, to, Duration::from_millis(30));
+        // A knob follows what moves after the press: on a busy machine, too, press and movement must come in different
+        // frames.
+        self.drag_with_pauses(from, to, Duration::from_millis(80));
     }
 
     fn drag_with_pauses(&self, from: [i16; 2], to: [i16; 2], pause: Duration) {
         const PRESS: u8 = 4;
         const RELEASE: u8 = 5;
         const MOVE: u8 = 6;
-        for (kind, detail, [x, y]) in [(MOVE, 0, from), (PRESS, 1, from), (MOVE, 0, to), (RELEASE, 1, to)] {
+        let half = [(from[0] + to[0]) / 2, (from[1] + to[1]) / 2];
+        let steps = [(MOVE, 0, from), (PRESS, 1, from), (MOVE, 0, half), (MOVE, 0, to), (RELEASE, 1, to)];
+        for (kind, detail, [x, y]) in steps {
             self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).unwrap();
             if !pause.is_zero() {
                 self.connection.flush().unwrap();
@@ -156,6 +175,40 @@ impl Onlooker {
             }
         }
         self.connection.flush().unwrap();
+    }
+
+    /// Gives a window the focus.
+    pub(crate) fn focus(&self, window: u32) {
+        self.connection.set_input_focus(InputFocus::PARENT, window, x11rb::CURRENT_TIME).unwrap().check().unwrap();
+    }
+
+    /// Presses a key and lets it go, by its number on the keyboard.
+    pub(crate) fn press_key(&self, key: u8) {
+        const PRESS: u8 = 2;
+        const RELEASE: u8 = 3;
+        for kind in [PRESS, RELEASE] {
+            self.connection.xtest_fake_input(kind, key, 0, self.root, 0, 0, 0).unwrap();
+        }
+        self.connection.flush().unwrap();
+    }
+
+    /// Whether a window of the host has heard this key since the last call.
+    pub(crate) fn heard_key(&self, key: u8) -> bool {
+        let mut heard = false;
+        while let Some(event) = self.connection.poll_for_event().unwrap() {
+            heard |= matches!(event, Event::KeyPress(press) if press.detail == key);
+        }
+        heard
+    }
+
+    /// Moves the mouse about near a place, as a hand does before it clicks.
+    pub(crate) fn hover(&self, [x, y]: [i16; 2]) {
+        const MOVE: u8 = 6;
+        for step in 0..10 {
+            self.connection.xtest_fake_input(MOVE, 0, 0, self.root, x - step, y, 0).unwrap();
+            self.connection.flush().unwrap();
+            std::thread::sleep(Duration::from_millis(60));
+        }
     }
 
     /// Finds the visible window with this title.

@@ -21,6 +21,10 @@ pub(crate) fn opens_and_closes_while_audio_runs() {
     on_a_screen("window-playing");
 }
 
+pub(crate) fn keys_go_to_the_host_unless_somebody_types() {
+    on_a_screen("window-keys");
+}
+
 #[track_caller]
 fn on_a_screen(work: &str) {
     let screen = Screen::new();
@@ -33,6 +37,10 @@ fn on_a_screen(work: &str) {
 pub(crate) fn work(name: &str) -> ExitCode {
     let parent = Parent::new();
     let mut instance = Instance::new();
+    if name == "window-keys" {
+        host_hears_keys(&mut instance, &parent);
+        return ExitCode::SUCCESS;
+    }
     if name == "window" {
         open_and_close(&mut instance, &parent);
         return ExitCode::SUCCESS;
@@ -90,6 +98,36 @@ fn open_and_close(instance: &mut Instance, parent: &Parent) {
     }
 }
 
+/// Presses Space after a click on an empty place, while a name is typed, and after that.
+fn host_hears_keys(instance: &mut Instance, parent: &Parent) {
+    const SPACE: u8 = 65;
+    const ESCAPE: u8 = 9;
+    let editor = Editor::open(instance, parent);
+    editor.wait_until_drawn(instance);
+    let onlooker = &parent.onlooker;
+    let mut hears = |what: &str, expected: bool| {
+        wait_until(what, || {
+            instance.run_callbacks();
+            onlooker.press_key(SPACE);
+            std::thread::sleep(Duration::from_millis(50));
+            onlooker.heard_key(SPACE) == expected
+        });
+    };
+    onlooker.focus(parent.proxy);
+    hears("Space before anything was clicked", true);
+    let empty = [550, 692];
+    onlooker.hover(empty);
+    onlooker.drag_slowly(empty, empty);
+    hears("Space after a click on an empty place", true);
+    // ‘Browse’, whose field for words is open at once.
+    let browse = [510, 22];
+    onlooker.drag_slowly(browse, browse);
+    hears("no Space while words are typed", false);
+    onlooker.press_key(ESCAPE);
+    hears("Space after the browser was closed", true);
+    editor.close(instance);
+}
+
 /// Drags the mouse across the window, line by line, until a value has changed.
 fn turn_something(instance: &mut Instance, parent: &Parent) {
     let before = patch_in(&instance.save());
@@ -112,6 +150,8 @@ fn turn_something(instance: &mut Instance, parent: &Parent) {
 pub(crate) struct Parent {
     onlooker: Onlooker,
     window: u32,
+    /// A window for the host's keys beside the plugin's, as JUCE has one.
+    proxy: u32,
 }
 
 impl Parent {
@@ -119,7 +159,8 @@ impl Parent {
     pub(crate) fn new() -> Self {
         let onlooker = Onlooker::new(None);
         let window = onlooker.make_window();
-        Self { onlooker, window }
+        let proxy = onlooker.make_proxy(window);
+        Self { onlooker, window, proxy }
     }
 }
 

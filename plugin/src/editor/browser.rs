@@ -1,0 +1,256 @@
+//! The browser: finds sounds, plays them, keeps favourites, and saves under a name.
+
+use super::buttons::{Look, button};
+use super::controls::Controls;
+use super::details::Details;
+use super::files::{load, read};
+use super::sounds::{Shelf, Sound, Sounds};
+use super::star;
+use super::text::line;
+use super::theme::{GAP, PADDING, Palette, SMALL, TEXT, font};
+use crate::link::Touch;
+use egui::{Align2, Id, Key, Rect, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use sprung::preset::library::Library;
+use sprung::preset::{Guide, Playable};
+
+const ROW: f32 = 22.0;
+/// Width of the list of shelves, and of what is said of a sound.
+const SIDE: [f32; 2] = [112.0, 250.0];
+/// How long a sound is held that is tried, in seconds.
+const HELD: f64 = 0.7;
+
+/// What the browser remembers.
+pub(super) struct Browser {
+    /// Read when the browser is first opened.
+    sounds: Option<Sounds>,
+    library: Option<Library>,
+    shelf: Shelf,
+    words: String,
+    details: Details,
+    /// The key of the sound that is tried, and when it is let go.
+    held: Option<(u8, f64)>,
+    is_new: bool,
+}
+
+impl Browser {
+    /// A browser of a library; none if the system has no place for one.
+    pub(super) fn new(library: Option<Library>) -> Self {
+        Self {
+            sounds: None,
+            library,
+            shelf: Shelf::All,
+            words: String::new(),
+            details: Details::default(),
+            held: None,
+            is_new: true,
+        }
+    }
+
+    /// Prepares for being shown, with the name of the present sound.
+    pub(super) fn open(&mut self, name: &str) {
+        self.details.open(name);
+        self.is_new = true;
+        self.sounds = None;
+    }
+
+    /// Shows the browser. Returns a message.
+    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> Option<String> {
+        let palette = controls.palette;
+        let mut sounds = self.sounds.take().unwrap_or_else(|| Sounds::read(self.library.clone()));
+        palette.paint_panel(ui.painter(), rect);
+        let inner = rect.shrink(PADDING);
+        let details_width = if rect.width() < 900.0 { 190.0 } else { SIDE[1] };
+        let shelves = Rect::from_min_max(inner.min, pos2(inner.left() + SIDE[0], inner.bottom()));
+        let details = Rect::from_min_max(pos2(inner.right() - details_width, inner.top()), inner.max);
+        let list = Rect::from_min_max(
+            pos2(shelves.right() + 2.0 * GAP, inner.top()),
+            pos2(details.left() - 2.0 * GAP, inner.bottom()),
+        );
+        for x in [shelves.right() + GAP, details.left() - GAP] {
+            ui.painter().vline(ui.painter().round_to_pixel_center(x), inner.y_range(), Stroke::new(1.0, palette.line));
+        }
+        self.shelves(ui, shelves, palette);
+        let mut message = None;
+        let present = controls.params.name();
+        let (search, rows) = list.split_top_bottom_at_y(list.top() + 28.0);
+        let asks = self.search(ui, search);
+        let found: Vec<Sound> = sounds.find(self.shelf, &self.words).into_iter().cloned().collect();
+        let chosen = match asks {
+            Ask::Nothing => None,
+            Ask::Step(places) => {
+                let place = found.iter().position(|sound| sound.name() == present);
+                let next = place.map_or(0, |place| place as isize + places);
+                usize::try_from(next).ok().filter(|next| *next < found.len())
+            }
+            Ask::File => {
+                message = Some(self.load_file(controls));
+                None
+            }
+        };
+        let clicked = self.rows(ui, rows, &found, &present, chosen, &mut sounds, &mut message, palette);
+        if let Some(sound) = chosen.or(clicked).and_then(|place| found.get(place)) {
+            self.try_out(ui, sound, controls);
+        }
+        let shown = found.iter().find(|sound| sound.name() == controls.params.name());
+        let said = self.details.show(ui, details, shown, &sounds, controls);
+        let is_stale = said.as_ref().is_some_and(|(_, is_stale)| *is_stale);
+        let broken =
+            sounds.broken.first().map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
+        self.sounds = (!is_stale).then_some(sounds);
+        said.map(|(message, _)| message).or(message).or(broken)
+    }
+
+    /// Lets go of the sound that is tried, when it is time.
+    pub(super) fn follow_time(&mut self, now: f64, controls: &Controls) {
+        if let Some((key, _)) = self.held.take_if(|(_, end)| now >= *end) {
+            controls.params.link().play(Touch::Up { key });
+        }
+    }
+
+    fn shelves(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) {
+        let mut inner = ui.new_child(UiBuilder::new().id_salt("shelves").max_rect(rect));
+        ScrollArea::vertical().id_salt("shelves").auto_shrink(false).show(&mut inner, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            for shelf in Shelf::all() {
+                let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 2.0), Sense::hover());
+                let name = shelf.name();
+                let look = if shelf == self.shelf { Look::On } else { Look::Plain };
+                if button(ui, row, &name, &format!("Show {name}"), look, palette).clicked() {
+                    self.shelf = shelf;
+                }
+                if matches!(shelf, Shelf::Kits) {
+                    ui.add_space(6.0);
+                }
+            }
+        });
+    }
+
+    fn search(&mut self, ui: &mut Ui, rect: Rect) -> Ask {
+        let field = Id::unique("search");
+        let edit = TextEdit::singleline(&mut self.words).id(field).hint_text("Search, or a file’s whole path");
+        let response = ui.put(rect.with_max_y(rect.top() + 22.0), edit.font(font(TEXT)).margin(vec2(6.0, 3.0)));
+        response.widget_info(|| {
+            let mut about = WidgetInfo::text_edit(true, "", &self.words, "");
+            about.label = Some("Search".to_owned());
+            about
+        });
+        if std::mem::take(&mut self.is_new) {
+            response.request_focus();
+        }
+        let pressed = |key| ui.input(|input| input.key_pressed(key));
+        if response.lost_focus() && pressed(Key::Enter) && self.words.ends_with(".toml") {
+            return Ask::File;
+        }
+        match (pressed(Key::ArrowDown), pressed(Key::ArrowUp)) {
+            (true, false) => Ask::Step(1),
+            (false, true) => Ask::Step(-1),
+            _ => Ask::Nothing,
+        }
+    }
+
+    /// Shows the sounds. Returns the one that was clicked.
+    #[allow(clippy::too_many_arguments, reason = "a part of one function")]
+    fn rows(
+        &self,
+        ui: &mut Ui,
+        rect: Rect,
+        found: &[Sound],
+        present: &str,
+        chosen: Option<usize>,
+        sounds: &mut Sounds,
+        message: &mut Option<String>,
+        palette: &Palette,
+    ) -> Option<usize> {
+        let mut clicked = None;
+        let columns = ((rect.width() / 210.0) as usize).max(1);
+        let mut inner = ui.new_child(UiBuilder::new().id_salt("sounds").max_rect(rect));
+        if found.is_empty() {
+            line(
+                ui.painter(),
+                rect.with_max_y(rect.top() + 24.0),
+                Align2::LEFT_CENTER,
+                "Nothing has these words.",
+                TEXT,
+                palette.muted,
+            );
+        }
+        ScrollArea::vertical().id_salt("sounds").auto_shrink(false).show(&mut inner, |ui| {
+            let rows = found.len().div_ceil(columns);
+            let width = ui.available_width();
+            let (area, _) = ui.allocate_exact_size(vec2(width, rows as f32 * ROW), Sense::hover());
+            for (place, sound) in found.iter().enumerate() {
+                let size = vec2(width / columns as f32, ROW);
+                let corner = area.min + vec2((place % columns) as f32 * size.x, (place / columns) as f32 * size.y);
+                let cell = Rect::from_min_size(corner, size).shrink2(vec2(2.0, 1.0));
+                if chosen == Some(place) {
+                    ui.scroll_to_rect(cell.expand(ROW), None);
+                }
+                if !ui.is_rect_visible(cell) {
+                    continue;
+                }
+                let star = Rect::from_min_size(cell.min, vec2(20.0, cell.height()));
+                let response = ui.interact(cell.with_min_x(star.right()), Id::unique(("sound", place)), Sense::click());
+                let is_on = sound.name() == present;
+                response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_on, sound.name()));
+                if response.clicked() {
+                    clicked = Some(place);
+                }
+                if is_on || response.hovered() {
+                    ui.painter().rect_filled(cell, 3.0, palette.raised);
+                }
+                let is_favourite = sounds.is_favourite(sound);
+                if star::show(ui, star, place, sound.name(), is_favourite, palette) {
+                    *message = sounds.set_favourite(sound.name(), !is_favourite).or(message.take());
+                }
+                let colour = if is_on { palette.accent_text } else { palette.text };
+                let name = cell.with_min_x(star.right() + 2.0);
+                let name = line(ui.painter(), name, Align2::LEFT_CENTER, sound.name(), TEXT, colour);
+                let rest = Rect::from_min_max(pos2(name.right() + 8.0, cell.top()), cell.max - vec2(4.0, 0.0));
+                let what = if sound.path.is_some() { "yours" } else { sound.tags().first().map_or("", String::as_str) };
+                line(ui.painter(), rest, Align2::RIGHT_CENTER, what, SMALL, palette.muted);
+            }
+        });
+        clicked
+    }
+
+    /// Loads a sound and plays the key on which it sounds most like itself.
+    fn try_out(&mut self, ui: &Ui, sound: &Sound, controls: &mut Controls) {
+        controls.history.begin(controls.params);
+        load(sound.playable.clone(), controls.params, controls.host);
+        controls.history.end(sound.name(), controls.params);
+        self.details.open(sound.name());
+        let link = controls.params.link();
+        if let Some((key, _)) = self.held.take() {
+            link.play(Touch::Up { key });
+        }
+        let key = match &sound.playable {
+            Playable::Preset(preset) => preset.guide.home,
+            Playable::Kit(kit) => kit.pads.first().map_or(Guide::default().home, |(key, _)| *key),
+        };
+        link.play(Touch::Down { key, velocity: 0.75 });
+        self.held = Some((key, ui.input(|input| input.time) + HELD));
+    }
+
+    fn load_file(&mut self, controls: &mut Controls) -> String {
+        match read(self.words.trim()) {
+            Ok((playable, remarks)) => {
+                controls.history.begin(controls.params);
+                let name = playable.name().to_owned();
+                load(playable, controls.params, controls.host);
+                self.details.open(&name);
+                controls.history.end(name, controls.params);
+                [vec![format!("loaded {}", self.words.trim())], remarks].concat().join("; ")
+            }
+            Err(message) => message,
+        }
+    }
+}
+
+/// What the user asks for by the search field's keys.
+enum Ask {
+    Nothing,
+    /// The sound so many places further.
+    Step(isize),
+    /// The file whose path was typed.
+    File,
+}

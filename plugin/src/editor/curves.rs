@@ -1,0 +1,77 @@
+//! Small pictures of what the parameters of a section do together.
+
+use super::controls::Controls;
+use egui::{Painter, Pos2, Rect, Shape, Stroke, pos2};
+use sprung::params::{PARAMS, Param, ParamInfo};
+use sprung::units::ratio_from_semitones;
+
+/// The part of an envelope's picture that the sustain takes, which has no length.
+const SUSTAIN: f64 = 0.2;
+/// Points of each bent stage.
+const POINTS: usize = 16;
+
+/// Draws the picture of a section, if it has one.
+pub(super) fn paint(painter: &Painter, rect: Rect, section: &[ParamInfo], controls: &Controls) {
+    let palette = controls.palette;
+    let envelopes = [Param::Envelope1Delay, Param::Envelope2Delay];
+    if let Some(first) = section.iter().map(|info| info.param).find(|param| envelopes.contains(param)) {
+        let value = |place: usize| f64::from(controls.value(&PARAMS[first as usize + place]));
+        let points = envelope(rect, &value);
+        painter.hline(rect.x_range(), painter.round_to_pixel_center(rect.bottom()), Stroke::new(1.0, palette.line));
+        painter.add(Shape::line(points, Stroke::new(1.5, palette.accent)));
+    }
+}
+
+/// An envelope with the values of its rows: delay, attack, hold, decay, sustain, release, curve. The widths of its stages
+/// are as their square roots, so that short ones are seen beside long ones.
+fn envelope(rect: Rect, value: &dyn Fn(usize) -> f64) -> Vec<Pos2> {
+    let [delay, attack, hold, decay, release] = [0, 1, 2, 3, 5].map(|row| value(row).max(0.0).sqrt());
+    let (sustain, bend) = (value(4) / 100.0, ratio_from_semitones(12.0 * -0.04 * value(6)));
+    let total = (delay + attack + hold + decay + release).max(1e-6) / (1.0 - SUSTAIN);
+    let stages = [
+        (delay, 0.0, 0.0),
+        (attack, 0.0, 1.0),
+        (hold, 1.0, 1.0),
+        (decay, 1.0, sustain),
+        (SUSTAIN * total, sustain, sustain),
+        (release, sustain, 0.0),
+    ];
+    let place = |time: f64, level: f64| {
+        pos2(rect.left() + rect.width() * (time / total) as f32, rect.bottom() - rect.height() * level as f32)
+    };
+    let (mut points, mut start) = (vec![place(0.0, 0.0)], 0.0);
+    for (length, from, to) in stages {
+        for point in 1..=POINTS {
+            let share = point as f64 / POINTS as f64;
+            // The engine's curve.
+            let bent = share / (share + bend * (1.0 - share));
+            points.push(place(start + length * share, from + (to - from) * bent));
+        }
+        start += length;
+    }
+    // A line through the same point twice has no direction there.
+    points.dedup_by(|next, point| (*next - *point).length() < 0.05);
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::vec2;
+
+    #[test]
+    fn an_envelope_rises_falls_and_ends_at_the_right() {
+        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(100.0, 50.0));
+        let rows = [0.1, 0.2, 0.0, 0.5, 40.0, 1.0, 30.0];
+        let points = envelope(rect, &|row| rows[row]);
+        assert!(
+            points.windows(2).all(|pair| pair[0].x <= pair[1].x)
+                && points.iter().all(|point| rect.expand(0.01).contains(*point))
+        );
+        assert!(points.iter().any(|point| point.y < 0.01), "it reaches its top");
+        assert!(points.windows(2).all(|pair| pair[0] != pair[1]), "no point twice");
+        let last = points[points.len() - 1];
+        assert!((last - rect.right_bottom()).length() < 0.1, "{last:?}");
+        assert!(points.iter().any(|point| (point.y - 30.0).abs() < 0.01), "the sustain");
+    }
+}

@@ -1,0 +1,121 @@
+//! What the browser says of a sound, and the field to save under a name.
+
+use super::buttons::{Look, button};
+use super::controls::{Controls, Hint};
+use super::sounds::{Sound, Sounds};
+use super::text::{line, paragraph};
+use super::theme::{SMALL, TEXT, TITLE_HEIGHT, font};
+use egui::{Align2, Id, Rect, TextEdit, Ui, WidgetInfo, pos2, vec2};
+use sprung::preset::{Playable, Preset};
+use sprung::units::note_name;
+
+/// What is typed.
+#[derive(Default)]
+pub(super) struct Details {
+    /// The name to save under.
+    pub(super) name: String,
+    /// A name whose file is replaced if the user saves again.
+    confirm: Option<String>,
+}
+
+impl Details {
+    /// Starts anew, with the name of the present sound.
+    pub(super) fn open(&mut self, name: &str) {
+        (self.name, self.confirm) = (name.to_owned(), None);
+    }
+
+    /// Shows what is known of a sound, and what one can do with it. Returns a message, and whether the list has changed.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        shown: Option<&Sound>,
+        sounds: &Sounds,
+        controls: &mut Controls,
+    ) -> Option<(String, bool)> {
+        let palette = controls.palette;
+        let mut top = rect.top();
+        if let Some(sound) = shown {
+            let title = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), TITLE_HEIGHT + 2.0));
+            line(ui.painter(), title, Align2::LEFT_CENTER, sound.name(), TEXT + 3.0, palette.text);
+            top = title.bottom() + 4.0;
+            let keys = match &sound.playable {
+                Playable::Preset(Preset { guide, .. }) => {
+                    format!(
+                        "{} to {}, best at {}",
+                        note_name(guide.lowest),
+                        note_name(guide.highest),
+                        note_name(guide.home)
+                    )
+                }
+                Playable::Kit(kit) => format!("kit of {} pads", kit.pads.len()),
+            };
+            let lines = [
+                sound.tags().join("  "),
+                format!("by {}", sound.author()),
+                keys,
+                String::new(),
+                sound.comment().to_owned(),
+            ];
+            let bottom = rect.bottom() - 62.0;
+            for text in lines {
+                let place = Rect::from_min_max(pos2(rect.left(), top), pos2(rect.right(), bottom.max(top)));
+                top += paragraph(ui.painter(), place, &text, SMALL + 0.5, palette.muted).max(6.0) + 2.0;
+            }
+        }
+        let field =
+            Rect::from_min_max(pos2(rect.left(), rect.bottom() - 54.0), pos2(rect.right(), rect.bottom() - 30.0));
+        let edit = TextEdit::singleline(&mut self.name).id(Id::unique("save name")).hint_text("a name");
+        let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
+        response.widget_info(|| {
+            let mut about = WidgetInfo::text_edit(true, "", &self.name, "");
+            about.label = Some("Name to save under".to_owned());
+            about
+        });
+        let wide = (rect.width() - 4.0) / 2.0;
+        let save = Rect::from_min_size(pos2(rect.left(), rect.bottom() - 24.0), vec2(wide, 24.0));
+        let bin = save.translate(vec2(wide + 4.0, 0.0));
+        let own = shown.filter(|sound| sound.path.is_some());
+        let text = if self.confirm.is_some() { "Replace" } else { "Save" };
+        let response = button(ui, save, text, "Save under this name", Look::On, palette);
+        if response.hovered() {
+            let folder = sounds.library.as_ref().map(|library| library.presets_folder().display().to_string());
+            *controls.hint = Hint::new("Save", folder.unwrap_or_default());
+        }
+        if response.clicked() {
+            return Some(self.save(sounds, controls));
+        }
+        let look = if own.is_some() { Look::Plain } else { Look::Disabled };
+        if button(ui, bin, "To the bin", "Move your sound to the bin", look, palette).clicked()
+            && let (Some(path), Some(library)) = (own.and_then(|own| own.path.as_ref()), &sounds.library)
+        {
+            return Some(match library.discard(path) {
+                Ok(place) => (format!("moved to {}", place.display()), true),
+                Err(error) => (error.to_string(), false),
+            });
+        }
+        None
+    }
+
+    fn save(&mut self, sounds: &Sounds, controls: &Controls) -> (String, bool) {
+        let name = self.name.trim().to_owned();
+        let replace = self.confirm.take().is_some_and(|confirmed| confirmed == name);
+        let Some(library) = &sounds.library else {
+            return ("the system does not say where your data is kept".to_owned(), false);
+        };
+        let Playable::Preset(preset) = controls.params.state().playable else {
+            return ("a kit is kept in the project with its presets: only single presets are saved".to_owned(), false);
+        };
+        match library.save(&Preset { name: name.clone(), ..preset }, replace) {
+            Ok(path) => {
+                controls.params.rename(name);
+                (format!("saved {}", path.display()), true)
+            }
+            Err(sprung::Error::Exists { path }) => {
+                self.confirm = Some(name);
+                (format!("{path} exists; press Replace to write over it"), false)
+            }
+            Err(error) => (error.to_string(), false),
+        }
+    }
+}

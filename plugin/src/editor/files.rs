@@ -1,0 +1,69 @@
+//! Sounds are loaded: those that the window lists, and preset and kit files by their path.
+
+use super::gestures::{announce, positions};
+use crate::params::SprungParams;
+use crate::state::State;
+use nice_plug_core::context::gui::GuiContext;
+use sprung::preset::{Playable, Replaced};
+use std::fs::File;
+use std::path::Path;
+
+/// A message about the project's last state, if not all of it was understood: the first complaint, and the number of
+/// others.
+pub(super) fn summary(complaints: &[String]) -> Option<String> {
+    let [first, rest @ ..] = complaints else { return None };
+    let rest = if rest.is_empty() { String::new() } else { format!(" (and {} more)", rest.len()) };
+    Some(format!("Not all of the project’s state was understood: {first}{rest}"))
+}
+
+/// Loads a preset or kit, and tells the host the new knob positions.
+pub(super) fn load(playable: Playable, params: &SprungParams, host: &GuiContext) {
+    let State { seed, view, .. } = params.state();
+    let before = positions(params);
+    params.load(State::new(playable, seed, view).into());
+    announce(params, host, &before);
+}
+
+/// Reads a preset or kit file. Returns it with a remark about each retired parameter in it.
+pub(super) fn read(path: &str) -> Result<(Playable, Vec<String>), String> {
+    let mut open =
+        |path: &Path| File::open(path).map_err(|source| sprung::Error::io(path.display().to_string(), source));
+    let mut remarks = vec![];
+    let mut remark = |_: &str, replaced: Replaced| remarks.push(replaced.to_string());
+    let read = check(path).and_then(|path| Playable::read(path, &mut open, &mut remark));
+    read.map(|playable| (playable, remarks)).map_err(|error| error.to_string())
+}
+
+/// Only full paths are accepted, since users do not know a host's working folder.
+fn check(path: &str) -> sprung::Result<&Path> {
+    let path = Path::new(path);
+    if path.is_absolute() && path.extension().is_some_and(|extension| extension == "toml") {
+        return Ok(path);
+    }
+    let example = if cfg!(windows) { "C:\\Sounds\\bell.toml" } else { "/home/me/bell.toml" };
+    Err(sprung::Error::value(path.display().to_string(), format!("expected a whole path, such as {example}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_whole() {
+        for path in ["", "bell.toml", "/tmp/bell", "-"] {
+            let error = read(path).unwrap_err();
+            assert!(error.contains("expected a whole path, such as "), "{error}");
+        }
+    }
+
+    #[test]
+    fn kits_are_read_and_what_was_not_understood_is_told_in_a_line() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/kits/acoustic-kit.toml");
+        let path = std::fs::canonicalize(path).unwrap().display().to_string();
+        assert!(matches!(read(&path), Ok((Playable::Kit(_), _))));
+        let lines = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!(summary(&[]), None);
+        assert_eq!(summary(&lines[..1]).as_deref(), Some("Not all of the project’s state was understood: a"));
+        assert!(summary(&lines).unwrap().ends_with(": a (and 2 more)"));
+    }
+}

@@ -1,0 +1,72 @@
+//! Changes of parameters through the host, which may record them as automation.
+
+use crate::params::{Knob, SprungParams};
+use nice_plug_core::context::gui::GuiContext;
+use sprung::params::PARAM_COUNT;
+use std::array::from_fn;
+
+/// A parameter's change in progress, which the host sees as one gesture.
+#[derive(Default)]
+pub(super) struct Gestures {
+    /// Index of the parameter for which the host was told that a gesture has begun.
+    moving: Option<usize>,
+}
+
+impl Gestures {
+    /// The parameter that is being changed.
+    pub(super) fn moving(&self) -> Option<usize> {
+        self.moving
+    }
+
+    /// Moves a knob. The first call begins the gesture, after the end of another one.
+    pub(super) fn turn(&mut self, params: &SprungParams, host: &GuiContext, index: usize, position: f32) {
+        if self.moving != Some(index) {
+            self.end(params, host);
+            self.moving = Some(index);
+            let setter = host.param_setter();
+            match &params.knobs()[index] {
+                Knob::Continuous(knob) => setter.begin_set_parameter(knob),
+                Knob::Stepped(knob) => setter.begin_set_parameter(knob),
+            }
+        }
+        let knob = &params.knobs()[index];
+        // In a VST3 host that does not process, the wrapper's own change would be lost.
+        knob.turn(position);
+        let setter = host.param_setter();
+        match knob {
+            Knob::Continuous(knob) => setter.set_parameter_normalized(knob, position),
+            Knob::Stepped(knob) => setter.set_parameter_normalized(knob, position),
+        }
+    }
+
+    /// Ends the gesture, if there is one.
+    pub(super) fn end(&mut self, params: &SprungParams, host: &GuiContext) {
+        let Some(index) = self.moving.take() else { return };
+        let setter = host.param_setter();
+        match &params.knobs()[index] {
+            Knob::Continuous(knob) => setter.end_set_parameter(knob),
+            Knob::Stepped(knob) => setter.end_set_parameter(knob),
+        }
+    }
+
+    /// Moves a knob, as one gesture.
+    pub(super) fn set(&mut self, params: &SprungParams, host: &GuiContext, index: usize, position: f32) {
+        self.turn(params, host, index, position);
+        self.end(params, host);
+    }
+}
+
+/// The positions of all knobs.
+pub(super) fn positions(params: &SprungParams) -> [f32; PARAM_COUNT] {
+    from_fn(|index| params.knobs()[index].position())
+}
+
+/// Tells the host of the knobs that are no longer at the positions `before`.
+pub(super) fn announce(params: &SprungParams, host: &GuiContext, before: &[f32; PARAM_COUNT]) {
+    let mut gestures = Gestures::default();
+    for (index, (now, before)) in positions(params).into_iter().zip(before).enumerate() {
+        if now.to_bits() != before.to_bits() {
+            gestures.set(params, host, index, now);
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Undo and redo: the states before and after what the user did, by name.
+
+use super::gestures::{Gestures, announce, positions};
+use crate::params::SprungParams;
+use crate::state::State;
+use nice_plug_core::context::gui::GuiContext;
+use sprung::params::{PARAM_COUNT, Values};
+use sprung::preset::Playable;
+
+/// How many steps can be undone.
+const STEPS: usize = 100;
+
+/// A state, and what was done to it.
+struct Step {
+    name: String,
+    state: State,
+}
+
+/// What can be undone and redone.
+#[derive(Default)]
+pub(super) struct History {
+    /// The states before each step, the last one at the end.
+    undo: Vec<Step>,
+    /// The states after each step that was undone, the next one at the end.
+    redo: Vec<Step>,
+    /// The state before what the user is doing.
+    open: Option<State>,
+}
+
+impl History {
+    /// Keeps the state before something that the user begins to do. Has no effect until [`History::end`].
+    pub(super) fn begin(&mut self, params: &SprungParams) {
+        if self.open.is_none() {
+            self.open = Some(params.state());
+        }
+    }
+
+    /// What the user did is over: it becomes a step if it has changed anything.
+    pub(super) fn end(&mut self, name: impl Into<String>, params: &SprungParams) {
+        let Some(state) = self.open.take() else { return };
+        if same_sound(&state, &params.state()) {
+            return;
+        }
+        self.undo.push(Step { name: name.into(), state });
+        self.redo.clear();
+        if self.undo.len() > STEPS {
+            self.undo.remove(0);
+        }
+    }
+
+    /// The name of what would be undone.
+    pub(super) fn undo_name(&self) -> Option<&str> {
+        self.undo.last().map(|step| step.name.as_str())
+    }
+
+    /// The name of what would be redone.
+    pub(super) fn redo_name(&self) -> Option<&str> {
+        self.redo.last().map(|step| step.name.as_str())
+    }
+
+    /// Undoes the last step. Returns its name.
+    pub(super) fn undo(&mut self, params: &SprungParams, host: &GuiContext) -> Option<String> {
+        go(&mut self.undo, &mut self.redo, params, host)
+    }
+
+    /// Does again what was undone last. Returns its name.
+    pub(super) fn redo(&mut self, params: &SprungParams, host: &GuiContext) -> Option<String> {
+        go(&mut self.redo, &mut self.undo, params, host)
+    }
+}
+
+fn go(from: &mut Vec<Step>, to: &mut Vec<Step>, params: &SprungParams, host: &GuiContext) -> Option<String> {
+    let Step { name, state } = from.pop()?;
+    to.push(Step { name: name.clone(), state: params.state() });
+    restore(state, params, host);
+    Some(name)
+}
+
+/// Returns to a state, apart from how the window looks, and tells the host which knobs have moved.
+pub(super) fn restore(mut state: State, params: &SprungParams, host: &GuiContext) {
+    let now = params.state();
+    state.view = now.view;
+    if same_but_for_knobs(&state, &now) {
+        // Sounding notes follow a knob, and keep what they play if a sound is loaded.
+        let mut gestures = Gestures::default();
+        for index in 0..PARAM_COUNT {
+            if state.positions[index].to_bits() != now.positions[index].to_bits() {
+                gestures.set(params, host, index, state.positions[index]);
+            }
+        }
+        // A knob cannot say a value that was loaded and lies between its positions.
+        if params.state().values == state.values {
+            return;
+        }
+    }
+    let before = positions(params);
+    params.load(state.into());
+    announce(params, host, &before);
+}
+
+/// Whether two states sound the same, and are called the same.
+pub(super) fn same_sound(one: &State, other: &State) -> bool {
+    one.positions == other.positions && one.values == other.values && same_but_for_knobs(one, other)
+}
+
+fn same_but_for_knobs(one: &State, other: &State) -> bool {
+    let neutral = |playable: &Playable| {
+        let mut playable = playable.clone();
+        if let Playable::Preset(preset) = &mut playable {
+            preset.patch.values = Values::default();
+        }
+        playable
+    };
+    one.seed == other.seed && neutral(&one.playable) == neutral(&other.playable)
+}

@@ -1,0 +1,57 @@
+//! Draws the face of a knob: an arc from the default to the position, a hand, and rings for modulation.
+
+use super::theme::Palette;
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2};
+use std::f32::consts::PI;
+
+/// What a face shows. Positions are 0 to 1.
+pub(super) struct Face<'a> {
+    pub(super) position: f32,
+    /// Where the arc begins: the position of the default.
+    pub(super) origin: f32,
+    /// What the host's modulation adds to the position.
+    pub(super) offset: f32,
+    /// The parts of the travel that routes modulate.
+    pub(super) ranges: &'a [[f32; 2]],
+    pub(super) is_hovered: bool,
+    pub(super) is_focused: bool,
+}
+
+/// The direction of a position: from lower left over the top to lower right.
+fn direction(position: f32) -> Vec2 {
+    Vec2::angled(PI * (0.75 + 1.5 * position.clamp(0.0, 1.0)))
+}
+
+fn arc(painter: &Painter, centre: Pos2, radius: f32, [from, to]: [f32; 2], stroke: Stroke) {
+    let steps = 2 + ((to - from).abs() * 48.0) as usize;
+    let point = |step: usize| centre + radius * direction(from + (to - from) * step as f32 / steps as f32);
+    painter.add(Shape::line((0..=steps).map(point).collect(), stroke));
+}
+
+pub(super) fn paint(painter: &Painter, rect: Rect, palette: &Palette, face: &Face) {
+    let (centre, radius) = (rect.center(), rect.width() / 2.0);
+    let track = if face.is_hovered { palette.muted.gamma_multiply(0.55) } else { palette.line };
+    arc(painter, centre, radius - 2.0, [0.0, 1.0], Stroke::new(3.0, track));
+    if (face.position - face.origin).abs() > 1e-4 {
+        arc(painter, centre, radius - 2.0, [face.origin, face.position], Stroke::new(3.0, palette.accent));
+    }
+    for range in face.ranges {
+        arc(painter, centre, radius + 1.0, *range, Stroke::new(1.5, palette.modulation));
+    }
+    painter.circle_filled(centre, radius - 6.5, palette.raised);
+    if face.is_focused {
+        painter.circle_stroke(centre, radius - 5.5, Stroke::new(1.5, palette.accent));
+    }
+    let hand = |position: f32, from: f32, stroke: Stroke| {
+        let along = direction(position);
+        painter.line_segment([centre + from * along, centre + (radius - 7.5) * along], stroke);
+    };
+    if face.offset.abs() > 1e-4 {
+        let modulated = (face.position + face.offset).clamp(0.0, 1.0);
+        arc(painter, centre, radius + 1.0, [face.position, modulated], Stroke::new(1.5, palette.modulation));
+        let dot = centre + (radius + 1.0) * direction(modulated);
+        painter.circle_filled(dot, 2.2, palette.modulation);
+    }
+    let colour: Color32 = palette.text;
+    hand(face.position, radius * 0.22, Stroke::new(2.0, colour));
+}

@@ -1,0 +1,260 @@
+//! The modes of the sound: what they are, what they do now, and how to change them.
+
+use super::buttons::{Look, button};
+use super::controls::{Controls, Hint};
+use super::mode_axes::Axes;
+use super::modes_face::{self, Face};
+use super::snap::Snap;
+use super::text::line;
+use super::theme::{PADDING, SMALL, TITLE_HEIGHT};
+use crate::link::Touch;
+use crate::state::State;
+use egui::{Align2, CursorIcon, Id, Popup, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
+use sprung::params::Param;
+use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
+use sprung::preset::Playable;
+
+/// How far from a mode's circle it can be grabbed, in pixels.
+const REACH: f32 = 14.0;
+/// How often the sound is struck while a mode is dragged, in seconds.
+const STRIKES: f64 = 0.25;
+/// The shortest time between two changes of the sound while a mode is dragged, in seconds.
+const CHANGES: f64 = 0.04;
+
+/// What the pointer changes of a mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Aspect {
+    LevelAndRatio,
+    Decay,
+    Pan,
+}
+
+/// A drag in progress.
+struct Drag {
+    mode: usize,
+    aspect: Aspect,
+    /// The mode as it was, and how far the pointer has moved since.
+    before: Mode,
+    moved: Vec2,
+    modes: Vec<Mode>,
+    changed: f64,
+    struck: f64,
+}
+
+/// What the user does with the modes.
+#[derive(Default)]
+pub(super) struct ModesView {
+    axes: Option<Axes>,
+    drag: Option<Drag>,
+    snap: Snap,
+    /// The mode that was touched last.
+    selected: Option<usize>,
+}
+
+impl ModesView {
+    /// The mode that was touched last.
+    pub(super) fn selected(&self) -> Option<usize> {
+        self.selected
+    }
+
+    /// Shows the modes. `home` is the key on which the sound is struck; `is_editable` is false for kits.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        patch: &Patch,
+        energies: &[f32],
+        home: u8,
+        is_editable: bool,
+        controls: &mut Controls,
+    ) {
+        let palette = controls.palette;
+        palette.paint_panel(ui.painter(), rect);
+        let title =
+            Rect::from_min_size(rect.min + vec2(PADDING, 2.0), vec2(rect.width() - 2.0 * PADDING, TITLE_HEIGHT));
+        self.title(ui, title, patch, is_editable, controls);
+        let area = Rect::from_min_max(rect.min + vec2(36.0, TITLE_HEIGHT + 8.0), rect.max - vec2(PADDING + 4.0, 20.0));
+        let axes = match self.axes.filter(|_| self.drag.is_some()) {
+            Some(axes) => axes.on(area),
+            None => Axes::around(patch.modes.as_slice(), area),
+        };
+        self.axes = Some(axes);
+        let response = ui.interact(area.expand(8.0), Id::unique("modes"), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Modes"));
+        if is_editable {
+            self.edit(ui, &response, &axes, patch, home, controls);
+        }
+        let pointer = response.hover_pos();
+        let hovered = pointer.and_then(|pointer| nearest(patch.modes.as_slice(), &axes, pointer));
+        let modes = self.drag.as_ref().map_or(patch.modes.as_slice(), |drag| &drag.modes);
+        let selected = self.drag.as_ref().map(|drag| drag.mode).or(hovered);
+        if let Some(mode) = selected.and_then(|place| modes.get(place).map(|mode| (place, mode))) {
+            *controls.hint = describe(mode, controls.value(Param::Decay.info()), is_editable);
+        } else if pointer.is_some() {
+            let help = "Double-click where there is none to add a mode.";
+            *controls.hint = Hint::new(format!("{} modes", modes.len()), if is_editable { help } else { "" });
+        }
+        let decay = controls.value(Param::Decay.info());
+        modes_face::paint(ui.painter(), &axes, palette, &Face { modes, decay, energies, selected });
+    }
+
+    fn title(&mut self, ui: &Ui, rect: Rect, patch: &Patch, is_editable: bool, controls: &Controls) {
+        let palette = controls.palette;
+        let title = line(ui.painter(), rect, Align2::LEFT_CENTER, "MODES", SMALL, palette.muted);
+        let snap = Rect::from_min_max(pos2(rect.right() - 78.0, rect.top() + 1.0), rect.max);
+        let rest = Rect::from_min_max(pos2(title.right() + 12.0, rect.top()), pos2(snap.left() - 8.0, rect.bottom()));
+        let help = match (is_editable, patch.modes.origin().is_some()) {
+            (false, _) => "of the kit’s first sound",
+            (true, true) => "from a model; the first change makes them a table of their own",
+            (true, false) => "drag: level, ratio   Alt: decay   Ctrl: pan   Shift: fine   double-click: add, remove",
+        };
+        line(ui.painter(), rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
+        let look = if self.snap == Snap::Off { Look::Plain } else { Look::On };
+        let response = button(ui, snap, self.snap.name(), "Snap", look, palette);
+        Popup::menu(&response).show(|ui| {
+            ui.set_min_width(90.0);
+            for snap in Snap::ALL {
+                if ui.selectable_label(snap == self.snap, snap.name()).clicked() {
+                    self.snap = snap;
+                    ui.close();
+                }
+            }
+        });
+    }
+
+    fn edit(&mut self, ui: &Ui, response: &Response, axes: &Axes, patch: &Patch, home: u8, controls: &mut Controls) {
+        let modes = patch.modes.as_slice();
+        let (now, modifiers, delta) = ui.input(|input| (input.time, input.modifiers, input.pointer.delta()));
+        let start = ui.input(|input| input.pointer.press_origin());
+        if response.drag_started()
+            && let Some(mode) = start.and_then(|start| nearest(modes, axes, start))
+        {
+            let aspect = match (modifiers.alt, modifiers.ctrl) {
+                (true, _) => Aspect::Decay,
+                (_, true) => Aspect::Pan,
+                _ => Aspect::LevelAndRatio,
+            };
+            controls.history.begin(controls.params);
+            self.selected = Some(mode);
+            let modes = modes.to_vec();
+            let before = modes[mode];
+            self.drag =
+                Some(Drag { mode, aspect, before, moved: Vec2::ZERO, modes, changed: now, struck: now - STRIKES });
+        }
+        if let Some(drag) = &mut self.drag {
+            drag.moved += if modifiers.shift { delta * 0.1 } else { delta };
+            let is_over = !response.dragged();
+            let mode = moved(drag, axes, self.snap);
+            if drag.modes[drag.mode] != mode {
+                drag.modes[drag.mode] = mode;
+            }
+            if (is_over || now - drag.changed >= CHANGES) && drag.modes != modes {
+                drag.changed = now;
+                replace(&drag.modes, patch, controls);
+            }
+            if now - drag.struck >= STRIKES && !is_over {
+                drag.struck = now;
+                strike(home, controls);
+            }
+            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+            ui.ctx().request_repaint();
+            if is_over {
+                let mode = drag.modes[drag.mode];
+                controls.params.link().play(Touch::Up { key: home });
+                controls.history.end(format!("mode {:.3}", mode.ratio), controls.params);
+                self.drag = None;
+            }
+        }
+        if response.double_clicked()
+            && let Some(pointer) = response.interact_pointer_pos()
+        {
+            self.add_or_remove(pointer, axes, patch, home, controls);
+        }
+    }
+
+    /// Removes the mode at a place, or adds one where there is none.
+    fn add_or_remove(&mut self, pointer: Pos2, axes: &Axes, patch: &Patch, home: u8, controls: &mut Controls) {
+        let mut modes = patch.modes.as_slice().to_vec();
+        let name = match nearest(&modes, axes, pointer) {
+            // A body has at least one.
+            Some(_) if modes.len() == 1 => return,
+            Some(place) => format!("remove mode {:.3}", modes.remove(place).ratio),
+            None if modes.len() >= MAX_MODES => return,
+            None => {
+                let ratio = self.snap.nearest(axes.ratio(pointer.x));
+                // As long as its neighbour.
+                let distance = |mode: &Mode| (mode.ratio / ratio).max(ratio / mode.ratio);
+                let like = modes.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                let like = like.unwrap_or(Mode::UNIT);
+                modes.push(Mode { ratio, level: axes.level(pointer.y), ..like }.clamped());
+                format!("add mode {ratio:.3}")
+            }
+        };
+        self.selected = None;
+        controls.history.begin(controls.params);
+        replace(&modes, patch, controls);
+        controls.history.end(name, controls.params);
+        strike(home, controls);
+        controls.params.link().play(Touch::Up { key: home });
+    }
+}
+
+/// The mode whose circle is nearest to a place, within reach.
+fn nearest(modes: &[Mode], axes: &Axes, place: Pos2) -> Option<usize> {
+    let distances = modes.iter().map(|mode| axes.place(mode).distance(place)).enumerate();
+    distances.filter(|(_, distance)| *distance <= REACH).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(mode, _)| mode)
+}
+
+/// The dragged mode, where the pointer is now.
+fn moved(drag: &Drag, axes: &Axes, snap: Snap) -> Mode {
+    let (mut mode, moved) = (drag.before, drag.moved);
+    match drag.aspect {
+        Aspect::LevelAndRatio => {
+            let to = axes.place(&drag.before) + moved;
+            if moved.x != 0.0 {
+                mode.ratio = snap.nearest(axes.ratio(to.x));
+            }
+            if moved.y != 0.0 {
+                mode.level = axes.level(to.y).copysign(drag.before.level);
+            }
+        }
+        // An octave of T60 for 30 pixels.
+        Aspect::Decay => {
+            let octaves = f64::from((moved.x - moved.y) / 30.0);
+            mode.decay *= sprung::units::ratio_from_semitones(12.0 * octaves) as f32;
+        }
+        Aspect::Pan => mode.pan += moved.x / 60.0,
+    }
+    mode.clamped()
+}
+
+/// Gives the sound another table of modes.
+fn replace(modes: &[Mode], patch: &Patch, controls: &Controls) {
+    let mut state = controls.params.state();
+    let Playable::Preset(preset) = &mut state.playable else { return };
+    let phases: Vec<f32> = (0..modes.len()).map(|mode| patch.modes.phase(mode)).collect();
+    let table = ModeTable::new(modes);
+    let has_phases = patch.modes.has_phases() && modes.len() == patch.modes.as_slice().len();
+    preset.patch.modes = if has_phases { table.with_phases(&phases) } else { table };
+    // The knobs stay where they are.
+    let positions = state.positions;
+    let state = State { positions, ..state };
+    controls.params.load(state.into());
+}
+
+fn strike(home: u8, controls: &Controls) {
+    let link = controls.params.link();
+    link.play(Touch::Up { key: home });
+    link.play(Touch::Down { key: home, velocity: 0.7 });
+}
+
+fn describe((place, mode): (usize, &Mode), decay: f32, is_editable: bool) -> Option<Hint> {
+    let db = sprung::units::db_from_gain(f64::from(mode.level.abs()));
+    let seconds = Param::Decay.info().format(mode.decay * decay);
+    let title = format!("Mode {}", place + 1);
+    let pan = if mode.pan == 0.0 { String::new() } else { format!("   pan {:.0} %", mode.pan * 100.0) };
+    let sign = if mode.level < 0.0 { ", inverted" } else { "" };
+    let help = format!("ratio {:.3}   {db:.1} dB{sign}   T60 {seconds}{pan}", mode.ratio);
+    let how = if is_editable { "   Alt-drag: T60   Ctrl-drag: pan   double-click: remove" } else { "" };
+    Hint::new(title, help + how)
+}

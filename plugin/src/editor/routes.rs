@@ -1,0 +1,149 @@
+//! Routes: their names, and the menus that make, change and remove them.
+
+use super::controls::Controls;
+use crate::loaded::positions_of;
+use crate::state::State;
+use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
+use sprung::params::{PARAMS, Param, ParamInfo};
+use sprung::patch::Patch;
+use sprung::patch::routes::{MAX_ROUTES, Response, Route, Routes, Source, amount_param};
+use sprung::preset::{Guide, Playable};
+
+/// The amount of a new route, in per cent.
+const AMOUNT: f32 = 25.0;
+
+/// The name of a source for people, of a macro the preset's own.
+fn source_name(source: Source, guide: &Guide) -> String {
+    let number = source.id().strip_prefix("macro").and_then(|number| number.parse::<usize>().ok());
+    let own = number.and_then(|number| guide.macros.get(number - 1)).filter(|name| !name.is_empty());
+    own.cloned().unwrap_or_else(|| source.id().replace('_', " "))
+}
+
+/// `wheel › Vibrato`, or the number of a place without a route.
+pub(super) fn name(place: usize, routes: &Routes, guide: &Guide) -> String {
+    let Some(Route { source, destination, scale, .. }) = routes.get(place) else {
+        return format!("{}: free", place + 1);
+    };
+    let scale = scale.map_or(String::new(), |scale| format!(" × {}", source_name(scale, guide)));
+    format!("{}{scale} › {}", source_name(source, guide), destination.info().name)
+}
+
+/// The parts of a parameter's travel that routes modulate: from its position by each amount.
+pub(super) fn ranges(info: &ParamInfo, routes: &Routes, controls: &Controls) -> Vec<[f32; 2]> {
+    let position = controls.params.knobs()[info.param as usize].position();
+    let to = |place: usize| position + controls.value(amount_param(place).info()) / 100.0;
+    let these = routes.iter().filter(|(_, route)| route.destination == info.param);
+    these.map(|(place, _)| [position, to(place).clamp(0.0, 1.0)]).filter(|[from, to]| from != to).collect()
+}
+
+/// The name of a route as a button that opens its menu.
+pub(super) fn show(ui: &Ui, rect: Rect, place: usize, routes: &Routes, guide: &Guide, controls: &mut Controls) {
+    let response = ui.interact(rect, Id::unique(("route", place)), Sense::click());
+    let label = format!("Route {}: {}", place + 1, name(place, routes, guide));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    Popup::menu(&response).show(|ui| {
+        ui.set_min_width(140.0);
+        let route = routes.get(place);
+        let base = route.unwrap_or(Route::linear(Source::Velocity, Param::MalletHardness));
+        let mut wanted = None;
+        ui.menu_button("Source", |ui| {
+            wanted = wanted.or(sources(ui, guide).map(|source| Some(Route { source, ..base })));
+        });
+        ui.menu_button("Destination", |ui| {
+            wanted = wanted.or(destinations(ui).map(|destination| Some(Route { destination, ..base })));
+        });
+        if route.is_some() {
+            ui.menu_button("Multiplied by", |ui| {
+                if ui.button("nothing").clicked() {
+                    wanted = Some(Some(Route { scale: None, ..base }));
+                }
+                wanted = wanted.or(sources(ui, guide).map(|scale| Some(Route { scale: Some(scale), ..base })));
+            });
+            ui.menu_button("Response", |ui| {
+                for response in Response::ALL {
+                    if ui.selectable_label(base.response == *response, response.id()).clicked() {
+                        wanted = Some(Some(Route { response: *response, ..base }));
+                    }
+                }
+            });
+            if ui.button("Remove").clicked() {
+                wanted = Some(None);
+            }
+        }
+        if let Some(route) = wanted {
+            change(place, route, None, controls);
+            ui.close();
+        }
+    });
+}
+
+/// The part of a knob's menu that adds a route to it.
+pub(super) fn menu(ui: &mut Ui, info: &ParamInfo, controls: &mut Controls) {
+    if !info.is_modulatable() {
+        return;
+    }
+    ui.menu_button("Modulate by", |ui| {
+        let Playable::Preset(preset) = controls.params.state().playable else {
+            ui.label("a kit’s sounds have routes of their own");
+            return;
+        };
+        let Some(place) = (0..MAX_ROUTES).find(|place| preset.patch.routes.get(*place).is_none()) else {
+            ui.label("all sixteen routes are taken");
+            return;
+        };
+        if let Some(source) = sources(ui, &preset.guide) {
+            change(place, Some(Route::linear(source, info.param)), Some(AMOUNT), controls);
+            ui.close();
+        }
+    });
+}
+
+fn sources(ui: &mut Ui, guide: &Guide) -> Option<Source> {
+    let mut chosen = None;
+    ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
+        for source in Source::ALL {
+            if ui.button(source_name(*source, guide)).clicked() {
+                chosen = Some(*source);
+            }
+        }
+    });
+    chosen
+}
+
+fn destinations(ui: &mut Ui) -> Option<Param> {
+    let mut chosen = None;
+    for section in PARAMS.chunk_by(|a, b| a.section == b.section) {
+        if !section.iter().any(ParamInfo::is_modulatable) {
+            continue;
+        }
+        ui.menu_button(section[0].section, |ui| {
+            for info in section.iter().filter(|info| info.is_modulatable()) {
+                if ui.button(info.name).clicked() {
+                    chosen = Some(info.param);
+                }
+            }
+        });
+    }
+    chosen
+}
+
+/// Sets or removes a route, and gives it an amount.
+pub(super) fn change(place: usize, route: Option<Route>, amount: Option<f32>, controls: &mut Controls) {
+    let state = controls.params.state();
+    let Playable::Preset(mut preset) = state.playable else { return };
+    controls.history.begin(controls.params);
+    let patch: &mut Patch = &mut preset.patch;
+    patch.routes.set(place, route);
+    let mut positions = state.positions;
+    let param = amount_param(place);
+    if let Some(amount) = amount {
+        patch.set(param, amount);
+        positions[param as usize] = positions_of(&patch.values)[param as usize];
+    }
+    let values = patch.values;
+    let name = route.map_or("remove a route".to_owned(), |route| format!("route to {}", route.destination.info().name));
+    let before = super::gestures::positions(controls.params);
+    controls.params.load(State { playable: Playable::Preset(preset), values, positions, ..state }.into());
+    super::gestures::announce(controls.params, controls.host, &before);
+    controls.history.end(name, controls.params);
+}

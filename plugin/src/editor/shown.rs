@@ -1,0 +1,61 @@
+//! The sound that the window shows, read again only when another one is loaded.
+
+use crate::loaded::Loaded;
+use crate::params::SprungParams;
+use sprung::patch::Patch;
+use sprung::preset::{Guide, Playable, Preset};
+use std::sync::Arc;
+
+/// The loaded preset or kit. Values of parameters are those that were loaded: the present ones are the knobs'.
+pub(super) struct Shown {
+    loaded: Arc<Loaded>,
+    playable: Playable,
+    guide: Guide,
+}
+
+impl Shown {
+    pub(super) fn new(params: &SprungParams) -> Self {
+        let playable = params.state().playable;
+        let guide = match &playable {
+            Playable::Preset(preset) => preset.guide.clone(),
+            Playable::Kit(_) => Guide::default(),
+        };
+        Self { loaded: params.loaded(), playable, guide }
+    }
+
+    /// Reads the sound again if another one was loaded.
+    pub(super) fn refresh(&mut self, params: &SprungParams) {
+        if !Arc::ptr_eq(&self.loaded, &params.loaded()) {
+            *self = Self::new(params);
+        }
+    }
+
+    /// The preset, if it is no kit.
+    pub(super) fn preset(&self) -> Option<&Preset> {
+        match &self.playable {
+            Playable::Preset(preset) => Some(preset),
+            Playable::Kit(_) => None,
+        }
+    }
+
+    pub(super) fn guide(&self) -> &Guide {
+        &self.guide
+    }
+
+    /// The patch, of a kit that of its first sound.
+    pub(super) fn patch(&self) -> &Patch {
+        self.loaded.kit.sounds()[0].patch()
+    }
+
+    /// Words about the sound: family and tags.
+    pub(super) fn words(&self) -> String {
+        match &self.playable {
+            Playable::Preset(preset) => {
+                let family = preset.guide.family.map(|family| family.name().replace('_', " "));
+                let tags = preset.tags.iter().filter(|tag| Some(*tag) != family.as_ref()).cloned();
+                family.clone().into_iter().chain(tags).collect::<Vec<_>>().join("  ")
+            }
+            Playable::Kit(kit) => format!("kit  {}", kit.tags.join("  ")),
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! What the user does in the browser.
+
+use super::pictures::{Stage, compare, finish, stage};
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use crate::link::Touch;
+use egui::{Event, Key, Role};
+use egui_kittest::kittest::Queryable as _;
+use sprung::preset::library::Library;
+
+impl Stage {
+    fn type_text(&mut self, text: &str) {
+        self.harness.event(Event::Text(text.to_owned()));
+        self.harness.run_steps(3);
+    }
+}
+
+#[test]
+fn pictures_of_the_browser_are_as_accepted() {
+    for (size, theme, name) in [
+        (SIZE, Theme::Dark, "browser"),
+        (SIZE, Theme::Light, "browser-light"),
+        (LEAST_SIZE, Theme::Dark, "browser-least"),
+    ] {
+        let mut stage = stage("Marimba", size, 1.0, theme);
+        stage.button("Browse");
+        stage.button("Show Mallet");
+        stage.button("Favourite Marimba");
+        compare(name, &mut stage.harness);
+    }
+    finish();
+}
+
+#[test]
+fn sounds_are_found_by_words_tried_by_arrows_and_undone_by_name() {
+    let mut stage = stage("Kick", SIZE, 1.0, Theme::Dark);
+    let mut touches = stage.params.link().connect(48_000.0);
+    let before = stage.params.state();
+    stage.button("Browse");
+    // The search field has the focus.
+    stage.type_text("church bell");
+    stage.harness.key_press(Key::ArrowDown);
+    stage.harness.run_steps(2);
+    assert_eq!(stage.params.name(), "Church Bell");
+    assert!(matches!(touches.pop(), Ok(Touch::Down { .. })), "it is heard");
+    stage.harness.run_steps(60);
+    assert!(matches!(touches.pop(), Ok(Touch::Up { .. })), "and let go");
+    stage.harness.key_press(Key::Escape);
+    stage.harness.run_steps(2);
+    assert!(stage.harness.query_by_label("Search").is_none());
+    stage.button("Undo");
+    assert_eq!(stage.params.state(), before);
+}
+
+#[test]
+fn a_sound_is_saved_under_a_name_found_again_and_thrown_away() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    let library = Library::at(stage.folder.path());
+    stage.button("Save");
+    stage.harness.get_by_role_and_label(Role::TextInput, "Name to save under").click();
+    stage.harness.run_steps(2);
+    stage.type_text(" of Glass");
+    stage.button("Save under this name");
+    assert_eq!(stage.params.name(), "Marimba of Glass");
+    assert_eq!(library.entries().len(), 1);
+    stage.button("Save under this name");
+    stage.button("Show Your own");
+    stage.harness.get_by_role_and_label(Role::ListItem, "Marimba of Glass").click();
+    stage.harness.run_steps(3);
+    stage.button("Move your sound to the bin");
+    assert!(library.entries().is_empty());
+    assert!(stage.harness.query_by_role_and_label(Role::ListItem, "Marimba of Glass").is_none());
+}

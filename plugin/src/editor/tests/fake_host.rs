@@ -1,0 +1,72 @@
+//! A host that does what the window asks for, and remembers it.
+
+#![allow(unsafe_code, reason = "the wrapper's interface is unsafe")]
+
+use nice_plug_core::context::PluginApi;
+use nice_plug_core::context::gui::{GuiContext, GuiContextInner};
+use nice_plug_core::params::internals::ParamPtr;
+use nice_plug_core::plugin::PluginState;
+use std::sync::{Arc, Mutex};
+
+/// What a window tells its host of a parameter, by its name.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Said {
+    Begin(String),
+    Set(String, f32),
+    End(String),
+}
+
+/// A host that does what it is asked for.
+#[derive(Default)]
+pub(super) struct FakeHost {
+    said: Mutex<Vec<Said>>,
+}
+
+impl FakeHost {
+    pub(super) fn context(self: &Arc<Self>) -> GuiContext {
+        GuiContext::new(self.clone())
+    }
+
+    /// What it was told since the last call.
+    pub(super) fn said(&self) -> Vec<Said> {
+        std::mem::take(&mut self.said.lock().unwrap())
+    }
+
+    fn hear(&self, said: Said) {
+        self.said.lock().unwrap().push(said);
+    }
+}
+
+impl GuiContextInner for FakeHost {
+    fn plugin_api(&self) -> PluginApi {
+        PluginApi::Clap
+    }
+
+    unsafe fn raw_begin_set_parameter(&self, param: ParamPtr) {
+        // SAFETY: the parameters live as long as the window.
+        self.hear(Said::Begin(unsafe { param.name() }.to_owned()));
+    }
+
+    unsafe fn raw_set_parameter_normalized(&self, param: ParamPtr, normalized: f32) {
+        // SAFETY: as above; a host sets parameters in this way.
+        unsafe { param._internal_set_normalized_value(normalized) };
+        self.hear(Said::Set(unsafe { param.name() }.to_owned(), normalized));
+    }
+
+    unsafe fn raw_end_set_parameter(&self, param: ParamPtr) {
+        // SAFETY: as above.
+        self.hear(Said::End(unsafe { param.name() }.to_owned()));
+    }
+
+    fn get_state(&self) -> PluginState {
+        unreachable!("the window does not use it")
+    }
+
+    fn set_state(&self, _: PluginState) {
+        unreachable!("the window does not use it")
+    }
+
+    fn request_restart(&self) {
+        unreachable!("the window does not use it")
+    }
+}

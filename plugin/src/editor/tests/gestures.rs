@@ -1,0 +1,217 @@
+//! What the user does with knobs, and what the host hears of it.
+
+use super::fake_host::Said;
+use super::pictures::{Stage, stage};
+use crate::editor::theme::{SIZE, Theme};
+use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Role, vec2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use sprung::params::Param;
+use sprung::patch::routes::{Source, amount_param};
+
+impl Stage {
+    fn new() -> Self {
+        stage("Church Bell", SIZE, 1.0, Theme::Dark)
+    }
+
+    fn at(&self, name: &str) -> Pos2 {
+        self.harness.get_by_role_and_label(Role::Slider, name).rect().center() - vec2(0.0, 10.0)
+    }
+
+    fn value(&self, param: Param) -> f32 {
+        self.params.state().values.get(param)
+    }
+
+    fn steps(&mut self, events: &[Event]) {
+        for event in events {
+            self.harness.event(event.clone());
+            self.harness.step();
+        }
+        self.harness.run_steps(3);
+    }
+
+    fn press(&self, pos: Pos2, pressed: bool, modifiers: Modifiers) -> Event {
+        Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers }
+    }
+
+    fn drag(&mut self, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
+        let half = Event::PointerMoved(from + by * 0.5);
+        let (down, up) = (self.press(from, true, modifiers), self.press(from + by, false, modifiers));
+        let events = [Event::PointerMoved(from), down, half, Event::PointerMoved(from + by), up];
+        self.steps(&[Event::ModifiersChanged(modifiers)]);
+        self.steps(&events);
+        self.steps(&[Event::ModifiersChanged(Modifiers::NONE)]);
+    }
+
+    fn click(&mut self, pos: Pos2) {
+        let events =
+            [Event::PointerMoved(pos), self.press(pos, true, Modifiers::NONE), self.press(pos, false, Modifiers::NONE)];
+        self.steps(&events);
+    }
+
+    pub(super) fn button(&mut self, name: &str) {
+        self.harness.get_by_label(name).click();
+        self.harness.run_steps(3);
+    }
+}
+
+/// Begin and end once, with values between them.
+fn is_one_gesture(said: &[Said], name: &str) -> bool {
+    let [Said::Begin(first), sets @ .., Said::End(last)] = said else { return false };
+    let is_set = |said: &Said| matches!(said, Said::Set(set, _) if set == name);
+    first == name && last == name && !sets.is_empty() && sets.iter().all(is_set)
+}
+
+#[test]
+fn a_drag_is_one_gesture_and_one_step_to_undo() {
+    let mut stage = Stage::new();
+    let before = stage.params.state();
+    let knob = stage.at("Mallet hardness");
+    stage.drag(knob, vec2(0.0, -22.0), Modifiers::NONE);
+    let moved = stage.value(Param::MalletHardness) - before.values.get(Param::MalletHardness);
+    assert!((5.0..15.0).contains(&moved), "a tenth of the travel: {moved}");
+    let said = stage.host.said();
+    assert!(is_one_gesture(&said, "Mallet hardness"), "{said:?}");
+    stage.button("Undo");
+    assert_eq!(stage.params.state(), before);
+    let said = stage.host.said();
+    assert!(is_one_gesture(&said, "Mallet hardness"), "{said:?}");
+    stage.button("Redo");
+    assert_eq!(stage.value(Param::MalletHardness) - before.values.get(Param::MalletHardness), moved);
+}
+
+#[test]
+fn shift_is_ten_times_finer() {
+    let drag = |modifiers| {
+        let mut stage = Stage::new();
+        let before = stage.value(Param::MalletHardness);
+        let knob = stage.at("Mallet hardness");
+        stage.drag(knob, vec2(0.0, -44.0), modifiers);
+        stage.value(Param::MalletHardness) - before
+    };
+    let (coarse, fine) = (drag(Modifiers::NONE), drag(Modifiers::SHIFT));
+    assert!((coarse / fine - 10.0).abs() < 0.5, "{coarse} {fine}");
+}
+
+#[test]
+fn the_wheel_turns_and_a_double_click_resets() {
+    let mut stage = Stage::new();
+    let knob = stage.at("Mallet speed");
+    let before = stage.value(Param::MalletSpeed);
+    let wheel = Event::MouseWheel {
+        unit: MouseWheelUnit::Line,
+        delta: vec2(0.0, 2.0),
+        modifiers: Modifiers::NONE,
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Unknown,
+    };
+    stage.steps(&[Event::PointerMoved(knob), wheel]);
+    assert!((stage.value(Param::MalletSpeed) - before - 2.0).abs() < 1e-3, "two steps of 1 %");
+    stage.click(knob);
+    stage.click(knob);
+    assert_eq!(stage.value(Param::MalletSpeed), Param::MalletSpeed.info().default);
+    assert_eq!(stage.host.said().iter().filter(|said| matches!(said, Said::Begin(_))).count(), 2);
+}
+
+#[test]
+fn a_value_is_typed_in_its_unit_and_nonsense_is_not_taken() {
+    let mut stage = Stage::new();
+    let typed = |stage: &mut Stage, text: &str, key: Key| {
+        stage.button("Type Noise time");
+        stage.harness.event(Event::Text(text.to_owned()));
+        stage.harness.run_steps(2);
+        stage.harness.key_press(key);
+        stage.harness.run_steps(3);
+    };
+    typed(&mut stage, "250 ms", Key::Enter);
+    assert_eq!(stage.value(Param::NoiseTime), 0.25);
+    assert!(is_one_gesture(&stage.host.said(), "Noise time"));
+    typed(&mut stage, "100 ms", Key::Escape);
+    assert_eq!(stage.value(Param::NoiseTime), 0.25);
+    typed(&mut stage, "loud", Key::Enter);
+    assert_eq!((stage.value(Param::NoiseTime), stage.host.said()), (0.25, vec![]));
+    // The field stays open for another attempt.
+    stage.harness.event(Event::Text("1".to_owned()));
+    stage.harness.run_steps(1);
+    assert!(stage.harness.query_by_role_and_label(Role::TextInput, "Noise time").is_some());
+}
+
+#[test]
+fn a_choice_opens_a_list() {
+    let mut stage = Stage::new();
+    let pulse = stage.value(Param::MalletPulse);
+    stage.button("Mallet pulse");
+    let choices = Param::MalletPulse.info().choices;
+    let other = choices[1 - pulse as usize];
+    stage.harness.get_by_role_and_label(Role::Button, other).click();
+    stage.harness.run_steps(3);
+    assert_eq!(stage.value(Param::MalletPulse), 1.0 - pulse);
+    assert!(is_one_gesture(&stage.host.said(), "Mallet pulse"));
+}
+
+#[test]
+fn keys_turn_what_has_the_focus() {
+    let mut stage = Stage::new();
+    stage.harness.get_by_role_and_label(Role::Slider, "Mallet speed").focus();
+    stage.harness.run_steps(2);
+    let before = stage.value(Param::MalletSpeed);
+    stage.harness.key_press(Key::ArrowUp);
+    stage.harness.run_steps(2);
+    assert!((stage.value(Param::MalletSpeed) - before - 1.0).abs() < 1e-3);
+    let node = stage.harness.get_by_role_and_label(Role::Slider, "Mallet speed");
+    let value = node.accesskit_node().numeric_value().unwrap();
+    assert!((value as f32 - stage.value(Param::MalletSpeed)).abs() < 1e-3, "what a screen reader says");
+}
+
+#[test]
+fn only_what_changed_is_announced_when_a_sound_is_loaded() {
+    let mut stage = Stage::new();
+    let before = stage.params.state();
+    stage.button("Next sound");
+    let after = stage.params.state();
+    assert_ne!(before.playable.name(), after.playable.name());
+    let changed = before.positions.iter().zip(after.positions).filter(|(one, other)| **one != *other).count();
+    let said = stage.host.said();
+    assert_eq!((said.len(), changed > 0), (3 * changed, true), "begin, set and end for each");
+    stage.button("Previous sound");
+    assert_eq!(stage.params.state(), before);
+}
+
+#[test]
+fn two_versions_are_compared() {
+    let mut stage = Stage::new();
+    stage.button("Copy to the other version");
+    let knob = stage.at("Mallet hardness");
+    let before = stage.params.state();
+    stage.drag(knob, vec2(0.0, -30.0), Modifiers::NONE);
+    let after = stage.params.state();
+    stage.button("A or B");
+    assert_eq!(stage.params.state(), before);
+    stage.button("A or B");
+    assert_eq!(stage.params.state(), after);
+}
+
+#[test]
+fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
+    let mut stage = Stage::new();
+    let routes = |stage: &Stage| stage.params.loaded().kit.sounds()[0].patch().routes;
+    let before = (stage.params.state(), routes(&stage));
+    stage.harness.get_by_role_and_label(Role::Slider, "Mallet speed").click_secondary();
+    stage.harness.run_steps(3);
+    stage.harness.get_by_label_contains("Modulate by").click();
+    stage.harness.run_steps(3);
+    stage.button("lfo1");
+    let added = routes(&stage);
+    let (place, route) = added.iter().find(|(place, route)| before.1.get(*place) != Some(*route)).unwrap();
+    assert_eq!((route.source, route.destination), (Source::Lfo1, Param::MalletSpeed));
+    assert_eq!(stage.value(amount_param(place)), 25.0);
+    assert!(is_one_gesture(&stage.host.said(), amount_param(place).info().name));
+    stage.harness.get_by_role_and_label(Role::Tab, "Routes").click();
+    stage.harness.run_steps(3);
+    stage.button(&format!("Route {}: lfo1 › Mallet speed", place + 1));
+    stage.button("Remove");
+    assert_eq!(routes(&stage).get(place), None);
+    for _ in 0..2 {
+        stage.button("Undo");
+    }
+    assert_eq!(stage.params.state(), before.0);
+}

@@ -1,0 +1,154 @@
+//! Draws egui's triangles without a GPU, as its OpenGL shader does: colours are multiplied and blended in gamma space.
+
+use egui::epaint::{ImageData, ImageDelta, Mesh, Primitive, TextureId, Vertex};
+use egui::{Color32, Context, FullOutput, Rect, TexturesDelta};
+use egui_kittest::TestRenderer;
+use image::RgbaImage;
+use std::array::from_fn;
+use std::collections::HashMap;
+
+/// Steps of a pixel at which corners lie, as on GPUs: triangles that share an edge share it exactly.
+const GRID: f32 = 256.0;
+
+/// The textures, and how to draw with them.
+#[derive(Default)]
+pub(super) struct Renderer {
+    textures: HashMap<TextureId, Texture>,
+}
+
+struct Texture {
+    size: [usize; 2],
+    pixels: Vec<Color32>,
+}
+
+impl Texture {
+    /// Takes over a whole texture, or a part of one.
+    fn update(&mut self, delta: &ImageDelta) {
+        let ImageData::Color(image) = &delta.image;
+        let Some([left, top]) = delta.pos else {
+            *self = Self { size: image.size, pixels: image.pixels.clone() };
+            return;
+        };
+        for (row, pixels) in image.pixels.chunks_exact(image.width()).enumerate() {
+            let start = (top + row) * self.size[0] + left;
+            self.pixels[start..start + pixels.len()].copy_from_slice(pixels);
+        }
+    }
+
+    fn pixel(&self, x: f32, y: f32) -> [f32; 4] {
+        let [width, height] = self.size;
+        let (x, y) = ((x.max(0.0) as usize).min(width - 1), (y.max(0.0) as usize).min(height - 1));
+        self.pixels[y * width + x].to_array().map(f32::from)
+    }
+
+    /// The colour at a point from 0 to 1, between the four nearest pixels.
+    fn sample(&self, [u, v]: [f32; 2]) -> [f32; 4] {
+        let (x, y) = (u * self.size[0] as f32 - 0.5, v * self.size[1] as f32 - 0.5);
+        let (left, top) = (x.floor(), y.floor());
+        let (right, below) = (x - left, y - top);
+        let [a, b, c, d] =
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[dx, dy]| self.pixel(left + dx, top + dy));
+        from_fn(|i| {
+            (a[i] * (1.0 - right) + b[i] * right) * (1.0 - below) + (c[i] * (1.0 - right) + d[i] * right) * below
+        })
+    }
+}
+
+/// What is drawn into.
+struct Canvas {
+    size: [i64; 2],
+    pixels: Vec<[u8; 4]>,
+}
+
+impl Canvas {
+    /// Blends a colour, whose alpha is multiplied into it, over a pixel.
+    fn blend(&mut self, x: i64, y: i64, colour: [f32; 4]) {
+        let pixel = &mut self.pixels[(y * self.size[0] + x) as usize];
+        let keep = 1.0 - colour[3] / 255.0;
+        for (channel, over) in pixel.iter_mut().zip(colour) {
+            *channel = (over + f32::from(*channel) * keep).round().clamp(0.0, 255.0) as u8;
+        }
+    }
+
+    fn triangle(&mut self, mut corners: [Vertex; 3], scale: f32, clip: Rect, texture: &Texture) {
+        let place = |corner: &Vertex| [corner.pos.x, corner.pos.y].map(|side| (side * scale * GRID).round() as i64);
+        let doubled_area = |[a, b, c]: [[i64; 2]; 3]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        if doubled_area(corners.each_ref().map(place)) < 0 {
+            corners.swap(0, 1);
+        }
+        let places = corners.each_ref().map(place);
+        let area = doubled_area(places);
+        if area == 0 {
+            return;
+        }
+        // The pixels that the triangle can reach, by axis.
+        let [columns, rows] = [0, 1].map(|axis| {
+            let (least, most) =
+                places.iter().fold((i64::MAX, i64::MIN), |(least, most), p| (least.min(p[axis]), most.max(p[axis])));
+            let clip = if axis == 0 { clip.x_range() } else { clip.y_range() };
+            let first = (least >> 8).max(clip.min.round() as i64).max(0);
+            first..((most >> 8) + 1).min(clip.max.round() as i64).min(self.size[axis])
+        });
+        for y in rows {
+            for x in columns.clone() {
+                let centre = [x * 256 + 128, y * 256 + 128];
+                let Some(shares) = inside(places, centre) else { continue };
+                let shares = shares.map(|share| share as f32 / area as f32);
+                let mixed = |of: &dyn Fn(&Vertex) -> f32| -> f32 {
+                    corners.iter().zip(shares).map(|(corner, share)| of(corner) * share).sum()
+                };
+                let texel = texture.sample([mixed(&|corner| corner.uv.x), mixed(&|corner| corner.uv.y)]);
+                let colour = from_fn(|i| mixed(&|corner| f32::from(corner.color.to_array()[i])) * texel[i] / 255.0);
+                self.blend(x, y, colour);
+            }
+        }
+    }
+
+    fn mesh(&mut self, mesh: &Mesh, scale: f32, clip: Rect, texture: &Texture) {
+        for corners in mesh.indices.chunks_exact(3) {
+            self.triangle(from_fn(|i| mesh.vertices[corners[i] as usize]), scale, clip, texture);
+        }
+    }
+}
+
+/// The weights of the corners at a point; none if it is outside. A point on an edge belongs to the triangle on the
+/// edge's right or below, and to no other.
+fn inside(corners: [[i64; 2]; 3], [x, y]: [i64; 2]) -> Option<[i64; 3]> {
+    let mut weights = [0; 3];
+    for (i, weight) in weights.iter_mut().enumerate() {
+        let (from, to) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+        let side = [to[0] - from[0], to[1] - from[1]];
+        *weight = side[0] * (y - from[1]) - side[1] * (x - from[0]);
+        let is_top_or_left = side[1] < 0 || (side[1] == 0 && side[0] > 0);
+        if *weight < 0 || (*weight == 0 && !is_top_or_left) {
+            return None;
+        }
+    }
+    Some(weights)
+}
+
+impl TestRenderer for Renderer {
+    fn handle_delta(&mut self, delta: &mut TexturesDelta) {
+        for (id, images) in delta.set.drain() {
+            let texture = self.textures.entry(id).or_insert(Texture { size: [0; 2], pixels: Vec::new() });
+            images.iter().for_each(|image| texture.update(image));
+        }
+        for id in delta.free.drain() {
+            self.textures.remove(&id);
+        }
+    }
+
+    fn render(&mut self, context: &Context, output: &FullOutput) -> Result<RgbaImage, String> {
+        let scale = context.pixels_per_point();
+        let size = context.content_rect().size() * scale;
+        let size = [size.x.round() as i64, size.y.round() as i64];
+        let mut canvas = Canvas { size, pixels: vec![[0, 0, 0, 255]; (size[0] * size[1]) as usize] };
+        for job in context.tessellate(output.shapes.clone(), scale) {
+            let Primitive::Mesh(mesh) = &job.primitive else { continue };
+            let texture = self.textures.get(&mesh.texture_id).ok_or("a texture is missing")?;
+            canvas.mesh(mesh, scale, job.clip_rect * scale, texture);
+        }
+        RgbaImage::from_raw(size[0] as u32, size[1] as u32, canvas.pixels.into_flattened())
+            .ok_or_else(|| "the picture has another size".to_owned())
+    }
+}

@@ -1,0 +1,152 @@
+//! A window of a sound that sounds: an audio thread's work is done between its passes.
+
+use super::pictures::{Stage, compare, finish, stage};
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use crate::link::Touch;
+use egui::{Event, Modifiers, PointerButton, Pos2, Rect, vec2};
+use egui_kittest::kittest::Queryable as _;
+use rtrb::Consumer;
+use sprung::engine::{Event as Played, EventKind, Snapshot, Synth, TelemetryWriter};
+
+const RATE: f64 = 48_000.0;
+
+/// A synth that follows a window.
+struct Band {
+    stage: Stage,
+    synth: Synth,
+    touches: Consumer<Touch>,
+    writer: TelemetryWriter,
+    /// What the window has played.
+    heard: Vec<Touch>,
+}
+
+impl Band {
+    fn new(sound: &str, size: [u32; 2], theme: Theme) -> Self {
+        let stage = stage(sound, size, 1.0, theme);
+        let link = stage.params.link();
+        let (touches, writer) = (link.connect(RATE), TelemetryWriter::new(link.telemetry.clone(), RATE));
+        let mut synth = Synth::new(RATE, 0);
+        synth.set_kit(&stage.params.loaded().kit);
+        Self { stage, synth, touches, writer, heard: Vec::new() }
+    }
+
+    fn play(&mut self, kind: EventKind) {
+        let event = Played { frame: 0, channel: 0, kind };
+        self.writer.note_event(&event);
+        self.synth.handle(&event);
+    }
+
+    fn strike(&mut self, keys: &[u8]) {
+        for key in keys {
+            self.play(EventKind::NoteOn { key: *key, detune: 0.0, velocity: 0.8, id: None });
+        }
+    }
+
+    /// Renders a sixtieth of a second before each of some passes of the window.
+    fn passes(&mut self, count: usize) {
+        for _ in 0..count {
+            while let Ok(touch) = self.touches.pop() {
+                self.heard.push(touch);
+                self.play(touch.event());
+            }
+            let (mut left, mut right) = ([0.0; 800], [0.0; 800]);
+            self.synth.process(&[], &mut left, &mut right);
+            let synth = &self.synth;
+            self.writer.note_sound(&left, &right, synth.is_silent(), || {
+                let mut snapshot = Snapshot::default();
+                synth.show(&mut snapshot);
+                snapshot
+            });
+            self.stage.harness.step();
+        }
+    }
+
+    fn rect(&self, name: &str) -> Rect {
+        self.stage.harness.get_by_label(name).rect()
+    }
+
+    fn event(&mut self, event: Event) {
+        self.stage.harness.event(event);
+        self.passes(2);
+    }
+
+    fn press(&mut self, pos: Pos2, pressed: bool) {
+        self.event(Event::PointerMoved(pos));
+        self.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE });
+    }
+}
+
+#[test]
+fn pictures_of_a_struck_bell_are_as_accepted() {
+    for (size, theme, name) in
+        [(SIZE, Theme::Dark, "bell"), (SIZE, Theme::Light, "bell-light"), (LEAST_SIZE, Theme::Dark, "bell-least")]
+    {
+        let mut band = Band::new("Church Bell", size, theme);
+        band.passes(2);
+        band.strike(&[60, 67]);
+        band.passes(120);
+        compare(name, &mut band.stage.harness);
+    }
+    let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+    band.stage.harness.get_by_label("Scope").click();
+    band.passes(3);
+    band.strike(&[48, 52]);
+    band.passes(6);
+    compare("scope", &mut band.stage.harness);
+    finish();
+}
+
+#[test]
+fn the_keyboard_plays_what_is_clicked_and_louder_below() {
+    let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+    let keyboard = band.rect("Keyboard");
+    let (soft, loud) = (keyboard.left_top() + vec2(11.0, 3.0), keyboard.left_bottom() + vec2(11.0, -4.0));
+    band.press(loud, true);
+    let [Touch::Down { key, velocity }] = band.heard[..] else { panic!("{:?}", band.heard) };
+    assert!(velocity > 0.9, "{velocity}");
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 1 << key);
+    band.event(Event::PointerMoved(loud + vec2(60.0, 0.0)));
+    assert!(matches!(band.heard[1..], [Touch::Up { key: up }, Touch::Down { .. }] if up == key), "{:?}", band.heard);
+    band.press(loud + vec2(60.0, 0.0), false);
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 0, "no key is left down");
+    band.heard.clear();
+    band.press(soft, true);
+    assert!(matches!(band.heard[..], [Touch::Down { velocity, .. }] if velocity < 0.1), "{:?}", band.heard);
+}
+
+#[test]
+fn a_dragged_mode_changes_sounds_and_comes_back() {
+    let mut band = Band::new("init", SIZE, Theme::Dark);
+    let before = band.stage.params.state();
+    let modes = |band: &Band| band.stage.params.loaded().kit.sounds()[0].patch().modes.as_slice().to_vec();
+    assert_eq!(modes(&band).len(), 1);
+    let area = band.rect("Modes");
+    // A second mode, where there is none.
+    let place = area.center();
+    for _ in 0..2 {
+        band.press(place, true);
+        band.press(place, false);
+    }
+    let added = modes(&band);
+    assert_eq!(added.len(), 2);
+    assert!(added[1].level > 0.01 && added[1].ratio > 1.0, "{added:?}");
+    band.passes(30);
+    let place = band.stage.harness.ctx.input(|input| input.pointer.latest_pos()).unwrap();
+    band.heard.clear();
+    band.press(place, true);
+    for step in 1..=10 {
+        band.event(Event::PointerMoved(place + vec2(4.0, -3.0) * step as f32));
+    }
+    band.press(place + vec2(40.0, -30.0), false);
+    let moved = modes(&band);
+    assert!(moved[1].ratio > added[1].ratio && moved[1].level > added[1].level, "{moved:?}");
+    assert_eq!(moved[0], added[0]);
+    let strikes = band.heard.iter().filter(|touch| matches!(touch, Touch::Down { .. })).count();
+    assert!((1..=4).contains(&strikes), "struck four times a second at most: {:?}", band.heard);
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 0, "no key is left down");
+    for _ in 0..2 {
+        band.stage.harness.get_by_label("Undo").click();
+        band.passes(3);
+    }
+    assert_eq!(band.stage.params.state(), before);
+}

@@ -1,0 +1,32 @@
+//! Lines of text that become a little smaller, and then are cut off, where they do not fit.
+
+use super::theme::font;
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{Align2, Color32, Painter, Rect};
+
+/// The size of text that would be too wide.
+const SHRINK: f32 = 0.9;
+
+/// Draws a line of text into a rectangle, aligned within it. Returns where it ended up.
+pub(super) fn line(painter: &Painter, rect: Rect, align: Align2, text: &str, size: f32, colour: Color32) -> Rect {
+    let size = if width(painter, text, size) > rect.width() { size * SHRINK } else { size };
+    let mut job = LayoutJob::simple_singleline(text.to_owned(), font(size), colour);
+    job.wrap = TextWrapping::truncate_at_width(rect.width());
+    let galley = painter.layout_job(job);
+    let place = align.align_size_within_rect(galley.size(), rect);
+    painter.galley(place.min, galley, colour);
+    place
+}
+
+/// The width of a line of text.
+pub(super) fn width(painter: &Painter, text: &str, size: f32) -> f32 {
+    painter.layout_no_wrap(text.to_owned(), font(size), Color32::WHITE).size().x
+}
+
+/// Draws lines of text that are broken to the width of a rectangle, from its top. Returns their height.
+pub(super) fn paragraph(painter: &Painter, rect: Rect, text: &str, size: f32, colour: Color32) -> f32 {
+    let galley = painter.layout(text.to_owned(), font(size), colour, rect.width());
+    let height = galley.size().y;
+    painter.with_clip_rect(rect.intersect(painter.clip_rect())).galley(rect.min, galley, colour);
+    height
+}

@@ -1,0 +1,87 @@
+//! What the window and the audio thread tell each other: no side ever waits for the other.
+
+use nice_plug_egui::RepaintNotifier;
+use rtrb::{Consumer, Producer, RingBuffer};
+use sprung::engine::{EventKind, Telemetry};
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// How many notes can wait for the audio thread. Those beyond are dropped.
+const WAITING: usize = 64;
+
+/// A note that is played in the window. It is neither part of the state nor of what a host renders from its own notes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Touch {
+    /// A key goes down, with a velocity from 0 to 1.
+    Down { key: u8, velocity: f32 },
+    /// A key goes up.
+    Up { key: u8 },
+}
+
+impl Touch {
+    /// As the engine's event. Real-time safe.
+    pub(crate) fn event(self) -> EventKind {
+        match self {
+            Self::Down { key, velocity } => EventKind::NoteOn { key, detune: 0.0, velocity, id: None },
+            Self::Up { key } => EventKind::NoteOff { key, velocity: 0.5, id: None },
+        }
+    }
+}
+
+/// The two directions.
+#[derive(Default)]
+pub(crate) struct Link {
+    /// From the audio thread: what sounds.
+    pub(crate) telemetry: Arc<Telemetry>,
+    /// From the audio thread: that something sounds, so that the window draws it.
+    pub(crate) repaint: RepaintNotifier,
+    sample_rate: AtomicU32,
+    /// To the audio thread; none before it has been there. Never locked by it.
+    touches: Mutex<Option<Producer<Touch>>>,
+}
+
+impl Link {
+    /// The end of the audio thread, at a sample rate in Hz. What was sent to an earlier one is dropped. Allocates.
+    pub(crate) fn connect(&self, sample_rate: f64) -> Consumer<Touch> {
+        let (producer, consumer) = RingBuffer::new(WAITING);
+        self.sample_rate.store(sample_rate.round() as u32, Relaxed);
+        *self.touches.lock().unwrap_or_else(PoisonError::into_inner) = Some(producer);
+        consumer
+    }
+
+    /// Plays a note. Nothing happens while no audio thread listens. Not for the audio thread.
+    pub(crate) fn play(&self, touch: Touch) {
+        if let Some(producer) = &mut *self.touches.lock().unwrap_or_else(PoisonError::into_inner) {
+            // A full queue drops the note.
+            let _ = producer.push(touch);
+        }
+    }
+
+    /// The sample rate in Hz; 0 if there was none yet.
+    pub(crate) fn sample_rate(&self) -> u32 {
+        self.sample_rate.load(Relaxed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn touches_arrive_in_order_and_those_beyond_the_room_are_dropped() {
+        let link = Link::default();
+        link.play(Touch::Up { key: 1 });
+        let mut consumer = link.connect(44_100.0);
+        assert_eq!((consumer.pop().ok(), link.sample_rate()), (None, 44_100));
+        let keys = 0..100;
+        keys.clone().for_each(|key| link.play(Touch::Down { key, velocity: 0.5 }));
+        for key in keys.take(WAITING) {
+            assert_eq!(consumer.pop(), Ok(Touch::Down { key, velocity: 0.5 }));
+        }
+        assert!(consumer.pop().is_err());
+        link.play(Touch::Up { key: 1 });
+        let mut consumer = link.connect(48_000.0);
+        assert!(consumer.pop().is_err(), "what was sent to an earlier one is dropped");
+    }
+}
