@@ -48,8 +48,15 @@ fn is_struck(preset: &Preset) -> bool {
         && preset.tags.iter().all(|tag| !["organ", "voice", "bow"].contains(&tag.as_str()))
 }
 
+/// Every preset at its home key and an octave below and above, where its range has them.
 fn every() -> Vec<Note> {
-    Preset::factory().iter().flat_map(|preset| KEYS.map(|key| (preset, key))).collect()
+    let notes = |preset: &'static Preset| {
+        let guide = &preset.guide;
+        let keys = [guide.home.checked_sub(12), Some(guide.home), guide.home.checked_add(12)];
+        let within = move |key: &u8| *key == guide.home || (guide.lowest..=guide.highest).contains(key);
+        keys.into_iter().flatten().filter(within).map(move |key| (preset, key))
+    };
+    Preset::factory().iter().flat_map(notes).collect()
 }
 
 /// Median distance in dB of a fit from its preset, and that from which on it is far; and the share of notes that may be.

@@ -17,6 +17,7 @@ mod mode;
 mod plausible;
 mod pole;
 mod prune;
+mod resolve;
 mod search;
 mod strikes;
 

@@ -46,11 +46,16 @@ impl Pole {
 
 /// `Σ y·z̄ⁿ` and `Σ τ·y·z̄ⁿ` with `τ = n/len`, for each pole.
 pub(super) fn correlations(samples: &[f64], poles: &[Pole]) -> Vec<[Complex<f64>; 2]> {
-    let mut found = Vec::with_capacity(poles.len());
-    for poles in poles.chunks(LANES) {
-        let end = poles.iter().map(|pole| pole.end(samples.len())).max().unwrap_or(0);
-        let sums = lanes(&samples[..end], poles);
-        found.extend(sums.into_iter().take(poles.len()).map(|[sum, moment]| [sum, moment / samples.len() as f64]));
+    // Those that ring about as long go side by side, since all of them take as long as the longest.
+    let mut order: Vec<usize> = (0..poles.len()).collect();
+    order.sort_unstable_by(|a, b| poles[*a].decay.total_cmp(&poles[*b].decay));
+    let mut found = vec![[Complex::ZERO; 2]; poles.len()];
+    for places in order.chunks(LANES) {
+        let together: Vec<Pole> = places.iter().map(|place| poles[*place]).collect();
+        let end = together.iter().map(|pole| pole.end(samples.len())).max().unwrap_or(0);
+        for (place, [sum, moment]) in places.iter().zip(lanes(&samples[..end], &together)) {
+            found[*place] = [sum, moment / samples.len() as f64];
+        }
     }
     found
 }

@@ -1,5 +1,6 @@
 //! Synthetic strikes whose modes are known, clean and in noise, and sounds that are no strikes.
 
+mod dense;
 mod presets;
 
 use super::fit::energy;
