@@ -51,6 +51,6 @@ mod tests {
         let [left, _] = meter.levels([0.0; 2], 0.1);
         assert!((left - 0.93).abs() < 1e-6 && meter.is_moving());
         assert!(meter.levels([1.5; 2], 0.1)[0] > 1.0, "above full scale");
-        assert_eq!(meter.levels([f32::NAN; 2], 0.1)[1].is_nan(), false);
+        assert!(!meter.levels([f32::NAN; 2], 0.1)[1].is_nan());
     }
 }

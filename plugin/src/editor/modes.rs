@@ -12,7 +12,7 @@ use crate::state::State;
 use egui::{Align2, CursorIcon, Id, Popup, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use sprung::params::Param;
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
-use sprung::preset::Playable;
+use sprung::preset::{Guide, Playable};
 
 /// How far from a mode's circle it can be grabbed, in pixels.
 const REACH: f32 = 14.0;
@@ -57,15 +57,13 @@ impl ModesView {
         self.selected
     }
 
-    /// Shows the modes. `home` is the key on which the sound is struck; `is_editable` is false for kits.
+    /// Shows the modes of a patch, which is struck on the guide's home key. `is_editable` is false for kits.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         rect: Rect,
-        patch: &Patch,
+        (patch, guide, is_editable): (&Patch, &Guide, bool),
         energies: &[f32],
-        home: u8,
-        is_editable: bool,
         controls: &mut Controls,
     ) {
         let palette = controls.palette;
@@ -82,7 +80,7 @@ impl ModesView {
         let response = ui.interact(area.expand(8.0), Id::unique("modes"), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Modes"));
         if is_editable {
-            self.edit(ui, &response, &axes, patch, home, controls);
+            self.edit(ui, &response, &axes, patch, guide.home, controls);
         }
         let pointer = response.hover_pos();
         let hovered = pointer.and_then(|pointer| nearest(patch.modes.as_slice(), &axes, pointer));

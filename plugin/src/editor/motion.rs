@@ -83,11 +83,10 @@ impl Motion {
         let energy = |mode: usize| energies.get(mode).copied().unwrap_or(0.0);
         let loudest = (0..energies.len()).max_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap_or(0);
         let mode = selected.filter(|mode| *mode < energies.len()).unwrap_or(loudest);
-        if selected.is_some() || energy(self.mode) < 0.01 * energy(mode) {
-            if mode != self.mode {
-                (self.greatest, self.mode) = (0.0, mode);
-                self.trail.clear();
-            }
+        // The loudest one is followed only when the other has almost died away, so that the picture does not jump.
+        if mode != self.mode && (selected.is_some() || energy(self.mode) < 0.01 * energy(mode)) {
+            (self.greatest, self.mode) = (0.0, mode);
+            self.trail.clear();
         }
         let now = energy(self.mode);
         if now <= 1e-12 {

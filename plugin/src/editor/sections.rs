@@ -46,6 +46,7 @@ fn short_name(info: &ParamInfo, guide: &Guide) -> String {
     match letters.next() {
         Some(first) => first.to_uppercase().chain(letters).collect(),
         None if info.unit == Unit::Choice => "Type".to_owned(),
+        None if info.unit == Unit::Count => "Number".to_owned(),
         None => "Level".to_owned(),
     }
 }

@@ -8,7 +8,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, place: usize, name: &str, is_on: bool, p
     let response = ui.interact(rect, Id::unique(("star", place)), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, is_on, format!("Favourite {name}")));
     let corner = |number: usize| {
-        let radius = if number % 2 == 0 { 6.0 } else { 2.6 };
+        let radius = if number.is_multiple_of(2) { 6.0 } else { 2.6 };
         rect.center() + radius * egui::Vec2::angled((number as f32 / 10.0 - 0.25) * std::f32::consts::TAU)
     };
     let colour =

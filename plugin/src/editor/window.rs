@@ -129,7 +129,7 @@ impl Window {
         } else {
             let (patch, guide) = (self.shown.patch(), self.shown.guide());
             let is_editable = self.shown.preset().is_some();
-            self.modes.show(ui, layout.modes, patch, &energies, guide.home, is_editable, &mut controls);
+            self.modes.show(ui, layout.modes, (patch, guide, is_editable), &energies, &mut controls);
             self.motion.show(ui, layout.motion, &energies, self.modes.selected(), telemetry, &controls);
             show_tabs(ui, layout.tabs, &mut self.page, &controls);
             sections::show(ui, layout.sections, self.page, (patch, guide, is_editable), &mut controls);

@@ -4,5 +4,6 @@ mod browsing;
 mod fake_host;
 mod gestures;
 mod pictures;
+mod random_events;
 mod renderer;
 mod sounding;

@@ -11,8 +11,8 @@ use sprung::engine::{Event as Played, EventKind, Snapshot, Synth, TelemetryWrite
 const RATE: f64 = 48_000.0;
 
 /// A synth that follows a window.
-struct Band {
-    stage: Stage,
+pub(super) struct Band {
+    pub(super) stage: Stage,
     synth: Synth,
     touches: Consumer<Touch>,
     writer: TelemetryWriter,
@@ -21,7 +21,7 @@ struct Band {
 }
 
 impl Band {
-    fn new(sound: &str, size: [u32; 2], theme: Theme) -> Self {
+    pub(super) fn new(sound: &str, size: [u32; 2], theme: Theme) -> Self {
         let stage = stage(sound, size, 1.0, theme);
         let link = stage.params.link();
         let (touches, writer) = (link.connect(RATE), TelemetryWriter::new(link.telemetry.clone(), RATE));
@@ -43,7 +43,7 @@ impl Band {
     }
 
     /// Renders a sixtieth of a second before each of some passes of the window.
-    fn passes(&mut self, count: usize) {
+    pub(super) fn passes(&mut self, count: usize) {
         for _ in 0..count {
             while let Ok(touch) = self.touches.pop() {
                 self.heard.push(touch);

@@ -1,0 +1,84 @@
+//! Random input: nothing panics, no note is left, every knob is read back.
+
+use super::sounding::Band;
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use crate::state::State;
+use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, pos2, vec2};
+
+/// Events in each of two windows.
+const EVENTS: usize = 600;
+const KEYS: [Key; 9] = [
+    Key::Enter,
+    Key::Escape,
+    Key::Tab,
+    Key::ArrowUp,
+    Key::ArrowDown,
+    Key::Delete,
+    Key::Backspace,
+    Key::PageUp,
+    Key::Num1,
+];
+const TEXTS: [&str; 5] = ["1", "250 ms", "bell", "ä", "-"];
+
+/// Numbers below a limit, the same in each run (Numerical Recipes, 7.1).
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, limit: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) as usize) % limit
+    }
+}
+
+#[test]
+fn random_events_do_no_harm() {
+    for (seed, size) in [(1, SIZE), (2, LEAST_SIZE)] {
+        let mut band = Band::new("Glass Marimba", size, Theme::Dark);
+        let mut numbers = Numbers(seed);
+        let mut place = pos2(0.0, 0.0);
+        for _ in 0..EVENTS {
+            let modifiers = match numbers.below(8) {
+                0 => Modifiers::SHIFT,
+                1 => Modifiers::ALT,
+                2 => Modifiers::CTRL,
+                _ => Modifiers::NONE,
+            };
+            let button = if numbers.below(5) == 0 { PointerButton::Secondary } else { PointerButton::Primary };
+            let event = match numbers.below(10) {
+                0..=3 => {
+                    // Near the last place, or anywhere.
+                    let near = vec2(numbers.below(60) as f32 - 30.0, numbers.below(60) as f32 - 30.0);
+                    let any = pos2(numbers.below(size[0] as usize) as f32, numbers.below(size[1] as usize) as f32);
+                    place = if numbers.below(2) == 0 { place + near } else { any };
+                    Event::PointerMoved(place)
+                }
+                4 | 5 => Event::PointerButton { pos: place, button, pressed: true, modifiers },
+                6 | 7 => Event::PointerButton { pos: place, button, pressed: false, modifiers },
+                8 => Event::MouseWheel {
+                    unit: MouseWheelUnit::Line,
+                    delta: vec2(0.0, numbers.below(5) as f32 - 2.0),
+                    modifiers,
+                    phase: egui::TouchPhase::Move,
+                    source: egui::MouseWheelSource::Unknown,
+                },
+                _ if numbers.below(2) == 0 => Event::Text(TEXTS[numbers.below(TEXTS.len())].to_owned()),
+                _ => {
+                    let key = KEYS[numbers.below(KEYS.len())];
+                    Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
+                }
+            };
+            band.stage.harness.event(event);
+            band.passes(1);
+        }
+        for button in [PointerButton::Primary, PointerButton::Secondary] {
+            let (pressed, modifiers) = (false, Modifiers::NONE);
+            band.stage.harness.event(Event::PointerButton { pos: place, button, pressed, modifiers });
+        }
+        band.stage.harness.event(Event::PointerGone);
+        band.passes(60);
+        assert_eq!(band.stage.params.link().telemetry.keys(0), 0, "seed {seed}: no key is left down");
+        let state = band.stage.params.state();
+        let read = State::parse(&state.to_json()).unwrap();
+        assert_eq!((read.state.positions, read.complaints), (state.positions, vec![]), "seed {seed}");
+    }
+}
