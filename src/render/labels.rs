@@ -181,7 +181,8 @@ mod tests {
 
     #[test]
     fn a_strike_is_waited_for_and_a_release_is_not() {
-        let noisy = Patch::default().with(Param::NoiseLevel, 0.0).with(Param::NoiseTime, 0.1);
+        let noisy =
+            Patch::default().with(Param::NoiseLevel, 0.0).with(Param::NoiseReach, 100.0).with(Param::NoiseTime, 0.1);
         let [long] = labels(&noisy, &[60.0]).try_into().unwrap();
         assert!((4800..4900).contains(&long.free), "{}", long.free);
         let song = Song::chord(&[60.0], 1.0, 0.0005);
