@@ -7,9 +7,9 @@ macro_rules! body {
         Decay "decay" "Decay", Seconds 0.005..60.0 = 1.0, Logarithmic, Smoothed(20), [],
             "Time in which a held note falls by 60 dB (T60).";
         Release "release" "Release", Seconds 0.005..60.0 = 0.3, Logarithmic, Smoothed(20), [],
-            "Longest T60 once the note is released: the damper.";
+            "Longest T60 once the note is released; modes that decay faster do not change.";
         Damper "damper" "Damper", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "How far the damper is on while the note is held: at 100 % it damps as a release does.";
+            "How far the release damping acts while the note is held.";
         NoteOff "note_off" "Note off", Choice 0.0..1.0 = 0.0, Linear, NextNote, [NoteOff],
             "Whether a released note is damped or rings on as a drum does.";
         DecayTilt "decay_tilt" "Decay by mode", Number 0.0..2.0 = 0.0, Linear, Smoothed(20), [],
@@ -25,7 +25,7 @@ macro_rules! body {
         Tension "tension" "Tension", Semitones 0.0..24.0 = 0.0, Linear, Smoothed(20), [],
             "How far a full strike stretches head or string: the pitch rises by this much, and falls as the sound decays.";
         Bloom "bloom" "Bloom", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "How much of its energy a loud sound passes on from each half octave to the next: gongs and cymbals.";
+            "How much of its energy a loud sound passes on from each half octave to the next, as gongs and cymbals do.";
         BloomTime "bloom_time" "Bloom time", Seconds 0.05..10.0 = 0.5, Logarithmic, Smoothed(20), [],
             "Time in which the energy of a full strike climbs to the high modes.";
         Touch "touch" "Touch", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],

@@ -13,9 +13,9 @@ macro_rules! exciter {
         MalletMass "mallet_mass" "Mallet mass", Number 0.1..10.0 = 1.0, Logarithmic, NextNote, [],
             "Contact lasts longer with a heavier mallet: by its power of 2/5, as Hertz's law has it.";
         MalletSpeed "mallet_speed" "Mallet speed", Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
-            "How much contact is shorter the harder the strike: at 100 % by its force to the power of -1/5, as Hertz's law has it.";
+            "How much harder strikes shorten contact: at 100 %, by their force to the power of -1/5 (Hertz).";
         MalletKey "mallet_key" "Mallet by key", Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
-            "How far contact is kept as short as one period of the note, so that high keys are not lost.";
+            "Limits contact to one period of the note, so that high keys keep their loudness.";
         MalletVelocity "mallet_velocity" "Mallet velocity", Percent -100.0..100.0 = 0.0, Linear, NextNote, [],
             "Added to how much velocity sets the force, for the mallet alone.";
     }
@@ -35,15 +35,15 @@ macro_rules! exciter {
         NoiseLevel "noise_level" "Noise level", Decibels -60.0..24.0 = 0.0, Linear, NextNote, [],
             "Strength of the noise burst against a strike of the same velocity; at -60 dB there is none.";
         NoiseReach "noise_reach" "Noise reach", Percent 0.0..100.0 = 0.0, Linear, NextNote, [],
-            "Which modes noise moves: those that the body keeps from the mallet (0 %), or all alike (100 %).";
+            "Which modes noise moves: at 0 %, each by the share that the mallet does not have; at 100 %, all alike.";
         NoiseTime "noise_time" "Noise time", Seconds 0.001..1.0 = 0.02, Logarithmic, NextNote, [],
             "Time in which the noise burst falls.";
         NoiseDecay "noise_decay" "Noise decay", Choice 0.0..1.0 = 0.0, Linear, NextNote, [NoiseDecay],
-            "How it falls: to nothing by the square of what is left of its time, or exponentially, by 60 dB in its time.";
+            "Shape of the fall: quadratic is silent after the noise time, exponential has fallen by 60 dB then.";
         NoiseAttack "noise_attack" "Noise attack", Seconds 0.0..1.0 = 0.0, Linear, NextNote, [],
             "Time in which the noise burst rises before.";
         NoiseColour "noise_colour" "Noise colour", Percent -100.0..100.0 = 0.0, Linear, NextNote, [],
-            "Noise through an over-damped mass: low-passed down to 100 Hz (-100 %), or what that leaves, from 16 kHz up (100 %).";
+            "Filters the noise by an over-damped mass: a low-pass, down to 100 Hz at -100 %, or a high-pass, up to 16 kHz at 100 %.";
         NoiseHits "noise_hits" "Noise hits", Count 1.0..16.0 = 1.0, Linear, NextNote, [],
             "How many bursts follow each other, as in a clap or a flam; together they have the energy of one.";
         NoiseSpacing "noise_spacing" "Noise spacing", Seconds 0.002..0.5 = 0.012, Logarithmic, NextNote, [],
@@ -55,11 +55,11 @@ macro_rules! exciter {
         BowLevel "bow_level" "Bow level", Decibels -60.0..24.0 = -60.0, Linear, Smoothed(20), [],
             "Speed of a bow that moves the lowest 64 modes while the key is held; at -60 dB there is none.";
         BowForce "bow_force" "Bow force", Percent 0.0..100.0 = 50.0, Linear, Smoothed(20), [],
-            "How hard the bow is pressed on: little lets the note hardly speak, much holds on to what it moves.";
+            "Pressure of the bow: little starts slowly and softly, much starts at once, louder and rougher.";
         BowPosition "bow_position" "Bow position", Percent 1.0..50.0 = 12.0, Linear, NextNote, [],
             "Where along the string it is bowed.";
         BowSlip "bow_slip" "Bow slip", Percent 1.0..100.0 = 20.0, Linear, NextNote, [],
-            "How gradually friction falls where the bow slips, against its speed: little is as fresh rosin.";
+            "How gradually friction falls as the bow slips: low is sharp, high is smooth.";
         BowVelocity "bow_velocity" "Bow velocity", Percent -100.0..100.0 = 0.0, Linear, NextNote, [],
             "Added to how much velocity sets the speed, for the bow alone.";
     }

@@ -34,7 +34,7 @@ macro_rules! lfo {
         $Fade $fade $fade_name, Seconds 0.0..10.0 = 0.0, Linear, NextNote, [],
             "Time from the strike in which it fades in.";
         $Scope $scope $scope_name, Choice 0.0..1.0 = 0.0, Linear, NextNote, [Scope],
-            "Whether each note has one of its own, which starts with it, or all follow the same, whose rate no route moves.";
+            "Whether each note has one of its own, which starts with it, or all notes use one, whose rate routes cannot move.";
     })*
         } $($rest)* }
     };

@@ -5,21 +5,21 @@ macro_rules! macros {
         $next! { { $($before)*
     "Macros" {
         Macro1 "macro1" "Macro 1", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "A knob that moves whatever its routes lead to.";
+            "Has no effect by itself: routes lead it to other parameters.";
         Macro2 "macro2" "Macro 2", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "A knob that moves whatever its routes lead to.";
+            "Has no effect by itself: routes lead it to other parameters.";
         Macro3 "macro3" "Macro 3", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "A knob that moves whatever its routes lead to.";
+            "Has no effect by itself: routes lead it to other parameters.";
         Macro4 "macro4" "Macro 4", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "A knob that moves whatever its routes lead to.";
+            "Has no effect by itself: routes lead it to other parameters.";
         Macro5 "macro5" "Macro 5", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "A knob that moves whatever its routes lead to.";
+            "Has no effect by itself: routes lead it to other parameters.";
         Macro6 "macro6" "Macro 6", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "A knob that moves whatever its routes lead to.";
+            "Has no effect by itself: routes lead it to other parameters.";
         Macro7 "macro7" "Macro 7", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "A knob that moves whatever its routes lead to.";
+            "Has no effect by itself: routes lead it to other parameters.";
         Macro8 "macro8" "Macro 8", Percent 0.0..100.0 = 0.0, Linear, Smoothed(20), [],
-            "A knob that moves whatever its routes lead to.";
+            "Has no effect by itself: routes lead it to other parameters.";
     }
         } $($rest)* }
     };
