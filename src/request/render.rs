@@ -96,7 +96,7 @@ impl Request {
         if self.dither && self.bits == SampleFormat::Float32 {
             return Err(Error::value("--dither", "floats are not rounded and need none: expected --bits 16 or 24"));
         }
-        if self.song.is_some() == !self.note.is_empty() {
+        if self.song.is_some() != self.note.is_empty() {
             return Err(Error::value("--note", "expected either a song or notes"));
         }
         if self.normalize.is_some() && self.gain_db != 0.0 {

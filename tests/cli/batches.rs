@@ -59,7 +59,7 @@ fn a_manifest_says_what_every_file_is() {
         assert_eq!((line["number"].as_u64(), line["sha256"].as_str()), (Some(number as u64), Some(&*hash)));
         let wav = Wav::read(&bytes);
         assert_eq!(line["frames"].as_u64(), Some(wav.frames.into()));
-        let peak = 20.0 * wav.peak().log10();
+        let peak = sprung::units::db_from_gain(wav.peak());
         assert!((line["peak_dbfs"].as_f64().unwrap() - peak).abs() < 0.01, "{line}");
         let modes = line["notes"][0]["modes"].as_array().unwrap();
         assert!(!modes.is_empty() && modes.iter().all(|mode| mode["frequency"].as_f64().unwrap() > 0.0), "{line}");
