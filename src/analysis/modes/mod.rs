@@ -17,7 +17,6 @@ mod mode;
 mod plausible;
 mod pole;
 mod prune;
-mod resolve;
 mod search;
 mod strikes;
 

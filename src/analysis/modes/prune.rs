@@ -12,20 +12,10 @@ pub(super) const DETECTION: f64 = 15.0;
 const SIGNIFICANCE: f64 = 5.0;
 /// Times that a floor is measured anew, since what is dropped comes back in the residual.
 const MOST_FLOORS: usize = 8;
-/// What may be left without modes that were dropped, over what was left with them.
-const MOST_LEFT: f64 = 1.2;
-/// Rounds in which those that stay take over what they can.
-const REFINED: usize = 8;
 
 /// Drops modes until each one that is left explains more than noise would, and more than the energy `least`. `None` if
 /// the equations cannot be solved.
-pub(super) fn prune(
-    mut fit: Fit,
-    samples: &[f64],
-    sample_rate: f64,
-    least: f64,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Option<Fit> {
+pub(super) fn prune(mut fit: Fit, samples: &[f64], sample_rate: f64, least: f64) -> Option<Fit> {
     for _ in 0..MOST_FLOORS {
         if fit.poles.is_empty() {
             break;
@@ -41,40 +31,9 @@ pub(super) fn prune(
         if elimination.left.len() == fit.poles.len() {
             break;
         }
-        let next = without(&fit, &elimination.removed, &floors, samples, go_on)?;
-        if next.poles.len() == fit.poles.len() {
-            break;
-        }
-        fit = next;
+        fit = Fit::new(samples, elimination.left.iter().map(|k| fit.poles[*k]).collect())?;
     }
     Some(fit)
-}
-
-/// A fit without modes that explain no more than noise, the weakest first. Of modes that are denser than their bandwidths each one
-/// seems to be of no worth, since its neighbours could explain what it does; without all of them, much would be left. Then
-/// only so many are dropped that the others, moved, explain the sound as well.
-fn without(
-    fit: &Fit,
-    weakest: &[usize],
-    floors: &[f64],
-    samples: &[f64],
-    go_on: &mut dyn FnMut() -> bool,
-) -> Option<Fit> {
-    let mut count = weakest.len();
-    while count > 0 {
-        let dropped = &weakest[..count];
-        let left = (0..fit.poles.len()).filter(|k| !dropped.contains(k)).map(|k| fit.poles[k]).collect();
-        let most = MOST_LEFT * fit.unexplained + DETECTION * dropped.iter().map(|k| floors[*k]).sum::<f64>();
-        let mut next = Fit::new(samples, left)?;
-        if next.unexplained > most {
-            next = next.refine(samples, 1e-2, REFINED, go_on);
-        }
-        if next.unexplained <= most {
-            return Some(next);
-        }
-        count /= 2;
-    }
-    Some(fit.clone())
 }
 
 /// Modes that are taken out of the normal equations one after the other. What is left is the solution without them, at
@@ -83,13 +42,11 @@ struct Elimination {
     inverses: Inverses,
     amplitudes: Vec<Complex<f64>>,
     left: Vec<usize>,
-    /// In the order in which they were taken out.
-    removed: Vec<usize>,
 }
 
 impl Elimination {
     fn new(inverses: Inverses, amplitudes: Vec<Complex<f64>>) -> Self {
-        Self { inverses, left: (0..amplitudes.len()).collect(), removed: Vec::new(), amplitudes }
+        Self { inverses, left: (0..amplitudes.len()).collect(), amplitudes }
     }
 
     /// The mode that explains the least of those left, and its energy as a multiple of what it has to explain.
@@ -120,7 +77,6 @@ impl Elimination {
         let pole = 2 * self.amplitudes.len() + 1 + 2 * k;
         [2 * k, 2 * k + 1, pole, pole + 1].into_iter().for_each(|at| take_out(&mut self.inverses.all, at));
         self.left.retain(|other| *other != k);
-        self.removed.push(k);
     }
 }
 

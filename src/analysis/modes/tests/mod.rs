@@ -1,6 +1,5 @@
 //! Synthetic strikes whose modes are known, clean and in noise, and sounds that are no strikes.
 
-mod dense;
 mod presets;
 
 use super::fit::energy;
