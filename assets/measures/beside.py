@@ -5,7 +5,8 @@
     cargo build --release && python3 assets/measures/beside.py
 
 The recordings are those of FluidR3 GM (Frank Wen, MIT) as FluidSynth plays them, without reverb and chorus. Both notes are struck
-with velocity 100 and held for 1.4 s. Both pictures of a row have one scale of colours, from the loudest point 75 dB down.
+with velocity 100 and held for 1.4 s. Both pictures of a row have one range of colours, from the loudest point 75 dB down. FluidR3
+has no gong and no bowed glass: a soft stroke on the gong stands beside a hard one, and glass beside the nearest program, a pad.
 """
 
 import subprocess
@@ -24,12 +25,16 @@ SPRUNG = ROOT / "target/release/sprung"
 SOUNDFONT = sys.argv[1] if len(sys.argv) > 1 else "/usr/share/sounds/sf2/FluidR3_GM.sf2"
 RATE, SECONDS, RANGE_DB = 44100, 2.0, 75
 
-# Title, program from 1 (0 for drums), key of the recording, preset, its note.
+# Titles of the left and right picture, program from 1 (0 for drums; None for Sprung, softly) and key of the left, preset, its note.
 ROWS = [
-    ("Marimba", 13, 60, "Marimba", "C4"),
-    ("Snare", 0, 38, "Snare", "C4"),
-    ("Ride", 0, 51, "Ride", "C4"),
-    ("Nylon guitar", 25, 52, "Nylon Guitar", "E3"),
+    ("Marimba, FluidR3", "Marimba, Sprung", 13, 60, "Marimba", "C4"),
+    ("Nylon guitar, FluidR3", "Nylon guitar, Sprung", 25, 52, "Nylon Guitar", "E3"),
+    ("Steel string on its soundboard, FluidR3", "Steel string on its soundboard, Sprung", 26, 52, "Steel Guitar", "E3"),
+    ("Snare and its wires, FluidR3", "Snare and its wires, Sprung", 0, 38, "Snare", "C4"),
+    ("Ride, FluidR3", "Ride, Sprung", 0, 51, "Ride", "C4"),
+    ("Crash, FluidR3", "Crash, Sprung", 0, 49, "Crash", "C4"),
+    ("Gong, Sprung, softly (velocity 50)", "Gong, Sprung, hard (velocity 120): it blooms", None, 0, "Gong", "C4"),
+    ("Bowed glass pad (program 93), FluidR3", "Bowed glass, Sprung", 93, 60, "Bowed Glass", "C4"),
 ]
 
 
@@ -50,9 +55,9 @@ def recorded(program, key, folder):
     return wav
 
 
-def rendered(preset, note, folder):
-    wav = folder / "rendered.wav"
-    options = ["--velocity", "100", "--length", "1.4", "--rate", str(RATE), "--bits", "16", "--force", "-o", wav]
+def rendered(preset, note, velocity, folder):
+    wav = folder / f"rendered-{velocity}.wav"
+    options = ["--velocity", str(velocity), "--length", "1.4", "--rate", str(RATE), "--bits", "16", "--force", "-o", wav]
     subprocess.run([SPRUNG, "render", "--preset", preset, "--note", note, *options], check=True, capture_output=True)
     return wav
 
@@ -71,13 +76,16 @@ def main():
     figure, axes = plt.subplots(len(ROWS), 2, figsize=(11, 2.6 * len(ROWS)), sharex=True, sharey=True)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for (title, program, key, preset, note), row in zip(ROWS, axes):
-            sounds = [recorded(program, key, folder), rendered(preset, note, folder)]
-            for wav, axis, whose in zip(sounds, row, ["FluidR3", "Sprung"]):
+        for (left, right, program, key, preset, note), row in zip(ROWS, axes):
+            if program is None:
+                sounds = [rendered(preset, note, 50, folder), rendered(preset, note, 120, folder)]
+            else:
+                sounds = [recorded(program, key, folder), rendered(preset, note, 100, folder)]
+            for wav, axis, title in zip(sounds, row, [left, right]):
                 frequencies, times, decibels = spectrum(wav)
                 top = decibels.max()
                 axis.pcolormesh(times, frequencies, decibels, vmin=top - RANGE_DB, vmax=top, cmap="magma", rasterized=True)
-                axis.set(yscale="log", ylim=(50, 16000), title=f"{title}, {whose}")
+                axis.set(yscale="log", ylim=(50, 16000), title=title)
             row[0].set_ylabel("Hz")
     for axis in axes[-1]:
         axis.set_xlabel("s")
