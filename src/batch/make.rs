@@ -42,7 +42,8 @@ pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> +
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|source| Error::io(folder.display().to_string(), source))?;
     }
-    let create = || Output::create(&Target::Path(path.clone()), true, &inputs);
+    // Whoever goes on replaces what was broken off. Whoever starts replaces nothing.
+    let create = || Output::create(&Target::Path(path.clone()), batch.resume, &inputs).map_err(is_there);
     let mut output = create()?;
     let made = to_labelled_wav(&job, &prepared.delivery, &mut output, |_: Progress| check());
     let (report, labels) = made.map_err(told)?;
@@ -52,8 +53,18 @@ pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> +
         flac::encode(wav.stream(), output.stream(), &name).map_err(told)?;
     }
     let sha256 = sha256_of(output.stream()).map_err(|source| Error::io(output.name(), source))?;
-    output.commit()?;
+    output.commit().map_err(is_there)?;
     Ok(line(task, &job, &file, &sha256, &report, &labels, &warnings))
+}
+
+/// Says what to do about a file that is there, since there is no --force.
+fn is_there(error: Error) -> Error {
+    match error {
+        Error::Exists { path } => {
+            Error::value(path, "the file exists: add --resume if it is of this batch, or choose another folder")
+        }
+        error => error,
+    }
 }
 
 /// The SHA-256 of a file, in hexadecimal.

@@ -15,6 +15,23 @@ pub(super) fn name([index, count]: [u64; 2]) -> String {
     if count == 1 { format!("{STEM}{ENDING}") } else { format!("{STEM}-{}-of-{count}{ENDING}", index + 1) }
 }
 
+/// Whether a text consists of digits.
+pub(super) fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// Whether a file of this name is the manifest of a batch or of a shard.
+pub(super) fn is_name(file: &str) -> bool {
+    match file.strip_prefix(STEM).and_then(|rest| rest.strip_suffix(ENDING)) {
+        Some("") => true,
+        Some(shard) => {
+            let numbers = shard.strip_prefix('-').and_then(|shard| shard.split_once("-of-"));
+            numbers.is_some_and(|(index, count)| is_number(index) && is_number(count))
+        }
+        None => false,
+    }
+}
+
 /// A line of a manifest, as far as it is needed to go on with a batch.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entry {

@@ -8,6 +8,7 @@ mod draw;
 mod jobs;
 mod make;
 mod manifest;
+mod own;
 mod run;
 mod scalar;
 mod template;

@@ -24,8 +24,7 @@ impl Batch {
     /// is not to be gone on with, or if it is of other jobs; [`Error::Io`]; and the errors of `progress`. What is finished
     /// stays, and can be gone on with.
     pub fn run(&self, progress: &(dyn Fn(Done) -> Result<()> + Sync)) -> Result<Done> {
-        let jobs = || Jobs::open(&self.jobs, self.seed, self.shard.of());
-        let of = jobs()?.count()?;
+        let of = Jobs::open(self)?.count()?;
         fs::create_dir_all(&self.folder).map_err(|source| Error::io(self.folder.display().to_string(), source))?;
         let name = manifest::name(self.shard.of());
         let manifest = Manifest::open(&self.folder.join(&name), self.resume)?;
@@ -37,7 +36,7 @@ impl Batch {
         let (written, next) = (manifest.lines, 0);
         let desk = Desk {
             batch: self,
-            state: Mutex::new(State { jobs: jobs()?, known, taken: 0, failed: None }),
+            state: Mutex::new(State { jobs: Jobs::open(self)?, known, taken: 0, failed: None }),
             rack: Mutex::new(Rack { manifest, written, next, waiting: BTreeMap::new(), found: 0 }),
             moved: Condvar::new(),
             of,
@@ -54,8 +53,8 @@ impl Batch {
 }
 
 /// What is still to do.
-struct State {
-    jobs: Jobs,
+struct State<'a> {
+    jobs: Jobs<'a>,
     known: Known,
     /// Jobs that have been taken.
     taken: u64,
@@ -79,7 +78,7 @@ struct Rack {
 /// Where threads take jobs and put finished lines.
 struct Desk<'a> {
     batch: &'a Batch,
-    state: Mutex<State>,
+    state: Mutex<State<'a>>,
     rack: Mutex<Rack>,
     /// The rack has moved on, or something has failed.
     moved: Condvar,

@@ -1,5 +1,6 @@
 //! A line of a file of jobs: the options of a request, some of them to be drawn.
 
+use super::Batch;
 use super::draw::{Chance, Draw};
 use super::scalar::{Scale, text_of};
 use crate::params::{PARAMS, Param};
@@ -49,7 +50,7 @@ pub(super) struct Drawn {
 
 impl Template {
     /// Reads a line, and checks every value that it can have.
-    pub(super) fn parse(line: &str) -> Result<Self, Fault> {
+    pub(super) fn parse(line: &str, batch: &Batch) -> Result<Self, Fault> {
         let whole = |message: String| ("line".to_owned(), message);
         let value: Value = serde_json::from_str(line).map_err(|error| whole(format!("no JSON: {error}")))?;
         let Value::Object(object) = value else {
@@ -73,12 +74,12 @@ impl Template {
         // In the order of names, whatever the order in the file: then the same job is written in the same way.
         entries.sort_by(|a, b| a.path.cmp(&b.path));
         let template = Self { entries, repeat };
-        template.check()?;
+        template.check(batch)?;
         Ok(template)
     }
 
     /// Checks every end of what is drawn, every choice, and what the options say together.
-    fn check(&self) -> Result<(), Fault> {
+    fn check(&self, batch: &Batch) -> Result<(), Fault> {
         let mut request = Request::default();
         for entry in &self.entries {
             let candidates = match &entry.part {
@@ -92,6 +93,11 @@ impl Template {
             for candidate in candidates {
                 let mut one = Request::default();
                 entry.set(&mut one, &candidate)?;
+                if entry.is_file()
+                    && let Some(own) = one.files().find_map(|file| batch.own(file))
+                {
+                    return Err((entry.path.join("."), own));
+                }
                 entry.set(&mut request, &candidate)?;
             }
         }
@@ -150,6 +156,12 @@ impl Entry {
     /// What is drawn: the parameter, or the option.
     fn name(&self) -> &str {
         self.path.last().map_or("", String::as_str)
+    }
+
+    /// Whether it may name a file.
+    fn is_file(&self) -> bool {
+        const FILES: [&str; 7] = ["song", "input", "preset", CHANNEL, "programs", "scale", "keymap"];
+        self.path.first().is_some_and(|option| FILES.contains(&option.as_str()))
     }
 
     /// Sets the option of a request to a value.

@@ -9,7 +9,7 @@ use crate::params::Param;
 use crate::render::{Delivery, Job, Level, Options, Tail};
 use crate::sound::Kit;
 use crate::units::parse_key;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Frames processed at once, unless [`Request::block`] says otherwise.
 const BLOCK: usize = 4096;
@@ -103,6 +103,16 @@ impl Request {
             return Err(Error::value("--normalize", "expected it without --gain-db"));
         }
         Ok(())
+    }
+
+    /// The files that it may name: song, input, presets and kits, programs, scale and keymap. A preset's name is one, too,
+    /// since it may be a file.
+    pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
+        let tuning = &self.sound.tuning;
+        let paths = [&self.song, &self.input, &tuning.scale, &tuning.keymap];
+        let presets = self.sound.preset.iter().chain([&self.sound.programs]).map(Path::new);
+        let channels = self.sound.channels.iter().map(|(_, name)| Path::new(name));
+        paths.into_iter().flatten().map(PathBuf::as_path).chain(presets).chain(channels)
     }
 
     /// Reads the song, the sounds and the input. `warn` is called with what deserves a warning.

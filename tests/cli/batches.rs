@@ -91,6 +91,25 @@ fn a_job_is_what_render_makes_of_it() {
 }
 
 #[test]
+fn what_is_there_is_neither_replaced_nor_read_while_it_is_written() {
+    let sandbox = Sandbox::new();
+    let job = r#"{"note": "C2", "length": 0.01, "tail": "none"}"#;
+    sandbox.write("jobs.jsonl", job);
+    fs::create_dir_all(sandbox.path("sounds/0000")).unwrap();
+    sandbox.write("sounds/0000/0000000.wav", "mine");
+    let message = "0000000.wav: the file exists: add --resume if it is of this batch, or choose another folder";
+    sandbox.fails("batch jobs.jsonl --out sounds", 1, message);
+    assert_eq!(sandbox.read("sounds/0000/0000000.wav"), b"mine");
+    // A job's input that another job writes, whether it is there already or not.
+    for (out, input) in [("sounds", "sounds/0000/0000000.wav"), ("sounds", "./sounds/../sounds/0000/0000007.wav"), (".", "0000/0000000.wav")] {
+        sandbox.write("jobs.jsonl", format!("{job}\n{}", job.replace('{', &format!("{{\"input\": \"{input}\", "))));
+        let message = format!("jobs.jsonl:2: input: ‘{input}’ is a file that this batch writes");
+        sandbox.fails(&format!("batch jobs.jsonl --out {out} --resume"), 1, &message);
+    }
+    assert_eq!(sandbox.read("sounds/0000/0000000.wav"), b"mine");
+}
+
+#[test]
 fn killed_anywhere_and_gone_on_with_it_is_the_same() {
     let sandbox = Sandbox::new();
     sandbox.write("jobs.jsonl", JOBS);
