@@ -109,7 +109,7 @@ impl Known {
         for entry in fs::read_dir(folder).map_err(failed)? {
             let path = entry.map_err(failed)?.path();
             let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-            if name.starts_with(STEM) && name.ends_with(ENDING) {
+            if is_name(name) {
                 paths.push(path);
             }
         }

@@ -24,10 +24,16 @@ impl Batch {
     /// is not to be gone on with, or if it is of other jobs; [`Error::Io`]; and the errors of `progress`. What is finished
     /// stays, and can be gone on with.
     pub fn run(&self, progress: &(dyn Fn(Done) -> Result<()> + Sync)) -> Result<Done> {
+        let name = manifest::name(self.shard.of());
+        let path = self.folder.join(&name);
+        // Going on would cut its last line if that has no end.
+        if self.own(&self.jobs).is_some() || same_file::is_same_file(&self.jobs, &path).unwrap_or(false) {
+            let message = "this batch writes this file itself: expected another file of jobs, or another folder";
+            return Err(Error::value(self.jobs.display().to_string(), message));
+        }
         let of = Jobs::open(self)?.count()?;
         fs::create_dir_all(&self.folder).map_err(|source| Error::io(self.folder.display().to_string(), source))?;
-        let name = manifest::name(self.shard.of());
-        let manifest = Manifest::open(&self.folder.join(&name), self.resume)?;
+        let manifest = Manifest::open(&path, self.resume)?;
         let known = if self.resume { Known::open(&self.folder)? } else { Known::NONE };
         if manifest.lines > of {
             let message = format!("{} jobs are finished there, of {of}: expected the same jobs", manifest.lines);

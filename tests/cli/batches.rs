@@ -110,6 +110,29 @@ fn what_is_there_is_neither_replaced_nor_read_while_it_is_written() {
 }
 
 #[test]
+fn only_manifests_are_taken_for_manifests() {
+    let sandbox = Sandbox::new();
+    let job = r#"{"note": "C2", "length": 0.01, "tail": "none"}"#;
+    // Files of jobs may have names that begin alike.
+    for name in ["manifest-of-jobs.jsonl", "manifesto.jsonl", "manifest-1-of-.jsonl"] {
+        sandbox.write(name, job);
+        sandbox.succeeds(&format!("batch {name} --out . --resume"));
+    }
+    // Its last line has no end, which going on with a manifest would cut off.
+    fs::create_dir(sandbox.path("out")).unwrap();
+    for name in ["out/manifest.jsonl", "out/manifest-2-of-3.jsonl"] {
+        sandbox.write(name, job);
+        for args in ["", " --resume", " --resume --shard 2/3"] {
+            sandbox.fails(&format!("batch {name} --out out{args}"), 1, "this batch writes this file itself");
+            assert_eq!(sandbox.read(name), job.as_bytes());
+        }
+    }
+    fs::hard_link(sandbox.path("out/manifest.jsonl"), sandbox.path("jobs.jsonl")).unwrap();
+    sandbox.fails("batch jobs.jsonl --out out --resume", 1, "jobs.jsonl: this batch writes this file itself");
+    assert_eq!(sandbox.read("jobs.jsonl"), job.as_bytes());
+}
+
+#[test]
 fn killed_anywhere_and_gone_on_with_it_is_the_same() {
     let sandbox = Sandbox::new();
     sandbox.write("jobs.jsonl", JOBS);
