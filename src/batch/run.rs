@@ -31,6 +31,10 @@ impl Batch {
             let message = "this batch writes this file itself: expected another file of jobs, or another folder";
             return Err(Error::value(self.jobs.display().to_string(), message));
         }
+        let changed = |message| Err(Error::value(self.jobs.display().to_string(), message));
+        if fs::metadata(&self.jobs).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir()) {
+            return changed("jobs are read twice, which a pipe or device does not allow: expected a file".to_owned());
+        }
         let of = Jobs::open(self)?.count()?;
         fs::create_dir_all(&self.folder).map_err(|source| Error::io(self.folder.display().to_string(), source))?;
         let manifest = Manifest::open(&path, self.resume)?;
@@ -53,6 +57,10 @@ impl Batch {
         let rack = desk.rack.into_inner().unwrap_or_else(PoisonError::into_inner);
         match state.failed {
             Some(error) => Err(error),
+            None if rack.next != of => changed(format!(
+                "it had {of} jobs to make at first, and {} later: expected a file that stays as it is",
+                rack.next
+            )),
             None => Ok(Done { jobs: rack.next, found: rack.found, of }),
         }
     }
@@ -207,5 +215,40 @@ impl Desk<'_> {
     fn done(&self) -> Done {
         let rack = lock(&self.rack);
         Done { jobs: rack.next + rack.waiting.len() as u64, found: rack.found, of: self.of }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{FileFormat, Shard};
+    use super::*;
+    use std::path::Path;
+
+    const JOB: &str = r#"{"note": "C2", "length": 0.001, "tail": "none", "rate": 8000}"#;
+
+    fn batch(folder: &Path) -> Batch {
+        Batch {
+            jobs: folder.join("jobs.jsonl"),
+            folder: folder.join("sounds"),
+            format: FileFormat::Wav,
+            seed: 0,
+            shard: Shard::WHOLE,
+            resume: false,
+            at_once: Some(2),
+        }
+    }
+
+    #[test]
+    fn jobs_that_become_fewer_are_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let batch = batch(folder.path());
+        // More than is read at once.
+        fs::write(&batch.jobs, format!("{JOB}\n{}{JOB}\n", "\n".repeat(100_000))).unwrap();
+        let shorten = |_| {
+            fs::write(&batch.jobs, JOB).unwrap();
+            Ok(())
+        };
+        let error = batch.run(&shorten).unwrap_err().to_string();
+        assert!(error.ends_with("it had 2 jobs to make at first, and 1 later: expected a file that stays as it is"), "{error}");
     }
 }

@@ -237,6 +237,13 @@ fn wrong_jobs_are_named_by_line_and_key() {
         sandbox.write("jobs.jsonl", format!("{{\"note\": \"C2\", \"length\": 0.01, \"tail\": \"none\"}}\n{line}\n"));
         sandbox.fails("batch jobs.jsonl --out sounds", 1, message);
     }
+    #[cfg(unix)]
+    {
+        let pipe = sandbox.sprung("batch /dev/stdin --out sounds").write_stdin("{\"note\": \"C2\"}").assert().code(1);
+        let told = String::from_utf8(pipe.get_output().stderr.clone()).unwrap();
+        assert!(told.contains("/dev/stdin: jobs are read twice") && told.contains("expected a file"), "{told}");
+        assert!(!sandbox.path("sounds").exists());
+    }
     sandbox.fails("batch none.jsonl --out sounds", 1, "none.jsonl: ");
     sandbox.fails("batch jobs.jsonl --out sounds --shard 5/4", 2, "there is no part 5 of 4: expected 1/4 to 4/4");
 }
