@@ -8,10 +8,11 @@ use crate::error::{Error, Result};
 use crate::render::on_threads;
 use std::collections::BTreeMap;
 use std::fs;
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// How many jobs may be finished while an earlier one is not: their lines wait in memory.
-const WINDOW: u64 = 1024;
+const WINDOW: u64 = if cfg!(test) { 4 } else { 1024 };
 
 impl Batch {
     /// Makes all jobs of the part. Every line of the file of jobs is checked before the first is made. `progress` is called
@@ -107,40 +108,42 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Desk<'_> {
     /// Makes one job after the other until there are none, or one has failed.
     fn work(&self) {
-        while let Some((place, task, known)) = self.take() {
-            if let Err(error) = self.make(place, &task, known) {
-                lock(&self.state).failed.get_or_insert(error);
-                // Whoever has just seen that nothing has failed still holds the rack, and is woken up once it waits.
-                drop(lock(&self.rack));
-                self.moved.notify_all();
-                return;
+        let work = || {
+            while let Some((place, task, known)) = self.take()? {
+                self.make(place, &task, known)?;
+            }
+            Ok(())
+        };
+        match panic::catch_unwind(AssertUnwindSafe(work)) {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => self.fail(error),
+            Err(panic) => {
+                // The others would wait for this job for ever.
+                self.fail(Error::Interrupted);
+                panic::resume_unwind(panic);
             }
         }
     }
 
+    /// Ends the work of all threads.
+    fn fail(&self, error: Error) {
+        lock(&self.state).failed.get_or_insert(error);
+        // Whoever has just seen that nothing has failed still holds the rack, and is woken up once it waits.
+        drop(lock(&self.rack));
+        self.moved.notify_all();
+    }
+
     /// The next job, its place among those of the part, and its line if it was found finished.
-    fn take(&self) -> Option<(u64, Task, Option<Entry>)> {
+    fn take(&self) -> Result<Option<(u64, Task, Option<Entry>)>> {
         let mut state = lock(&self.state);
         if state.failed.is_some() {
-            return None;
+            return Ok(None);
         }
-        let taken = state.jobs.next().and_then(|task| {
-            let Some(task) = task else { return Ok(None) };
-            let known = state.known.find(task.number)?;
-            Ok(Some((task, known)))
-        });
-        match taken {
-            Ok(Some((task, known))) => {
-                let place = state.taken;
-                state.taken += 1;
-                Some((place, task, known))
-            }
-            Ok(None) => None,
-            Err(error) => {
-                state.failed = Some(error);
-                None
-            }
-        }
+        let Some(task) = state.jobs.next()? else { return Ok(None) };
+        let known = state.known.find(task.number)?;
+        let place = state.taken;
+        state.taken += 1;
+        Ok(Some((place, task, known)))
     }
 
     fn make(&self, place: u64, task: &Task, known: Option<Entry>) -> Result<()> {
@@ -236,6 +239,23 @@ mod tests {
             resume: false,
             at_once: Some(2),
         }
+    }
+
+    #[test]
+    fn a_panic_ends_all_threads() {
+        use std::sync::atomic::{AtomicBool, Ordering};
+        let folder = tempfile::tempdir().unwrap();
+        let batch = batch(folder.path());
+        fs::write(&batch.jobs, format!("{JOB}\n").repeat(50)).unwrap();
+        let has_panicked = AtomicBool::new(false);
+        let panic_once = |_| {
+            assert!(has_panicked.swap(true, Ordering::Relaxed), "the first job panics");
+            Ok(())
+        };
+        let ended = panic::catch_unwind(AssertUnwindSafe(|| batch.run(&panic_once)));
+        assert!(ended.is_err());
+        let made = fs::read_to_string(batch.folder.join("manifest.jsonl")).unwrap();
+        assert!(made.lines().count() < 50);
     }
 
     #[test]
