@@ -78,12 +78,13 @@ impl Finished {
 
     /// Reads the next line. A line without an end was cut off when its writer was killed, and does not count.
     fn advance(&mut self) -> Result<()> {
-        let mut line = String::new();
-        let read = self.reader.read_line(&mut line);
+        // As bytes, since a line may have been cut off within a character.
+        let mut line = Vec::new();
+        let read = self.reader.read_until(b'\n', &mut line);
         read.map_err(|source| Error::io(self.path.display().to_string(), source))?;
-        self.next = match line.strip_suffix('\n') {
+        self.next = match line.strip_suffix(b"\n") {
             None => None,
-            Some(line) => Some(Entry::parse(line).ok_or_else(|| {
+            Some(line) => Some(str::from_utf8(line).ok().and_then(Entry::parse).ok_or_else(|| {
                 Error::format(
                     self.path.display().to_string(),
                     "not a manifest: expected lines as this command writes them",

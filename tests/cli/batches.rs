@@ -186,6 +186,23 @@ fn four_shards_are_the_whole() {
 }
 
 #[test]
+fn a_shard_that_was_cut_off_within_a_character_is_gone_on_with() {
+    let sandbox = Sandbox::new();
+    let kick = sandbox.succeeds("presets show Kick");
+    sandbox.write("‘kick’.toml", kick);
+    let job = r#"{"preset": "‘kick’.toml", "note": "C2", "length": 0.01, "tail": "none", "repeat": 8}"#;
+    sandbox.write("jobs.jsonl", job);
+    sandbox.succeeds("batch jobs.jsonl --out whole");
+    sandbox.succeeds("batch jobs.jsonl --out parts --shard 1/4");
+    let name = "parts/manifest-1-of-4.jsonl";
+    let manifest = sandbox.read(name);
+    let last = manifest.windows(3).rposition(|bytes| bytes == "‘".as_bytes()).unwrap();
+    sandbox.write(name, &manifest[..last + 1]);
+    sandbox.succeeds("batch jobs.jsonl --out parts --resume");
+    assert!(sandbox.read("parts/manifest.jsonl") == sandbox.read("whole/manifest.jsonl"));
+}
+
+#[test]
 fn a_flac_has_the_samples_of_the_wav() {
     let sandbox = Sandbox::new();
     sandbox.write("jobs.jsonl", JOBS);
