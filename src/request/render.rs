@@ -102,7 +102,8 @@ impl Request {
         if self.normalize.is_some() && self.gain_db != 0.0 {
             return Err(Error::value("--normalize", "expected it without --gain-db"));
         }
-        Ok(())
+        self.sound.tuning.check()?;
+        self.sound.tuning.check_notes(&self.note)
     }
 
     /// The files that it may name: song, input, presets and kits, programs, scale and keymap. A preset's name is one, too,
@@ -148,7 +149,6 @@ impl Request {
     }
 
     fn chord(&self, kit: &Kit) -> Result<Song> {
-        self.sound.tuning.check_notes(&self.note)?;
         // Frequencies are converted with the sound's own A4, so that 440 Hz is 440 Hz with every sound.
         let a4_hz = f64::from(kit.values().get(Param::Tuning));
         let keys: std::result::Result<Vec<f64>, String> = self.note.iter().map(|note| parse_key(note, a4_hz)).collect();

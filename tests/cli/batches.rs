@@ -250,9 +250,36 @@ fn wrong_jobs_are_named_by_line_and_key() {
         (r#"{"note": "C2", "repeat": 0}"#, "jobs.jsonl:2: repeat: expected a whole number from 1"),
         (r#"{"song": "-"}"#, "jobs.jsonl:2: song: expected a file"),
         (r#"{"note": "C2", "dither": true, "bits": "32f"}"#, "jobs.jsonl:2: dither: floats are not rounded"),
+        // Whatever is drawn is checked, not the last choice only.
+        (r#"{"song": {"choice": ["-", "a.mid"]}}"#, "jobs.jsonl:2: song: expected a file"),
+        (
+            r#"{"note": "C2", "dither": {"choice": [true, false]}, "bits": {"choice": ["32f", 16]}}"#,
+            "jobs.jsonl:2: dither: floats are not rounded",
+        ),
+        (
+            r#"{"note": "C2", "gain_db": {"uniform": [-3, 0]}, "normalize": {"choice": ["peak=-1"]}}"#,
+            "jobs.jsonl:2: normalize: expected it without",
+        ),
+        (
+            r#"{"note": "C2", "gain_db": {"normal": [0, 1]}, "normalize": "peak=-1"}"#,
+            "jobs.jsonl:2: normalize: expected it without",
+        ),
+        (r#"{"note": "C2", "keymap": "a.kbm"}"#, "jobs.jsonl:2: keymap: expected --scale"),
+        (
+            r#"{"note": {"choice": [60.5, 60]}, "scale": {"choice": ["a.scl", "b.scl"]}}"#,
+            "jobs.jsonl:2: note: ‘60.5’ is no key",
+        ),
     ] {
         sandbox.write("jobs.jsonl", format!("{{\"note\": \"C2\", \"length\": 0.01, \"tail\": \"none\"}}\n{line}\n"));
         sandbox.fails("batch jobs.jsonl --out sounds", 1, message);
+    }
+    for (line, message) in [
+        (r#"{"note": "C2", "bits": {"choice": ["32f", 24]}}"#, "jobs.jsonl:2: bits: FLAC has no floats"),
+        (r#"{"note": "C2", "rate": {"uniform": [8000, 96001]}}"#, "jobs.jsonl:2: rate: 96001 Hz is too high for FLAC"),
+        (r#"{"note": "C2", "rate": {"choice": ["192k", "48k"]}}"#, "jobs.jsonl:2: rate: 192000 Hz is too high for FLAC"),
+    ] {
+        sandbox.write("jobs.jsonl", format!("{{\"note\": \"C2\", \"length\": 0.01, \"tail\": \"none\"}}\n{line}\n"));
+        sandbox.fails("batch jobs.jsonl --out sounds --format flac", 1, message);
     }
     #[cfg(unix)]
     {

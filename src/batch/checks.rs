@@ -1,10 +1,29 @@
-//! Tells the files that a batch writes from its inputs.
+//! Checks that a job fits its batch: its files and its sample format.
 
-use super::Batch;
 use super::manifest::{self, is_number};
+use super::template::Fault;
+use super::{Batch, FileFormat};
+use crate::io::{SampleFormat, flac};
+use crate::request::Request;
 use std::path::{Path, PathBuf};
 
 impl Batch {
+    /// Returns an error for a job that the format of the files cannot have.
+    pub(super) fn check_format(&self, request: &Request) -> Result<(), Fault> {
+        let fault = |key: &str, message: String| Err((key.to_owned(), message));
+        match self.format {
+            FileFormat::Wav => Ok(()),
+            FileFormat::Flac if request.bits == SampleFormat::Float32 => {
+                fault("bits", "FLAC has no floats: expected 16 or 24, or --format wav".to_owned())
+            }
+            FileFormat::Flac if request.rate > flac::HIGHEST_RATE => {
+                let (rate, highest) = (request.rate, flac::HIGHEST_RATE);
+                fault("rate", format!("{rate} Hz is too high for FLAC: expected at most {highest} Hz, or --format wav"))
+            }
+            FileFormat::Flac => Ok(()),
+        }
+    }
+
     /// A message, if `input` is a file that a batch in this folder writes, now or later. Only its path counts, since the
     /// files are renamed into their places: a hard link to one keeps what it has.
     pub(super) fn own(&self, input: &Path) -> Option<String> {
