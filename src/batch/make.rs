@@ -1,6 +1,7 @@
 //! Makes the sound of one job, and its line of the manifest.
 
 use super::jobs::Task;
+use super::manifest::VERSION;
 use super::template::key_of;
 use super::{Batch, FileFormat};
 use crate::analysis::digest::hexadecimal;
@@ -96,6 +97,7 @@ fn line(
 ) -> String {
     let mut fields = vec![
         ("number", json!(task.number)),
+        ("version", json!(VERSION)),
         ("file", json!(file)),
         ("sha256", json!(sha256)),
         ("job", Value::Object(task.drawn.line.clone())),

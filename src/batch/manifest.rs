@@ -6,6 +6,9 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+/// The version that writes the lines. Another one may make other sounds of the same jobs.
+pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// How the names of manifests start and end.
 const STEM: &str = "manifest";
 const ENDING: &str = ".jsonl";
@@ -36,6 +39,7 @@ pub(super) fn is_name(file: &str) -> bool {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entry {
     pub(super) number: u64,
+    version: String,
     /// The file, relative to the folder.
     pub(super) file: String,
     pub(super) sha256: String,
@@ -52,6 +56,7 @@ impl Entry {
         let text = |key: &str| value[key].as_str().map(str::to_owned);
         Some(Self {
             number: value["number"].as_u64()?,
+            version: text("version")?,
             file: text("file")?,
             sha256: text("sha256")?,
             job: value["job"].as_object()?.clone(),
@@ -91,7 +96,17 @@ impl Finished {
                 )
             })?),
         };
-        Ok(())
+        match self.next.as_ref().filter(|entry| entry.version != VERSION) {
+            None => Ok(()),
+            Some(entry) => {
+                let message = format!(
+                    "version {0} has made job {1}, and this is version {VERSION}, which may make another sound of it: go on with \
+                     version {0}, or choose a new folder",
+                    entry.version, entry.number
+                );
+                Err(Error::value(self.path.display().to_string(), message))
+            }
+        }
     }
 }
 

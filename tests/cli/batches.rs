@@ -68,6 +68,7 @@ fn a_manifest_says_what_every_file_is() {
     assert!(decays.iter().all(|decay| (0.05..=2.0).contains(decay)), "{decays:?}");
     assert!(decays.windows(2).any(|pair| pair[0] != pair[1]), "{decays:?}");
     assert_eq!(lines[20]["seed"], 5);
+    assert!(lines.iter().all(|line| line["version"] == env!("CARGO_PKG_VERSION")));
     // The patch's decay is the T60 of the mode that sets the pitch.
     for (line, decay) in lines.iter().zip(decays) {
         let modes = line["notes"][0]["modes"].as_array().unwrap();
@@ -183,6 +184,22 @@ fn four_shards_are_the_whole() {
     let mut parts = files(&sandbox.path("parts"));
     parts.retain(|path, _| !path.to_string_lossy().contains("-of-"));
     assert!(parts == files(&sandbox.path("whole")));
+}
+
+#[test]
+fn another_version_does_not_go_on() {
+    let sandbox = Sandbox::new();
+    sandbox.write("jobs.jsonl", r#"{"note": "C2", "length": 0.01, "tail": "none", "repeat": 2}"#);
+    sandbox.succeeds("batch jobs.jsonl --out sounds");
+    let manifest = String::from_utf8(sandbox.read("sounds/manifest.jsonl")).unwrap();
+    let own = format!("\"version\":\"{}\"", env!("CARGO_PKG_VERSION"));
+    let other = manifest.replace(&own, "\"version\":\"0.0.7\"");
+    assert_ne!(manifest, other);
+    sandbox.write("sounds/manifest.jsonl", &other);
+    let message = "sounds/manifest.jsonl: version 0.0.7 has made job 0, and this is version";
+    sandbox.fails("batch jobs.jsonl --out sounds --resume", 1, message);
+    sandbox.fails("batch jobs.jsonl --out sounds --resume --shard 1/2", 1, "or choose a new folder");
+    assert_eq!(sandbox.read("sounds/manifest.jsonl"), other.as_bytes());
 }
 
 #[test]
