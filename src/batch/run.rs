@@ -84,9 +84,9 @@ struct Rack {
     written: u64,
     /// The place of the next line, among the jobs of the part.
     next: u64,
-    /// Finished lines that wait for earlier ones, by their places.
-    waiting: BTreeMap<u64, String>,
-    /// Jobs that were found finished.
+    /// Finished lines that wait for earlier ones, by their places, and whether they were found.
+    waiting: BTreeMap<u64, (String, bool)>,
+    /// Jobs before the next that were found finished.
     found: u64,
 }
 
@@ -200,16 +200,16 @@ impl Desk<'_> {
     /// Puts a finished line in its place, and writes all lines that wait for no other.
     fn put(&self, place: u64, line: String, was_found: bool) -> Result<()> {
         let mut rack = lock(&self.rack);
-        rack.found += u64::from(was_found);
-        rack.waiting.insert(place, line);
+        rack.waiting.insert(place, (line, was_found));
         loop {
             let next = rack.next;
-            let Some(line) = rack.waiting.remove(&next) else { break };
+            let Some((line, was_found)) = rack.waiting.remove(&next) else { break };
             // The first lines may be there already, from before.
             if next >= rack.written {
                 rack.manifest.write(&line)?;
             }
             rack.next += 1;
+            rack.found += u64::from(was_found);
         }
         self.moved.notify_all();
         Ok(())
@@ -217,7 +217,8 @@ impl Desk<'_> {
 
     fn done(&self) -> Done {
         let rack = lock(&self.rack);
-        Done { jobs: rack.next + rack.waiting.len() as u64, found: rack.found, of: self.of }
+        // Only what the manifest has: the rest is made again when the batch is gone on with.
+        Done { jobs: rack.next, found: rack.found, of: self.of }
     }
 }
 
