@@ -35,7 +35,8 @@ impl Batch {
             [folder, file] => is_number(folder) && stem(file, self.format.ending()).is_some_and(is_number),
             _ => false,
         };
-        let message = || format!("‘{}’ is a file that this batch writes: expected another file or folder", input.display());
+        let message =
+            || format!("‘{}’ is a file that this batch writes: expected another file or folder", input.display());
         is_own.then(message)
     }
 }

@@ -270,6 +270,9 @@ mod tests {
             Ok(())
         };
         let error = batch.run(&shorten).unwrap_err().to_string();
-        assert!(error.ends_with("it had 2 jobs to make at first, and 1 later: expected a file that stays as it is"), "{error}");
+        assert!(
+            error.ends_with("it had 2 jobs to make at first, and 1 later: expected a file that stays as it is"),
+            "{error}"
+        );
     }
 }

@@ -88,7 +88,8 @@ impl Scale {
     fn deviation(&self, value: &Value) -> Result<f64, String> {
         match (self, value) {
             (Self::Parameter(param), Value::String(text)) => {
-                let expected = || format!("‘{text}’ is no deviation: expected a number, or one with a unit as values have");
+                let expected =
+                    || format!("‘{text}’ is no deviation: expected a number, or one with a unit as values have");
                 param.info().quantity(text).ok_or_else(expected)
             }
             _ => self.number(value),

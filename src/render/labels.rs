@@ -91,14 +91,7 @@ impl Labels {
 
     /// Looks at a voice of a part after the frames of a piece. `gain` is that of the mix; `open` are the voices whose strike
     /// was under way before.
-    fn look(
-        &mut self,
-        part: usize,
-        struck: &Struck,
-        gain: f32,
-        piece: [u64; 2],
-        open: &BTreeSet<(usize, u64, usize)>,
-    ) {
+    fn look(&mut self, part: usize, struck: &Struck, gain: f32, piece: [u64; 2], open: &BTreeSet<(usize, u64, usize)>) {
         let note = struck.note();
         let id = (part, note.serial, struck.unison());
         if self.all.contains_key(&id) && !open.contains(&id) {

@@ -102,7 +102,11 @@ fn what_is_there_is_neither_replaced_nor_read_while_it_is_written() {
     sandbox.fails("batch jobs.jsonl --out sounds", 1, message);
     assert_eq!(sandbox.read("sounds/0000/0000000.wav"), b"mine");
     // A job's input that another job writes, whether it is there already or not.
-    for (out, input) in [("sounds", "sounds/0000/0000000.wav"), ("sounds", "./sounds/../sounds/0000/0000007.wav"), (".", "0000/0000000.wav")] {
+    for (out, input) in [
+        ("sounds", "sounds/0000/0000000.wav"),
+        ("sounds", "./sounds/../sounds/0000/0000007.wav"),
+        (".", "0000/0000000.wav"),
+    ] {
         sandbox.write("jobs.jsonl", format!("{job}\n{}", job.replace('{', &format!("{{\"input\": \"{input}\", "))));
         let message = format!("jobs.jsonl:2: input: ‘{input}’ is a file that this batch writes");
         sandbox.fails(&format!("batch jobs.jsonl --out {out} --resume"), 1, &message);
@@ -299,7 +303,10 @@ fn wrong_jobs_are_named_by_line_and_key() {
     for (line, message) in [
         (r#"{"note": "C2", "bits": {"choice": ["32f", 24]}}"#, "jobs.jsonl:2: bits: FLAC has no floats"),
         (r#"{"note": "C2", "rate": {"uniform": [8000, 96001]}}"#, "jobs.jsonl:2: rate: 96001 Hz is too high for FLAC"),
-        (r#"{"note": "C2", "rate": {"choice": ["192k", "48k"]}}"#, "jobs.jsonl:2: rate: 192000 Hz is too high for FLAC"),
+        (
+            r#"{"note": "C2", "rate": {"choice": ["192k", "48k"]}}"#,
+            "jobs.jsonl:2: rate: 192000 Hz is too high for FLAC",
+        ),
     ] {
         sandbox.write("jobs.jsonl", format!("{{\"note\": \"C2\", \"length\": 0.01, \"tail\": \"none\"}}\n{line}\n"));
         sandbox.fails("batch jobs.jsonl --out sounds --format flac", 1, message);
