@@ -28,7 +28,7 @@ pub(super) fn file_of(number: u64, format: FileFormat) -> String {
 /// Renders a job into its file, and gives its line of the manifest. `check` is called often, and can end the work by an
 /// error.
 pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<String> {
-    let told = |error: Error| match error {
+    let located = |error: Error| match error {
         Error::Value { name, message } => Error::format(&task.origin, format!("{}: {message}", key_of(&name))),
         Error::Interrupted => Error::Interrupted,
         error => Error::format(&task.origin, error.to_string()),
@@ -36,7 +36,7 @@ pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> +
     let mut request = task.drawn.request.clone();
     request.block = BLOCK;
     let (mut inputs, mut warnings) = (Inputs::default(), Vec::new());
-    let prepared = request.prepare(&mut inputs, &mut |warning| warnings.push(warning.to_owned())).map_err(told)?;
+    let prepared = request.prepare(&mut inputs, &mut |warning| warnings.push(warning.to_owned())).map_err(located)?;
     let job = prepared.job();
     let file = file_of(task.number, batch.format);
     let path = batch.folder.join(&file);
@@ -47,11 +47,11 @@ pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> +
     let create = || Output::create(&Target::Path(path.clone()), batch.resume, &inputs).map_err(is_there);
     let mut output = create()?;
     let made = to_labelled_wav(&job, &prepared.delivery, &mut output, |_: Progress| check());
-    let (report, labels) = made.map_err(told)?;
+    let (report, labels) = made.map_err(located)?;
     if batch.format == FileFormat::Flac {
         // The WAV never gets a name: it is removed when it is dropped.
         let (mut wav, name) = (std::mem::replace(&mut output, create()?), output.name().to_owned());
-        flac::encode(wav.stream(), output.stream(), &name).map_err(told)?;
+        flac::encode(wav.stream(), output.stream(), &name).map_err(located)?;
     }
     let sha256 = sha256_of(output.stream()).map_err(|source| Error::io(output.name(), source))?;
     output.commit().map_err(is_there)?;

@@ -67,18 +67,18 @@ impl Entry {
 }
 
 /// The finished lines of one manifest, read one after the other.
-struct Finished {
+struct Reader {
     path: PathBuf,
     reader: BufReader<File>,
     next: Option<Entry>,
 }
 
-impl Finished {
+impl Reader {
     fn open(path: PathBuf) -> Result<Self> {
         let file = File::open(&path).map_err(|source| Error::io(path.display().to_string(), source))?;
-        let mut finished = Self { path, reader: BufReader::new(file), next: None };
-        finished.advance()?;
-        Ok(finished)
+        let mut reader = Self { path, reader: BufReader::new(file), next: None };
+        reader.advance()?;
+        Ok(reader)
     }
 
     /// Reads the next line. A line without an end was cut off when its writer was killed, and does not count.
@@ -112,7 +112,7 @@ impl Finished {
 
 /// What the manifests in a folder say is finished. Manifests are in the order of numbers, so all are read side by side, and
 /// memory use does not grow with them.
-pub(super) struct Known(Vec<Finished>);
+pub(super) struct Known(Vec<Reader>);
 
 impl Known {
     /// Nothing.
@@ -130,7 +130,7 @@ impl Known {
             }
         }
         paths.sort();
-        paths.into_iter().map(Finished::open).collect::<Result<_>>().map(Self)
+        paths.into_iter().map(Reader::open).collect::<Result<_>>().map(Self)
     }
 
     /// The line of a job, if any manifest has it. Numbers must rise from call to call.

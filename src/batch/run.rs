@@ -45,24 +45,24 @@ impl Batch {
             return Err(Error::value(name, message));
         }
         let (written, next) = (manifest.lines, 0);
-        let desk = Desk {
+        let queue = Queue {
             batch: self,
             state: Mutex::new(State { jobs: Jobs::open(self)?, known, taken: 0, failed: None }),
-            rack: Mutex::new(Rack { manifest, written, next, waiting: BTreeMap::new(), found: 0 }),
-            moved: Condvar::new(),
+            finished: Mutex::new(Finished { manifest, written, next, waiting: BTreeMap::new(), found: 0 }),
+            advanced: Condvar::new(),
             of,
             progress,
         };
-        on_threads(self.at_once, || rayon::broadcast(|_| desk.work()))?;
-        let state = desk.state.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let rack = desk.rack.into_inner().unwrap_or_else(PoisonError::into_inner);
+        on_threads(self.at_once, || rayon::broadcast(|_| queue.work()))?;
+        let state = queue.state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let finished = queue.finished.into_inner().unwrap_or_else(PoisonError::into_inner);
         match state.failed {
             Some(error) => Err(error),
-            None if rack.next != of => changed(format!(
+            None if finished.next != of => changed(format!(
                 "it had {of} jobs to make at first, and {} later: expected a file that stays as it is",
-                rack.next
+                finished.next
             )),
-            None => Ok(Done { jobs: rack.next, found: rack.found, of }),
+            None => Ok(Done { jobs: finished.next, found: finished.found, of }),
         }
     }
 }
@@ -78,7 +78,7 @@ struct State<'a> {
 }
 
 /// What is finished.
-struct Rack {
+struct Finished {
     manifest: Manifest,
     /// Lines that the manifest had at the start.
     written: u64,
@@ -90,13 +90,13 @@ struct Rack {
     found: u64,
 }
 
-/// Where threads take jobs and put finished lines.
-struct Desk<'a> {
+/// The jobs that threads take, and the lines that they make of them.
+struct Queue<'a> {
     batch: &'a Batch,
     state: Mutex<State<'a>>,
-    rack: Mutex<Rack>,
-    /// The rack has moved on, or something has failed.
-    moved: Condvar,
+    finished: Mutex<Finished>,
+    /// More lines are written, or something has failed.
+    advanced: Condvar,
     of: u64,
     progress: &'a (dyn Fn(Done) -> Result<()> + Sync),
 }
@@ -105,7 +105,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Desk<'_> {
+impl Queue<'_> {
     /// Makes one job after the other until there are none, or one has failed.
     fn work(&self) {
         let work = || {
@@ -128,9 +128,9 @@ impl Desk<'_> {
     /// Ends the work of all threads.
     fn fail(&self, error: Error) {
         lock(&self.state).failed.get_or_insert(error);
-        // Whoever has just seen that nothing has failed still holds the rack, and is woken up once it waits.
-        drop(lock(&self.rack));
-        self.moved.notify_all();
+        // Whoever has just seen that nothing has failed still holds the lock, and is woken up once it waits.
+        drop(lock(&self.finished));
+        self.advanced.notify_all();
     }
 
     /// The next job, its place among those of the part, and its line if it was found finished.
@@ -165,7 +165,7 @@ impl Desk<'_> {
                 }
                 (line, is_whole)
             }
-            None if place < lock(&self.rack).written => {
+            None if place < lock(&self.finished).written => {
                 let message = format!("its manifest leaves out job {}: expected another folder", task.number);
                 return Err(Error::value(self.batch.folder.display().to_string(), message));
             }
@@ -177,9 +177,9 @@ impl Desk<'_> {
 
     /// Waits while too many lines wait for an earlier job.
     fn wait_for_room(&self, place: u64) {
-        let mut rack = lock(&self.rack);
-        while place >= rack.next + WINDOW && lock(&self.state).failed.is_none() {
-            rack = self.moved.wait(rack).unwrap_or_else(PoisonError::into_inner);
+        let mut finished = lock(&self.finished);
+        while place >= finished.next + WINDOW && lock(&self.state).failed.is_none() {
+            finished = self.advanced.wait(finished).unwrap_or_else(PoisonError::into_inner);
         }
     }
 
@@ -199,26 +199,26 @@ impl Desk<'_> {
 
     /// Puts a finished line in its place, and writes all lines that wait for no other.
     fn put(&self, place: u64, line: String, was_found: bool) -> Result<()> {
-        let mut rack = lock(&self.rack);
-        rack.waiting.insert(place, (line, was_found));
+        let mut finished = lock(&self.finished);
+        finished.waiting.insert(place, (line, was_found));
         loop {
-            let next = rack.next;
-            let Some((line, was_found)) = rack.waiting.remove(&next) else { break };
+            let next = finished.next;
+            let Some((line, was_found)) = finished.waiting.remove(&next) else { break };
             // The first lines may be there already, from before.
-            if next >= rack.written {
-                rack.manifest.write(&line)?;
+            if next >= finished.written {
+                finished.manifest.write(&line)?;
             }
-            rack.next += 1;
-            rack.found += u64::from(was_found);
+            finished.next += 1;
+            finished.found += u64::from(was_found);
         }
-        self.moved.notify_all();
+        self.advanced.notify_all();
         Ok(())
     }
 
     fn done(&self) -> Done {
-        let rack = lock(&self.rack);
+        let finished = lock(&self.finished);
         // Only what the manifest has: the rest is made again when the batch is gone on with.
-        Done { jobs: rack.next, found: rack.found, of: self.of }
+        Done { jobs: finished.next, found: finished.found, of: self.of }
     }
 }
 
