@@ -2,7 +2,7 @@
 
 use super::job::Job;
 use crate::dsp::CONTROL_FRAMES;
-use crate::engine::{Ensemble, Struck, StruckMode};
+use crate::engine::{Ensemble, ModeState, VoiceState};
 use crate::units::db_from_gain;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -79,7 +79,7 @@ impl Labels {
         let gain = ensemble.gain();
         // What is not seen again was silenced during its strike.
         let open = std::mem::take(&mut self.open);
-        ensemble.each_struck(&mut |part, struck| self.look(part, &struck, gain, piece, &open));
+        ensemble.each_voice(&mut |part, voice| self.look(part, &voice, gain, piece, &open));
     }
 
     /// Passes the events of the present frame. Returns whether there are any.
@@ -91,15 +91,22 @@ impl Labels {
 
     /// Looks at a voice of a part after the frames of a piece. `gain` is that of the mix; `open` are the voices whose strike
     /// was under way before.
-    fn look(&mut self, part: usize, struck: &Struck, gain: f32, piece: [u64; 2], open: &BTreeSet<(usize, u64, usize)>) {
-        let note = struck.note();
-        let id = (part, note.serial, struck.unison());
+    fn look(
+        &mut self,
+        part: usize,
+        voice: &VoiceState,
+        gain: f32,
+        piece: [u64; 2],
+        open: &BTreeSet<(usize, u64, usize)>,
+    ) {
+        let note = voice.note();
+        let id = (part, note.serial, voice.unison());
         if self.all.contains_key(&id) && !open.contains(&id) {
             return;
         }
         let level = |amplitude: f64| db_from_gain(amplitude * f64::from(gain));
         let label = self.all.entry(id).or_insert_with(|| {
-            let mode = |mode: StruckMode| ModeLabel { frequency: mode.frequency, t60: mode.t60, level_db: 0.0 };
+            let mode = |mode: ModeState| ModeLabel { frequency: mode.frequency, t60: mode.t60, level_db: 0.0 };
             NoteLabel {
                 channel: note.channel,
                 key: note.key,
@@ -108,13 +115,13 @@ impl Labels {
                 unison: id.2,
                 onset: piece[0],
                 free: piece[1],
-                modes: struck.modes().map(mode).collect(),
+                modes: voice.modes().map(mode).collect(),
             }
         });
         label.free = piece[1];
-        let levels = label.modes.iter_mut().zip(struck.modes());
+        let levels = label.modes.iter_mut().zip(voice.modes());
         levels.for_each(|(label, mode)| label.level_db = level(mode.amplitude));
-        if struck.is_being_struck() {
+        if voice.is_being_struck() {
             self.open.insert(id);
         }
     }
