@@ -249,7 +249,7 @@ mod tests {
         let batch = batch(folder.path());
         fs::write(&batch.jobs, format!("{JOB}\n").repeat(50)).unwrap();
         let has_panicked = AtomicBool::new(false);
-        let panic_once = |_| {
+        let panic_once = |_: Done| -> Result<()> {
             assert!(has_panicked.swap(true, Ordering::Relaxed), "the first job panics");
             Ok(())
         };
@@ -262,10 +262,10 @@ mod tests {
     #[test]
     fn jobs_that_become_fewer_are_an_error() {
         let folder = tempfile::tempdir().unwrap();
-        let batch = batch(folder.path());
+        let batch = Batch { at_once: Some(1), ..batch(folder.path()) };
         // More than is read at once.
         fs::write(&batch.jobs, format!("{JOB}\n{}{JOB}\n", "\n".repeat(100_000))).unwrap();
-        let shorten = |_| {
+        let shorten = |_: Done| -> Result<()> {
             fs::write(&batch.jobs, JOB).unwrap();
             Ok(())
         };
