@@ -1,11 +1,11 @@
 //! A file of jobs, read line by line: it may be longer than memory.
 
+use super::Batch;
 use super::draw::Chance;
 use super::template::{Drawn, Fault, Template};
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
 
 /// Longest line in bytes.
 const LONGEST: u64 = 1 << 20;
@@ -20,12 +20,9 @@ pub(super) struct Task {
 }
 
 /// The jobs of a file, in order. Each line makes one job or several; empty lines make none.
-pub(super) struct Jobs {
-    path: PathBuf,
+pub(super) struct Jobs<'a> {
+    batch: &'a Batch,
     reader: BufReader<File>,
-    seed: u64,
-    /// The jobs that are wanted: those whose number leaves `shard[0]` when divided by `shard[1]`.
-    shard: [u64; 2],
     line: u64,
     template: Option<Template>,
     /// Jobs that the present line still makes.
@@ -33,12 +30,11 @@ pub(super) struct Jobs {
     number: u64,
 }
 
-impl Jobs {
-    /// The jobs of a shard, counted from 0: one of so many.
-    pub(super) fn open(path: &Path, seed: u64, shard: [u64; 2]) -> Result<Self> {
-        let file = File::open(path).map_err(|source| Error::io(path.display().to_string(), source))?;
-        let (path, reader) = (path.to_owned(), BufReader::new(file));
-        Ok(Self { path, reader, seed, shard, line: 0, template: None, left: 0, number: 0 })
+impl<'a> Jobs<'a> {
+    /// The jobs of the part of a batch that is to be made.
+    pub(super) fn open(batch: &'a Batch) -> Result<Self> {
+        let file = File::open(&batch.jobs).map_err(|source| Error::io(batch.jobs.display().to_string(), source))?;
+        Ok(Self { batch, reader: BufReader::new(file), line: 0, template: None, left: 0, number: 0 })
     }
 
     /// Reads all lines, checks them, and gives the number of jobs of the shard.
@@ -47,12 +43,13 @@ impl Jobs {
         while self.next_template()? {
             all = all.saturating_add(self.left);
         }
-        let [index, count] = self.shard;
+        let [index, count] = self.batch.shard.of();
         Ok(all.saturating_sub(index).div_ceil(count))
     }
 
     /// The next job.
     pub(super) fn next(&mut self) -> Result<Option<Task>> {
+        let [index, count] = self.batch.shard.of();
         loop {
             while self.left == 0 {
                 if !self.next_template()? {
@@ -61,23 +58,22 @@ impl Jobs {
             }
             let number = self.number;
             (self.number, self.left) = (number + 1, self.left - 1);
-            if number % self.shard[1] != self.shard[0] {
+            if number % count != index {
                 continue;
             }
             let Some(template) = &self.template else { return Ok(None) };
-            let drawn = template.draw(Chance::new(self.seed, number)).map_err(|fault| self.fault(fault))?;
+            let drawn = template.draw(Chance::new(self.batch.seed, number)).map_err(|fault| self.fault(fault))?;
             return Ok(Some(Task { number, origin: self.origin(), drawn }));
         }
     }
 
     /// Goes on to the next line that is not empty. Returns whether there is one.
     fn next_template(&mut self) -> Result<bool> {
-        let name = || self.path.display().to_string();
         let mut text = Vec::new();
         loop {
             text.clear();
             let read = self.reader.by_ref().take(LONGEST + 1).read_until(b'\n', &mut text);
-            if read.map_err(|source| Error::io(name(), source))? == 0 {
+            if read.map_err(|source| Error::io(self.batch.jobs.display().to_string(), source))? == 0 {
                 return Ok(false);
             }
             self.line += 1;
@@ -90,14 +86,14 @@ impl Jobs {
         }
         let text = str::from_utf8(&text);
         let text = text.map_err(|_| self.fault(("line".to_owned(), "expected UTF-8 text".to_owned())))?;
-        let template = Template::parse(text).map_err(|fault| self.fault(fault))?;
+        let template = Template::parse(text, self.batch).map_err(|fault| self.fault(fault))?;
         self.left = template.repeat;
         self.template = Some(template);
         Ok(true)
     }
 
     fn origin(&self) -> String {
-        format!("{}:{}", self.path.display(), self.line)
+        format!("{}:{}", self.batch.jobs.display(), self.line)
     }
 
     fn fault(&self, (key, message): Fault) -> Error {

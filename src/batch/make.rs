@@ -1,6 +1,7 @@
 //! Makes the sound of one job, and its line of the manifest.
 
 use super::jobs::Task;
+use super::manifest::VERSION;
 use super::template::key_of;
 use super::{Batch, FileFormat};
 use crate::analysis::digest::hexadecimal;
@@ -27,7 +28,7 @@ pub(super) fn file_of(number: u64, format: FileFormat) -> String {
 /// Renders a job into its file, and gives its line of the manifest. `check` is called often, and can end the work by an
 /// error.
 pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<String> {
-    let told = |error: Error| match error {
+    let located = |error: Error| match error {
         Error::Value { name, message } => Error::format(&task.origin, format!("{}: {message}", key_of(&name))),
         Error::Interrupted => Error::Interrupted,
         error => Error::format(&task.origin, error.to_string()),
@@ -35,25 +36,36 @@ pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> +
     let mut request = task.drawn.request.clone();
     request.block = BLOCK;
     let (mut inputs, mut warnings) = (Inputs::default(), Vec::new());
-    let prepared = request.prepare(&mut inputs, &mut |warning| warnings.push(warning.to_owned())).map_err(told)?;
+    let prepared = request.prepare(&mut inputs, &mut |warning| warnings.push(warning.to_owned())).map_err(located)?;
     let job = prepared.job();
     let file = file_of(task.number, batch.format);
     let path = batch.folder.join(&file);
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|source| Error::io(folder.display().to_string(), source))?;
     }
-    let create = || Output::create(&Target::Path(path.clone()), true, &inputs);
+    // Whoever goes on replaces what was broken off. Whoever starts replaces nothing.
+    let create = || Output::create(&Target::Path(path.clone()), batch.resume, &inputs).map_err(is_there);
     let mut output = create()?;
     let made = to_labelled_wav(&job, &prepared.delivery, &mut output, |_: Progress| check());
-    let (report, labels) = made.map_err(told)?;
+    let (report, labels) = made.map_err(located)?;
     if batch.format == FileFormat::Flac {
         // The WAV never gets a name: it is removed when it is dropped.
         let (mut wav, name) = (std::mem::replace(&mut output, create()?), output.name().to_owned());
-        flac::encode(wav.stream(), output.stream(), &name).map_err(told)?;
+        flac::encode(wav.stream(), output.stream(), &name).map_err(located)?;
     }
     let sha256 = sha256_of(output.stream()).map_err(|source| Error::io(output.name(), source))?;
-    output.commit()?;
+    output.commit().map_err(is_there)?;
     Ok(line(task, &job, &file, &sha256, &report, &labels, &warnings))
+}
+
+/// Says what to do about a file that is there, since there is no --force.
+fn is_there(error: Error) -> Error {
+    match error {
+        Error::Exists { path } => {
+            Error::value(path, "the file exists: add --resume if it is of this batch, or choose another folder")
+        }
+        error => error,
+    }
 }
 
 /// The SHA-256 of a file, in hexadecimal.
@@ -85,6 +97,7 @@ fn line(
 ) -> String {
     let mut fields = vec![
         ("number", json!(task.number)),
+        ("version", json!(VERSION)),
         ("file", json!(file)),
         ("sha256", json!(sha256)),
         ("job", Value::Object(task.drawn.line.clone())),

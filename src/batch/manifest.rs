@@ -6,6 +6,9 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+/// The version that writes the lines. Another one may make other sounds of the same jobs.
+pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// How the names of manifests start and end.
 const STEM: &str = "manifest";
 const ENDING: &str = ".jsonl";
@@ -15,10 +18,28 @@ pub(super) fn name([index, count]: [u64; 2]) -> String {
     if count == 1 { format!("{STEM}{ENDING}") } else { format!("{STEM}-{}-of-{count}{ENDING}", index + 1) }
 }
 
+/// Whether a text consists of digits.
+pub(super) fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// Whether a file of this name is the manifest of a batch or of a shard.
+pub(super) fn is_name(file: &str) -> bool {
+    match file.strip_prefix(STEM).and_then(|rest| rest.strip_suffix(ENDING)) {
+        Some("") => true,
+        Some(shard) => {
+            let numbers = shard.strip_prefix('-').and_then(|shard| shard.split_once("-of-"));
+            numbers.is_some_and(|(index, count)| is_number(index) && is_number(count))
+        }
+        None => false,
+    }
+}
+
 /// A line of a manifest, as far as it is needed to go on with a batch.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entry {
     pub(super) number: u64,
+    version: String,
     /// The file, relative to the folder.
     pub(super) file: String,
     pub(super) sha256: String,
@@ -35,6 +56,7 @@ impl Entry {
         let text = |key: &str| value[key].as_str().map(str::to_owned);
         Some(Self {
             number: value["number"].as_u64()?,
+            version: text("version")?,
             file: text("file")?,
             sha256: text("sha256")?,
             job: value["job"].as_object()?.clone(),
@@ -45,41 +67,52 @@ impl Entry {
 }
 
 /// The finished lines of one manifest, read one after the other.
-struct Finished {
+struct Reader {
     path: PathBuf,
     reader: BufReader<File>,
     next: Option<Entry>,
 }
 
-impl Finished {
+impl Reader {
     fn open(path: PathBuf) -> Result<Self> {
         let file = File::open(&path).map_err(|source| Error::io(path.display().to_string(), source))?;
-        let mut finished = Self { path, reader: BufReader::new(file), next: None };
-        finished.advance()?;
-        Ok(finished)
+        let mut reader = Self { path, reader: BufReader::new(file), next: None };
+        reader.advance()?;
+        Ok(reader)
     }
 
     /// Reads the next line. A line without an end was cut off when its writer was killed, and does not count.
     fn advance(&mut self) -> Result<()> {
-        let mut line = String::new();
-        let read = self.reader.read_line(&mut line);
+        // As bytes, since a line may have been cut off within a character.
+        let mut line = Vec::new();
+        let read = self.reader.read_until(b'\n', &mut line);
         read.map_err(|source| Error::io(self.path.display().to_string(), source))?;
-        self.next = match line.strip_suffix('\n') {
+        self.next = match line.strip_suffix(b"\n") {
             None => None,
-            Some(line) => Some(Entry::parse(line).ok_or_else(|| {
+            Some(line) => Some(str::from_utf8(line).ok().and_then(Entry::parse).ok_or_else(|| {
                 Error::format(
                     self.path.display().to_string(),
                     "not a manifest: expected lines as this command writes them",
                 )
             })?),
         };
-        Ok(())
+        match self.next.as_ref().filter(|entry| entry.version != VERSION) {
+            None => Ok(()),
+            Some(entry) => {
+                let message = format!(
+                    "version {0} has made job {1}, and this is version {VERSION}, which may make another sound of it: go on with \
+                     version {0}, or choose a new folder",
+                    entry.version, entry.number
+                );
+                Err(Error::value(self.path.display().to_string(), message))
+            }
+        }
     }
 }
 
 /// What the manifests in a folder say is finished. Manifests are in the order of numbers, so all are read side by side, and
 /// memory use does not grow with them.
-pub(super) struct Known(Vec<Finished>);
+pub(super) struct Known(Vec<Reader>);
 
 impl Known {
     /// Nothing.
@@ -92,12 +125,12 @@ impl Known {
         for entry in fs::read_dir(folder).map_err(failed)? {
             let path = entry.map_err(failed)?.path();
             let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-            if name.starts_with(STEM) && name.ends_with(ENDING) {
+            if is_name(name) {
                 paths.push(path);
             }
         }
         paths.sort();
-        paths.into_iter().map(Finished::open).collect::<Result<_>>().map(Self)
+        paths.into_iter().map(Reader::open).collect::<Result<_>>().map(Self)
     }
 
     /// The line of a job, if any manifest has it. Numbers must rise from call to call.

@@ -4,6 +4,7 @@
 //! Values may be drawn by chance. Each job makes a file, and a line of the manifest, in the order of their numbers. A batch
 //! that was killed can be gone on with; its shards can be made anywhere. Files and manifest are the same bytes then.
 
+mod checks;
 mod draw;
 mod jobs;
 mod make;

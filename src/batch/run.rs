@@ -8,10 +8,11 @@ use crate::error::{Error, Result};
 use crate::render::on_threads;
 use std::collections::BTreeMap;
 use std::fs;
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// How many jobs may be finished while an earlier one is not: their lines wait in memory.
-const WINDOW: u64 = 1024;
+const WINDOW: u64 = if cfg!(test) { 4 } else { 1024 };
 
 impl Batch {
     /// Makes all jobs of the part. Every line of the file of jobs is checked before the first is made. `progress` is called
@@ -24,38 +25,51 @@ impl Batch {
     /// is not to be gone on with, or if it is of other jobs; [`Error::Io`]; and the errors of `progress`. What is finished
     /// stays, and can be gone on with.
     pub fn run(&self, progress: &(dyn Fn(Done) -> Result<()> + Sync)) -> Result<Done> {
-        let jobs = || Jobs::open(&self.jobs, self.seed, self.shard.of());
-        let of = jobs()?.count()?;
-        fs::create_dir_all(&self.folder).map_err(|source| Error::io(self.folder.display().to_string(), source))?;
         let name = manifest::name(self.shard.of());
-        let manifest = Manifest::open(&self.folder.join(&name), self.resume)?;
+        let path = self.folder.join(&name);
+        // Going on would cut its last line if that has no end.
+        if self.own(&self.jobs).is_some() || same_file::is_same_file(&self.jobs, &path).unwrap_or(false) {
+            let message = "this batch writes this file itself: expected another file of jobs, or another folder";
+            return Err(Error::value(self.jobs.display().to_string(), message));
+        }
+        let changed = |message| Err(Error::value(self.jobs.display().to_string(), message));
+        if fs::metadata(&self.jobs).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir()) {
+            return changed("jobs are read twice, which a pipe or device does not allow: expected a file".to_owned());
+        }
+        let of = Jobs::open(self)?.count()?;
+        fs::create_dir_all(&self.folder).map_err(|source| Error::io(self.folder.display().to_string(), source))?;
+        let manifest = Manifest::open(&path, self.resume)?;
         let known = if self.resume { Known::open(&self.folder)? } else { Known::NONE };
         if manifest.lines > of {
             let message = format!("{} jobs are finished there, of {of}: expected the same jobs", manifest.lines);
             return Err(Error::value(name, message));
         }
         let (written, next) = (manifest.lines, 0);
-        let desk = Desk {
+        let queue = Queue {
             batch: self,
-            state: Mutex::new(State { jobs: jobs()?, known, taken: 0, failed: None }),
-            rack: Mutex::new(Rack { manifest, written, next, waiting: BTreeMap::new(), found: 0 }),
-            moved: Condvar::new(),
+            state: Mutex::new(State { jobs: Jobs::open(self)?, known, taken: 0, failed: None }),
+            finished: Mutex::new(Finished { manifest, written, next, waiting: BTreeMap::new(), found: 0 }),
+            advanced: Condvar::new(),
             of,
             progress,
         };
-        on_threads(self.at_once, || rayon::broadcast(|_| desk.work()))?;
-        let state = desk.state.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let rack = desk.rack.into_inner().unwrap_or_else(PoisonError::into_inner);
+        on_threads(self.at_once, || rayon::broadcast(|_| queue.work()))?;
+        let state = queue.state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let finished = queue.finished.into_inner().unwrap_or_else(PoisonError::into_inner);
         match state.failed {
             Some(error) => Err(error),
-            None => Ok(Done { jobs: rack.next, found: rack.found, of }),
+            None if finished.next != of => changed(format!(
+                "it had {of} jobs to make at first, and {} later: expected a file that stays as it is",
+                finished.next
+            )),
+            None => Ok(Done { jobs: finished.next, found: finished.found, of }),
         }
     }
 }
 
 /// What is still to do.
-struct State {
-    jobs: Jobs,
+struct State<'a> {
+    jobs: Jobs<'a>,
     known: Known,
     /// Jobs that have been taken.
     taken: u64,
@@ -64,25 +78,25 @@ struct State {
 }
 
 /// What is finished.
-struct Rack {
+struct Finished {
     manifest: Manifest,
     /// Lines that the manifest had at the start.
     written: u64,
     /// The place of the next line, among the jobs of the part.
     next: u64,
-    /// Finished lines that wait for earlier ones, by their places.
-    waiting: BTreeMap<u64, String>,
-    /// Jobs that were found finished.
+    /// Finished lines that wait for earlier ones, by their places, and whether they were found.
+    waiting: BTreeMap<u64, (String, bool)>,
+    /// Jobs before the next that were found finished.
     found: u64,
 }
 
-/// Where threads take jobs and put finished lines.
-struct Desk<'a> {
+/// The jobs that threads take, and the lines that they make of them.
+struct Queue<'a> {
     batch: &'a Batch,
-    state: Mutex<State>,
-    rack: Mutex<Rack>,
-    /// The rack has moved on, or something has failed.
-    moved: Condvar,
+    state: Mutex<State<'a>>,
+    finished: Mutex<Finished>,
+    /// More lines are written, or something has failed.
+    advanced: Condvar,
     of: u64,
     progress: &'a (dyn Fn(Done) -> Result<()> + Sync),
 }
@@ -91,43 +105,45 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Desk<'_> {
+impl Queue<'_> {
     /// Makes one job after the other until there are none, or one has failed.
     fn work(&self) {
-        while let Some((place, task, known)) = self.take() {
-            if let Err(error) = self.make(place, &task, known) {
-                lock(&self.state).failed.get_or_insert(error);
-                // Whoever has just seen that nothing has failed still holds the rack, and is woken up once it waits.
-                drop(lock(&self.rack));
-                self.moved.notify_all();
-                return;
+        let work = || {
+            while let Some((place, task, known)) = self.take()? {
+                self.make(place, &task, known)?;
+            }
+            Ok(())
+        };
+        match panic::catch_unwind(AssertUnwindSafe(work)) {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => self.fail(error),
+            Err(panic) => {
+                // The others would wait for this job for ever.
+                self.fail(Error::Interrupted);
+                panic::resume_unwind(panic);
             }
         }
     }
 
+    /// Ends the work of all threads.
+    fn fail(&self, error: Error) {
+        lock(&self.state).failed.get_or_insert(error);
+        // Whoever has just seen that nothing has failed still holds the lock, and is woken up once it waits.
+        drop(lock(&self.finished));
+        self.advanced.notify_all();
+    }
+
     /// The next job, its place among those of the part, and its line if it was found finished.
-    fn take(&self) -> Option<(u64, Task, Option<Entry>)> {
+    fn take(&self) -> Result<Option<(u64, Task, Option<Entry>)>> {
         let mut state = lock(&self.state);
         if state.failed.is_some() {
-            return None;
+            return Ok(None);
         }
-        let taken = state.jobs.next().and_then(|task| {
-            let Some(task) = task else { return Ok(None) };
-            let known = state.known.find(task.number)?;
-            Ok(Some((task, known)))
-        });
-        match taken {
-            Ok(Some((task, known))) => {
-                let place = state.taken;
-                state.taken += 1;
-                Some((place, task, known))
-            }
-            Ok(None) => None,
-            Err(error) => {
-                state.failed = Some(error);
-                None
-            }
-        }
+        let Some(task) = state.jobs.next()? else { return Ok(None) };
+        let known = state.known.find(task.number)?;
+        let place = state.taken;
+        state.taken += 1;
+        Ok(Some((place, task, known)))
     }
 
     fn make(&self, place: u64, task: &Task, known: Option<Entry>) -> Result<()> {
@@ -149,7 +165,7 @@ impl Desk<'_> {
                 }
                 (line, is_whole)
             }
-            None if place < lock(&self.rack).written => {
+            None if place < lock(&self.finished).written => {
                 let message = format!("its manifest leaves out job {}: expected another folder", task.number);
                 return Err(Error::value(self.batch.folder.display().to_string(), message));
             }
@@ -161,9 +177,9 @@ impl Desk<'_> {
 
     /// Waits while too many lines wait for an earlier job.
     fn wait_for_room(&self, place: u64) {
-        let mut rack = lock(&self.rack);
-        while place >= rack.next + WINDOW && lock(&self.state).failed.is_none() {
-            rack = self.moved.wait(rack).unwrap_or_else(PoisonError::into_inner);
+        let mut finished = lock(&self.finished);
+        while place >= finished.next + WINDOW && lock(&self.state).failed.is_none() {
+            finished = self.advanced.wait(finished).unwrap_or_else(PoisonError::into_inner);
         }
     }
 
@@ -183,24 +199,80 @@ impl Desk<'_> {
 
     /// Puts a finished line in its place, and writes all lines that wait for no other.
     fn put(&self, place: u64, line: String, was_found: bool) -> Result<()> {
-        let mut rack = lock(&self.rack);
-        rack.found += u64::from(was_found);
-        rack.waiting.insert(place, line);
+        let mut finished = lock(&self.finished);
+        finished.waiting.insert(place, (line, was_found));
         loop {
-            let next = rack.next;
-            let Some(line) = rack.waiting.remove(&next) else { break };
+            let next = finished.next;
+            let Some((line, was_found)) = finished.waiting.remove(&next) else { break };
             // The first lines may be there already, from before.
-            if next >= rack.written {
-                rack.manifest.write(&line)?;
+            if next >= finished.written {
+                finished.manifest.write(&line)?;
             }
-            rack.next += 1;
+            finished.next += 1;
+            finished.found += u64::from(was_found);
         }
-        self.moved.notify_all();
+        self.advanced.notify_all();
         Ok(())
     }
 
     fn done(&self) -> Done {
-        let rack = lock(&self.rack);
-        Done { jobs: rack.next + rack.waiting.len() as u64, found: rack.found, of: self.of }
+        let finished = lock(&self.finished);
+        // Only what the manifest has: the rest is made again when the batch is gone on with.
+        Done { jobs: finished.next, found: finished.found, of: self.of }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{FileFormat, Shard};
+    use super::*;
+    use std::path::Path;
+
+    const JOB: &str = r#"{"note": "C2", "length": 0.001, "tail": "none", "rate": 8000}"#;
+
+    fn batch(folder: &Path) -> Batch {
+        Batch {
+            jobs: folder.join("jobs.jsonl"),
+            folder: folder.join("sounds"),
+            format: FileFormat::Wav,
+            seed: 0,
+            shard: Shard::WHOLE,
+            resume: false,
+            at_once: Some(2),
+        }
+    }
+
+    #[test]
+    fn a_panic_ends_all_threads() {
+        use std::sync::atomic::{AtomicBool, Ordering};
+        let folder = tempfile::tempdir().unwrap();
+        let batch = batch(folder.path());
+        fs::write(&batch.jobs, format!("{JOB}\n").repeat(50)).unwrap();
+        let has_panicked = AtomicBool::new(false);
+        let panic_once = |_: Done| -> Result<()> {
+            assert!(has_panicked.swap(true, Ordering::Relaxed), "the first job panics");
+            Ok(())
+        };
+        let ended = panic::catch_unwind(AssertUnwindSafe(|| batch.run(&panic_once)));
+        assert!(ended.is_err());
+        let made = fs::read_to_string(batch.folder.join("manifest.jsonl")).unwrap();
+        assert!(made.lines().count() < 50);
+    }
+
+    #[test]
+    fn jobs_that_become_fewer_are_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let batch = Batch { at_once: Some(1), ..batch(folder.path()) };
+        // More than is read at once.
+        fs::write(&batch.jobs, format!("{JOB}\n{}{JOB}\n", "\n".repeat(100_000))).unwrap();
+        let shorten = |_: Done| -> Result<()> {
+            fs::write(&batch.jobs, JOB).unwrap();
+            Ok(())
+        };
+        let error = batch.run(&shorten).unwrap_err().to_string();
+        assert!(
+            error.ends_with("it had 2 jobs to make at first, and 1 later: expected a file that stays as it is"),
+            "{error}"
+        );
     }
 }

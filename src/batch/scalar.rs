@@ -56,7 +56,8 @@ impl Scale {
                 _ => Err("integer: expected whole numbers".to_owned()),
             },
             "normal" => {
-                let [mean, deviation] = self.pair(&value, "[mean, deviation]")?;
+                let [mean, deviation] = Self::pair(&value, "[mean, deviation]")?;
+                let [mean, deviation] = [self.number(mean)?, self.deviation(deviation)?];
                 if deviation < 0.0 {
                     return Err(format!("normal: the deviation {deviation} is below 0"));
                 }
@@ -71,15 +72,28 @@ impl Scale {
     }
 
     fn bounds(&self, value: &Value) -> Result<[f64; 2], String> {
-        let [low, high] = self.pair(value, "[lowest, highest]")?;
+        let [low, high] = Self::pair(value, "[lowest, highest]")?;
+        let [low, high] = [self.number(low)?, self.number(high)?];
         if low > high { Err(format!("{low} is above {high}: expected the lower bound first")) } else { Ok([low, high]) }
     }
 
-    fn pair(&self, value: &Value, expected: &str) -> Result<[f64; 2], String> {
-        let Some([first, second]) = value.as_array().map(Vec::as_slice) else {
-            return Err(format!("expected {expected}"));
-        };
-        Ok([self.number(first)?, self.number(second)?])
+    fn pair<'a>(value: &'a Value, expected: &str) -> Result<[&'a Value; 2], String> {
+        match value.as_array().map(Vec::as_slice) {
+            Some([first, second]) => Ok([first, second]),
+            _ => Err(format!("expected {expected}")),
+        }
+    }
+
+    /// The deviation of a bell curve, which need not be in the range of the parameter.
+    fn deviation(&self, value: &Value) -> Result<f64, String> {
+        match (self, value) {
+            (Self::Parameter(param), Value::String(text)) => {
+                let expected =
+                    || format!("‘{text}’ is no deviation: expected a number, or one with a unit as values have");
+                param.info().quantity(text).ok_or_else(expected)
+            }
+            _ => self.number(value),
+        }
     }
 
     /// A number, or a text with its unit.
@@ -87,7 +101,6 @@ impl Scale {
         let number = match (self, value) {
             (Self::Words, _) => return Err("it is no number: expected choice".to_owned()),
             (_, Value::Number(number)) => number.as_f64(),
-            // The deviation of a bell curve and the like need not be in the range of the parameter.
             (Self::Parameter(param), Value::String(text)) => Some(decimal(param.info().parse(text)?)),
             (Self::Option(number), Value::String(text)) => Some((number.parse)(text)?),
             _ => None,
@@ -123,5 +136,23 @@ pub(super) fn text_of(value: &Value) -> Result<String, String> {
             values.iter().map(text_of).collect::<Result<Vec<_>, _>>().map(|texts| texts.join(","))
         }
         _ => Err(format!("‘{value}’ is not a value: expected a number, a text, true, false or a list")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_deviation_may_be_out_of_range() {
+        let scale = Scale::of(&["decay".to_owned()]);
+        let [least, most] = scale.range();
+        let read = |mean: &str, deviation: &str| {
+            let object = serde_json::json!({ "normal": [mean, deviation] });
+            scale.read(object.as_object().unwrap().clone())
+        };
+        assert_eq!(read("1 s", "0.001 ms"), Ok(Draw::Normal(1.0, 1e-6, [least, most])));
+        assert!(least > 1e-6 && read("0.001 ms", "1 s").unwrap_err().contains("out of range"));
+        assert!(read("1 s", "2 m").unwrap_err().starts_with("‘2 m’ is no deviation"));
     }
 }

@@ -1,5 +1,6 @@
 //! A line of a file of jobs: the options of a request, some of them to be drawn.
 
+use super::Batch;
 use super::draw::{Chance, Draw};
 use super::scalar::{Scale, text_of};
 use crate::params::{PARAMS, Param};
@@ -12,6 +13,13 @@ const REPEAT: &str = "repeat";
 /// The options that hold others.
 const SET: &str = "set";
 const CHANNEL: &str = "channel";
+
+/// Options that can contradict each other, or the format of the files, whatever the others are.
+const TOGETHER: [&[&str]; 4] =
+    [&["song", "note", "scale", "keymap"], &["bits", "dither"], &["normalize", "gain_db"], &["rate"]];
+
+/// How many combinations of them are checked before the first job is made. Others are found when they are drawn.
+const MOST_COMBINATIONS: usize = 1 << 16;
 
 /// What is wrong with a line: a key, and a message.
 pub(super) type Fault = (String, String);
@@ -49,7 +57,7 @@ pub(super) struct Drawn {
 
 impl Template {
     /// Reads a line, and checks every value that it can have.
-    pub(super) fn parse(line: &str) -> Result<Self, Fault> {
+    pub(super) fn parse(line: &str, batch: &Batch) -> Result<Self, Fault> {
         let whole = |message: String| ("line".to_owned(), message);
         let value: Value = serde_json::from_str(line).map_err(|error| whole(format!("no JSON: {error}")))?;
         let Value::Object(object) = value else {
@@ -73,32 +81,53 @@ impl Template {
         // In the order of names, whatever the order in the file: then the same job is written in the same way.
         entries.sort_by(|a, b| a.path.cmp(&b.path));
         let template = Self { entries, repeat };
-        template.check()?;
+        template.check(batch)?;
         Ok(template)
     }
 
-    /// Checks every end of what is drawn, every choice, and what the options say together.
-    fn check(&self) -> Result<(), Fault> {
-        let mut request = Request::default();
+    /// Checks every end of what is drawn, every choice, and what these say together. Reads nothing.
+    fn check(&self, batch: &Batch) -> Result<(), Fault> {
         for entry in &self.entries {
-            let candidates = match &entry.part {
-                Part::Fixed(value) => vec![value.clone()],
-                Part::Drawn(Draw::Choice(values)) => values.clone(),
-                Part::Drawn(Draw::Uniform(low, high) | Draw::LogUniform(low, high) | Draw::Integer(low, high)) => {
-                    vec![(*low).into(), (*high).into()]
-                }
-                Part::Drawn(Draw::Normal(mean, ..)) => vec![(*mean).into()],
-            };
-            for candidate in candidates {
+            for candidate in entry.candidates() {
                 let mut one = Request::default();
                 entry.set(&mut one, &candidate)?;
-                entry.set(&mut request, &candidate)?;
+                if entry.is_file()
+                    && let Some(own) = one.files().find_map(|file| batch.own(file))
+                {
+                    return Err((entry.path.join("."), own));
+                }
             }
         }
-        request.check().map_err(|error| match error {
-            crate::Error::Value { name, message } => (key_of(&name), message),
-            error => ("line".to_owned(), error.to_string()),
-        })
+        TOGETHER.iter().try_for_each(|options| self.check_together(options, batch))
+    }
+
+    /// Checks all combinations of some options, each with one value of the others.
+    fn check_together(&self, options: &[&str], batch: &Batch) -> Result<(), Fault> {
+        let (mut others, mut varied) = (Request::default(), Vec::new());
+        for entry in &self.entries {
+            let is_one_of = |options: &[&str]| matches!(&entry.path[..], [name] if options.contains(&name.as_str()));
+            if is_one_of(options) {
+                varied.push((entry, entry.candidates()));
+            } else if TOGETHER.iter().any(|options| is_one_of(options))
+                && let Some(first) = entry.candidates().first()
+            {
+                entry.set(&mut others, first)?;
+            }
+        }
+        let all = varied.iter().fold(1_usize, |all, (_, candidates)| all.saturating_mul(candidates.len()));
+        for combination in 0..all.min(MOST_COMBINATIONS) {
+            let (mut request, mut rest) = (others.clone(), combination);
+            for (entry, candidates) in &varied {
+                entry.set(&mut request, &candidates[rest % candidates.len()])?;
+                rest /= candidates.len();
+            }
+            request.check().map_err(|error| match error {
+                crate::Error::Value { name, message } => (key_of(&name), message),
+                error => ("line".to_owned(), error.to_string()),
+            })?;
+            batch.check_format(&request)?;
+        }
+        Ok(())
     }
 
     /// Draws a job.
@@ -135,11 +164,6 @@ impl Entry {
             let expected = if option == SET { "{\"decay\": \"2 s\"}" } else { "{\"10\": \"drums.toml\"}" };
             return Err(fault(format!("expected an object, as in {expected}")));
         }
-        if let ["song" | "input"] = path.iter().map(String::as_str).collect::<Vec<_>>()[..]
-            && value.as_str() == Some("-")
-        {
-            return Err(fault("expected a file: many jobs cannot read standard input".to_owned()));
-        }
         let part = match value {
             Value::Object(object) => Part::Drawn(Scale::of(&path).read(object).map_err(fault)?),
             value => Part::Fixed(value),
@@ -152,10 +176,33 @@ impl Entry {
         self.path.last().map_or("", String::as_str)
     }
 
+    /// Its values, of which a drawn number has its ends, or two of a bell curve.
+    fn candidates(&self) -> Vec<Value> {
+        match &self.part {
+            Part::Fixed(value) => vec![value.clone()],
+            Part::Drawn(Draw::Choice(values)) => values.clone(),
+            Part::Drawn(Draw::Uniform(low, high) | Draw::LogUniform(low, high) | Draw::Integer(low, high)) => {
+                vec![(*low).into(), (*high).into()]
+            }
+            Part::Drawn(Draw::Normal(mean, deviation, [least, most])) => {
+                vec![(*mean).into(), (mean + deviation).clamp(*least, *most).into()]
+            }
+        }
+    }
+
+    /// Whether it may name a file.
+    fn is_file(&self) -> bool {
+        const FILES: [&str; 7] = ["song", "input", "preset", CHANNEL, "programs", "scale", "keymap"];
+        self.path.first().is_some_and(|option| FILES.contains(&option.as_str()))
+    }
+
     /// Sets the option of a request to a value.
     fn set(&self, request: &mut Request, value: &Value) -> Result<(), Fault> {
         let fault = |message: String| (self.path.join("."), message);
         let text = text_of(value).map_err(fault)?;
+        if ["song", "input"].contains(&self.name()) && self.path.len() == 1 && text == "-" {
+            return Err(fault("expected a file: many jobs cannot read standard input".to_owned()));
+        }
         let set = match &self.path[..] {
             [option, name] => request.set(option, &format!("{name}={text}")),
             [name] if is_parameter(name) => request.set(SET, &format!("{name}={text}")),

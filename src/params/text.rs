@@ -57,8 +57,7 @@ impl ParamInfo {
         {
             return self.check(crate::units::frequency_from_key(f64::from(key), 440.0) as f32);
         }
-        let quantity = split_quantity(text).and_then(|(value, suffix)| Some(value * self.unit.scale_of(suffix)?));
-        match quantity {
+        match self.quantity(text) {
             Some(value) => self.check(value as f32),
             None => {
                 let unit = self.unit.symbol();
@@ -70,6 +69,11 @@ impl ParamInfo {
                 Err(format!("‘{text}’ is not a number{unit}: expected {expected}"))
             }
         }
+    }
+
+    /// Reads a number with or without its unit, in or out of the range, as a distance between two values may be.
+    pub(crate) fn quantity(&self, text: &str) -> Option<f64> {
+        split_quantity(text.trim()).and_then(|(value, suffix)| Some(value * self.unit.scale_of(suffix)?))
     }
 
     /// Writes a value with its unit, so that [`ParamInfo::parse`] reads it back to the precision shown.

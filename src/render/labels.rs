@@ -2,7 +2,7 @@
 
 use super::job::Job;
 use crate::dsp::CONTROL_FRAMES;
-use crate::engine::{Ensemble, Struck, StruckMode};
+use crate::engine::{Ensemble, ModeState, VoiceState};
 use crate::units::db_from_gain;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -77,7 +77,9 @@ impl Labels {
         let piece = [self.frame, self.frame + frames as u64];
         self.frame = piece[1];
         let gain = ensemble.gain();
-        ensemble.each_struck(&mut |part, struck| self.look(part, &struck, gain, piece));
+        // What is not seen again was silenced during its strike.
+        let open = std::mem::take(&mut self.open);
+        ensemble.each_voice(&mut |part, voice| self.look(part, &voice, gain, piece, &open));
     }
 
     /// Passes the events of the present frame. Returns whether there are any.
@@ -87,16 +89,24 @@ impl Labels {
         self.events.len() < before
     }
 
-    /// Looks at a voice of a part after the frames of a piece. `gain` is that of the mix.
-    fn look(&mut self, part: usize, struck: &Struck, gain: f32, piece: [u64; 2]) {
-        let note = struck.note();
-        let id = (part, note.serial, struck.unison());
-        if self.all.contains_key(&id) && !self.open.contains(&id) {
+    /// Looks at a voice of a part after the frames of a piece. `gain` is that of the mix; `open` are the voices whose strike
+    /// was under way before.
+    fn look(
+        &mut self,
+        part: usize,
+        voice: &VoiceState,
+        gain: f32,
+        piece: [u64; 2],
+        open: &BTreeSet<(usize, u64, usize)>,
+    ) {
+        let note = voice.note();
+        let id = (part, note.serial, voice.unison());
+        if self.all.contains_key(&id) && !open.contains(&id) {
             return;
         }
         let level = |amplitude: f64| db_from_gain(amplitude * f64::from(gain));
         let label = self.all.entry(id).or_insert_with(|| {
-            let mode = |mode: StruckMode| ModeLabel { frequency: mode.frequency, t60: mode.t60, level_db: 0.0 };
+            let mode = |mode: ModeState| ModeLabel { frequency: mode.frequency, t60: mode.t60, level_db: 0.0 };
             NoteLabel {
                 channel: note.channel,
                 key: note.key,
@@ -105,16 +115,14 @@ impl Labels {
                 unison: id.2,
                 onset: piece[0],
                 free: piece[1],
-                modes: struck.modes().map(mode).collect(),
+                modes: voice.modes().map(mode).collect(),
             }
         });
         label.free = piece[1];
-        let levels = label.modes.iter_mut().zip(struck.modes());
+        let levels = label.modes.iter_mut().zip(voice.modes());
         levels.for_each(|(label, mode)| label.level_db = level(mode.amplitude));
-        if struck.is_being_struck() {
+        if voice.is_being_struck() {
             self.open.insert(id);
-        } else {
-            self.open.remove(&id);
         }
     }
 
@@ -189,6 +197,23 @@ mod tests {
         let patch = Patch::default().with(Param::Decay, 3.0).with(Param::Release, 0.05);
         let labels = of(&song, &patch);
         assert_eq!(labels[0].modes[0].t60, 3.0);
+    }
+
+    #[test]
+    fn a_voice_that_is_silenced_during_its_strike_is_waited_for_no_longer() {
+        use crate::engine::{EventKind, Notes};
+        let mut song = Song::chord(&[60.0], 1.0, 0.5);
+        let kind = EventKind::Silence { notes: Notes::default() };
+        song.events.insert(1, crate::io::SongEvent { seconds: 0.01, channel: 0, kind });
+        let patch =
+            Patch::default().with(Param::NoiseLevel, 0.0).with(Param::NoiseReach, 100.0).with(Param::NoiseTime, 0.4);
+        let kit = Kit::of_patch(&patch);
+        let job = Job::new(&song, &kit, OPTIONS);
+        let mut labels = Labels::new(&job);
+        job.render_labelled(Some(&mut labels), |_, _| Ok(())).unwrap();
+        assert!(labels.open.is_empty(), "{:?}", labels.open);
+        let [label] = labels.finish().try_into().unwrap();
+        assert!((480..4800).contains(&label.free), "{}", label.free);
     }
 
     #[test]

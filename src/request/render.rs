@@ -9,7 +9,7 @@ use crate::params::Param;
 use crate::render::{Delivery, Job, Level, Options, Tail};
 use crate::sound::Kit;
 use crate::units::parse_key;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Frames processed at once, unless [`Request::block`] says otherwise.
 const BLOCK: usize = 4096;
@@ -102,7 +102,18 @@ impl Request {
         if self.normalize.is_some() && self.gain_db != 0.0 {
             return Err(Error::value("--normalize", "expected it without --gain-db"));
         }
-        Ok(())
+        self.sound.tuning.check()?;
+        self.sound.tuning.check_notes(&self.note)
+    }
+
+    /// The files that it may name: song, input, presets and kits, programs, scale and keymap. A preset's name is one, too,
+    /// since it may be a file.
+    pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
+        let tuning = &self.sound.tuning;
+        let paths = [&self.song, &self.input, &tuning.scale, &tuning.keymap];
+        let presets = self.sound.preset.iter().chain([&self.sound.programs]).map(Path::new);
+        let channels = self.sound.channels.iter().map(|(_, name)| Path::new(name));
+        paths.into_iter().flatten().map(PathBuf::as_path).chain(presets).chain(channels)
     }
 
     /// Reads the song, the sounds and the input. `warn` is called with what deserves a warning.
@@ -138,7 +149,6 @@ impl Request {
     }
 
     fn chord(&self, kit: &Kit) -> Result<Song> {
-        self.sound.tuning.check_notes(&self.note)?;
         // Frequencies are converted with the sound's own A4, so that 440 Hz is 440 Hz with every sound.
         let a4_hz = f64::from(kit.values().get(Param::Tuning));
         let keys: std::result::Result<Vec<f64>, String> = self.note.iter().map(|note| parse_key(note, a4_hz)).collect();

@@ -22,18 +22,22 @@ pub struct TuningRequest {
 impl TuningRequest {
     /// Reads the files.
     pub(super) fn read(&self, inputs: &mut Inputs) -> Result<Tuning> {
-        let Some(path) = &self.scale else {
-            return match self.keymap {
-                Some(_) => Err(Error::value("--keymap", "expected --scale beside it")),
-                None => Ok(Tuning::EQUAL),
-            };
-        };
+        self.check()?;
+        let Some(path) = &self.scale else { return Ok(Tuning::EQUAL) };
         let scale = Scale::read(inputs.open(path)?, &path.display().to_string())?;
         let keymap = match &self.keymap {
             Some(path) => Keymap::read(inputs.open(path)?, &path.display().to_string())?,
             None => Keymap::LINEAR,
         };
         Ok(Tuning::new(&scale, &keymap))
+    }
+
+    /// Returns an error for a keymap without a scale.
+    pub(super) fn check(&self) -> Result<()> {
+        if self.keymap.is_some() && self.scale.is_none() {
+            return Err(Error::value("--keymap", "expected --scale beside it"));
+        }
+        Ok(())
     }
 
     /// Returns an error for notes that a scale cannot tune: those between two keys. A key that is given twice is an

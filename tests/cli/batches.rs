@@ -68,6 +68,7 @@ fn a_manifest_says_what_every_file_is() {
     assert!(decays.iter().all(|decay| (0.05..=2.0).contains(decay)), "{decays:?}");
     assert!(decays.windows(2).any(|pair| pair[0] != pair[1]), "{decays:?}");
     assert_eq!(lines[20]["seed"], 5);
+    assert!(lines.iter().all(|line| line["version"] == env!("CARGO_PKG_VERSION")));
     // The patch's decay is the T60 of the mode that sets the pitch.
     for (line, decay) in lines.iter().zip(decays) {
         let modes = line["notes"][0]["modes"].as_array().unwrap();
@@ -91,21 +92,73 @@ fn a_job_is_what_render_makes_of_it() {
 }
 
 #[test]
+fn what_is_there_is_neither_replaced_nor_read_while_it_is_written() {
+    let sandbox = Sandbox::new();
+    let job = r#"{"note": "C2", "length": 0.01, "tail": "none"}"#;
+    sandbox.write("jobs.jsonl", job);
+    fs::create_dir_all(sandbox.path("sounds/0000")).unwrap();
+    sandbox.write("sounds/0000/0000000.wav", "mine");
+    let message = "0000000.wav: the file exists: add --resume if it is of this batch, or choose another folder";
+    sandbox.fails("batch jobs.jsonl --out sounds", 1, message);
+    assert_eq!(sandbox.read("sounds/0000/0000000.wav"), b"mine");
+    // A job's input that another job writes, whether it is there already or not.
+    for (out, input) in [
+        ("sounds", "sounds/0000/0000000.wav"),
+        ("sounds", "./sounds/../sounds/0000/0000007.wav"),
+        (".", "0000/0000000.wav"),
+    ] {
+        sandbox.write("jobs.jsonl", format!("{job}\n{}", job.replace('{', &format!("{{\"input\": \"{input}\", "))));
+        let message = format!("jobs.jsonl:2: input: ‘{input}’ is a file that this batch writes");
+        sandbox.fails(&format!("batch jobs.jsonl --out {out} --resume"), 1, &message);
+    }
+    assert_eq!(sandbox.read("sounds/0000/0000000.wav"), b"mine");
+}
+
+#[test]
+fn only_manifests_are_taken_for_manifests() {
+    let sandbox = Sandbox::new();
+    let job = r#"{"note": "C2", "length": 0.01, "tail": "none"}"#;
+    // Files of jobs may have names that begin alike.
+    for name in ["manifest-of-jobs.jsonl", "manifesto.jsonl", "manifest-1-of-.jsonl"] {
+        sandbox.write(name, job);
+        sandbox.succeeds(&format!("batch {name} --out . --resume"));
+    }
+    // Its last line has no end, which going on with a manifest would cut off.
+    fs::create_dir(sandbox.path("out")).unwrap();
+    for name in ["out/manifest.jsonl", "out/manifest-2-of-3.jsonl"] {
+        sandbox.write(name, job);
+        for args in ["", " --resume", " --resume --shard 2/3"] {
+            sandbox.fails(&format!("batch {name} --out out{args}"), 1, "this batch writes this file itself");
+            assert_eq!(sandbox.read(name), job.as_bytes());
+        }
+    }
+    fs::hard_link(sandbox.path("out/manifest.jsonl"), sandbox.path("jobs.jsonl")).unwrap();
+    sandbox.fails("batch jobs.jsonl --out out --resume", 1, "jobs.jsonl: this batch writes this file itself");
+    assert_eq!(sandbox.read("jobs.jsonl"), job.as_bytes());
+}
+
+#[test]
 fn killed_anywhere_and_gone_on_with_it_is_the_same() {
     let sandbox = Sandbox::new();
     sandbox.write("jobs.jsonl", JOBS);
     sandbox.succeeds("batch jobs.jsonl --out whole");
     let whole = files(&sandbox.path("whole"));
     let mut broken_off = 0;
-    for delay in [0, 30, 60, 90, 130, 180, 250, 350] {
+    let made = || {
+        let lines = fs::read(sandbox.path("parts/manifest.jsonl")).unwrap_or_default();
+        lines.iter().filter(|byte| **byte == b'\n').count()
+    };
+    // Each is killed when it has gone on by some lines.
+    for lines in [1, 3, 8, 16] {
         let mut child = start(&sandbox, "batch jobs.jsonl --out parts --resume");
-        std::thread::sleep(Duration::from_millis(delay));
+        while made() < lines && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
         child.kill().unwrap();
         child.wait().unwrap();
-        let lines = fs::read(sandbox.path("parts/manifest.jsonl")).unwrap_or_default();
-        broken_off += usize::from(lines.iter().filter(|byte| **byte == b'\n').count() < COUNT);
+        broken_off += usize::from((1..COUNT).contains(&made()));
     }
-    assert!(broken_off > 0, "it was never killed in time");
+    assert!(broken_off > 0, "it was never killed in the middle");
     // A line that was cut off, a file that is not whole, and one that is gone.
     sandbox.succeeds("batch jobs.jsonl --out parts --resume");
     let manifest = sandbox.read("parts/manifest.jsonl");
@@ -141,6 +194,39 @@ fn four_shards_are_the_whole() {
     let mut parts = files(&sandbox.path("parts"));
     parts.retain(|path, _| !path.to_string_lossy().contains("-of-"));
     assert!(parts == files(&sandbox.path("whole")));
+}
+
+#[test]
+fn another_version_does_not_go_on() {
+    let sandbox = Sandbox::new();
+    sandbox.write("jobs.jsonl", r#"{"note": "C2", "length": 0.01, "tail": "none", "repeat": 2}"#);
+    sandbox.succeeds("batch jobs.jsonl --out sounds");
+    let manifest = String::from_utf8(sandbox.read("sounds/manifest.jsonl")).unwrap();
+    let own = format!("\"version\":\"{}\"", env!("CARGO_PKG_VERSION"));
+    let other = manifest.replace(&own, "\"version\":\"0.0.7\"");
+    assert_ne!(manifest, other);
+    sandbox.write("sounds/manifest.jsonl", &other);
+    let message = "sounds/manifest.jsonl: version 0.0.7 has made job 0, and this is version";
+    sandbox.fails("batch jobs.jsonl --out sounds --resume", 1, message);
+    sandbox.fails("batch jobs.jsonl --out sounds --resume --shard 1/2", 1, "or choose a new folder");
+    assert_eq!(sandbox.read("sounds/manifest.jsonl"), other.as_bytes());
+}
+
+#[test]
+fn a_shard_that_was_cut_off_within_a_character_is_gone_on_with() {
+    let sandbox = Sandbox::new();
+    let kick = sandbox.succeeds("presets show Kick");
+    sandbox.write("‘kick’.toml", kick);
+    let job = r#"{"preset": "‘kick’.toml", "note": "C2", "length": 0.01, "tail": "none", "repeat": 8}"#;
+    sandbox.write("jobs.jsonl", job);
+    sandbox.succeeds("batch jobs.jsonl --out whole");
+    sandbox.succeeds("batch jobs.jsonl --out parts --shard 1/4");
+    let name = "parts/manifest-1-of-4.jsonl";
+    let manifest = sandbox.read(name);
+    let last = manifest.windows(3).rposition(|bytes| bytes == "‘".as_bytes()).unwrap();
+    sandbox.write(name, &manifest[..last + 1]);
+    sandbox.succeeds("batch jobs.jsonl --out parts --resume");
+    assert!(sandbox.read("parts/manifest.jsonl") == sandbox.read("whole/manifest.jsonl"));
 }
 
 #[test]
@@ -191,9 +277,46 @@ fn wrong_jobs_are_named_by_line_and_key() {
         (r#"{"note": "C2", "repeat": 0}"#, "jobs.jsonl:2: repeat: expected a whole number from 1"),
         (r#"{"song": "-"}"#, "jobs.jsonl:2: song: expected a file"),
         (r#"{"note": "C2", "dither": true, "bits": "32f"}"#, "jobs.jsonl:2: dither: floats are not rounded"),
+        // Whatever is drawn is checked, not the last choice only.
+        (r#"{"song": {"choice": ["-", "a.mid"]}}"#, "jobs.jsonl:2: song: expected a file"),
+        (
+            r#"{"note": "C2", "dither": {"choice": [true, false]}, "bits": {"choice": ["32f", 16]}}"#,
+            "jobs.jsonl:2: dither: floats are not rounded",
+        ),
+        (
+            r#"{"note": "C2", "gain_db": {"uniform": [-3, 0]}, "normalize": {"choice": ["peak=-1"]}}"#,
+            "jobs.jsonl:2: normalize: expected it without",
+        ),
+        (
+            r#"{"note": "C2", "gain_db": {"normal": [0, 1]}, "normalize": "peak=-1"}"#,
+            "jobs.jsonl:2: normalize: expected it without",
+        ),
+        (r#"{"note": "C2", "keymap": "a.kbm"}"#, "jobs.jsonl:2: keymap: expected --scale"),
+        (
+            r#"{"note": {"choice": [60.5, 60]}, "scale": {"choice": ["a.scl", "b.scl"]}}"#,
+            "jobs.jsonl:2: note: ‘60.5’ is no key",
+        ),
     ] {
         sandbox.write("jobs.jsonl", format!("{{\"note\": \"C2\", \"length\": 0.01, \"tail\": \"none\"}}\n{line}\n"));
         sandbox.fails("batch jobs.jsonl --out sounds", 1, message);
+    }
+    for (line, message) in [
+        (r#"{"note": "C2", "bits": {"choice": ["32f", 24]}}"#, "jobs.jsonl:2: bits: FLAC has no floats"),
+        (r#"{"note": "C2", "rate": {"uniform": [8000, 96001]}}"#, "jobs.jsonl:2: rate: 96001 Hz is too high for FLAC"),
+        (
+            r#"{"note": "C2", "rate": {"choice": ["192k", "48k"]}}"#,
+            "jobs.jsonl:2: rate: 192000 Hz is too high for FLAC",
+        ),
+    ] {
+        sandbox.write("jobs.jsonl", format!("{{\"note\": \"C2\", \"length\": 0.01, \"tail\": \"none\"}}\n{line}\n"));
+        sandbox.fails("batch jobs.jsonl --out sounds --format flac", 1, message);
+    }
+    #[cfg(unix)]
+    {
+        let pipe = sandbox.sprung("batch /dev/stdin --out sounds").write_stdin("{\"note\": \"C2\"}").assert().code(1);
+        let told = String::from_utf8(pipe.get_output().stderr.clone()).unwrap();
+        assert!(told.contains("/dev/stdin: jobs are read twice") && told.contains("expected a file"), "{told}");
+        assert!(!sandbox.path("sounds").exists());
     }
     sandbox.fails("batch none.jsonl --out sounds", 1, "none.jsonl: ");
     sandbox.fails("batch jobs.jsonl --out sounds --shard 5/4", 2, "there is no part 5 of 4: expected 1/4 to 4/4");

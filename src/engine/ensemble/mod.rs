@@ -12,7 +12,7 @@ use super::note::nearest_channel;
 use super::space::needs_bodies;
 use super::synth::allowed;
 use super::zones::Owners;
-use super::{Snapshot, Struck, Synth};
+use super::{Snapshot, Synth, VoiceState};
 use crate::dsp::limiter::Work;
 use crate::patch::Patch;
 use crate::sound::{Kit, Mix, Tuning};
@@ -154,9 +154,9 @@ impl Ensemble {
 
     /// Calls `visit` with each voice that sounds now, and the number of the part that plays it. The order is always the
     /// same. Real-time safe if `visit` is.
-    pub fn each_struck(&mut self, visit: &mut dyn FnMut(usize, Struck<'_>)) {
+    pub fn each_voice(&mut self, visit: &mut dyn FnMut(usize, VoiceState<'_>)) {
         for (part, Part { synth, .. }) in self.parts.iter_mut().enumerate() {
-            synth.each_struck(&mut |struck| visit(part, struck));
+            synth.each_voice(&mut |voice| visit(part, voice));
         }
     }
 

@@ -11,7 +11,7 @@ use super::note::{Note, nearest_channel, nearest_key};
 use super::space::{Space, needs_bodies};
 use super::voice::SynthVoice;
 use super::voice_manager::{Footprint, PlayMode, Priority, VoiceManager, VoicePool};
-use super::{Snapshot, Struck};
+use super::{Snapshot, VoiceState};
 use crate::dsp::limiter::Work;
 use crate::dsp::{Cell, Limiter};
 use crate::params::{Choice, Param, Values};
@@ -201,8 +201,8 @@ impl Synth {
     }
 
     /// Calls `visit` with each voice that sounds now, in an order that is always the same. Real-time safe if `visit` is.
-    pub fn each_struck(&mut self, visit: &mut dyn FnMut(Struck<'_>)) {
-        self.manager.active().for_each(|(note, voice)| visit(Struck::new(note, voice)));
+    pub fn each_voice(&mut self, visit: &mut dyn FnMut(VoiceState<'_>)) {
+        self.manager.active().for_each(|(note, voice)| visit(VoiceState::new(note, voice)));
     }
 
     /// The largest number of notes that have sounded at once.

@@ -2,15 +2,15 @@
 
 use super::note::Note;
 use super::voice::SynthVoice;
-pub use super::voice::struck::StruckMode;
+pub use super::voice::mode_state::ModeState;
 
 /// A voice that sounds, to be looked at between two blocks. A display needs a [`Snapshot`](super::Snapshot).
-pub struct Struck<'a> {
+pub struct VoiceState<'a> {
     note: &'a Note,
     voice: &'a SynthVoice,
 }
 
-impl<'a> Struck<'a> {
+impl<'a> VoiceState<'a> {
     pub(super) fn new(note: &'a Note, voice: &'a SynthVoice) -> Self {
         Self { note, voice }
     }
@@ -31,7 +31,7 @@ impl<'a> Struck<'a> {
     }
 
     /// Its modes, in the order of the sound's table. Real-time safe.
-    pub fn modes(&self) -> impl Iterator<Item = StruckMode> {
-        self.voice.struck_modes()
+    pub fn modes(&self) -> impl Iterator<Item = ModeState> {
+        self.voice.mode_states()
     }
 }

@@ -4,7 +4,7 @@ use super::SynthVoice;
 
 /// A mode of a sounding voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StruckMode {
+pub struct ModeState {
     /// Hz, at rest: without what bends it for a while, as sweep, glide, vibrato, wheels and tension do.
     pub frequency: f64,
     /// Present T60 in seconds, with damper and touch.
@@ -26,11 +26,11 @@ impl SynthVoice {
     }
 
     /// Its modes as they are now.
-    pub(crate) fn struck_modes(&self) -> impl Iterator<Item = StruckMode> {
+    pub(crate) fn mode_states(&self) -> impl Iterator<Item = ModeState> {
         let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
         let [left, right] = self.fader.now().map(f64::from);
         let power = 0.5 * (left * left + right * right);
-        self.bank.modes().map(move |(ratio, scale, touched, energy)| StruckMode {
+        self.bank.modes().map(move |(ratio, scale, touched, energy)| ModeState {
             frequency: frequency * ratio,
             t60: damping.t60(scale, touched),
             amplitude: libm::sqrt(power * energy),

@@ -1,0 +1,59 @@
+//! Checks that a job fits its batch: its files and its sample format.
+
+use super::manifest::{self, is_number};
+use super::template::Fault;
+use super::{Batch, FileFormat};
+use crate::io::{SampleFormat, flac};
+use crate::request::Request;
+use std::path::{Path, PathBuf};
+
+impl Batch {
+    /// Returns an error for a job that the format of the files cannot have.
+    pub(super) fn check_format(&self, request: &Request) -> Result<(), Fault> {
+        let fault = |key: &str, message: String| Err((key.to_owned(), message));
+        match self.format {
+            FileFormat::Wav => Ok(()),
+            FileFormat::Flac if request.bits == SampleFormat::Float32 => {
+                fault("bits", "FLAC has no floats: expected 16 or 24, or --format wav".to_owned())
+            }
+            FileFormat::Flac if request.rate > flac::HIGHEST_RATE => {
+                let (rate, highest) = (request.rate, flac::HIGHEST_RATE);
+                fault("rate", format!("{rate} Hz is too high for FLAC: expected at most {highest} Hz, or --format wav"))
+            }
+            FileFormat::Flac => Ok(()),
+        }
+    }
+
+    /// A message, if `input` is a file that a batch in this folder writes, now or later. Only its path counts, since the
+    /// files are renamed into their places: a hard link to one keeps what it has.
+    pub(super) fn own(&self, input: &Path) -> Option<String> {
+        let (folder, path) = (resolved(&self.folder), resolved(input));
+        let inside = path.strip_prefix(folder).ok()?;
+        let parts: Vec<&str> = inside.iter().map(|part| part.to_str()).collect::<Option<_>>()?;
+        let is_own = match parts[..] {
+            [name] => manifest::is_name(name),
+            [folder, file] => is_number(folder) && stem(file, self.format.ending()).is_some_and(is_number),
+            _ => false,
+        };
+        let message =
+            || format!("‘{}’ is a file that this batch writes: expected another file or folder", input.display());
+        is_own.then(message)
+    }
+}
+
+/// The name of a file without the point and this ending.
+fn stem<'a>(file: &'a str, ending: &str) -> Option<&'a str> {
+    file.strip_suffix(ending)?.strip_suffix('.')
+}
+
+/// A path without links and dots, as far as it is there.
+fn resolved(path: &Path) -> PathBuf {
+    if let Ok(whole) = path.canonicalize() {
+        return whole;
+    }
+    match (path.parent(), path.file_name()) {
+        (Some(parent), Some(name)) if parent.as_os_str().is_empty() => resolved(Path::new(".")).join(name),
+        (Some(parent), Some(name)) => resolved(parent).join(name),
+        _ => path.to_owned(),
+    }
+}
