@@ -15,12 +15,14 @@ pub(super) struct Shown {
 
 impl Shown {
     pub(super) fn new(params: &SprungParams) -> Self {
+        // First, so that a sound that is loaded meanwhile is another one at the next refresh.
+        let loaded = params.loaded();
         let playable = params.state().playable;
         let guide = match &playable {
             Playable::Preset(preset) => preset.guide.clone(),
             Playable::Kit(_) => Guide::default(),
         };
-        Self { loaded: params.loaded(), playable, guide }
+        Self { loaded, playable, guide }
     }
 
     /// Reads the sound again if another one was loaded.
