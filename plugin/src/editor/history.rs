@@ -35,6 +35,11 @@ impl History {
         }
     }
 
+    /// What the user began to do is given up: it becomes no step.
+    pub(super) fn cancel(&mut self) {
+        self.open = None;
+    }
+
     /// What the user did is over: it becomes a step if it has changed anything.
     pub(super) fn end(&mut self, name: impl Into<String>, params: &SprungParams) {
         let Some(state) = self.open.take() else { return };

@@ -32,6 +32,11 @@ impl Shown {
         }
     }
 
+    /// The sound with exact values, as it was loaded.
+    pub(super) fn loaded(&self) -> &Arc<Loaded> {
+        &self.loaded
+    }
+
     /// The preset, if it is no kit.
     pub(super) fn preset(&self) -> Option<&Preset> {
         match &self.playable {

@@ -120,6 +120,7 @@ impl Window {
         };
         let wish = header::show(ui, layout.header, &header, &mut controls);
         if self.is_browsing {
+            self.modes.cancel(&mut controls);
             if let Some(message) = self.browser.show(ui, layout.page(), &mut controls) {
                 self.message = message;
             }
@@ -129,7 +130,7 @@ impl Window {
         } else {
             let (patch, guide) = (self.shown.patch(), self.shown.guide());
             let is_editable = self.shown.preset().is_some();
-            self.modes.show(ui, layout.modes, (patch, guide, is_editable), &energies, &mut controls);
+            self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
             self.motion.show(ui, layout.motion, &energies, self.modes.selected(), telemetry, &controls);
             show_tabs(ui, layout.tabs, &mut self.page, &controls);
             sections::show(ui, layout.sections, self.page, (patch, guide, is_editable), &mut controls);
