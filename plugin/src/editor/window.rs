@@ -157,6 +157,15 @@ impl Window {
         self.history.end(preset.name.as_str(), &self.params);
     }
 
+    /// Undoes or redoes a step, which may bring the other one of the two versions.
+    fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
+        let now = self.params.state();
+        if go(&mut self.history, &self.params, host) {
+            self.other = Some(now);
+            self.is_b = !self.is_b;
+        }
+    }
+
     fn grant(&mut self, wish: Wish, ui: &Ui, host: &GuiContext) {
         match wish {
             Wish::Browse | Wish::Save => {
@@ -164,8 +173,8 @@ impl Window {
                 self.message.clear();
                 self.browser.open(&self.params.name());
             }
-            Wish::Undo => drop(self.history.undo(&self.params, host)),
-            Wish::Redo => drop(self.history.redo(&self.params, host)),
+            Wish::Undo => self.go_back(History::undo, host),
+            Wish::Redo => self.go_back(History::redo, host),
             Wish::Zoom(zoom) => {
                 self.params.set_view(|view| view.zoom = zoom);
                 ui.ctx().set_zoom_factor(zoom as f32 / 100.0);
@@ -179,7 +188,7 @@ impl Window {
                     restore(other, &self.params, host);
                 }
                 self.is_b = !self.is_b;
-                self.history.end(if self.is_b { "version B" } else { "version A" }, &self.params);
+                self.history.end_swap(if self.is_b { "version B" } else { "version A" }, &self.params);
             }
             Wish::Copy => self.other = Some(self.params.state()),
         }
