@@ -8,7 +8,7 @@ use super::sounds::{Shelf, Sound, Sounds};
 use super::star;
 use super::text::line;
 use super::theme::{GAP, PADDING, Palette, SMALL, TEXT, font};
-use crate::link::Touch;
+use crate::link::{Link, Touch};
 use egui::{Align2, Id, Key, Rect, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use sprung::preset::library::Library;
 use sprung::preset::{Guide, Playable};
@@ -106,6 +106,13 @@ impl Browser {
     pub(super) fn follow_time(&mut self, now: f64, controls: &Controls) {
         if let Some((key, _)) = self.held.take_if(|(_, end)| now >= *end) {
             controls.params.link().play(Touch::Up { key });
+        }
+    }
+
+    /// Lets go of the sound that is tried, at once.
+    pub(super) fn release(&mut self, link: &Link) {
+        if let Some((key, _)) = self.held.take() {
+            link.play(Touch::Up { key });
         }
     }
 

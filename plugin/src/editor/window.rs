@@ -24,6 +24,7 @@ use nice_plug_egui::resizable_window::ResizableWindow;
 use nice_plug_egui::{Frame, KeyCapture, NiceEguiApp};
 use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -77,6 +78,12 @@ impl Window {
             applied: None,
             message: String::new(),
         }
+    }
+
+    /// Prepares for being shown in a host.
+    pub(super) fn open(&mut self, host: GuiContext) {
+        self.host = Some(host);
+        self.applied = None;
     }
 
     /// Shows the window and does what the user asks for.
@@ -225,8 +232,7 @@ fn show_tabs(ui: &Ui, rect: Rect, page: &mut usize, controls: &Controls) {
 
 impl NiceEguiApp for Window {
     fn build(&mut self, context: egui::Context, host: GuiContext, _: &mut Frame) -> Result<(), HandlerError> {
-        self.host = Some(host);
-        self.applied = None;
+        self.open(host);
         context.set_zoom_factor(self.params.view().zoom as f32 / 100.0);
         Ok(())
     }
@@ -248,9 +254,19 @@ impl NiceEguiApp for Window {
         let size = [side(size.logical.width), side(size.logical.height)];
         self.params.set_view(|view: &mut View| view.size = size);
     }
+}
 
-    fn editor_closed(&mut self) {
-        self.piano.release(self.params.link());
-        self.host = None;
+/// A window is dropped when it is closed: nothing else tells it so.
+impl Drop for Window {
+    fn drop(&mut self) {
+        let link = self.params.link();
+        self.piano.release(link);
+        self.browser.release(link);
+        self.modes.release(link);
+        if let Some(host) = self.host.take() {
+            let end = || self.hands.gestures.end(&self.params, &host);
+            // The wrapper panics if the plugin itself is dropped; then nobody waits for the end of a gesture.
+            let _ = catch_unwind(AssertUnwindSafe(end));
+        }
     }
 }

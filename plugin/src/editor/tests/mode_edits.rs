@@ -1,5 +1,6 @@
 //! Modes that the user changes: they are saved as they are, and what is loaded meanwhile is left alone.
 
+use super::fake_host::Said;
 use super::sounding::Band;
 use crate::editor::mode_axes::Axes;
 use crate::editor::theme::{SIZE, Theme};
@@ -119,4 +120,28 @@ fn a_drag_ends_if_another_sound_is_loaded() {
     assert!(band.stage.params.state() != loaded);
     band.stage.button("Undo");
     assert!(band.stage.params.state() == loaded, "the drag before is no step");
+}
+
+#[test]
+fn a_window_that_is_closed_lets_go_of_every_key_and_knob() {
+    let mut band = Band::new("Glass Marimba", SIZE, Theme::Dark);
+    let keyboard = band.rect("Keyboard");
+    band.press(keyboard.left_bottom() + vec2(11.0, -4.0), true);
+    let [Touch::Down { key, .. }] = band.heard[..] else { panic!("{:?}", band.heard) };
+    let Band { stage, mut touches, .. } = band;
+    drop(stage.harness);
+    assert_eq!((touches.pop(), touches.pop().ok()), (Ok(Touch::Up { key }), None));
+    let mut band = Band::new("Glass Marimba", SIZE, Theme::Dark);
+    band.pull(band.loudest());
+    let Some(Touch::Down { key, .. }) = band.heard.last().copied() else { panic!("{:?}", band.heard) };
+    let Band { stage, mut touches, .. } = band;
+    drop(stage.harness);
+    assert_eq!((touches.pop(), touches.pop().ok()), (Ok(Touch::Up { key }), None));
+    let mut band = Band::new("Glass Marimba", SIZE, Theme::Dark);
+    let knob = band.stage.at("Mallet speed");
+    band.press(knob, true);
+    band.event(Event::PointerMoved(knob - vec2(0.0, 20.0)));
+    assert!(matches!(band.stage.host.said()[..], [Said::Begin(_), ..]));
+    drop(band.stage.harness);
+    assert!(matches!(band.stage.host.said()[..], [Said::End(_)]));
 }
