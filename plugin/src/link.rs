@@ -7,10 +7,10 @@ use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How many notes can wait for the audio thread. Those beyond are dropped.
+/// How many touches can wait for the audio thread. Half of the room is for keys that go up.
 const WAITING: usize = 64;
 
-/// A note that is played in the window. It is neither part of the state nor of what a host renders from its own notes.
+/// A note that is played in the window. It is neither part of the state nor of what a host renders to a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Touch {
     /// A key goes down, with a velocity from 0 to 1.
@@ -53,8 +53,11 @@ impl Link {
     /// Plays a note. Nothing happens while no audio thread listens. Not for the audio thread.
     pub(crate) fn play(&self, touch: Touch) {
         if let Some(producer) = &mut *self.touches.lock().unwrap_or_else(PoisonError::into_inner) {
-            // A full queue drops the note.
-            let _ = producer.push(touch);
+            // A key that has gone down must be able to go up: so notes are dropped while there is room for that.
+            let is_down = matches!(touch, Touch::Down { .. });
+            if !is_down || producer.slots() > WAITING / 2 {
+                let _ = producer.push(touch);
+            }
         }
     }
 
@@ -69,15 +72,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn touches_arrive_in_order_and_those_beyond_the_room_are_dropped() {
+    fn touches_arrive_in_order_and_keys_beyond_the_room_do_not_go_down() {
         let link = Link::default();
         link.play(Touch::Up { key: 1 });
         let mut consumer = link.connect(44_100.0);
         assert_eq!((consumer.pop().ok(), link.sample_rate()), (None, 44_100));
         let keys = 0..100;
         keys.clone().for_each(|key| link.play(Touch::Down { key, velocity: 0.5 }));
-        for key in keys.take(WAITING) {
+        let down = keys.take(WAITING / 2);
+        down.clone().for_each(|key| link.play(Touch::Up { key }));
+        for key in down.clone() {
             assert_eq!(consumer.pop(), Ok(Touch::Down { key, velocity: 0.5 }));
+        }
+        for key in down {
+            assert_eq!(consumer.pop(), Ok(Touch::Up { key }), "each key that went down goes up");
         }
         assert!(consumer.pop().is_err());
         link.play(Touch::Up { key: 1 });

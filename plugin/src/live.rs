@@ -48,6 +48,8 @@ pub(crate) struct Live {
     stereo: [[f32; MONO_FRAMES]; 2],
     /// Notes that are played in the window.
     touches: Consumer<Touch>,
+    /// Whether the host renders to a file.
+    is_offline: bool,
     telemetry: TelemetryWriter,
     repaint: RepaintNotifier,
 }
@@ -74,6 +76,7 @@ impl Live {
             early: Vec::with_capacity(EVENT_CAPACITY),
             stereo: [[0.0; MONO_FRAMES]; 2],
             touches: params.link().connect(sample_rate),
+            is_offline: offline,
             telemetry: TelemetryWriter::new(params.link().telemetry.clone(), sample_rate),
             repaint: params.link().repaint.clone(),
         };
@@ -140,12 +143,14 @@ impl Live {
         self.synth.handle(&event);
     }
 
-    /// Plays what the window has sent, at the first frame of the block.
+    /// Plays what the window has sent, at the first frame of the block. A click must not get into a file.
     fn follow_touches(&mut self) {
         // No more than there is room for: the window may send while this runs.
         for _ in 0..self.touches.buffer().capacity() {
             let Ok(touch) = self.touches.pop() else { return };
-            self.handle(0, touch.event());
+            if !self.is_offline {
+                self.handle(0, touch.event());
+            }
         }
     }
 

@@ -175,8 +175,8 @@ impl SprungParams {
     }
 
     /// Loads a sound, its knob positions and the rest, all at once. Not for the audio thread: it makes the sound and
-    /// frees those that are no longer played. Does not tell the host.
-    pub(crate) fn load(&self, Read { state, complaints }: Read) {
+    /// frees those that are no longer played. Does not tell the host. Returns what was loaded.
+    pub(crate) fn load(&self, Read { state, complaints }: Read) -> Arc<Loaded> {
         let loaded = Arc::new(state.loaded());
         let mut kept = self.kept();
         kept.playable = state.playable;
@@ -184,12 +184,13 @@ impl SprungParams {
         kept.complaints = complaints.into();
         kept.loaded = loaded.clone();
         kept.may_sound.keep(&loaded);
-        self.slot.put(loaded, || {
+        self.slot.put(loaded.clone(), || {
             for (knob, position) in self.knobs.iter().zip(state.positions) {
                 knob.turn(position);
             }
         });
         kept.may_sound.collect();
+        loaded
     }
 
     /// The whole present state. Not for the audio thread.

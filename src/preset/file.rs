@@ -6,11 +6,11 @@ use super::guide::Guide;
 use super::migration::{self, Replaced};
 use super::value::{check_keys, param_value, table, unexpected};
 use super::{FORMAT_VERSION, Preset};
-use super::{body, one_exciter, routes, tuning};
+use super::{body, mode_list, one_exciter, routes, tuning};
 use crate::error::Error;
 use crate::params::retired::RETIRED;
 use crate::params::{PARAMS, Param, ParamInfo, Unit};
-use crate::patch::{MAX_MODES, Mode, ModeTable, Patch};
+use crate::patch::Patch;
 use std::fmt::Write;
 use toml::{Table, Value};
 
@@ -69,7 +69,7 @@ pub(super) fn read(
     let mut patch = Patch::default();
     let retired = if is_old { Some(migration::take(&mut params, &mut patch, complaints)) } else { None };
     read_params(&params, &mut patch, complaints);
-    patch.modes = ModeTable::new(&read_modes(table.get("modes"), complaints));
+    patch.modes = mode_list::read(table.get("modes"), complaints);
     body::read(table, &mut patch, complaints);
     routes::read(table, &mut patch, complaints);
     if let Some(retired) = retired {
@@ -95,66 +95,12 @@ fn read_params(params: &Table, patch: &mut Patch, complaints: &mut Complaints) {
     }
 }
 
-fn read_modes(modes: Option<&Value>, complaints: &mut Complaints) -> Vec<Mode> {
-    let modes = match modes {
-        None => return vec![Mode::UNIT],
-        Some(Value::Array(modes)) => modes,
-        Some(other) => {
-            complaints.add(unexpected("modes", "a list of modes, [{ ratio = … }, …]", other));
-            return vec![Mode::UNIT];
-        }
-    };
-    if !(1..=MAX_MODES).contains(&modes.len()) {
-        complaints.add(format!("modes: {} of them is out of range: expected 1 to {MAX_MODES}", modes.len()));
-    }
-    let mode = |(index, mode): (usize, &Value)| read_mode(&format!("modes[{index}]"), mode, complaints);
-    modes.iter().take(MAX_MODES).enumerate().filter_map(mode).collect()
-}
-
-/// Reads a mode, if it has a ratio.
-fn read_mode(place: &str, mode: &Value, complaints: &mut Complaints) -> Option<Mode> {
-    let Value::Table(mode) = mode else {
-        complaints.add(unexpected(place, "a mode, { ratio = … }", mode));
-        return None;
-    };
-    check_keys(mode, &format!("{place}."), &Mode::FIELDS.map(|(name, ..)| name), complaints);
-    if !mode.contains_key("ratio") {
-        complaints.add(format!("{place}: there is no ‘ratio’"));
-        return None;
-    }
-    let (mut fields, mut has_ratio) = (Mode::UNIT.fields(), true);
-    for ((name, min, max), field) in Mode::FIELDS.into_iter().zip(&mut fields) {
-        let Some(value) = mode.get(name) else { continue };
-        let number = match value {
-            Value::Integer(number) => Ok(*number as f32),
-            Value::Float(number) => Ok(*number as f32),
-            other => Err(unexpected(&format!("{place}.{name}"), "a number", other)),
-        };
-        let number = number.and_then(|number| match (min..=max).contains(&number) {
-            true => Ok(number),
-            false => Err(format!("{place}.{name}: {number} is out of range: expected {min} to {max}")),
-        });
-        match complaints.take("", number) {
-            Some(number) => *field = number,
-            None => has_ratio &= name != "ratio",
-        }
-    }
-    has_ratio.then(|| Mode::from_fields(fields))
-}
-
 pub(super) fn to_toml(preset: &Preset) -> String {
     let mut out = format!("format = {FORMAT_VERSION}\n");
     let Preset { name, author, tags, comment, .. } = preset;
     out.push_str(&about_to_toml([name, author, comment], tags));
     out.push_str(&preset.guide.to_toml());
-    let modes = preset.patch.modes.as_slice();
-    if modes != [Mode::UNIT] && preset.patch.modes.origin().is_none() {
-        out.push_str("modes = [\n");
-        for mode in modes {
-            let _ = writeln!(out, "    {{ {} }},", mode_fields(mode));
-        }
-        out.push_str("]\n");
-    }
+    out.push_str(&mode_list::to_toml(&preset.patch.modes));
     out.push_str(&routes::to_toml(&preset.patch));
     out.push_str(&body::to_toml(&preset.patch));
     out.push_str("\n[params]\n");
@@ -178,26 +124,17 @@ pub(super) fn write_value(out: &mut String, info: &ParamInfo, value: f32) {
     };
 }
 
-/// The ratio, and the fields that differ from [`Mode::UNIT`]. `{:?}` writes an `f32` as the shortest text that reads
-/// back as the same number, and that is valid TOML.
-fn mode_fields(mode: &Mode) -> String {
-    let fields = Mode::FIELDS.iter().zip(mode.fields()).zip(Mode::UNIT.fields());
-    let written: Vec<String> = fields
-        .filter(|(((name, ..), value), unit)| *name == "ratio" || value != unit)
-        .map(|(((name, ..), value), _)| format!("{name} = {value:?}"))
-        .collect();
-    written.join(", ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::params::PARAM_COUNT;
     use crate::patch::routes::{MAX_ROUTES, Response, Route, Source};
+    use crate::patch::{MAX_MODES, Mode, ModeTable};
     use crate::text::printable_lines;
     use proptest::option;
     use proptest::prelude::*;
     use proptest::sample::select;
+    use std::f32::consts::PI;
 
     fn read_text(text: &str) -> crate::Result<Preset> {
         Preset::parse(text, "x")
@@ -313,9 +250,15 @@ mod tests {
             comment in ".*\n?.*",
             positions in proptest::collection::vec(0.0..=1.0f64, PARAM_COUNT),
             modes in proptest::collection::vec(any_mode(), 1..=MAX_MODES),
+            phases in option::of(proptest::collection::vec(-PI..=PI, MAX_MODES)),
             routes in proptest::collection::vec(any_route(), MAX_ROUTES),
         ) {
-            let mut patch = Patch { modes: ModeTable::new(&modes), ..Patch::default() };
+            let table = ModeTable::new(&modes);
+            let table = match phases {
+                Some(phases) => table.with_phases(&phases[..modes.len()]),
+                None => table,
+            };
+            let mut patch = Patch { modes: table, ..Patch::default() };
             for (info, position) in PARAMS.iter().zip(positions) {
                 patch.set(info.param, info.denormalise(position));
             }

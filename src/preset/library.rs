@@ -46,25 +46,42 @@ impl Library {
     /// The files in the library, in the order of their names. Those that cannot be read say why. Empty if there is no
     /// folder.
     pub fn entries(&self) -> Vec<Entry> {
+        self.paths().into_iter().map(|path| Entry { playable: read(&path), path }).collect()
+    }
+
+    fn paths(&self) -> Vec<PathBuf> {
         let Ok(files) = fs::read_dir(self.presets_folder()) else { return Vec::new() };
         let paths = files.filter_map(|file| Some(file.ok()?.path()));
         let mut paths: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
         paths.sort();
-        paths.into_iter().map(|path| Entry { playable: read(&path), path }).collect()
+        paths
     }
 
-    /// Saves a preset under its name, in a file that is named after it. Appears whole or not at all. Returns where it is.
+    /// Saves a preset under its name, in a file that is named after it; with a number if the file of a sound with another
+    /// name is there. Appears whole or not at all. Returns where it is.
     ///
     /// # Errors
-    /// [`Error::Exists`] if the file exists and is not to be replaced, [`Error::Format`] if the preset could not be read
+    /// [`Error::Exists`] if a preset of this name exists and is not to be replaced, [`Error::Format`] if the preset could not be read
     /// again, [`Error::Io`] if it cannot be written.
     pub fn save(&self, preset: &Preset, replace: bool) -> Result<PathBuf> {
         let text = preset.to_toml();
         Preset::parse(&text, &preset.name)?;
         let slug = slug(&preset.name);
-        let name = if slug.is_empty() { "sound" } else { &slug };
-        let path = self.presets_folder().join(format!("{name}.toml"));
-        write_whole(&path, text.as_bytes(), replace)?;
+        let slug = if slug.is_empty() { "sound" } else { &slug };
+        let folder = self.presets_folder();
+        let place = |number: u32| match number {
+            1 => folder.join(format!("{slug}.toml")),
+            number => folder.join(format!("{slug}-{number}.toml")),
+        };
+        let is_it = |path: &PathBuf| matches!(read(path), Ok(Playable::Preset(found)) if found.name == preset.name);
+        // A number may be free before that of the preset, if another one was thrown away.
+        let numbers = 1..=self.paths().len() as u32 + 1;
+        if let Some(path) = numbers.clone().map(place).find(is_it) {
+            write_whole(&path, text.as_bytes(), replace)?;
+            return Ok(path);
+        }
+        let path = free(numbers.map(place), &folder)?;
+        write_whole(&path, text.as_bytes(), false)?;
         Ok(path)
     }
 
@@ -82,23 +99,31 @@ impl Library {
             0 => bin.join(name),
             number => bin.join(format!("{number}-{}", name.to_string_lossy())),
         };
-        let free = (0..).map(place).find(|place| !place.exists()).unwrap_or_else(|| place(0));
+        let free = free((0..=u32::MAX).map(place), &bin)?;
         fs::rename(path, &free).map_err(|source| Error::io(path.display().to_string(), source))?;
         Ok(free)
     }
 
-    /// The names of favourites. Empty if there are none, or if they cannot be read.
-    pub fn favourites(&self) -> BTreeSet<String> {
-        let text = fs::read_to_string(self.favourites_file()).unwrap_or_default();
-        text.lines().map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect()
+    /// The names of favourites. Empty if there is no list.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the list cannot be read.
+    pub fn favourites(&self) -> Result<BTreeSet<String>> {
+        let file = self.favourites_file();
+        let text = match fs::read_to_string(&file) {
+            Ok(text) => text,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
+            Err(error) => return Err(Error::io(file.display().to_string(), error)),
+        };
+        Ok(text.lines().map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned).collect())
     }
 
     /// Makes a sound a favourite, or not.
     ///
     /// # Errors
-    /// [`Error::Io`] if the list cannot be written.
+    /// [`Error::Io`] if the list cannot be read or written.
     pub fn set_favourite(&self, name: &str, is_favourite: bool) -> Result<()> {
-        let mut names = self.favourites();
+        let mut names = self.favourites()?;
         if is_favourite {
             names.insert(name.to_owned());
         } else {
@@ -131,6 +156,12 @@ fn data_folder(variable: &dyn Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
 fn read(path: &Path) -> Result<Playable> {
     let mut open = |path: &Path| File::open(path).map_err(|source| Error::io(path.display().to_string(), source));
     Playable::read(path, &mut open, &mut |_: &str, _: Replaced| {})
+}
+
+/// The first of these places in a folder where nothing is.
+fn free(mut places: impl Iterator<Item = PathBuf>, folder: &Path) -> Result<PathBuf> {
+    let free = places.find(|place| !place.exists());
+    free.ok_or_else(|| Error::value(folder.display().to_string(), "expected a folder with room for another file"))
 }
 
 fn make_folder(folder: &Path) -> Result<()> {
@@ -182,16 +213,35 @@ mod tests {
         let path = library.save(&named("My Bell"), false).unwrap();
         assert_eq!(path.file_name().unwrap(), "my-bell.toml");
         assert_eq!(library.save(&named("Ω"), false).unwrap().file_name().unwrap(), "sound.toml");
-        assert!(matches!(library.save(&named("my bell"), false), Err(Error::Exists { .. })));
+        assert!(matches!(library.save(&named("My Bell"), false), Err(Error::Exists { .. })));
         let names = |library: &Library| -> Vec<String> {
             library.entries().iter().map(|entry| entry.playable.as_ref().unwrap().name().to_owned()).collect()
         };
         assert_eq!(names(&library), ["My Bell", "Ω"]);
-        library.save(&named("my bell"), true).unwrap();
-        assert_eq!(names(&library), ["my bell", "Ω"]);
+        assert_eq!(library.save(&named("My Bell"), true).unwrap(), path);
+        assert_eq!(names(&library), ["My Bell", "Ω"]);
         let error = library.save(&named(&"n".repeat(101)), false).unwrap_err().to_string();
         assert!(error.contains("at most 100 characters"), "{error}");
         assert_eq!(fs::read_dir(library.presets_folder()).unwrap().count(), 2, "nothing else is left");
+    }
+
+    #[test]
+    fn sounds_of_other_names_are_not_replaced() {
+        let (_folder, library) = library();
+        let save = |name: &str, replace| {
+            let path = library.save(&named(name), replace).unwrap();
+            path.file_name().unwrap().to_string_lossy().into_owned()
+        };
+        assert_eq!(
+            ["My Bell", "my-bell!", "Ω", "β"].map(|name| save(name, true)),
+            ["my-bell.toml", "my-bell-2.toml", "sound.toml", "sound-2.toml"]
+        );
+        library.discard(&library.presets_folder().join("my-bell.toml")).unwrap();
+        assert!(matches!(library.save(&named("my-bell!"), false), Err(Error::Exists { .. })));
+        assert_eq!(save("my-bell!", true), "my-bell-2.toml", "where it was");
+        fs::write(library.presets_folder().join("sound-3.toml"), "broken").unwrap();
+        assert_eq!(save("λ", true), "sound-4.toml");
+        assert_eq!(library.entries().len(), 5);
     }
 
     #[test]
@@ -222,9 +272,14 @@ mod tests {
         for name in ["Kick", "Church Bell", "Kick"] {
             library.set_favourite(name, true).unwrap();
         }
-        assert_eq!(library.favourites().into_iter().collect::<Vec<_>>(), ["Church Bell", "Kick"]);
+        let favourites = || library.favourites().unwrap().into_iter().collect::<Vec<_>>();
+        assert_eq!(favourites(), ["Church Bell", "Kick"]);
         library.set_favourite("Kick", false).unwrap();
-        assert_eq!(library.favourites().into_iter().collect::<Vec<_>>(), ["Church Bell"]);
+        assert_eq!(favourites(), ["Church Bell"]);
+        // No UTF-8.
+        fs::write(library.favourites_file(), b"Kick\n\xff\n").unwrap();
+        assert!(library.favourites().is_err() && library.set_favourite("Church Bell", true).is_err());
+        assert_eq!(fs::read(library.favourites_file()).unwrap(), b"Kick\n\xff\n", "not written over");
     }
 
     #[cfg(all(unix, not(target_os = "macos")))]

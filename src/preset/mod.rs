@@ -15,6 +15,7 @@ mod kit_load;
 pub mod library;
 mod load;
 mod migration;
+mod mode_list;
 mod one_exciter;
 mod pair;
 mod phrase;

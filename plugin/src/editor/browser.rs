@@ -8,7 +8,7 @@ use super::sounds::{Shelf, Sound, Sounds};
 use super::star;
 use super::text::line;
 use super::theme::{GAP, PADDING, Palette, SMALL, TEXT, font};
-use crate::link::Touch;
+use crate::link::{Link, Touch};
 use egui::{Align2, Id, Key, Rect, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use sprung::preset::library::Library;
 use sprung::preset::{Guide, Playable};
@@ -77,6 +77,8 @@ impl Browser {
         let found: Vec<Sound> = sounds.find(self.shelf, &self.words).into_iter().cloned().collect();
         let chosen = match asks {
             Ask::Nothing => None,
+            // In another field, the arrows are that field's.
+            Ask::Step(_) if !has_arrows(ui, found.len()) => None,
             Ask::Step(places) => {
                 let place = found.iter().position(|sound| sound.name() == present);
                 let next = place.map_or(0, |place| place as isize + places);
@@ -107,6 +109,13 @@ impl Browser {
         }
     }
 
+    /// Lets go of the sound that is tried, at once.
+    pub(super) fn release(&mut self, link: &Link) {
+        if let Some((key, _)) = self.held.take() {
+            link.play(Touch::Up { key });
+        }
+    }
+
     fn shelves(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) {
         let mut inner = ui.new_child(UiBuilder::new().id_salt("shelves").max_rect(rect));
         ScrollArea::vertical().id_salt("shelves").auto_shrink(false).show(&mut inner, |ui| {
@@ -126,7 +135,7 @@ impl Browser {
     }
 
     fn search(&mut self, ui: &mut Ui, rect: Rect) -> Ask {
-        let field = Id::unique("search");
+        let field = search_field();
         let edit = TextEdit::singleline(&mut self.words).id(field).hint_text("Search, or a file’s whole path");
         let response = ui.put(rect.with_max_y(rect.top() + 22.0), edit.font(font(TEXT)).margin(vec2(6.0, 3.0)));
         response.widget_info(|| {
@@ -189,7 +198,7 @@ impl Browser {
                     continue;
                 }
                 let star = Rect::from_min_size(cell.min, vec2(20.0, cell.height()));
-                let response = ui.interact(cell.with_min_x(star.right()), Id::unique(("sound", place)), Sense::click());
+                let response = ui.interact(cell.with_min_x(star.right()), row(place), Sense::click());
                 let is_on = sound.name() == present;
                 response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_on, sound.name()));
                 if response.clicked() {
@@ -244,6 +253,21 @@ impl Browser {
             Err(message) => message,
         }
     }
+}
+
+fn search_field() -> Id {
+    Id::unique("search")
+}
+
+/// The row of a sound in the list.
+fn row(place: usize) -> Id {
+    Id::unique(("sound", place))
+}
+
+/// Whether the arrow keys are for the list of so many sounds: it or the search has the focus, or nothing has.
+fn has_arrows(ui: &Ui, rows: usize) -> bool {
+    let focused = ui.memory(|memory| memory.focused());
+    focused.is_none_or(|focused| focused == search_field() || (0..rows).any(|place| focused == row(place)))
 }
 
 /// What the user asks for by the search field's keys.

@@ -14,6 +14,8 @@ const STEPS: usize = 100;
 struct Step {
     name: String,
     state: State,
+    /// Whether the other one of two versions took the place of the sound.
+    swaps: bool,
 }
 
 /// What can be undone and redone.
@@ -35,13 +37,27 @@ impl History {
         }
     }
 
+    /// What the user began to do is given up: it becomes no step.
+    pub(super) fn cancel(&mut self) {
+        self.open = None;
+    }
+
     /// What the user did is over: it becomes a step if it has changed anything.
     pub(super) fn end(&mut self, name: impl Into<String>, params: &SprungParams) {
+        self.end_step(name.into(), false, params);
+    }
+
+    /// As [`History::end`], after the other one of two versions took the place of the sound.
+    pub(super) fn end_swap(&mut self, name: &str, params: &SprungParams) {
+        self.end_step(name.to_owned(), true, params);
+    }
+
+    fn end_step(&mut self, name: String, swaps: bool, params: &SprungParams) {
         let Some(state) = self.open.take() else { return };
         if same_sound(&state, &params.state()) {
             return;
         }
-        self.undo.push(Step { name: name.into(), state });
+        self.undo.push(Step { name, state, swaps });
         self.redo.clear();
         if self.undo.len() > STEPS {
             self.undo.remove(0);
@@ -58,22 +74,22 @@ impl History {
         self.redo.last().map(|step| step.name.as_str())
     }
 
-    /// Undoes the last step. Returns its name.
-    pub(super) fn undo(&mut self, params: &SprungParams, host: &GuiContext) -> Option<String> {
+    /// Undoes the last step. Returns whether two versions swap their places by that.
+    pub(super) fn undo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
         go(&mut self.undo, &mut self.redo, params, host)
     }
 
-    /// Does again what was undone last. Returns its name.
-    pub(super) fn redo(&mut self, params: &SprungParams, host: &GuiContext) -> Option<String> {
+    /// Does again what was undone last. Returns whether two versions swap their places by that.
+    pub(super) fn redo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
         go(&mut self.redo, &mut self.undo, params, host)
     }
 }
 
-fn go(from: &mut Vec<Step>, to: &mut Vec<Step>, params: &SprungParams, host: &GuiContext) -> Option<String> {
-    let Step { name, state } = from.pop()?;
-    to.push(Step { name: name.clone(), state: params.state() });
+fn go(from: &mut Vec<Step>, to: &mut Vec<Step>, params: &SprungParams, host: &GuiContext) -> bool {
+    let Some(Step { name, state, swaps }) = from.pop() else { return false };
+    to.push(Step { name, state: params.state(), swaps });
     restore(state, params, host);
-    Some(name)
+    swaps
 }
 
 /// Returns to a state, apart from how the window looks, and tells the host which knobs have moved.

@@ -4,15 +4,18 @@ use super::buttons::{Look, button};
 use super::controls::{Controls, Hint};
 use super::mode_axes::Axes;
 use super::modes_face::{self, Face};
+use super::shown::Shown;
 use super::snap::Snap;
 use super::text::line;
 use super::theme::{PADDING, SMALL, TITLE_HEIGHT};
-use crate::link::Touch;
+use crate::link::{Link, Touch};
+use crate::loaded::Loaded;
 use crate::state::State;
 use egui::{Align2, CursorIcon, Id, Popup, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use sprung::params::Param;
 use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
-use sprung::preset::{Guide, Playable};
+use sprung::preset::Playable;
+use std::sync::Arc;
 
 /// How far from a mode's circle it can be grabbed, in pixels.
 const REACH: f32 = 14.0;
@@ -36,9 +39,23 @@ struct Drag {
     /// The mode as it was, and how far the pointer has moved since.
     before: Mode,
     moved: Vec2,
+    /// The modes as they are to be, and those that the sound has.
     modes: Vec<Mode>,
+    written: Vec<Mode>,
+    /// The sound that has them. If another one is loaded, the drag is over.
+    loaded: Arc<Loaded>,
     changed: f64,
     struck: f64,
+    /// The key that is down.
+    key: Option<u8>,
+}
+
+impl Drag {
+    fn release(&mut self, link: &Link) {
+        if let Some(key) = self.key.take() {
+            link.play(Touch::Up { key });
+        }
+    }
 }
 
 /// What the user does with the modes.
@@ -57,16 +74,29 @@ impl ModesView {
         self.selected
     }
 
-    /// Shows the modes of a patch, which is struck on the guide's home key. `is_editable` is false for kits.
-    pub(super) fn show(
-        &mut self,
-        ui: &mut Ui,
-        rect: Rect,
-        (patch, guide, is_editable): (&Patch, &Guide, bool),
-        energies: &[f32],
-        controls: &mut Controls,
-    ) {
+    /// Gives up the drag, if there is one.
+    pub(super) fn cancel(&mut self, controls: &mut Controls) {
+        if self.drag.is_some() {
+            self.release(controls.params.link());
+            controls.history.cancel();
+        }
+    }
+
+    /// Ends the drag, if there is one, and lets go of its key.
+    pub(super) fn release(&mut self, link: &Link) {
+        if let Some(mut drag) = self.drag.take() {
+            drag.release(link);
+        }
+    }
+
+    /// Shows the modes of a sound, which is struck on its home key. Those of kits cannot be changed.
+    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, energies: &[f32], controls: &mut Controls) {
         let palette = controls.palette;
+        let (patch, is_editable) = (shown.patch(), shown.preset().is_some());
+        let is_other = |drag: &Drag| !Arc::ptr_eq(&drag.loaded, &controls.params.loaded());
+        if !is_editable || self.drag.as_ref().is_some_and(is_other) {
+            self.cancel(controls);
+        }
         palette.paint_panel(ui.painter(), rect);
         let title =
             Rect::from_min_size(rect.min + vec2(PADDING, 2.0), vec2(rect.width() - 2.0 * PADDING, TITLE_HEIGHT));
@@ -80,7 +110,7 @@ impl ModesView {
         let response = ui.interact(area.expand(8.0), Id::unique("modes"), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Modes"));
         if is_editable {
-            self.edit(ui, &response, &axes, patch, guide.home, controls);
+            self.edit(ui, &response, &axes, shown, controls);
         }
         let pointer = response.hover_pos();
         let hovered = pointer.and_then(|pointer| nearest(patch.modes.as_slice(), &axes, pointer));
@@ -120,7 +150,8 @@ impl ModesView {
         });
     }
 
-    fn edit(&mut self, ui: &Ui, response: &Response, axes: &Axes, patch: &Patch, home: u8, controls: &mut Controls) {
+    fn edit(&mut self, ui: &Ui, response: &Response, axes: &Axes, shown: &Shown, controls: &mut Controls) {
+        let (patch, home) = (shown.patch(), shown.guide().home);
         let modes = patch.modes.as_slice();
         let (now, modifiers, delta) = ui.input(|input| (input.time, input.modifiers, input.pointer.delta()));
         let start = ui.input(|input| input.pointer.press_origin());
@@ -134,31 +165,43 @@ impl ModesView {
             };
             controls.history.begin(controls.params);
             self.selected = Some(mode);
-            let modes = modes.to_vec();
-            let before = modes[mode];
-            self.drag =
-                Some(Drag { mode, aspect, before, moved: Vec2::ZERO, modes, changed: now, struck: now - STRIKES });
+            let modes = clamped(modes);
+            self.drag = Some(Drag {
+                mode,
+                aspect,
+                before: modes[mode],
+                moved: Vec2::ZERO,
+                written: modes.clone(),
+                modes,
+                loaded: shown.loaded().clone(),
+                changed: now,
+                struck: now - STRIKES,
+                key: None,
+            });
         }
         if let Some(drag) = &mut self.drag {
             drag.moved += if modifiers.shift { delta * 0.1 } else { delta };
             let is_over = !response.dragged();
-            let mode = moved(drag, axes, self.snap);
-            if drag.modes[drag.mode] != mode {
-                drag.modes[drag.mode] = mode;
-            }
-            if (is_over || now - drag.changed >= CHANGES) && drag.modes != modes {
+            drag.modes[drag.mode] = moved(drag, axes, self.snap);
+            if (is_over || now - drag.changed >= CHANGES) && drag.modes != drag.written {
                 drag.changed = now;
-                replace(&drag.modes, patch, controls);
+                if let Some(loaded) = replace(&drag.modes, &phases(&patch.modes), controls) {
+                    drag.loaded = loaded;
+                }
+                drag.written.clone_from(&drag.modes);
             }
             if now - drag.struck >= STRIKES && !is_over {
                 drag.struck = now;
-                strike(home, controls);
+                let link = controls.params.link();
+                drag.release(link);
+                drag.key = Some(home);
+                link.play(strike(home));
             }
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
             ui.ctx().request_repaint();
             if is_over {
                 let mode = drag.modes[drag.mode];
-                controls.params.link().play(Touch::Up { key: home });
+                drag.release(controls.params.link());
                 controls.history.end(format!("mode {:.3}", mode.ratio), controls.params);
                 self.drag = None;
             }
@@ -172,11 +215,16 @@ impl ModesView {
 
     /// Removes the mode at a place, or adds one where there is none.
     fn add_or_remove(&mut self, pointer: Pos2, axes: &Axes, patch: &Patch, home: u8, controls: &mut Controls) {
-        let mut modes = patch.modes.as_slice().to_vec();
+        let (mut modes, mut phases) = (clamped(patch.modes.as_slice()), phases(&patch.modes));
         let name = match nearest(&modes, axes, pointer) {
             // A body has at least one.
             Some(_) if modes.len() == 1 => return,
-            Some(place) => format!("remove mode {:.3}", modes.remove(place).ratio),
+            Some(place) => {
+                if !phases.is_empty() {
+                    phases.remove(place);
+                }
+                format!("remove mode {:.3}", modes.remove(place).ratio)
+            }
             None if modes.len() >= MAX_MODES => return,
             None => {
                 let ratio = self.snap.nearest(axes.ratio(pointer.x));
@@ -184,15 +232,18 @@ impl ModesView {
                 let distance = |mode: &Mode| (mode.ratio / ratio).max(ratio / mode.ratio);
                 let like = modes.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
                 let like = like.unwrap_or(Mode::UNIT);
+                if !phases.is_empty() {
+                    phases.push(0.0);
+                }
                 modes.push(Mode { ratio, level: axes.level(pointer.y), ..like }.clamped());
                 format!("add mode {ratio:.3}")
             }
         };
         self.selected = None;
         controls.history.begin(controls.params);
-        replace(&modes, patch, controls);
+        replace(&modes, &phases, controls);
         controls.history.end(name, controls.params);
-        strike(home, controls);
+        controls.params.link().play(strike(home));
         controls.params.link().play(Touch::Up { key: home });
     }
 }
@@ -226,24 +277,32 @@ fn moved(drag: &Drag, axes: &Axes, snap: Snap) -> Mode {
     mode.clamped()
 }
 
-/// Gives the sound another table of modes.
-fn replace(modes: &[Mode], patch: &Patch, controls: &Controls) {
+/// The modes as a preset file can say them: those of two joined bodies may decay faster.
+fn clamped(modes: &[Mode]) -> Vec<Mode> {
+    modes.iter().map(Mode::clamped).collect()
+}
+
+/// The phase of each mode; empty if the table has none.
+fn phases(table: &ModeTable) -> Vec<f32> {
+    let modes = if table.has_phases() { table.as_slice().len() } else { 0 };
+    (0..modes).map(|mode| table.phase(mode)).collect()
+}
+
+/// Gives the sound another table of modes, with a phase for each or none. Returns what was loaded; nothing if it is a
+/// kit.
+fn replace(modes: &[Mode], phases: &[f32], controls: &Controls) -> Option<Arc<Loaded>> {
     let mut state = controls.params.state();
-    let Playable::Preset(preset) = &mut state.playable else { return };
-    let phases: Vec<f32> = (0..modes.len()).map(|mode| patch.modes.phase(mode)).collect();
-    let table = ModeTable::new(modes);
-    let has_phases = patch.modes.has_phases() && modes.len() == patch.modes.as_slice().len();
-    preset.patch.modes = if has_phases { table.with_phases(&phases) } else { table };
+    let Playable::Preset(preset) = &mut state.playable else { return None };
+    preset.patch.modes = ModeTable::new(modes).with_phases(phases);
     // The knobs stay where they are.
     let positions = state.positions;
     let state = State { positions, ..state };
-    controls.params.load(state.into());
+    Some(controls.params.load(state.into()))
 }
 
-fn strike(home: u8, controls: &Controls) {
-    let link = controls.params.link();
-    link.play(Touch::Up { key: home });
-    link.play(Touch::Down { key: home, velocity: 0.7 });
+/// The touch that lets a changed mode be heard.
+fn strike(home: u8) -> Touch {
+    Touch::Down { key: home, velocity: 0.7 }
 }
 
 fn describe((place, mode): (usize, &Mode), decay: f32, is_editable: bool) -> Option<Hint> {

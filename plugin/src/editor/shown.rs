@@ -15,12 +15,14 @@ pub(super) struct Shown {
 
 impl Shown {
     pub(super) fn new(params: &SprungParams) -> Self {
+        // First, so that a sound that is loaded meanwhile is another one at the next refresh.
+        let loaded = params.loaded();
         let playable = params.state().playable;
         let guide = match &playable {
             Playable::Preset(preset) => preset.guide.clone(),
             Playable::Kit(_) => Guide::default(),
         };
-        Self { loaded: params.loaded(), playable, guide }
+        Self { loaded, playable, guide }
     }
 
     /// Reads the sound again if another one was loaded.
@@ -28,6 +30,11 @@ impl Shown {
         if !Arc::ptr_eq(&self.loaded, &params.loaded()) {
             *self = Self::new(params);
         }
+    }
+
+    /// The sound with exact values, as it was loaded.
+    pub(super) fn loaded(&self) -> &Arc<Loaded> {
+        &self.loaded
     }
 
     /// The preset, if it is no kit.

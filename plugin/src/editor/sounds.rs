@@ -97,7 +97,7 @@ pub(super) struct Sounds {
     pub(super) library: Option<Library>,
     sounds: Vec<Sound>,
     favourites: BTreeSet<String>,
-    /// Files of the user that could not be read.
+    /// Files of the user that could not be read, and why.
     pub(super) broken: Vec<String>,
 }
 
@@ -114,7 +114,11 @@ impl Sounds {
                 Err(error) => broken.push(error.to_string()),
             }
         }
-        let favourites = library.as_ref().map(Library::favourites).unwrap_or_default();
+        let favourites = library.as_ref().map(Library::favourites).transpose().unwrap_or_else(|error| {
+            broken.push(error.to_string());
+            None
+        });
+        let favourites = favourites.unwrap_or_default();
         Self { library, sounds, favourites, broken }
     }
 

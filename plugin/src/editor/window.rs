@@ -24,6 +24,7 @@ use nice_plug_egui::resizable_window::ResizableWindow;
 use nice_plug_egui::{Frame, KeyCapture, NiceEguiApp};
 use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -79,6 +80,12 @@ impl Window {
         }
     }
 
+    /// Prepares for being shown in a host.
+    pub(super) fn open(&mut self, host: GuiContext) {
+        self.host = Some(host);
+        self.applied = None;
+    }
+
     /// Shows the window and does what the user asks for.
     pub(super) fn contents(&mut self, ui: &mut Ui, host: &GuiContext) {
         let params = self.params.clone();
@@ -120,6 +127,7 @@ impl Window {
         };
         let wish = header::show(ui, layout.header, &header, &mut controls);
         if self.is_browsing {
+            self.modes.cancel(&mut controls);
             if let Some(message) = self.browser.show(ui, layout.page(), &mut controls) {
                 self.message = message;
             }
@@ -129,7 +137,7 @@ impl Window {
         } else {
             let (patch, guide) = (self.shown.patch(), self.shown.guide());
             let is_editable = self.shown.preset().is_some();
-            self.modes.show(ui, layout.modes, (patch, guide, is_editable), &energies, &mut controls);
+            self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
             self.motion.show(ui, layout.motion, &energies, self.modes.selected(), telemetry, &controls);
             show_tabs(ui, layout.tabs, &mut self.page, &controls);
             sections::show(ui, layout.sections, self.page, (patch, guide, is_editable), &mut controls);
@@ -156,6 +164,15 @@ impl Window {
         self.history.end(preset.name.as_str(), &self.params);
     }
 
+    /// Undoes or redoes a step, which may bring the other one of the two versions.
+    fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
+        let now = self.params.state();
+        if go(&mut self.history, &self.params, host) {
+            self.other = Some(now);
+            self.is_b = !self.is_b;
+        }
+    }
+
     fn grant(&mut self, wish: Wish, ui: &Ui, host: &GuiContext) {
         match wish {
             Wish::Browse | Wish::Save => {
@@ -163,8 +180,8 @@ impl Window {
                 self.message.clear();
                 self.browser.open(&self.params.name());
             }
-            Wish::Undo => drop(self.history.undo(&self.params, host)),
-            Wish::Redo => drop(self.history.redo(&self.params, host)),
+            Wish::Undo => self.go_back(History::undo, host),
+            Wish::Redo => self.go_back(History::redo, host),
             Wish::Zoom(zoom) => {
                 self.params.set_view(|view| view.zoom = zoom);
                 ui.ctx().set_zoom_factor(zoom as f32 / 100.0);
@@ -178,7 +195,7 @@ impl Window {
                     restore(other, &self.params, host);
                 }
                 self.is_b = !self.is_b;
-                self.history.end(if self.is_b { "version B" } else { "version A" }, &self.params);
+                self.history.end_swap(if self.is_b { "version B" } else { "version A" }, &self.params);
             }
             Wish::Copy => self.other = Some(self.params.state()),
         }
@@ -215,8 +232,7 @@ fn show_tabs(ui: &Ui, rect: Rect, page: &mut usize, controls: &Controls) {
 
 impl NiceEguiApp for Window {
     fn build(&mut self, context: egui::Context, host: GuiContext, _: &mut Frame) -> Result<(), HandlerError> {
-        self.host = Some(host);
-        self.applied = None;
+        self.open(host);
         context.set_zoom_factor(self.params.view().zoom as f32 / 100.0);
         Ok(())
     }
@@ -238,9 +254,19 @@ impl NiceEguiApp for Window {
         let size = [side(size.logical.width), side(size.logical.height)];
         self.params.set_view(|view: &mut View| view.size = size);
     }
+}
 
-    fn editor_closed(&mut self) {
-        self.piano.release(self.params.link());
-        self.host = None;
+/// A window is dropped when it is closed: nothing else tells it so.
+impl Drop for Window {
+    fn drop(&mut self) {
+        let link = self.params.link();
+        self.piano.release(link);
+        self.browser.release(link);
+        self.modes.release(link);
+        if let Some(host) = self.host.take() {
+            let end = || self.hands.gestures.end(&self.params, &host);
+            // The wrapper panics if the plugin itself is dropped; then nobody waits for the end of a gesture.
+            let _ = catch_unwind(AssertUnwindSafe(end));
+        }
     }
 }

@@ -262,3 +262,14 @@ fn a_kit_takes_the_place_of_a_sound_while_that_rings_on() {
     params.load(params.state().into());
     assert!(before.upgrade().is_none(), "it is freed by who loads next");
 }
+
+#[test]
+fn a_click_in_the_window_is_heard_but_not_in_a_file() {
+    for is_offline in [false, true] {
+        let params = params(Patch::default());
+        let mut live = Live::new(RATE, is_offline, &params);
+        params.link().play(Touch::Down { key: 60, velocity: 0.8 });
+        let (out, _) = stereo(&mut live, &params, &mut Host::new(&[]), 64);
+        assert_eq!(out[0].iter().all(|sample| *sample == 0.0), is_offline);
+    }
+}

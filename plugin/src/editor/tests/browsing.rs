@@ -59,6 +59,12 @@ fn a_sound_is_saved_under_a_name_found_again_and_thrown_away() {
     stage.harness.get_by_role_and_label(Role::TextInput, "Name to save under").click();
     stage.harness.run_steps(2);
     stage.type_text(" of Glass");
+    let before = stage.params.state();
+    for key in [Key::ArrowDown, Key::ArrowUp] {
+        stage.harness.key_press(key);
+        stage.harness.run_steps(2);
+        assert_eq!(stage.params.state(), before, "the arrows are the field's");
+    }
     stage.button("Save under this name");
     assert_eq!(stage.params.name(), "Marimba of Glass");
     assert_eq!(library.entries().len(), 1);

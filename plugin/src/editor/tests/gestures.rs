@@ -13,7 +13,7 @@ impl Stage {
         stage("Church Bell", SIZE, 1.0, Theme::Dark)
     }
 
-    fn at(&self, name: &str) -> Pos2 {
+    pub(super) fn at(&self, name: &str) -> Pos2 {
         self.harness.get_by_role_and_label(Role::Slider, name).rect().center() - vec2(0.0, 10.0)
     }
 
@@ -214,4 +214,28 @@ fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
         stage.button("Undo");
     }
     assert_eq!(stage.params.state(), before.0);
+}
+
+#[test]
+fn undo_and_redo_bring_the_version_back_that_was_shown() {
+    let mut stage = Stage::new();
+    let is_b = |stage: &Stage| {
+        stage.harness.get_by_label("A or B").accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
+    };
+    stage.button("A or B");
+    assert!(is_b(&stage));
+    stage.drag(stage.at("Mallet speed"), vec2(0.0, -20.0), Modifiers::NONE);
+    let b = stage.params.state();
+    stage.button("A or B");
+    let a = stage.params.state();
+    assert!(a != b && !is_b(&stage));
+    stage.button("Undo");
+    assert!(stage.params.state() == b && is_b(&stage));
+    stage.button("A or B");
+    assert!(stage.params.state() == a && !is_b(&stage), "the other version is still there");
+    stage.button("Undo");
+    stage.button("Redo");
+    assert!(stage.params.state() == a && !is_b(&stage));
+    stage.button("A or B");
+    assert!(stage.params.state() == b && is_b(&stage));
 }

@@ -3,6 +3,7 @@
 mod browsing;
 mod fake_host;
 mod gestures;
+mod mode_edits;
 mod pictures;
 mod random_events;
 mod renderer;

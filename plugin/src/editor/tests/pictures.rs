@@ -37,6 +37,7 @@ pub(super) fn stage(sound: &str, size: [u32; 2], scale: f32, theme: Theme) -> St
     let folder = tempfile::tempdir().unwrap();
     let mut window = Window::new(params.clone(), Some(Library::at(folder.path())));
     let context = host.context();
+    window.open(context.clone());
     let mut harness = Harness::builder()
         .with_size(vec2(size[0] as f32, size[1] as f32))
         .with_pixels_per_point(scale)

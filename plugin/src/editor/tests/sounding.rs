@@ -14,10 +14,10 @@ const RATE: f64 = 48_000.0;
 pub(super) struct Band {
     pub(super) stage: Stage,
     synth: Synth,
-    touches: Consumer<Touch>,
+    pub(super) touches: Consumer<Touch>,
     writer: TelemetryWriter,
     /// What the window has played.
-    heard: Vec<Touch>,
+    pub(super) heard: Vec<Touch>,
 }
 
 impl Band {
@@ -61,16 +61,16 @@ impl Band {
         }
     }
 
-    fn rect(&self, name: &str) -> Rect {
+    pub(super) fn rect(&self, name: &str) -> Rect {
         self.stage.harness.get_by_label(name).rect()
     }
 
-    fn event(&mut self, event: Event) {
+    pub(super) fn event(&mut self, event: Event) {
         self.stage.harness.event(event);
         self.passes(2);
     }
 
-    fn press(&mut self, pos: Pos2, pressed: bool) {
+    pub(super) fn press(&mut self, pos: Pos2, pressed: bool) {
         self.event(Event::PointerMoved(pos));
         self.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE });
     }
