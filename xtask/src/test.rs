@@ -97,7 +97,7 @@ const STEPS: &[Step] = &[
     },
     Step {
         name: "benches run",
-        arguments: "test --package sprung --all-features --benches",
+        arguments: "bench --package sprung --all-features --benches -- --test",
         environment: &[],
         shows: Shows::Benches,
     },
