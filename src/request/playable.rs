@@ -10,7 +10,7 @@ use std::path::Path;
 /// with each retired parameter that was replaced.
 ///
 /// # Errors
-/// As [`Playable::read`], and [`Error::Value`] for a name that no factory preset has.
+/// As [`Playable::read`], and [`Error::Value`](crate::Error::Value) for a name that no factory preset has.
 pub fn playable(name: &OsStr, inputs: &mut Inputs, warn: &mut dyn FnMut(&str)) -> Result<Playable> {
     let path = Path::new(name);
     if is_file_name(path) {
