@@ -1,11 +1,11 @@
 //! Files: reads MIDI songs and recordings, writes WAV and FLAC sound, and replaces output files only when they are complete.
 
-#[cfg(feature = "render")]
+#[cfg(feature = "midi")]
 mod bars;
 #[cfg(feature = "batch")]
 pub mod flac;
 pub mod inputs;
-#[cfg(feature = "render")]
+#[cfg(feature = "midi")]
 pub mod midi;
 pub mod output;
 mod quantise;
@@ -18,7 +18,7 @@ mod song_cursor;
 #[cfg(feature = "recordings")]
 pub mod sound_file;
 pub mod target;
-#[cfg(feature = "render")]
+#[cfg(feature = "midi")]
 mod tempo;
 mod temporary;
 #[cfg(feature = "render")]

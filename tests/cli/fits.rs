@@ -71,7 +71,7 @@ fn what_cannot_be_fitted_is_refused() {
         ("fit a.wav -o b.txt", 1, "--output: b.txt: expected a name that ends in .toml"),
         ("fit a.wav -o b.toml --report b.txt", 1, "--report: b.txt: expected a name that ends in .html"),
         ("fit a.wav@C4 -o b.toml --note C4", 1, "its key is given twice: expected @KEY or --note"),
-        ("fit a.wav -o b.toml --velocity 40,80", 1, "--velocity: 2 of them for 1 recordings: expected one for each"),
+        ("fit a.wav -o b.toml --velocity 40,80", 1, "--velocity: 2 of them for 1 recording: expected one for each"),
         ("fit a.wav -o b.toml --body drum", 2, "invalid value 'drum'"),
         ("fit a.wav", 2, "--output"),
     ] {

@@ -2,6 +2,8 @@
 
 use crate::Sandbox;
 use sprung::params::PARAMS;
+#[cfg(target_os = "linux")]
+use sprung::preset::library::Library;
 use sprung::preset::{KitPreset, Preset};
 use std::process::{Command, Stdio};
 
@@ -33,6 +35,29 @@ fn presets_are_listed_shown_and_checked() {
         assert!(stderr.contains(message), "{message}: {stderr}");
     }
     sandbox.fails("presets check", 2, "<FILE>");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn sounds_of_the_user_have_names_too() {
+    let sandbox = Sandbox::new();
+    assert_eq!(sandbox.succeeds("presets list --own"), b"");
+    sandbox.fails("render --note C4 --preset MyKick -o a.wav", 1, "there is no factory preset or kit ‘MyKick’");
+    let mine = Preset { name: "MyKick".to_owned(), ..Preset::find("Kick").unwrap().clone() };
+    let library = Library::at(sandbox.path("data/sprung"));
+    library.save(&mine, false).unwrap();
+    std::fs::write(library.presets_folder().join("broken.toml"), "x").unwrap();
+    let output = sandbox.sprung("presets list --own --json").assert().success().get_output().clone();
+    let listed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((listed[0]["name"].as_str(), listed[0]["programs"].as_array().map(Vec::len)), (Some("MyKick"), Some(0)));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("broken.toml"));
+    let shown = String::from_utf8(sandbox.succeeds("presets show mykick")).unwrap();
+    assert_eq!(Preset::parse(&shown, "shown").unwrap(), mine);
+    sandbox.succeeds("render --note C4 --preset MyKick -o a.wav");
+    sandbox.succeeds("render --note C4 --preset Kick -o b.wav");
+    assert_eq!(sandbox.read("a.wav"), sandbox.read("b.wav"));
+    // Its file is an input, which no output replaces.
+    sandbox.fails("presets show MyKick --figure data/sprung/presets/mykick.toml --force", 1, "mykick.toml");
 }
 
 #[test]

@@ -61,6 +61,8 @@ impl Sandbox {
     /// `sprung` with these arguments, which are split at spaces.
     pub(crate) fn sprung(&self, args: &str) -> Command {
         let mut command = Command::cargo_bin("sprung").unwrap();
+        // The user's own sounds are none of the tests' business.
+        command.env("XDG_DATA_HOME", self.path("data"));
         command.current_dir(self.0.path()).args(args.split_whitespace());
         command
     }

@@ -3,6 +3,7 @@
 //! Recordings are those of Debian's packages `fluid-soundfont-gm` (with `fluidsynth`) and `hydrogen-drumkits`; those that are not
 //! installed are skipped by name. What takes minutes is ignored unless `--include-ignored` or `--ignored` asks for it.
 
+mod bodies;
 mod installed;
 mod measures;
 mod played;
@@ -11,6 +12,8 @@ use installed::Pair;
 use libtest_mimic::{Arguments, Failed, Trial};
 use measures::Measures;
 use played::{fitted, in_parallel, log_mel_distance, preset_at};
+use sprung::Error;
+use sprung::analysis::log_mel::RATE;
 use sprung::analysis::measures::{DRUMS, TUNED};
 use sprung::preset::Preset;
 use std::process::ExitCode;
@@ -19,6 +22,8 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let trials = vec![
         Trial::test("round_trip_of_some_presets", || round_trips(&some())),
+        Trial::test("a_cancelled_fit_asks_no_more", cancelled),
+        Trial::test("bodies_have_the_levels_of_their_modes", bodies::levels),
         Trial::test("round_trip_of_every_preset", || round_trips(&every())).with_ignored_flag(true),
         Trial::test("recordings", recordings).with_ignored_flag(true),
         Trial::test("layers_of_recordings", layers).with_ignored_flag(true),
@@ -48,15 +53,17 @@ fn is_struck(preset: &Preset) -> bool {
         && preset.tags.iter().all(|tag| !["organ", "voice", "bow"].contains(&tag.as_str()))
 }
 
-/// Every preset at its home key and an octave below and above, where its range has them.
+/// Every preset at its home key and an octave below and above, where its range has them; with `SPRUNG_EVERY=N` only
+/// every Nth of these notes.
 fn every() -> Vec<Note> {
+    let step = std::env::var("SPRUNG_EVERY").ok().and_then(|step| step.parse().ok()).unwrap_or(1_usize);
     let notes = |preset: &'static Preset| {
         let guide = &preset.guide;
         let keys = [guide.home.checked_sub(12), Some(guide.home), guide.home.checked_add(12)];
         let within = move |key: &u8| *key == guide.home || (guide.lowest..=guide.highest).contains(key);
         keys.into_iter().flatten().filter(within).map(move |key| (preset, key))
     };
-    Preset::factory().iter().flat_map(notes).collect()
+    Preset::factory().iter().flat_map(notes).step_by(step.max(1)).collect()
 }
 
 /// Median distance in dB of a fit from its preset, and that from which on it is far; and the share of notes that may be.
@@ -86,6 +93,27 @@ fn round_trips(notes: &[Note]) -> Result<(), Failed> {
     let summary = format!("median {median:.2} dB, worst {worst:.2} dB; {far} of {} beyond {FAR} dB", table.len());
     println!("{summary}");
     assert!(median < MEDIAN && worst < WORST && far as f64 <= FEW * table.len() as f64, "{summary}");
+    Ok(())
+}
+
+/// Calls of the progress, after one of which the work is cancelled, and how often it may be told again.
+const CALLS: [usize; 4] = [1, 2, 6, 20];
+const AGAIN: usize = 8;
+
+/// Cancelled at any time, a fit ends with the next word of its progress.
+fn cancelled() -> Result<(), Failed> {
+    let preset = Preset::find("init")?;
+    let sound = preset_at(preset, KEYS[1]).map(|channel| channel[..RATE as usize / 4].to_vec());
+    for most in CALLS {
+        let mut calls = 0;
+        let result = played::fitted_while(&sound, KEYS[1].into(), &mut |_| {
+            calls += 1;
+            calls < most
+        });
+        if !matches!(result, Err(Error::Interrupted)) || calls > most + AGAIN {
+            return Err(format!("{calls} calls, cancelled at {most}: {:?}", result.map(|_| ())).into());
+        }
+    }
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! Sounds to fit: presets that are played, and the fit itself.
 
-use sprung::analysis::fit::{Fitted, Settings, Take, VELOCITY, fit};
+use sprung::analysis::fit::{Family, Fitted, Settings, Take, VELOCITY, fit};
 use sprung::analysis::log_mel::{RATE, distance};
 use sprung::engine::{Event, EventKind, Synth};
 use sprung::io::sound_file::Recording;
@@ -36,8 +36,21 @@ fn recording(sound: &Stereo) -> Recording {
 
 /// The fit of a sound at [`RATE`].
 pub(crate) fn fitted(sound: &Stereo, key: f64) -> sprung::Result<Fitted> {
-    let take = Take { name: "sound".to_owned(), recording: recording(sound), key: Some(key), velocity: VELOCITY };
-    fit(&[take], &Settings::default(), &mut |_| true)
+    fitted_while(sound, key, &mut |_| true)
+}
+
+/// The fit of a sound at [`RATE`], unless `progress` ends it.
+pub(crate) fn fitted_while(sound: &Stereo, key: f64, progress: &mut dyn FnMut(f64) -> bool) -> sprung::Result<Fitted> {
+    fit(&[take(sound, key)], &Settings::default(), progress)
+}
+
+/// The fit of a sound at [`RATE`] by a body.
+pub(crate) fn fitted_by(sound: &Stereo, key: f64, family: Family) -> sprung::Result<Fitted> {
+    fit(&[take(sound, key)], &Settings { family, ..Settings::default() }, &mut |_| true)
+}
+
+fn take(sound: &Stereo, key: f64) -> Take {
+    Take { name: "sound".to_owned(), recording: recording(sound), key: Some(key), velocity: VELOCITY }
 }
 
 /// A note of an instrument.

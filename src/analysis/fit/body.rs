@@ -1,12 +1,13 @@
 //! The physical body that explains the modes of a sound best, with its numbers, and what remains.
 
-use super::draft::{Draft, Partial, contact_share, digits};
+use super::draft::{Draft, Partial, digits};
+use super::levels::{Levels, weight};
+use crate::analysis::modes::Strike;
 use crate::params::Param;
 use crate::patch::Patch;
 use crate::preset::modes_of_body;
-use crate::sound::bodies::{Body, BodyMode, FIELDS, LN_1000, Loss, Model, Pitch, Point};
-use crate::sound::contact_time;
-use libm::{fabs, log2, log10, pow, sqrt};
+use crate::sound::bodies::{Body, BodyMode, FIELDS, LN_1000, Loss, Model, Pitch};
+use libm::{fabs, log2, log10, pow};
 
 /// Models of each family.
 const STRINGS: &[&str] = &["string"];
@@ -88,11 +89,6 @@ struct Match {
     score: f64,
 }
 
-fn weight(partial: &Partial) -> f64 {
-    // Energy alone would leave all to the loudest mode.
-    sqrt(fabs(partial.amplitude) * sqrt(partial.t60))
-}
-
 /// The bodies of a model with the numbers that set their ratios.
 fn variants(model: &Model) -> Vec<Body> {
     let with = |name: &str, values: &[f64]| {
@@ -140,9 +136,14 @@ fn lay(body: &Body, frequency: f64, partials: &[Partial]) -> Match {
     Match { body, pairs, score }
 }
 
-/// Finds the body of a family that explains a draft best. None if it has no modes.
-pub(super) fn find(draft: &Draft, family: Family) -> Option<(Body, Explained)> {
+/// Finds the body of a family that explains a draft best, given the strike that its modes were found in. None if it has no modes.
+pub(super) fn find(draft: &Draft, strike: Option<&Strike>, family: Family) -> Option<(Body, Levels, Explained)> {
     let mut partials: Vec<Partial> = draft.partials.iter().copied().filter(|partial| partial.struck).collect();
+    // What was corrected by bands is what those have; a body is asked for the levels of modes.
+    for partial in &mut partials {
+        let own = strike.and_then(|strike| strike.modes.iter().find(|mode| mode.frequency == partial.frequency));
+        partial.amplitude = own.map_or(partial.amplitude, |mode| pow(10.0, mode.level_db / 20.0));
+    }
     partials.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     partials.truncate(2 * MODES);
     let mut best: Option<(&'static str, Match)> = None;
@@ -166,12 +167,14 @@ pub(super) fn find(draft: &Draft, family: Family) -> Option<(Body, Explained)> {
     let frequency = found.body.frequency() * pow(2.0, off / weights.max(1e-9) / 1200.0);
     found = lay(&found.body, digits(frequency, 6), &partials);
     found.body.material.loss = loss(&found, &partials);
-    place(&mut found, &partials, draft.hardness.map(contact_time));
+    let levels = Levels(pairs(&found, &partials).map(|(partial, mode, _)| (*partial, mode.ratio)).collect());
+    let placed = levels.placed(&found.body, &[draft.hardness]).pop();
+    found.body = placed.map_or(found.body, |(_, body)| body);
     // What the model has above the highest mode of the sound is only guessed.
     let highest = pairs(&found, &partials).map(|(_, mode, _)| mode.frequency).fold(0.0, f64::max);
     found.body.modes = found.body.modes().iter().filter(|mode| mode.frequency <= 1.001 * highest).count().max(1);
     let explained = explained(model, &found, &partials);
-    Some((found.body, explained))
+    Some((found.body, levels, explained))
 }
 
 /// Partials with their modes, and the cents between them.
@@ -202,38 +205,6 @@ fn loss(found: &Match, partials: &[Partial]) -> Loss {
         (b0, b1) = (0.0, sxy / sxx);
     }
     Loss { b0: digits(b0, 4), b1: digits(b1, 4), power: 1.0 }
-}
-
-/// Chooses place of the strike and tilt by the levels that are left of a contact of so many seconds.
-fn place(found: &mut Match, partials: &[Partial], contact: Option<f64>) {
-    let mut best = (f64::INFINITY, found.body.strike, 0.0);
-    for step in 1..50 {
-        let strike = Point { x: f64::from(step) / 50.0, ..found.body.strike };
-        let modes = Body { strike, tilt: 0.0, ..found.body.clone() }.modes();
-        // Levels in dB that the partials have more than the model, over octaves.
-        let points: Vec<[f64; 3]> = pairs(found, partials)
-            .filter_map(|(partial, met, _)| {
-                let mode = modes.iter().find(|mode| fabs(mode.ratio - met.ratio) < 1e-9 * met.ratio)?;
-                let share = contact.map_or(1.0, |seconds| fabs(contact_share(partial.frequency, seconds)).max(0.01));
-                let more = 20.0 * log10(fabs(partial.amplitude) / (share * fabs(mode.level).max(1e-4)));
-                Some([log2(mode.ratio), more, weight(partial)])
-            })
-            .collect();
-        let sum = |value: &dyn Fn(&[f64; 3]) -> f64| points.iter().map(|point| point[2] * value(point)).sum::<f64>();
-        let weights = sum(&|_| 1.0).max(1e-12);
-        let (x, y) = (sum(&|point| point[0]) / weights, sum(&|point| point[1]) / weights);
-        let square = sum(&|point| (point[0] - x) * (point[0] - x));
-        let slope = if square > 1e-9 { sum(&|point| (point[0] - x) * (point[1] - y)) / square } else { 0.0 };
-        let tilt = slope.clamp(-24.0, 24.0);
-        let error = sum(&|point| {
-            let off = point[1] - y - tilt * (point[0] - x);
-            off * off
-        });
-        if error < best.0 {
-            best = (error, strike, tilt);
-        }
-    }
-    (found.body.strike, found.body.tilt) = (best.1, digits(best.2, 3));
 }
 
 /// The patch of a body that plays a draft's note, of any gain.

@@ -2,6 +2,7 @@
 
 use crate::dsp::pitch::SweepEnvelope;
 use crate::params::{Choice, MalletPulse, NoiseDecay, NoteOff, Param};
+use crate::patch::routes::Source;
 use crate::patch::{Mode, ModeTable, Patch};
 use crate::sound::contact_time;
 use libm::{cos, exp, fabs, log10, pow, sin};
@@ -13,6 +14,8 @@ pub(super) const MOST_MODES: usize = 256;
 pub(super) const T60: (f64, f64) = (0.004, 60.0);
 /// Where the spectrum of a contact has less than this left, its modes are struck no harder: −40 dB.
 const LEAST_OF_CONTACT: f64 = 0.01;
+/// Place of the route of a swell; those of several takes are before it, those of a new patch behind.
+const SWELL_ROUTE: usize = 3;
 /// Points at which the spectrum of a contact is summed up.
 const POINTS: usize = 48;
 
@@ -101,6 +104,16 @@ impl Noise {
         Self { seconds: 0.004, decay: NoiseDecay::Quadratic, attack: 0.0, hits: 1, spacing: 0.012 };
 }
 
+/// How a sound that is no stroke comes to its level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Swell {
+    pub(super) seconds: f64,
+    /// dB from where it begins.
+    pub(super) depth: f64,
+    /// −1 to 1: above 0 it is fast at first.
+    pub(super) curve: f64,
+}
+
 /// All of a sound.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Draft {
@@ -115,6 +128,9 @@ pub(super) struct Draft {
     pub(super) hardness: Option<f64>,
     pub(super) sweep: Sweep,
     pub(super) noise: Noise,
+    pub(super) swell: Option<Swell>,
+    /// Whether it ends with its key, and not by itself.
+    pub(super) is_held: bool,
 }
 
 /// Share of a strike's force that a mode of a frequency in Hz is given by a contact of so many seconds: the spectrum of the
@@ -202,7 +218,8 @@ impl Draft {
         set(Param::Decay, decay);
         set(Param::Gain, (gain_db * 100.0).round() / 100.0);
         set(Param::Velocity, (100.0 * self.follow).round());
-        set(Param::NoteOff, f64::from(NoteOff::Ring.value()));
+        let note_off = if self.is_held { NoteOff::Damp } else { NoteOff::Ring };
+        set(Param::NoteOff, f64::from(note_off.value()));
         set(Param::NoiseTime, self.noise.seconds);
         set(Param::NoiseAttack, self.noise.attack);
         set(Param::NoiseDecay, f64::from(self.noise.decay.value()));
@@ -223,6 +240,17 @@ impl Draft {
             set(Param::Vibrato, 100.0 * self.sweep.vibrato.semitones);
             set(Param::VibratoRate, self.sweep.vibrato.rate);
             set(Param::VibratoDelay, self.sweep.vibrato.delay);
+        }
+        if let Some(swell) = self.swell {
+            let depth = swell.depth.min(gain_db - f64::from(gain_info.min));
+            set(Param::Gain, ((gain_db - depth) * 100.0).round() / 100.0);
+            set(Param::Envelope1Attack, swell.seconds);
+            set(Param::Envelope1Curve, 100.0 * swell.curve);
+            set(Param::Envelope1Sustain, 100.0);
+            // It is the damper that ends the note.
+            set(Param::Envelope1Release, Param::Envelope1Release.info().max.into());
+            let amount = 100.0 * depth / f64::from(gain_info.max - gain_info.min);
+            patch = patch.with_route(SWELL_ROUTE, Source::Envelope1, Param::Gain, digits(amount, 5) as f32);
         }
         patch
     }

@@ -3,7 +3,8 @@
 use super::bed::Lines;
 use super::draft::{Draft, Sweep};
 use super::refine::Listener;
-use super::take::Prepared;
+use super::start::Source;
+use super::take::{Prepared, SLOW};
 use super::{bed, start, sweep};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
@@ -39,7 +40,8 @@ pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) ->
             _ => Lines::new(&take.mean),
         };
         let part = |share: f64| ANALYSED + (1.0 - ANALYSED) * (n as f64 + share) / count;
-        let draft = improved(draft, &mut listener, &lines, most, &mut |share| tell(part(share)))?;
+        let slow = take.rise > SLOW;
+        let draft = improved(draft, &mut listener, &lines, most, slow, &mut |share| tell(part(share)))?;
         let distance = listener.distance(&draft, usize::MAX);
         if distance < least {
             (best, least) = (Some((draft, strike)), distance);
@@ -51,24 +53,30 @@ pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) ->
 /// What a take may be: its modes, with the movements of the pitch that explain it best, and, if these explain little, modes
 /// that noise alone has moved: those that are left when it is over.
 fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
-    let mut analysed = |sweep: Sweep, late: f64, [from, to]: [f64; 2]| {
-        start::draft(take, sweep, late, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
+    let mut analysed = |source: Source, [from, to]: [f64; 2]| {
+        start::draft(take, source, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
     };
-    let mut found = vec![analysed(Sweep::NONE, 0.0, [0.0, 0.4])?];
+    let all = Source { swept: Sweep::NONE, late: 0.0, struck: true };
+    let mut found = vec![analysed(all, [0.0, 0.4])?];
     let still = residual_db(&found[0]);
     if still > EXPLAINED_DB {
         let sweeps = sweep::find(&take.mean);
         for (sweep, part) in sweeps.into_iter().zip([[0.5, 0.75], [0.75, 1.0]]) {
-            let swept = analysed(sweep, 0.0, part)?;
+            let swept = analysed(Source { swept: sweep, ..all }, part)?;
             found.extend(Some(swept).filter(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB));
         }
     }
     found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     found.truncate(MOST_DRAFTS);
+    let strike = found[0].1.clone();
     if residual_db(&found[0]) > NOISE_DB {
-        let (driven, _) = analysed(Sweep::NONE, LATE * take.seconds(), [0.75, 1.0])?;
-        let strike = found[0].1.clone();
-        found.push((driven, strike));
+        let (driven, _) = analysed(Source { late: LATE * take.seconds(), struck: false, ..all }, [0.75, 1.0])?;
+        found.push((driven, strike.clone()));
+    }
+    if take.rise > SLOW {
+        let swept = found[0].0.sweep;
+        let (held, _) = analysed(Source { late: take.rise, swept, ..all }, [0.75, 1.0])?;
+        found.push((held, strike));
     }
     Ok(found)
 }
@@ -83,8 +91,12 @@ fn improved(
     listener: &mut Listener,
     lines: &Lines,
     most: usize,
+    slow: bool,
     tell: &mut dyn FnMut(f64) -> Result<()>,
 ) -> Result<Draft> {
+    if slow {
+        listener.choose_swell(&mut draft);
+    }
     listener.choose_hardness(&mut draft);
     tell(0.3)?;
     // Twice: what decays in two stages gets two beds.
@@ -104,6 +116,9 @@ fn improved(
         tell(0.3 + 0.2 * pass)?;
     }
     listener.correct(&mut draft, ROUNDS);
+    if slow {
+        listener.choose_swell(&mut draft);
+    }
     listener.choose_hardness(&mut draft);
     listener.choose_sweep(&mut draft);
     listener.correct(&mut draft, ROUNDS);

@@ -7,10 +7,12 @@
 mod audition;
 mod bed;
 mod body;
+mod correct;
 mod course;
 mod draft;
 mod improve;
 mod layers;
+mod levels;
 mod pitch;
 mod refine;
 pub mod report;
@@ -125,13 +127,14 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     let (patch, explained) = match settings.family {
         Family::Table => (draft.patch(), None),
         family => {
-            let (body, explained) = body::find(&draft, family).ok_or_else(|| {
+            let strike = fits[base].1.as_ref();
+            let (body, levels, explained) = body::find(&draft, strike, family).ok_or_else(|| {
                 Error::format(
                     &takes[base].name,
                     "no mode rings in it: expected a sound that a body can explain, or the body table",
                 )
             })?;
-            (tuned::patch(&draft, &body, take, key_from_frequency(draft.note, A4)), Some(explained))
+            (tuned::patch(&draft, &body, &levels, take, key_from_frequency(draft.note, A4)), Some(explained))
         }
     };
     let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
@@ -145,7 +148,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         log_mel::distance(&audition.mean(&patch, key, take.velocity, take.mean.len()), &take.mean)
     };
     let distances: Vec<f64> = layers.iter().zip(&prepared).map(distance).collect();
-    let mut warnings: Vec<String> = prepared.iter().filter_map(|take| take.warning.clone()).collect();
+    let mut warnings: Vec<String> = prepared.iter().flat_map(|take| take.warnings.clone()).collect();
     if draft.partials.iter().all(|partial| !partial.struck) {
         let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
         warnings.push(format!("{}: {message}", takes[base].name));

@@ -1,13 +1,13 @@
 //! Brings a draft nearer to its recording by listening: it is played, compared band by band, and corrected.
 
 use super::audition::Audition;
-use super::draft::{Draft, Noise, T60};
+use super::correct::{by_bands, by_moments};
+use super::draft::{Draft, Noise, Swell};
 use super::simplex;
 use super::take::Prepared;
-use crate::analysis::log_mel::{BANDS, HOP, LogMel, MelBands, RATE, SPAN_DB, weights};
+use crate::analysis::log_mel::{HOP, LogMel, MelBands};
 use crate::params::NoiseDecay;
 use crate::units::key_from_frequency;
-use libm::pow;
 
 /// Hardnesses that are tried.
 const HARDNESSES: [f64; 10] = [0.95, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25, 0.15, 0.05];
@@ -24,13 +24,14 @@ const HITS: [u8; 3] = [2, 3, 4];
 const SPACINGS: [f64; 4] = [0.008, 0.0105, 0.0135, 0.018];
 /// What several bursts have to gain in dB over the attack.
 const WORTH_HITS: f64 = 0.3;
+/// Swells that are tried: seconds and curves, and dB.
+const SWELLS: [f64; 8] = [0.02, 0.04, 0.08, 0.15, 0.3, 0.6, 1.2, 2.4];
+const CURVES: [f64; 3] = [0.0, 0.5, 0.9];
+const SWELL_DB: f64 = 36.0;
 /// Windows of the attack: 150 ms.
 const ATTACK: usize = 26;
 /// Steps of the search for a sweep.
 const SIMPLEX_STEPS: usize = 36;
-/// Largest correction of a level in dB and of a decay in dB/s at a time, as a share of its own.
-const MOST_DB: f64 = 12.0;
-const MOST_SHARE: f64 = 0.6;
 
 /// Plays drafts and measures how far they are from a recording.
 pub(super) struct Listener<'a> {
@@ -95,6 +96,23 @@ impl<'a> Listener<'a> {
         }
     }
 
+    /// Chooses how the sound comes to its level.
+    pub(super) fn choose_swell(&mut self, draft: &mut Draft) {
+        let with = |draft: &Draft, swell| Draft { swell, ..draft.clone() };
+        let swell = |seconds| CURVES.map(|curve| Swell { seconds, depth: SWELL_DB, curve });
+        let swells: Vec<Draft> = SWELLS.into_iter().flat_map(swell).map(|swell| with(draft, Some(swell))).collect();
+        self.best(draft, usize::MAX, swells);
+        for step in [0.35, 0.2, 0.1] {
+            let Some(swell) = draft.swell else { return };
+            let times = [1.0 - step, 1.0 + step].map(|factor| Swell { seconds: factor * swell.seconds, ..swell });
+            let depths = [1.0 - step, 1.0 + step].map(|factor| Swell { depth: factor * swell.depth, ..swell });
+            let curves = [-step, step].map(|by| Swell { curve: (swell.curve + by).clamp(-1.0, 1.0), ..swell });
+            let near: Vec<Draft> =
+                times.into_iter().chain(depths).chain(curves).map(|swell| with(draft, Some(swell))).collect();
+            self.best(draft, usize::MAX, near);
+        }
+    }
+
     /// Chooses length and rise of the noise burst.
     pub(super) fn choose_noise(&mut self, draft: &mut Draft) {
         if draft.partials.iter().all(|partial| partial.struck) {
@@ -150,81 +168,30 @@ impl<'a> Listener<'a> {
         draft.sweep = start.moved(place);
     }
 
-    /// Corrects level and decay of the modes by their bands, as long as the distance falls.
+    /// Corrects level and decay of the modes, as long as the distance falls.
     pub(super) fn correct(&mut self, draft: &mut Draft, rounds: usize) {
         let mut heard = self.hear(draft);
-        let (mut least, mut share) = (heard.distance(&self.target), 0.8);
-        for _ in 0..rounds {
-            let corrections = corrections(&self.target, &heard);
-            let other = corrected(draft, &corrections, share);
+        let (mut least, mut share, mut idle) = (heard.distance(&self.target), 0.8, 0);
+        for round in 0..rounds {
+            // What one way of looking at the errors cannot mend, the other one may.
+            let other = match round % 2 {
+                0 => by_bands(draft, &self.target, &heard, share),
+                _ => by_moments(draft, &self.target, &heard, share),
+            };
             let other_heard = self.hear(&other);
             let distance = other_heard.distance(&self.target);
             if distance < least {
-                if distance > least - 0.005 {
-                    *draft = other;
-                    return;
-                }
+                idle = if distance > least - 0.005 { idle + 1 } else { 0 };
                 (*draft, heard, least) = (other, other_heard, distance);
             } else {
+                idle += 1;
+                share *= 0.7;
+            }
+            if idle == 2 && share > 0.3 {
                 share *= 0.5;
-                if share < 0.15 {
-                    return;
-                }
+            } else if idle > 2 {
+                return;
             }
         }
     }
-}
-
-/// By how many dB a band is too soft at the onset, and by how many more in each second.
-type Correction = (f64, f64);
-
-fn corrections(target: &LogMel, heard: &LogMel) -> [Correction; BANDS] {
-    let floor = target.loudest().max(heard.loudest()) - SPAN_DB;
-    std::array::from_fn(|band| {
-        let mut points = Vec::new();
-        for (n, wanted) in target.columns.iter().enumerate() {
-            let has = heard.columns.get(n).map_or(floor, |column| column[band]);
-            if wanted[band].max(has) > floor {
-                let t = n as f64 * HOP as f64 / f64::from(RATE);
-                points.push((t, (wanted[band].max(floor) - has.max(floor)).clamp(-20.0, 20.0)));
-            }
-        }
-        line(&points)
-    })
-}
-
-/// The line through some points, by least squares.
-fn line(points: &[(f64, f64)]) -> Correction {
-    let count = points.len() as f64;
-    if points.is_empty() {
-        return (0.0, 0.0);
-    }
-    let (t, y) = points.iter().fold((0.0, 0.0), |(t, y), point| (t + point.0 / count, y + point.1 / count));
-    let (product, square) = points.iter().fold((0.0, 0.0), |(product, square), point| {
-        (product + (point.0 - t) * (point.1 - y), square + (point.0 - t) * (point.0 - t))
-    });
-    if points.len() < 8 || square == 0.0 {
-        return (y, 0.0);
-    }
-    let slope = product / square;
-    (y - slope * t, slope)
-}
-
-fn corrected(draft: &Draft, corrections: &[Correction; BANDS], share: f64) -> Draft {
-    let mut draft = draft.clone();
-    let sweep = draft.sweep;
-    for partial in &mut draft.partials {
-        let weights = weights(partial.heard_at(&sweep));
-        let (mut level, mut slope) = (0.0, 0.0);
-        for (weight, correction) in weights.iter().zip(corrections) {
-            level += weight * correction.0;
-            slope += weight * correction.1;
-        }
-        partial.amplitude *= pow(10.0, (share * level).clamp(-MOST_DB, MOST_DB) / 20.0);
-        // A T60 of 1 s falls by 60 dB in a second.
-        let falls = 60.0 / partial.t60;
-        let change = (share * slope).clamp(-MOST_SHARE * falls, MOST_SHARE * falls);
-        partial.t60 = (60.0 / (falls - change)).clamp(T60.0, T60.1);
-    }
-    draft
 }

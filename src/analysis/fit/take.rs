@@ -23,6 +23,9 @@ pub struct Take {
 pub const VELOCITY: f64 = 100.0;
 /// Longest stretch in seconds that is fitted.
 const LONGEST: f64 = 12.0;
+/// Seconds before the onset and beyond the longest stretch that are kept, since resampling looks at both sides of a sample.
+const BEFORE: f64 = 0.05;
+const AFTER: f64 = 0.1;
 /// Shortest.
 const SHORTEST: f64 = 0.03;
 /// Quietest peak of what is no silence: −80 dBFS.
@@ -32,6 +35,16 @@ const AUDIBLE: f32 = 0.01;
 /// Seconds of a block whose level tells whether the sound is over, and that level in relation to the loudest: −64 dB.
 const BLOCK: f64 = 0.03;
 const OVER: f64 = 6e-4;
+/// Level in relation to the loudest at which a sound has risen: −3 dB.
+const RISEN: f64 = 0.7;
+/// Seconds of a rise from which on a sound is no stroke.
+pub(super) const SLOW: f64 = 0.05;
+/// Level in relation to the loudest at which a sound has fallen silent, for as many blocks: −26 dB. Beats fall as low, but not for
+/// as long.
+const SILENT: f64 = 0.05;
+const SILENT_BLOCKS: usize = 2;
+/// Level in relation to the loudest of what sounds again: −14 dB, since vowels differ as much.
+const AS_LOUD: f64 = 0.2;
 /// Energy of the last third of a sound over that of the first, from which on it does not decay: −3 dB.
 const STEADY: f64 = 0.5;
 
@@ -46,24 +59,22 @@ pub(super) struct Prepared {
     pub(super) key: Option<f64>,
     /// 0–1.
     pub(super) velocity: f64,
+    /// Seconds in which it comes to its level: next to none for what is struck.
+    pub(super) rise: f64,
+    /// Whether it sounds on as long as it is played.
+    pub(super) is_held: bool,
     /// What is doubtful about it.
-    pub(super) warning: Option<String>,
+    pub(super) warnings: Vec<String>,
 }
 
 impl Prepared {
     /// # Errors
-    /// [`Error::Format`] for silence, sounds that are too short or do not decay, and samples that are not finite.
+    /// [`Error::Format`] for silence, sounds that are too short, and samples that are not finite.
     pub(super) fn new(take: &Take) -> Result<Self> {
         let wrong = |message: &str| Err(Error::format(&take.name, message));
         take.recording.check_finite(&take.name)?;
-        let mut channels = resampled(&take.recording, RATE)?.channels;
-        if channels.len() > 2 {
-            channels = vec![mean(&channels)];
-        }
-        for channel in &mut channels {
-            let constant = channel.iter().map(|sample| f64::from(*sample)).sum::<f64>() / channel.len().max(1) as f64;
-            channel.iter_mut().for_each(|sample| *sample -= constant as f32);
-        }
+        // What comes later is never looked at: of a long recording, little is kept.
+        let channels = resampled(&first_seconds(&take.recording), RATE)?.channels;
         let middle = mean(&channels);
         let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
         if f64::from(peak) < SILENCE {
@@ -83,13 +94,28 @@ impl Prepared {
         let is_steady = blocks >= 9 && energy(&levels[blocks - third..blocks]) > STEADY * energy(&levels[..third]);
         let message = "the sound does not decay: expected something that is struck and rings; what is fitted is its mean \
                        spectrum";
+        let rise = levels.iter().position(|level| *level > RISEN * loudest).unwrap_or(0) as f64 * BLOCK;
+        let mut warnings = Vec::from_iter(is_steady.then(|| format!("{}: {message}", take.name)));
+        if let Some(time) = again(&levels, loudest) {
+            let message = "it falls silent and sounds again";
+            warnings.push(format!("{}: {message} {time:.2} s after its onset: expected a single stroke", take.name));
+        } else if rise > SLOW {
+            warnings
+                .push(format!("{}: it comes to its level over {rise:.2} s: expected a stroke that rings", take.name));
+        }
+        if end == onset + (LONGEST * f64::from(RATE)) as usize {
+            warnings
+                .push(format!("{}: it sounds for longer: the first {LONGEST} s from its onset are fitted", take.name));
+        }
         let channels: Vec<Vec<f32>> = channels.iter().map(|channel| channel[onset..end].to_vec()).collect();
         Ok(Self {
             mean: mean(&channels),
             channels,
             key: take.key,
             velocity: (take.velocity / 127.0).clamp(1.0 / 127.0, 1.0),
-            warning: is_steady.then(|| format!("{}: {message}", take.name)),
+            rise,
+            is_held: is_steady,
+            warnings,
         })
     }
 
@@ -113,6 +139,111 @@ impl Prepared {
     }
 }
 
+/// Seconds from the first of some levels to where there is sound again after it has fallen silent.
+fn again(levels: &[f64], loudest: f64) -> Option<f64> {
+    let first = levels.iter().position(|level| *level > AS_LOUD * loudest)?;
+    let silent = |levels: &[f64]| levels.iter().all(|level| *level < SILENT * loudest);
+    let gap = first + levels[first..].windows(SILENT_BLOCKS).position(silent)?;
+    let next = gap + levels[gap..].iter().position(|level| *level > AS_LOUD * loudest)?;
+    Some(next as f64 * BLOCK)
+}
+
+/// A recording from shortly before its onset on, as long as is needed, without a constant; one channel or two.
+fn first_seconds(recording: &Recording) -> Recording {
+    let mut channels = match recording.channels.len() {
+        0..=2 => recording.channels.clone(),
+        _ => vec![mean(&recording.channels)],
+    };
+    for channel in &mut channels {
+        let constant = channel.iter().map(|sample| f64::from(*sample)).sum::<f64>() / channel.len().max(1) as f64;
+        channel.iter_mut().for_each(|sample| *sample -= constant as f32);
+    }
+    let middle = mean(&channels);
+    let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+    let onset = middle.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0);
+    let frames = |seconds: f64| (seconds * f64::from(recording.sample_rate)) as usize;
+    let kept = onset.saturating_sub(frames(BEFORE))..middle.len().min(onset + frames(LONGEST + AFTER));
+    if kept.len() < middle.len() {
+        channels.iter_mut().for_each(|channel| *channel = channel[kept.clone()].to_vec());
+    }
+    Recording { sample_rate: recording.sample_rate, channels, encoding: String::new(), warnings: Vec::new() }
+}
+
 fn mean(channels: &[Vec<f32>]) -> Vec<f32> {
     mean_of(channels).into_iter().map(|sample| sample as f32).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn prepared(samples: Vec<f32>, sample_rate: u32) -> Prepared {
+        let recording =
+            Recording { sample_rate, channels: vec![samples], encoding: String::new(), warnings: Vec::new() };
+        Prepared::new(&Take { name: "a.wav".to_owned(), recording, key: None, velocity: VELOCITY }).unwrap()
+    }
+
+    fn samples(seconds: f64, rate: u32, at: impl Fn(f64) -> f64) -> Vec<f32> {
+        (0..(seconds * f64::from(rate)) as usize).map(|n| at(n as f64 / f64::from(rate)) as f32).collect()
+    }
+
+    #[test]
+    fn of_ten_minutes_no_more_is_kept_than_is_fitted() {
+        const RATE_OF_FILE: u32 = 8000;
+        let ringing = |t60: f64| move |t: f64| 0.1 + 0.5 * libm::exp(-6.9 * t / t60) * libm::sin(TAU * 440.0 * t);
+        let long = prepared(samples(600.0, RATE_OF_FILE, ringing(100.0)), RATE_OF_FILE);
+        assert_eq!(long.channels[0].len(), 12 * RATE as usize);
+        assert_eq!(long.warnings, ["a.wav: it sounds for longer: the first 12 s from its onset are fitted"]);
+        // Of a short strike and silence, the strike.
+        let short = prepared(samples(600.0, RATE_OF_FILE, ringing(0.5)), RATE_OF_FILE);
+        assert!((0.4..0.7).contains(&short.seconds()) && short.warnings.is_empty(), "{:?}", short.warnings);
+        let kept = first_seconds(&Recording {
+            sample_rate: 8000,
+            channels: vec![samples(600.0, RATE_OF_FILE, |t| if t < 300.0 { 0.0 } else { ringing(100.0)(t - 300.0) })],
+            encoding: String::new(),
+            warnings: Vec::new(),
+        });
+        assert!(kept.channels[0].len() < 13 * RATE_OF_FILE as usize, "{}", kept.channels[0].len());
+    }
+
+    /// Pulses of a voice through its first three formants (Peterson & Barney 1952), two vowels with a stop between them.
+    fn speech() -> Vec<f32> {
+        let vowels = [(0.0, [730.0, 1090.0, 2440.0]), (0.35, [270.0, 2290.0, 3010.0])];
+        let mut sound = vec![0.0; (0.7 * f64::from(RATE)) as usize];
+        for (start, formants) in vowels {
+            let (mut phase, mut state) = (0.0, [[0.0; 2]; 3]);
+            for n in 0..(0.25 * f64::from(RATE)) as usize {
+                let t = n as f64 / f64::from(RATE);
+                phase += (120.0 + 10.0 * libm::sin(TAU * 3.0 * t)) / f64::from(RATE);
+                let envelope = libm::sin(0.5 * TAU * t / 0.25);
+                let pulse = if phase >= 1.0 { envelope } else { 0.0 };
+                phase = phase.fract();
+                for (state, formant) in state.iter_mut().zip(formants) {
+                    let radius = libm::exp(-0.5 * TAU * 80.0 / f64::from(RATE));
+                    let turn = libm::cos(TAU * formant / f64::from(RATE));
+                    let next = pulse + 2.0 * radius * turn * state[0] - radius * radius * state[1];
+                    // The mouth radiates changes of the flow.
+                    sound[(start * f64::from(RATE)) as usize + n] += 0.1 * (next - state[0]);
+                    *state = [next, state[0]];
+                }
+            }
+        }
+        sound.into_iter().map(|sample: f64| sample as f32).collect()
+    }
+
+    #[test]
+    fn speech_is_no_stroke_and_beats_are_one() {
+        let warnings = prepared(speech(), RATE).warnings;
+        let says = |warnings: &[String], words: &str| warnings.iter().any(|warning| warning.contains(words));
+        assert!(says(&warnings, "s after its onset: expected a single stroke"), "{warnings:?}");
+        let vowel = speech()[..(0.25 * f64::from(RATE)) as usize].to_vec();
+        let warnings = prepared(vowel, RATE).warnings;
+        assert!(says(&warnings, "it comes to its level over "), "{warnings:?}");
+        let beats = samples(2.0, RATE, |t| {
+            let pair = libm::sin(TAU * 440.0 * t) + libm::sin(TAU * 442.0 * t);
+            0.2 * libm::exp(-6.9 * t / 3.0) * pair
+        });
+        assert_eq!(prepared(beats, RATE).warnings, [""; 0]);
+    }
 }

@@ -6,6 +6,7 @@
 use super::audition::Audition;
 use super::body;
 use super::draft::{Draft, digits};
+use super::levels::Levels;
 use super::simplex;
 use super::take::Prepared;
 use crate::analysis::level::{dbfs, rms};
@@ -16,20 +17,29 @@ use crate::sound::bodies::{Body, Loss, Point};
 use crate::units::gain_from_db;
 use libm::exp;
 
-/// Hardnesses of the mallet, 0–1, from which the search begins: it would not leave the slope of a wrong one.
-const HARDNESSES: [f64; 3] = [0.4, 0.65, 0.9];
+/// Hardnesses of the mallet that are tried, in as many steps, and how many of them the search begins from: it would not leave the
+/// slope of a wrong one.
+const HARDNESSES: u32 = 20;
+const STARTS: usize = 3;
 /// Steps of the search from each.
-const STEPS: usize = 40;
+const STEPS: usize = 60;
+/// Rounds of a finer search from where each of these ends, and its first step, each round's being smaller than the one before.
+const ROUNDS: usize = 7;
+const FINEST_FROM: f64 = 0.06;
+/// What a deviation of the levels of modes of 1 dB is worth in dB of the distance.
+const WORTH_OF_LEVELS: f64 = 2.0;
 /// By how much the first step moves the tilt in dB per octave; the others are shares.
 const TILT: f64 = 15.0;
 /// Least and greatest tilt.
 const TILTS: (f64, f64) = (-24.0, 24.0);
 
 /// The patch of a body, played on a fractional MIDI key, struck so, with such losses and such a mallet, that it is nearest to a take.
-pub(super) fn patch(draft: &Draft, body: &Body, take: &Prepared, key: f64) -> Patch {
+/// Nor are its modes far from the levels that they have there.
+pub(super) fn patch(draft: &Draft, body: &Body, levels: &Levels, take: &Prepared, key: f64) -> Patch {
     let (mut audition, mut bands) = (Audition::new(), MelBands::new());
-    let target = bands.measure(from_onset(&take.mean));
-    let mut heard = |patch: &mut Patch| {
+    let recording = from_onset(&take.mean);
+    let target = bands.measure(recording);
+    let mut heard = |body: &Body, patch: &mut Patch| {
         let mut played = audition.mean(patch, key, draft.velocity, take.mean.len());
         // As loud as the recording.
         let before = f64::from(patch.get(Param::Gain));
@@ -38,31 +48,62 @@ pub(super) fn patch(draft: &Draft, body: &Body, take: &Prepared, key: f64) -> Pa
         patch.set(Param::Gain, gain);
         let factor = gain_from_db(f64::from(gain) - before) as f32;
         played.iter_mut().for_each(|sample| *sample *= factor);
-        bands.measure(from_onset(&played)).distance(&target)
+        let played = from_onset(&played);
+        bands.measure(played).distance(&target) + WORTH_OF_LEVELS * levels.off_db(body, [recording, played])
     };
+    let grid: Vec<f64> = (1..HARDNESSES).map(|step| f64::from(step) / f64::from(HARDNESSES)).collect();
+    let hardnesses: Vec<Option<f64>> = grid.iter().copied().map(Some).collect();
+    let placed = levels.placed(body, &hardnesses);
+    let mut starts: Vec<(f64, f64, Body)> =
+        placed.into_iter().zip(grid).map(|((off, body), hardness)| (off, hardness, body)).collect();
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    starts.truncate(STARTS);
     let mut best = (f64::INFINITY, draft.patch());
-    for hardness in draft.hardness.into_iter().chain(HARDNESSES) {
-        let at = |place: [f64; 5]| moved(draft, body, hardness, place);
-        let (place, _) = simplex::least(STEPS, |place| heard(&mut at(place)));
-        let mut found = at(place);
-        let distance = heard(&mut found);
-        if distance < best.0 {
-            best = (distance, found);
+    for (_, hardness, body) in starts {
+        let mut error = |place: [f64; 6]| {
+            let (body, hardness) = moved(&body, hardness, place);
+            let mut patch = struck(draft, &body, hardness);
+            (heard(&body, &mut patch), patch)
+        };
+        let (mut place, _) = simplex::least(STEPS, |place| error(place).0);
+        let mut found = error(place);
+        let mut step = FINEST_FROM;
+        for _ in 0..ROUNDS {
+            for number in 0..place.len() {
+                for by in [-step, step] {
+                    let mut other = place;
+                    other[number] += by;
+                    let next = error(other);
+                    if next.0 < found.0 {
+                        (place, found) = (other, next);
+                    }
+                }
+            }
+            step *= 0.6;
+        }
+        if found.0 < best.0 {
+            best = found;
         }
     }
     best.1
 }
 
-/// The patch of a body with its place of striking, tilt, losses and mallet moved.
-fn moved(draft: &Draft, body: &Body, hardness: f64, [place, tilt, b0, b1, harder]: [f64; 5]) -> Patch {
+/// A body with its places of striking and of listening, tilt and losses moved, and a hardness.
+fn moved(body: &Body, hardness: f64, [strike, pickup, tilt, b0, b1, harder]: [f64; 6]) -> (Body, f64) {
     let mut body = body.clone();
-    body.strike = Point { x: digits((body.strike.x + place).clamp(0.02, 0.98), 3), ..body.strike };
+    let at = |point: Point, by: f64| Point { x: digits((point.x + by).clamp(0.02, 0.98), 3), ..point };
+    (body.strike, body.pickup) = (at(body.strike, strike), at(body.pickup, pickup));
     body.tilt = digits((body.tilt + TILT * tilt).clamp(TILTS.0, TILTS.1), 3);
     let loss = body.material.loss;
     body.material.loss =
         Loss { b0: digits(loss.b0 * exp(2.0 * b0), 4), b1: digits(loss.b1 * exp(2.0 * b1), 4), ..loss };
-    let mut patch = body::patch(draft, &body);
+    (body, (1000.0 * (hardness + harder).clamp(0.0, 1.0)).round() / 1000.0)
+}
+
+/// The patch of a body that is struck by a mallet of some hardness.
+fn struck(draft: &Draft, body: &Body, hardness: f64) -> Patch {
+    let mut patch = body::patch(draft, body);
     patch.set(Param::MalletPulse, MalletPulse::Contact.value());
-    patch.set(Param::MalletHardness, (1000.0 * (hardness + harder).clamp(0.0, 1.0)).round() as f32 / 10.0);
+    patch.set(Param::MalletHardness, (100.0 * hardness) as f32);
     patch
 }

@@ -11,29 +11,37 @@ use nalgebra::{DMatrix, Schur, SymmetricEigen};
 use realfft::num_complex::Complex;
 use std::f64::consts::PI;
 
-/// Samples that a band is decimated to.
+/// Samples that a band is decimated to, and one that is long.
 const SAMPLES: usize = 104;
-/// Rows of the data matrix.
-const ROWS: usize = 44;
-/// Most poles that a band can have.
-const MOST_POLES: usize = 18;
+const SAMPLES_OF_LONG: usize = 416;
+/// Rows of the data matrix, as a share of the samples.
+const ROWS: f64 = 0.425;
+/// Most poles of a band, as a share of the rows.
+const MOST_POLES: f64 = 0.42;
 /// Half-width of a band, and of where its filter ends, as shares of the decimated rate.
 const PASS: f64 = 0.3;
 const STOP: f64 = 0.7;
 /// Attenuation beyond the band in dB.
 const ATTENUATION: f64 = 110.0;
 
-/// A narrow band of a sound: its middle, and the samples from one output to the next.
+/// A narrow band of a sound: its middle, the samples from one output to the next, and how many there are.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Band {
     pub(super) theta: f64,
     hop: usize,
+    count: usize,
 }
 
 impl Band {
     /// The band around `theta` that resolves modes which ring for about `len` samples.
     pub(super) fn new(theta: f64, len: usize) -> Self {
-        Self { theta, hop: (len / (SAMPLES + Self::taps(1))).max(1) }
+        Self { theta, hop: (len / (SAMPLES + Self::taps(1))).max(1), count: SAMPLES }
+    }
+
+    /// A band about as wide, but of `len` samples that are several times as long: each mode has several times as many samples, so
+    /// that modes can be resolved which are denser than their bandwidths.
+    pub(super) fn long(theta: f64, len: usize) -> Self {
+        Self { theta, hop: (len / (SAMPLES_OF_LONG + Self::taps(1))).max(1), count: SAMPLES_OF_LONG }
     }
 
     /// Half of its width in radians per sample.
@@ -53,7 +61,7 @@ impl Band {
         let count = samples.len().saturating_sub(taps) / self.hop;
         let shift = Pole { decay: 0.0, theta: -self.theta };
         let (re, im): (Vec<f64>, Vec<f64>) = filter.iter().map(|tap| (tap.re, tap.im)).unzip();
-        (0..count.min(SAMPLES))
+        (0..count.min(self.count))
             .map(|m| {
                 let stretch = &samples[m * self.hop..m * self.hop + taps];
                 Complex::new(dot(stretch, &re), dot(stretch, &im)) * shift.power(m * self.hop)
@@ -82,44 +90,49 @@ impl Band {
 
     /// Samples from the first on that [`Self::poles`] looks at.
     pub(super) fn reach(&self) -> usize {
-        SAMPLES * self.hop + Self::taps(self.hop)
+        self.count * self.hop + Self::taps(self.hop)
     }
 
-    /// The poles within the band, as many as the description length asks for (MDL; Wax & Kailath 1985).
-    pub(super) fn poles(&self, samples: &[f64]) -> Vec<Pole> {
+    /// The poles within the band, as many as the description length asks for (MDL; Wax & Kailath 1985), and whether it asks for
+    /// more than so many samples can tell apart.
+    pub(super) fn poles(&self, samples: &[f64]) -> (Vec<Pole>, bool) {
         let band = self.decimate(samples);
-        let rows = ROWS.min(band.len() / 2);
+        let rows = ((ROWS * self.count as f64) as usize).min(band.len() / 2);
         if rows < 4 {
-            return Vec::new();
+            return (Vec::new(), false);
         }
         let columns = band.len() - rows + 1;
         let data = DMatrix::from_fn(rows, columns, |row, column| band[row + column]);
         let covariance = &data * data.adjoint();
         let Some(SymmetricEigen { eigenvectors, eigenvalues }) = SymmetricEigen::try_new(covariance, 1e-15, 10_000)
         else {
-            return Vec::new();
+            return (Vec::new(), false);
         };
         let mut order: Vec<usize> = (0..rows).collect();
         order.sort_by(|a, b| eigenvalues[*b].total_cmp(&eigenvalues[*a]));
         let sorted: Vec<f64> = order.iter().map(|index| eigenvalues[*index]).collect();
-        let count = description_length(&sorted, columns).min(MOST_POLES).min(rows - 2);
+        let (wanted, most) =
+            (description_length(&sorted, columns), ((MOST_POLES * rows as f64) as usize).min(rows - 2));
+        let (count, crowded) = (wanted.min(most), wanted > most);
         let subspace = DMatrix::from_fn(rows, count, |row, column| eigenvectors[(row, order[column])]);
         let (upper, lower) = (subspace.rows(0, rows - 1).into_owned(), subspace.rows(1, rows - 1).into_owned());
-        let Some(turn) = (upper.adjoint() * &upper).lu().solve(&(upper.adjoint() * lower)) else { return Vec::new() };
-        let Some(schur) = Schur::try_new(turn, 1e-15, 10_000) else { return Vec::new() };
+        let turn = (upper.adjoint() * &upper).lu().solve(&(upper.adjoint() * lower));
+        let Some(schur) = turn.and_then(|turn| Schur::try_new(turn, 1e-15, 10_000)) else {
+            return (Vec::new(), crowded);
+        };
         let (_, triangle) = schur.unpack();
-        (0..count).filter_map(|index| self.pole(triangle[(index, index)])).collect()
+        ((0..count).filter_map(|index| self.pole(triangle[(index, index)])).collect(), crowded)
     }
 
     /// The pole of a turn from one of the band's samples to the next; none outside the band, or that grows.
     fn pole(&self, turn: Complex<f64>) -> Option<Pole> {
         let (radius, angle) = (turn.norm(), atan2(turn.im, turn.re));
         let inside = angle.abs() < 2.0 * PI * PASS * 1.05 && radius > 1e-6;
-        let grows = log(radius.max(1e-9)) * SAMPLES as f64 > 1.0;
+        let grows = log(radius.max(1e-9)) * self.count as f64 > 1.0;
         let pole =
             Pole { decay: -log(radius.max(1e-9)) / self.hop as f64, theta: self.theta + angle / self.hop as f64 };
         (inside && !grows && pole.theta > 0.0 && pole.theta < PI)
-            .then_some(Pole { decay: pole.decay.max(1e-3 / (self.hop * SAMPLES) as f64), ..pole })
+            .then_some(Pole { decay: pole.decay.max(1e-3 / (self.hop * self.count) as f64), ..pole })
     }
 }
 

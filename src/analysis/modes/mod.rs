@@ -17,6 +17,7 @@ mod mode;
 mod plausible;
 mod pole;
 mod prune;
+mod resolve;
 mod search;
 mod strikes;
 
@@ -177,7 +178,8 @@ fn clipping(channels: &[Vec<f32>]) -> Option<String> {
         let flat = |window: &&[f32]| window.iter().all(|sample| *sample == window[0]) && window[0].abs() == peak;
         count += if peak > 0.5 { channel.windows(3).filter(flat).count() } else { 0 };
     }
-    (count > 0).then(|| format!("the sound is clipped in {count} places: levels and high modes are doubtful"))
+    let places = if count == 1 { "place" } else { "places" };
+    (count > 0).then(|| format!("the sound is clipped in {count} {places}: levels and high modes are doubtful"))
 }
 
 /// A warning of tones that do not decay.
@@ -186,7 +188,8 @@ fn steady(strike: &Strike) -> Option<String> {
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     let (onset, verb) = (strike.onset, if more.is_empty() { "does" } else { "do" });
     Some(format!(
-        "a tone of {first:.2} Hz{more} {verb} not decay that could be told: no modes of the strike at {onset:.3} s"
+        "a tone of {:.2} Hz{more} {verb} not decay that could be told: no modes of the strike at {onset:.3} s",
+        first.frequency
     ))
 }
 
@@ -216,42 +219,44 @@ fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: 
     };
     let (decaying, steady): (Vec<usize>, Vec<usize>) =
         (0..found.fit.poles.len()).filter(|k| frequency(*k) >= AUDIBLE).partition(decays);
-    let mut modes: Vec<Mode> = decaying
-        .into_iter()
-        .map(|k| {
-            let pole = found.fit.poles[k];
-            let at_onset = |fit: &Fit| {
-                let amplitude = fit.amplitudes[k];
-                let level = dbfs(amplitude.norm()) + 20.0 / LN_10 * pole.decay * late;
-                let cosine = libm::atan2(amplitude.im, amplitude.re) - pole.theta * late;
-                (level, libm::remainder(cosine + 0.5 * PI, 2.0 * PI))
-            };
-            let (level_db, phase) = at_onset(&found.fit);
-            let t60 = LN_60_DB / (pole.decay * sample_rate);
-            Mode {
-                frequency: frequency(k),
-                t60,
-                level_db,
-                phase,
-                uncertainty: Uncertainty {
-                    frequency: deviation(k, 1) * sample_rate / (2.0 * PI),
-                    t60: deviation(k, 0) / pole.decay * t60,
-                    level_db: 20.0 / LN_10 * deviation(k, 2),
-                    phase: deviation(k, 3),
-                },
-                snr_db: 10.0 * log10(found.certainty.explained[k] / variance(k).max(1e-300)),
-                channels: fits.iter().flatten().map(at_onset).collect(),
-            }
-        })
-        .collect();
-    modes.retain(Mode::is_finite);
-    modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    let mode = |k: usize| {
+        let pole = found.fit.poles[k];
+        let at_onset = |fit: &Fit| {
+            let amplitude = fit.amplitudes[k];
+            let level = dbfs(amplitude.norm()) + 20.0 / LN_10 * pole.decay * late;
+            let cosine = libm::atan2(amplitude.im, amplitude.re) - pole.theta * late;
+            (level, libm::remainder(cosine + 0.5 * PI, 2.0 * PI))
+        };
+        let (level_db, phase) = at_onset(&found.fit);
+        let decay = pole.decay.max(LN_60_DB / (ENDLESS * sample_rate));
+        let t60 = LN_60_DB / (decay * sample_rate);
+        Mode {
+            frequency: frequency(k),
+            t60,
+            level_db,
+            phase,
+            uncertainty: Uncertainty {
+                frequency: deviation(k, 1) * sample_rate / (2.0 * PI),
+                t60: deviation(k, 0) / decay * t60,
+                level_db: 20.0 / LN_10 * deviation(k, 2),
+                phase: deviation(k, 3),
+            },
+            snr_db: 10.0 * log10(found.certainty.explained[k] / variance(k).max(1e-300)),
+            channels: fits.iter().flatten().map(at_onset).collect(),
+        }
+    };
+    let by_frequency = |places: Vec<usize>| {
+        let mut modes: Vec<Mode> = places.into_iter().map(mode).filter(Mode::is_finite).collect();
+        modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        modes
+    };
+    let modes = by_frequency(decaying);
     let single = |samples: &[f64]| samples.iter().map(|sample| *sample as f32).collect();
     Strike {
         onset: stretch.onset as f64 / sample_rate,
         damped: None,
         seconds: (stretch.end - stretch.onset) as f64 / sample_rate,
-        steady: steady.into_iter().map(frequency).collect(),
+        steady: by_frequency(steady),
         groups: groups(&modes),
         modes,
         residual_db: 10.0 * log10((energy(&residual) / energy(samples).max(1e-300)).max(1e-30)),

@@ -73,8 +73,9 @@ pub struct Strike {
     pub damped: Option<f64>,
     /// By rising frequency.
     pub modes: Vec<Mode>,
-    /// Hz: tones that do not decay, or not by what could be told, such as hum and what is played on. They are no modes.
-    pub steady: Vec<f64>,
+    /// Tones that do not decay, or not by what could be told, such as hum and what is played on, by rising frequency. They are no
+    /// modes; their T60 is a guess, of 2000 s at most.
+    pub steady: Vec<Mode>,
     /// Modes that are heard as one: by their places in `modes`.
     pub groups: Vec<Group>,
     /// Energy that the modes leave unexplained, in dB relative to the whole.

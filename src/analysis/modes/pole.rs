@@ -11,6 +11,8 @@ const BLOCK: usize = 16;
 const ANCHOR: usize = 32;
 /// Modes whose powers are stepped side by side.
 const LANES: usize = 4;
+/// Distance of two poles that all but coincide, as a share of their width.
+const COINCIDING: f64 = 0.05;
 /// `|zⁿ|` below which a mode is over: −280 dB.
 const OVER: f64 = 1e-14;
 
@@ -36,6 +38,12 @@ impl Pole {
     pub(super) fn end(self, len: usize) -> usize {
         let end = if self.decay > 0.0 { -log(OVER) / self.decay } else { f64::INFINITY };
         if end < len as f64 { end as usize + 1 } else { len }
+    }
+
+    /// Whether it all but coincides with another one over `len` samples. Pairs that are really there beat.
+    pub(super) fn coincides(self, other: Self, len: usize) -> bool {
+        let distance = libm::hypot(self.theta - other.theta, self.decay - other.decay);
+        distance <= COINCIDING * self.width(len).min(other.width(len))
     }
 
     /// Half the width of its resonance in radians per sample, no narrower than `len` samples can tell.

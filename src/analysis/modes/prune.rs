@@ -12,10 +12,20 @@ pub(super) const DETECTION: f64 = 15.0;
 const SIGNIFICANCE: f64 = 5.0;
 /// Times that a floor is measured anew, since what is dropped comes back in the residual.
 const MOST_FLOORS: usize = 8;
+/// What may be left without modes that were dropped, over what was left with them.
+const MOST_LEFT: f64 = 1.2;
+/// Most refinement steps of the modes that stay.
+const REFINED: usize = 8;
 
 /// Drops modes until each one that is left explains more than noise would, and more than the energy `least`. `None` if
 /// the equations cannot be solved.
-pub(super) fn prune(mut fit: Fit, samples: &[f64], sample_rate: f64, least: f64) -> Option<Fit> {
+pub(super) fn prune(
+    mut fit: Fit,
+    samples: &[f64],
+    sample_rate: f64,
+    least: f64,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<Fit> {
     for _ in 0..MOST_FLOORS {
         if fit.poles.is_empty() {
             break;
@@ -31,9 +41,68 @@ pub(super) fn prune(mut fit: Fit, samples: &[f64], sample_rate: f64, least: f64)
         if elimination.left.len() == fit.poles.len() {
             break;
         }
-        fit = Fit::new(samples, elimination.left.iter().map(|k| fit.poles[*k]).collect())?;
+        let next = without(&fit, &elimination.removed, &floors, samples, go_on)?;
+        if next.poles.len() == fit.poles.len() {
+            break;
+        }
+        fit = next;
     }
     Some(fit)
+}
+
+/// A fit without modes that explain no more than noise, the weakest first. Of modes that are denser than their bandwidths each one
+/// seems to be of no worth, since its neighbours could explain what it does; without all of them, much would be left. Then
+/// only as many are dropped as the others can replace once they are refined.
+fn without(
+    fit: &Fit,
+    weakest: &[usize],
+    floors: &[f64],
+    samples: &[f64],
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<Fit> {
+    let mut count = weakest.len();
+    while count > 0 {
+        let dropped = &weakest[..count];
+        let left = (0..fit.poles.len()).filter(|k| !dropped.contains(k)).map(|k| fit.poles[k]).collect();
+        let most = MOST_LEFT * fit.unexplained + DETECTION * dropped.iter().map(|k| floors[*k]).sum::<f64>();
+        let mut next = Fit::new(samples, left)?;
+        if next.unexplained > most {
+            next = next.refine(samples, 1e-2, REFINED, go_on);
+        }
+        if next.unexplained <= most {
+            return Some(next);
+        }
+        count /= 2;
+    }
+    Some(fit.clone())
+}
+
+/// A fit in which two modes that all but coincide have become one, if one explains the sound as well: the two were found from
+/// different sides and share the amplitude of a single mode. `least` is the energy that need not be explained.
+pub(super) fn join(mut fit: Fit, samples: &[f64], least: f64, go_on: &mut dyn FnMut() -> bool) -> Fit {
+    let mut tried = 0;
+    while let Some((_, weaker)) = coinciding(&fit, samples.len()).into_iter().nth(tried) {
+        let left = (0..fit.poles.len()).filter(|k| *k != weaker).map(|k| fit.poles[k]).collect();
+        let Some(next) = Fit::new(samples, left).map(|next| next.refine(samples, 1e-7, 40, go_on)) else { break };
+        match next.unexplained <= MOST_LEFT * fit.unexplained + least {
+            true => fit = next,
+            false => tried += 1,
+        }
+    }
+    fit
+}
+
+/// Pairs of modes that all but coincide, in the order of their poles: the stronger one and the weaker one.
+fn coinciding(fit: &Fit, len: usize) -> Vec<(usize, usize)> {
+    let mut order: Vec<usize> = (0..fit.poles.len()).collect();
+    order.sort_by(|a, b| fit.poles[*a].theta.total_cmp(&fit.poles[*b].theta));
+    let near = |pair: &&[usize]| fit.poles[pair[0]].coincides(fit.poles[pair[1]], len);
+    let strength = |k: usize| fit.amplitudes[k].norm();
+    let ordered = |pair: &[usize]| match strength(pair[0]) < strength(pair[1]) {
+        true => (pair[1], pair[0]),
+        false => (pair[0], pair[1]),
+    };
+    order.windows(2).filter(near).map(ordered).collect()
 }
 
 /// Modes that are taken out of the normal equations one after the other. What is left is the solution without them, at
@@ -42,11 +111,13 @@ struct Elimination {
     inverses: Inverses,
     amplitudes: Vec<Complex<f64>>,
     left: Vec<usize>,
+    /// In the order in which they were taken out.
+    removed: Vec<usize>,
 }
 
 impl Elimination {
     fn new(inverses: Inverses, amplitudes: Vec<Complex<f64>>) -> Self {
-        Self { inverses, left: (0..amplitudes.len()).collect(), amplitudes }
+        Self { inverses, left: (0..amplitudes.len()).collect(), removed: Vec::new(), amplitudes }
     }
 
     /// The mode that explains the least of those left, and its energy as a multiple of what it has to explain.
@@ -77,6 +148,7 @@ impl Elimination {
         let pole = 2 * self.amplitudes.len() + 1 + 2 * k;
         [2 * k, 2 * k + 1, pole, pole + 1].into_iter().for_each(|at| take_out(&mut self.inverses.all, at));
         self.left.retain(|other| *other != k);
+        self.removed.push(k);
     }
 }
 

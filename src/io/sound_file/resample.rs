@@ -22,11 +22,14 @@ pub fn resampled(recording: &Recording, sample_rate: u32) -> Result<Recording> {
         Error::value("sample rate", format!("{rates} cannot be converted: {error}"))
     };
     let (from, to, count) = (recording.sample_rate as usize, sample_rate as usize, recording.channels.len());
-    let mut resampler = Fft::<f32>::new(from, to, CHUNK, count, FixedSync::Both).map_err(|error| failed(&error))?;
+    // In double precision like the analysis: the program then contains one kind of Fourier transform, not two.
+    let mut resampler = Fft::<f64>::new(from, to, CHUNK, count, FixedSync::Both).map_err(|error| failed(&error))?;
     let frames = recording.frames();
-    let input = SequentialSliceOfVecs::new(&recording.channels, count, frames).map_err(|error| failed(&error))?;
+    let precise: Vec<Vec<f64>> =
+        recording.channels.iter().map(|channel| channel.iter().map(|sample| f64::from(*sample)).collect()).collect();
+    let input = SequentialSliceOfVecs::new(&precise, count, frames).map_err(|error| failed(&error))?;
     let output = resampler.process_all(&input, frames, None).map_err(|error| failed(&error))?;
-    let sample = |channel, frame| output.read_sample(channel, frame).unwrap_or(0.0);
+    let sample = |channel, frame| output.read_sample(channel, frame).unwrap_or(0.0) as f32;
     // The last block may bring a frame more than the sound is long.
     let len = (frames as f64 * to as f64 / from as f64).round() as usize;
     let channels = (0..count).map(|channel| (0..len).map(|frame| sample(channel, frame)).collect());

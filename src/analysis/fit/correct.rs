@@ -1,0 +1,194 @@
+//! Levels and decays of a draft's modes, corrected by what its bands have too much or too little.
+
+use super::draft::{Draft, Partial, T60};
+use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, weights};
+use libm::{exp, pow};
+
+/// Largest correction of a level in dB and of a decay in dB/s at a time, as a share of its own.
+const MOST_DB: f64 = 12.0;
+const MOST_SHARE: f64 = 0.6;
+/// Largest error in dB that counts.
+const MOST_ERROR_DB: f64 = 20.0;
+/// Windows in which a mode has to be heard, if its decay is to be corrected.
+const FEWEST: f64 = 8.0;
+/// ln 10⁶: by e to that the energy falls in a T60.
+const LN_120_DB: f64 = 13.815_510_557_964_274;
+
+/// By how many dB something is too soft at the onset, and by how many more in each second.
+type Correction = (f64, f64);
+
+/// Corrects all modes of a band alike.
+pub(super) fn by_bands(draft: &Draft, target: &LogMel, heard: &LogMel, share: f64) -> Draft {
+    let errors = Errors::new(target, heard);
+    let corrections: [Correction; BANDS] = std::array::from_fn(|band| {
+        let mut line = Line::default();
+        errors.of(band).for_each(|(n, error)| line.add(time(n), error, 1.0));
+        line.correction()
+    });
+    corrected(draft, share, |partial| {
+        let weights = weights(partial.heard_at(&draft.sweep));
+        let both = weights.iter().zip(&corrections);
+        both.fold((0.0, 0.0), |sum, (weight, correction)| {
+            (sum.0 + weight * correction.0, sum.1 + weight * correction.1)
+        })
+    })
+}
+
+/// Corrects each mode by those moments of its bands at which it is what is heard: of two modes in a band, one that is soon over
+/// is told by the beginning, and one that rings by what comes after.
+pub(super) fn by_moments(draft: &Draft, target: &LogMel, heard: &LogMel, share: f64) -> Draft {
+    let errors = Errors::new(target, heard);
+    let columns = errors.columns.len();
+    let mut powers = vec![[1e-30; BANDS]; columns];
+    let modes = draft.partials.iter().map(|partial| weights(partial.heard_at(&draft.sweep)));
+    let modes: Vec<[f64; BANDS]> = modes.collect();
+    for (partial, weights) in draft.partials.iter().zip(&modes) {
+        for (band, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
+            for (n, power) in powers_of(partial, columns).enumerate() {
+                powers[n][band] += weight * power;
+            }
+        }
+    }
+    let mut bands = modes.iter();
+    corrected(draft, share, |partial| {
+        let mut line = Line::default();
+        let weights = bands.next().unwrap_or(&[0.0; BANDS]);
+        let own: Vec<f64> = powers_of(partial, columns).collect();
+        for (band, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
+            let share = |n: usize| weight * own[n] / powers[n][band];
+            errors.of(band).for_each(|(n, error)| line.add(time(n), error, share(n) * weight));
+        }
+        line.correction()
+    })
+}
+
+/// The power of a mode in each window.
+fn powers_of(partial: &Partial, columns: usize) -> impl Iterator<Item = f64> {
+    let step = exp(-LN_120_DB * HOP as f64 / f64::from(RATE) / partial.t60);
+    std::iter::successors(Some(partial.amplitude * partial.amplitude), move |power| Some(power * step)).take(columns)
+}
+
+/// The time in seconds of a window's middle.
+fn time(n: usize) -> f64 {
+    n as f64 * HOP as f64 / f64::from(RATE)
+}
+
+/// By how many dB each band of each window is too soft; none where neither is heard.
+struct Errors {
+    columns: Vec<[Option<f64>; BANDS]>,
+}
+
+impl Errors {
+    fn new(target: &LogMel, heard: &LogMel) -> Self {
+        let floor = target.loudest().max(heard.loudest()) - SPAN_DB;
+        let column = |(n, wanted): (usize, &[f64; BANDS])| {
+            std::array::from_fn(|band| {
+                let has = heard.columns.get(n).map_or(floor, |column| column[band]);
+                let error = wanted[band].max(floor) - has.max(floor);
+                (wanted[band].max(has) > floor).then_some(error.clamp(-MOST_ERROR_DB, MOST_ERROR_DB))
+            })
+        };
+        Self { columns: target.columns.iter().enumerate().map(column).collect() }
+    }
+
+    /// The errors of a band, with the numbers of their windows.
+    fn of(&self, band: usize) -> impl Iterator<Item = (usize, f64)> {
+        self.columns.iter().enumerate().filter_map(move |(n, column)| Some((n, column[band]?)))
+    }
+}
+
+/// The line through some points, each of some weight, by least squares.
+#[derive(Default)]
+struct Line {
+    points: Vec<[f64; 3]>,
+}
+
+impl Line {
+    fn add(&mut self, time: f64, error: f64, weight: f64) {
+        self.points.push([time, error, weight]);
+    }
+
+    fn correction(&self) -> Correction {
+        let sum =
+            |value: &dyn Fn(&[f64; 3]) -> f64| self.points.iter().map(|point| point[2] * value(point)).sum::<f64>();
+        let count = sum(&|_| 1.0);
+        if count < 1e-6 {
+            return (0.0, 0.0);
+        }
+        let (t, y) = (sum(&|point| point[0]) / count, sum(&|point| point[1]) / count);
+        let square = sum(&|point| (point[0] - t) * (point[0] - t));
+        // Of less than one window little is known.
+        let known = count.min(1.0);
+        if count < FEWEST || square == 0.0 {
+            return (known * y, 0.0);
+        }
+        let slope = sum(&|point| (point[0] - t) * (point[1] - y)) / square;
+        (y - slope * t, slope)
+    }
+}
+
+/// A draft with a share of each mode's correction.
+fn corrected(draft: &Draft, share: f64, mut correction: impl FnMut(&Partial) -> Correction) -> Draft {
+    let mut draft = draft.clone();
+    for partial in &mut draft.partials {
+        let (level, slope) = correction(partial);
+        partial.amplitude *= pow(10.0, (share * level).clamp(-MOST_DB, MOST_DB) / 20.0);
+        // A T60 of 1 s falls by 60 dB in a second.
+        let falls = 60.0 / partial.t60;
+        let change = (share * slope).clamp(-MOST_SHARE * falls, MOST_SHARE * falls);
+        partial.t60 = (60.0 / (falls - change)).clamp(T60.0, T60.1);
+    }
+    draft
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::draft::{Noise, Sweep};
+    use super::*;
+
+    fn draft(amplitudes: [f64; 2]) -> Draft {
+        let partial = |(frequency, t60, amplitude)| Partial { frequency, t60, amplitude, pan: 0.0, struck: true };
+        let [first, second] = amplitudes;
+        Draft {
+            note: 440.0,
+            velocity: 1.0,
+            follow: 1.0,
+            partials: [(440.0, 0.1, first), (445.0, 3.0, second)].map(partial).to_vec(),
+            hardness: None,
+            sweep: Sweep::NONE,
+            noise: Noise::SHORT,
+            swell: None,
+            is_held: false,
+        }
+    }
+
+    /// The bands of a draft's modes, without beats.
+    fn bands(draft: &Draft) -> LogMel {
+        let mut columns = vec![[1e-12; BANDS]; 300];
+        for partial in &draft.partials {
+            for (n, power) in powers_of(partial, 300).enumerate() {
+                let weights = weights(partial.frequency);
+                columns[n].iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight * power);
+            }
+        }
+        LogMel { columns: columns.into_iter().map(|column| column.map(|power| 10.0 * libm::log10(power))).collect() }
+    }
+
+    #[test]
+    fn of_two_modes_in_a_band_the_one_that_is_off_is_corrected() {
+        let target = bands(&draft([0.4, 0.1]));
+        let off =
+            |draft: &Draft, n: usize, wanted: f64| (20.0 * libm::log10(draft.partials[n].amplitude / wanted)).abs();
+        let mut found = draft([0.1, 0.1]);
+        for _ in 0..12 {
+            found = by_moments(&found, &target, &bands(&found), 0.8);
+        }
+        assert!(off(&found, 0, 0.4) < 2.0 && off(&found, 1, 0.1) < 0.5, "{:?}", found.partials);
+        // All modes of the band alike do not get there.
+        let mut alike = draft([0.1, 0.1]);
+        for _ in 0..12 {
+            alike = by_bands(&alike, &target, &bands(&alike), 0.8);
+        }
+        assert!(off(&alike, 0, 0.4) > 4.0 || off(&alike, 1, 0.1) > 1.0, "{:?}", alike.partials);
+    }
+}

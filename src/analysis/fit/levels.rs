@@ -1,0 +1,174 @@
+//! Where a body is struck and heard, by the levels of the modes that a sound has of it.
+
+use super::draft::{Partial, digits};
+use crate::analysis::log_mel::RATE;
+use crate::sound::bodies::{Body, BodyMode, LN_1000, Point};
+use crate::sound::contact_time;
+use libm::{cos, exp, fabs, log2, log10, sin, sqrt};
+use std::f64::consts::PI;
+
+/// Places of striking and of listening that are tried: so many steps of the body's length.
+const STRIKES: u32 = 50;
+const PICKUPS: u32 = 20;
+/// Steps of the search around the best place, each smaller than the one before.
+const FINER: usize = 8;
+/// Greatest tilt in dB per octave.
+const STEEPEST: f64 = 24.0;
+/// Least weight of a mode in relation to that which weighs most.
+const LEAST_WEIGHT: f64 = 0.15;
+/// A mode is listened to until this is left of it, as a power of e.
+const HEARD: f64 = 5.0;
+/// Least level of a mode of a body, and least share of a contact: nothing is told by nodes.
+const LEAST_LEVEL: f64 = 1e-3;
+const LEAST_SHARE: f64 = 0.01;
+
+/// Partials of a sound, each with the ratio of the mode of a body that it is.
+pub(super) struct Levels(pub(super) Vec<(Partial, f64)>);
+
+/// What a partial has more than the mode that it is.
+#[derive(Clone, Copy, Debug)]
+struct Excess {
+    octaves: f64,
+    db: f64,
+    weight: f64,
+}
+
+/// How much a mode says of a body.
+pub(super) fn weight(partial: &Partial) -> f64 {
+    // Energy alone would leave all to the loudest mode.
+    sqrt(fabs(partial.amplitude) * sqrt(partial.t60))
+}
+
+/// The mode of a body that has a ratio.
+fn mode_at(modes: &[BodyMode], ratio: f64) -> Option<&BodyMode> {
+    modes.iter().find(|mode| fabs(mode.ratio - ratio) < 1e-9 * ratio)
+}
+
+impl Levels {
+    /// What each partial has more than its mode, if all modes are struck alike.
+    fn points(&self, body: &Body) -> Vec<Excess> {
+        let modes = body.modes();
+        let point = |((partial, ratio), weight): (&(Partial, f64), f64)| {
+            let level = mode_at(&modes, *ratio).map_or(0.0, |mode| fabs(mode.level)).max(LEAST_LEVEL);
+            Excess { octaves: log2(*ratio), db: 20.0 * log10(fabs(partial.amplitude) / level), weight }
+        };
+        self.0.iter().zip(self.weights()).map(point).collect()
+    }
+
+    /// How much each partial says of the body; none is without a say.
+    fn weights(&self) -> impl Iterator<Item = f64> {
+        let weights = self.0.iter().map(|(partial, _)| weight(partial));
+        let most = weights.clone().fold(0.0, f64::max);
+        weights.map(move |weight| weight.max(LEAST_WEIGHT * most))
+    }
+
+    /// The same once a contact has taken from each what it does.
+    fn struck(&self, mut points: Vec<Excess>, shares: &[f64]) -> Vec<Excess> {
+        points.iter_mut().zip(shares).for_each(|(point, share)| point.db -= share);
+        points
+    }
+
+    /// What a contact leaves of each mode in dB; none is a strike in a single sample.
+    fn shares(&self, hardness: Option<f64>) -> Vec<f64> {
+        let share = |frequency: f64, hardness: f64| share_of_frames(frequency, contact_time(hardness));
+        let of = |(partial, _): &(Partial, f64)| hardness.map_or(1.0, |hardness| share(partial.frequency, hardness));
+        self.0.iter().map(|pair| 20.0 * log10(of(pair).max(LEAST_SHARE))).collect()
+    }
+
+    /// Deviation in dB of the modes of a recording from what is heard of them when the body is played, both at [`RATE`] and from
+    /// their onsets on: the fourth root of the mean fourth power, since it is the worst that are heard.
+    pub(super) fn off_db(&self, body: &Body, [recording, played]: [&[f32]; 2]) -> f64 {
+        let modes = body.modes();
+        let (mut powers, mut weights) = (0.0, 1e-12);
+        for ((partial, ratio), weight) in self.0.iter().zip(self.weights()) {
+            let Some(mode) = mode_at(&modes, *ratio) else { continue };
+            let own = amplitude(recording, partial.frequency, partial.t60);
+            let off = 20.0 * log10(amplitude(played, mode.frequency, mode.t60).max(1e-9) / own.max(1e-9));
+            (powers, weights) = (powers + weight * off * off * off * off, weights + weight);
+        }
+        sqrt(sqrt(powers / weights))
+    }
+
+    /// For each of some hardnesses, the body that is struck and heard where it has the levels, and tilted as they are, and the RMS
+    /// deviation in dB that is left.
+    pub(super) fn placed(&self, body: &Body, hardnesses: &[Option<f64>]) -> Vec<(f64, Body)> {
+        let shares: Vec<Vec<f64>> = hardnesses.iter().map(|hardness| self.shares(*hardness)).collect();
+        let mut best = vec![(f64::INFINITY, body.clone()); hardnesses.len()];
+        let try_at = |best: &mut (f64, Body), other: &Body, points: &[Excess], shares: &[f64]| {
+            let (tilt, off) = line(&self.struck(points.to_vec(), shares), -STEEPEST..=STEEPEST);
+            if off < best.0 {
+                *best = (off, Body { tilt: digits(tilt, 3), ..other.clone() });
+            }
+        };
+        let at = |x: f64, point: Point| Point { x: digits(x.clamp(0.0, 1.0), 4), ..point };
+        let moved = |strike: f64, pickup: f64| {
+            let (strike, pickup) = (at(strike, body.strike), at(pickup, body.pickup));
+            Body { strike, pickup, tilt: 0.0, ..body.clone() }
+        };
+        for pickup in 0..=PICKUPS {
+            // The body's own place of listening first.
+            let pickup = if pickup == 0 { body.pickup.x } else { f64::from(pickup) / f64::from(PICKUPS) };
+            for strike in 1..STRIKES {
+                let other = moved(f64::from(strike) / f64::from(STRIKES), pickup);
+                let points = self.points(&other);
+                best.iter_mut().zip(&shares).for_each(|(best, shares)| try_at(best, &other, &points, shares));
+            }
+        }
+        for (best, shares) in best.iter_mut().zip(&shares) {
+            let mut step = 0.5 / f64::from(STRIKES);
+            for _ in 0..FINER {
+                for [strike, pickup] in [[-step, 0.0], [step, 0.0], [0.0, -step], [0.0, step]] {
+                    let other = moved(best.1.strike.x + strike, best.1.pickup.x + pickup);
+                    try_at(best, &other, &self.points(&other), shares);
+                }
+                step *= 0.6;
+            }
+        }
+        best
+    }
+}
+
+/// Share of a strike's force that a mode of a frequency in Hz is given by a contact of so many seconds: of the
+/// engine's whole frames at [`RATE`], which counts where a contact has several cycles; `draft::contact_share` is the same with a sign
+/// and without the frames' rounding.
+fn share_of_frames(frequency: f64, seconds: f64) -> f64 {
+    let frames = ((seconds * f64::from(RATE) + 0.5) as usize).max(1);
+    let (mut re, mut im, mut all) = (0.0, 0.0, 0.0);
+    for n in 0..frames {
+        let u = (n as f64 + 0.5) / frames as f64;
+        let (force, phase) = (u * u * (1.0 - u) * (1.0 - u), 2.0 * PI * frequency * n as f64 / f64::from(RATE));
+        (re, im, all) = (re + force * cos(phase), im + force * sin(phase), all + force);
+    }
+    sqrt(re * re + im * im) / all
+}
+
+/// The amplitude of a mode of some frequency in Hz and T60 in seconds in samples at [`RATE`] that begin with it, by the filter that is
+/// matched to it.
+fn amplitude(samples: &[f32], frequency: f64, t60: f64) -> f64 {
+    let (decay, theta) = (LN_1000 / (t60 * f64::from(RATE)), 2.0 * PI * frequency / f64::from(RATE));
+    let len = samples.len().min((HEARD / decay) as usize);
+    let (radius, step) = (exp(-decay), (cos(theta), sin(theta)));
+    let (mut re, mut im, mut energy) = (0.0, 0.0, 1e-30);
+    let (mut x, mut y, mut size) = (1.0, 0.0, 1.0);
+    for sample in &samples[..len] {
+        let sample = f64::from(*sample);
+        (re, im, energy) = (re + x * sample, im + y * sample, energy + size * size);
+        (x, y, size) = (radius * (x * step.0 - y * step.1), radius * (x * step.1 + y * step.0), radius * size);
+    }
+    2.0 * sqrt(re * re + im * im) / energy
+}
+
+/// The slope in dB per octave of the line through some points, within a range, and their RMS deviation from it in dB.
+fn line(points: &[Excess], slopes: std::ops::RangeInclusive<f64>) -> (f64, f64) {
+    let sum = |value: &dyn Fn(&Excess) -> f64| points.iter().map(|point| point.weight * value(point)).sum::<f64>();
+    let weights = sum(&|_| 1.0).max(1e-12);
+    let (x, y) = (sum(&|point| point.octaves) / weights, sum(&|point| point.db) / weights);
+    let square = sum(&|point| (point.octaves - x) * (point.octaves - x));
+    let product = sum(&|point| (point.octaves - x) * (point.db - y));
+    let slope = if square > 1e-9 { (product / square).clamp(*slopes.start(), *slopes.end()) } else { 0.0 };
+    let off = sum(&|point| {
+        let off = point.db - y - slope * (point.octaves - x);
+        off * off
+    });
+    (slope, sqrt(off / weights))
+}

@@ -1,0 +1,31 @@
+//! Modes denser than their bandwidths, as of a drum head.
+
+use super::*;
+
+/// So many modes of a head from 130 Hz on: 2 to 30 Hz apart, with bandwidths of 4 to 38 Hz.
+fn head(count: usize, chance: &mut Chance) -> Vec<Known> {
+    let mode = |place: usize| {
+        let frequency = 130.0 + 16.0 * (place as f64 + 0.9 * chance.uniform());
+        Known(frequency, 66.0 / frequency, 0.2 + 0.8 * chance.uniform(), 0.0)
+    };
+    (0..count).map(mode).collect()
+}
+
+#[test]
+fn modes_denser_than_their_bandwidths_are_told_apart() {
+    let (count, seeds) = if cfg!(debug_assertions) { (24, 1_u64) } else { (64, 3) };
+    for seed in 1..=seeds {
+        let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+        let known = head(count, &mut chance);
+        let (samples, ..) = sound(&known, 0.6, -300.0, &mut chance);
+        let strike = &taken_apart(samples).strikes[0];
+        let is_found = |known: &&Known| {
+            let near = |mode: &Mode| (mode.frequency - known.0).abs() < 0.5 && (mode.t60 / known.1 - 1.0).abs() < 0.05;
+            strike.modes.iter().any(near)
+        };
+        let (found, modes) = (known.iter().filter(is_found).count(), strike.modes.len());
+        let case = format!("seed {seed}: {found} of {count}, {modes} modes, {:.1} dB are left", strike.residual_db);
+        println!("{case}");
+        assert!(strike.residual_db < -90.0 && 4 * found >= 3 * count && modes <= count + 4, "{case}");
+    }
+}
