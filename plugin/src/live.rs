@@ -15,6 +15,7 @@ use sprung::sound::kit::KEYS;
 use sprung::units::mono_from_stereo;
 use std::ops::Range;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Frames rendered at a time if the output is mono.
 const MONO_FRAMES: usize = 256;
@@ -163,6 +164,8 @@ impl Live {
         outputs: &mut [&mut [f32]],
         context: &mut impl ProcessContext<P>,
     ) -> ProcessStatus {
+        // Reading the clock takes neither a lock nor, on the systems in use, a call of the kernel.
+        let start = self.telemetry.is_watched().then(Instant::now);
         self.follow(params);
         self.follow_tempo(context.transport().tempo);
         self.follow_touches();
@@ -196,6 +199,9 @@ impl Live {
         self.render(input, outputs, frame..frames, context);
         if !self.synth.is_silent() {
             self.repaint.request_repaint();
+        }
+        if let Some(start) = start {
+            self.telemetry.note_block(frames, start.elapsed());
         }
         self.tail.status(&mut self.synth, frames)
     }

@@ -1,23 +1,24 @@
 //! The browser: finds sounds, plays them, keeps favourites, and saves under a name.
 
+use super::audition::Audition;
 use super::buttons::{Look, button};
 use super::controls::Controls;
 use super::details::Details;
 use super::files::{load, read};
-use super::sounds::{Shelf, Sound, Sounds};
+use super::sounds::{Shelf, Sounds};
 use super::star;
-use super::text::line;
+use super::text::{line, name_field};
 use super::theme::{GAP, PADDING, Palette, SMALL, TEXT, font};
-use crate::link::{Link, Touch};
+use crate::link::Link;
 use egui::{Align2, Id, Key, Rect, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use sprung::preset::catalogue::Listed;
 use sprung::preset::library::Library;
 use sprung::preset::{Guide, Playable};
+use std::sync::Arc;
 
 const ROW: f32 = 22.0;
 /// Width of the list of shelves, and of what is said of a sound.
 const SIDE: [f32; 2] = [112.0, 250.0];
-/// How long a sound is held that is tried, in seconds.
-const HELD: f64 = 0.7;
 
 /// What the browser remembers.
 pub(super) struct Browser {
@@ -27,8 +28,8 @@ pub(super) struct Browser {
     shelf: Shelf,
     words: String,
     details: Details,
-    /// The key of the sound that is tried, and when it is let go.
-    held: Option<(u8, f64)>,
+    /// The key of the sound that is tried.
+    audition: Audition,
     is_new: bool,
 }
 
@@ -41,9 +42,19 @@ impl Browser {
             shelf: Shelf::All,
             words: String::new(),
             details: Details::default(),
-            held: None,
+            audition: Audition::default(),
             is_new: true,
         }
+    }
+
+    /// The user's sounds.
+    pub(super) fn library(&self) -> Option<&Library> {
+        self.library.as_ref()
+    }
+
+    /// Reads the sounds again when they are shown next.
+    pub(super) fn forget(&mut self) {
+        self.sounds = None;
     }
 
     /// Prepares for being shown, with the name of the present sound.
@@ -74,7 +85,7 @@ impl Browser {
         let present = controls.params.name();
         let (search, rows) = list.split_top_bottom_at_y(list.top() + 28.0);
         let asks = self.search(ui, search);
-        let found: Vec<Sound> = sounds.find(self.shelf, &self.words).into_iter().cloned().collect();
+        let found = sounds.find(self.shelf, &self.words);
         let chosen = match asks {
             Ask::Nothing => None,
             // In another field, the arrows are that field's.
@@ -94,7 +105,7 @@ impl Browser {
             self.try_out(ui, sound, controls);
         }
         let shown = found.iter().find(|sound| sound.name() == controls.params.name());
-        let said = self.details.show(ui, details, shown, &sounds, controls);
+        let said = self.details.show(ui, details, shown.map(Arc::as_ref), &sounds, controls);
         let is_stale = said.as_ref().is_some_and(|(_, is_stale)| *is_stale);
         let broken =
             sounds.broken.first().map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
@@ -104,16 +115,12 @@ impl Browser {
 
     /// Lets go of the sound that is tried, when it is time.
     pub(super) fn follow_time(&mut self, now: f64, controls: &Controls) {
-        if let Some((key, _)) = self.held.take_if(|(_, end)| now >= *end) {
-            controls.params.link().play(Touch::Up { key });
-        }
+        self.audition.follow_time(now, controls.params.link());
     }
 
     /// Lets go of the sound that is tried, at once.
     pub(super) fn release(&mut self, link: &Link) {
-        if let Some((key, _)) = self.held.take() {
-            link.play(Touch::Up { key });
-        }
+        self.audition.release(link);
     }
 
     fn shelves(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) {
@@ -138,11 +145,7 @@ impl Browser {
         let field = search_field();
         let edit = TextEdit::singleline(&mut self.words).id(field).hint_text("Search, or a file’s whole path");
         let response = ui.put(rect.with_max_y(rect.top() + 22.0), edit.font(font(TEXT)).margin(vec2(6.0, 3.0)));
-        response.widget_info(|| {
-            let mut about = WidgetInfo::text_edit(true, "", &self.words, "");
-            about.label = Some("Search".to_owned());
-            about
-        });
+        name_field(&response, "Search", &self.words);
         if std::mem::take(&mut self.is_new) {
             response.request_focus();
         }
@@ -163,7 +166,7 @@ impl Browser {
         &self,
         ui: &mut Ui,
         rect: Rect,
-        found: &[Sound],
+        found: &[Arc<Listed>],
         present: &str,
         chosen: Option<usize>,
         sounds: &mut Sounds,
@@ -215,7 +218,11 @@ impl Browser {
                 let name = cell.with_min_x(star.right() + 2.0);
                 let name = line(ui.painter(), name, Align2::LEFT_CENTER, sound.name(), TEXT, colour);
                 let rest = Rect::from_min_max(pos2(name.right() + 8.0, cell.top()), cell.max - vec2(4.0, 0.0));
-                let what = if sound.path.is_some() { "yours" } else { sound.tags().first().map_or("", String::as_str) };
+                let what = if sound.path.is_some() {
+                    "yours"
+                } else {
+                    sound.playable.tags().first().map_or("", String::as_str)
+                };
                 line(ui.painter(), rest, Align2::RIGHT_CENTER, what, SMALL, palette.muted);
             }
         });
@@ -223,21 +230,16 @@ impl Browser {
     }
 
     /// Loads a sound and plays the key on which it sounds most like itself.
-    fn try_out(&mut self, ui: &Ui, sound: &Sound, controls: &mut Controls) {
+    fn try_out(&mut self, ui: &Ui, sound: &Listed, controls: &mut Controls) {
         controls.history.begin(controls.params);
         load(sound.playable.clone(), controls.params, controls.host);
         controls.history.end(sound.name(), controls.params);
         self.details.open(sound.name());
-        let link = controls.params.link();
-        if let Some((key, _)) = self.held.take() {
-            link.play(Touch::Up { key });
-        }
         let key = match &sound.playable {
             Playable::Preset(preset) => preset.guide.home,
             Playable::Kit(kit) => kit.pads.first().map_or(Guide::default().home, |(key, _)| *key),
         };
-        link.play(Touch::Down { key, velocity: 0.75 });
-        self.held = Some((key, ui.input(|input| input.time) + HELD));
+        self.audition.strike(key, 0.75, ui.input(|input| input.time), controls.params.link());
     }
 
     fn load_file(&mut self, controls: &mut Controls) -> String {

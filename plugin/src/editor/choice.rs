@@ -46,6 +46,5 @@ pub(super) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str
     let is_default = controls.value(info) == info.default;
     let colour = if is_default { palette.text } else { palette.accent_text };
     line(ui.painter(), inside, Align2::LEFT_CENTER, &value, SMALL, colour);
-    let label = Rect::from_min_size(pos2(cell.left(), cell.top() + KNOB), vec2(cell.width(), 13.0));
-    line(ui.painter(), label, Align2::CENTER_CENTER, name, SMALL, palette.text);
+    line(ui.painter(), knob::name_rect(cell), Align2::CENTER_CENTER, name, SMALL, palette.text);
 }

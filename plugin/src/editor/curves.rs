@@ -1,7 +1,9 @@
 //! Small pictures of what the parameters of a section do together.
 
 use super::controls::Controls;
-use egui::{Painter, Pos2, Rect, Shape, Stroke, pos2};
+use super::outlines;
+use egui::{Painter, Pos2, Rect, Stroke, Vec2, pos2};
+use sprung::params::{Choice as _, MalletPulse, NoiseDecay, Shape};
 use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::units::ratio_from_semitones;
 
@@ -13,13 +15,54 @@ const POINTS: usize = 16;
 /// Draws the picture of a section, if it has one.
 pub(super) fn paint(painter: &Painter, rect: Rect, section: &[ParamInfo], controls: &Controls) {
     let palette = controls.palette;
-    let envelopes = [Param::Envelope1Delay, Param::Envelope2Delay];
-    if let Some(first) = section.iter().map(|info| info.param).find(|param| envelopes.contains(param)) {
-        let value = |place: usize| f64::from(controls.value(&PARAMS[first as usize + place]));
-        let points = envelope(rect, &value);
-        painter.hline(rect.x_range(), painter.round_to_pixel_center(rect.bottom()), Stroke::new(1.0, palette.line));
-        painter.add(Shape::line(points, Stroke::new(1.5, palette.accent)));
-    }
+    let value = |param: Param| controls.value(param.info());
+    let first = section[0].param;
+    // A row of the section, counted from its first.
+    let row = |place: usize| &PARAMS[first as usize + place];
+    let floor = painter.round_to_pixel_center(rect.bottom());
+    let middle = painter.round_to_pixel_center(rect.center().y);
+    let above = |points: Vec<Vec2>| -> Vec<Pos2> {
+        points
+            .into_iter()
+            .map(|point| pos2(rect.left() + rect.width() * point.x, floor - rect.height() * point.y))
+            .collect()
+    };
+    let around = |points: Vec<Vec2>| -> Vec<Pos2> {
+        let half = 0.46 * rect.height();
+        points.into_iter().map(|point| pos2(rect.left() + rect.width() * point.x, middle - half * point.y)).collect()
+    };
+    let is_off = |level: Param| value(level) <= level.info().min;
+    let (points, ground, is_quiet) = match first {
+        Param::Envelope1Delay | Param::Envelope2Delay => {
+            (envelope(rect, &|place| f64::from(controls.value(row(place)))), floor, false)
+        }
+        Param::MalletLevel => {
+            let is_impulse = MalletPulse::from_value(value(Param::MalletPulse)) == MalletPulse::Impulse;
+            let hardness = f64::from(value(Param::MalletHardness)) / 100.0;
+            let points = outlines::mallet(hardness, value(Param::MalletMass).into(), is_impulse);
+            (above(points), floor, is_off(Param::MalletLevel))
+        }
+        Param::NoiseLevel => {
+            let times =
+                [Param::NoiseAttack, Param::NoiseTime, Param::NoiseSpacing].map(|param| f64::from(value(param)));
+            let is_exponential = NoiseDecay::from_value(value(Param::NoiseDecay)) == NoiseDecay::Exponential;
+            let points = outlines::noise(times, is_exponential, value(Param::NoiseHits).max(1.0) as u32);
+            (above(points), floor, is_off(Param::NoiseLevel))
+        }
+        Param::Tune => {
+            let (semitones, curve) = (value(Param::Sweep), value(Param::SweepCurve) / 100.0);
+            (around(outlines::sweep(semitones.into(), curve.into())), middle, semitones == 0.0)
+        }
+        Param::Lfo1Rate | Param::Lfo2Rate | Param::Lfo3Rate => {
+            let (shape, start) = (Shape::from_value(controls.value(row(2))), controls.value(row(3)) / 100.0);
+            (around(outlines::oscillator(shape, start)), middle, false)
+        }
+        _ => return,
+    };
+    painter.hline(rect.x_range(), ground, Stroke::new(1.0, palette.line));
+    // What is off is grey.
+    let colour = if is_quiet { palette.muted.gamma_multiply(0.6) } else { palette.accent };
+    painter.add(egui::Shape::line(points, Stroke::new(1.5, colour)));
 }
 
 /// An envelope with the values of its rows: delay, attack, hold, decay, sustain, release, curve. The widths of its stages

@@ -2,10 +2,12 @@
 
 use super::buttons::{Look, button};
 use super::controls::{Controls, Hint};
-use super::sounds::{Sound, Sounds};
-use super::text::{line, paragraph};
+use super::sounds::Sounds;
+use super::text::{line, name_field, paragraph};
 use super::theme::{SMALL, TEXT, TITLE_HEIGHT, font};
-use egui::{Align2, Id, Rect, TextEdit, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Id, Rect, TextEdit, Ui, pos2, vec2};
+use sprung::preset::catalogue::Listed;
+use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
 use sprung::units::note_name;
 
@@ -29,7 +31,7 @@ impl Details {
         &mut self,
         ui: &mut Ui,
         rect: Rect,
-        shown: Option<&Sound>,
+        shown: Option<&Listed>,
         sounds: &Sounds,
         controls: &mut Controls,
     ) -> Option<(String, bool)> {
@@ -51,11 +53,11 @@ impl Details {
                 Playable::Kit(kit) => format!("kit of {} pads", kit.pads.len()),
             };
             let lines = [
-                sound.tags().join("  "),
-                format!("by {}", sound.author()),
+                sound.playable.tags().join("  "),
+                format!("by {}", sound.playable.author()),
                 keys,
                 String::new(),
-                sound.comment().to_owned(),
+                sound.playable.comment().to_owned(),
             ];
             let bottom = rect.bottom() - 62.0;
             for text in lines {
@@ -67,14 +69,11 @@ impl Details {
             Rect::from_min_max(pos2(rect.left(), rect.bottom() - 54.0), pos2(rect.right(), rect.bottom() - 30.0));
         let edit = TextEdit::singleline(&mut self.name).id(Id::unique("save name")).hint_text("a name");
         let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
-        response.widget_info(|| {
-            let mut about = WidgetInfo::text_edit(true, "", &self.name, "");
-            about.label = Some("Name to save under".to_owned());
-            about
-        });
-        let wide = (rect.width() - 4.0) / 2.0;
+        name_field(&response, "Name to save under", &self.name);
+        let wide = (rect.width() - 8.0) / 3.0;
         let save = Rect::from_min_size(pos2(rect.left(), rect.bottom() - 24.0), vec2(wide, 24.0));
-        let bin = save.translate(vec2(wide + 4.0, 0.0));
+        let rename = save.translate(vec2(wide + 4.0, 0.0));
+        let bin = rename.translate(vec2(wide + 4.0, 0.0));
         let own = shown.filter(|sound| sound.path.is_some());
         let text = if self.confirm.is_some() { "Replace" } else { "Save" };
         let response = button(ui, save, text, "Save under this name", Look::On, palette);
@@ -86,7 +85,12 @@ impl Details {
             return Some(self.save(sounds, controls));
         }
         let look = if own.is_some() { Look::Plain } else { Look::Disabled };
-        if button(ui, bin, "To the bin", "Move your sound to the bin", look, palette).clicked()
+        if button(ui, rename, "Rename", "Give your sound this name", look, palette).clicked()
+            && let (Some(own), Some(library)) = (own, &sounds.library)
+        {
+            return Some(self.rename(own, library, controls));
+        }
+        if button(ui, bin, "Bin", "Move your sound to the bin", look, palette).clicked()
             && let (Some(path), Some(library)) = (own.and_then(|own| own.path.as_ref()), &sounds.library)
         {
             return Some(match library.discard(path) {
@@ -95,6 +99,30 @@ impl Details {
             });
         }
         None
+    }
+
+    /// Gives a file of the user's the name that was typed, and a favourite its star.
+    fn rename(&mut self, own: &Listed, library: &Library, controls: &Controls) -> (String, bool) {
+        let name = self.name.trim().to_owned();
+        let Some(path) = &own.path else { return (String::new(), false) };
+        match library.rename(path, &name) {
+            Ok(path) => {
+                let is_favourite = library.favourites().is_ok_and(|names| names.contains(own.name()));
+                if is_favourite {
+                    // In this order, since the new name may be the old one.
+                    let moved =
+                        library.set_favourite(own.name(), false).and_then(|()| library.set_favourite(&name, true));
+                    if let Err(error) = moved {
+                        return (error.to_string(), true);
+                    }
+                }
+                if controls.params.name() == own.name() {
+                    controls.params.rename(name);
+                }
+                (format!("renamed {}", path.display()), true)
+            }
+            Err(error) => (error.to_string(), false),
+        }
     }
 
     fn save(&mut self, sounds: &Sounds, controls: &Controls) -> (String, bool) {

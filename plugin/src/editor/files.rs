@@ -1,10 +1,10 @@
 //! Sounds are loaded: those that the window lists, and preset and kit files by their path.
 
-use super::gestures::{announce, positions};
+use super::gestures;
 use crate::params::SprungParams;
 use crate::state::State;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::preset::{Playable, Replaced};
+use sprung::preset::{Playable, Preset, Replaced};
 use std::fs::File;
 use std::path::Path;
 
@@ -19,9 +19,14 @@ pub(super) fn summary(complaints: &[String]) -> Option<String> {
 /// Loads a preset or kit, and tells the host the new knob positions.
 pub(super) fn load(playable: Playable, params: &SprungParams, host: &GuiContext) {
     let State { seed, view, .. } = params.state();
-    let before = positions(params);
-    params.load(State::new(playable, seed, view).into());
-    announce(params, host, &before);
+    gestures::load(State::new(playable, seed, view), params, host);
+}
+
+/// The factory sound some places after the one of this name, in the order of the list.
+pub(super) fn neighbour(name: &str, places: isize) -> Option<&'static Preset> {
+    let all = Preset::factory();
+    let place = all.iter().position(|preset| preset.name == name).unwrap_or(0);
+    all.get((place as isize + places).rem_euclid(all.len() as isize) as usize)
 }
 
 /// Reads a preset or kit file. Returns it with a remark about each retired parameter in it.

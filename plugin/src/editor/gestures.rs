@@ -1,8 +1,9 @@
 //! Changes of parameters through the host, which may record them as automation.
 
 use crate::params::{Knob, SprungParams};
+use crate::state::State;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::params::PARAM_COUNT;
+use sprung::params::{PARAM_COUNT, Param};
 use std::array::from_fn;
 
 /// A parameter's change in progress, which the host sees as one gesture.
@@ -57,13 +58,30 @@ impl Gestures {
 }
 
 /// The positions of all knobs.
-pub(super) fn positions(params: &SprungParams) -> [f32; PARAM_COUNT] {
+fn positions(params: &SprungParams) -> [f32; PARAM_COUNT] {
     from_fn(|index| params.knobs()[index].position())
 }
 
-/// Tells the host of the knobs that are no longer at the positions `before`.
-pub(super) fn announce(params: &SprungParams, host: &GuiContext, before: &[f32; PARAM_COUNT]) {
+/// Loads a state, and tells the host which knobs have moved.
+pub(super) fn load(state: State, params: &SprungParams, host: &GuiContext) {
+    let before = positions(params);
+    params.load(state.into());
+    announce(params, host, &before);
+}
+
+/// Tells the host that something has changed which is no knob, so that it saves the project: the wrapper has no other way than
+/// a gesture that leaves a knob where it is.
+pub(super) fn touch(params: &SprungParams, host: &GuiContext) {
+    let index = Param::Voices as usize;
+    Gestures::default().set(params, host, index, params.knobs()[index].position());
+}
+
+/// Tells the host of the knobs that are no longer at the positions `before`, or that something else has changed.
+fn announce(params: &SprungParams, host: &GuiContext, before: &[f32; PARAM_COUNT]) {
     let mut gestures = Gestures::default();
+    if positions(params).iter().zip(before).all(|(now, before)| now.to_bits() == before.to_bits()) {
+        return touch(params, host);
+    }
     for (index, (now, before)) in positions(params).into_iter().zip(before).enumerate() {
         if now.to_bits() != before.to_bits() {
             gestures.set(params, host, index, now);

@@ -5,8 +5,10 @@ use super::controls::{Controls, Hint};
 use super::meter;
 use super::text::line;
 use super::theme::{BRAND, GAP, Palette, SMALL, TEXT, Theme, ZOOMS};
+use super::variation::{self, Asked};
 use crate::state::View;
-use egui::{Align2, Id, Popup, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Id, Popup, PopupCloseBehavior, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use std::collections::BTreeSet;
 
 /// What the user asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +25,7 @@ pub(super) enum Wish {
     Copy,
     Zoom(u32),
     Theme(Theme),
+    Variation(Asked),
 }
 
 /// What the header shows.
@@ -34,6 +37,8 @@ pub(super) struct Header<'a> {
     /// Whether the second version is shown.
     pub(super) is_b: bool,
     pub(super) view: View,
+    /// Sections that variations leave as they are.
+    pub(super) locked: &'a BTreeSet<&'static str>,
     /// Levels, left and right, as parts of the meter.
     pub(super) levels: [f32; 2],
 }
@@ -120,6 +125,8 @@ fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &
     let response = ui.interact(inside, Id::unique("sound"), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Sound: {}", header.name)));
     let mut wish = response.clicked().then_some(Wish::Browse);
+    let menu = Popup::context_menu(&response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    menu.show(|ui| wish = wish.or(variation::menu(ui, header.locked).map(Wish::Variation)));
     if button(ui, previous, "‹", "Previous sound", Look::Plain, palette).clicked() {
         wish = Some(Wish::Step(-1));
     }
@@ -127,7 +134,7 @@ fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &
         wish = Some(Wish::Step(1));
     }
     if response.hovered() {
-        *controls.hint = Hint::new(header.name, header.words);
+        *controls.hint = Hint::new(header.name, format!("{}   right click: randomise, mutate, locks", header.words));
     }
     let name = format!("{}{}", header.name, if header.is_changed { " *" } else { "" });
     let name = line(ui.painter(), inside, Align2::LEFT_CENTER, &name, TEXT + 1.5, palette.text);

@@ -1,6 +1,6 @@
 //! Undo and redo: the states before and after what the user did, by name.
 
-use super::gestures::{Gestures, announce, positions};
+use super::gestures::{Gestures, load};
 use crate::params::SprungParams;
 use crate::state::State;
 use nice_plug_core::context::gui::GuiContext;
@@ -109,9 +109,7 @@ pub(super) fn restore(mut state: State, params: &SprungParams, host: &GuiContext
             return;
         }
     }
-    let before = positions(params);
-    params.load(state.into());
-    announce(params, host, &before);
+    load(state, params, host);
 }
 
 /// Whether two states sound the same, and are called the same.

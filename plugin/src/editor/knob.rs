@@ -3,7 +3,7 @@
 use super::controls::{Controls, Hint, Typing};
 use super::knob_face::{self, Face};
 use super::routes;
-use super::text::line;
+use super::text::{line, name_field};
 use super::theme::{KNOB, SMALL, font};
 use egui::accesskit::{Action, ActionData};
 use egui::{
@@ -225,11 +225,7 @@ fn typed(ui: &mut Ui, rect: Rect, info: &'static ParamInfo, controls: &mut Contr
     let place = rect.expand2(vec2(6.0, 2.0));
     ui.painter().rect_filled(place, 3.0, controls.palette.raised);
     let response = ui.put(place, edit.frame(egui::Frame::NONE).align(Align2::CENTER_CENTER));
-    response.widget_info(|| {
-        let mut about = WidgetInfo::text_edit(true, "", &typing.text, "");
-        about.label = Some(info.name.to_owned());
-        about
-    });
+    name_field(&response, info.name, &typing.text);
     if !typing.is_open {
         typing.is_open = true;
         response.request_focus();

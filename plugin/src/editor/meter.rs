@@ -35,6 +35,10 @@ pub(super) fn paint(painter: &Painter, rect: Rect, levels: [f32; 2], palette: &P
         painter.rect_filled(bar, 3.0, palette.raised);
         let colour = if level > 1.0 { palette.warning } else { palette.level };
         painter.rect_filled(bar.with_max_x(bar.left() + bar.width() * level.clamp(0.0, 1.0)), 3.0, colour);
+        if level > 1.0 {
+            // Not by colour alone: without red and green, both are alike.
+            painter.rect_filled(bar.with_min_x(bar.right() - 8.0), 0.0, palette.text);
+        }
     }
 }
 

@@ -3,47 +3,75 @@
 //! | module | holds |
 //! |---|---|
 //! | `window` | an open window: what it shows, and what the user asks for |
-//! | `theme`, `layout` | the table of colours and measures; where the parts are |
+//! | `theme`, `fonts`, `layout` | the table of colours and measures; the fonts; where the parts are |
 //! | `controls`, `gestures`, `history` | what every widget needs; changes that hosts see; undo and redo |
-//! | `header`, `sections`, `routes`, `curves`, `status` | the parts of the window; menus of routes; small pictures in sections |
-//! | `modes`, `modes_face`, `mode_axes`, `snap` | the modes: what the user does with them, their picture, its axes, series of ratios |
-//! | `motion`, `piano`, `meter` | phase plane and waveform; the keyboard; levels |
+//! | `header`, `sections`, `routes`, `curves`, `outlines`, `status` | the parts of the window; menus of routes; small pictures in sections |
+//! | `modes`, `modes_face`, `mode_axes`, `mode_table`, `snap` | the modes: what the user does with them, their picture, its axes, their table, series of ratios |
+//! | `motion`, `phase`, `scope`, `spectrum`, `ringing` | what moves: the phase plane; waveform and spectrum; how the modes ring down |
+//! | `body_view`, `body_face`, `body_shape`, `body_form` | the body that swings: what the user does with it, its picture, the shapes of its modes, its form |
+//! | `audition` | a key that the window holds by itself, so that a change is heard |
+//! | `piano`, `meter` | the keyboard; levels |
+//! | `pages`, `kit_page`, `tuning_page`, `voices_panel`, `key_grid` | the tabs and their pages: a kit's keys, the tuning, the voices; all keys as a grid |
+//! | `manual`, `manual_text` | the manual over the window; its pages taken apart |
+//! | `drops` | files that are dropped on the window |
 //! | `browser`, `details`, `star`, `sounds`, `files` | the page on which sounds are found and saved; the sounds that there are |
 //! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets, and what they are painted with |
+//! | `variation` | other sounds by chance, with locks |
 //! | `focus` | who has the keyboard: the host, unless the user types |
 //! | `shown` | the sound that is shown |
 
+mod audition;
+mod body_face;
+mod body_form;
+mod body_shape;
+mod body_view;
 mod browser;
 mod buttons;
 mod choice;
 mod controls;
 mod curves;
 mod details;
+mod drops;
 mod files;
 mod focus;
+mod fonts;
 mod gestures;
 mod header;
 mod history;
+mod key_grid;
+mod kit_page;
 mod knob;
 mod knob_face;
 mod layout;
+mod manual;
+mod manual_text;
 mod meter;
 mod mode_axes;
+mod mode_table;
 mod modes;
 mod modes_face;
 mod motion;
+mod outlines;
+mod pages;
+mod phase;
 mod piano;
+mod ringing;
 mod routes;
+mod scope;
 mod sections;
 mod shown;
 mod snap;
 mod sounds;
+mod spectrum;
 mod star;
 mod status;
 #[cfg(test)]
 mod tests;
 mod text;
 pub(crate) mod theme;
+mod tuning_page;
+mod variation;
+mod voices_panel;
 mod window;
 
 use crate::params::SprungParams;

@@ -1,26 +1,25 @@
 //! The modes of the sound: what they are, what they do now, and how to change them.
 
+use super::audition::{Audition, VELOCITY};
 use super::buttons::{Look, button};
 use super::controls::{Controls, Hint};
+use super::gestures::touch;
 use super::mode_axes::Axes;
+use super::mode_table::{clamped, phases, replace};
 use super::modes_face::{self, Face};
 use super::shown::Shown;
 use super::snap::Snap;
 use super::text::line;
 use super::theme::{PADDING, SMALL, TITLE_HEIGHT};
-use crate::link::{Link, Touch};
+use crate::link::Link;
 use crate::loaded::Loaded;
-use crate::state::State;
 use egui::{Align2, CursorIcon, Id, Popup, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 use sprung::params::Param;
-use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
-use sprung::preset::Playable;
+use sprung::patch::{MAX_MODES, Mode, Patch};
 use std::sync::Arc;
 
 /// How far from a mode's circle it can be grabbed, in pixels.
 const REACH: f32 = 14.0;
-/// How often the sound is struck while a mode is dragged, in seconds.
-const STRIKES: f64 = 0.25;
 /// The shortest time between two changes of the sound while a mode is dragged, in seconds.
 const CHANGES: f64 = 0.04;
 
@@ -45,17 +44,6 @@ struct Drag {
     /// The sound that has them. If another one is loaded, the drag is over.
     loaded: Arc<Loaded>,
     changed: f64,
-    struck: f64,
-    /// The key that is down.
-    key: Option<u8>,
-}
-
-impl Drag {
-    fn release(&mut self, link: &Link) {
-        if let Some(key) = self.key.take() {
-            link.play(Touch::Up { key });
-        }
-    }
 }
 
 /// What the user does with the modes.
@@ -66,6 +54,7 @@ pub(super) struct ModesView {
     snap: Snap,
     /// The mode that was touched last.
     selected: Option<usize>,
+    audition: Audition,
 }
 
 impl ModesView {
@@ -74,25 +63,25 @@ impl ModesView {
         self.selected
     }
 
-    /// Gives up the drag, if there is one.
+    /// Gives up the drag, if there is one, and lets go of the key: a double click holds it as well.
     pub(super) fn cancel(&mut self, controls: &mut Controls) {
         if self.drag.is_some() {
-            self.release(controls.params.link());
             controls.history.cancel();
         }
+        self.release(controls.params.link());
     }
 
     /// Ends the drag, if there is one, and lets go of its key.
     pub(super) fn release(&mut self, link: &Link) {
-        if let Some(mut drag) = self.drag.take() {
-            drag.release(link);
-        }
+        self.drag = None;
+        self.audition.release(link);
     }
 
     /// Shows the modes of a sound, which is struck on its home key. Those of kits cannot be changed.
     pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, energies: &[f32], controls: &mut Controls) {
         let palette = controls.palette;
         let (patch, is_editable) = (shown.patch(), shown.preset().is_some());
+        self.audition.follow_time(ui.input(|input| input.time), controls.params.link());
         let is_other = |drag: &Drag| !Arc::ptr_eq(&drag.loaded, &controls.params.loaded());
         if !is_editable || self.drag.as_ref().is_some_and(is_other) {
             self.cancel(controls);
@@ -175,8 +164,6 @@ impl ModesView {
                 modes,
                 loaded: shown.loaded().clone(),
                 changed: now,
-                struck: now - STRIKES,
-                key: None,
             });
         }
         if let Some(drag) = &mut self.drag {
@@ -190,31 +177,29 @@ impl ModesView {
                 }
                 drag.written.clone_from(&drag.modes);
             }
-            if now - drag.struck >= STRIKES && !is_over {
-                drag.struck = now;
-                let link = controls.params.link();
-                drag.release(link);
-                drag.key = Some(home);
-                link.play(strike(home));
+            if !is_over {
+                self.audition.repeat(home, now, controls.params.link());
             }
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
             ui.ctx().request_repaint();
             if is_over {
                 let mode = drag.modes[drag.mode];
-                drag.release(controls.params.link());
+                self.audition.release(controls.params.link());
                 controls.history.end(format!("mode {:.3}", mode.ratio), controls.params);
+                touch(controls.params, controls.host);
                 self.drag = None;
             }
         }
         if response.double_clicked()
             && let Some(pointer) = response.interact_pointer_pos()
         {
-            self.add_or_remove(pointer, axes, patch, home, controls);
+            self.add_or_remove(pointer, axes, patch, controls);
+            self.audition.strike(home, VELOCITY, now, controls.params.link());
         }
     }
 
     /// Removes the mode at a place, or adds one where there is none.
-    fn add_or_remove(&mut self, pointer: Pos2, axes: &Axes, patch: &Patch, home: u8, controls: &mut Controls) {
+    fn add_or_remove(&mut self, pointer: Pos2, axes: &Axes, patch: &Patch, controls: &mut Controls) {
         let (mut modes, mut phases) = (clamped(patch.modes.as_slice()), phases(&patch.modes));
         let name = match nearest(&modes, axes, pointer) {
             // A body has at least one.
@@ -243,8 +228,7 @@ impl ModesView {
         controls.history.begin(controls.params);
         replace(&modes, &phases, controls);
         controls.history.end(name, controls.params);
-        controls.params.link().play(strike(home));
-        controls.params.link().play(Touch::Up { key: home });
+        touch(controls.params, controls.host);
     }
 }
 
@@ -275,34 +259,6 @@ fn moved(drag: &Drag, axes: &Axes, snap: Snap) -> Mode {
         Aspect::Pan => mode.pan += moved.x / 60.0,
     }
     mode.clamped()
-}
-
-/// The modes as a preset file can say them: those of two joined bodies may decay faster.
-fn clamped(modes: &[Mode]) -> Vec<Mode> {
-    modes.iter().map(Mode::clamped).collect()
-}
-
-/// The phase of each mode; empty if the table has none.
-fn phases(table: &ModeTable) -> Vec<f32> {
-    let modes = if table.has_phases() { table.as_slice().len() } else { 0 };
-    (0..modes).map(|mode| table.phase(mode)).collect()
-}
-
-/// Gives the sound another table of modes, with a phase for each or none. Returns what was loaded; nothing if it is a
-/// kit.
-fn replace(modes: &[Mode], phases: &[f32], controls: &Controls) -> Option<Arc<Loaded>> {
-    let mut state = controls.params.state();
-    let Playable::Preset(preset) = &mut state.playable else { return None };
-    preset.patch.modes = ModeTable::new(modes).with_phases(phases);
-    // The knobs stay where they are.
-    let positions = state.positions;
-    let state = State { positions, ..state };
-    Some(controls.params.load(state.into()))
-}
-
-/// The touch that lets a changed mode be heard.
-fn strike(home: u8) -> Touch {
-    Touch::Down { key: home, velocity: 0.7 }
 }
 
 fn describe((place, mode): (usize, &Mode), decay: f32, is_editable: bool) -> Option<Hint> {

@@ -1,60 +1,77 @@
-//! What moves: one mass in slow motion on its phase plane, or the waveform.
+//! What moves: one mass in slow motion on its phase plane, the body, the waveform with its spectrum, or how the modes ring down.
 
+use super::audition::Audition;
+use super::body_view::BodyView;
 use super::buttons::tab;
 use super::controls::Controls;
+use super::phase::Phase;
+use super::ringing::Ringing;
+use super::scope::{self, SHOWN};
+use super::shown::Shown;
 use super::text::line;
-use super::theme::{PADDING, Palette, SMALL, TITLE_HEIGHT};
-use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, pos2, vec2};
-use sprung::engine::Telemetry;
-use sprung::engine::scope::SCOPE_FRAMES;
-use std::collections::VecDeque;
-use std::f32::consts::TAU;
-
-/// Turns per second of the mass on its phase plane: that of slow motion, since the true motion cannot be seen.
-const TURNS: f32 = 1.0;
-/// How many points of its way are shown.
-const TRAIL: usize = 420;
-/// Frames of the waveform that are shown: half of those kept, so that it can begin at a zero.
-const SHOWN: usize = SCOPE_FRAMES / 2;
+use super::theme::{PADDING, SMALL, TITLE_HEIGHT};
+use crate::link::Link;
+use egui::{Align2, Rect, Ui, pos2};
+use std::time::Duration;
 
 #[derive(Clone, Copy, PartialEq, Default)]
 enum Picture {
     #[default]
     Phase,
+    Body,
     Scope,
+    Ringing,
 }
+
+/// The pictures with their names and the widths of their tabs.
+const PICTURES: [(Picture, &str, f32); 4] = [
+    (Picture::Phase, "Phase", 44.0),
+    (Picture::Body, "Body", 40.0),
+    (Picture::Scope, "Scope", 44.0),
+    (Picture::Ringing, "Ringing", 52.0),
+];
 
 /// The pictures' memory.
 #[derive(Default)]
 pub(super) struct Motion {
     picture: Picture,
-    /// In radians.
-    angle: f32,
-    /// Points of the unit disk, the last one at the end.
-    trail: VecDeque<Pos2>,
-    /// The greatest energy since the mass was at rest.
-    greatest: f32,
-    mode: usize,
+    phase: Phase,
+    body: BodyView,
+    ringing: Ringing,
+    /// The key that the pictures hold.
+    audition: Audition,
 }
 
 impl Motion {
-    /// Shows the picture; `selected` is the mode whose mass is shown, or that with the most energy.
+    /// Gives up what the user does with a picture.
+    pub(super) fn cancel(&mut self, controls: &mut Controls) {
+        self.phase.cancel();
+        self.body.cancel(controls);
+        self.release(controls.params.link());
+    }
+
+    /// Lets go of the key that is held.
+    pub(super) fn release(&mut self, link: &Link) {
+        self.audition.release(link);
+    }
+
+    /// Shows the picture of the energies of the modes; `selected` is the one that was touched last.
     pub(super) fn show(
         &mut self,
         ui: &Ui,
         rect: Rect,
-        energies: &[f32],
-        selected: Option<usize>,
-        telemetry: &Telemetry,
-        controls: &Controls,
+        shown: &Shown,
+        (energies, selected): (&[f32], Option<usize>),
+        controls: &mut Controls,
     ) {
         let palette = controls.palette;
         palette.paint_panel(ui.painter(), rect);
         let mut left = rect.left() + PADDING;
-        for (picture, name, width) in [(Picture::Phase, "Phase", 48.0), (Picture::Scope, "Scope", 48.0)] {
-            let place = Rect::from_min_size(pos2(left, rect.top() + 2.0), vec2(width, TITLE_HEIGHT));
+        for (picture, name, width) in PICTURES {
+            let place = Rect::from_min_size(pos2(left, rect.top() + 2.0), egui::vec2(width, TITLE_HEIGHT));
             left = place.right() + 4.0;
             if tab(ui, place, name, picture == self.picture, palette).clicked() {
+                self.cancel(controls);
                 self.picture = picture;
             }
         }
@@ -63,88 +80,28 @@ impl Motion {
             pos2(rect.right() - PADDING, rect.top() + 2.0 + TITLE_HEIGHT),
         );
         let area = Rect::from_min_max(pos2(rect.left(), rect.top() + TITLE_HEIGHT + 4.0), rect.max).shrink(PADDING);
+        let (now, link) = (ui.input(|input| input.time), controls.params.link());
+        self.ringing.note(now, energies);
+        self.audition.follow_time(now, link);
+        let audition = &mut self.audition;
         let text = match self.picture {
-            Picture::Phase => {
-                self.advance(ui, energies, selected);
-                self.phase(ui.painter(), area, palette);
-                format!("mode {} in slow motion, {TURNS} turn a second", self.mode + 1)
-            }
+            Picture::Phase => self.phase.show(ui, area, (energies, selected), shown, audition, controls),
+            Picture::Body => self.body.show(ui, area, shown, energies, audition, controls),
             Picture::Scope => {
-                let rate = controls.params.link().sample_rate();
-                scope(ui.painter(), area, &telemetry.scope().read(), palette);
+                let rate = link.sample_rate();
+                scope::paint(ui.painter(), area, &link.telemetry.scope().read(), rate, palette);
                 if rate == 0 { String::new() } else { format!("{:.0} ms", SHOWN as f32 * 1000.0 / rate as f32) }
             }
+            Picture::Ringing => {
+                self.ringing.paint(ui.painter(), area, selected, palette);
+                "each mode’s level".to_owned()
+            }
         };
-        line(ui.painter(), caption, Align2::RIGHT_CENTER, &text, SMALL, palette.muted);
-    }
-
-    /// Moves the mass on.
-    fn advance(&mut self, ui: &Ui, energies: &[f32], selected: Option<usize>) {
-        let energy = |mode: usize| energies.get(mode).copied().unwrap_or(0.0);
-        let loudest = (0..energies.len()).max_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap_or(0);
-        let mode = selected.filter(|mode| *mode < energies.len()).unwrap_or(loudest);
-        // The loudest one is followed only when the other has almost died away, so that the picture does not jump.
-        if mode != self.mode && (selected.is_some() || energy(self.mode) < 0.01 * energy(mode)) {
-            (self.greatest, self.mode) = (0.0, mode);
-            self.trail.clear();
+        if let Some(rest) = self.audition.rest(now) {
+            ui.ctx().request_repaint_after(Duration::from_secs_f64(rest));
         }
-        let now = energy(self.mode);
-        if now <= 1e-12 {
-            self.greatest = 0.0;
-            self.trail.pop_front();
-            return;
+        if caption.width() >= 48.0 {
+            line(ui.painter(), caption, Align2::RIGHT_CENTER, &text, SMALL, palette.muted);
         }
-        self.greatest = self.greatest.max(now);
-        let radius = (now / self.greatest).sqrt();
-        let turned = TAU * TURNS * ui.input(|input| input.stable_dt.min(0.1));
-        // Points between two passes, so that the way is round.
-        for step in 1..=4 {
-            let along = Vec2::angled(-self.angle - turned * step as f32 / 4.0);
-            self.trail.push_back((along * radius).to_pos2());
-        }
-        self.angle = (self.angle + turned) % TAU;
-        while self.trail.len() > TRAIL {
-            self.trail.pop_front();
-        }
-    }
-
-    fn phase(&self, painter: &Painter, rect: Rect, palette: &Palette) {
-        let (centre, radius) = (rect.center(), rect.width().min(rect.height()) / 2.0 - 4.0);
-        let grid = Stroke::new(1.0, palette.line);
-        painter.hline(rect.x_range(), painter.round_to_pixel_center(centre.y), grid);
-        painter.vline(painter.round_to_pixel_center(centre.x), rect.y_range(), grid);
-        painter.circle_stroke(centre, radius, grid);
-        line(painter, rect.translate(vec2(-2.0, -8.0)), Align2::RIGHT_CENTER, "x", SMALL, palette.muted);
-        line(painter, rect.translate(vec2(8.0, 0.0)), Align2::CENTER_TOP, "v", SMALL, palette.muted);
-        let place = |point: &Pos2| centre + point.to_vec2() * radius;
-        let points: Vec<Pos2> = self.trail.iter().map(place).collect();
-        let count = points.len().max(1) as f32;
-        for (number, pair) in points.windows(2).enumerate() {
-            let age = number as f32 / count;
-            let colour = palette.accent.gamma_multiply(0.08 + 0.9 * age * age);
-            painter.line_segment([pair[0], pair[1]], Stroke::new(1.6, colour));
-        }
-        let mass = points.last().copied().unwrap_or(centre);
-        painter.circle(mass, 7.0, palette.accent, Stroke::new(1.5, palette.panel));
-    }
-}
-
-fn scope(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], palette: &Palette) {
-    let grid = Stroke::new(1.0, palette.line);
-    painter.hline(rect.x_range(), painter.round_to_pixel_center(rect.center().y), grid);
-    painter.rect_stroke(rect, 2.0, grid, egui::StrokeKind::Inside);
-    // From a rising zero on, so that the picture of a steady tone stands still.
-    let start = (1..SHOWN).find(|frame| frames[frame - 1] < 0.0 && frames[*frame] >= 0.0).unwrap_or(0);
-    let shown = &frames[start..start + SHOWN];
-    let peak = shown.iter().fold(0.0_f32, |peak, frame| peak.max(frame.abs()));
-    let scale = 0.9 * rect.height() / 2.0 / peak.clamp(0.01, 1.0).max(peak);
-    let point = |(number, frame): (usize, &f32)| {
-        let x = rect.left() + rect.width() * number as f32 / (SHOWN - 1) as f32;
-        pos2(x, (rect.center().y - frame * scale).clamp(rect.top(), rect.bottom()))
-    };
-    painter.add(Shape::line(shown.iter().enumerate().map(point).collect(), Stroke::new(1.5, palette.accent)));
-    if peak > 1e-6 {
-        let text = format!("peak {:.1} dBFS", sprung::units::db_from_gain(f64::from(peak)));
-        line(painter, rect.shrink(4.0), Align2::RIGHT_TOP, &text, SMALL, palette.muted);
     }
 }

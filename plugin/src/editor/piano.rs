@@ -89,9 +89,7 @@ impl Piano {
         let touched = touched.and_then(|place| keys.at(place));
         let link = controls.params.link();
         if touched.map(|(key, _)| key) != self.held {
-            if let Some(key) = self.held.take() {
-                link.play(Touch::Up { key });
-            }
+            self.release(link);
             if let Some((key, velocity)) = touched {
                 self.held = Some(key);
                 link.play(Touch::Down { key, velocity });

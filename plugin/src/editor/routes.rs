@@ -1,6 +1,7 @@
 //! Routes: their names, and the menus that make, change and remove them.
 
 use super::controls::Controls;
+use super::gestures::load;
 use crate::loaded::positions_of;
 use crate::state::State;
 use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
@@ -14,9 +15,7 @@ const AMOUNT: f32 = 25.0;
 
 /// The name of a source for people, of a macro the preset's own.
 fn source_name(source: Source, guide: &Guide) -> String {
-    let number = source.id().strip_prefix("macro").and_then(|number| number.parse::<usize>().ok());
-    let own = number.and_then(|number| guide.macros.get(number - 1)).filter(|name| !name.is_empty());
-    own.cloned().unwrap_or_else(|| source.id().replace('_', " "))
+    guide.macro_name(source.id()).map_or_else(|| source.id().replace('_', " "), str::to_owned)
 }
 
 /// `wheel › Vibrato`, or the number of a place without a route.
@@ -142,8 +141,7 @@ pub(super) fn change(place: usize, route: Option<Route>, amount: Option<f32>, co
     }
     let values = patch.values;
     let name = route.map_or("remove a route".to_owned(), |route| format!("route to {}", route.destination.info().name));
-    let before = super::gestures::positions(controls.params);
-    controls.params.load(State { playable: Playable::Preset(preset), values, positions, ..state }.into());
-    super::gestures::announce(controls.params, controls.host, &before);
+    let state = State { playable: Playable::Preset(preset), values, positions, ..state };
+    load(state, controls.params, controls.host);
     controls.history.end(name, controls.params);
 }

@@ -11,12 +11,13 @@ use sprung::patch::routes::place_of_amount;
 use sprung::preset::Guide;
 
 /// Pages with the sections on them, in the order in which sound is made. The last one has all other sections too.
-const PAGES: [(&str, &[&str]); 5] = [
+const PAGES: [(&str, &[&str]); 6] = [
     ("Exciters", &["Mallet", "Pluck", "Noise", "Bow", "Input", "Strike"]),
-    ("Body, Pitch, Voices", &["Body", "Pitch", "Voices"]),
+    ("Body, Pitch", &["Body", "Pitch"]),
     ("Modulation", &["Macros", "LFO 1", "LFO 2", "LFO 3", "Envelope 1", "Envelope 2"]),
     ("Routes", &["Routes"]),
-    ("Space, Output", &["Strings", "Tremolo", "Drive", "Tone", "Space", "Control", "Output"]),
+    ("Space, Output", &["Strings", "Tremolo", "Drive", "Tone", "Space", "Output"]),
+    ("Voices", &["Voices", "Control"]),
 ];
 
 /// The names of the pages.
@@ -36,10 +37,8 @@ fn sections(page: usize) -> impl Iterator<Item = Section> {
 
 /// The name of a parameter within its section: without the section's name, and for a macro, the preset's name for it.
 fn short_name(info: &ParamInfo, guide: &Guide) -> String {
-    if let Some(place) = info.id.strip_prefix("macro").and_then(|number| number.parse::<usize>().ok())
-        && let Some(name) = guide.macros.get(place - 1).filter(|name| !name.is_empty())
-    {
-        return name.clone();
+    if let Some(name) = guide.macro_name(info.id) {
+        return name.to_owned();
     }
     let rest = info.name.strip_prefix(info.section).unwrap_or(info.name).trim();
     let mut letters = rest.chars();
@@ -88,6 +87,16 @@ pub(super) fn show(
                 let left = panel.right() - PADDING - free as f32 * cell_width;
                 let place = Rect::from_min_size(pos2(left, row), vec2(free as f32 * cell_width, KNOB + 14.0));
                 curves::paint(ui.painter(), place.shrink2(vec2(6.0, 2.0)), section, controls);
+            } else {
+                // Or a small one beside the title.
+                let width = (0.45 * size.x).min(76.0);
+                let corner = panel.right_top() + vec2(-width - PADDING, 4.0);
+                curves::paint(
+                    ui.painter(),
+                    Rect::from_min_size(corner, vec2(width, TITLE_HEIGHT - 6.0)),
+                    section,
+                    controls,
+                );
             }
             for (place, info) in section.iter().enumerate() {
                 let (column, row) = (place % columns(section), place / columns(section));

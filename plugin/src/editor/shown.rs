@@ -3,7 +3,8 @@
 use crate::loaded::Loaded;
 use crate::params::SprungParams;
 use sprung::patch::Patch;
-use sprung::preset::{Guide, Playable, Preset};
+use sprung::preset::{Guide, OwnTuning, Playable, Preset};
+use sprung::sound::Pad;
 use std::sync::Arc;
 
 /// The loaded preset or kit. Values of parameters are those that were loaded: the present ones are the knobs'.
@@ -47,6 +48,23 @@ impl Shown {
 
     pub(super) fn guide(&self) -> &Guide {
         &self.guide
+    }
+
+    /// The name of a pad: its own, or that of its sound.
+    pub(super) fn pad_name(&self, pad: &Pad) -> String {
+        let of_sound = || match &self.playable {
+            Playable::Preset(preset) => preset.name.clone(),
+            Playable::Kit(kit) => kit.sounds.get(pad.sound).map_or(String::new(), |(_, preset)| preset.name.clone()),
+        };
+        if pad.name.is_empty() { of_sound() } else { pad.name.clone() }
+    }
+
+    /// The sound's own tuning, of a kit that of its first sound that has one.
+    pub(super) fn tuning(&self) -> Option<&OwnTuning> {
+        match &self.playable {
+            Playable::Preset(preset) => preset.tuning.as_ref(),
+            Playable::Kit(kit) => kit.sounds.iter().find_map(|(_, preset)| preset.tuning.as_ref()),
+        }
     }
 
     /// The patch, of a kit that of its first sound.

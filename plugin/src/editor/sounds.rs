@@ -1,9 +1,10 @@
 //! The sounds that one can choose from: those of the factory and the user's own, by family, words and favourites.
 
+use sprung::preset::catalogue::{Catalogue, Listed};
 use sprung::preset::library::Library;
-use sprung::preset::{Family, KitPreset, Playable, Preset};
+use sprung::preset::{Family, Playable};
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Which sounds are listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,64 +39,10 @@ impl Shelf {
     }
 }
 
-/// A sound of the list.
-#[derive(Clone, Debug)]
-pub(super) struct Sound {
-    pub(super) playable: Playable,
-    /// The file, of the user's own.
-    pub(super) path: Option<PathBuf>,
-    /// What words are looked for in, in lower case.
-    text: String,
-}
-
-impl Sound {
-    fn new(playable: Playable, path: Option<PathBuf>) -> Self {
-        let (name, tags, comment) = match &playable {
-            Playable::Preset(preset) => (&preset.name, &preset.tags, &preset.comment),
-            Playable::Kit(kit) => (&kit.name, &kit.tags, &kit.comment),
-        };
-        let mut text = format!("{name} {} {comment} ", tags.join(" ")).to_lowercase();
-        text += &family(&playable).map_or(String::new(), |family| family.name().replace('_', " "));
-        Self { playable, path, text }
-    }
-
-    pub(super) fn name(&self) -> &str {
-        self.playable.name()
-    }
-
-    pub(super) fn tags(&self) -> &[String] {
-        match &self.playable {
-            Playable::Preset(preset) => &preset.tags,
-            Playable::Kit(kit) => &kit.tags,
-        }
-    }
-
-    pub(super) fn author(&self) -> &str {
-        match &self.playable {
-            Playable::Preset(preset) => &preset.author,
-            Playable::Kit(kit) => &kit.author,
-        }
-    }
-
-    pub(super) fn comment(&self) -> &str {
-        match &self.playable {
-            Playable::Preset(preset) => &preset.comment,
-            Playable::Kit(kit) => &kit.comment,
-        }
-    }
-}
-
-fn family(playable: &Playable) -> Option<Family> {
-    match playable {
-        Playable::Preset(preset) => preset.guide.family,
-        Playable::Kit(_) => None,
-    }
-}
-
 /// All sounds.
 pub(super) struct Sounds {
     pub(super) library: Option<Library>,
-    sounds: Vec<Sound>,
+    catalogue: Catalogue,
     favourites: BTreeSet<String>,
     /// Files of the user that could not be read, and why.
     pub(super) broken: Vec<String>,
@@ -104,44 +51,31 @@ pub(super) struct Sounds {
 impl Sounds {
     /// Reads the factory's sounds and the user's.
     pub(super) fn read(library: Option<Library>) -> Self {
-        let presets = Preset::factory().iter().cloned().map(Playable::Preset);
-        let kits = KitPreset::factory().iter().cloned().map(Playable::Kit);
-        let mut sounds: Vec<Sound> = presets.chain(kits).map(|playable| Sound::new(playable, None)).collect();
-        let mut broken = Vec::new();
-        for entry in library.iter().flat_map(Library::entries) {
-            match entry.playable {
-                Ok(playable) => sounds.push(Sound::new(playable, Some(entry.path))),
-                Err(error) => broken.push(error.to_string()),
-            }
-        }
+        let catalogue = Catalogue::read(library.as_ref());
+        let mut broken: Vec<String> = catalogue.broken.iter().map(ToString::to_string).collect();
         let favourites = library.as_ref().map(Library::favourites).transpose().unwrap_or_else(|error| {
             broken.push(error.to_string());
             None
         });
         let favourites = favourites.unwrap_or_default();
-        Self { library, sounds, favourites, broken }
+        Self { library, catalogue, favourites, broken }
     }
 
-    pub(super) fn is_favourite(&self, sound: &Sound) -> bool {
+    pub(super) fn is_favourite(&self, sound: &Listed) -> bool {
         self.favourites.contains(sound.name())
     }
 
     /// The sounds of a shelf that have all words: first those that have them in their names.
-    pub(super) fn find<'a>(&'a self, shelf: Shelf, words: &str) -> Vec<&'a Sound> {
-        let words: Vec<String> = words.split_whitespace().map(str::to_lowercase).collect();
-        let is_on = |sound: &Sound| match shelf {
+    pub(super) fn find(&self, shelf: Shelf, words: &str) -> Vec<Arc<Listed>> {
+        let is_on = |sound: &Listed| match shelf {
             Shelf::All => true,
             Shelf::Favourites => self.is_favourite(sound),
             Shelf::Own => sound.path.is_some(),
             Shelf::Kits => matches!(sound.playable, Playable::Kit(_)),
-            Shelf::Family(wanted) => family(&sound.playable) == Some(wanted),
+            Shelf::Family(wanted) => sound.family() == Some(wanted),
         };
-        let has_words = |sound: &Sound| words.iter().all(|word| sound.text.contains(word.as_str()));
-        let mut found: Vec<&Sound> = self.sounds.iter().filter(|sound| is_on(sound) && has_words(sound)).collect();
-        found.sort_by_cached_key(|sound| {
-            let name = sound.name().to_lowercase();
-            !words.iter().all(|word| name.contains(word.as_str()))
-        });
+        let mut found = self.catalogue.find(words);
+        found.retain(|sound| is_on(sound));
         found
     }
 
@@ -159,6 +93,7 @@ impl Sounds {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sprung::preset::Preset;
 
     #[test]
     fn sounds_are_found_by_shelf_words_and_favourites() {

@@ -4,6 +4,50 @@ use super::controls::Hint;
 use super::text::{line, width};
 use super::theme::{Palette, SMALL};
 use egui::{Align2, Rect, Ui, pos2};
+use sprung::engine::Telemetry;
+use sprung::text::counted;
+
+/// How often the load is computed, in seconds.
+const INTERVAL: f64 = 0.5;
+
+/// The load of the audio thread over the last half second.
+#[derive(Default)]
+pub(super) struct Load {
+    /// When it was computed last, and the frames played and the seconds spent by then.
+    last: Option<(f64, u64, f64)>,
+    share: Option<f64>,
+}
+
+impl Load {
+    /// The part of its time for which the audio thread is busy; none if it plays nothing, or has not been watched for long
+    /// enough.
+    pub(super) fn share(&mut self, now: f64, telemetry: &Telemetry, sample_rate: u32) -> Option<f64> {
+        if let Some((time, _, _)) = self.last
+            && (time..time + INTERVAL).contains(&now)
+        {
+            return self.share;
+        }
+        let load = telemetry.load();
+        let busy = load.mean_share * load.frames as f64;
+        self.share = self.last.and_then(|(_, frames, before)| {
+            let played = load.frames.checked_sub(frames).filter(|played| *played > 0 && sample_rate > 0)?;
+            Some(((busy - before) / played as f64).max(0.0))
+        });
+        self.last = Some((now, load.frames, busy));
+        self.share
+    }
+}
+
+/// What the engine does.
+pub(super) fn engine(voices: u32, load: Option<f64>, sample_rate: u32) -> String {
+    match sample_rate {
+        0 => "not playing".to_owned(),
+        rate => {
+            let load = load.map_or(String::new(), |load| format!("   {:.1} % CPU", load * 100.0));
+            format!("{}{load}   {} kHz", counted(voices as usize, "voice"), f64::from(rate) / 1000.0)
+        }
+    }
+}
 
 /// Shows the line. A message stays until the next one; a hint hides it as long as the pointer is there.
 pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, right: &str, palette: &Palette) {
@@ -20,5 +64,29 @@ pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, righ
         None => {
             line(painter, left, Align2::LEFT_CENTER, message, SMALL, palette.warning);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::engine::TelemetryWriter;
+    use std::sync::Arc;
+    use std::time::Duration;
+
+    #[test]
+    fn the_load_is_that_of_the_last_half_second() {
+        let telemetry = Arc::new(Telemetry::default());
+        let writer = TelemetryWriter::new(telemetry.clone(), 48_000.0);
+        let mut load = Load::default();
+        assert_eq!(load.share(0.0, &telemetry, 48_000), None);
+        writer.note_block(480, Duration::from_millis(5));
+        assert_eq!(load.share(0.4, &telemetry, 48_000), None, "not yet");
+        let share = load.share(0.5, &telemetry, 48_000).unwrap();
+        assert!((share - 0.5).abs() < 1e-6, "{share}");
+        writer.note_block(480, Duration::from_millis(1));
+        assert_eq!(load.share(0.9, &telemetry, 48_000), Some(share));
+        assert!((load.share(1.0, &telemetry, 48_000).unwrap() - 0.1).abs() < 1e-6);
+        assert_eq!(load.share(2.0, &telemetry, 48_000), None, "nothing was played");
     }
 }

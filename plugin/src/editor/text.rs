@@ -2,7 +2,7 @@
 
 use super::theme::font;
 use egui::text::{LayoutJob, TextWrapping};
-use egui::{Align2, Color32, Painter, Rect};
+use egui::{Align2, Color32, Painter, Rect, Response, WidgetInfo};
 
 /// The size of text that would be too wide.
 const SHRINK: f32 = 0.9;
@@ -29,4 +29,13 @@ pub(super) fn paragraph(painter: &Painter, rect: Rect, text: &str, size: f32, co
     let height = galley.size().y;
     painter.with_clip_rect(rect.intersect(painter.clip_rect())).galley(rect.min, galley, colour);
     height
+}
+
+/// Names a text field for accessibility, and says what is in it.
+pub(super) fn name_field(response: &Response, name: &str, text: &str) {
+    response.widget_info(|| {
+        let mut about = WidgetInfo::text_edit(true, "", text, "");
+        about.label = Some(name.to_owned());
+        about
+    });
 }

@@ -1,35 +1,46 @@
 //! The contents of the window.
 
 use super::browser::Browser;
-use super::buttons::tab;
 use super::controls::{Controls, Hands};
-use super::files::{load, summary};
+use super::drops;
+use super::files::{load, neighbour, summary};
 use super::focus::Focus;
 use super::header::{self, Header, Wish};
 use super::history::{History, restore};
 use super::layout::Layout;
+use super::manual::Manual;
 use super::meter::Meter;
 use super::modes::ModesView;
 use super::motion::Motion;
+use super::pages::{self, Pages};
 use super::piano::Piano;
 use super::shown::Shown;
-use super::theme::{GAP, LEAST_SIZE, Theme};
-use super::{sections, status};
+use super::status::Load;
+use super::theme::Theme;
+use super::variation::{Asked, Variation};
+use super::{fonts, status};
 use crate::params::SprungParams;
-use crate::state::{State, View, WINDOW_RANGE};
-use egui::{Key, Rect, Ui, pos2, vec2};
+use crate::state::State;
+use egui::{Key, Ui};
 use nice_plug_core::context::gui::GuiContext;
-use nice_plug_egui::baseview::{HandlerError, WindowSize};
-use nice_plug_egui::resizable_window::ResizableWindow;
-use nice_plug_egui::{Frame, KeyCapture, NiceEguiApp};
+use sprung::preset::Playable;
 use sprung::preset::library::Library;
-use sprung::preset::{Playable, Preset};
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::collections::BTreeSet;
+use std::hash::{BuildHasher as _, RandomState};
 use std::sync::Arc;
 use std::time::Duration;
 
+mod shell;
+
 /// Between two pictures while something moves.
 const FRAME: Duration = Duration::from_millis(16);
+
+/// What is shown over modes and parameters.
+#[derive(Clone, Copy, PartialEq)]
+enum Over {
+    Browser,
+    Manual,
+}
 
 /// An open window.
 pub(super) struct Window {
@@ -43,10 +54,14 @@ pub(super) struct Window {
     motion: Motion,
     piano: Piano,
     meter: Meter,
+    load: Load,
+    /// Sections that variations leave as they are, and the seed of the next one.
+    locked: BTreeSet<&'static str>,
+    seed: u64,
     focus: Focus,
-    /// The page of sections.
-    page: usize,
-    is_browsing: bool,
+    pages: Pages,
+    manual: Manual,
+    over: Option<Over>,
     /// The other one of two versions of the sound.
     other: Option<State>,
     is_b: bool,
@@ -70,9 +85,14 @@ impl Window {
             motion: Motion::default(),
             piano: Piano::default(),
             meter: Meter::default(),
+            load: Load::default(),
+            locked: BTreeSet::new(),
+            // Another one in each window.
+            seed: RandomState::new().hash_one(0_u8),
             focus: Focus::default(),
-            page: 0,
-            is_browsing: false,
+            pages: Pages::default(),
+            manual: Manual::default(),
+            over: None,
             other: None,
             is_b: false,
             applied: None,
@@ -90,6 +110,9 @@ impl Window {
     pub(super) fn contents(&mut self, ui: &mut Ui, host: &GuiContext) {
         let params = self.params.clone();
         let view = params.view();
+        if self.applied.is_none() {
+            fonts::install(ui.ctx());
+        }
         if self.applied != Some(view.theme) {
             self.applied = Some(view.theme);
             view.theme.apply(ui.ctx());
@@ -120,36 +143,60 @@ impl Window {
             name: &name,
             words: &self.shown.words(),
             is_changed: controls.history.undo_name().is_some(),
-            is_browsing: self.is_browsing,
+            is_browsing: self.over == Some(Over::Browser),
             is_b: self.is_b,
             view,
+            locked: &self.locked,
             levels,
         };
         let wish = header::show(ui, layout.header, &header, &mut controls);
-        if self.is_browsing {
+        let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));
+        let voices = if is_silent { 0 } else { snapshot.voices };
+        if self.over.is_some() {
             self.modes.cancel(&mut controls);
-            if let Some(message) = self.browser.show(ui, layout.page(), &mut controls) {
-                self.message = message;
+            self.motion.cancel(&mut controls);
+            self.pages.release(params.link());
+        }
+        match self.over {
+            Some(Over::Browser) => {
+                if let Some(message) = self.browser.show(ui, layout.page(), &mut controls) {
+                    self.message = message;
+                }
             }
-            if ui.input(|input| input.key_pressed(Key::Escape)) {
-                self.is_browsing = false;
+            Some(Over::Manual) => {
+                if self.manual.show(ui, layout.page(), palette) {
+                    self.over = None;
+                }
             }
-        } else {
-            let (patch, guide) = (self.shown.patch(), self.shown.guide());
-            let is_editable = self.shown.preset().is_some();
-            self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
-            self.motion.show(ui, layout.motion, &energies, self.modes.selected(), telemetry, &controls);
-            show_tabs(ui, layout.tabs, &mut self.page, &controls);
-            sections::show(ui, layout.sections, self.page, (patch, guide, is_editable), &mut controls);
+            None => {
+                self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
+                self.motion.show(ui, layout.motion, &self.shown, (&energies, self.modes.selected()), &mut controls);
+                match self.pages.show(ui, &layout, &self.shown, (down, voices), &mut controls) {
+                    Some(pages::Asked::Manual) => {
+                        self.manual.open(self.pages.topic());
+                        self.over = Some(Over::Manual);
+                    }
+                    Some(pages::Asked::Say(message)) => self.message = message,
+                    None => {}
+                }
+            }
+        }
+        if ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.over = None;
+        }
+        for path in drops::dropped(ui) {
+            self.message = drops::take(&path, self.browser.library(), &mut controls);
+            self.browser.forget();
         }
         self.browser.follow_time(ui.input(|input| input.time), &controls);
-        let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));
         self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);
         let complaint = controls.hands.typing.as_ref().and_then(|typing| typing.complaint.clone());
         let complaints = || summary(&params.complaints()).unwrap_or_default();
         let message = if self.message.is_empty() { complaints() } else { self.message.clone() };
         let message = complaint.unwrap_or(message);
-        let engine = engine(if is_silent { 0 } else { snapshot.voices }, params.link().sample_rate());
+        let sample_rate = params.link().sample_rate();
+        let load = self.load.share(ui.input(|input| input.time), telemetry, sample_rate);
+        let engine = status::engine(voices, load, sample_rate);
         status::show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
         if let Some(wish) = wish {
             self.grant(wish, ui, host);
@@ -164,6 +211,24 @@ impl Window {
         self.history.end(preset.name.as_str(), &self.params);
     }
 
+    /// Makes another sound of this one by chance.
+    fn vary(&mut self, variation: Variation, host: &GuiContext) {
+        let Playable::Preset(preset) = self.params.state().playable else {
+            self.message = "a kit’s sounds cannot be varied together: load one of them".to_owned();
+            return;
+        };
+        self.seed = self.seed.wrapping_add(1);
+        match variation.of(&preset, self.seed, &self.locked) {
+            Some(varied) => {
+                self.message.clear();
+                self.history.begin(&self.params);
+                load(Playable::Preset(varied), &self.params, host);
+                self.history.end(variation.name(), &self.params);
+            }
+            None => self.message = "every variation that was tried is silent: unlock more sections".to_owned(),
+        }
+    }
+
     /// Undoes or redoes a step, which may bring the other one of the two versions.
     fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
         let now = self.params.state();
@@ -176,7 +241,8 @@ impl Window {
     fn grant(&mut self, wish: Wish, ui: &Ui, host: &GuiContext) {
         match wish {
             Wish::Browse | Wish::Save => {
-                self.is_browsing = !self.is_browsing || wish == Wish::Save;
+                let closes = self.over == Some(Over::Browser) && wish == Wish::Browse;
+                self.over = (!closes).then_some(Over::Browser);
                 self.message.clear();
                 self.browser.open(&self.params.name());
             }
@@ -197,76 +263,13 @@ impl Window {
                 self.is_b = !self.is_b;
                 self.history.end_swap(if self.is_b { "version B" } else { "version A" }, &self.params);
             }
+            Wish::Variation(Asked::Lock(section)) => {
+                if !self.locked.remove(section) {
+                    self.locked.insert(section);
+                }
+            }
+            Wish::Variation(Asked::Vary(variation)) => self.vary(variation, host),
             Wish::Copy => self.other = Some(self.params.state()),
-        }
-    }
-}
-
-/// The factory sound some places after the one of this name, in the order of the list.
-fn neighbour(name: &str, places: isize) -> Option<&'static Preset> {
-    let all = Preset::factory();
-    let place = all.iter().position(|preset| preset.name == name).unwrap_or(0);
-    all.get((place as isize + places).rem_euclid(all.len() as isize) as usize)
-}
-
-/// What the engine does.
-fn engine(voices: u32, sample_rate: u32) -> String {
-    let plural = if voices == 1 { "" } else { "s" };
-    match sample_rate {
-        0 => "not playing".to_owned(),
-        rate => format!("{voices} voice{plural}   {} kHz", f64::from(rate) / 1000.0),
-    }
-}
-
-fn show_tabs(ui: &Ui, rect: Rect, page: &mut usize, controls: &Controls) {
-    let mut left = rect.left();
-    for (place, name) in sections::pages().enumerate() {
-        let width = super::text::width(ui.painter(), name, super::theme::TEXT) + 2.0 * GAP;
-        let place_of_tab = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height() - 2.0));
-        left = place_of_tab.right() + GAP / 2.0;
-        if tab(ui, place_of_tab, name, place == *page, controls.palette).clicked() {
-            *page = place;
-        }
-    }
-}
-
-impl NiceEguiApp for Window {
-    fn build(&mut self, context: egui::Context, host: GuiContext, _: &mut Frame) -> Result<(), HandlerError> {
-        self.open(host);
-        context.set_zoom_factor(self.params.view().zoom as f32 / 100.0);
-        Ok(())
-    }
-
-    fn ui(&mut self, ui: &mut Ui, frame: &mut Frame) {
-        let Some(host) = self.host.clone() else { return };
-        let least = LEAST_SIZE.map(|side| side as f32);
-        ResizableWindow::new("sprung").min_size(least.into()).show(ui, |ui| self.contents(ui, &host));
-        // Keys go to the host, except while the user is typing.
-        let typing = ui.ctx().egui_wants_keyboard_input();
-        frame.set_key_capture(if typing { KeyCapture::CaptureAll } else { KeyCapture::IgnoreAll });
-        let is_pressed = ui.input(|input| input.pointer.any_down());
-        self.focus.follow(frame, typing, is_pressed);
-    }
-
-    fn resized(&mut self, size: WindowSize) {
-        let [least, most] = WINDOW_RANGE;
-        let side = |side: f64| (side.round() as u32).clamp(least, most);
-        let size = [side(size.logical.width), side(size.logical.height)];
-        self.params.set_view(|view: &mut View| view.size = size);
-    }
-}
-
-/// A window is dropped when it is closed: nothing else tells it so.
-impl Drop for Window {
-    fn drop(&mut self) {
-        let link = self.params.link();
-        self.piano.release(link);
-        self.browser.release(link);
-        self.modes.release(link);
-        if let Some(host) = self.host.take() {
-            let end = || self.hands.gestures.end(&self.params, &host);
-            // The wrapper panics if the plugin itself is dropped; then nobody waits for the end of a gesture.
-            let _ = catch_unwind(AssertUnwindSafe(end));
         }
     }
 }

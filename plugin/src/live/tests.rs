@@ -273,3 +273,16 @@ fn a_click_in_the_window_is_heard_but_not_in_a_file() {
         assert_eq!(out[0].iter().all(|sample| *sample == 0.0), is_offline);
     }
 }
+
+#[test]
+fn the_load_is_measured_while_the_window_looks() {
+    let params = params(Patch::default());
+    let mut live = Live::new(RATE, false, &params);
+    let telemetry = &params.link().telemetry;
+    stereo(&mut live, &params, &mut Host::new(&[]), 64);
+    assert_eq!(telemetry.load().frames, 0, "nobody looks");
+    telemetry.snapshot();
+    stereo(&mut live, &params, &mut Host::new(&[]), 64);
+    let load = telemetry.load();
+    assert!((load.frames, load.blocks) == (64, 1) && load.mean_share > 0.0, "{load:?}");
+}

@@ -28,7 +28,8 @@ fn environment() -> PathBuf {
 /// What is missing: hosts that cannot be loaded in the required versions.
 pub(crate) fn missing() -> Option<String> {
     let installed = std::fs::read_to_string(environment().join("requirements.txt"));
-    if !installed.is_ok_and(|installed| installed == include_str!("requirements.txt")) {
+    // The environment serves other tests too, whose requirements stand in the same file.
+    if !installed.is_ok_and(|installed| installed.contains(include_str!("requirements.txt"))) {
         return Some("pedalboard and dawdreamer in target/python".to_owned());
     }
     let output = Command::new(python()).args(["-c", "import dawdreamer, pedalboard"]).env("DISPLAY", ":none").output();

@@ -239,3 +239,22 @@ fn undo_and_redo_bring_the_version_back_that_was_shown() {
     stage.button("A or B");
     assert!(stage.params.state() == b && is_b(&stage));
 }
+
+#[test]
+fn a_sound_is_varied_by_a_right_click_apart_from_what_is_locked() {
+    let mut stage = Stage::new();
+    let before = stage.params.state();
+    let sound = format!("Sound: {}", before.playable.name());
+    stage.harness.get_by_label(&sound).click_secondary();
+    stage.harness.run_steps(3);
+    stage.button("Lock Mallet");
+    stage.button("Randomise");
+    let after = stage.params.state();
+    assert_ne!(after.values, before.values);
+    for index in Param::MalletLevel as usize..=Param::MalletVelocity as usize {
+        let param = sprung::params::PARAMS[index].param;
+        assert_eq!(after.values.get(param), before.values.get(param), "{param:?}");
+    }
+    stage.button("Undo");
+    assert_eq!(stage.params.state(), before);
+}

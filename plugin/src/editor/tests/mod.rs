@@ -1,9 +1,12 @@
 //! The window without a screen: driven by simulated input, compared with pictures.
 
 mod browsing;
+mod dropped;
 mod fake_host;
 mod gestures;
 mod mode_edits;
+mod moving;
+mod paging;
 mod pictures;
 mod random_events;
 mod renderer;

@@ -7,6 +7,7 @@ use crate::editor::theme::{SIZE, Theme};
 use crate::link::Touch;
 use crate::state::State;
 use egui::{Event, Pos2, vec2};
+use egui_kittest::kittest::Queryable as _;
 use sprung::patch::{Mode, ModeTable};
 use sprung::preset::Playable;
 
@@ -144,4 +145,19 @@ fn a_window_that_is_closed_lets_go_of_every_key_and_knob() {
     assert!(matches!(band.stage.host.said()[..], [Said::Begin(_), ..]));
     drop(band.stage.harness);
     assert!(matches!(band.stage.host.said()[..], [Said::End(_)]));
+}
+
+#[test]
+fn a_double_clicks_key_is_let_go_when_something_is_shown_over_the_modes() {
+    for opens in ["Browse", "?"] {
+        let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+        let place = band.free();
+        for pressed in [true, false, true, false] {
+            band.press(place, pressed);
+        }
+        assert_ne!(band.stage.params.link().telemetry.keys(0), 0, "it is held");
+        band.stage.harness.get_by_label(opens).click();
+        band.passes(4);
+        assert_eq!(band.stage.params.link().telemetry.keys(0), 0, "{opens}: no key is left down");
+    }
 }

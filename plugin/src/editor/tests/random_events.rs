@@ -1,12 +1,16 @@
 //! Random input: nothing panics, no note is left, the state is read back.
 
+use super::dropped::{Dropped, asset};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::state::State;
-use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, pos2, vec2};
+use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, pos2, vec2};
+use std::sync::Arc;
 
-/// Events in each of two windows.
-const EVENTS: usize = 600;
+/// Events in each of four windows.
+const EVENTS: usize = 5_000;
+/// Most events between two passes.
+const AT_ONCE: usize = 6;
 const KEYS: [Key; 9] = [
     Key::Enter,
     Key::Escape,
@@ -30,55 +34,92 @@ impl Numbers {
     }
 }
 
-#[test]
-fn random_events_do_no_harm() {
-    for (seed, size) in [(1, SIZE), (2, LEAST_SIZE)] {
-        let mut band = Band::new("Glass Marimba", size, Theme::Dark);
-        let mut numbers = Numbers(seed);
-        let mut place = pos2(0.0, 0.0);
-        for _ in 0..EVENTS {
-            let modifiers = match numbers.below(8) {
-                0 => Modifiers::SHIFT,
-                1 => Modifiers::ALT,
-                2 => Modifiers::CTRL,
-                _ => Modifiers::NONE,
-            };
-            let button = if numbers.below(5) == 0 { PointerButton::Secondary } else { PointerButton::Primary };
-            let event = match numbers.below(10) {
-                0..=3 => {
-                    // Near the last place, or anywhere.
-                    let near = vec2(numbers.below(60) as f32 - 30.0, numbers.below(60) as f32 - 30.0);
-                    let any = pos2(numbers.below(size[0] as usize) as f32, numbers.below(size[1] as usize) as f32);
-                    place = if numbers.below(2) == 0 { place + near } else { any };
-                    Event::PointerMoved(place)
-                }
-                4 | 5 => Event::PointerButton { pos: place, button, pressed: true, modifiers },
-                6 | 7 => Event::PointerButton { pos: place, button, pressed: false, modifiers },
-                8 => Event::MouseWheel {
-                    unit: MouseWheelUnit::Line,
-                    delta: vec2(0.0, numbers.below(5) as f32 - 2.0),
-                    modifiers,
-                    phase: egui::TouchPhase::Move,
-                    source: egui::MouseWheelSource::Unknown,
-                },
-                _ if numbers.below(2) == 0 => Event::Text(TEXTS[numbers.below(TEXTS.len())].to_owned()),
-                _ => {
-                    let key = KEYS[numbers.below(KEYS.len())];
-                    Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
-                }
-            };
-            band.stage.harness.event(event);
-            band.passes(1);
+/// Some file that a user may drop.
+fn file(number: usize) -> Arc<Dropped> {
+    let files = ["scales/19-equal.scl", "scales/19-equal-on-white-keys.kbm", "kits/hand-kit.toml", "scales/none.scl"];
+    Arc::new(Dropped(asset(files[number % files.len()])))
+}
+
+/// An event at a place, or one that moves there.
+fn event(numbers: &mut Numbers, place: &mut Pos2, size: [u32; 2]) -> Event {
+    let modifiers = match numbers.below(8) {
+        0 => Modifiers::SHIFT,
+        1 => Modifiers::ALT,
+        2 => Modifiers::CTRL,
+        _ => Modifiers::NONE,
+    };
+    let button = if numbers.below(5) == 0 { PointerButton::Secondary } else { PointerButton::Primary };
+    match numbers.below(10) {
+        0..=3 => {
+            // Near the last place, or anywhere.
+            let near = vec2(numbers.below(60) as f32 - 30.0, numbers.below(60) as f32 - 30.0);
+            let any = pos2(numbers.below(size[0] as usize) as f32, numbers.below(size[1] as usize) as f32);
+            *place = if numbers.below(2) == 0 { *place + near } else { any };
+            Event::PointerMoved(*place)
         }
-        for button in [PointerButton::Primary, PointerButton::Secondary] {
-            let (pressed, modifiers) = (false, Modifiers::NONE);
-            band.stage.harness.event(Event::PointerButton { pos: place, button, pressed, modifiers });
+        4 | 5 => Event::PointerButton { pos: *place, button, pressed: true, modifiers },
+        6 | 7 => Event::PointerButton { pos: *place, button, pressed: false, modifiers },
+        8 => Event::MouseWheel {
+            unit: MouseWheelUnit::Line,
+            delta: vec2(0.0, numbers.below(5) as f32 - 2.0),
+            modifiers,
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Unknown,
+        },
+        _ if numbers.below(2) == 0 => Event::Text(TEXTS[numbers.below(TEXTS.len())].to_owned()),
+        _ => {
+            let key = KEYS[numbers.below(KEYS.len())];
+            Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
         }
-        band.stage.harness.event(Event::PointerGone);
-        band.passes(60);
-        assert_eq!(band.stage.params.link().telemetry.keys(0), 0, "seed {seed}: no key is left down");
-        let state = band.stage.params.state();
-        let read = State::parse(&state.to_json()).unwrap();
-        assert_eq!((read.state, read.complaints), (state, vec![]), "seed {seed}");
     }
+}
+
+fn storm(seed: u64, sound: &str, size: [u32; 2], theme: Theme) {
+    let mut band = Band::new(sound, size, theme);
+    let mut numbers = Numbers(seed);
+    let mut place = pos2(0.0, 0.0);
+    let mut left = EVENTS;
+    while left > 0 {
+        let count = (1 + numbers.below(AT_ONCE)).min(left);
+        left -= count;
+        for _ in 0..count {
+            let event = event(&mut numbers, &mut place, size);
+            band.stage.harness.input_mut().events.push(event);
+        }
+        if numbers.below(200) == 0 {
+            let file = file(numbers.below(4));
+            band.stage.harness.input_mut().dropped_files.push(file);
+        }
+        band.passes(1);
+    }
+    for button in [PointerButton::Primary, PointerButton::Secondary] {
+        let (pressed, modifiers) = (false, Modifiers::NONE);
+        band.stage.harness.event(Event::PointerButton { pos: place, button, pressed, modifiers });
+    }
+    band.stage.harness.event(Event::PointerGone);
+    band.passes(60);
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 0, "seed {seed}: no key is left down");
+    let state = band.stage.params.state();
+    let read = State::parse(&state.to_json()).unwrap();
+    assert_eq!((read.state, read.complaints), (state, vec![]), "seed {seed}");
+}
+
+#[test]
+fn random_events_do_no_harm_to_a_pair_of_bodies() {
+    storm(1, "Glass Marimba", SIZE, Theme::Dark);
+}
+
+#[test]
+fn random_events_do_no_harm_in_a_small_window() {
+    storm(2, "Marimba", LEAST_SIZE, Theme::Light);
+}
+
+#[test]
+fn random_events_do_no_harm_to_a_kit() {
+    storm(3, "Hand Kit", SIZE, Theme::HighContrast);
+}
+
+#[test]
+fn random_events_do_no_harm_to_a_single_mass() {
+    storm(4, "init", LEAST_SIZE, Theme::Dark);
 }

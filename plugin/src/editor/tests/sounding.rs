@@ -7,6 +7,7 @@ use egui::{Event, Modifiers, PointerButton, Pos2, Rect, vec2};
 use egui_kittest::kittest::Queryable as _;
 use rtrb::Consumer;
 use sprung::engine::{Event as Played, EventKind, Snapshot, Synth, TelemetryWriter};
+use std::time::Duration;
 
 const RATE: f64 = 48_000.0;
 
@@ -36,7 +37,7 @@ impl Band {
         self.synth.handle(&event);
     }
 
-    fn strike(&mut self, keys: &[u8]) {
+    pub(super) fn strike(&mut self, keys: &[u8]) {
         for key in keys {
             self.play(EventKind::NoteOn { key: *key, detune: 0.0, velocity: 0.8, id: None });
         }
@@ -52,6 +53,7 @@ impl Band {
             let (mut left, mut right) = ([0.0; 800], [0.0; 800]);
             self.synth.process(&[], &mut left, &mut right);
             let synth = &self.synth;
+            self.writer.note_block(left.len(), Duration::from_micros(200));
             self.writer.note_sound(&left, &right, synth.is_silent(), || {
                 let mut snapshot = Snapshot::default();
                 synth.show(&mut snapshot);
@@ -93,6 +95,12 @@ fn pictures_of_a_struck_bell_are_as_accepted() {
     band.strike(&[48, 52]);
     band.passes(6);
     compare("scope", &mut band.stage.harness);
+    let mut band = Band::new("Church Bell", SIZE, Theme::Light);
+    band.stage.harness.get_by_label("Ringing").click();
+    band.passes(3);
+    band.strike(&[60]);
+    band.passes(150);
+    compare("ringing", &mut band.stage.harness);
     finish();
 }
 

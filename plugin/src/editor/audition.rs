@@ -1,0 +1,79 @@
+//! A key that the window holds by itself, so that a change or a choice is heard.
+
+use crate::link::{Link, Touch};
+
+/// How long a sound is held that is tried, in seconds.
+const HELD: f64 = 0.7;
+/// How often a sound is struck while it is changed, in seconds.
+const STRIKES: f64 = 0.25;
+/// The velocity of these strikes.
+pub(super) const VELOCITY: f32 = 0.7;
+
+/// The key that is held, if there is one.
+#[derive(Default)]
+pub(super) struct Audition {
+    key: Option<u8>,
+    /// When it is let go, and when it was last struck again.
+    end: f64,
+    struck: f64,
+}
+
+impl Audition {
+    /// Strikes a key, and holds it for a while.
+    pub(super) fn strike(&mut self, key: u8, velocity: f32, now: f64, link: &Link) {
+        self.release(link);
+        link.play(Touch::Down { key, velocity });
+        (self.key, self.end, self.struck) = (Some(key), now + HELD, now);
+    }
+
+    /// Strikes a key now and then, as long as something is dragged. To be called in each pass.
+    pub(super) fn repeat(&mut self, key: u8, now: f64, link: &Link) {
+        if self.key != Some(key) || !(self.struck..self.struck + STRIKES).contains(&now) {
+            self.strike(key, VELOCITY, now, link);
+        }
+    }
+
+    /// Lets go of the key when it is time.
+    pub(super) fn follow_time(&mut self, now: f64, link: &Link) {
+        if now >= self.end {
+            self.release(link);
+        }
+    }
+
+    /// Lets go of the key at once.
+    pub(super) fn release(&mut self, link: &Link) {
+        if let Some(key) = self.key.take() {
+            link.play(Touch::Up { key });
+        }
+    }
+
+    /// Seconds until the key is let go; none if none is held.
+    pub(super) fn rest(&self, now: f64) -> Option<f64> {
+        self.key.map(|_| (self.end - now).max(0.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_is_held_for_a_while_and_struck_again_while_something_is_dragged() {
+        let link = Link::default();
+        let mut touches = link.connect(48_000.0);
+        let mut heard = || std::iter::from_fn(|| touches.pop().ok()).collect::<Vec<_>>();
+        let mut audition = Audition::default();
+        audition.strike(60, 0.5, 1.0, &link);
+        audition.follow_time(1.6, &link);
+        assert_eq!(heard(), [Touch::Down { key: 60, velocity: 0.5 }]);
+        assert!(audition.rest(1.6).is_some_and(|rest| (rest - 0.1).abs() < 1e-9));
+        audition.follow_time(1.8, &link);
+        assert_eq!((heard(), audition.rest(1.8)), (vec![Touch::Up { key: 60 }], None));
+        (0..=60).for_each(|pass| audition.repeat(62, 2.0 + f64::from(pass) / 60.0, &link));
+        let strikes = heard();
+        let downs = strikes.iter().filter(|touch| matches!(touch, Touch::Down { .. })).count();
+        assert!((4..=5).contains(&downs), "{strikes:?}");
+        audition.release(&link);
+        assert_eq!(heard(), [Touch::Up { key: 62 }]);
+    }
+}

@@ -1,0 +1,61 @@
+//! Files that are dropped on the window: presets join the user's sounds, scales and mappings tune the sound.
+
+use super::controls::Controls;
+use super::{files, tuning_page};
+use egui::Ui;
+use sprung::preset::Playable;
+use sprung::preset::library::Library;
+use std::path::{Path, PathBuf};
+
+/// The files that were dropped since the last pass.
+pub(super) fn dropped(ui: &Ui) -> Vec<PathBuf> {
+    ui.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect())
+}
+
+/// Does what belongs to a file. Returns a message.
+pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match ending.as_str() {
+        "scl" | "kbm" => tuning_page::take(path, controls),
+        "toml" => sound(path, library, controls),
+        "wav" | "aif" | "aiff" | "flac" | "ogg" | "mp3" => {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            format!("a recording becomes a sound by the command: sprung fit “{}” -o “{name}.toml”", path.display())
+        }
+        _ => format!("{}: expected a preset (.toml), a scale (.scl) or a keyboard mapping (.kbm)", path.display()),
+    }
+}
+
+/// Whether a file is in the user's folder already.
+fn is_own(path: &Path, library: &Library) -> bool {
+    // Both may be reached by symbolic links.
+    let folder = path.parent().and_then(|folder| folder.canonicalize().ok());
+    folder.is_some() && folder == library.presets_folder().canonicalize().ok()
+}
+
+/// Loads a preset or kit. A preset from elsewhere is copied to the user's folder, if there is one.
+fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
+    let (playable, remarks) = match files::read(&path.display().to_string()) {
+        Ok(read) => read,
+        Err(message) => return message,
+    };
+    let (playable, said) = match (playable, library) {
+        (Playable::Preset(_), Some(library)) if !is_own(path, library) => match library.import(path) {
+            Ok((preset, place)) => {
+                let said = format!("imported as “{}”, {}", preset.name, place.display());
+                (Playable::Preset(preset), said)
+            }
+            Err(error) => return error.to_string(),
+        },
+        (Playable::Kit(kit), _) => {
+            let said = format!("loaded {}; a kit’s file stays where it is", path.display());
+            (Playable::Kit(kit), said)
+        }
+        (preset, _) => (preset, format!("loaded {}", path.display())),
+    };
+    controls.history.begin(controls.params);
+    let name = playable.name().to_owned();
+    files::load(playable, controls.params, controls.host);
+    controls.history.end(name, controls.params);
+    [vec![said], remarks].concat().join("; ")
+}

@@ -1,0 +1,12 @@
+//! The fonts of the window.
+
+use egui::{Context, FontDefinitions, FontFamily};
+
+/// Lets the font of code stand in for letters that the font of text does not have: arrows, Greek, Cyrillic.
+pub(super) fn install(context: &Context) {
+    let mut fonts = FontDefinitions::default();
+    if let Some(names) = fonts.families.get_mut(&FontFamily::Proportional) {
+        names.push("Hack".to_owned());
+    }
+    context.set_fonts(fonts);
+}

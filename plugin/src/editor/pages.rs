@@ -1,0 +1,120 @@
+//! The row of tabs, and the page below it: sections of parameters, the kit's keys, the tuning.
+
+use super::buttons::tab;
+use super::controls::Controls;
+use super::key_grid::KeyGrid;
+use super::layout::Layout;
+use super::shown::Shown;
+use super::theme::{GAP, TEXT};
+use super::tuning_page::TuningPage;
+use super::{kit_page, sections, text, voices_panel};
+use crate::link::Link;
+use egui::{Rect, Ui, pos2, vec2};
+
+/// The pages after those with sections.
+const OTHERS: [&str; 2] = ["Kit", "Tuning"];
+/// The pages of the manual that belong to them all, in their order.
+const TOPICS: [&str; 8] = ["exciters", "bodies", "modulation", "modulation", "space", "tuning", "kits", "tuning"];
+/// The least width of a page that has room for the voices beside its sections.
+const WIDE: f32 = 840.0;
+
+/// What the user asks for.
+pub(super) enum Asked {
+    Manual,
+    /// Something is to be said.
+    Say(String),
+}
+
+/// The page that is shown.
+#[derive(Default)]
+pub(super) struct Pages {
+    page: usize,
+    kit: KeyGrid,
+    tuning: TuningPage,
+}
+
+/// The names of all pages.
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    sections::pages().chain(OTHERS)
+}
+
+impl Pages {
+    /// The page of the manual that explains what is shown.
+    pub(super) fn topic(&self) -> &'static str {
+        TOPICS.get(self.page).copied().unwrap_or("window")
+    }
+
+    /// Lets go of the keys that are held.
+    pub(super) fn release(&mut self, link: &Link) {
+        self.kit.release(link);
+        self.tuning.grid.release(link);
+    }
+
+    /// Shows tabs and page; `down` are the keys that are held, `voices` is how many sound.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        layout: &Layout,
+        shown: &Shown,
+        (down, voices): (u128, u32),
+        controls: &mut Controls,
+    ) -> Option<Asked> {
+        let asked = self.tabs(ui, layout.tabs, controls);
+        let (rect, page) = (layout.sections, self.page);
+        let rest = page.checked_sub(sections::pages().count());
+        match rest {
+            None => {
+                let is_voices = sections::pages().nth(page) == Some("Voices");
+                let (left, right) = if is_voices && rect.width() >= WIDE {
+                    let split = rect.right() - voices_panel::WIDTH;
+                    (rect.with_max_x(split - GAP), Some(rect.with_min_x(split)))
+                } else {
+                    (rect, None)
+                };
+                let about = (shown.patch(), shown.guide(), shown.preset().is_some());
+                sections::show(ui, left, page, about, controls);
+                if let Some(right) = right {
+                    voices_panel::show(ui.painter(), right, voices, controls);
+                }
+                asked
+            }
+            Some(0) => {
+                kit_page::show(ui, rect, &mut self.kit, shown, down, controls);
+                asked
+            }
+            Some(_) => self.tuning.show(ui, rect, shown, down, controls).map(Asked::Say).or(asked),
+        }
+    }
+
+    fn tabs(&mut self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Asked> {
+        let mut left = rect.left();
+        let gap = if rect.width() < 700.0 { GAP } else { 2.0 * GAP };
+        for (place, name) in names().enumerate() {
+            let width = text::width(ui.painter(), name, TEXT) + gap;
+            let place_of_tab = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height() - 2.0));
+            left = place_of_tab.right() + GAP / 4.0;
+            if tab(ui, place_of_tab, name, place == self.page, controls.palette).clicked() {
+                self.release(controls.params.link());
+                self.page = place;
+            }
+        }
+        let help = Rect::from_min_max(pos2(rect.right() - 24.0, rect.top()), rect.max - vec2(0.0, 2.0));
+        let response = tab(ui, help, "?", false, controls.palette);
+        if response.hovered() {
+            *controls.hint = super::controls::Hint::new("Manual", format!("What this page does: {}", self.topic()));
+        }
+        response.clicked().then_some(Asked::Manual)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::manual_text::PAGES;
+
+    #[test]
+    fn every_page_has_a_page_of_the_manual() {
+        assert_eq!(names().count(), TOPICS.len());
+        assert!(TOPICS.iter().all(|topic| PAGES.iter().any(|(name, _)| name == topic)));
+    }
+}

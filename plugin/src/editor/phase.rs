@@ -1,0 +1,149 @@
+//! The phase plane: one mass in slow motion, which can be pulled and let go.
+
+use super::audition::Audition;
+use super::controls::{Controls, Hint};
+use super::shown::Shown;
+use super::text::line;
+use super::theme::{Palette, SMALL};
+use egui::{Align2, CursorIcon, Id, Painter, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
+use std::collections::VecDeque;
+use std::f32::consts::TAU;
+
+/// Turns per second of the mass on its phase plane: that of slow motion, since the true motion cannot be seen.
+const TURNS: f32 = 1.0;
+/// How many points of its way are shown.
+const TRAIL: usize = 420;
+/// The least velocity of a mass that is let go: less is no strike.
+const LEAST: f32 = 0.03;
+
+/// What the picture remembers.
+#[derive(Default)]
+pub(super) struct Phase {
+    /// In radians.
+    angle: f32,
+    /// Points of the unit disk, the last one at the end.
+    trail: VecDeque<Pos2>,
+    /// The greatest energy since the mass was at rest.
+    greatest: f32,
+    mode: usize,
+    /// Where the mass is held, in the unit disk.
+    pulled: Option<Vec2>,
+}
+
+impl Phase {
+    /// Gives up pulling: nothing is struck.
+    pub(super) fn cancel(&mut self) {
+        self.pulled = None;
+    }
+
+    /// Shows the mass of the mode `selected`, or that with the most energy. Returns what is shown, as a caption.
+    pub(super) fn show(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        (energies, selected): (&[f32], Option<usize>),
+        shown: &Shown,
+        audition: &mut Audition,
+        controls: &mut Controls,
+    ) -> String {
+        let (centre, radius) = (rect.center(), rect.width().min(rect.height()) / 2.0 - 4.0);
+        self.pull(ui, rect, radius, shown, audition, controls);
+        self.advance(ui, energies, selected);
+        self.paint(ui.painter(), rect, (centre, radius), controls.palette);
+        match self.pulled {
+            Some(pulled) => format!("velocity {:.0}", velocity(pulled) * 127.0),
+            None => format!("mode {}, in slow motion", self.mode + 1),
+        }
+    }
+
+    /// Follows the pointer: it pulls the mass, and letting go strikes as strongly as it was pulled.
+    fn pull(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        radius: f32,
+        shown: &Shown,
+        audition: &mut Audition,
+        controls: &mut Controls,
+    ) {
+        let response = ui.interact(rect, Id::unique("phase"), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Phase plane"));
+        let pointer = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
+        if response.hovered() || pointer.is_some() {
+            *controls.hint = Hint::new("The mass", "Pull it and let go: the farther, the harder the note is struck.");
+            ui.ctx().set_cursor_icon(if pointer.is_some() { CursorIcon::Grabbing } else { CursorIcon::Grab });
+        }
+        if let Some(pointer) = pointer {
+            let pulled = (pointer - rect.center()) / radius;
+            self.pulled = Some(pulled / pulled.length().max(1.0));
+            return;
+        }
+        let Some(pulled) = self.pulled.take().filter(|pulled| velocity(*pulled) >= LEAST) else { return };
+        self.trail.clear();
+        // The mass goes on from where it was let go.
+        (self.angle, self.greatest) = ((-pulled.angle()).rem_euclid(TAU), 0.0);
+        let now = ui.input(|input| input.time);
+        audition.strike(shown.guide().home, velocity(pulled), now, controls.params.link());
+        ui.ctx().request_repaint();
+    }
+
+    /// Moves the mass on.
+    fn advance(&mut self, ui: &Ui, energies: &[f32], selected: Option<usize>) {
+        let energy = |mode: usize| energies.get(mode).copied().unwrap_or(0.0);
+        let loudest = (0..energies.len()).max_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap_or(0);
+        let mode = selected.filter(|mode| *mode < energies.len()).unwrap_or(loudest);
+        // The loudest one is followed only when the other has almost died away, so that the picture does not jump.
+        if mode != self.mode && (selected.is_some() || energy(self.mode) < 0.01 * energy(mode)) {
+            (self.greatest, self.mode) = (0.0, mode);
+            self.trail.clear();
+        }
+        let now = energy(self.mode);
+        if now <= 1e-12 {
+            self.greatest = 0.0;
+            self.trail.pop_front();
+            return;
+        }
+        self.greatest = self.greatest.max(now);
+        let radius = (now / self.greatest).sqrt();
+        let turned = TAU * TURNS * ui.input(|input| input.stable_dt.min(0.1));
+        // Points between two passes, so that the way is round.
+        for step in 1..=4 {
+            let along = Vec2::angled(-self.angle - turned * step as f32 / 4.0);
+            self.trail.push_back((along * radius).to_pos2());
+        }
+        self.angle = (self.angle + turned) % TAU;
+        while self.trail.len() > TRAIL {
+            self.trail.pop_front();
+        }
+    }
+
+    fn paint(&self, painter: &Painter, rect: Rect, (centre, radius): (Pos2, f32), palette: &Palette) {
+        let grid = Stroke::new(1.0, palette.line);
+        painter.hline(rect.x_range(), painter.round_to_pixel_center(centre.y), grid);
+        painter.vline(painter.round_to_pixel_center(centre.x), rect.y_range(), grid);
+        painter.circle_stroke(centre, radius, grid);
+        line(painter, rect.translate(vec2(-2.0, -8.0)), Align2::RIGHT_CENTER, "x", SMALL, palette.muted);
+        line(painter, rect.translate(vec2(8.0, 0.0)), Align2::CENTER_TOP, "v", SMALL, palette.muted);
+        let place = |point: &Pos2| centre + point.to_vec2() * radius;
+        let points: Vec<Pos2> = self.trail.iter().map(place).collect();
+        let count = points.len().max(1) as f32;
+        for (number, pair) in points.windows(2).enumerate() {
+            let age = number as f32 / count;
+            let colour = palette.accent.gamma_multiply(0.08 + 0.9 * age * age);
+            painter.line_segment([pair[0], pair[1]], Stroke::new(1.6, colour));
+        }
+        let mass = match self.pulled {
+            Some(pulled) => centre + pulled * radius,
+            None => points.last().copied().unwrap_or(centre),
+        };
+        if self.pulled.is_some() {
+            painter.line_segment([centre, mass], Stroke::new(1.5, palette.text));
+        }
+        painter.circle(mass, 7.0, palette.accent, Stroke::new(1.5, palette.panel));
+    }
+}
+
+/// The velocity with which a mass is struck that was pulled so far.
+fn velocity(pulled: Vec2) -> f32 {
+    pulled.length().min(1.0)
+}

@@ -1,0 +1,139 @@
+//! The pictures that move: the body is struck elsewhere, the mass is pulled and let go.
+
+use super::fake_host::Said;
+use super::pictures::{compare, finish};
+use super::sounding::Band;
+use crate::editor::body_form::Form;
+use crate::editor::body_shape::Made;
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use crate::link::Touch;
+use egui::{Event, Pos2, vec2};
+use egui_kittest::kittest::Queryable as _;
+use sprung::params::Param;
+use sprung::sound::bodies::Point;
+
+impl Band {
+    fn show_body(&mut self) {
+        self.stage.harness.get_by_label("Body").click();
+        self.passes(3);
+    }
+
+    /// Where the body is struck.
+    fn struck(&self) -> Point {
+        let made = Made::of(&self.stage.params.loaded().kit.sounds()[0].patch().modes);
+        made.body().unwrap_or_else(|| panic!("{made:?}")).strike
+    }
+
+    /// Drags from one place to another in some steps.
+    fn pull_to(&mut self, from: Pos2, to: Pos2) {
+        self.press(from, true);
+        for step in 1..=6 {
+            self.event(Event::PointerMoved(from + (to - from) * (step as f32 / 6.0)));
+            self.passes(6);
+        }
+        self.press(to, false);
+    }
+}
+
+#[test]
+fn pictures_of_bodies_are_as_accepted() {
+    for (sound, size, theme, name) in [
+        ("Opera Gong", SIZE, Theme::Dark, "body-gong"),
+        ("Hand Bell", SIZE, Theme::Light, "body-bell"),
+        ("Guitar", LEAST_SIZE, Theme::HighContrast, "body-string-least"),
+    ] {
+        let mut band = Band::new(sound, size, theme);
+        band.show_body();
+        band.strike(&[60]);
+        band.passes(20);
+        compare(name, &mut band.stage.harness);
+    }
+    finish();
+}
+
+#[test]
+fn a_body_is_struck_where_it_is_clicked_and_that_is_undone_by_name() {
+    for (sound, form) in [("Opera Gong", Form::Round), ("Guitar", Form::Line)] {
+        let mut band = Band::new(sound, SIZE, Theme::Dark);
+        band.show_body();
+        let before = band.stage.params.state();
+        let rect = band.rect("Struck body");
+        let place = |x, y| form.on(rect, Point { x, y }, 0.0);
+        let from = band.struck();
+        band.pull_to(place(from.x, from.y), place(0.3, 0.05));
+        let now = band.struck();
+        assert!((now.x - 0.3).abs() < 0.03 && (form == Form::Line || (now.y - 0.05).abs() < 0.03), "{sound}: {now:?}");
+        let modes = |band: &Band| band.stage.params.loaded().kit.sounds()[0].patch().modes.clone();
+        assert!(modes(&band).origin().is_some_and(|origin| origin.contains("strike = 0.")), "{sound}: saved as a body");
+        let strikes = band.heard.iter().filter(|touch| matches!(touch, Touch::Down { .. })).count();
+        assert!(strikes >= 2, "{sound}: it is heard: {:?}", band.heard);
+        band.passes(60);
+        assert_eq!(band.stage.params.link().telemetry.keys(0), 0, "{sound}: no key is left down");
+        let said = band.stage.host.said();
+        let is_told = matches!(&said[..], [Said::Begin(name), Said::Set(..), Said::End(_)] if name == "Voices");
+        assert!(is_told, "the host is told once that there is something to save: {said:?}");
+        band.stage.button("Undo");
+        assert!(band.stage.params.state() == before, "{sound}: one step");
+    }
+}
+
+#[test]
+fn the_place_of_a_tables_pluck_is_a_parameter_that_the_host_sees() {
+    let mut band = Band::new("Plucked String", SIZE, Theme::Dark);
+    band.show_body();
+    let before = band.stage.params.state();
+    let rect = band.rect("Struck body");
+    let place = |x| Form::Line.on(rect, Point { x, y: 0.0 }, 0.0);
+    // Near the other end, which is the same.
+    band.pull_to(place(0.5), place(0.75));
+    let now = band.stage.params.state().values.get(Param::PluckPosition);
+    assert!((now - 25.0).abs() < 1.5, "{now}");
+    let said = band.stage.host.said();
+    let is_one =
+        matches!(&said[..], [Said::Begin(name), .., Said::End(last)] if name == "Pluck position" && last == name);
+    assert!(is_one && said.iter().filter(|said| matches!(said, Said::Begin(_))).count() == 1, "{said:?}");
+    band.stage.button("Undo");
+    assert!(band.stage.params.state() == before);
+}
+
+#[test]
+fn a_drag_of_the_strike_is_over_when_another_sound_is_loaded() {
+    let mut band = Band::new("Opera Gong", SIZE, Theme::Dark);
+    band.show_body();
+    let rect = band.rect("Struck body");
+    band.press(rect.center(), true);
+    band.passes(10);
+    let other = Band::new("Gong", SIZE, Theme::Dark).stage.params.state();
+    band.stage.params.load(other.clone().into());
+    band.passes(2);
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 0);
+    band.event(Event::PointerMoved(rect.center() + vec2(20.0, 0.0)));
+    band.press(rect.center() + vec2(20.0, 0.0), false);
+    band.passes(10);
+    assert!(band.stage.params.state() == other, "it is the sound that was loaded, as it was");
+}
+
+#[test]
+fn a_mass_that_is_pulled_and_let_go_strikes_the_harder_the_farther() {
+    let velocity = |share: f32| {
+        let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+        let rect = band.rect("Phase plane");
+        let radius = rect.width().min(rect.height()) / 2.0 - 4.0;
+        band.press(rect.center(), true);
+        band.event(Event::PointerMoved(rect.center() + vec2(0.6, -0.8) * (share * radius)));
+        assert!(band.heard.is_empty(), "nothing sounds while it is held");
+        band.press(rect.center() + vec2(0.6, -0.8) * (share * radius), false);
+        let heard = band.heard.clone();
+        band.passes(60);
+        assert_eq!(band.stage.params.link().telemetry.keys(0), 0, "no key is left down");
+        heard.into_iter().find_map(|touch| match touch {
+            Touch::Down { key, velocity } => Some((key, velocity)),
+            Touch::Up { .. } => None,
+        })
+    };
+    let (key, soft) = velocity(0.25).unwrap();
+    let (_, loud) = velocity(2.0).unwrap();
+    assert_eq!(key, 60, "the home key");
+    assert!((soft - 0.25).abs() < 0.02 && loud == 1.0, "{soft} {loud}");
+    assert_eq!(velocity(0.0), None, "a click pulls nothing");
+}

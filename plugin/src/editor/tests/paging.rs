@@ -1,0 +1,183 @@
+//! The pages below the modes, the manual over them, and files that are dropped on the window.
+
+use super::dropped::{Dropped, asset};
+use super::fake_host::Said;
+use super::pictures::{compare, compare_page, finish, stage};
+use super::sounding::Band;
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use crate::link::Touch;
+use egui::{Key, Role, vec2};
+use egui_kittest::kittest::Queryable as _;
+use sprung::preset::{Playable, Preset};
+use std::path::Path;
+use std::sync::Arc;
+
+impl Band {
+    fn open(&mut self, name: &str) {
+        self.stage.harness.get_by_role_and_label(Role::Tab, name).click();
+        self.passes(3);
+    }
+
+    fn drop_file(&mut self, path: &Path) {
+        self.stage.harness.input_mut().dropped_files.push(Arc::new(Dropped(path.to_owned())));
+        self.passes(3);
+    }
+}
+
+#[test]
+fn pictures_of_kit_tuning_voices_and_manual_are_as_accepted() {
+    for (sound, page, size, theme, name) in [
+        ("Acoustic Kit", "Kit", SIZE, Theme::Dark, "kit"),
+        ("Acoustic Kit", "Kit", LEAST_SIZE, Theme::Light, "kit-least"),
+        ("Marimba", "Tuning", SIZE, Theme::Light, "tuning"),
+        ("Marimba", "Tuning", LEAST_SIZE, Theme::HighContrast, "tuning-least"),
+        ("Marimba", "Voices", SIZE, Theme::HighContrast, "voices"),
+    ] {
+        let mut band = Band::new(sound, size, theme);
+        band.passes(2);
+        band.open(page);
+        band.strike(&[42, 60]);
+        band.passes(4);
+        if page == "Kit" && size == SIZE {
+            let open = band.stage.harness.get_by_label_contains("Pad F#2").rect().center();
+            band.event(egui::Event::PointerMoved(open));
+        }
+        compare_page(name, &mut band.stage.harness);
+    }
+    for (size, theme, name) in [(SIZE, Theme::Dark, "manual"), (LEAST_SIZE, Theme::Light, "manual-least")] {
+        let mut stage = stage("Marimba", size, 1.0, theme);
+        stage.harness.get_by_role_and_label(Role::Tab, "?").click();
+        stage.harness.run_steps(3);
+        compare(name, &mut stage.harness);
+    }
+    finish();
+}
+
+#[test]
+fn a_pad_plays_lights_up_and_is_let_go() {
+    let mut band = Band::new("Acoustic Kit", SIZE, Theme::Dark);
+    band.open("Kit");
+    let pad = band.stage.harness.get_by_label_contains("Pad C2 ").rect();
+    band.press(pad.center_bottom() - vec2(0.0, 2.0), true);
+    assert!(matches!(band.heard[..], [Touch::Down { key: 36, velocity }] if velocity > 0.8), "{:?}", band.heard);
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 1 << 36);
+    // A page that is left lets go.
+    band.open("Tuning");
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 0);
+    band.press(pad.center(), false);
+    assert_eq!(band.stage.params.link().telemetry.keys(0), 0);
+}
+
+#[test]
+fn the_manual_opens_at_the_page_that_matters_and_escape_closes_it() {
+    for (tab, title) in [("Space, Output", "Space"), ("Kit", "Kits"), ("Exciters", "Exciters")] {
+        let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+        stage.harness.get_by_role_and_label(Role::Tab, tab).click();
+        stage.harness.run_steps(3);
+        stage.harness.get_by_role_and_label(Role::Tab, "?").click();
+        stage.harness.run_steps(3);
+        assert!(stage.harness.query_by_role_and_label(Role::Label, title).is_some(), "{title}");
+        stage.harness.get_by_label("Manual: recipes").click();
+        stage.harness.run_steps(3);
+        assert!(stage.harness.query_by_role_and_label(Role::Label, title).is_none());
+        stage.harness.key_press(Key::Escape);
+        stage.harness.run_steps(3);
+        assert!(stage.harness.query_by_label("Close the manual").is_none());
+        stage.harness.get_by_label("Modes");
+    }
+}
+
+#[test]
+fn every_page_of_the_manual_can_be_shown() {
+    // High enough for the whole list.
+    for size in [[1100, 900], [640, 900]] {
+        let mut stage = stage("Marimba", size, 1.0, Theme::Dark);
+        stage.harness.get_by_role_and_label(Role::Tab, "?").click();
+        stage.harness.run_steps(3);
+        // A letter that no font has would panic here.
+        for (name, _) in crate::editor::manual_text::PAGES {
+            stage.harness.get_by_label(&format!("Manual: {name}")).click();
+            stage.harness.run_steps(2);
+        }
+    }
+}
+
+#[test]
+fn scales_and_mappings_are_dropped_undone_and_complained_about() {
+    let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+    let before = band.stage.params.state();
+    band.drop_file(&asset("scales/19-equal.scl"));
+    let pitch = |band: &Band, key| band.stage.params.loaded().kit.sounds()[0].tuning().and_then(|own| own.pitch(key));
+    let semitones = |band: &Band, key| pitch(band, key).unwrap().semitones(440.0);
+    // From C to D, in steps of the scale.
+    let steps = |band: &Band| (semitones(band, 62) - semitones(band, 60)) * 19.0 / 12.0;
+    assert!((steps(&band) - 2.0).abs() < 1e-3, "{}", steps(&band));
+    assert!(matches!(band.stage.host.said()[..], [Said::Begin(_), Said::Set(..), Said::End(_)]), "the host saves it");
+    band.open("Tuning");
+    band.stage.harness.get_by_label_contains("Key C4 316.9");
+    band.drop_file(&asset("scales/19-equal-on-white-keys.kbm"));
+    assert!((steps(&band) - 3.0).abs() < 1e-3, "mapped: {}", steps(&band));
+    let mapped = band.stage.params.state();
+    // What is no scale changes nothing.
+    let wrong = band.stage.folder.path().join("wrong.scl");
+    std::fs::write(&wrong, "a\n2\nx\n").unwrap();
+    band.drop_file(&wrong);
+    // Nor does one whose first part is a scale, but that is too large.
+    let large = band.stage.folder.path().join("large.scl");
+    std::fs::write(&large, "a\n1\n2/1\n".to_owned() + &" ".repeat(1 << 20)).unwrap();
+    band.drop_file(&large);
+    band.drop_file(Path::new("/nowhere/a.kbm"));
+    band.drop_file(Path::new("/nowhere/a.txt"));
+    assert!(band.stage.params.state() == mapped);
+    band.stage.button("Tune to equal temperament");
+    assert_eq!(pitch(&band, 60), None, "no tuning of its own");
+    for _ in 0..3 {
+        band.stage.button("Undo");
+    }
+    assert!(band.stage.params.state() == before);
+}
+
+#[test]
+fn a_preset_that_is_dropped_joins_the_users_sounds_and_is_renamed() {
+    let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+    let before = band.stage.params.state();
+    let file = band.stage.folder.path().join("from a friend.toml");
+    let preset = Preset { name: "Friend’s Bell".to_owned(), ..Preset::find("Church Bell").unwrap().clone() };
+    std::fs::write(&file, preset.to_toml()).unwrap();
+    band.drop_file(&file);
+    assert_eq!(band.stage.params.name(), "Friend’s Bell");
+    let Playable::Preset(loaded) = band.stage.params.state().playable else { panic!("a preset") };
+    assert_eq!(loaded.patch.modes, preset.patch.modes);
+    band.stage.button("Undo");
+    assert!(band.stage.params.state() == before);
+    band.stage.button("Redo");
+    band.stage.button("Browse");
+    band.stage.button("Show Your own");
+    band.stage.harness.get_by_role_and_label(Role::TextInput, "Name to save under").click();
+    band.passes(2);
+    band.stage.harness.event(egui::Event::Text(" 2".to_owned()));
+    band.passes(3);
+    band.stage.button("Give your sound this name");
+    assert_eq!(band.stage.params.name(), "Friend’s Bell 2");
+    assert!(band.stage.harness.query_by_role_and_label(Role::ListItem, "Friend’s Bell 2").is_some());
+    assert!(band.stage.harness.query_by_role_and_label(Role::ListItem, "Friend’s Bell").is_none());
+    let files =
+        || std::fs::read_dir(band.stage.folder.path().join("presets")).unwrap().map(|file| file.unwrap().path());
+    let own = files().next().unwrap();
+    assert_eq!(files().count(), 1);
+    // A file that is there already is loaded, not copied.
+    band.stage.button("Undo");
+    band.drop_file(&own);
+    assert_eq!(band.stage.params.name(), "Friend’s Bell 2");
+    assert_eq!(std::fs::read_dir(own.parent().unwrap()).unwrap().count(), 1);
+    // A favourite that gets the name it has stays one.
+    band.stage.button("Favourite Friend’s Bell 2");
+    band.stage.button("Give your sound this name");
+    let favourites = std::fs::read_to_string(band.stage.folder.path().join("favourites.txt")).unwrap();
+    assert_eq!(favourites, "Friend’s Bell 2\n");
+    // A broken file says what is wrong, and changes nothing.
+    let state = band.stage.params.state();
+    std::fs::write(&file, "format = 99").unwrap();
+    band.drop_file(&file);
+    assert!(band.stage.params.state() == state);
+}

@@ -1,0 +1,60 @@
+//! The voices that sound, and the channels that hold keys: with MPE, each note has a channel of its own.
+
+use super::controls::Controls;
+use super::text::{line, paragraph};
+use super::theme::{PADDING, SMALL, TITLE_HEIGHT};
+use egui::{Align2, Painter, Rect, Stroke, StrokeKind, pos2, vec2};
+use sprung::params::Param;
+use sprung::units::note_name;
+
+/// The least width of the panel.
+pub(super) const WIDTH: f32 = 300.0;
+
+/// Shows the panel; `voices` is how many sound.
+pub(super) fn show(painter: &Painter, rect: Rect, voices: u32, controls: &Controls) {
+    let palette = controls.palette;
+    palette.paint_panel(painter, rect);
+    let inner = rect.shrink(PADDING);
+    let title = Rect::from_min_size(rect.min + vec2(PADDING, 2.0), vec2(inner.width(), TITLE_HEIGHT - 2.0));
+    let text = line(painter, title, Align2::LEFT_CENTER, "SOUNDING", SMALL, palette.muted);
+    let most = controls.value(Param::Voices.info()) as u32;
+    let count = Rect::from_min_max(pos2(text.right() + 10.0, title.top()), title.max);
+    line(painter, count, Align2::LEFT_CENTER, &format!("{voices} of {most}"), SMALL, palette.text);
+    // A dot for each voice; those that fade out beyond the number are added.
+    let dots = Rect::from_min_size(pos2(inner.left(), rect.top() + TITLE_HEIGHT + 2.0), vec2(inner.width(), 12.0));
+    let all = most.max(voices).max(1);
+    let step = (dots.width() / all as f32).min(13.0);
+    for number in 0..all {
+        let centre = pos2(dots.left() + (number as f32 + 0.5) * step, dots.center().y);
+        let colour = if number < voices { palette.accent } else { palette.line };
+        painter.circle_filled(centre, (step * 0.36).min(4.5), colour);
+    }
+    let telemetry = &controls.params.link().telemetry;
+    let area = Rect::from_min_max(pos2(inner.left(), dots.bottom() + 6.0), inner.max);
+    let rows = if area.height() >= 60.0 { 2 } else { 1 };
+    let columns = 16 / rows;
+    let height = (area.height() / rows as f32).min(38.0);
+    for channel in 0..16_u8 {
+        let (column, row) = (usize::from(channel) % columns, usize::from(channel) / columns);
+        let size = vec2(area.width() / columns as f32, height);
+        let corner = area.min + vec2(column as f32 * size.x, row as f32 * size.y);
+        let cell = Rect::from_min_size(corner, size).shrink(1.5);
+        let keys = telemetry.keys(channel);
+        let is_down = keys != 0;
+        let fill = if is_down { palette.accent } else { palette.raised };
+        painter.rect(cell, 3.0, fill, Stroke::new(1.0, palette.outline), StrokeKind::Inside);
+        let text = match keys.count_ones() {
+            0 => format!("{}", channel + 1),
+            1 => note_name(keys.trailing_zeros() as u8),
+            many => format!("{many} keys"),
+        };
+        let colour = if is_down { palette.on_accent } else { palette.muted };
+        line(painter, cell, Align2::CENTER_CENTER, &text, SMALL, colour);
+    }
+    let below = area.with_min_y(area.top() + rows as f32 * height + 6.0);
+    if below.height() > 30.0 {
+        let text = "The channels, and what each holds. With MPE, every note has a channel of its own: its bend, pressure and slide are \
+                    that note’s alone. A controller’s configuration message makes the zones; members bend by 48 semitones.";
+        paragraph(painter, below, text, SMALL, palette.muted);
+    }
+}

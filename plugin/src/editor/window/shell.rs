@@ -1,0 +1,54 @@
+//! The window in its host: how it is made, resized and dropped.
+
+use super::Window;
+use crate::editor::theme::LEAST_SIZE;
+use crate::state::{View, WINDOW_RANGE};
+use egui::Ui;
+use nice_plug_core::context::gui::GuiContext;
+use nice_plug_egui::baseview::{HandlerError, WindowSize};
+use nice_plug_egui::resizable_window::ResizableWindow;
+use nice_plug_egui::{Frame, KeyCapture, NiceEguiApp};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+impl NiceEguiApp for Window {
+    fn build(&mut self, context: egui::Context, host: GuiContext, _: &mut Frame) -> Result<(), HandlerError> {
+        self.open(host);
+        context.set_zoom_factor(self.params.view().zoom as f32 / 100.0);
+        Ok(())
+    }
+
+    fn ui(&mut self, ui: &mut Ui, frame: &mut Frame) {
+        let Some(host) = self.host.clone() else { return };
+        let least = LEAST_SIZE.map(|side| side as f32);
+        ResizableWindow::new("sprung").min_size(least.into()).show(ui, |ui| self.contents(ui, &host));
+        // Keys go to the host, except while the user is typing.
+        let typing = ui.ctx().egui_wants_keyboard_input();
+        frame.set_key_capture(if typing { KeyCapture::CaptureAll } else { KeyCapture::IgnoreAll });
+        let is_pressed = ui.input(|input| input.pointer.any_down());
+        self.focus.follow(frame, typing, is_pressed);
+    }
+
+    fn resized(&mut self, size: WindowSize) {
+        let [least, most] = WINDOW_RANGE;
+        let side = |side: f64| (side.round() as u32).clamp(least, most);
+        let size = [side(size.logical.width), side(size.logical.height)];
+        self.params.set_view(|view: &mut View| view.size = size);
+    }
+}
+
+/// A window is dropped when it is closed: nothing else tells it so.
+impl Drop for Window {
+    fn drop(&mut self) {
+        let link = self.params.link();
+        self.piano.release(link);
+        self.browser.release(link);
+        self.modes.release(link);
+        self.motion.release(link);
+        self.pages.release(link);
+        if let Some(host) = self.host.take() {
+            let end = || self.hands.gestures.end(&self.params, &host);
+            // The wrapper panics if the plugin itself is dropped; then nobody waits for the end of a gesture.
+            let _ = catch_unwind(AssertUnwindSafe(end));
+        }
+    }
+}
