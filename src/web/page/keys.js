@@ -1,0 +1,77 @@
+// Where notes come from: a keyboard on the page, the computer’s keys, MIDI ports.
+
+const LOWEST = 36;
+const HIGHEST = 96;
+// The physical keys of an octave and a third from C3, and of as many from C4.
+const ROWS = [
+  [48, "KeyZ KeyS KeyX KeyD KeyC KeyV KeyG KeyB KeyH KeyN KeyJ KeyM Comma KeyL Period Semicolon Slash"],
+  [60, "KeyQ Digit2 KeyW Digit3 KeyE KeyR Digit5 KeyT Digit6 KeyY Digit7 KeyU KeyI Digit9 KeyO Digit0 KeyP"],
+];
+const NAMES = ["C", "C sharp", "D", "E flat", "E", "F", "F sharp", "G", "A flat", "A", "B flat", "B"];
+
+// `play(key, isOn)` is called for each key. Returns a function that shows a key.
+export function listen(place, play) {
+  const keys = new Map();
+  for (let key = LOWEST; key <= HIGHEST; key++) {
+    const button = document.createElement("button");
+    button.className = NAMES[key % 12].length > 1 ? "key black" : "key";
+    button.ariaLabel = `${NAMES[key % 12]} ${Math.floor(key / 12) - 1}`;
+    button.tabIndex = key === 60 ? 0 : -1;
+    button.dataset.key = key;
+    place.append(button);
+    keys.set(key, button);
+  }
+  pointers(place, play);
+  computerKeys(place, play, keys);
+  return (key, isOn) => keys.get(key)?.classList.toggle("down", isOn);
+}
+
+// A pointer that is dragged plays the keys that it crosses.
+function pointers(place, play) {
+  const held = new Map();
+  const move = (event, isDown) => {
+    const under = isDown ? document.elementFromPoint(event.clientX, event.clientY)?.dataset.key : undefined;
+    const [now, before] = [under === undefined ? undefined : +under, held.get(event.pointerId)];
+    if (now === before) return;
+    if (before !== undefined) play(before, false);
+    if (now !== undefined) play(now, true);
+    if (now === undefined) held.delete(event.pointerId);
+    else held.set(event.pointerId, now);
+  };
+  place.addEventListener("pointerdown", (event) => move(event, true));
+  addEventListener("pointermove", (event) => held.has(event.pointerId) && move(event, true));
+  for (const end of ["pointerup", "pointercancel"]) addEventListener(end, (event) => move(event, false));
+}
+
+function computerKeys(place, play, keys) {
+  const codes = new Map(ROWS.flatMap(([first, row]) => row.split(" ").map((code, n) => [code, first + n])));
+  const down = new Map();
+  addEventListener("keydown", (event) => {
+    if (event.repeat || event.ctrlKey || event.metaKey || event.altKey || event.target.matches("select")) return;
+    let key = codes.get(event.code);
+    const focused = event.target.dataset?.key;
+    // Arrows move along the keyboard; Enter and space play the key that has the focus.
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.code];
+    if (focused !== undefined && step) keys.get(+focused + step)?.focus();
+    if (focused !== undefined && ["Enter", "Space"].includes(event.code)) key = +focused;
+    if (key === undefined || down.has(event.code)) return;
+    event.preventDefault();
+    down.set(event.code, key);
+    play(key, true);
+  });
+  const release = (code) => {
+    if (down.has(code)) play(down.get(code), false);
+    down.delete(code);
+  };
+  addEventListener("keyup", (event) => release(event.code));
+  addEventListener("blur", () => [...down.keys()].forEach(release));
+}
+
+// Asks for the MIDI ports and returns their names. Later ports are heard too.
+export async function useMidi(message) {
+  const access = await navigator.requestMIDIAccess();
+  const connect = () => access.inputs.forEach((port) => (port.onmidimessage = ({ data }) => data[0] < 0xf0 && message([...data])));
+  access.onstatechange = connect;
+  connect();
+  return [...access.inputs.values()].map((port) => port.name);
+}

@@ -1,0 +1,103 @@
+// The page: loads the module, starts the audio worklet with the first note, and keeps what is played.
+import { Player } from "./player.js";
+import { listen, useMidi } from "./keys.js";
+import { draw } from "./pictures.js";
+import { renderTake, wav } from "./wav.js";
+
+const element = (id) => document.getElementById(id);
+const SAMPLE_RATE = 48000;
+
+const module = await WebAssembly.compileStreaming(fetch("sprung.wasm"));
+const presets = new Player(module, SAMPLE_RATE).presets();
+const state = { take: [], preset: presets.find((preset) => preset.name === "Church Bell") ?? presets[0], key: 60 };
+let node;
+
+// The node, which browsers let sound only after a gesture.
+async function start() {
+  const context = new AudioContext({ sampleRate: SAMPLE_RATE, latencyHint: "interactive" });
+  await context.audioWorklet.addModule("worklet.js");
+  const options = { numberOfInputs: 0, outputChannelCount: [2], processorOptions: { module, take: [] } };
+  const made = new AudioWorkletNode(context, "sprung", options);
+  made.connect(context.destination);
+  made.onprocessorerror = () => (element("status").textContent = "The audio worklet has failed; reload the page.");
+  made.port.onmessage = ({ data }) => {
+    if (data.masses) show(data.masses);
+    if (data.played) {
+      state.take.push(data.played);
+      element("render").disabled = element("forget").disabled = !state.take.some((event) => event.message);
+    }
+  };
+  made.port.postMessage({ preset: state.preset.number });
+  return made;
+}
+
+function send(event) {
+  node ??= start();
+  node.then((made) => {
+    if (made.context.state === "suspended") made.context.resume();
+    made.port.postMessage(event);
+  }, (error) => (element("status").textContent = `No sound: ${error.message}`));
+}
+
+function play(key, isOn, velocity = +element("velocity").value) {
+  // A velocity of 0 releases the key at medium speed.
+  send({ message: [0x90, key, isOn ? velocity : 0] });
+  showKey(key, isOn);
+  if (isOn) state.key = key;
+}
+
+const showKey = listen(element("keys"), play);
+const show = draw(element("modes"), element("plane"), (pull) => {
+  const key = state.key;
+  play(key, true, Math.max(1, Math.round(127 * pull)));
+  setTimeout(() => play(key, false), 400);
+});
+
+function choose(preset) {
+  state.preset = preset;
+  state.key = preset.home;
+  element("about").textContent = preset.comment;
+  if (node) send({ preset: preset.number });
+}
+
+// The family’s presets; the first list is of all.
+function list(family) {
+  const chosen = presets.filter((preset) => family === "" || preset.family === family);
+  element("preset").replaceChildren(...chosen.map(({ name, number }) => new Option(name, number)));
+  return chosen[0];
+}
+
+const families = [...new Set(presets.map((preset) => preset.family))].filter(Boolean);
+element("family").append(new Option("all", ""), ...families.map((family) => new Option(family)));
+list("");
+element("preset").value = state.preset.number;
+choose(state.preset);
+element("family").onchange = ({ target }) => choose(list(target.value));
+element("preset").onchange = ({ target }) => choose(presets[+target.value]);
+
+element("render").onclick = () => {
+  const file = new Blob([wav(renderTake(module, state.take, SAMPLE_RATE), SAMPLE_RATE)], { type: "audio/wav" });
+  const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(file), download: "sprung.wav" });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  element("status").textContent = `sprung.wav: ${(file.size / 1e6).toFixed(1)} MB`;
+};
+
+// A new take begins with a new synth, so that its bits are those of its events alone.
+element("forget").onclick = async () => {
+  const old = await node;
+  node = undefined;
+  state.take = [];
+  element("render").disabled = element("forget").disabled = true;
+  await old?.context.close();
+};
+
+element("midi").onclick = () =>
+  useMidi((message) => send({ message })).then(
+    (names) => (element("status").textContent = names.length ? `MIDI: ${names.join(", ")}` : "No MIDI port yet."),
+    (error) => (element("status").textContent = `No MIDI: ${error.message}`),
+  );
+
+// For tests.
+window.sprung = { module, presets, state, play, choose };
+document.body.dataset.ready = "yes";

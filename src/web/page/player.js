@@ -1,0 +1,62 @@
+// An instance of the module. A take is a list of {frame, preset} and {frame, message}: a preset’s number, or the bytes of a
+// MIDI message, in order of frames from the start. The same take gives the same samples, whatever the lengths of blocks.
+
+const BLOCK = 1024;
+
+export class Player {
+  constructor(module, sampleRate, seed = 0) {
+    this.wasm = new WebAssembly.Instance(module, {}).exports;
+    this.synth = this.wasm.create(sampleRate, seed);
+    this.frame = 0;
+  }
+
+  // Numbers at a place in the module’s memory, which moves when it grows.
+  floats(place, length) {
+    return new Float32Array(this.wasm.memory.buffer, place, length);
+  }
+
+  // The presets, each with name, family, lowest, highest and home key, and comment. Not on the audio thread, which cannot
+  // decode text.
+  presets() {
+    const length = this.wasm.presets(this.synth);
+    const text = new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, this.wasm.text(this.synth), length));
+    return text.trimEnd().split("\n").map((line, number) => {
+      const [name, family, lowest, highest, home, comment] = line.split("\t");
+      return { number, name, family, lowest: +lowest, highest: +highest, home: +home, comment };
+    });
+  }
+
+  // Plays one event of a take, at an offset into the next block.
+  play(event, offset) {
+    if (event.preset !== undefined) this.wasm.load(this.synth, event.preset);
+    else this.wasm.midi(this.synth, offset, event.message[0], event.message[1] ?? 0, event.message[2] ?? 0);
+  }
+
+  // Fills both sides and plays the events of the take that fall on these frames, from the given one on. Returns the number
+  // of the next event.
+  render(take, next, left, right) {
+    for (let start = 0; start < left.length; ) {
+      let frames = Math.min(BLOCK, left.length - start);
+      for (; next < take.length && take[next].frame < this.frame + frames; next++) {
+        const offset = take[next].frame - this.frame;
+        // A preset is set between blocks.
+        if (take[next].preset !== undefined && offset > 0) {
+          frames = offset;
+          break;
+        }
+        this.play(take[next], offset);
+      }
+      this.sounds = this.wasm.process(this.synth, frames) !== 0;
+      left.set(this.floats(this.wasm.samples(this.synth, 0), frames), start);
+      right.set(this.floats(this.wasm.samples(this.synth, 1), frames), start);
+      start += frames;
+      this.frame += frames;
+    }
+    return next;
+  }
+
+  // Number of voices, 64 energies and 64 ratios.
+  look() {
+    return this.floats(this.wasm.look(this.synth), 129).slice();
+  }
+}

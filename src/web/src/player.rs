@@ -1,0 +1,107 @@
+//! A synth with the memory that JavaScript reads and writes.
+
+use sprung::engine::{Event, Snapshot, Synth, midi::parse_message};
+use sprung::preset::Preset;
+
+/// Frames that can be rendered at once.
+pub const BLOCK: usize = 1024;
+
+/// Modes that are shown.
+const SHOWN: usize = 64;
+
+/// Messages that are kept for a block; more are dropped.
+const MESSAGES: usize = 256;
+
+/// A synth that plays factory presets.
+pub struct Player {
+    synth: Synth,
+    events: Vec<Event>,
+    sides: [[f32; BLOCK]; 2],
+    shown: [f32; 1 + 2 * SHOWN],
+    text: String,
+}
+
+impl Player {
+    pub(crate) fn new(sample_rate: f64, seed: u64) -> Self {
+        let mut synth = Synth::new(sample_rate, seed);
+        synth.reserve_space();
+        let (sides, shown) = ([[0.0; BLOCK]; 2], [0.0; 1 + 2 * SHOWN]);
+        let mut player = Self { synth, events: Vec::with_capacity(MESSAGES), sides, shown, text: String::new() };
+        player.load(0);
+        player
+    }
+
+    /// Writes the list of presets and returns its length.
+    pub(crate) fn list_presets(&mut self) -> usize {
+        let line = |preset: &Preset| {
+            let guide = &preset.guide;
+            let family = guide.family.map_or("", |family| family.name());
+            let comment = preset.comment.split_whitespace().collect::<Vec<_>>().join(" ");
+            format!("{}\t{family}\t{}\t{}\t{}\t{comment}\n", preset.name, guide.lowest, guide.highest, guide.home)
+        };
+        self.text = Preset::factory().iter().map(line).collect();
+        self.text.len()
+    }
+
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    pub(crate) fn load(&mut self, preset: usize) {
+        let Some(preset) = Preset::factory().get(preset) else { return };
+        self.synth.set_kit(&preset.kit());
+        let mut ratios = preset.patch.modes.as_slice().iter().map(|mode| mode.ratio);
+        self.shown[1 + SHOWN..].fill_with(|| ratios.next().unwrap_or(0.0));
+    }
+
+    pub(crate) fn midi(&mut self, frame: u32, message: [u8; 3]) {
+        // Program change and channel pressure have two bytes; what follows is ignored.
+        let Some((channel, kind)) = parse_message(&message) else { return };
+        if self.events.len() < MESSAGES {
+            self.events.push(Event { frame, channel, kind });
+        }
+    }
+
+    pub(crate) fn process(&mut self, frames: usize) -> bool {
+        let frames = frames.min(BLOCK);
+        let [left, right] = &mut self.sides;
+        self.synth.process(&self.events, &mut left[..frames], &mut right[..frames]);
+        self.events.clear();
+        !self.synth.is_silent()
+    }
+
+    pub(crate) fn samples(&self, side: usize) -> &[f32] {
+        &self.sides[side.min(1)]
+    }
+
+    pub(crate) fn look(&mut self) -> &[f32] {
+        let mut snapshot = Snapshot::default();
+        self.synth.show(&mut snapshot);
+        self.shown[0] = snapshot.voices as f32;
+        for (shown, mass) in self.shown[1..=SHOWN].iter_mut().zip(&snapshot.masses) {
+            *shown = mass.energy;
+        }
+        &self.shown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_preset_of_the_list_is_played_and_shown() {
+        let mut player = Player::new(48_000.0, 0);
+        assert!(player.list_presets() > 1000);
+        let marimba = player.text().lines().position(|line| line.starts_with("Marimba\t")).unwrap();
+        player.load(marimba);
+        assert_eq!(player.look()[0], 0.0);
+        player.midi(100, [0x90, 60, 100]);
+        assert!(player.process(128));
+        assert!(player.samples(0)[..100].iter().all(|sample| *sample == 0.0), "it starts at its frame");
+        assert!(player.process(1024) && player.samples(1).iter().any(|sample| sample.abs() > 0.001));
+        let shown = player.look();
+        let first = Preset::factory()[marimba].patch.modes.as_slice()[0].ratio;
+        assert!(shown[0] == 1.0 && shown[1] > 1e-6 && shown[1 + SHOWN] == first, "{:?}", &shown[..3]);
+    }
+}
