@@ -1,20 +1,19 @@
 //! `cargo xtask …`: the project's chores.
 
-mod bench_table;
 mod bless;
 mod bundle;
-mod callgrind;
-mod figures;
+mod dist;
+mod engine;
 mod files;
 mod install;
-mod level;
-mod measure;
+mod package;
 mod patch;
 mod python;
 mod setup;
+mod sha256;
 mod shell;
 mod skipped;
-mod songs;
+mod steps;
 mod test;
 
 use clap::{Parser, Subcommand};
@@ -56,37 +55,20 @@ enum Chore {
         /// Only this case; `pictures` for what the plugin's window looks like.
         case: Option<String>,
     },
-    /// Draw the README's picture of the demo song to assets/demo.png.
-    Figures,
-    /// Run the benches and the peers, and write their tables into benches/README.md.
-    BenchTable {
-        /// Run nothing: write what was measured the last time.
+    /// Make what users download: an archive, a Debian package, and their checksums, in target/dist.
+    Dist {
+        /// Leave the plugin out.
         #[arg(long)]
-        again: bool,
-    },
-    /// Count the instructions of the kernels and of silence; fail if they have grown by 5 %.
-    Callgrind {
-        /// Keep what is counted.
+        no_plugin: bool,
+        /// Make a wheel for Python as well.
         #[arg(long)]
-        accept: bool,
+        wheel: bool,
+        /// Install what was made into an empty system and an empty virtual environment, and render with it.
+        #[arg(long = "try")]
+        trial: bool,
     },
-    /// What `callgrind` counts.
-    #[command(hide = true)]
-    CallgrindWork { name: String, rounds: usize },
-    /// Measure how loud the factory's presets are, and propose gains that bring them to one loudness.
-    Level {
-        /// Write the gains into the presets' files.
-        #[arg(long)]
-        write: bool,
-    },
-    /// Measure the factory's presets and write the results to assets/measures/results.md.
-    Measure,
-    /// Write the demo songs to assets/midi.
-    Songs {
-        /// Write nothing; fail if the files are not what would be written.
-        #[arg(long)]
-        check: bool,
-    },
+    #[command(flatten)]
+    Engine(engine::Chore),
 }
 
 #[derive(clap::Args)]
@@ -114,13 +96,8 @@ fn main() -> ExitCode {
         Chore::Install(place) => install::install(place.scope()),
         Chore::Uninstall(place) => install::uninstall(place.scope()),
         Chore::Bless { case } => bless::run(case.as_deref()),
-        Chore::Figures => figures::run(),
-        Chore::BenchTable { again } => bench_table::run(again),
-        Chore::Callgrind { accept } => callgrind::run(accept).map(|_| ()),
-        Chore::CallgrindWork { name, rounds } => callgrind::work(&name, rounds),
-        Chore::Level { write } => level::run(write),
-        Chore::Measure => measure::run(),
-        Chore::Songs { check } => songs::run(check),
+        Chore::Dist { no_plugin, wheel, trial } => dist::run(&dist::Options { no_plugin, wheel, trial }),
+        Chore::Engine(chore) => engine::run(&chore),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

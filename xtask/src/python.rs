@@ -1,18 +1,20 @@
-//! Installs the plugin hosts that are driven from Python, in a virtual environment under the target directory.
+//! Installs the plugin hosts that are driven from Python, and what tests the Python package, in a virtual environment.
 
 use crate::shell::{root, succeeds};
 use std::path::Path;
 use std::process::Command;
 
-/// The file with the pinned versions.
-const REQUIREMENTS: &str = "plugin/tests/hosts/requirements.txt";
+/// The files with the pinned versions.
+const REQUIREMENTS: [&str; 2] = ["plugin/tests/hosts/requirements.txt", "src/python/tests/requirements.txt"];
 
-/// Creates `target/python` with the packages in [`REQUIREMENTS`], unless it already contains exactly these.
+/// Creates `target/python` with the packages of [`REQUIREMENTS`], unless it already contains exactly these.
 pub(crate) fn install() -> Result<(), String> {
-    let wanted = root().join(REQUIREMENTS);
     let folder = root().join("target/python");
     let installed = folder.join("requirements.txt");
-    let text = std::fs::read_to_string(&wanted).map_err(|error| format!("{}: {error}", wanted.display()))?;
+    let mut text = String::new();
+    for file in REQUIREMENTS.map(|file| root().join(file)) {
+        text += &std::fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+    }
     if std::fs::read_to_string(&installed).is_ok_and(|found| found == text) {
         return Ok(());
     }
@@ -20,25 +22,17 @@ pub(crate) fn install() -> Result<(), String> {
     if !succeeds("python3", &["-m", "venv", "--clear", &folder.to_string_lossy()]) {
         return Err("there is no Python that makes virtual environments (python3-venv)".to_owned());
     }
-    pip(&folder, &wanted)?;
+    pip(&folder)?;
     std::fs::write(&installed, text).map_err(|error| format!("{}: {error}", installed.display()))
 }
 
-fn pip(folder: &Path, requirements: &Path) -> Result<(), String> {
+fn pip(folder: &Path) -> Result<(), String> {
     let status = Command::new(folder.join("bin/python"))
-        .args([
-            "-m",
-            "pip",
-            "install",
-            "--quiet",
-            "--disable-pip-version-check",
-            "--only-binary=:all:",
-            "--requirement",
-        ])
-        .arg(requirements)
+        .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary=:all:"])
+        .args(REQUIREMENTS.iter().flat_map(|file| ["--requirement".into(), root().join(file)]))
         .status();
     match status {
         Ok(status) if status.success() => Ok(()),
-        _ => Err(format!("pip could not install {REQUIREMENTS}")),
+        _ => Err(format!("pip could not install {}", REQUIREMENTS.join(" and "))),
     }
 }

@@ -45,3 +45,12 @@ pub(crate) fn run_and_read(mut command: Command) -> Result<(bool, Vec<String>), 
     }
     Ok((child.wait().map_err(failed)?.success(), lines))
 }
+
+/// Runs a command; `what` names it if it fails.
+pub(crate) fn run_to_end(command: &mut Command, what: &str) -> Result<(), String> {
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("{what}: {status}")),
+        Err(error) => Err(format!("{what}: {error}")),
+    }
+}

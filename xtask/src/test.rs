@@ -1,125 +1,12 @@
 //! `cargo xtask test`: runs the whole suite, step by step, and counts what was really run.
 
+use crate::package::Tested;
 use crate::shell::{cargo, run_and_read};
-use crate::{bundle, callgrind, patch, setup, skipped};
+use crate::steps::{STEPS, Shows, Step};
+use crate::{bundle, package, patch, setup, skipped};
 use std::fmt;
 use std::process::Command;
 use std::time::{Duration, Instant};
-
-/// How to count what a step has run, from its output.
-#[derive(Clone, Copy, PartialEq)]
-enum Shows {
-    /// Only success or failure, which counts as one check.
-    OneCheck,
-    /// The test harness's `test result:` lines.
-    Tests,
-    /// Criterion's `Success` lines.
-    Benches,
-}
-
-struct Step {
-    name: &'static str,
-    arguments: &'static str,
-    environment: &'static [(&'static str, &'static str)],
-    shows: Shows,
-}
-
-const DENY: (&str, &str) = ("RUSTDOCFLAGS", "-D warnings");
-
-const STEPS: &[Step] = &[
-    Step { name: "format", arguments: "fmt --all --check", environment: &[], shows: Shows::OneCheck },
-    Step {
-        name: "lint, all features",
-        arguments: "clippy --workspace --all-targets --all-features -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "lint, default features",
-        arguments: "clippy --package sprung --all-targets -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "lint, no features",
-        arguments: "clippy --package sprung --all-targets --no-default-features -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "tests",
-        arguments: "test --workspace --all-features --no-fail-fast",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "golden, release",
-        arguments: "test --release --package sprung --no-default-features --features analysis --test golden",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "golden, this CPU",
-        arguments: "test --release --package sprung --no-default-features --features analysis --test golden \
-            --target-dir target/native",
-        environment: &[("RUSTFLAGS", "-C target-cpu=native")],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "storms, release",
-        arguments: "test --release --package sprung --no-default-features --features analysis --test storm",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "modes, release",
-        arguments: "test --release --package sprung --no-default-features --features analysis --lib -- analysis::modes",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "fit, release",
-        arguments: "test --release --package sprung --no-default-features --features analysis --test fit",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "bank, release",
-        arguments: "test --release --package sprung --no-default-features --features analysis --test bank",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "documentation",
-        arguments: "doc --workspace --no-deps --all-features",
-        environment: &[DENY],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "benches run",
-        arguments: "bench --package sprung --all-features --benches -- --test",
-        environment: &[],
-        shows: Shows::Benches,
-    },
-    Step {
-        name: "plugin, format",
-        arguments: "fmt --manifest-path plugin/Cargo.toml --check",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "plugin, lint",
-        arguments: "clippy --manifest-path plugin/Cargo.toml --all-targets --all-features -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "plugin, documentation",
-        arguments: "doc --manifest-path plugin/Cargo.toml --no-deps --all-features",
-        environment: &[DENY],
-        shows: Shows::OneCheck,
-    },
-];
 
 /// How many checks ran, and with which results.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -157,7 +44,7 @@ pub(crate) fn run(strict: bool) -> Result<(), String> {
     }));
     outcomes.extend(STEPS.iter().map(|step| timed(step.name, || step.run())));
     outcomes.push(timed("plugin, as bundled", plugin));
-    outcomes.push(timed("instructions", instructions));
+    outcomes.push(timed("Python package", python_package));
 
     println!("\n{:<24} {:<8} {:>9}  ran", "step", "result", "time");
     let mut total = Count::default();
@@ -197,14 +84,13 @@ fn plugin() -> (Count, &'static str) {
     }
 }
 
-/// Compares the instruction counts of the kernels with the kept ones.
-fn instructions() -> (Count, &'static str) {
-    if !callgrind::can_count() {
-        return (Count { skipped: vec!["instructions".to_owned()], ..Count::default() }, " (no valgrind)");
-    }
-    let skipped = callgrind::missing_levels().map(|level| format!("level::{}", level.name())).collect();
-    match callgrind::run(false) {
-        Ok(passed) => (Count { passed, failed: 0, skipped }, ""),
+/// Runs the tests of the Python package.
+fn python_package() -> (Count, &'static str) {
+    match package::test() {
+        Ok(Tested::Ran { passed, failed }) => (Count { passed, failed, skipped: Vec::new() }, ""),
+        Ok(Tested::Skipped) => {
+            (Count { skipped: vec!["Python package".to_owned()], ..Count::default() }, " (no pytest)")
+        }
         Err(message) => failed(&message),
     }
 }
@@ -251,7 +137,7 @@ impl Shows {
             Shows::Tests => count_tests(lines),
         };
         let mut remark = "";
-        if count.passed + count.failed == 0 && succeeded {
+        if count.passed + count.failed + count.skipped.len() == 0 && succeeded {
             remark = " (nothing ran)";
             count.failed = 1;
         } else if !succeeded && count.failed == 0 {

@@ -1,5 +1,6 @@
 //! Digests, which show whether a source is the one for which, and with which, the corrections were made.
 
+use crate::sha256::hex;
 use sha2::{Digest as _, Sha256};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -32,10 +33,6 @@ pub(super) fn of_texts(texts: impl Iterator<Item = String>) -> String {
     let mut sum = Sha256::new();
     texts.for_each(|text| sum.update(text));
     hex(sum)
-}
-
-fn hex(sum: Sha256) -> String {
-    sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn list(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), String> {

@@ -7,6 +7,7 @@ mod baseview;
 mod calls;
 mod digest;
 mod edit;
+mod egui_baseview;
 mod run_loop;
 mod window;
 mod worker;
@@ -28,7 +29,7 @@ struct Package {
     edits: &'static [&'static [Edit]],
 }
 
-const PACKAGES: [Package; 2] = [
+const PACKAGES: [Package; 3] = [
     Package {
         name: "nice-plug",
         version: "0.4.2",
@@ -40,6 +41,12 @@ const PACKAGES: [Package; 2] = [
         version: "0.4.2",
         source: "010bdeb0ca653a1a2568e52137b4496548ec0fa7d74594a03f04c3e864603840",
         edits: &[baseview::EDITS],
+    },
+    Package {
+        name: "egui-baseview",
+        version: "0.9.0",
+        source: "f8ccbcb2aa109bf5a3583b0b42e49056c1e12332ffc2054de407e44b6d0bee96",
+        edits: &[egui_baseview::EDITS],
     },
 ];
 
@@ -200,13 +207,16 @@ mod tests {
     #[test]
     fn another_version_is_refused_with_what_to_do() {
         for package in PACKAGES {
-            let name = package.name;
+            let (name, own) = (package.name, package.version);
             let asks = |version: &str| format!("[dependencies]\n{name} = {{ version = \"{version}\" }}");
-            assert_eq!(package.check_version(&asks("=0.4.2")), Ok(()));
-            for version in ["=0.4.3", "0.4.2", "^0.4"] {
+            assert_eq!(package.check_version(&asks(&format!("={own}"))), Ok(()));
+            for version in ["=0.4.3", own, "^0.4"] {
                 let message = package.check_version(&asks(version)).unwrap_err();
                 assert!(message.contains(&format!("asks for {name} {version},")), "{message}");
-                assert!(message.contains("are for =0.4.2") && message.contains("xtask/src/patch"), "{message}");
+                assert!(
+                    message.contains(&format!("are for ={own}")) && message.contains("xtask/src/patch"),
+                    "{message}"
+                );
             }
             let message = package.check_version("[dependencies]").unwrap_err();
             assert!(message.contains(&format!("asks for {name} no version,")), "{message}");

@@ -1,0 +1,120 @@
+//! The chores that use the engine: compiling it takes minutes, so the other chores are a program without it.
+
+#[cfg(feature = "engine")]
+mod bench_table;
+#[cfg(feature = "engine")]
+mod callgrind;
+#[cfg(feature = "engine")]
+mod cross;
+#[cfg(feature = "engine")]
+mod figures;
+#[cfg(feature = "engine")]
+mod level;
+#[cfg(feature = "engine")]
+mod measure;
+#[cfg(feature = "engine")]
+mod songs;
+#[cfg(feature = "engine")]
+mod web;
+
+use clap::Subcommand;
+use std::path::PathBuf;
+
+#[derive(Subcommand)]
+#[cfg_attr(not(feature = "engine"), allow(dead_code, reason = "read by the program with the engine"))]
+pub(crate) enum Chore {
+    /// Draw the README's picture of the demo song to assets/demo.png.
+    Figures,
+    /// Run the benches and the peers, and write their tables into benches/README.md.
+    BenchTable {
+        /// Run nothing: write what was measured the last time.
+        #[arg(long)]
+        again: bool,
+    },
+    /// Count the instructions of the kernels and of silence; fail if they have grown by 5 %.
+    Callgrind {
+        /// Keep what is counted.
+        #[arg(long)]
+        accept: bool,
+    },
+    /// What `callgrind` counts.
+    #[command(hide = true)]
+    CallgrindWork { name: String, rounds: usize },
+    /// Render the golden cases on each CPU that this machine has or can imitate, and print a table of what is the same.
+    Cross {
+        /// The compiler for other CPUs, where the present toolchain lacks their standard libraries.
+        #[arg(long, env = "SPRUNG_CROSS_RUSTC", value_name = "PATH")]
+        rustc: Option<PathBuf>,
+        /// Seconds of each song; 0 for none.
+        #[arg(long, default_value_t = 10, value_name = "N")]
+        song_seconds: usize,
+        /// Only CPUs and instructions whose name contains this, such as wasm32.
+        only: Option<String>,
+    },
+    /// Build the page that plays Sprung in a browser into target/web.
+    Web {
+        /// The compiler for WebAssembly, where the present toolchain lacks its standard library.
+        #[arg(long, env = "SPRUNG_CROSS_RUSTC", value_name = "PATH")]
+        rustc: Option<PathBuf>,
+        /// Serve the page to this machine.
+        #[arg(long)]
+        serve: bool,
+        /// Play it in headless Chromium: compare its samples with the renderer's, and measure.
+        #[arg(long)]
+        check: bool,
+        /// Take the README's picture of it.
+        #[arg(long, value_name = "OUT.png")]
+        picture: Option<PathBuf>,
+    },
+    /// Measure how loud the factory's presets are, and propose gains that bring them to one loudness.
+    Level {
+        /// Write the gains into the presets' files.
+        #[arg(long)]
+        write: bool,
+    },
+    /// Measure the factory's presets and write the results to assets/measures/results.md.
+    Measure,
+    /// Write the demo songs to assets/midi.
+    Songs {
+        /// Write nothing; fail if the files are not what would be written.
+        #[arg(long)]
+        check: bool,
+    },
+}
+
+/// Does a chore.
+#[cfg(feature = "engine")]
+pub(crate) fn run(chore: &Chore) -> Result<(), String> {
+    match chore {
+        Chore::Figures => figures::run(),
+        Chore::BenchTable { again } => bench_table::run(*again),
+        Chore::Callgrind { accept } => callgrind::run(*accept),
+        Chore::CallgrindWork { name, rounds } => callgrind::work(name, *rounds),
+        Chore::Cross { rustc, song_seconds, only } => {
+            cross::run(&cross::Options { rustc: rustc.as_deref(), song_seconds: *song_seconds, only: only.as_deref() })
+        }
+        Chore::Web { rustc, serve, check, picture } => {
+            let (serve, check, picture) = (*serve, *check, picture.as_deref());
+            web::run(&web::Options { rustc: rustc.as_deref(), serve, check, picture })
+        }
+        Chore::Level { write } => level::run(*write),
+        Chore::Measure => measure::run(),
+        Chore::Songs { check } => songs::run(*check),
+    }
+}
+
+/// Has the optimised program with the engine do what this one was asked to do. Ends with its exit code.
+#[cfg(not(feature = "engine"))]
+pub(crate) fn run(_: &Chore) -> Result<(), String> {
+    let mut command = crate::shell::cargo(WITH_ENGINE);
+    command.arg(crate::shell::root().join("Cargo.toml")).arg("--").args(std::env::args_os().skip(1));
+    // Paths on the command line are relative to the caller’s folder.
+    command.current_dir(std::env::current_dir().map_err(|error| format!("the present folder: {error}"))?);
+    eprintln!("building the chores that use the engine; the first time takes minutes");
+    let status = command.status().map_err(|error| format!("cargo: {error}"))?;
+    std::process::exit(status.code().unwrap_or(1));
+}
+
+/// What cargo is told to run the program with the engine; the manifest’s path follows.
+#[cfg(not(feature = "engine"))]
+const WITH_ENGINE: &str = "run --release --quiet --package xtask --features engine --manifest-path";

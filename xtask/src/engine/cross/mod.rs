@@ -1,0 +1,141 @@
+//! `cargo xtask cross`: renders the golden cases on each CPU that this machine has or can imitate, and compares their digests.
+
+mod cases;
+mod stopped;
+mod target;
+
+use crate::shell::root;
+use cases::{Accepted, Outcome};
+use sprung::dsp::Level;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+use stopped::Stopped::{self, Failed, Missing};
+
+pub(crate) use target::Target;
+
+/// How to build and what to play.
+pub(crate) struct Options<'a> {
+    /// The compiler for other targets, in place of the present toolchain's.
+    pub(crate) rustc: Option<&'a Path>,
+    /// Seconds of each song; 0 leaves the songs out.
+    pub(crate) song_seconds: usize,
+    /// Only rows whose name contains this.
+    pub(crate) only: Option<&'a str>,
+}
+
+/// A row of the table: a CPU, and what its instructions are called there.
+struct Row {
+    cpu: &'static str,
+    level: String,
+    target: Target,
+    /// The value of `SPRUNG_SIMD`.
+    forced: Option<Level>,
+}
+
+impl Row {
+    /// All rows, this machine's own levels first.
+    fn all() -> Vec<Row> {
+        let own = if cfg!(target_arch = "x86_64") { "x86-64" } else { std::env::consts::ARCH };
+        let levels = Level::ALL.into_iter().filter(|level| cfg!(target_arch = "x86_64") != (*level == Level::Neon));
+        let mut rows: Vec<Row> = levels
+            .filter(|level| cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) || *level == Level::Scalar)
+            .filter(|level| cfg!(target_arch = "x86_64") || matches!(level, Level::Scalar | Level::Neon))
+            .map(|level| Row { cpu: own, level: level.name().to_owned(), target: Target::Own, forced: Some(level) })
+            .collect();
+        if !cfg!(target_arch = "aarch64") {
+            for level in [Level::Neon, Level::Scalar] {
+                let name = format!("{}, by QEMU", level.name());
+                rows.push(Row { cpu: "aarch64", level: name, target: Target::Aarch64, forced: Some(level) });
+            }
+        }
+        for (name, target) in [("scalar, in Node", Target::Wasm), ("simd128, in Node", Target::WasmSimd)] {
+            rows.push(Row { cpu: "wasm32", level: name.to_owned(), target, forced: None });
+        }
+        rows
+    }
+
+    fn name(&self) -> String {
+        format!("{} {}", self.cpu, self.level)
+    }
+
+    /// Builds and runs the program.
+    fn run(&self, options: &Options) -> Result<(Outcome, Duration), Stopped> {
+        if self.target == Target::Own && self.forced.is_some_and(|level| !level.is_available()) {
+            return Err(Missing("this CPU does not have it".to_owned()));
+        }
+        let program = self.target.build(options.rustc)?;
+        let start = Instant::now();
+        // A process for each core, since WebAssembly has no threads: of n, process k plays the cases k, k + n, k + 2n and so on.
+        let processes = std::thread::available_parallelism().map_or(1, usize::from);
+        let mut running = Vec::new();
+        for first in 0..processes {
+            let mut command = self.target.command(&program).map_err(Missing)?;
+            command.args([first, processes, options.song_seconds].map(|number| number.to_string()));
+            if let Some(level) = self.forced {
+                command.env("SPRUNG_SIMD", level.name());
+            }
+            let child = command.stdout(Stdio::piped()).spawn();
+            running.push(child.map_err(|error| Failed(format!("{}: {error}", program_of(&command))))?);
+        }
+        let mut lines = Vec::new();
+        for child in running {
+            let output = child.wait_with_output().map_err(|error| Failed(error.to_string()))?;
+            if !output.status.success() {
+                return Err(Failed(format!("the program failed: {}", output.status)));
+            }
+            lines.extend(String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned));
+        }
+        let level = lines.iter().find_map(|line| line.strip_prefix("level ")).unwrap_or("none").to_owned();
+        if let Some(forced) = self.forced.filter(|forced| forced.name() != level) {
+            return Err(Failed(format!("it ran with {level}, not with {}", forced.name())));
+        }
+        let accepted = Accepted::read(&root().join("tests/golden")).map_err(Failed)?;
+        let outcome = accepted.compare(&lines, options.song_seconds > 0).map_err(Failed)?;
+        Ok((outcome, start.elapsed()))
+    }
+}
+
+fn program_of(command: &Command) -> String {
+    command.get_program().to_string_lossy().into_owned()
+}
+
+/// Prints a table with a row for each CPU, and what is missing for the others. Differing bits and failed runs are an error.
+pub(crate) fn run(options: &Options) -> Result<(), String> {
+    let (mut table, mut missing, mut failures) = (Vec::new(), Vec::new(), Vec::new());
+    for row in Row::all().iter().filter(|row| options.only.is_none_or(|only| row.name().contains(only))) {
+        eprintln!("── {}", row.name());
+        match row.run(options) {
+            Ok((outcome, time)) => {
+                table.push(format!(
+                    "| {} | {} | {} of {} | {} |",
+                    row.cpu,
+                    row.level,
+                    outcome.same,
+                    outcome.same + outcome.differing.len(),
+                    duration(time)
+                ));
+                failures.extend(outcome.differing.iter().map(|case| format!("{}: {case}", row.name())));
+            }
+            Err(Missing(message)) => missing.push(format!("{}: {message}", row.name())),
+            Err(Failed(message)) => failures.push(format!("{}: {message}", row.name())),
+        }
+    }
+    println!("| CPU | instructions | cases with the accepted bits | time |\n|---|---|---|---|");
+    table.iter().for_each(|line| println!("{line}"));
+    let songs = match options.song_seconds {
+        0 => "without songs".to_owned(),
+        seconds => format!("of each song, at most the first {seconds} s"),
+    };
+    println!("\nEvery preset, {songs}.");
+    missing.iter().for_each(|line| println!("not run: {line}"));
+    if !failures.is_empty() {
+        return Err(failures.join("\n"));
+    }
+    if table.is_empty() { Err("nothing was run".to_owned()) } else { Ok(()) }
+}
+
+fn duration(time: Duration) -> String {
+    let seconds = time.as_secs();
+    if seconds < 120 { format!("{seconds} s") } else { format!("{} min", (seconds + 30) / 60) }
+}

@@ -1,0 +1,258 @@
+//! Plays the page in headless Chromium: its samples are those of the renderer; keys, mouse and masses sound; how fast it is.
+
+#[path = "../../../../tests/lab/browser.rs"]
+#[allow(dead_code, reason = "the lab's tests use more of it")]
+mod browser;
+
+use browser::Page;
+use serde_json::{Value, json};
+use sprung::analysis::digest::Digest;
+use sprung::io::Song;
+use sprung::preset::Preset;
+use sprung::render::{Job, Options, Tail};
+use std::path::Path;
+
+/// A preset of a mallet, one of a plate's modes, one with noise.
+const PRESETS: [&str; 3] = ["Marimba", "Church Bell", "Snare"];
+
+/// A preset of 64 modes, for the measurement.
+const SIXTY_FOUR_MODES: &str = "Electric Piano 1";
+
+/// How many notes the measurement plays at once.
+const VOICES: f64 = 8.0;
+
+const RATE: u32 = 48_000;
+
+/// Seconds that a note is held, and that are rendered after it.
+const SECONDS: u32 = 1;
+
+/// JavaScript: renders a take of the preset with this number in the page's worklet, and returns its SHA-256.
+const DIGEST: &str = "(async (preset) => {
+  const context = new OfflineAudioContext(2, 2 * SECONDS * RATE, RATE);
+  await context.audioWorklet.addModule('worklet.js');
+  const take = [{frame: 0, preset}, {frame: 0, message: [0x90, 60, 100]}, {frame: SECONDS * RATE, message: [0x90, 60, 0]}];
+  const processorOptions = {module: sprung.module, take};
+  new AudioWorkletNode(context, 'sprung', {numberOfInputs: 0, outputChannelCount: [2], processorOptions}).connect(context.destination);
+  const sound = await context.startRendering();
+  const [left, right] = [sound.getChannelData(0), sound.getChannelData(1)];
+  const both = new Float32Array(2 * left.length);
+  left.forEach((sample, n) => { both[2 * n] = sample; both[2 * n + 1] = right[n]; });
+  const hash = new Uint8Array(await crypto.subtle.digest('SHA-256', both));
+  return [...hash].map((byte) => byte.toString(16).padStart(2, '0')).join('');
+})";
+
+/// JavaScript: plays notes of the preset for ten seconds, at once and then live. Returns how many times as fast as
+/// real time the first is, and how many frames the second had lost.
+const SPEED: &str = "(async (preset) => {
+  const events = [{frame: 0, preset}];
+  for (let second = 0; second < 10; second++)
+    for (let n = 0; n < VOICES; n++) events.push({frame: second * RATE, message: [0x90, 40 + 3 * n, 100]});
+  const node = async (context) => {
+    await context.audioWorklet.addModule('worklet.js');
+    const processorOptions = {module: sprung.module, take: events};
+    const made = new AudioWorkletNode(context, 'sprung', {numberOfInputs: 0, outputChannelCount: [2], processorOptions});
+    made.connect(context.destination);
+    return made;
+  };
+  const offline = new OfflineAudioContext(2, 10 * RATE, RATE);
+  await node(offline);
+  const start = performance.now();
+  await offline.startRendering();
+  const times = 10_000 / (performance.now() - start);
+  const live = new AudioContext({sampleRate: RATE});
+  const made = await node(live);
+  let voices = 0;
+  made.port.onmessage = ({data}) => { if (data.masses) voices = Math.max(voices, data.masses[0]); };
+  await live.resume();
+  await new Promise((done) => setTimeout(done, 2000));
+  // The worklet's start, which reads all presets, is not counted.
+  const underruns = () => (live.playbackStats ?? live.playoutStats)?.underrunDuration;
+  const [before, at, lostBefore] = [live.currentTime, performance.now(), underruns()];
+  await new Promise((done) => setTimeout(done, 7500));
+  const missing = (performance.now() - at) / 1000 - (live.currentTime - before);
+  const lost = lostBefore === undefined ? undefined : underruns() - lostBefore;
+  await live.close();
+  return {times, voices, behind: Math.max(0, Math.round(missing * RATE / 128)), lost: lost === undefined ? null : Math.round(lost * RATE)};
+})";
+
+/// Opens the page, and checks it or takes its picture.
+pub(super) fn run(address: &str, check: bool, picture: Option<&Path>) -> Result<(), String> {
+    let Some(program) = browser::installed() else {
+        return Err("there is no chromium; install it with: sudo apt-get install chromium".to_owned());
+    };
+    let mut page = Page::open_at(&program, address);
+    until(&mut page, "document.body.dataset.ready === 'yes'")?;
+    if check {
+        PRESETS.iter().try_for_each(|preset| same_samples(&mut page, preset))?;
+        sounds(&mut page)?;
+        speed(&mut page)?;
+    }
+    if let Some(path) = picture {
+        take_picture(&mut page, path)?;
+    }
+    if page.errors.is_empty() { Ok(()) } else { Err(page.errors.join("\n")) }
+}
+
+/// An expression with its constants.
+fn with_constants(script: &str) -> String {
+    let constants = [("SECONDS", f64::from(SECONDS)), ("RATE", f64::from(RATE)), ("VOICES", VOICES)];
+    constants.iter().fold(script.to_owned(), |script, (name, value)| script.replace(name, &value.to_string()))
+}
+
+/// Waits up to twenty seconds until an expression is true.
+fn until(page: &mut Page, expression: &str) -> Result<(), String> {
+    for _ in 0..200 {
+        if page.value(expression) == json!(true) {
+            return Ok(());
+        }
+        page.value("new Promise((done) => setTimeout(done, 100))");
+    }
+    Err(format!("never true in the page: {expression}; errors: {:?}", page.errors))
+}
+
+fn number_of(preset: &str) -> usize {
+    Preset::factory().iter().position(|one| one.name == preset).expect("the presets exist")
+}
+
+/// Renders a note in the page and with the offline renderer, as `sprung render` does.
+fn same_samples(page: &mut Page, preset: &str) -> Result<(), String> {
+    let found = page.value(&format!("{}({})", with_constants(DIGEST), number_of(preset)));
+    let expected = rendered(preset).map_err(|error| error.to_string())?;
+    if found != json!(expected) {
+        return Err(format!("{preset}: the page has {found}, the renderer {expected}"));
+    }
+    println!("{preset}: the page has the renderer’s samples, {}…", &expected[..16]);
+    Ok(())
+}
+
+fn rendered(preset: &str) -> sprung::Result<String> {
+    let song = Song::chord(&[60.0], 100.0 / 127.0, f64::from(SECONDS));
+    let kit = Preset::find(preset)?.kit();
+    let options = Options { sample_rate: RATE, seed: 0, block: 1024, tail: Tail::Seconds(f64::from(SECONDS)) };
+    let (mut left, mut right) = (Vec::new(), Vec::new());
+    Job::new(&song, &kit, options).render(|block_left, block_right| {
+        left.extend(block_left);
+        right.extend(block_right);
+        Ok(())
+    })?;
+    Ok(Digest::of(&left, &right, f64::from(RATE)).sha256)
+}
+
+/// Plays by mouse, by the computer's keys and by pulling the mass, and renders the take.
+fn sounds(page: &mut Page) -> Result<(), String> {
+    let mut strikes = 0;
+    let mut heard = |page: &mut Page, what: &str| {
+        strikes += 1;
+        until(page, &format!("sprung.state.take.filter((event) => event.message?.[2] > 0).length === {strikes}"))?;
+        println!("{what} sounds");
+        Ok::<(), String>(())
+    };
+    page.click("[data-key='60']");
+    heard(page, "a key under the mouse")?;
+    for kind in ["keyDown", "keyUp"] {
+        page.call("Input.dispatchKeyEvent", json!({ "type": kind, "key": "e", "code": "KeyE" }));
+    }
+    heard(page, "a key of the computer")?;
+    let at = page.value("(r => [r.x + r.width / 2, r.y + r.height / 2, 0.3 * r.width])(document.querySelector('#plane').getBoundingClientRect())");
+    let number = |place: usize| at[place].as_f64().unwrap_or(0.0);
+    for (kind, pull) in [("mousePressed", 0.0), ("mouseMoved", 1.0), ("mouseReleased", 1.0)] {
+        let (x, y) = (number(0) + pull * number(2), number(1));
+        let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1, "clickCount": 1 });
+        page.call("Input.dispatchMouseEvent", event);
+    }
+    heard(page, "a mass that is pulled")?;
+    until(page, "sprung.state.take.filter((event) => event.message).length === 6")?;
+    let peak = page.value(
+        "import('./wav.js').then(({renderTake}) => Math.max(...renderTake(sprung.module, sprung.state.take, 48000, 2)[0].map((block) => Math.max(...block))))",
+    );
+    match peak.as_f64() {
+        Some(peak) if peak > 0.01 && peak < 1.0 => Ok(()),
+        _ => Err(format!("the take’s peak is {peak}")),
+    }
+}
+
+fn speed(page: &mut Page) -> Result<(), String> {
+    let preset = number_of(SIXTY_FOUR_MODES);
+    if Preset::factory()[preset].patch.modes.as_slice().len() != 64 {
+        return Err(format!("{SIXTY_FOUR_MODES} has not 64 modes any more: choose another preset"));
+    }
+    let found = page.value(&format!("{}({preset})", with_constants(SPEED)));
+    if !is_measured(&found) {
+        return Err(format!("the measurement of {VOICES} voices failed: {found}"));
+    }
+    let number = |key: &str| found[key].as_f64().unwrap_or(f64::NAN);
+    println!(
+        "{}: {} voices of 64 modes: {:.1} times real time; in 7.5 s live, behind by {} blocks of 128 frames; underruns: {}",
+        Preset::factory()[preset].name,
+        number("voices"),
+        number("times"),
+        number("behind"),
+        if found["lost"] == Value::Null {
+            "not told by this browser".to_owned()
+        } else {
+            format!("{} frames", found["lost"])
+        },
+    );
+    Ok(())
+}
+
+/// Whether all voices have played, both at once and live.
+fn is_measured(found: &Value) -> bool {
+    let is_finite = |key: &str| found[key].as_f64().is_some_and(f64::is_finite);
+    found["voices"].as_f64() == Some(VOICES) && is_finite("times") && is_finite("behind")
+}
+
+/// Plays a chord and takes the picture of its ringing.
+fn take_picture(page: &mut Page, path: &Path) -> Result<(), String> {
+    page.call(
+        "Emulation.setDeviceMetricsOverride",
+        json!({ "width": 1160, "height": 790, "deviceScaleFactor": 1, "mobile": false }),
+    );
+    page.click("[data-key='48']");
+    page.value("[48, 55, 60].forEach((key) => sprung.play(key, true))");
+    page.value("scrollTo(0, 0)");
+    page.value("new Promise((done) => setTimeout(done, 2500))");
+    let answer = page.call("Page.captureScreenshot", json!({ "format": "png", "optimizeForSpeed": false }));
+    let bytes = answer["data"].as_str().and_then(decoded).ok_or("the browser’s picture is not base64")?;
+    std::fs::write(path, &bytes).map_err(|error| format!("{}: {error}", path.display()))?;
+    println!("{}: {} kB", path.display(), bytes.len() / 1000);
+    Ok(())
+}
+
+/// The bytes of a base64 text; none if it has other characters.
+fn decoded(text: &str) -> Option<Vec<u8>> {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut bytes = Vec::with_capacity(text.len() * 3 / 4);
+    let (mut bits, mut count) = (0u32, 0);
+    for letter in text.trim_end_matches('=').bytes() {
+        bits = bits << 6 | DIGITS.iter().position(|digit| *digit == letter)? as u32;
+        count += 6;
+        if count >= 8 {
+            count -= 8;
+            bytes.push((bits >> count) as u8);
+        }
+    }
+    Some(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{decoded, is_measured};
+    use serde_json::json;
+
+    #[test]
+    fn a_measurement_without_all_voices_or_times_is_none() {
+        assert!(is_measured(&json!({ "times": 9.5, "voices": 8, "behind": 0, "lost": null })));
+        assert!(!is_measured(&json!({ "times": 9.5, "voices": 7, "behind": 0, "lost": null })));
+        // JSON has no infinity and no NaN: a browser writes them as null.
+        assert!(!is_measured(&json!({ "times": null, "voices": 8, "behind": 0, "lost": null })));
+        assert!(!is_measured(&json!(null)));
+    }
+
+    #[test]
+    fn base64_is_decoded() {
+        assert_eq!(decoded("U3BydW5n"), Some(b"Sprung".to_vec()));
+        assert_eq!(decoded("bWFzcw=="), Some(b"mass".to_vec()));
+        assert_eq!(decoded("no!"), None);
+    }
+}

@@ -1,0 +1,58 @@
+//! `cargo xtask web`: a static page that plays Sprung in a browser, in `target/web`.
+
+mod check;
+mod serve;
+
+use crate::engine::cross::Target;
+use crate::files::{copy, replace};
+use crate::shell::root;
+use std::path::{Path, PathBuf};
+
+/// The port of `--serve`.
+const PORT: u16 = 8017;
+
+/// What to do beside building the page.
+pub(crate) struct Options<'a> {
+    /// The compiler for WebAssembly, in place of the present toolchain's.
+    pub(crate) rustc: Option<&'a Path>,
+    /// Serve the page until the program is ended.
+    pub(crate) serve: bool,
+    /// Try it in Chromium and measure.
+    pub(crate) check: bool,
+    /// Take the picture for the README.
+    pub(crate) picture: Option<&'a Path>,
+}
+
+/// Builds the page, and serves or checks it.
+pub(crate) fn run(options: &Options) -> Result<(), String> {
+    let folder = build(options.rustc)?;
+    if options.check || options.picture.is_some() {
+        let (port, listener) = serve::listen(0)?;
+        let served = folder.clone();
+        std::thread::spawn(move || serve::run(&listener, &served));
+        check::run(&format!("http://127.0.0.1:{port}/"), options.check, options.picture)?;
+    }
+    if options.serve {
+        let (port, listener) = serve::listen(PORT)?;
+        println!("http://127.0.0.1:{port}/ (end with Ctrl-C)");
+        serve::run(&listener, &folder);
+    }
+    Ok(())
+}
+
+/// Builds the module, with the vector instructions that browsers have had since 2023, and puts it beside the page's files. Returns the folder, which any web server can serve.
+fn build(rustc: Option<&Path>) -> Result<PathBuf, String> {
+    let mut build = Target::WasmSimd.cargo("build --release --manifest-path src/web/Cargo.toml", rustc)?;
+    if !build.status().map_err(|error| format!("cargo: {error}"))?.success() {
+        return Err("src/web does not build".to_owned());
+    }
+    let (module, folder) = (Target::WasmSimd.folder().join("sprung_web.wasm"), root().join("target/web"));
+    replace(&folder, |aside| {
+        copy(&root().join("src/web/page"), aside)?;
+        copy(&module, &aside.join("sprung.wasm"))
+    })?;
+    let files = std::fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let sizes = files.flatten().filter_map(|file| file.metadata().ok()).map(|about| about.len());
+    println!("{}: {:.2} MB in all", folder.display(), sizes.sum::<u64>() as f64 / 1e6);
+    Ok(folder)
+}

@@ -1,0 +1,101 @@
+//! Serves the files of a folder to this machine: browsers load no audio worklet from a file.
+
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::net::{TcpListener, TcpStream};
+use std::path::Path;
+use std::time::Duration;
+
+/// Listens on this machine alone; port 0 stands for any. Returns the port.
+pub(super) fn listen(port: u16) -> Result<(u16, TcpListener), String> {
+    let listener = TcpListener::bind(("127.0.0.1", port)).map_err(|error| format!("port {port}: {error}"))?;
+    let port = listener.local_addr().map_err(|error| error.to_string())?.port();
+    Ok((port, listener))
+}
+
+/// How long a request may take to arrive: a browser may open a connection and send nothing, while another one waits.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Answers requests one after another, for ever.
+pub(super) fn run(listener: &TcpListener, folder: &Path) {
+    for stream in listener.incoming().flatten() {
+        // A browser that goes away is no error.
+        let _ = answer(stream, folder);
+    }
+}
+
+fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
+    stream.set_read_timeout(Some(PATIENCE))?;
+    let mut lines = BufReader::new(stream.try_clone()?).lines();
+    let request = lines.next().transpose()?.unwrap_or_default();
+    // The rest of the head is read, so that the browser is not cut off while it writes.
+    for line in lines {
+        if line?.is_empty() {
+            break;
+        }
+    }
+    let found = name(&request).and_then(|name| Some((name, std::fs::read(folder.join(name)).ok()?)));
+    let (status, kind, body) = match found {
+        Some((name, body)) => ("200 OK", kind(name), body),
+        None => ("404 Not Found", "text/plain", b"there is no such file\n".to_vec()),
+    };
+    let length = body.len();
+    write!(
+        stream,
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
+    )?;
+    stream.write_all(&body)
+}
+
+/// The name of the file that a request line asks for; none if it is no plain name, such as a path out of the folder.
+fn name(request: &str) -> Option<&str> {
+    let path = request.strip_prefix("GET /")?.split([' ', '?']).next()?;
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "._-".contains(letter);
+    match path {
+        "" => Some("index.html"),
+        name if name.chars().all(is_plain) && !name.starts_with('.') => Some(name),
+        _ => None,
+    }
+}
+
+fn kind(name: &str) -> &'static str {
+    match name.rsplit_once('.').map_or("", |(_, ending)| ending) {
+        "html" => "text/html; charset=utf-8",
+        "css" => "text/css",
+        "js" => "text/javascript",
+        "wasm" => "application/wasm",
+        _ => "application/octet-stream",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Read as _;
+
+    #[test]
+    fn a_silent_connection_does_not_keep_others_waiting() {
+        let (port, listener) = listen(0).unwrap();
+        std::thread::spawn(move || run(&listener, Path::new("/nowhere")));
+        let _silent = TcpStream::connect(("127.0.0.1", port)).unwrap();
+        let mut other = TcpStream::connect(("127.0.0.1", port)).unwrap();
+        other.set_read_timeout(Some(20 * PATIENCE)).unwrap();
+        other.write_all(b"GET /page.js HTTP/1.1\r\n\r\n").unwrap();
+        let mut answer = String::new();
+        other.read_to_string(&mut answer).unwrap();
+        assert!(answer.starts_with("HTTP/1.1 404 Not Found"), "{answer}");
+    }
+
+    #[test]
+    fn only_plain_names_are_served() {
+        for (request, expected) in [
+            ("GET / HTTP/1.1", Some("index.html")),
+            ("GET /page.js?1 HTTP/1.1", Some("page.js")),
+            ("GET /../Cargo.toml HTTP/1.1", None),
+            ("GET /.. HTTP/1.1", None),
+            ("POST /page.js HTTP/1.1", None),
+        ] {
+            assert_eq!(name(request), expected, "{request}");
+        }
+        assert_eq!(kind("sprung.wasm"), "application/wasm");
+    }
+}

@@ -1,0 +1,59 @@
+//! Edits of what carries the window's events to egui: files that are dropped on the window arrive.
+
+use super::edit::{Edit, edit};
+
+const WINDOW: &str = "src/window.rs";
+
+pub(super) const EDITS: &[Edit] = &[
+    // The window's library tells of files that are dragged and dropped. They were ignored here.
+    edit(
+        WINDOW,
+        "                    egui_input.events.push(egui::Event::PointerGone);
+                }
+                _ => do_repaint = false,
+",
+        "                    egui_input.events.push(egui::Event::PointerGone);
+                }
+                baseview::MouseEvent::DragDropped { data: baseview::DropData::Files(paths), .. } => {
+                    for path in paths {
+                        egui_input.dropped_files.push(std::sync::Arc::new(DroppedPath(path.clone())));
+                    }
+                }
+                _ => do_repaint = false,
+",
+    ),
+    // Whoever drags files is told that they can be dropped.
+    edit(
+        WINDOW,
+        "        match &event {
+            baseview::Event::Keyboard(_) => {
+",
+        "        match &event {
+            baseview::Event::Mouse(
+                baseview::MouseEvent::DragEntered { data: baseview::DropData::Files(_), .. }
+                | baseview::MouseEvent::DragMoved { data: baseview::DropData::Files(_), .. }
+                | baseview::MouseEvent::DragDropped { data: baseview::DropData::Files(_), .. },
+            ) => EventStatus::AcceptDrop(baseview::DropEffect::Copy),
+            baseview::Event::Keyboard(_) => {
+",
+    ),
+    edit(
+        WINDOW,
+        "fn is_cut_command(",
+        "/// A file that was dropped on the window.
+#[derive(Debug)]
+struct DroppedPath(std::path::PathBuf);
+
+impl egui::DroppedFile for DroppedPath {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+fn is_cut_command(",
+    ),
+];
