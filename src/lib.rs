@@ -9,7 +9,7 @@
 //! | [`params`], [`patch`], [`preset`] | what can be set, a set of values, and its file |
 //! | [`sound`] | what the keys play: their tuning, also by Scala's files |
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
-//! | [`io`] | songs, and files that are written whole or not at all; MIDI files in and WAV files out (feature `render`), sound files in (features `recordings` and `codecs`) |
+//! | [`io`] | songs, and files that are written whole or not at all; MIDI files in (feature `midi`) and WAV files out (feature `render`), sound files in (features `recordings` and `codecs`) |
 //! | `render` | the offline renderer (feature `render`) |
 //! | `request` | what to render and how, by the names that the command, batches and Python share (feature `batch`) |
 //! | `batch` | sounds by the thousand, from a file of jobs, with exact labels (feature `batch`) |

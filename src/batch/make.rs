@@ -8,6 +8,7 @@ use crate::analysis::digest::hexadecimal;
 use crate::error::{Error, Result};
 use crate::io::{Inputs, Output, Target, flac};
 use crate::render::{Job, ModeLabel, NoteLabel, Progress, Report, to_labelled_wav};
+use crate::request::quantity::decimal;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
@@ -125,7 +126,7 @@ fn note(label: &NoteLabel, job: &Job) -> String {
     let fields = [
         ("channel", json!(label.channel + 1)),
         ("key", json!(f64::from(label.key) + f64::from(label.detune))),
-        ("velocity", json!(shortest(label.velocity))),
+        ("velocity", json!(decimal(label.velocity))),
         ("voice", json!(label.unison)),
         ("onset", seconds(label.onset)),
         ("free", seconds(label.free)),
@@ -142,9 +143,4 @@ fn note(label: &NoteLabel, job: &Job) -> String {
 /// A level in thousandths of a decibel: meters use the system's mathematics, whose last digit can differ.
 fn decibels(level: Option<f64>) -> Value {
     level.map_or(Value::Null, |level| json!((level * 1000.0).round() / 1000.0))
-}
-
-/// The shortest decimal number that is this one in single precision.
-fn shortest(value: f32) -> f64 {
-    value.to_string().parse().unwrap_or(value.into())
 }

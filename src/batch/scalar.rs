@@ -2,7 +2,8 @@
 
 use super::draw::Draw;
 use crate::params::{Param, Unit};
-use crate::request::{Number, Request};
+use crate::request::quantity::decimal;
+use crate::request::{Name, Number};
 use serde_json::{Map, Value};
 
 /// What numbers a name takes.
@@ -18,15 +19,14 @@ pub(super) enum Scale {
 impl Scale {
     /// That of what has these keys in a line.
     pub(super) fn of(path: &[String]) -> Self {
-        let option = |name: &str| Request::NAMES.iter().find(|option| option.name == name);
         let param = match path {
             [set, name] if set == "set" => Param::from_id(name),
-            [name] if option(name).is_none() => Param::from_id(name),
+            [name] if Name::find(name).is_none() => Param::from_id(name),
             _ => None,
         };
         match (param, path) {
             (Some(param), _) if param.info().unit != Unit::Choice => Self::Parameter(param),
-            (None, [name]) => option(name).and_then(|option| option.number).map_or(Self::Words, Self::Option),
+            (None, [name]) => Name::find(name).and_then(|option| option.number).map_or(Self::Words, Self::Option),
             _ => Self::Words,
         }
     }
@@ -116,11 +116,6 @@ impl Scale {
             Self::Words => [f64::NEG_INFINITY, f64::INFINITY],
         }
     }
-}
-
-/// The number as written: 0.3, not 0.30000001192092896, which is the `f32` converted directly.
-fn decimal(value: f32) -> f64 {
-    value.to_string().parse().unwrap_or(value.into())
 }
 
 /// A value as people write it.

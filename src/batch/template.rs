@@ -4,7 +4,7 @@ use super::Batch;
 use super::draw::{Chance, Draw};
 use super::scalar::{Scale, text_of};
 use crate::params::{PARAMS, Param};
-use crate::request::Request;
+use crate::request::{Name, Request};
 use serde_json::{Map, Value};
 
 /// How many jobs a line makes.
@@ -206,7 +206,7 @@ impl Entry {
         let set = match &self.path[..] {
             [option, name] => request.set(option, &format!("{name}={text}")),
             [name] if is_parameter(name) => request.set(SET, &format!("{name}={text}")),
-            [name] if !is_option(name) => Err(unknown(name)),
+            [name] if Name::find(name).is_none() => Err(unknown(name)),
             path => request.set(&path.join("."), &text),
         };
         // The message of a parameter begins with its name, which the key says already.
@@ -214,13 +214,9 @@ impl Entry {
     }
 }
 
-fn is_option(name: &str) -> bool {
-    Request::NAMES.iter().any(|option| option.name == name)
-}
-
 /// Whether a key is a parameter, which may stand beside the options.
 fn is_parameter(name: &str) -> bool {
-    Param::from_id(name).is_some() && !is_option(name)
+    Param::from_id(name).is_some() && Name::find(name).is_none()
 }
 
 fn unknown(name: &str) -> String {

@@ -119,7 +119,7 @@ fn strike_json(strike: &Strike) -> serde_json::Value {
         "onset": strike.onset,
         "seconds": strike.seconds,
         "damped": strike.damped,
-        "steady": strike.steady,
+        "steady": strike.steady.iter().map(|tone| tone.frequency).collect::<Vec<f64>>(),
         "residual_db": strike.residual_db,
         "modes": strike.modes.iter().map(onset).collect::<Vec<_>>(),
         "groups": strike.groups.iter()

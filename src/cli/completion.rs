@@ -5,7 +5,8 @@ use clap_complete::engine::{ValueCompleter, complete};
 use clap_complete::env::{CompleteEnv, EnvCompleter, Shells};
 use clap_complete::{CompletionCandidate, PathCompleter, Shell};
 use sprung::params::{PARAMS, Param};
-use sprung::preset::Preset;
+use sprung::preset::catalogue::Catalogue;
+use sprung::preset::library::Library;
 use sprung::{Error, Result};
 use std::ffi::{OsStr, OsString};
 use std::io;
@@ -49,14 +50,15 @@ pub(super) fn answer(command: fn() -> clap::Command) -> clap::error::Result<bool
     CompleteEnv::with_factory(command).var(VARIABLE).shells(SHELLS).try_complete(std::env::args_os(), folder.as_deref())
 }
 
-/// Completes factory presets, ignoring case, and preset files.
+/// Completes sounds of the factory and the user, ignoring case, and preset files.
 pub(super) fn presets(typed: &OsStr) -> Vec<CompletionCandidate> {
     let start = typed.to_string_lossy().to_lowercase();
-    let names = Preset::factory().iter().filter(|preset| preset.name.to_lowercase().starts_with(&start));
-    let mut candidates: Vec<_> = names
-        .map(|preset| {
-            let comment = preset.comment.lines().next().unwrap_or_default();
-            CompletionCandidate::new(&preset.name).help(Some(comment.to_owned().into()))
+    let sounds = Catalogue::read(Library::of_user().as_ref()).sounds;
+    let named = sounds.iter().filter(|listed| listed.name().to_lowercase().starts_with(&start));
+    let mut candidates: Vec<_> = named
+        .map(|listed| {
+            let comment = listed.playable.comment().lines().next().unwrap_or_default();
+            CompletionCandidate::new(listed.name()).help(Some(comment.to_owned().into()))
         })
         .collect();
     let files = PathCompleter::file().filter(|path| path.extension().is_some_and(|ending| ending == "toml"));

@@ -4,7 +4,7 @@ use super::interrupt;
 use super::progress::Bar;
 use super::quantity;
 use super::recording::{ending, read};
-use super::terminal::{complain, print};
+use super::terminal::{complain, counted, print};
 use sprung::analysis::fit::{Family, Fitted, Settings, Take, VELOCITY, fit, report};
 use sprung::io::{Inputs, Output, Target};
 use sprung::units::parse_key;
@@ -68,8 +68,8 @@ pub(super) fn run(args: &Args) -> Result<()> {
         ending("--report", path, &["html"])?;
     }
     if !args.velocity.is_empty() && args.velocity.len() != args.recordings.len() {
-        let (given, expected) = (args.velocity.len(), args.recordings.len());
-        let message = format!("{given} of them for {expected} recordings: expected one for each");
+        let (given, recordings) = (args.velocity.len(), counted(args.recordings.len(), "recording"));
+        let message = format!("{given} of them for {recordings}: expected one for each");
         return Err(Error::value("--velocity", message));
     }
     let mut inputs = Inputs::default();

@@ -1,58 +1,54 @@
-//! `sprung man`: the manual pages.
+//! `sprung manual`: the pages that explain the instrument.
 
 use super::terminal::print;
-use clap_mangen::Man;
-use sprung::io::{Inputs, Output, Target};
-use sprung::{Error, Result};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use clap::builder::PossibleValuesParser;
+use sprung::Result;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
-  sprung man | man -l -
-  sprung man ~/.local/share/man/man1";
+  sprung manual
+  sprung manual recipes | less";
+
+macro_rules! pages {
+    ($($name:literal)*) => {
+        /// The pages and their names, in the order of the table of contents.
+        const PAGES: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../assets/manual/", $name, ".md")))),*];
+    };
+}
+
+pages! {
+    "sound" "recipes" "exciters" "bodies" "modulation" "space" "kits" "tuning" "command" "batch" "python" "midi" "live"
+    "daw" "window" "recordings" "lab"
+}
+
+/// The table of contents.
+const CONTENTS: &str = include_str!("../../assets/manual/README.md");
 
 #[derive(clap::Args)]
 pub(super) struct Args {
-    /// Write a page for the command and each subcommand into this directory, made if missing, instead of stdout
-    directory: Option<PathBuf>,
-    /// Overwrite existing pages
-    #[arg(long, requires = "directory")]
-    force: bool,
+    /// The page to print; without it, the table of contents
+    #[arg(value_parser = PossibleValuesParser::new(PAGES.iter().map(|(name, _)| *name)))]
+    page: Option<String>,
 }
 
-/// Prints or writes the pages of `command`, which is the whole of `sprung`.
-pub(super) fn run(args: &Args, command: clap::Command) -> Result<()> {
-    match &args.directory {
-        Some(directory) => write_pages(command, directory, args.force),
-        None => print(&String::from_utf8_lossy(&rendered(&Man::new(command))?)),
+pub(super) fn run(args: &Args) -> Result<()> {
+    let wanted = args.page.as_deref();
+    let page = PAGES.iter().find(|(name, _)| Some(*name) == wanted);
+    print(page.map_or(CONTENTS, |(_, text)| text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_page_is_there_in_the_order_of_the_contents() {
+        let linked: Vec<&str> =
+            CONTENTS.split("](").skip(1).filter_map(|rest| rest.split_once(".md)")).map(|(page, _)| page).collect();
+        assert_eq!(PAGES.iter().map(|(name, _)| *name).collect::<Vec<_>>(), linked);
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/manual");
+        let files = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path());
+        let pages = files.filter(|path| path.extension().is_some_and(|ending| ending == "md")).count();
+        assert_eq!(pages, PAGES.len() + 1);
     }
-}
-
-/// Writes all pages to temporary files before the first is renamed: if one cannot be written, the old pages stay.
-fn write_pages(command: clap::Command, directory: &Path, force: bool) -> Result<()> {
-    std::fs::create_dir_all(directory).map_err(|error| Error::io(directory.display().to_string(), error))?;
-    let mut command = command.disable_help_subcommand(true);
-    command.build();
-    let mut written = Vec::new();
-    for page in pages(&command) {
-        // Manual pages have no input files.
-        let target = Target::Path(directory.join(page.get_filename()));
-        let mut output = Output::create(&target, force, &Inputs::default())?;
-        output.stream().write_all(&rendered(&page)?).map_err(|error| Error::io(output.name(), error))?;
-        written.push(output);
-    }
-    written.into_iter().try_for_each(Output::commit)
-}
-
-/// A page for a command and for each subcommand below it.
-fn pages(command: &clap::Command) -> Vec<Man> {
-    let below = command.get_subcommands().filter(|command| !command.is_hide_set()).flat_map(pages);
-    std::iter::once(Man::new(command.clone())).chain(below).collect()
-}
-
-fn rendered(page: &Man) -> Result<Vec<u8>> {
-    let mut text = Vec::new();
-    page.render(&mut text).map_err(|error| Error::io("the manual page", error))?;
-    Ok(text)
 }

@@ -8,6 +8,7 @@ mod figure;
 mod fit;
 mod interrupt;
 mod lab;
+mod man;
 mod manual;
 mod parameters;
 #[cfg(feature = "realtime")]
@@ -50,6 +51,7 @@ Examples:
   sprung batch jobs.jsonl --out sounds
   sprung presets list
   sprung params
+  sprung manual
   sprung analyze strike.wav
   sprung fit strike.wav -o strike.toml
   sprung diff before.wav after.wav
@@ -98,9 +100,12 @@ enum Command {
     /// Print a completion script for a shell
     #[command(after_help = completion::EXAMPLES)]
     Completions(completion::Args),
-    /// Print the manual page, or write one page per subcommand
+    /// Print the manual: what each part of the instrument does, with recipes
     #[command(after_help = manual::EXAMPLES)]
-    Man(manual::Args),
+    Manual(manual::Args),
+    /// Print the page of the command for `man`, or write one page per subcommand
+    #[command(after_help = man::EXAMPLES)]
+    Man(man::Args),
 }
 
 pub(crate) fn run() -> ExitCode {
@@ -139,7 +144,8 @@ fn execute(command: &Command) -> Result<()> {
         Command::Batch(_) | Command::Diff(_) => unreachable!("they have exit codes of their own"),
         Command::Lab(args) => lab::run(args),
         Command::Completions(args) => completion::run(args),
-        Command::Man(args) => manual::run(args, Cli::command()),
+        Command::Manual(args) => manual::run(args),
+        Command::Man(args) => man::run(args, Cli::command()),
     }
 }
 
@@ -188,6 +194,7 @@ mod tests {
             fit::EXAMPLES,
             diff::EXAMPLES,
             lab::EXAMPLES,
+            man::EXAMPLES,
             manual::EXAMPLES,
             completion::EXAMPLES,
         ];

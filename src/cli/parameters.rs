@@ -4,6 +4,7 @@ use super::terminal::print;
 use serde_json::json;
 use sprung::Result;
 use sprung::params::{Change, Curve, PARAMS, ParamInfo, Unit};
+use sprung::request::quantity::decimal;
 use std::fmt::Write;
 
 pub(super) const EXAMPLES: &str = "\
@@ -65,9 +66,9 @@ fn to_json(info: &ParamInfo) -> serde_json::Value {
         "name": info.name,
         "section": info.section,
         "unit": info.unit.symbol(),
-        "min": exact(info.min),
-        "max": exact(info.max),
-        "default": exact(info.default),
+        "min": decimal(info.min),
+        "max": decimal(info.max),
+        "default": decimal(info.default),
         "choices": info.choices,
         "curve": match info.curve {
             Curve::Linear => "linear",
@@ -81,11 +82,6 @@ fn to_json(info: &ParamInfo) -> serde_json::Value {
         "modulatable": info.is_modulatable(),
         "help": info.help,
     })
-}
-
-/// The number as it is in the table: 0.3, not 0.30000001192092896, which is the `f32` converted directly.
-fn exact(value: f32) -> f64 {
-    value.to_string().parse().unwrap_or(value.into())
 }
 
 #[cfg(test)]

@@ -6,7 +6,8 @@ use super::terminal::{complain, complain_lines, print, warn};
 use super::{completion, interrupt, quantity};
 use sprung::engine::telemetry::Load;
 use sprung::io::{Inputs, Output, Target};
-use sprung::preset::{Playable, Preset};
+use sprung::preset::Playable;
+use sprung::preset::library::Library;
 use sprung::realtime::{
     Choice, Found, JackMidi, KitSender, LiveInputs, LiveSender, MidiPorts, Player, Recording, Session, Setup, Status,
     Wanted, device, midi_ports, view,
@@ -121,7 +122,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         status,
         has_song,
     };
-    let make = Box::new(move |preset: &Preset| settings.kit(Playable::Preset(preset.clone())));
+    let make = Box::new(move |playable: &Playable| settings.kit(playable.clone()));
     if headless { stage.headless(closing) } else { stage.on_terminal(keys, kits, closing, sounds, make) }
 }
 
@@ -217,7 +218,8 @@ impl Stage {
     ) -> Result<()> {
         let (device, status) = (self.session.description().to_owned(), self.status.clone());
         let Sounds { kit, channels, programs, .. } = sounds;
-        let desk = view::Desk { device, status, keys, kits, kit, channels, programs, make };
+        let desk =
+            view::Desk { device, status, keys, kits, kit, channels, programs, make, library: Library::of_user() };
         let news = view::run(desk, || interrupt::check().is_err(), || self.poll());
         let ended = self.finish(closing);
         news.and(ended)

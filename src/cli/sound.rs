@@ -10,11 +10,11 @@ use std::ffi::OsString;
 /// What sounds a song is played with.
 #[derive(Clone, clap::Args)]
 pub(super) struct SoundArgs {
-    /// Factory preset or kit, or preset or kit file (.toml), that plays what nothing else says otherwise [default: for
+    /// Factory preset or kit, one of your own, or a file (.toml), that plays what nothing else says otherwise [default: for
     /// songs the first of --programs, for notes init]
     #[arg(long, value_name = "NAME|FILE.toml", add = ArgValueCompleter::new(completion::presets))]
     preset: Option<OsString>,
-    /// Factory preset or kit, or preset or kit file, that a channel (1-16) starts with, as in 10=drums.toml; may be repeated
+    /// Factory preset or kit, one of your own, or a file, that a channel (1-16) starts with, as in 10=drums.toml; may be repeated
     #[arg(long, value_name = "CHANNEL=NAME|FILE.toml", value_parser = quantity::channel)]
     channel: Vec<(u8, String)>,
     /// What program changes select: gm is the factory's sounds for General MIDI, with drums on channel 10; none leaves

@@ -2,7 +2,7 @@
 
 use super::atomic::AtomicF32;
 use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF};
-use super::note::{nearest_channel, nearest_key};
+use super::note::{NoteId, nearest_channel, nearest_key};
 use super::scope::Scope;
 use super::{Event, EventKind, Notes, Snapshot};
 use crate::dsp::mode_bank::MAX_MODES;
@@ -120,26 +120,30 @@ pub struct TelemetryWriter {
     telemetry: Arc<Telemetry>,
     sample_rate: f64,
     frames_to_snapshot: f64,
+    /// By channel and key, the identifier of the note that began there last.
+    ids: Box<[[Option<NoteId>; 128]; 16]>,
 }
 
 impl TelemetryWriter {
     /// A writer to `telemetry`, at a sample rate in Hz.
     pub fn new(telemetry: Arc<Telemetry>, sample_rate: f64) -> Self {
-        Self { telemetry, sample_rate, frames_to_snapshot: 0.0 }
+        Self { telemetry, sample_rate, frames_to_snapshot: 0.0, ids: Box::new([[None; 128]; 16]) }
     }
 
     /// Records an event that the engine receives: keys that go down and up, and program changes.
-    pub fn note_event(&self, event: &Event) {
+    pub fn note_event(&mut self, event: &Event) {
         let channel = usize::from(nearest_channel(event.channel));
         let keys = &self.telemetry.keys[channel];
+        let mut press = |key: u8, id: Option<NoteId>| {
+            let key = nearest_key(key);
+            keys[usize::from(key >> 6)].fetch_or(1 << (key & 63), Relaxed);
+            self.ids[channel][usize::from(key)] = id;
+        };
         match event.kind {
-            EventKind::NoteOn { key, .. } | EventKind::Strike { key, .. } => {
-                let key = nearest_key(key);
-                keys[usize::from(key >> 6)].fetch_or(1 << (key & 63), Relaxed);
-            }
-            EventKind::NoteOff { key, .. } => {
-                let key = nearest_key(key);
-                keys[usize::from(key >> 6)].fetch_and(!(1 << (key & 63)), Relaxed);
+            EventKind::NoteOn { key, id, .. } => press(key, id),
+            EventKind::Strike { key, .. } => press(key, None),
+            EventKind::NoteOff { key, id, .. } => {
+                self.lift(Notes { id, channel: Some(channel as u8), key: Some(key) });
             }
             EventKind::Release { notes, .. } | EventKind::Silence { notes } => self.lift(notes),
             EventKind::Control { controller: ALL_SOUND_OFF | ALL_NOTES_OFF..=127, .. } => {
@@ -155,16 +159,23 @@ impl TelemetryWriter {
         self.lift(Notes::default());
     }
 
-    /// The keys of these notes are up.
+    /// The keys of these notes are up. A key stays down for an identifier that another note on it has taken over.
     fn lift(&self, Notes { id, channel, key }: Notes) {
-        if id.is_some() && key.is_none() {
-            return;
-        }
-        let all = self.telemetry.keys.iter().enumerate();
-        for (_, keys) in all.filter(|(number, _)| channel.is_none_or(|channel| usize::from(channel) == *number)) {
-            match key.map(nearest_key) {
-                Some(key) => drop(keys[usize::from(key >> 6)].fetch_and(!(1 << (key & 63)), Relaxed)),
-                None => keys.iter().for_each(|half| half.store(0, Relaxed)),
+        let all = self.telemetry.keys.iter().zip(&*self.ids).enumerate();
+        for (_, (keys, ids)) in all.filter(|(number, _)| channel.is_none_or(|channel| usize::from(channel) == *number))
+        {
+            match (key, id) {
+                (Some(key), Some(_)) => {
+                    let held = ids[usize::from(nearest_key(key))];
+                    if held.is_none() || held == id {
+                        lift_key(keys, key);
+                    }
+                }
+                (Some(key), None) => lift_key(keys, key),
+                (None, Some(_)) => {
+                    (0..128).filter(|key| ids[usize::from(*key)] == id).for_each(|key| lift_key(keys, key));
+                }
+                (None, None) => keys.iter().for_each(|half| half.store(0, Relaxed)),
             }
         }
     }
@@ -219,6 +230,12 @@ impl TelemetryWriter {
 /// Displacement and energy of each mass.
 struct Masses([[AtomicF32; 2]; MAX_MODES]);
 
+/// A key of a channel is up.
+fn lift_key(keys: &[AtomicU64; 2], key: u8) {
+    let key = nearest_key(key);
+    keys[usize::from(key >> 6)].fetch_and(!(1 << (key & 63)), Relaxed);
+}
+
 impl Default for Masses {
     /// At rest.
     fn default() -> Self {
@@ -227,67 +244,4 @@ impl Default for Masses {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn telemetry(sample_rate: f64) -> (Arc<Telemetry>, TelemetryWriter) {
-        let telemetry = Arc::new(Telemetry::default());
-        (telemetry.clone(), TelemetryWriter::new(telemetry, sample_rate))
-    }
-
-    #[test]
-    fn load_is_a_share_of_the_period() {
-        let (telemetry, writer) = telemetry(48_000.0);
-        let ms = Duration::from_millis;
-        [1, 12, 2].into_iter().for_each(|busy| writer.note_block(480, ms(busy)));
-        let load = telemetry.load();
-        assert_eq!((load.frames, load.blocks, load.late_blocks), (1440, 3, 1));
-        assert!((load.mean_share - 0.5).abs() < 1e-6 && (load.worst_share - 1.2).abs() < 1e-6, "{load:?}");
-        writer.note_block(480, ms(2));
-        assert!((telemetry.load().recent_share - 0.2).abs() < 1e-6, "the recent worst is forgotten once it was told");
-    }
-
-    #[test]
-    fn keys_and_programs_are_kept_by_channel() {
-        let (telemetry, writer) = telemetry(48_000.0);
-        let tell = |kind| writer.note_event(&Event { frame: 0, channel: 3, kind });
-        [0, 63, 64, 127]
-            .into_iter()
-            .for_each(|key| tell(EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None }));
-        tell(EventKind::NoteOff { key: 63, velocity: 0.5, id: None });
-        assert_eq!(telemetry.keys(3), 1 | 1 << 64 | 1 << 127);
-        assert_eq!((telemetry.keys(2), telemetry.program(3)), (0, None));
-        for number in [7, 0, 255] {
-            tell(EventKind::Program(number));
-            assert_eq!(telemetry.program(3), Some(number));
-        }
-        let notes = Notes { id: None, channel: Some(3), key: Some(64) };
-        tell(EventKind::Release { notes, velocity: 0.5 });
-        assert_eq!(telemetry.keys(3), 1 | 1 << 127);
-        tell(EventKind::Silence { notes: Notes { key: Some(0), channel: Some(4), id: None } });
-        assert_eq!(telemetry.keys(3), 1 | 1 << 127, "of another channel");
-        tell(EventKind::Control { controller: ALL_NOTES_OFF, value: 0.0 });
-        assert_eq!(telemetry.keys(3), 0);
-        tell(EventKind::NoteOn { key: 5, detune: 0.0, velocity: 1.0, id: None });
-        writer.release_keys();
-        assert_eq!(telemetry.keys(3), 0);
-    }
-
-    #[test]
-    fn peaks_and_masses_are_those_of_the_sound_and_only_while_somebody_looks() {
-        let (telemetry, mut writer) = telemetry(4_000.0);
-        assert!(telemetry.is_silent());
-        let mut moved = Snapshot { voices: 2, ..Snapshot::default() };
-        moved.masses[63].displacement = -0.5;
-        moved.masses[63].energy = 0.25;
-        writer.note_sound(&[0.25, -0.5], &[0.0, 0.125], false, || unreachable!("nobody looks"));
-        assert_eq!((telemetry.take_peaks(), telemetry.take_peaks()), ([0.5, 0.125], [0.0, 0.0]));
-        assert_eq!((telemetry.snapshot(), telemetry.is_silent()), (Snapshot::default(), false));
-        writer.note_sound(&[0.0; 2], &[0.0; 2], false, || moved);
-        assert_eq!(telemetry.snapshot(), moved);
-        writer.note_sound(&[0.0; 99], &[0.0; 99], true, || unreachable!("within a fortieth of a second"));
-        assert!(telemetry.is_silent());
-        writer.note_sound(&[0.0; 1], &[0.0; 1], true, Snapshot::default);
-        assert_eq!(telemetry.snapshot(), Snapshot::default());
-    }
-}
+mod tests;

@@ -1,6 +1,6 @@
 //! Knobs: a parameter's value as a position of its travel, and back.
 
-use super::{Curve, ParamInfo};
+use super::{Curve, ParamInfo, Unit};
 use libm::{exp10, floor, log, log10, pow, round};
 
 impl ParamInfo {
@@ -29,5 +29,66 @@ impl ParamInfo {
         // 10^(4 − ⌊log₁₀ size⌋): steps of 1/10,000 to 1/100,000.
         let steps_per_unit = exp10(4.0 - floor(log10(size)));
         self.clamp((round(value * steps_per_unit) / steps_per_unit) as f32)
+    }
+
+    /// The next round number above or below a value: a multiple of the 1, 2 or 5 of a power of ten that is nearest to this
+    /// share of the knob's travel. Choices and counts go by one.
+    pub fn stepped(&self, value: f32, up: bool, travel: f64) -> f32 {
+        let direction = if up { 1.0 } else { -1.0 };
+        if matches!(self.unit, Unit::Choice | Unit::Count) {
+            return self.clamp(value + direction as f32);
+        }
+        let value = f64::from(self.clamp(value));
+        let distance = match self.curve {
+            Curve::Linear => f64::from(self.max - self.min) * travel,
+            Curve::Logarithmic => value * (pow(f64::from(self.max) / f64::from(self.min), travel) - 1.0),
+        };
+        // Exponents in thirds of a decade: 1, 2 and 5 are about as far apart as that.
+        let thirds = round(log10(distance) * 3.0);
+        let decade = floor(thirds / 3.0);
+        // Steps per unit below 1, so that the multiples are quotients of whole numbers, exact but for one rounding.
+        let mantissa = [1.0, 2.0, 5.0][(thirds - 3.0 * decade) as usize];
+        let scale = exp10(decade.abs());
+        let place = if decade < 0.0 { value * scale / mantissa } else { value / (scale * mantissa) };
+        // A number that single precision keeps a little beside a multiple counts as that multiple.
+        let next = if up { floor(place + 1e-4) + 1.0 } else { -floor(-place + 1e-4) - 1.0 };
+        let next = next * mantissa;
+        self.clamp(if decade < 0.0 { next / scale } else { next * scale } as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::params::{PARAMS, Param};
+
+    #[test]
+    fn steps_go_to_round_numbers() {
+        for (param, value, up, travel, next) in [
+            (Param::Gain, -12.37, true, 0.02, -12.0),
+            (Param::Gain, -12.0, false, 0.02, -13.0),
+            (Param::Decay, 0.5, true, 0.02, 0.6),
+            (Param::Voices, 8.0, false, 0.02, 7.0),
+        ] {
+            assert_eq!(param.info().stepped(value, up, travel), next, "{param:?} {value}");
+        }
+    }
+
+    #[test]
+    fn every_step_moves_and_ends_at_the_ends() {
+        for info in PARAMS {
+            for (up, from, to) in [(true, info.min, info.max), (false, info.max, info.min)] {
+                for travel in [0.002, 0.02] {
+                    let (mut value, mut steps) = (from, 0);
+                    while value != to {
+                        let next = info.stepped(value, up, travel);
+                        assert!(if up { next > value } else { next < value }, "{}: {value} to {next}", info.id);
+                        let is_short = info.parse(&info.format(next)) == Ok(next);
+                        assert!(is_short || travel < 0.01, "{}: {next} is not round", info.id);
+                        (value, steps) = (next, steps + 1);
+                        assert!(steps < 3_000, "{}", info.id);
+                    }
+                }
+            }
+        }
     }
 }

@@ -7,7 +7,7 @@ use toml::{Table, Value};
 use toml_writer::{ToTomlValue, TomlStringBuilder};
 
 /// Maximum length of a name, author or tag in characters, so that it fits into lists.
-const MAX_LABEL: usize = 100;
+pub(super) const MAX_LABEL: usize = 100;
 
 /// Name of a preset or kit whose name cannot be read.
 const UNNAMED: &str = "Unnamed";

@@ -1,12 +1,13 @@
 //! Reads and writes the list of modes of a body in a preset file: `model = "custom"`, `modes = [{ ratio = 1 }, …]`.
 
 use super::complaints::Complaints;
-use super::value::{check_keys, unexpected};
+use super::mode_list::table_of;
+use super::value::{number_in, unexpected};
 use crate::patch::MAX_MODES;
 use crate::sound::bodies::{CustomMode, RATIO_RANGE};
 use std::fmt::Write;
 use std::sync::Arc;
-use toml::{Table, Value};
+use toml::Value;
 
 /// The numbers of a mode by name, with their ranges and, unless a file must give them, their default.
 const FIELDS: [(&str, (f64, f64), Option<f64>); 3] =
@@ -37,26 +38,13 @@ pub(super) fn read(found: Option<&Value>, place: &str, complaints: &mut Complain
 }
 
 fn read_mode(place: &str, mode: &Value, complaints: &mut Complaints) -> Option<CustomMode> {
-    let Value::Table(mode) = mode else {
-        complaints.add(unexpected(place, "a mode, { ratio = … }", mode));
-        return None;
-    };
-    check_keys(mode, &format!("{place}."), &FIELDS.map(|(name, ..)| name), complaints);
-    let [ratio, level, decay] = FIELDS.map(|field| complaints.take(place, number(mode, field)));
+    let mode = table_of(mode, place, &FIELDS.map(|(name, ..)| name), complaints)?;
+    let [ratio, level, decay] = FIELDS.map(|(name, (min, max), default)| {
+        let missing = || default.ok_or_else(|| format!("{place}: there is no ‘{name}’"));
+        let number = number_in(mode, place, (name, min, max), |number| number);
+        complaints.take("", number.unwrap_or_else(missing))
+    });
     Some(CustomMode { ratio: ratio?, level: level?, decay: decay? })
-}
-
-fn number(mode: &Table, (name, (min, max), default): (&str, (f64, f64), Option<f64>)) -> Result<f64, String> {
-    let number = match mode.get(name) {
-        Some(Value::Integer(number)) => *number as f64,
-        Some(Value::Float(number)) => *number,
-        Some(other) => return Err(unexpected(&format!(".{name}"), "a number", other)),
-        None => return default.ok_or_else(|| format!(": there is no ‘{name}’")),
-    };
-    if (min..=max).contains(&number) {
-        return Ok(number);
-    }
-    Err(format!(".{name}: {number} is out of range: expected {min} to {max}"))
 }
 
 /// The line of a custom body's modes.

@@ -68,6 +68,12 @@ impl Default for Guide {
 }
 
 impl Guide {
+    /// The name of a macro, given the id of its parameter or source (`macro1` …); none for what is no macro, or has no name.
+    pub fn macro_name(&self, id: &str) -> Option<&str> {
+        let number: usize = id.strip_prefix("macro")?.parse().ok()?;
+        self.macros.get(number.checked_sub(1)?).map(String::as_str).filter(|name| !name.is_empty())
+    }
+
     pub(super) const KEYS: [&str; 4] = ["family", "range", "macros", "phrase"];
 
     pub(super) fn read(table: &Table, complaints: &mut Complaints) -> Self {

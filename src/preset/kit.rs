@@ -64,6 +64,30 @@ impl Playable {
         }
     }
 
+    /// Who made it.
+    pub fn author(&self) -> &str {
+        match self {
+            Self::Preset(preset) => &preset.author,
+            Self::Kit(kit) => &kit.author,
+        }
+    }
+
+    /// Its tags.
+    pub fn tags(&self) -> &[String] {
+        match self {
+            Self::Preset(preset) => &preset.tags,
+            Self::Kit(kit) => &kit.tags,
+        }
+    }
+
+    /// What it is.
+    pub fn comment(&self) -> &str {
+        match self {
+            Self::Preset(preset) => &preset.comment,
+            Self::Kit(kit) => &kit.comment,
+        }
+    }
+
     /// The kit to play. Allocates.
     pub fn kit(&self) -> Arc<Kit> {
         match self {

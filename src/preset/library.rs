@@ -1,6 +1,7 @@
 //! The user's own presets and kits, as files in a folder of the user's data, and which sounds are favourites.
 
-use super::{Playable, Preset, Replaced};
+use super::about::MAX_LABEL;
+use super::{Playable, Preset, Replaced, is_file_name};
 use crate::error::{Error, Result};
 use crate::text::slug;
 use std::collections::BTreeSet;
@@ -61,11 +62,11 @@ impl Library {
     /// name is there. Appears whole or not at all. Returns where it is.
     ///
     /// # Errors
-    /// [`Error::Exists`] if a preset of this name exists and is not to be replaced, [`Error::Format`] if the preset could not be read
+    /// [`Error::Value`] for the name of a factory sound or of a file, by which it would not be found again, [`Error::Exists`] if a
+    /// preset of this name exists and is not to be replaced, [`Error::Format`] if the preset could not be read
     /// again, [`Error::Io`] if it cannot be written.
     pub fn save(&self, preset: &Preset, replace: bool) -> Result<PathBuf> {
-        let text = preset.to_toml();
-        Preset::parse(&text, &preset.name)?;
+        let text = text_of(preset)?;
         let slug = slug(&preset.name);
         let slug = if slug.is_empty() { "sound" } else { &slug };
         let folder = self.presets_folder();
@@ -73,7 +74,7 @@ impl Library {
             1 => folder.join(format!("{slug}.toml")),
             number => folder.join(format!("{slug}-{number}.toml")),
         };
-        let is_it = |path: &PathBuf| matches!(read(path), Ok(Playable::Preset(found)) if found.name == preset.name);
+        let is_it = |path: &PathBuf| matches!(read(path), Ok(Playable::Preset(found)) if found.name.eq_ignore_ascii_case(&preset.name));
         // A number may be free before that of the preset, if another one was thrown away.
         let numbers = 1..=self.paths().len() as u32 + 1;
         if let Some(path) = numbers.clone().map(place).find(is_it) {
@@ -85,13 +86,69 @@ impl Library {
         Ok(path)
     }
 
+    /// Gives a preset of the library another name, and its file the name that belongs to it. Returns where it is now.
+    ///
+    /// # Errors
+    /// As [`Library::save`]; [`Error::Value`] if the file is not in the library or has no single preset.
+    pub fn rename(&self, path: &Path, name: &str) -> Result<PathBuf> {
+        self.check_own(path)?;
+        let Playable::Preset(preset) = read(path)? else {
+            return Err(Error::value(path.display().to_string(), "expected a preset: a kit keeps its name"));
+        };
+        let is_same = preset.name.eq_ignore_ascii_case(name);
+        let renamed = Preset { name: name.to_owned(), ..preset };
+        if is_same {
+            // In its own file: another file may have a preset of the same name, which is to stay.
+            write_whole(path, text_of(&renamed)?.as_bytes(), true)?;
+            return Ok(path.to_owned());
+        }
+        let saved = self.save(&renamed, false)?;
+        fs::remove_file(path).map_err(|source| Error::io(path.display().to_string(), source))?;
+        Ok(saved)
+    }
+
+    /// Takes a preset file from elsewhere into the library, under its own name, with a number behind it if that is taken.
+    /// Returns the preset as it is there, and where.
+    ///
+    /// # Errors
+    /// As [`Playable::read`] and [`Library::save`]; [`Error::Value`] for a kit, which needs the files of its presets.
+    pub fn import(&self, path: &Path) -> Result<(Preset, PathBuf)> {
+        let Playable::Preset(mut preset) = read(path)? else {
+            let message = "a kit needs the files of its presets: expected a single preset";
+            return Err(Error::value(path.display().to_string(), message));
+        };
+        let own = preset.name.clone();
+        let names: Vec<String> =
+            self.paths().iter().filter_map(|path| read(path).ok()).map(|found| found.name().to_owned()).collect();
+        // A sound of the factory, or one of the library, may have this name.
+        let is_taken =
+            |name: &str| Playable::find(name).is_ok() || names.iter().any(|other| other.eq_ignore_ascii_case(name));
+        let mut number = 2;
+        while is_taken(&preset.name) {
+            let end = format!(" {number}");
+            let kept: String = own.chars().take(MAX_LABEL - end.len()).collect();
+            preset.name = kept.trim_end().to_owned() + &end;
+            number += 1;
+        }
+        let place = self.save(&preset, false)?;
+        Ok((preset, place))
+    }
+
+    /// Checks that a file is one of the library's.
+    fn check_own(&self, path: &Path) -> Result<()> {
+        if path.parent() == Some(&self.presets_folder()) {
+            return Ok(());
+        }
+        Err(Error::value(path.display().to_string(), "expected a file of the library"))
+    }
+
     /// Moves a file of the library to its bin. Returns where it is now.
     ///
     /// # Errors
     /// [`Error::Value`] if the file is not in the library, [`Error::Io`] if it cannot be moved.
     pub fn discard(&self, path: &Path) -> Result<PathBuf> {
-        let name = path.file_name().filter(|_| path.parent() == Some(&self.presets_folder()));
-        let name = name.ok_or_else(|| Error::value(path.display().to_string(), "expected a file of the library"))?;
+        self.check_own(path)?;
+        let name = path.file_name().unwrap_or_default();
         let bin = self.folder.join("bin");
         make_folder(&bin)?;
         // Nothing in the bin is replaced.
@@ -158,6 +215,21 @@ fn read(path: &Path) -> Result<Playable> {
     Playable::read(path, &mut open, &mut |_: &str, _: Replaced| {})
 }
 
+/// A preset's file, if its name can be one of the user's: not that of a factory sound nor of a file.
+fn text_of(preset: &Preset) -> Result<String> {
+    if Playable::find(&preset.name).is_ok() {
+        let message = format!("‘{}’ is a sound of the factory: expected another name", preset.name);
+        return Err(Error::value("name", message));
+    }
+    if is_file_name(Path::new(&preset.name)) {
+        let message = format!("‘{}’ would be taken for a file: expected a name without / and .toml", preset.name);
+        return Err(Error::value("name", message));
+    }
+    let text = preset.to_toml();
+    Preset::parse(&text, &preset.name)?;
+    Ok(text)
+}
+
 /// The first of these places in a folder where nothing is.
 fn free(mut places: impl Iterator<Item = PathBuf>, folder: &Path) -> Result<PathBuf> {
     let free = places.find(|place| !place.exists());
@@ -173,6 +245,7 @@ fn write_whole(path: &Path, bytes: &[u8], replace: bool) -> Result<()> {
     let failed = |source: io::Error| Error::io(path.display().to_string(), source);
     let folder = path.parent().unwrap_or(Path::new("."));
     make_folder(folder)?;
+    #[cfg_attr(not(unix), expect(unused_mut, reason = "only Unix has permissions to set"))]
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {
@@ -193,103 +266,4 @@ fn write_whole(path: &Path, bytes: &[u8], replace: bool) -> Result<()> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn library() -> (tempfile::TempDir, Library) {
-        let folder = tempfile::tempdir().unwrap();
-        let library = Library::at(folder.path().join("sprung"));
-        (folder, library)
-    }
-
-    fn named(name: &str) -> Preset {
-        Preset { name: name.to_owned(), ..Preset::find("Church Bell").unwrap().clone() }
-    }
-
-    #[test]
-    fn presets_are_saved_under_their_names_and_replaced_only_when_told() {
-        let (_folder, library) = library();
-        assert!(library.entries().is_empty());
-        let path = library.save(&named("My Bell"), false).unwrap();
-        assert_eq!(path.file_name().unwrap(), "my-bell.toml");
-        assert_eq!(library.save(&named("Ω"), false).unwrap().file_name().unwrap(), "sound.toml");
-        assert!(matches!(library.save(&named("My Bell"), false), Err(Error::Exists { .. })));
-        let names = |library: &Library| -> Vec<String> {
-            library.entries().iter().map(|entry| entry.playable.as_ref().unwrap().name().to_owned()).collect()
-        };
-        assert_eq!(names(&library), ["My Bell", "Ω"]);
-        assert_eq!(library.save(&named("My Bell"), true).unwrap(), path);
-        assert_eq!(names(&library), ["My Bell", "Ω"]);
-        let error = library.save(&named(&"n".repeat(101)), false).unwrap_err().to_string();
-        assert!(error.contains("at most 100 characters"), "{error}");
-        assert_eq!(fs::read_dir(library.presets_folder()).unwrap().count(), 2, "nothing else is left");
-    }
-
-    #[test]
-    fn sounds_of_other_names_are_not_replaced() {
-        let (_folder, library) = library();
-        let save = |name: &str, replace| {
-            let path = library.save(&named(name), replace).unwrap();
-            path.file_name().unwrap().to_string_lossy().into_owned()
-        };
-        assert_eq!(
-            ["My Bell", "my-bell!", "Ω", "β"].map(|name| save(name, true)),
-            ["my-bell.toml", "my-bell-2.toml", "sound.toml", "sound-2.toml"]
-        );
-        library.discard(&library.presets_folder().join("my-bell.toml")).unwrap();
-        assert!(matches!(library.save(&named("my-bell!"), false), Err(Error::Exists { .. })));
-        assert_eq!(save("my-bell!", true), "my-bell-2.toml", "where it was");
-        fs::write(library.presets_folder().join("sound-3.toml"), "broken").unwrap();
-        assert_eq!(save("λ", true), "sound-4.toml");
-        assert_eq!(library.entries().len(), 5);
-    }
-
-    #[test]
-    fn what_is_no_preset_says_why() {
-        let (_folder, library) = library();
-        library.save(&named("Good"), false).unwrap();
-        fs::write(library.presets_folder().join("bad.toml"), "format = \"x\"").unwrap();
-        fs::write(library.presets_folder().join("notes.txt"), "not a sound").unwrap();
-        let entries = library.entries();
-        assert_eq!(entries.len(), 2);
-        assert!(entries[0].playable.is_err() && entries[1].playable.is_ok());
-    }
-
-    #[test]
-    fn files_go_to_the_bin_and_nothing_there_is_replaced() {
-        let (folder, library) = library();
-        let bins: Vec<PathBuf> =
-            (0..3).map(|_| library.discard(&library.save(&named("Bell"), false).unwrap()).unwrap()).collect();
-        assert!(bins.iter().all(|path| path.is_file()) && library.entries().is_empty());
-        let stranger = folder.path().join("stranger.toml");
-        fs::write(&stranger, "").unwrap();
-        assert!(library.discard(&stranger).is_err() && stranger.exists());
-    }
-
-    #[test]
-    fn favourites_are_kept() {
-        let (_folder, library) = library();
-        for name in ["Kick", "Church Bell", "Kick"] {
-            library.set_favourite(name, true).unwrap();
-        }
-        let favourites = || library.favourites().unwrap().into_iter().collect::<Vec<_>>();
-        assert_eq!(favourites(), ["Church Bell", "Kick"]);
-        library.set_favourite("Kick", false).unwrap();
-        assert_eq!(favourites(), ["Church Bell"]);
-        // No UTF-8.
-        fs::write(library.favourites_file(), b"Kick\n\xff\n").unwrap();
-        assert!(library.favourites().is_err() && library.set_favourite("Church Bell", true).is_err());
-        assert_eq!(fs::read(library.favourites_file()).unwrap(), b"Kick\n\xff\n", "not written over");
-    }
-
-    #[cfg(all(unix, not(target_os = "macos")))]
-    #[test]
-    fn the_folder_is_where_the_system_keeps_data() {
-        let find = |variables: &[(&str, &str)]| {
-            data_folder(&|name| variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into()))
-        };
-        assert_eq!(find(&[("XDG_DATA_HOME", "/d"), ("HOME", "/h")]), Some("/d/sprung".into()));
-        assert_eq!(find(&[("XDG_DATA_HOME", "d"), ("HOME", "/h")]), Some("/h/.local/share/sprung".into()));
-        assert_eq!(find(&[]), None);
-    }
-}
+mod tests;

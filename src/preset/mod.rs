@@ -3,6 +3,7 @@
 mod about;
 mod body;
 mod body_table;
+pub mod catalogue;
 mod complaints;
 mod custom_modes;
 mod factory;

@@ -1,7 +1,7 @@
 //! Reads and writes the list of modes in a preset file: `modes = [{ ratio = 1.0 }, …]`.
 
 use super::complaints::Complaints;
-use super::value::{check_keys, unexpected};
+use super::value::{check_keys, number_in, unexpected};
 use crate::patch::{MAX_MODES, Mode, ModeTable};
 use std::f32::consts::PI;
 use std::fmt::Write;
@@ -35,39 +35,38 @@ pub(super) fn read(modes: Option<&Value>, complaints: &mut Complaints) -> ModeTa
 
 /// Reads a mode, if it has a ratio, and its phase, if it has one.
 fn read_mode(place: &str, mode: &Value, complaints: &mut Complaints) -> Option<(Mode, Option<f32>)> {
-    let Value::Table(mode) = mode else {
-        complaints.add(unexpected(place, "a mode, { ratio = … }", mode));
-        return None;
-    };
     let keys: Vec<&str> = Mode::FIELDS.iter().chain([&PHASE]).map(|(name, ..)| *name).collect();
-    check_keys(mode, &format!("{place}."), &keys, complaints);
+    let mode = table_of(mode, place, &keys, complaints)?;
+    let number = |field| number_in(mode, place, field, |number| number as f32);
     if !mode.contains_key("ratio") {
         complaints.add(format!("{place}: there is no ‘ratio’"));
         return None;
     }
     let (mut fields, mut has_ratio) = (Mode::UNIT.fields(), true);
     for (field, value) in Mode::FIELDS.into_iter().zip(&mut fields) {
-        match number(mode, place, field).map(|number| complaints.take("", number)) {
+        match number(field).map(|number| complaints.take("", number)) {
             None => {}
             Some(Some(number)) => *value = number,
             Some(None) => has_ratio &= field.0 != "ratio",
         }
     }
-    let phase = number(mode, place, PHASE).and_then(|number| complaints.take("", number));
+    let phase = number(PHASE).and_then(|number| complaints.take("", number));
     has_ratio.then(|| (Mode::from_fields(fields), phase))
 }
 
-/// A number of a mode, if the mode has it.
-fn number(mode: &Table, place: &str, (name, min, max): (&str, f32, f32)) -> Option<Result<f32, String>> {
-    let number = match mode.get(name)? {
-        Value::Integer(number) => *number as f32,
-        Value::Float(number) => *number as f32,
-        other => return Some(Err(unexpected(&format!("{place}.{name}"), "a number", other))),
+/// The table of a mode at `place`, which can have these keys.
+pub(super) fn table_of<'a>(
+    mode: &'a Value,
+    place: &str,
+    keys: &[&str],
+    complaints: &mut Complaints,
+) -> Option<&'a Table> {
+    let Value::Table(mode) = mode else {
+        complaints.add(unexpected(place, "a mode, { ratio = … }", mode));
+        return None;
     };
-    Some(match (min..=max).contains(&number) {
-        true => Ok(number),
-        false => Err(format!("{place}.{name}: {number} is out of range: expected {min} to {max}")),
-    })
+    check_keys(mode, &format!("{place}."), keys, complaints);
+    Some(mode)
 }
 
 /// The list of modes as TOML; empty if there is only the single mode of a new preset, or if `[body]` stands for them.

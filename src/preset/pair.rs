@@ -30,12 +30,9 @@ pub fn modes_of_pair(pair: &Pair) -> crate::Result<ModeTable> {
 /// The pair from which modes were made; none if they were not made from one. Allocates.
 pub fn pair_of_modes(modes: &ModeTable) -> Option<Pair> {
     let mut complaints = Complaints::default();
-    let mut file: Table = toml::from_str(modes.origin()?).ok()?;
-    if !is_in(&file) {
-        return None;
-    }
-    let first: Table = file.clone().into_iter().filter(|(_, value)| !value.is_table()).collect();
-    file.retain(|_, value| value.is_table());
+    // A body may have a number `joint`, beside the table of that name.
+    let mut file: Table = toml::from_str(&format!("[body]\n{}", modes.origin()?)).ok()?;
+    let Some(Value::Table(first)) = file.remove("body").filter(|_| is_in(&file)) else { return None };
     let first = read_body(&first, "body", &mut complaints)?;
     let pair = read(&file, first, &mut complaints);
     pair.filter(|_| complaints.into_lines().is_empty())
@@ -119,6 +116,7 @@ mod tests {
     use crate::params::Param;
     use crate::patch::Patch;
     use crate::preset::Preset;
+    use crate::sound::bodies::Point;
 
     fn parse(bodies: &str) -> crate::Result<Preset> {
         Preset::parse(&format!("format = 4\nname = \"a\"\n{bodies}"), "x")
@@ -144,7 +142,8 @@ mod tests {
     fn every_kind_of_joint_is_saved_and_read_as_it_was() {
         let [first, second] = ["marimba", "stopped_tube"].map(|model| {
             let model = crate::sound::bodies::Model::find(model).unwrap().clone();
-            Body { modes: 4, ..Body::new(model) }
+            let joint = Point { x: 0.25, y: 0.5 };
+            Body { modes: 4, joint, ..Body::new(model) }
         });
         for (_, link) in KINDS {
             let mut pair = Pair::new(first.clone(), second.clone(), link);

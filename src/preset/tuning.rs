@@ -30,6 +30,16 @@ impl OwnTuning {
         Ok(Self { tuning: Tuning::new(&steps, &keys), scale, keymap })
     }
 
+    /// The text of the scale.
+    pub fn scale(&self) -> &str {
+        &self.scale
+    }
+
+    /// The text of the mapping, if there is one.
+    pub fn keymap(&self) -> Option<&str> {
+        self.keymap.as_deref()
+    }
+
     /// The pitches of the keys.
     pub fn tuning(&self) -> &Tuning {
         &self.tuning

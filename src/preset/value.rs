@@ -3,6 +3,7 @@
 use super::complaints::Complaints;
 use crate::error::{Error, nearest};
 use crate::params::{PARAMS, Param, ParamInfo, Unit};
+use std::fmt::Display;
 use toml::{Table, Value};
 
 /// Checks that a table has no other keys than `known`. `place` is its path: empty, or ending in a dot.
@@ -19,6 +20,24 @@ pub(super) fn check_keys(table: &Table, place: &str, known: &[&str], complaints:
 /// The error for a value of a wrong type: what was expected, and what was found.
 pub(super) fn unexpected(key: &str, expected: &str, found: &Value) -> String {
     format!("{key}: expected {expected}, found {} ‘{}’", found.type_str(), found.to_string().trim())
+}
+
+/// The number of this name in the table at `place`, within a range, if the table has it. `of` gives it its precision.
+pub(super) fn number_in<N: Copy + PartialOrd + Display>(
+    table: &Table,
+    place: &str,
+    (name, min, max): (&str, N, N),
+    of: fn(f64) -> N,
+) -> Option<Result<N, String>> {
+    let number = match table.get(name)? {
+        Value::Integer(number) => of(*number as f64),
+        Value::Float(number) => of(*number),
+        other => return Some(Err(unexpected(&format!("{place}.{name}"), "a number", other))),
+    };
+    Some(match (min..=max).contains(&number) {
+        true => Ok(number),
+        false => Err(format!("{place}.{name}: {number} is out of range: expected {min} to {max}")),
+    })
 }
 
 /// The value of a parameter: a number in its unit, or a text with a unit.

@@ -26,6 +26,13 @@ pub struct Name {
     pub number: Option<Number>,
 }
 
+impl Name {
+    /// The option of this name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        NAMES.iter().find(|known| known.name == name)
+    }
+}
+
 impl Request {
     /// The options.
     pub const NAMES: &[Name] = NAMES;
@@ -35,7 +42,7 @@ impl Request {
     /// # Errors
     /// A message that says what would be right.
     pub fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
-        match NAMES.iter().find(|known| known.name == name) {
+        match Name::find(name) {
             Some(known) => (known.set)(self, value),
             None => Err(match crate::error::nearest(name, NAMES.iter().map(|known| known.name)) {
                 Some(near) => format!("there is no option ‘{name}’; the nearest is {near}"),

@@ -2,21 +2,35 @@
 
 use crate::error::Result;
 use crate::io::Inputs;
+use crate::preset::library::{Entry, Library};
 use crate::preset::{Playable, is_file_name};
 use std::ffi::OsStr;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Loads the preset or kit with this name: a file if it looks like a file name, else a factory preset. `warn` is called
-/// with each retired parameter that was replaced.
+/// Loads the preset or kit with this name: a file if it looks like a file name, else a sound of the factory, else one of
+/// the user's own, whose file then counts as an input. `warn` is called with each retired parameter that was replaced.
 ///
 /// # Errors
-/// As [`Playable::read`], and [`Error::Value`](crate::Error::Value) for a name that no factory preset has.
+/// As [`Playable::read`], and [`Error::Value`](crate::Error::Value) for a name that no sound has.
 pub fn playable(name: &OsStr, inputs: &mut Inputs, warn: &mut dyn FnMut(&str)) -> Result<Playable> {
     let path = Path::new(name);
-    if is_file_name(path) {
+    let mut read = |path: &Path| {
         let mut replaced = |origin: &str, replaced| warn(&format!("{origin}: {replaced}"));
         Playable::read(path, &mut |path| inputs.open(path), &mut replaced)
-    } else {
-        Playable::find(&name.to_string_lossy())
+    };
+    if is_file_name(path) {
+        return read(path);
     }
+    let name = name.to_string_lossy();
+    Playable::find(&name).or_else(|unknown| match own(name.trim()) {
+        Some(path) => read(&path),
+        None => Err(unknown),
+    })
+}
+
+/// The file of the user's own sound of this name; case does not matter.
+fn own(name: &str) -> Option<PathBuf> {
+    let mut entries = Library::of_user()?.entries().into_iter();
+    let is_it = |entry: &Entry| entry.playable.as_ref().is_ok_and(|own| own.name().eq_ignore_ascii_case(name));
+    entries.find_map(|entry| is_it(&entry).then_some(entry.path))
 }

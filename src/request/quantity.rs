@@ -192,6 +192,11 @@ fn no_parameter(id: &str) -> String {
     }
 }
 
+/// The number as people write it: 0.3, not 0.30000001192092896, which is the `f32` converted directly. Allocates.
+pub fn decimal(value: f32) -> f64 {
+    value.to_string().parse().unwrap_or(value.into())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -42,6 +42,11 @@ pub(crate) struct Page {
 impl Page {
     /// Opens a file.
     pub(crate) fn open(program: &Path, file: &Path) -> Self {
+        Self::open_at(program, &format!("file://{}", file.canonicalize().unwrap().display()))
+    }
+
+    /// Opens an address.
+    pub(crate) fn open_at(program: &Path, url: &str) -> Self {
         let profile = tempfile::tempdir().unwrap();
         // The protocol uses descriptors 3 and 4; the shell connects our pipes to them.
         let mut browser = Command::new("sh")
@@ -78,7 +83,6 @@ impl Page {
         for domain in ["Runtime", "Log", "Page", "Network"] {
             page.call(&format!("{domain}.enable"), json!({}));
         }
-        let url = format!("file://{}", file.canonicalize().unwrap().display());
         page.call("Page.navigate", json!({ "url": url }));
         page.wait(|message| message["method"] == "Page.loadEventFired");
         page

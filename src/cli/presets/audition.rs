@@ -1,6 +1,6 @@
 //! `sprung presets audition`: renders the factory's sounds, and makes a page that plays and shows them.
 
-use super::select::{Found, Select};
+use super::select::Select;
 use crate::cli::figure;
 use crate::cli::interrupt;
 use crate::cli::progress::Bar;
@@ -11,7 +11,8 @@ use sprung::engine::{Event, EventKind, Synth};
 use sprung::figure::page::{STYLE, escaped, fill};
 use sprung::io::{Inputs, Output, SampleFormat, Song, SongEvent, Target};
 use sprung::params::Param;
-use sprung::preset::{Family, KitPreset, Preset};
+use sprung::preset::catalogue::Listed;
+use sprung::preset::{Family, KitPreset, Playable, Preset};
 use sprung::render::{Delivery, Job, Level, Options, Tail, to_wav};
 use sprung::sound::Kit;
 use sprung::text::slug;
@@ -49,7 +50,7 @@ pub(super) struct Args {
 
 /// A sound that was auditioned.
 struct Auditioned {
-    found: Found,
+    found: Arc<Listed>,
     file: String,
     measures: Vec<Measure>,
     /// How many times faster than real time 16 voices are rendered on one core.
@@ -70,16 +71,16 @@ pub(super) fn run(args: &Args) -> Result<()> {
     // Alone, since other work on the same cores would count as the sound's.
     for one in &mut all {
         interrupt::check()?;
-        one.speed = speed(&kit(one.found));
+        one.speed = speed(&one.found.playable.kit());
     }
     write(page, written(&all).as_bytes())
 }
 
 /// Auditions all sounds on all cores, with a progress bar.
-fn in_parallel(found: &[Found], args: &Args) -> Result<Vec<Auditioned>> {
+fn in_parallel(found: &[Arc<Listed>], args: &Args) -> Result<Vec<Auditioned>> {
     let (done, is_over) = (AtomicUsize::new(0), AtomicBool::new(false));
     let work = || {
-        let auditioned = found.par_iter().map(|one| audition(*one, args, &done)).collect();
+        let auditioned = found.par_iter().map(|one| audition(one, args, &done)).collect();
         is_over.store(true, Ordering::Relaxed);
         auditioned
     };
@@ -103,25 +104,21 @@ fn write(mut output: Output, bytes: &[u8]) -> Result<()> {
     output.commit()
 }
 
-fn kit(found: Found) -> Arc<Kit> {
-    match found {
-        Found::Preset(preset) => preset.kit(),
-        Found::Kit(kit) => kit.kit(),
-    }
-}
-
 /// Renders a sound to its files and measures it.
-fn audition(found: Found, args: &Args, done: &AtomicUsize) -> Result<Auditioned> {
+fn audition(found: &Arc<Listed>, args: &Args, done: &AtomicUsize) -> Result<Auditioned> {
     interrupt::check()?;
-    let file = slug(found.name());
-    let (song, modes) = match found {
-        Found::Preset(preset) => {
+    // Names of the user's own sounds may be alike, their files are not.
+    let own = found.path.as_ref().and_then(|path| path.file_stem());
+    let file = own.map_or_else(|| slug(found.name()), |own| own.to_string_lossy().into_owned());
+    let (song, modes) = match &found.playable {
+        Playable::Preset(preset) => {
             let a4_hz = f64::from(preset.patch.get(Param::Tuning));
             (phrase(preset), modes_of(&preset.patch, frequency_from_key(preset.guide.home.into(), a4_hz)))
         }
-        Found::Kit(kit) => (pads(kit), Vec::new()),
+        Playable::Kit(kit) => (pads(kit), Vec::new()),
     };
-    let (kit, options) = (kit(found), Options { sample_rate: RATE, seed: 0, block: 4096, tail: Tail::Seconds(TAIL) });
+    let (kit, options) =
+        (found.playable.kit(), Options { sample_rate: RATE, seed: 0, block: 4096, tail: Tail::Seconds(TAIL) });
     let job = Job::new(&song, &kit, options);
     let mut output = create(&args.out, &format!("{file}.wav"), args.force)?;
     let delivery = Delivery { samples: SampleFormat::Int16, dither: false, mono: false, level: Level::Gain(0.0) };
@@ -129,12 +126,12 @@ fn audition(found: Found, args: &Args, done: &AtomicUsize) -> Result<Auditioned>
     output.commit()?;
     let picture = create(&args.out, &format!("{file}.png"), args.force)?;
     write(picture, &figure::drawn(&job, found.name(), &modes, "png")?)?;
-    let measures = match found {
-        Found::Preset(preset) => measure(preset)?,
-        Found::Kit(_) => Vec::new(),
+    let measures = match &found.playable {
+        Playable::Preset(preset) => measure(preset)?,
+        Playable::Kit(_) => Vec::new(),
     };
     done.fetch_add(1, Ordering::Relaxed);
-    Ok(Auditioned { found, file, measures, speed: 0.0 })
+    Ok(Auditioned { found: found.clone(), file, measures, speed: 0.0 })
 }
 
 fn song(notes: impl Iterator<Item = (f64, f64, u8, u8)>) -> Song {
@@ -198,19 +195,19 @@ fn written(all: &[Auditioned]) -> String {
     fill(include_str!("audition.html"), |name| match name {
         "style" => STYLE.to_owned(),
         "summary" => summary.clone(),
-        "families" => Family::ALL.iter().map(|family| option(family.name())).chain([option("kit")]).collect(),
+        "families" => Family::ALL.iter().map(|family| option(family.name())).chain([option(Listed::KIT)]).collect(),
         "sounds" => all.iter().map(article).collect(),
         other => unreachable!("the template has no place ‘{other}’"),
     })
 }
 
 fn article(one: &Auditioned) -> String {
-    let found = one.found;
+    let (found, playable) = (&one.found, &one.found.playable);
     let (name, file) = (escaped(found.name()), &one.file);
-    let tags = found.tags().join(", ");
-    let text = [found.name(), found.comment(), &tags, found.family()].join(" ").to_lowercase();
-    let keys = match found {
-        Found::Preset(preset) => {
+    let tags = playable.tags().join(", ");
+    let text = [found.name(), playable.comment(), &tags, found.family_name()].join(" ").to_lowercase();
+    let keys = match playable {
+        Playable::Preset(preset) => {
             let [lowest, highest, home] = [preset.guide.lowest, preset.guide.highest, preset.guide.home].map(note_name);
             let macros = preset.guide.macros.join(", ");
             format!(
@@ -218,7 +215,7 @@ fn article(one: &Auditioned) -> String {
                 if macros.is_empty() { macros } else { format!(" · macros: {macros}") }
             )
         }
-        Found::Kit(kit) => format!(" · {} pads", kit.pads.len()),
+        Playable::Kit(kit) => format!(" · {} pads", kit.pads.len()),
     };
     let rows: String = one.measures.iter().map(row).collect();
     let table = if rows.is_empty() {
@@ -230,9 +227,9 @@ fn article(one: &Auditioned) -> String {
     };
     format!(
         "<article data-family=\"{family}\" data-text=\"{text}\"><h2>{name}</h2>\n<p>{comment}</p>\n<p class=\"note\">{family} · {tags}{keys} · 16 voices {speed:.0}× real time</p>\n<audio controls preload=\"none\" src=\"{file}.wav\"></audio>\n<img loading=\"lazy\" alt=\"Waveform, spectrogram and modes of {name}\" src=\"{file}.png\">\n{table}</article>\n",
-        family = found.family(),
+        family = found.family_name(),
         text = escaped(&text),
-        comment = escaped(found.comment()),
+        comment = escaped(playable.comment()),
         tags = escaped(&tags),
         keys = escaped(&keys),
         speed = one.speed,

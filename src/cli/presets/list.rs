@@ -1,10 +1,12 @@
 //! `sprung presets list`: the factory's sounds as lines of text or as JSON, and the programs of General MIDI.
 
-use super::select::{Found, Select};
+use super::select::Select;
 use serde_json::{Value, json};
-use sprung::preset::{Guide, Programs};
+use sprung::preset::catalogue::Listed;
+use sprung::preset::{Guide, Playable, Programs};
 use sprung::units::note_name;
 use std::fmt::Write;
+use std::sync::Arc;
 use terminal_size::{Width, terminal_size_of};
 
 /// Narrowest terminal for which lines are wrapped, in characters.
@@ -27,7 +29,7 @@ pub(super) fn list(args: &Args) -> String {
     let found = args.select.found();
     let width = terminal_size_of(std::io::stdout()).map(|(Width(width), _)| usize::from(width));
     match (args.json, args.gm) {
-        (true, _) => format!("{:#}\n", Value::Array(found.into_iter().map(described).collect())),
+        (true, _) => format!("{:#}\n", Value::Array(found.iter().map(|one| described(one)).collect())),
         (false, true) => programs(&found),
         (false, false) => lines(&found, width.filter(|width| *width >= NARROWEST)),
     }
@@ -39,24 +41,27 @@ fn numbers(name: &str) -> Vec<u8> {
     (0..128).filter(|number| programs.sound(*number) == Some(name)).map(|number| number + 1).collect()
 }
 
-fn described(found: Found) -> Value {
+fn described(found: &Listed) -> Value {
+    let playable = &found.playable;
     let mut described = json!({
-        "name": found.name(),
-        "kit": matches!(found, Found::Kit(_)),
-        "family": found.family(),
-        "tags": found.tags(),
-        "author": found.author(),
-        "comment": found.comment(),
-        "programs": numbers(found.name()),
+        "name": playable.name(),
+        "kit": matches!(playable, Playable::Kit(_)),
+        "family": found.family_name(),
+        "tags": playable.tags(),
+        "author": playable.author(),
+        "comment": playable.comment(),
+        // A sound of the user's may have the name of one of the factory's.
+        "programs": if found.path.is_none() { numbers(playable.name()) } else { Vec::new() },
+        "file": found.path.as_ref().map(|path| path.display().to_string()),
     });
-    match found {
-        Found::Preset(preset) => {
+    match playable {
+        Playable::Preset(preset) => {
             let Guide { lowest, highest, home, macros, phrase, .. } = &preset.guide;
             described["range"] = json!({ "lowest": lowest, "highest": highest, "home": home });
             described["macros"] = json!(macros);
             described["phrase"] = json!(phrase.as_ref().map(ToString::to_string));
         }
-        Found::Kit(kit) => {
+        Playable::Kit(kit) => {
             let pads = kit.pads.iter().map(|(key, pad)| json!({ "key": key, "name": pad.name }));
             described["pads"] = Value::Array(pads.collect());
         }
@@ -65,20 +70,19 @@ fn described(found: Found) -> Value {
 }
 
 /// Lines with name, family, keys and description. The description goes on below itself in a terminal of a width.
-fn lines(found: &[Found], width: Option<usize>) -> String {
-    let longest =
-        |text: fn(Found) -> &'static str| found.iter().map(|one| text(*one).chars().count()).max().unwrap_or(0);
-    let (names, families) = (longest(Found::name), longest(Found::family));
+fn lines(found: &[Arc<Listed>], width: Option<usize>) -> String {
+    let longest = |text: fn(&Listed) -> &str| found.iter().map(|one| text(one).chars().count()).max().unwrap_or(0);
+    let (names, families) = (longest(Listed::name), longest(Listed::family_name));
     let mut out = String::new();
     for one in found {
-        let keys = match one {
-            Found::Preset(preset) => {
+        let keys = match &one.playable {
+            Playable::Preset(preset) => {
                 format!("{}-{}", note_name(preset.guide.lowest), note_name(preset.guide.highest))
             }
-            Found::Kit(_) => String::new(),
+            Playable::Kit(_) => String::new(),
         };
-        let head = format!("{:names$}  {:families$}  {keys:7}  ", one.name(), one.family());
-        let comment = one.comment().lines().next().unwrap_or_default();
+        let head = format!("{:names$}  {:families$}  {keys:7}  ", one.name(), one.family_name());
+        let comment = one.playable.comment().lines().next().unwrap_or_default();
         let indent = head.chars().count();
         let rows = match width {
             Some(width) if width > indent + 20 => wrapped(comment, width - indent),
@@ -114,9 +118,9 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 }
 
 /// The programs of General MIDI whose sounds are among those found.
-fn programs(found: &[Found]) -> String {
+fn programs(found: &[Arc<Listed>]) -> String {
     let programs = Programs::general_midi();
-    let family = |name: &str| found.iter().find(|one| one.name() == name).map(|one| one.family());
+    let family = |name: &str| found.iter().find(|one| one.name() == name).map(|one| one.family_name());
     let mut out = String::new();
     for number in 0..128 {
         if let Some((name, family)) = programs.sound(number).and_then(|name| Some((name, family(name)?))) {
@@ -151,10 +155,16 @@ mod tests {
 
     #[test]
     fn sounds_are_found_by_family_tag_and_words() {
-        let names = |line: &str| args(line).select.found().into_iter().map(Found::name).collect::<Vec<_>>();
+        let names = |line: &str| args(line).select.found().iter().map(|one| one.name().to_owned()).collect::<Vec<_>>();
         assert!(names("").len() > 100);
-        assert!(names("--family mallet").contains(&"Marimba") && !names("--family mallet").contains(&"Kick"));
-        assert!(names("--search MARIMBA").contains(&"Marimba") && !names("--search marimba").contains(&"Kick"));
+        assert!(
+            names("--family mallet").contains(&"Marimba".to_owned())
+                && !names("--family mallet").contains(&"Kick".to_owned())
+        );
+        assert!(
+            names("--search MARIMBA").contains(&"Marimba".to_owned())
+                && !names("--search marimba").contains(&"Kick".to_owned())
+        );
         assert!(names("--tag nothing").is_empty());
         let json: Value = serde_json::from_str(&list(&args("--search marimba --json"))).unwrap();
         let marimba = json.as_array().unwrap().iter().find(|one| one["name"] == "Marimba").unwrap();

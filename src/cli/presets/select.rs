@@ -1,18 +1,22 @@
-//! Which of the factory's sounds a command means.
+//! Which of the factory's sounds, or of the user's own, a command means.
 
+use crate::cli::terminal::warn;
 use clap::builder::PossibleValuesParser;
-use sprung::preset::{Family, KitPreset, Preset};
-
-/// The family of kits, which are no presets.
-const KIT: &str = "kit";
+use sprung::preset::Family;
+use sprung::preset::catalogue::{Catalogue, Listed};
+use sprung::preset::library::Library;
+use std::sync::Arc;
 
 fn families() -> PossibleValuesParser {
-    PossibleValuesParser::new(Family::ALL.iter().map(|family| family.name()).chain([KIT]))
+    PossibleValuesParser::new(Family::ALL.iter().map(|family| family.name()).chain([Listed::KIT]))
 }
 
 /// Filters by which sounds are found.
 #[derive(clap::Args)]
 pub(super) struct Select {
+    /// The sounds that you saved, from the window or from `play`, in place of the factory's
+    #[arg(long)]
+    own: bool,
     /// Only sounds of this family
     #[arg(long, value_name = "FAMILY", value_parser = families())]
     family: Option<String>,
@@ -24,68 +28,22 @@ pub(super) struct Select {
     search: Option<String>,
 }
 
-/// A factory sound.
-#[derive(Clone, Copy)]
-pub(super) enum Found {
-    /// A preset.
-    Preset(&'static Preset),
-    /// A kit.
-    Kit(&'static KitPreset),
-}
-
-impl Found {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Preset(preset) => &preset.name,
-            Self::Kit(kit) => &kit.name,
-        }
-    }
-
-    pub(super) fn author(self) -> &'static str {
-        match self {
-            Self::Preset(preset) => &preset.author,
-            Self::Kit(kit) => &kit.author,
-        }
-    }
-
-    pub(super) fn tags(self) -> &'static [String] {
-        match self {
-            Self::Preset(preset) => &preset.tags,
-            Self::Kit(kit) => &kit.tags,
-        }
-    }
-
-    pub(super) fn comment(self) -> &'static str {
-        match self {
-            Self::Preset(preset) => &preset.comment,
-            Self::Kit(kit) => &kit.comment,
-        }
-    }
-
-    /// The name of its family; [`KIT`] for a kit, and empty for none.
-    pub(super) fn family(self) -> &'static str {
-        match self {
-            Self::Preset(preset) => preset.guide.family.map_or("", Family::name),
-            Self::Kit(_) => KIT,
-        }
-    }
-}
-
 impl Select {
-    /// The presets and kits that are meant, in the order of lists.
-    pub(super) fn found(&self) -> Vec<Found> {
-        let presets = Preset::factory().iter().map(Found::Preset);
-        presets.chain(KitPreset::factory().iter().map(Found::Kit)).filter(|found| self.means(*found)).collect()
+    /// The presets and kits that are meant, in the order of lists. Warns of files of the user that cannot be read.
+    pub(super) fn found(&self) -> Vec<Arc<Listed>> {
+        let catalogue = match (self.own, Library::of_user()) {
+            (false, _) => Catalogue::of_factory(),
+            (true, library) => library.as_ref().map(Catalogue::of_library).unwrap_or_default(),
+        };
+        catalogue.broken.iter().for_each(|error| warn(&error.to_string()));
+        catalogue.sounds.into_iter().filter(|listed| self.means(listed)).collect()
     }
 
-    fn means(&self, found: Found) -> bool {
-        let has_tag = |tag: &String| found.tags().iter().any(|own| own.eq_ignore_ascii_case(tag.trim()));
-        let text = [found.name(), found.family(), found.comment(), &found.tags().join(" ")].join(" ").to_lowercase();
-        self.family.as_deref().is_none_or(|family| family == found.family())
+    fn means(&self, listed: &Listed) -> bool {
+        let tags = listed.playable.tags();
+        let has_tag = |tag: &String| tags.iter().any(|own| own.eq_ignore_ascii_case(tag.trim()));
+        self.family.as_deref().is_none_or(|family| family == listed.family_name())
             && self.tag.iter().all(has_tag)
-            && self
-                .search
-                .as_deref()
-                .is_none_or(|words| words.to_lowercase().split_whitespace().all(|word| text.contains(word)))
+            && self.search.as_deref().is_none_or(|words| listed.has_words(words))
     }
 }

@@ -86,7 +86,14 @@ impl Step<'_> {
         let (mut left, mut right) = ([Folded::ZERO; CONTROL_FRAMES], [Folded::ZERO; RIGHT]);
         macro_rules! run {
             ($groups:literal, $vectors:literal, $lane:expr) => {
-                step_some::<V, $groups, $vectors, MOVING, FORCE, RIGHT>(
+                if const { V::ON_EVERY_CPU } {
+                    run!(step_apart, $groups, $vectors, $lane)
+                } else {
+                    run!(step_some, $groups, $vectors, $lane)
+                }
+            };
+            ($step:ident, $groups:literal, $vectors:literal, $lane:expr) => {
+                $step::<V, $groups, $vectors, MOVING, FORCE, RIGHT>(
                     proof, form, modes, state, $lane, drive, &mut left, &mut right,
                 )
             };
@@ -137,6 +144,22 @@ fn load<V: Vector, const G: usize, const N: usize>(proof: V::Proof, row: &Row, l
         }
     }
     vectors
+}
+
+/// [`step_some`], compiled as a function of its own. All of them in one function take the compiler several times longer.
+#[inline(never)]
+#[allow(clippy::too_many_arguments, reason = "as step_some")]
+fn step_apart<V: Vector, const G: usize, const N: usize, const MOVING: u8, const FORCE: u8, const RIGHT: usize>(
+    proof: V::Proof,
+    form: Form,
+    modes: &Modes,
+    state: &mut State,
+    lane: usize,
+    drive: &Drive,
+    left: &mut [Folded; CONTROL_FRAMES],
+    right: &mut [Folded; RIGHT],
+) {
+    step_some::<V, G, N, MOVING, FORCE, RIGHT>(proof, form, modes, state, lane, drive, left, right);
 }
 
 /// Steps `N` vectors of each of the `G` live groups, from `lane` on. They are stepped side by side, because each step

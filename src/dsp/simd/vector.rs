@@ -34,6 +34,8 @@ pub(in crate::dsp) trait Vector: Copy {
     const WIDTH: usize;
     /// How many vectors of each group of modes are stepped at once under a force: 1, or as many as make up all [`LANES`].
     const SIDE_BY_SIDE: usize = 1;
+    /// Whether every CPU that the program is compiled for has the instructions. Functions may then be compiled apart.
+    const ON_EVERY_CPU: bool = true;
 
     /// `value` in every lane.
     fn splat(proof: Self::Proof, value: f32) -> Self;

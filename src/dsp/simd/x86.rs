@@ -34,6 +34,7 @@ macro_rules! common {
      $max:ident) => {
         type Proof = $proof;
         const WIDTH: usize = $width;
+        const ON_EVERY_CPU: bool = false;
 
         #[inline(always)]
         fn splat(_: $proof, value: f32) -> Self {

@@ -1,15 +1,17 @@
-//! The state of the view, and how keys change it.
+//! The state of the view, and what changes it.
 
 use super::desk::{Desk, MakeKit};
 use super::keyboard::Keyboard;
+use super::layout::Layout;
 use crate::engine::telemetry::Load;
 use crate::engine::{EventKind, Snapshot};
-use crate::params::{PARAMS, ParamInfo, Unit, Values};
-use crate::preset::Preset;
+use crate::params::{PARAMS, ParamInfo, Values};
+use crate::preset::catalogue::{Catalogue, Listed};
+use crate::preset::library::Library;
 use crate::realtime::{KitSender, Status};
 use crate::sound::Kit;
 use crate::text::printable;
-use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use ratatui::layout::Rect;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -22,7 +24,7 @@ const FALL: f32 = 0.7;
 /// The list that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum List {
-    Presets,
+    Sounds,
     Parameters,
 }
 
@@ -34,6 +36,18 @@ pub(super) enum Typing {
     Search,
     /// A value for the chosen parameter.
     Value(String),
+    /// The name to save the channel's sound under.
+    Name(String),
+}
+
+/// A mouse button that is held on a row of the list.
+#[derive(Clone, Copy)]
+pub(super) struct Press {
+    /// Where it was last.
+    pub(super) column: u16,
+    /// Whether the row was chosen before.
+    pub(super) again: bool,
+    pub(super) moved: bool,
 }
 
 /// The kit of a channel, and its parameters.
@@ -42,12 +56,20 @@ pub(super) struct Playing {
     pub(super) kit: Arc<Kit>,
     pub(super) values: Values,
     program: Option<u8>,
+    /// Where it was chosen, if it was chosen from the list.
+    pub(super) listed: Option<Arc<Listed>>,
 }
 
 impl Playing {
     fn new(kit: &Arc<Kit>, program: Option<u8>) -> Self {
         // Text from files must not control the terminal.
-        Self { name: printable(kit.name()).into_owned(), kit: kit.clone(), values: *kit.values(), program }
+        Self {
+            name: printable(kit.name()).into_owned(),
+            kit: kit.clone(),
+            values: *kit.values(),
+            program,
+            listed: None,
+        }
     }
 }
 
@@ -59,12 +81,21 @@ pub(super) struct App {
     /// The kits that program changes select.
     programs: Vec<Arc<Kit>>,
     make: MakeKit,
-    playing: Vec<Playing>,
+    pub(super) library: Option<Library>,
+    pub(super) catalogue: Catalogue,
+    pub(super) playing: Vec<Playing>,
     pub(super) channel: u8,
     pub(super) list: List,
     pub(super) typing: Typing,
-    search: [String; 2],
+    pub(super) search: [String; 2],
     selected: [usize; 2],
+    /// The first row of each list that is shown.
+    first: [usize; 2],
+    pub(super) layout: Layout,
+    /// The row of the list that the mouse holds.
+    pub(super) press: Option<Press>,
+    /// A name that exists, and that the next Enter writes over.
+    pub(super) replace: Option<String>,
     pub(super) help: bool,
     pub(super) quit: bool,
     pub(super) load: Load,
@@ -76,11 +107,14 @@ pub(super) struct App {
 
 impl App {
     pub(super) fn new(desk: Desk) -> Self {
-        let Desk { device, status, keys, kits, kit, channels, programs, make } = desk;
+        let Desk { device, status, keys, kits, kit, channels, programs, make, library } = desk;
         // Nor must text from devices.
         let device = printable(&device).into_owned();
         let mut playing: Vec<Playing> = (0..16).map(|_| Playing::new(&kit, None)).collect();
         channels.iter().for_each(|(channel, kit)| playing[usize::from(*channel)] = Playing::new(kit, None));
+        let catalogue = Catalogue::read(library.as_ref());
+        let message =
+            catalogue.broken.first().map(|error| (printable(&error.to_string()).into_owned(), Instant::now()));
         Self {
             device,
             status,
@@ -88,18 +122,24 @@ impl App {
             kits,
             programs,
             make,
+            library,
+            catalogue,
             playing,
             channel: 0,
-            list: List::Presets,
+            list: List::Sounds,
             typing: Typing::Nothing,
             search: Default::default(),
             selected: [0; 2],
+            first: [0; 2],
+            layout: Layout::of(Rect::ZERO),
+            press: None,
+            replace: None,
             help: false,
             quit: false,
             load: Load::default(),
             snapshot: Snapshot::default(),
             peaks: [0.0; 2],
-            message: None,
+            message,
             ticked: Instant::now(),
         }
     }
@@ -121,17 +161,9 @@ impl App {
         &self.search[self.list as usize]
     }
 
-    /// Presets that match the search, with their numbers in the list of all: first the one of just this name.
-    pub(super) fn presets(&self) -> Vec<(usize, &'static Preset)> {
-        let search = self.search[List::Presets as usize].to_lowercase();
-        let matches = |preset: &Preset| {
-            let words = [&preset.name].into_iter().chain(&preset.tags);
-            words.map(|word| word.to_lowercase()).any(|word| word.contains(&search))
-        };
-        let mut found: Vec<_> = Preset::factory().iter().enumerate().filter(|(_, preset)| matches(preset)).collect();
-        // The preset of just this name comes first.
-        found.sort_by_key(|(_, preset)| !preset.name.eq_ignore_ascii_case(&search));
-        found
+    /// The sounds that match the search.
+    pub(super) fn sounds(&self) -> Vec<Arc<Listed>> {
+        self.catalogue.find(&self.search[List::Sounds as usize])
     }
 
     /// Parameters that match the search.
@@ -147,9 +179,22 @@ impl App {
         (rows > 0).then(|| self.selected[self.list as usize].min(rows - 1))
     }
 
+    /// The first row of the list that is shown.
+    pub(super) fn first(&self) -> usize {
+        self.first[self.list as usize]
+    }
+
+    /// Fits the view to a screen: the list shows its selected row.
+    pub(super) fn fit(&mut self, area: Rect) {
+        self.layout = Layout::of(area);
+        let (shown, selected) = (usize::from(self.layout.rows().height).max(1), self.selected().unwrap_or(0));
+        let first = &mut self.first[self.list as usize];
+        *first = (*first).clamp((selected + 1).saturating_sub(shown), selected);
+    }
+
     fn rows(&self) -> usize {
         match self.list {
-            List::Presets => self.presets().len(),
+            List::Sounds => self.sounds().len(),
             List::Parameters => self.parameters().len(),
         }
     }
@@ -176,95 +221,31 @@ impl App {
         }
     }
 
-    /// Handles a key of the computer's keyboard.
-    pub(super) fn key(&mut self, event: KeyEvent, now: Instant) {
-        if event.kind == KeyEventKind::Release {
-            if let KeyCode::Char(character) = event.code {
-                self.keyboard.release(character);
-            }
-            return;
-        }
-        if event.modifiers.contains(KeyModifiers::CONTROL) {
-            self.quit |= matches!(event.code, KeyCode::Char('c' | 'q'));
-            return;
-        }
-        if self.help {
-            self.help = false;
-        } else if self.typing == Typing::Nothing {
-            self.command(event, now);
-        } else {
-            self.type_key(event.code);
-        }
-    }
-
-    fn command(&mut self, event: KeyEvent, now: Instant) {
-        let fine = event.modifiers.contains(KeyModifiers::SHIFT);
-        match event.code {
-            KeyCode::Char(character) if self.keyboard.press(character, self.channel, now) => {}
-            KeyCode::Char('?') => self.help = true,
-            KeyCode::Char('/') => {
-                self.search[self.list as usize].clear();
-                self.typing = Typing::Search;
-            }
-            KeyCode::Char('[') => self.keyboard.octave = (self.keyboard.octave - 1).max(0),
-            KeyCode::Char(']') => self.keyboard.octave = (self.keyboard.octave + 1).min(8),
-            KeyCode::Char('-') => self.keyboard.velocity = (self.keyboard.velocity - 8).max(1),
-            KeyCode::Char('=' | '+') => self.keyboard.velocity = (self.keyboard.velocity + 8).min(127),
-            KeyCode::Char('<' | ',') => self.channel = (self.channel + 15) % 16,
-            KeyCode::Char('>' | '.') => self.channel = (self.channel + 1) % 16,
-            KeyCode::Char(' ') => self.keyboard.panic(),
-            KeyCode::Tab | KeyCode::BackTab => {
-                self.list = if self.list == List::Presets { List::Parameters } else { List::Presets };
-            }
-            KeyCode::Up => self.select(-1),
-            KeyCode::Down => self.select(1),
-            KeyCode::PageUp => self.select(-10),
-            KeyCode::PageDown => self.select(10),
-            KeyCode::Left => self.nudge(-1.0, fine),
-            KeyCode::Right => self.nudge(1.0, fine),
-            KeyCode::Enter if self.list == List::Presets => self.load_preset(),
-            KeyCode::Enter => self.typing = Typing::Value(String::new()),
-            KeyCode::Backspace => self.reset(),
-            KeyCode::Esc => self.search[self.list as usize].clear(),
-            _ => {}
-        }
-    }
-
-    fn type_key(&mut self, code: KeyCode) {
-        let text = match &mut self.typing {
-            Typing::Value(text) => text,
-            _ => &mut self.search[self.list as usize],
-        };
-        match code {
-            KeyCode::Char(character) => text.push(character),
-            KeyCode::Backspace => drop(text.pop()),
-            KeyCode::Up => self.select(-1),
-            KeyCode::Down => self.select(1),
-            KeyCode::Esc => {
-                text.clear();
-                self.typing = Typing::Nothing;
-            }
-            KeyCode::Enter => {
-                if let Typing::Value(text) = std::mem::replace(&mut self.typing, Typing::Nothing) {
-                    self.enter_value(&text);
-                }
-            }
-            _ => {}
-        }
-    }
-
-    fn select(&mut self, rows: isize) {
+    pub(super) fn select(&mut self, rows: isize) {
         let last = self.rows().saturating_sub(1);
         let selected = self.selected().unwrap_or(0);
         self.selected[self.list as usize] = selected.saturating_add_signed(rows).min(last);
     }
 
-    fn load_preset(&mut self) {
-        let Some((_, preset)) = self.selected().and_then(|row| self.presets().get(row).copied()) else { return };
-        let kit = (self.make)(preset);
+    /// Selects a row of those that are shown. Returns whether it was selected before; none if there is no such row.
+    pub(super) fn point(&mut self, row: usize) -> Option<bool> {
+        let row = self.first() + row;
+        let before = self.selected().filter(|_| row < self.rows())?;
+        self.selected[self.list as usize] = row;
+        Some(row == before)
+    }
+
+    /// Shows the other list.
+    pub(super) fn turn_list(&mut self) {
+        self.list = if self.list == List::Sounds { List::Parameters } else { List::Sounds };
+    }
+
+    pub(super) fn load(&mut self) {
+        let Some(listed) = self.selected().and_then(|row| self.sounds().get(row).cloned()) else { return };
+        let kit = (self.make)(&listed.playable);
         if self.kits.send(self.channel, &kit) {
             let playing = &mut self.playing[usize::from(self.channel)];
-            *playing = Playing::new(&kit, playing.program);
+            *playing = Playing { listed: Some(listed), ..Playing::new(&kit, playing.program) };
             let told = format!("channel {} plays ‘{}’", self.channel + 1, playing.name);
             self.tell(told);
         }
@@ -275,24 +256,22 @@ impl App {
         self.parameters().get(row).copied()
     }
 
-    /// Changes the selected parameter: by one step, or by a fiftieth or five-hundredth of its knob travel.
-    fn nudge(&mut self, direction: f64, fine: bool) {
+    /// Changes the selected parameter by so many steps, finely or not.
+    pub(super) fn nudge(&mut self, steps: i32, fine: bool) {
         let Some(info) = self.parameter() else { return };
+        let travel = if fine { 0.002 } else { 0.02 };
         let value = self.playing().values.get(info.param);
-        let turned = match info.unit {
-            Unit::Choice | Unit::Count => value + direction as f32,
-            _ => info.denormalise(info.normalise(value) + direction * if fine { 0.002 } else { 0.02 }),
-        };
+        let turned = (0..steps.abs()).fold(value, |value, _| info.stepped(value, steps > 0, travel));
         self.set(info, turned);
     }
 
-    fn reset(&mut self) {
+    pub(super) fn reset(&mut self) {
         if let Some(info) = self.parameter() {
             self.set(info, info.default);
         }
     }
 
-    fn enter_value(&mut self, text: &str) {
+    pub(super) fn enter_value(&mut self, text: &str) {
         let Some(info) = self.parameter() else { return };
         match info.parse(text) {
             Ok(value) => self.set(info, value),

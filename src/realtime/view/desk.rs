@@ -1,12 +1,13 @@
 //! The data that the view shows, and the senders through which it plays.
 
-use crate::preset::Preset;
+use crate::preset::Playable;
+use crate::preset::library::Library;
 use crate::realtime::{KitSender, LiveSender, Status};
 use crate::sound::Kit;
 use std::sync::Arc;
 
-/// Makes the kit of a preset.
-pub type MakeKit = Box<dyn Fn(&Preset) -> Arc<Kit>>;
+/// Makes the kit of a preset or kit that is chosen from the list.
+pub type MakeKit = Box<dyn Fn(&Playable) -> Arc<Kit>>;
 
 /// The data that the view shows, and the senders through which it plays.
 pub struct Desk {
@@ -24,6 +25,8 @@ pub struct Desk {
     pub channels: Vec<(u8, Arc<Kit>)>,
     /// The kits that program changes select.
     pub programs: Vec<Arc<Kit>>,
-    /// Makes the kit of a preset that is chosen from the list.
+    /// Makes the kit of what is chosen from the list.
     pub make: MakeKit,
+    /// The user's own sounds; none if the system does not say where they are kept.
+    pub library: Option<Library>,
 }

@@ -1,11 +1,12 @@
-//! Draws the view: the layout of the screen, for small and large terminals.
+//! Draws the view, on small and large terminals.
 
 use super::app::{App, Typing};
 use super::keyboard::character;
+use super::layout::{self, Layout, is_black};
 use super::{lists, masses};
 use crate::units::db_from_gain;
 use ratatui::Frame;
-use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::layout::{Constraint, Layout as Split, Rect};
 use ratatui::style::{Color, Style, Stylize};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Clear, Paragraph};
@@ -13,38 +14,43 @@ use ratatui::widgets::{Block, Clear, Paragraph};
 /// Lowest level of a meter in dB.
 const LOWEST: f64 = -48.0;
 
-const HELP: &str = "\
-z s x d c … m   lower octave     q 2 w 3 e … p   upper
-[ ]  octave     - =  velocity    , .  MIDI channel
-Tab  presets or parameters       ↑ ↓ PgUp PgDn  choose
-Enter  load the preset, or type a value (250 ms)
-← →  turn (Shift: finely)        Backspace  default
-/  search       Esc  all again   Space  silence
-Ctrl-C  end                      any key  close this";
+/// Lines of at most 36 characters, so that they fit a terminal of 40 columns.
+const HELP: &[&str] = &[
+    "z s x … m      lower octave",
+    "q 2 w … p      upper octave",
+    "[ ]  - =       octave, velocity",
+    ", .            MIDI channel",
+    "Space          silence",
+    "Tab            sounds or parameters",
+    "↑ ↓ PgUp PgDn  choose",
+    "Enter          load, or type a value",
+    "← →            turn; Shift: finely",
+    "Backspace      default",
+    "/  Esc         search, all again",
+    "W  Ctrl-S      save under a name",
+    "Mouse          play, choose, drag",
+    "xruns, late    of the device, of us",
+    "Ctrl-C         end",
+];
 
 pub(super) fn draw(app: &App, frame: &mut Frame) {
-    let area = frame.area();
-    let piano = if area.height >= 20 { 4 } else { 2 };
-    let rows = [Constraint::Length(2), Constraint::Min(1), Constraint::Length(piano), Constraint::Length(1)];
-    let [head, middle, keys, foot] = Layout::vertical(rows).areas(area);
-    let list = (area.width * 2 / 5).clamp(20, 44);
-    let [left, right] = Layout::horizontal([Constraint::Min(1), Constraint::Length(list)]).areas(middle);
+    let Layout { head, masses: left, list, piano, foot } = app.layout;
     self::head(app, frame, head);
     let block = Block::bordered().title(" Masses ").border_style(Style::new().dark_gray());
     let inside = block.inner(left);
     frame.render_widget(block, left);
     let modes = app.playing().kit.sounds().iter().map(|sound| sound.patch().modes.as_slice().len()).max();
     masses::draw(&app.snapshot, modes.unwrap_or(0), frame, inside);
-    lists::draw(app, frame, right);
-    self::keys(app, frame, keys);
+    lists::draw(app, frame, list);
+    self::keys(app, frame, piano);
     self::foot(app, frame, foot);
     if app.help {
-        help(frame, area);
+        help(frame, frame.area());
     }
 }
 
 fn head(app: &App, frame: &mut Frame, area: Rect) {
-    let [first, second] = Layout::vertical([Constraint::Length(1), Constraint::Length(1)]).areas(area);
+    let [first, second] = Split::vertical([Constraint::Length(1), Constraint::Length(1)]).areas(area);
     let xruns = app.status.xruns();
     let dry = Span::raw(format!("{xruns} xruns"));
     let title = Line::from(vec![
@@ -55,14 +61,18 @@ fn head(app: &App, frame: &mut Frame, area: Rect) {
     ]);
     frame.render_widget(title, first);
     let share = 100.0 * app.load.recent_share;
-    let numbers = Line::from(vec![
+    let late = app.load.late_blocks;
+    let mut numbers = Line::from(vec![
         Span::raw(format!("{:3} voices ", app.snapshot.voices)),
         if share > 70.0 { Span::raw(format!("{share:3.0} % ")).red() } else { Span::raw(format!("{share:3.0} % ")) },
         if xruns > 0 { dry.red() } else { dry.dark_gray() },
     ]);
+    if late > 0 {
+        numbers.push_span(Span::raw(format!(" {late} late")).red());
+    }
     let room = numbers.width() as u16;
     let columns = [Constraint::Fill(1), Constraint::Length(1), Constraint::Fill(1), Constraint::Length(room + 1)];
-    let [left, _, right, rest] = Layout::horizontal(columns).areas(second);
+    let [left, _, right, rest] = Split::horizontal(columns).areas(second);
     meter("L", app.peaks[0], frame, left);
     meter("R", app.peaks[1], frame, right);
     frame.render_widget(numbers.right_aligned(), rest);
@@ -90,37 +100,19 @@ fn meter(name: &str, peak: f32, frame: &mut Frame, area: Rect) {
     frame.render_widget(Line::from(vec![Span::raw(format!("{name} ")), bar, rest, Span::raw(number)]), area);
 }
 
-/// Draws piano keys from the lowest key of the computer's keyboard on, as many as there is room for.
 fn keys(app: &App, frame: &mut Frame, area: Rect) {
     let lowest = app.keyboard.lowest();
     let down = app.status.telemetry().keys(app.channel);
-    let black = |key: u8| matches!(key % 12, 1 | 3 | 6 | 8 | 10);
-    let upper = area.height / 2;
-    let mut x = area.x;
-    let mut paint = |x: u16, y: u16, key: u8| {
-        let pressed = down >> key & 1 == 1;
-        let (fore, back) = match (pressed, black(key)) {
+    for (key, rect) in layout::keys(area, lowest) {
+        let (fore, back) = match (down >> key & 1 == 1, is_black(key)) {
             (true, _) => (Color::Black, Color::Yellow),
             (false, true) => (Color::Gray, Color::Black),
             (false, false) => (Color::Black, Color::White),
         };
         let label = character(key - lowest).unwrap_or(' ');
-        let lowest_row = if black(key) { upper } else { area.height };
-        let text = if y + 1 == lowest_row { format!("{label} ") } else { "  ".to_owned() };
-        if x + 2 <= area.right() {
-            frame.buffer_mut().set_string(x, area.y + y, text, Style::new().fg(fore).bg(back));
-        }
-    };
-    for key in (lowest..=(lowest + 28).min(127)).filter(|key| !black(*key)) {
-        (0..area.height).for_each(|y| paint(x, y, key));
-        x += 3;
-    }
-    x = area.x;
-    for key in lowest..=(lowest + 28).min(127) {
-        if black(key) {
-            (0..upper).for_each(|y| paint(x.saturating_sub(2), y, key));
-        } else {
-            x += 3;
+        for y in rect.top()..rect.bottom() {
+            let text = if y + 1 == rect.bottom() { format!("{label} ") } else { "  ".to_owned() };
+            frame.buffer_mut().set_string(rect.x, y, text, Style::new().fg(fore).bg(back));
         }
     }
 }
@@ -133,18 +125,28 @@ fn foot(app: &App, frame: &mut Frame, area: Rect) {
         }
         Typing::Search => "type to search, Enter to keep it, Esc to see all".to_owned(),
         Typing::Value(_) => "type a value with its unit, Enter to set it, Esc to leave it".to_owned(),
+        Typing::Name(name) if app.replace.as_ref() == Some(name) => {
+            format!("save as: {name}▏ exists: Enter writes over it, Esc leaves it")
+        }
+        Typing::Name(name) => format!("save as: {name}▏ {}", app.message().unwrap_or_default()),
     };
     let line = match app.message() {
-        Some(message) => Line::from(message.to_owned()).yellow(),
-        None => Line::from(hint).dark_gray(),
+        Some(message) if !matches!(app.typing, Typing::Name(_)) => Line::from(message.to_owned()).yellow(),
+        _ => Line::from(hint).dark_gray(),
     };
     frame.render_widget(line, area);
 }
 
+/// Draws the help in one column; on wide and low screens in two.
 fn help(frame: &mut Frame, area: Rect) {
-    let text = Paragraph::new(HELP).block(Block::bordered().title(" Help "));
-    let (width, height) = (58.min(area.width), 9.min(area.height));
+    let rows =
+        if usize::from(area.height) < HELP.len() + 2 && area.width >= 78 { HELP.len().div_ceil(2) } else { HELP.len() };
+    let right = |row: usize| HELP.get(rows + row).copied().unwrap_or_default();
+    let lines: Vec<Line> =
+        HELP[..rows].iter().enumerate().map(|(row, left)| format!("{left:38}{}", right(row)).into()).collect();
+    let width = if rows < HELP.len() { 78 } else { 40 };
+    let (width, height) = (width.min(area.width), (rows as u16 + 2).min(area.height));
     let place = Rect::new((area.width - width) / 2, (area.height - height) / 2, width, height);
     frame.render_widget(Clear, place);
-    frame.render_widget(text, place);
+    frame.render_widget(Paragraph::new(lines).block(Block::bordered().title(" Help: any key closes it ")), place);
 }

@@ -28,8 +28,15 @@ pub(super) fn character(semitone: u8) -> Option<char> {
     lower.chars().nth(place).or_else(|| upper.chars().nth(place.checked_sub(12)?))
 }
 
+/// What holds a note.
+#[derive(Clone, Copy, PartialEq)]
+enum Holder {
+    Character(char),
+    Mouse,
+}
+
 struct Down {
-    character: char,
+    holder: Holder,
     channel: u8,
     key: u8,
     until: Option<Instant>,
@@ -61,23 +68,37 @@ impl Keyboard {
     pub(super) fn press(&mut self, character: char, channel: u8, now: Instant) -> bool {
         let Some(semitone) = semitone(character) else { return false };
         let until = (!self.releases).then_some(now + HOLD);
-        if let Some(down) = self.down.iter_mut().find(|down| down.character == character) {
+        if let Some(down) = self.down.iter_mut().find(|down| down.holder == Holder::Character(character)) {
             // The key repeats because it is held down.
             down.until = until;
             return true;
         }
         let key = self.lowest() + semitone;
         if key < 128 {
-            let velocity = self.velocity as f32 / 127.0;
-            self.sender.send_now(channel, EventKind::NoteOn { key, detune: 0.0, velocity, id: None });
-            self.down.push(Down { character, channel, key, until });
+            self.hold(Holder::Character(character), channel, key, self.velocity as f32 / 127.0, until);
         }
         true
     }
 
+    fn hold(&mut self, holder: Holder, channel: u8, key: u8, velocity: f32, until: Option<Instant>) {
+        self.sender.send_now(channel, EventKind::NoteOn { key, detune: 0.0, velocity, id: None });
+        self.down.push(Down { holder, channel, key, until });
+    }
+
+    /// Plays a key under the mouse, in place of the one that it held; none to let go. The velocity is 0–1.
+    pub(super) fn point(&mut self, channel: u8, key: Option<(u8, f32)>) {
+        if self.down.iter().any(|down| down.holder == Holder::Mouse && Some(down.key) == key.map(|(key, _)| key)) {
+            return;
+        }
+        self.let_go(|down| down.holder == Holder::Mouse);
+        if let Some((key, velocity)) = key {
+            self.hold(Holder::Mouse, channel, key, velocity, None);
+        }
+    }
+
     /// Handles the release of a computer key.
     pub(super) fn release(&mut self, character: char) {
-        self.let_go(|down| down.character == character);
+        self.let_go(|down| down.holder == Holder::Character(character));
     }
 
     /// Releases the notes whose time is over.

@@ -1,40 +1,43 @@
 //! Draws the list of presets and the list of parameters.
 
 use super::app::{App, List, Typing};
+use crate::preset::catalogue::Listed;
+use crate::text::printable;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style, Stylize};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, List as Rows, ListState};
+use std::sync::Arc;
 
 /// Draws the list that is shown, with its search text in the title.
 pub(super) fn draw(app: &App, frame: &mut Frame, area: Rect) {
     let title = match (app.list, &app.typing, app.search()) {
         (_, Typing::Search, search) => format!(" /{search}▏"),
-        (List::Presets, _, "") => " Presets ".to_owned(),
+        (List::Sounds, _, "") => " Sounds ".to_owned(),
         (List::Parameters, _, "") => " Parameters ".to_owned(),
         (_, _, search) => format!(" /{search} "),
     };
     let block = Block::bordered().title(title).border_style(Style::new().dark_gray());
     let width = usize::from(area.width.saturating_sub(2));
     let rows: Vec<Line> = match app.list {
-        List::Presets => presets(app),
+        List::Sounds => sounds(app),
         List::Parameters => parameters(app, width),
     };
     let rows = Rows::new(rows).block(block).highlight_style(Style::new().add_modifier(Modifier::REVERSED));
-    let mut state = ListState::default().with_selected(app.selected());
+    let mut state = ListState::default().with_offset(app.first()).with_selected(app.selected());
     frame.render_stateful_widget(rows, area, &mut state);
 }
 
-fn presets(app: &App) -> Vec<Line<'static>> {
-    let row = |(number, preset): (usize, &'static crate::preset::Preset)| {
-        let mark = if preset.name == app.playing().name { "▸" } else { " " };
-        Line::from(vec![
-            Span::raw(format!("{mark}{number:3} {}", preset.name)),
-            Span::raw(format!("  {}", preset.tags.join(" "))).dark_gray(),
-        ])
+fn sounds(app: &App) -> Vec<Line<'static>> {
+    let row = |listed: Arc<Listed>| {
+        let name = printable(listed.name()).into_owned();
+        let mark = if name == app.playing().name { "▸" } else { " " };
+        let own = if listed.path.is_some() { "own " } else { "" };
+        let tags = printable(&listed.playable.tags().join(" ")).into_owned();
+        Line::from(vec![Span::raw(format!("{mark} {name}")), Span::raw(format!("  {own}{tags}")).dark_gray()])
     };
-    app.presets().into_iter().map(row).collect()
+    app.sounds().into_iter().map(row).collect()
 }
 
 fn parameters(app: &App, width: usize) -> Vec<Line<'static>> {

@@ -3,15 +3,20 @@
 mod app;
 mod desk;
 mod draw;
+mod input;
 mod keyboard;
+mod layout;
 mod lists;
 mod masses;
+mod saving;
 #[cfg(test)]
 mod tests;
 
 use crate::error::{Error, Result};
 use app::App;
-use ratatui::crossterm::event::{self, Event, KeyboardEnhancementFlags, PopKeyboardEnhancementFlags};
+use ratatui::crossterm::event::{
+    self, DisableMouseCapture, EnableMouseCapture, Event, KeyboardEnhancementFlags, PopKeyboardEnhancementFlags,
+};
 use ratatui::crossterm::{event::PushKeyboardEnhancementFlags, execute, terminal};
 use std::io::stdout;
 use std::time::{Duration, Instant};
@@ -35,12 +40,29 @@ pub fn run(desk: Desk, mut stop: impl FnMut() -> bool, mut poll: impl FnMut() ->
         let flags = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES | KeyboardEnhancementFlags::REPORT_EVENT_TYPES;
         app.keyboard.releases = execute!(stdout(), PushKeyboardEnhancementFlags(flags)).is_ok();
     }
+    // Without a mouse the view is whole all the same.
+    let modes = Modes { releases, mouse: execute!(stdout(), EnableMouseCapture).is_ok() };
     let result = show(&mut app, &mut screen, &mut stop, &mut poll).map_err(failed);
-    if releases {
-        let _ = execute!(stdout(), PopKeyboardEnhancementFlags);
-    }
+    drop(modes);
     ratatui::restore();
     result
+}
+
+/// What was asked of the terminal beside a screen. It is taken back when this is dropped, so also by a panic.
+struct Modes {
+    releases: bool,
+    mouse: bool,
+}
+
+impl Drop for Modes {
+    fn drop(&mut self) {
+        if self.releases {
+            let _ = execute!(stdout(), PopKeyboardEnhancementFlags);
+        }
+        if self.mouse {
+            let _ = execute!(stdout(), DisableMouseCapture);
+        }
+    }
 }
 
 fn show(
@@ -56,12 +78,17 @@ fn show(
             draw_at = now + FRAME;
             poll().into_iter().for_each(|line| app.tell(line));
             app.tick(now);
-            screen.draw(|frame| draw::draw(app, frame))?;
+            screen.draw(|frame| {
+                app.fit(frame.area());
+                draw::draw(app, frame);
+            })?;
         }
-        if event::poll(draw_at.saturating_duration_since(Instant::now()))?
-            && let Event::Key(key) = event::read()?
-        {
-            app.key(key, Instant::now());
+        if event::poll(draw_at.saturating_duration_since(Instant::now()))? {
+            match event::read()? {
+                Event::Key(key) => app.key(key, Instant::now()),
+                Event::Mouse(mouse) => app.mouse(mouse),
+                _ => {}
+            }
         }
     }
     Ok(())

@@ -3,12 +3,14 @@
 use super::app::{App, List, Typing};
 use super::{Desk, draw};
 use crate::params::Param;
-use crate::preset::Preset;
+use crate::preset::library::Library;
+use crate::preset::{KitPreset, Playable, Preset};
 use crate::realtime::{LiveInputs, Moment, Player, Setup, Status};
 use crate::sound::Tuning;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
-use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
+use ratatui::layout::Rect;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -18,6 +20,7 @@ struct Stand {
     player: Player,
     epoch: Instant,
     played: Duration,
+    folder: tempfile::TempDir,
 }
 
 impl Stand {
@@ -42,9 +45,11 @@ impl Stand {
             song: None,
         };
         let (player, kits) = Player::new(setup, inputs, None, status.clone());
-        let make = Box::new(Preset::kit);
-        let desk = Desk { device: device.into(), status, keys, kits, kit, channels, programs, make };
-        Self { app: App::new(desk), player, epoch: Instant::now(), played: Duration::ZERO }
+        let make = Box::new(Playable::kit);
+        let folder = tempfile::tempdir().unwrap();
+        let library = Some(Library::at(folder.path()));
+        let desk = Desk { device: device.into(), status, keys, kits, kit, channels, programs, make, library };
+        Self { app: App::new(desk), player, epoch: Instant::now(), played: Duration::ZERO, folder }
     }
 
     fn press(&mut self, code: KeyCode) {
@@ -66,8 +71,19 @@ impl Stand {
         self.app.tick(Instant::now());
     }
 
-    fn screen(&self, width: u16, height: u16) -> String {
+    fn mouse(&mut self, kind: MouseEventKind, column: u16, row: u16) {
+        self.app.mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
+    }
+
+    /// Presses and lets go.
+    fn click(&mut self, column: u16, row: u16) {
+        self.mouse(MouseEventKind::Down(MouseButton::Left), column, row);
+        self.mouse(MouseEventKind::Up(MouseButton::Left), column, row);
+    }
+
+    fn screen(&mut self, width: u16, height: u16) -> String {
         let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+        self.app.fit(Rect::new(0, 0, width, height));
         terminal.draw(|frame| draw::draw(&self.app, frame)).unwrap();
         terminal.backend().to_string()
     }
@@ -120,14 +136,14 @@ fn octave_velocity_and_channel_move_within_their_bounds() {
 fn a_preset_is_found_and_loaded() {
     let mut stand = Stand::new();
     stand.type_text("/kick");
-    assert_eq!(stand.app.presets()[0].1.name, "Kick");
+    assert_eq!(stand.app.sounds()[0].name(), "Kick");
     stand.press(KeyCode::Enter);
     stand.press(KeyCode::Enter);
     assert_eq!(stand.app.playing().name, "Kick");
     assert_eq!(stand.app.playing().kit, Preset::find("Kick").unwrap().kit());
     assert!(stand.screen(80, 24).contains("channel 1 plays ‘Kick’"));
     stand.press(KeyCode::Esc);
-    assert_eq!(stand.app.presets().len(), Preset::factory().len());
+    assert_eq!(stand.app.sounds().len(), Preset::factory().len() + KitPreset::factory().len());
     stand.type_text("/no such preset");
     stand.press(KeyCode::Enter);
     stand.press(KeyCode::Enter);
@@ -178,7 +194,7 @@ fn every_size_of_screen_can_be_drawn() {
     }
     stand.app.help = false;
     let small = stand.screen(40, 12);
-    for part in ["Sprung", "5 voices", "Masses", "Presets", "Kick", "velocity"] {
+    for part in ["Sprung", "5 voices", "Masses", "Sounds", "init", "velocity"] {
         assert!(small.contains(part), "{part} in:\n{small}");
     }
 }
@@ -188,4 +204,127 @@ fn control_c_leaves() {
     let mut stand = Stand::new();
     stand.app.key(KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL), Instant::now());
     assert!(stand.app.quit && stand.app.status.telemetry().keys(0) == 0);
+}
+
+#[test]
+fn a_sound_is_saved_and_found_again() {
+    let mut stand = Stand::new();
+    stand.type_text("/kick");
+    (0..2).for_each(|_| stand.press(KeyCode::Enter));
+    stand.press(KeyCode::Esc);
+    stand.press(KeyCode::Tab);
+    stand.type_text("/release");
+    stand.press(KeyCode::Enter);
+    stand.press(KeyCode::Enter);
+    stand.type_text("20 ms");
+    stand.press(KeyCode::Enter);
+    let save = |stand: &mut Stand, name: &str| {
+        stand.type_text("W");
+        assert_eq!(stand.app.typing, Typing::Name("My Kick".to_owned()), "a name that is free, and then its own");
+        (0..40).for_each(|_| stand.press(KeyCode::Backspace));
+        stand.type_text(name);
+        assert!(stand.screen(80, 24).contains(&format!("save as: {name}▏")));
+        stand.press(KeyCode::Enter);
+    };
+    save(&mut stand, "My Kick");
+    let library = Library::at(stand.folder.path());
+    let saved = || match library.entries().remove(0).playable.unwrap() {
+        Playable::Preset(preset) => preset,
+        Playable::Kit(kit) => panic!("{}", kit.name),
+    };
+    let kick = Preset::find("Kick").unwrap();
+    assert_eq!((saved().name.as_str(), saved().patch.get(Param::Release)), ("My Kick", 0.02));
+    assert_eq!((&saved().patch.modes, &saved().guide), (&kick.patch.modes, &kick.guide));
+    // What cannot be a name stays, to be mended.
+    stand.type_text("W");
+    (0..40).for_each(|_| stand.press(KeyCode::Backspace));
+    stand.type_text("a/b");
+    stand.press(KeyCode::Enter);
+    assert_eq!(stand.app.typing, Typing::Name("a/b".to_owned()));
+    assert!(stand.screen(120, 24).contains("would be taken for a file"));
+    stand.press(KeyCode::Esc);
+    // Another Enter writes over it, Esc does not.
+    stand.type_text("/release");
+    stand.press(KeyCode::Enter);
+    stand.press(KeyCode::Backspace);
+    let default = Param::Release.info().default;
+    for (key, expected) in [(KeyCode::Esc, 0.02), (KeyCode::Enter, default)] {
+        save(&mut stand, "My Kick");
+        assert!(stand.screen(80, 24).contains("My Kick▏ exists"));
+        stand.press(key);
+        assert_eq!((stand.app.typing.clone(), saved().patch.get(Param::Release)), (Typing::Nothing, expected));
+    }
+    stand.press(KeyCode::Tab);
+    stand.type_text("/my kick");
+    assert_eq!(stand.app.sounds()[0].path, Some(library.presets_folder().join("my-kick.toml")));
+}
+
+#[test]
+fn kits_are_played_and_not_saved() {
+    let mut stand = Stand::new();
+    stand.type_text("/acoustic kit");
+    (0..2).for_each(|_| stand.press(KeyCode::Enter));
+    assert_eq!(stand.app.playing().name, "Acoustic Kit");
+    stand.type_text("W");
+    stand.press(KeyCode::Enter);
+    assert!(stand.screen(100, 24).contains("only single sounds are saved"));
+    assert!(Library::at(stand.folder.path()).entries().is_empty());
+}
+
+#[test]
+fn the_mouse_plays_chooses_and_turns() {
+    let mut stand = Stand::new();
+    stand.screen(80, 24);
+    let (piano, rows) = (stand.app.layout.piano, stand.app.layout.rows());
+    // Down on C, dragged to D, and let go.
+    stand.mouse(MouseEventKind::Down(MouseButton::Left), piano.x, piano.y + 3);
+    stand.play();
+    assert_eq!(stand.app.status.telemetry().keys(0), 1 << 60);
+    stand.mouse(MouseEventKind::Drag(MouseButton::Left), piano.x + 4, piano.y + 3);
+    stand.play();
+    assert_eq!(stand.app.status.telemetry().keys(0), 1 << 62);
+    stand.mouse(MouseEventKind::Up(MouseButton::Left), piano.x + 4, piano.y + 3);
+    stand.play();
+    assert_eq!(stand.app.status.telemetry().keys(0), 0);
+    // The list stays where it is when one of its rows is chosen.
+    (0..4).for_each(|_| stand.mouse(MouseEventKind::ScrollDown, rows.x, rows.y));
+    stand.screen(80, 24);
+    stand.click(rows.x, rows.y + 2);
+    let chosen = stand.app.selected();
+    stand.screen(80, 24);
+    assert_eq!((chosen, stand.app.first()), (stand.app.selected(), chosen.unwrap() - 2));
+    stand.click(rows.x, rows.y + 2);
+    assert_eq!(stand.app.playing().name, stand.app.sounds()[chosen.unwrap()].name());
+    // The title turns to the other list, where a dragged row is turned by a step a column.
+    stand.click(rows.x, rows.y - 1);
+    assert_eq!(stand.app.list, List::Parameters);
+    stand.screen(80, 24);
+    let info = stand.app.parameters()[1];
+    let value = |stand: &Stand| stand.app.playing().values.get(info.param);
+    let before = value(&stand);
+    stand.mouse(MouseEventKind::Down(MouseButton::Left), rows.x, rows.y + 1);
+    stand.mouse(MouseEventKind::Drag(MouseButton::Left), rows.x + 2, rows.y + 1);
+    let two = info.stepped(info.stepped(before, true, 0.02), true, 0.02);
+    assert_eq!(value(&stand), two);
+    stand.mouse(MouseEventKind::Up(MouseButton::Left), rows.x + 2, rows.y + 1);
+    // And back, now that it is chosen.
+    stand.mouse(MouseEventKind::Down(MouseButton::Left), rows.x + 2, rows.y + 1);
+    stand.mouse(MouseEventKind::Drag(MouseButton::Left), rows.x + 1, rows.y + 1);
+    stand.mouse(MouseEventKind::Up(MouseButton::Left), rows.x + 1, rows.y + 1);
+    assert_eq!((value(&stand), &stand.app.typing), (info.stepped(two, false, 0.02), &Typing::Nothing));
+    // A click on the chosen row begins to type.
+    stand.click(rows.x, rows.y + 1);
+    assert_eq!(stand.app.typing, Typing::Value(String::new()));
+}
+
+#[test]
+fn the_help_fits_forty_columns() {
+    let mut stand = Stand::new();
+    stand.app.help = true;
+    for (width, height) in [(40, 24), (80, 12)] {
+        let screen = stand.screen(width, height);
+        for text in ["lower octave", "load, or type a value", "save under a name", "Ctrl-C         end"] {
+            assert!(screen.contains(text), "{text}: {screen}");
+        }
+    }
 }

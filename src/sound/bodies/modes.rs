@@ -50,6 +50,12 @@ impl Body {
     /// Weak modes are kept, so that moving a place changes only levels. High modes are kept too, because the bank fades
     /// those at the top of the spectrum.
     pub fn modes(&self) -> Vec<BodyMode> {
+        self.modes_at(&[]).into_iter().map(|(mode, _)| mode).collect()
+    }
+
+    /// As [`Body::modes`], each with its shape at these places, scaled as [`BodyMode::strike`]. A display draws the body
+    /// with them.
+    pub fn modes_at(&self, places: &[Point]) -> Vec<(BodyMode, Vec<f64>)> {
         let body = fields::in_range(self);
         let frequency = body.frequency();
         let mut stiffness = body.inharmonicity;
@@ -63,24 +69,32 @@ impl Body {
             let stiff = ((1.0 + stiffness * partial.ratio * partial.ratio) / (1.0 + stiffness)).sqrt();
             let cents = if is_pitch(partial.ratio) { 0.0 } else { body.spread * random.number(SPREAD) };
             let ratio = partial.ratio * stiff * ratio_from_semitones(0.01 * cents);
-            body.push(partial, ratio, frequency, &random, &mut modes);
+            body.push(partial, ratio, frequency, &random, places, &mut modes);
         }
-        modes.retain(|mode| (RATIO_RANGE.0..=RATIO_RANGE.1).contains(&mode.ratio));
-        modes.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+        modes.retain(|(mode, _)| (RATIO_RANGE.0..=RATIO_RANGE.1).contains(&mode.ratio));
+        modes.sort_by(|(a, _), (b, _)| a.ratio.total_cmp(&b.ratio));
         modes.truncate(body.modes);
         if modes.is_empty() {
             let partial = &mass::partials()[0];
-            body.push(partial, 1.0, frequency, &Random(0), &mut modes);
+            body.push(partial, 1.0, frequency, &Random(0), places, &mut modes);
             modes.truncate(1);
         }
-        if let Some(lowest) = modes.first_mut() {
+        if let Some((lowest, _)) = modes.first_mut() {
             lowest.pan = 0.0;
         }
         modes
     }
 
     /// Adds the mode of a resonance, or both modes of a pair.
-    fn push(&self, partial: &Partial, ratio: f64, frequency: f64, random: &Random, modes: &mut Vec<BodyMode>) {
+    fn push(
+        &self,
+        partial: &Partial,
+        ratio: f64,
+        frequency: f64,
+        random: &Random,
+        places: &[Point],
+        modes: &mut Vec<(BodyMode, Vec<f64>)>,
+    ) {
         // The body's imperfection has an axis: one mode of a pair has a lobe there and the other a node. Without a
         // split, the strike chooses the axis.
         let split = self.split > 0.0 && partial.pair != Pair::Single && self.modes > 1;
@@ -105,7 +119,7 @@ impl Body {
             let ratio = ratio * ratio_from_semitones(0.01 * cents * side);
             let (strike, pickup) = (at(self.strike), at(self.pickup));
             let tilt = gain_from_db(self.tilt * log2(ratio));
-            modes.push(BodyMode {
+            let mode = BodyMode {
                 frequency: frequency * ratio,
                 ratio,
                 t60: self.ring_time(partial, frequency * ratio),
@@ -115,7 +129,8 @@ impl Body {
                 gain: partial.gain * tilt,
                 level: partial.gain * strike * pickup * tilt,
                 pan: self.pan * random.number(PAN) * if *other { -1.0 } else { 1.0 },
-            });
+            };
+            modes.push((mode, places.iter().map(|place| at(*place)).collect()));
         }
     }
 

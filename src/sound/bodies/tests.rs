@@ -91,6 +91,16 @@ fn places_move_levels_and_nothing_else() {
 }
 
 #[test]
+fn shapes_at_the_places_of_strike_and_pickup_are_those_of_the_modes() {
+    for (id, model) in Model::ALL {
+        let body = Body { split: 3.0, ..Body::new(model.clone()) };
+        for (mode, shape) in body.modes_at(&[body.strike, body.pickup]) {
+            assert_eq!(shape, [mode.strike, mode.pickup], "{id} {}", mode.ratio);
+        }
+    }
+}
+
+#[test]
 fn places_to_begin_with_are_heard() {
     for (id, model) in Model::ALL {
         let modes = Body::new(model.clone()).modes();

@@ -1,0 +1,135 @@
+//! The sounds that one can choose from: the factory's and the user's own.
+
+use super::library::Library;
+use super::{Family, KitPreset, Playable, Preset};
+use crate::error::Error;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A sound of a catalogue.
+#[derive(Debug)]
+pub struct Listed {
+    /// The preset or kit.
+    pub playable: Playable,
+    /// Its file, if it is one of the user's own.
+    pub path: Option<PathBuf>,
+    /// What words are looked for in, in lower case.
+    text: String,
+}
+
+/// Sounds in the order of lists. They are shared, since what shows them asks for some of them many times a second.
+#[derive(Debug, Default)]
+pub struct Catalogue {
+    /// The sounds.
+    pub sounds: Vec<Arc<Listed>>,
+    /// Files of the user that could not be read, and why.
+    pub broken: Vec<Error>,
+}
+
+impl Listed {
+    fn new(playable: Playable, path: Option<PathBuf>) -> Self {
+        let words = [playable.name(), playable.comment(), &playable.tags().join(" ")].join(" ");
+        let mut listed = Self { playable, path, text: words.to_lowercase() };
+        listed.text = format!("{} {}", listed.text, listed.family_name().replace('_', " "));
+        listed
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        self.playable.name()
+    }
+
+    /// Its family; none for a kit, and for a preset whose file names none.
+    pub fn family(&self) -> Option<Family> {
+        match &self.playable {
+            Playable::Preset(preset) => preset.guide.family,
+            Playable::Kit(_) => None,
+        }
+    }
+
+    /// The name of its family: `kit` for a kit, empty for none.
+    pub fn family_name(&self) -> &'static str {
+        match &self.playable {
+            Playable::Preset(_) => self.family().map_or("", Family::name),
+            Playable::Kit(_) => Self::KIT,
+        }
+    }
+
+    /// What kits have in place of a family.
+    pub const KIT: &str = "kit";
+
+    /// Whether all of these words are in its name, tags, family or description. Case does not matter.
+    pub fn has_words(&self, words: &str) -> bool {
+        words.to_lowercase().split_whitespace().all(|word| self.text.contains(word))
+    }
+}
+
+impl Catalogue {
+    /// The presets of the factory, then its kits.
+    pub fn of_factory() -> Self {
+        let presets = Preset::factory().iter().cloned().map(Playable::Preset);
+        let kits = KitPreset::factory().iter().cloned().map(Playable::Kit);
+        let sounds = presets.chain(kits).map(|playable| Arc::new(Listed::new(playable, None))).collect();
+        Self { sounds, broken: Vec::new() }
+    }
+
+    /// The sounds of a library, in the order of their files' names. Reads files.
+    pub fn of_library(library: &Library) -> Self {
+        let mut catalogue = Self::default();
+        for entry in library.entries() {
+            match entry.playable {
+                Ok(playable) => catalogue.sounds.push(Arc::new(Listed::new(playable, Some(entry.path)))),
+                Err(error) => catalogue.broken.push(error),
+            }
+        }
+        catalogue
+    }
+
+    /// The sounds of the factory, then those of a library. Reads files.
+    pub fn read(library: Option<&Library>) -> Self {
+        let mut all = Self::of_factory();
+        let own = library.map(Self::of_library).unwrap_or_default();
+        all.sounds.extend(own.sounds);
+        Self { broken: own.broken, ..all }
+    }
+
+    /// The sounds with all of these words, by [`Listed::has_words`]: first the one of just this name, then those with all
+    /// words in their name.
+    pub fn find(&self, words: &str) -> Vec<Arc<Listed>> {
+        let mut found: Vec<_> = self.sounds.iter().filter(|listed| listed.has_words(words)).cloned().collect();
+        let lower = words.to_lowercase();
+        found.sort_by_cached_key(|listed| {
+            let name = listed.name().to_lowercase();
+            (name != lower.trim(), !lower.split_whitespace().all(|word| name.contains(word)))
+        });
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sounds_of_the_factory_and_the_user_are_found_by_words() {
+        let folder = tempfile::tempdir().unwrap();
+        let library = Library::at(folder.path());
+        let own = Preset { name: "My Glass".to_owned(), ..Preset::find("Marimba").unwrap().clone() };
+        let path = library.save(&own, false).unwrap();
+        std::fs::write(library.presets_folder().join("broken.toml"), "x").unwrap();
+        let all = Catalogue::read(Some(&library));
+        assert_eq!((all.sounds.len(), all.broken.len()), (Catalogue::of_factory().sounds.len() + 1, 1));
+        let found =
+            |words: &str| -> Vec<String> { all.find(words).iter().map(|listed| listed.name().to_owned()).collect() };
+        assert_eq!(found("MY glass"), ["My Glass"]);
+        assert_eq!(found("kick")[0], "Kick", "the one of just this name comes first");
+        let kicks = found("kick");
+        let named = kicks.iter().take_while(|name| name.to_lowercase().contains("kick")).count();
+        assert!(kicks[named..].iter().all(|name| !name.to_lowercase().contains("kick")), "{kicks:?}");
+        assert!(found("hand drum").contains(&"Conga".to_owned()), "by its family");
+        assert!(found("kit acoustic").contains(&"Acoustic Kit".to_owned()));
+        assert!(found("no such sound").is_empty());
+        let own = all.sounds.last().unwrap();
+        assert_eq!((own.path.as_ref(), own.family_name()), (Some(&path), "mallet"));
+    }
+}

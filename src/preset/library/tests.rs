@@ -1,0 +1,142 @@
+//! The library in folders of its own.
+
+use super::*;
+
+fn library() -> (tempfile::TempDir, Library) {
+    let folder = tempfile::tempdir().unwrap();
+    let library = Library::at(folder.path().join("sprung"));
+    (folder, library)
+}
+
+fn named(name: &str) -> Preset {
+    Preset { name: name.to_owned(), ..Preset::find("Church Bell").unwrap().clone() }
+}
+
+#[test]
+fn presets_are_saved_under_their_names_and_replaced_only_when_told() {
+    let (_folder, library) = library();
+    assert!(library.entries().is_empty());
+    let path = library.save(&named("My Bell"), false).unwrap();
+    assert_eq!(path.file_name().unwrap(), "my-bell.toml");
+    assert_eq!(library.save(&named("Ω"), false).unwrap().file_name().unwrap(), "sound.toml");
+    assert!(matches!(library.save(&named("My Bell"), false), Err(Error::Exists { .. })));
+    let names = |library: &Library| -> Vec<String> {
+        library.entries().iter().map(|entry| entry.playable.as_ref().unwrap().name().to_owned()).collect()
+    };
+    assert_eq!(names(&library), ["My Bell", "Ω"]);
+    assert_eq!(library.save(&named("My Bell"), true).unwrap(), path);
+    assert_eq!(names(&library), ["My Bell", "Ω"]);
+    for (name, message) in
+        [("kick", "sound of the factory"), ("a/b", "taken for a file"), ("a.toml", "taken for a file")]
+    {
+        let error = library.save(&named(name), true).unwrap_err().to_string();
+        assert!(error.contains(message), "{name}: {error}");
+    }
+    let error = library.save(&named(&"n".repeat(101)), false).unwrap_err().to_string();
+    assert!(error.contains("at most 100 characters"), "{error}");
+    assert_eq!(fs::read_dir(library.presets_folder()).unwrap().count(), 2, "nothing else is left");
+}
+
+#[test]
+fn presets_are_renamed_with_their_files_and_imported_beside_others() {
+    let (folder, library) = library();
+    let path = library.save(&named("My Bell"), false).unwrap();
+    library.save(&named("Other"), false).unwrap();
+    assert!(matches!(library.rename(&path, "Other"), Err(Error::Exists { .. })) && path.exists());
+    assert!(library.rename(&path, "Kick").unwrap_err().to_string().contains("sound of the factory"));
+    let renamed = library.rename(&path, "Great Bell").unwrap();
+    assert_eq!((renamed.file_name().unwrap().to_str(), path.exists()), (Some("great-bell.toml"), false));
+    let renamed = library.rename(&renamed, "great bell").unwrap();
+    let names = |library: &Library| -> Vec<String> {
+        library.entries().iter().map(|entry| entry.playable.as_ref().unwrap().name().to_owned()).collect()
+    };
+    assert_eq!(names(&library), ["great bell", "Other"]);
+    // A copy of a preset is renamed in its own file, and the other stays.
+    let copy = library.presets_folder().join("copy.toml");
+    fs::copy(&renamed, &copy).unwrap();
+    assert_eq!(library.rename(&copy, "GREAT bell").unwrap(), copy);
+    assert_eq!(names(&library), ["GREAT bell", "great bell", "Other"]);
+    fs::remove_file(&copy).unwrap();
+    let stranger = folder.path().join("x.toml");
+    fs::write(&stranger, named("Great Bell").to_toml()).unwrap();
+    for expected in ["Great Bell 2", "Great Bell 3"] {
+        assert_eq!(library.import(&stranger).unwrap().0.name, expected);
+    }
+    let long = "n".repeat(100);
+    library.save(&named(&long), false).unwrap();
+    let another = folder.path().join("long.toml");
+    fs::write(&another, named(&long).to_toml()).unwrap();
+    assert_eq!(library.import(&another).unwrap().0.name, format!("{} 2", &long[2..]));
+    assert!(stranger.exists() && renamed.exists());
+    fs::write(&stranger, "format = 9").unwrap();
+    assert!(library.import(&stranger).is_err());
+    assert_eq!((library.entries().len(), library.rename(&stranger, "y").is_err()), (6, true));
+}
+
+#[test]
+fn sounds_of_other_names_are_not_replaced() {
+    let (_folder, library) = library();
+    let save = |name: &str, replace| {
+        let path = library.save(&named(name), replace).unwrap();
+        path.file_name().unwrap().to_string_lossy().into_owned()
+    };
+    assert_eq!(
+        ["My Bell", "my-bell!", "Ω", "β"].map(|name| save(name, true)),
+        ["my-bell.toml", "my-bell-2.toml", "sound.toml", "sound-2.toml"]
+    );
+    library.discard(&library.presets_folder().join("my-bell.toml")).unwrap();
+    assert!(matches!(library.save(&named("my-bell!"), false), Err(Error::Exists { .. })));
+    assert_eq!(save("my-bell!", true), "my-bell-2.toml", "where it was");
+    fs::write(library.presets_folder().join("sound-3.toml"), "broken").unwrap();
+    assert_eq!(save("λ", true), "sound-4.toml");
+    assert_eq!(library.entries().len(), 5);
+}
+
+#[test]
+fn what_is_no_preset_says_why() {
+    let (_folder, library) = library();
+    library.save(&named("Good"), false).unwrap();
+    fs::write(library.presets_folder().join("bad.toml"), "format = \"x\"").unwrap();
+    fs::write(library.presets_folder().join("notes.txt"), "not a sound").unwrap();
+    let entries = library.entries();
+    assert_eq!(entries.len(), 2);
+    assert!(entries[0].playable.is_err() && entries[1].playable.is_ok());
+}
+
+#[test]
+fn files_go_to_the_bin_and_nothing_there_is_replaced() {
+    let (folder, library) = library();
+    let bins: Vec<PathBuf> =
+        (0..3).map(|_| library.discard(&library.save(&named("Bell"), false).unwrap()).unwrap()).collect();
+    assert!(bins.iter().all(|path| path.is_file()) && library.entries().is_empty());
+    let stranger = folder.path().join("stranger.toml");
+    fs::write(&stranger, "").unwrap();
+    assert!(library.discard(&stranger).is_err() && stranger.exists());
+}
+
+#[test]
+fn favourites_are_kept() {
+    let (_folder, library) = library();
+    for name in ["Kick", "Church Bell", "Kick"] {
+        library.set_favourite(name, true).unwrap();
+    }
+    let favourites = || library.favourites().unwrap().into_iter().collect::<Vec<_>>();
+    assert_eq!(favourites(), ["Church Bell", "Kick"]);
+    library.set_favourite("Kick", false).unwrap();
+    assert_eq!(favourites(), ["Church Bell"]);
+    // No UTF-8.
+    fs::write(library.favourites_file(), b"Kick\n\xff\n").unwrap();
+    assert!(library.favourites().is_err() && library.set_favourite("Church Bell", true).is_err());
+    assert_eq!(fs::read(library.favourites_file()).unwrap(), b"Kick\n\xff\n", "not written over");
+}
+
+#[cfg(all(unix, not(target_os = "macos")))]
+#[test]
+fn the_folder_is_where_the_system_keeps_data() {
+    let find = |variables: &[(&str, &str)]| {
+        data_folder(&|name| variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into()))
+    };
+    assert_eq!(find(&[("XDG_DATA_HOME", "/d"), ("HOME", "/h")]), Some("/d/sprung".into()));
+    assert_eq!(find(&[("XDG_DATA_HOME", "d"), ("HOME", "/h")]), Some("/h/.local/share/sprung".into()));
+    assert_eq!(find(&[]), None);
+}
