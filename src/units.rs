@@ -115,6 +115,20 @@ pub fn split_quantity(text: &str) -> Option<(f64, &str)> {
     value.is_finite().then(|| (value, text[end..].trim()))
 }
 
+/// The number of a text such as `"62 cm"` in the unit `own` (`"m"`, `"Hz"`; an empty one takes per cent, too); without a unit, it is
+/// in that unit already. `None` if the text has another one or does not begin with a finite number.
+pub fn number_in_unit(own: &str, text: &str) -> Option<f64> {
+    let (value, unit) = split_quantity(text)?;
+    // Divide: 1/100 and 1/1000 are not exact in binary, but 62 / 100 gives the number 0.62.
+    match (own, unit) {
+        (own, unit) if own == unit || unit.is_empty() => Some(value),
+        ("m", "cm") | ("", "%") => Some(value / 100.0),
+        ("m", "mm") => Some(value / 1000.0),
+        ("Hz", "kHz") => Some(value * 1000.0),
+        _ => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

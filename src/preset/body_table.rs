@@ -5,7 +5,7 @@ use super::custom_modes;
 use super::value::unexpected;
 use crate::error::nearest;
 use crate::sound::bodies::{Body, FIELDS, MATERIALS, Material, Model};
-use crate::units::split_quantity;
+use crate::units::number_in_unit;
 use std::fmt::Write;
 use toml::{Table, Value};
 
@@ -98,7 +98,7 @@ pub(super) fn number(unit: &str, [min, max]: [f64; 2], value: &Value) -> Result<
     let value = match value {
         Value::Integer(number) => *number as f64,
         Value::Float(number) => *number,
-        Value::String(text) => quantity(unit, text).ok_or_else(|| {
+        Value::String(text) => number_in_unit(unit, text).ok_or_else(|| {
             let within = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
             format!("‘{text}’ is no number{within}")
         })?,
@@ -108,18 +108,6 @@ pub(super) fn number(unit: &str, [min, max]: [f64; 2], value: &Value) -> Result<
         return Ok(value);
     }
     Err(format!("{value} is out of range: expected from {min} to {max}{after}"))
-}
-
-fn quantity(own: &str, text: &str) -> Option<f64> {
-    let (value, unit) = split_quantity(text)?;
-    // Divide: 1/100 and 1/1000 are not exact in binary, but 62 / 100 gives the number 0.62.
-    match (own, unit) {
-        (own, unit) if own == unit || unit.is_empty() => Some(value),
-        ("m", "cm") | ("", "%") => Some(value / 100.0),
-        ("m", "mm") => Some(value / 1000.0),
-        ("Hz", "kHz") => Some(value * 1000.0),
-        _ => None,
-    }
 }
 
 /// The lines of `[body]`: the model, and the values that differ from the model's own.

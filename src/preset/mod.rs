@@ -35,7 +35,7 @@ pub use kit::{KIT_VERSION, KitPreset, Playable};
 pub use kit_load::is_file_name;
 pub use load::MAX_FILE_SIZE;
 pub use migration::Replaced;
-pub use pair::{modes_of_pair, pair_of_modes};
+pub use pair::{LINK_KINDS, modes_of_pair, pair_of_modes};
 pub use phrase::{Phrase, PhraseNote};
 pub use programs::Programs;
 pub use tuning::OwnTuning;

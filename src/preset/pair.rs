@@ -11,7 +11,7 @@ use std::fmt::Write;
 use toml::{Table, Value};
 
 /// The kinds of links by their names in files, with their starting values.
-const KINDS: [(&str, Link); 4] = [
+pub const LINK_KINDS: [(&str, Link); 4] = [
     ("apart", Link::Apart),
     ("series", Link::Series),
     ("spring", Link::Spring { stiffness: 1000.0, damping: 0.0 }),
@@ -71,8 +71,8 @@ fn read_joint(table: &Table, first: Body, second: Body, complaints: &mut Complai
             }
         });
     }
-    let kinds = || KINDS.iter().map(|(kind, _)| *kind);
-    let find = |id: &str| KINDS.iter().find(|(kind, _)| *kind == id);
+    let kinds = || LINK_KINDS.iter().map(|(kind, _)| *kind);
+    let find = |id: &str| LINK_KINDS.iter().find(|(kind, _)| *kind == id);
     let expected = || kinds().collect::<Vec<_>>().join(", ");
     let kind = named(table, "joint", "kind", find, kinds)
         .and_then(|kind| kind.ok_or_else(|| format!("joint: there is no ‘kind’: expected one of {}", expected())));
@@ -99,7 +99,7 @@ fn read_joint(table: &Table, first: Body, second: Body, complaints: &mut Complai
 /// The lines of `[joint]`: the kind, and the values that differ from its own.
 fn link_text(pair: &Pair) -> String {
     let same = |link: &Link| std::mem::discriminant(link) == std::mem::discriminant(&pair.link);
-    let (kind, link) = KINDS.iter().find(|(_, link)| same(link)).unwrap_or(&KINDS[0]);
+    let (kind, link) = LINK_KINDS.iter().find(|(_, link)| same(link)).unwrap_or(&LINK_KINDS[0]);
     let first = Pair::new(pair.first.clone(), pair.second.clone(), *link);
     let mut out = format!("kind = \"{kind}\"\n");
     for LinkField { name, get, .. } in LINK_FIELDS {
@@ -145,7 +145,7 @@ mod tests {
             let joint = Point { x: 0.25, y: 0.5 };
             Body { modes: 4, joint, ..Body::new(model) }
         });
-        for (_, link) in KINDS {
+        for (_, link) in LINK_KINDS {
             let mut pair = Pair::new(first.clone(), second.clone(), link);
             for (n, field) in LINK_FIELDS.iter().enumerate() {
                 (field.set)(

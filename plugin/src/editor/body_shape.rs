@@ -1,10 +1,10 @@
 //! The body that is drawn for a sound: its form, and the shape of each mode in it.
 
 use super::body_form::Form;
+use super::made::{Made, model_name};
 use sprung::patch::ModeTable;
-use sprung::preset::{Family, body_of_modes, pair_of_modes};
+use sprung::preset::Family;
 use sprung::sound::bodies::{Body, Model, Point};
-use sprung::sound::pairs::Pair;
 use sprung::units::semitones_from_ratio;
 
 /// Most modes that are drawn on a line, and on what has a surface: finer shapes are lost in its points.
@@ -12,45 +12,6 @@ const DRAWN: [usize; 2] = [64, 32];
 /// How far from a mode of the body one of the sound may lie that moves as it does, in semitones: in a body's own table, and in one
 /// that was not made from a body.
 const NEAR: [f64; 2] = [0.6, 5.0];
-
-/// What the modes of a sound were made from.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Made {
-    FromBody(Box<Body>),
-    FromPair(Box<Pair>),
-    /// A table that says nothing of places.
-    Table,
-}
-
-impl Made {
-    pub(super) fn of(modes: &ModeTable) -> Self {
-        match (body_of_modes(modes), pair_of_modes(modes)) {
-            (_, Some(pair)) => Self::FromPair(Box::new(pair)),
-            (Some(body), None) if !matches!(body.model, Model::Custom(_) | Model::Mass) => {
-                Self::FromBody(Box::new(body))
-            }
-            _ => Self::Table,
-        }
-    }
-
-    /// The body that is struck.
-    pub(super) fn body(&self) -> Option<&Body> {
-        match self {
-            Self::FromBody(body) => Some(body),
-            Self::FromPair(pair) => Some(&pair.first),
-            Self::Table => None,
-        }
-    }
-
-    /// As [`Made::body`], to be changed.
-    pub(super) fn body_mut(&mut self) -> Option<&mut Body> {
-        match self {
-            Self::FromBody(body) => Some(body),
-            Self::FromPair(pair) => Some(&mut pair.first),
-            Self::Table => None,
-        }
-    }
-}
 
 /// A body to draw.
 pub(super) struct BodyShape {
@@ -80,24 +41,19 @@ fn model_of(family: Option<Family>) -> (&'static str, Model) {
     (id, Model::find(id).cloned().unwrap_or(Model::String))
 }
 
-/// The name of a model for people.
-fn name(id: &str) -> String {
-    id.replace('_', " ")
-}
-
 impl BodyShape {
     /// The body of a sound of this family. Not fast: it computes the shapes of all modes.
     pub(super) fn of(modes: &ModeTable, family: Option<Family>) -> Self {
-        let made = Made::of(modes);
+        let made = Made::of(modes).with_places();
         let (body, near, caption) = match &made {
-            Made::FromBody(body) => ((**body).clone(), NEAR[0], name(body.model.id())),
+            Made::FromBody(body) => ((**body).clone(), NEAR[0], model_name(body.model.id())),
             Made::FromPair(pair) => {
-                let caption = format!("{}, joined to a second body", name(pair.first.model.id()));
+                let caption = format!("{}, joined to a second body", model_name(pair.first.model.id()));
                 (pair.first.clone(), NEAR[0], caption)
             }
             Made::Table => {
                 let (id, model) = model_of(family);
-                (Body::new(model), NEAR[1], format!("a table of modes, drawn as a {}", name(id)))
+                (Body::new(model), NEAR[1], format!("a table of modes, drawn as a {}", model_name(id)))
             }
         };
         let form = Form::of(&body.model);

@@ -3,14 +3,15 @@
 use super::audition::Audition;
 use super::body_face;
 use super::body_form::Form;
-use super::body_shape::{BodyShape, Made};
+use super::body_shape::BodyShape;
 use super::controls::{Controls, Hint};
 use super::gestures::touch;
+use super::made::Made;
 use super::shown::Shown;
 use crate::loaded::Loaded;
 use egui::{CursorIcon, Id, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use sprung::params::Param;
-use sprung::preset::{Playable, modes_of_body, modes_of_pair};
+use sprung::preset::Playable;
 use sprung::sound::bodies::Point;
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -213,19 +214,13 @@ fn write(point: Point, made: &mut Made, controls: &mut Controls) {
     if let Some(body) = made.body_mut() {
         body.strike = point;
     }
-    let modes = match made {
-        Made::Table => {
-            if let Some(param) = exciter(controls) {
-                controls.turn(param.info(), param.info().normalise(100.0 * point.x as f32));
-            }
-            return;
+    if *made == Made::Table {
+        if let Some(param) = exciter(controls) {
+            controls.turn(param.info(), param.info().normalise(100.0 * point.x as f32));
         }
-        Made::FromBody(body) => modes_of_body(body),
-        Made::FromPair(pair) => {
-            let Ok(modes) = modes_of_pair(pair) else { return };
-            modes
-        }
-    };
+        return;
+    }
+    let Ok(Some(modes)) = made.modes() else { return };
     let mut state = controls.params.state();
     let Playable::Preset(preset) = &mut state.playable else { return };
     preset.patch.modes = modes;

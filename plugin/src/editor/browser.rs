@@ -10,6 +10,8 @@ use super::star;
 use super::text::{line, name_field};
 use super::theme::{GAP, PADDING, Palette, SMALL, TEXT, font};
 use crate::link::Link;
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{Align2, Id, Key, Rect, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use sprung::preset::catalogue::Listed;
 use sprung::preset::library::Library;
@@ -148,6 +150,11 @@ impl Browser {
         name_field(&response, "Search", &self.words);
         if std::mem::take(&mut self.is_new) {
             response.request_focus();
+            // What is typed takes the place of the words of the last search.
+            let mut state = TextEditState::load(ui.ctx(), field).unwrap_or_default();
+            let all = CCursorRange::two(CCursor::default(), CCursor::new(self.words.chars().count()));
+            state.cursor.set_char_range(Some(all));
+            state.store(ui.ctx(), field);
         }
         let pressed = |key| ui.input(|input| input.key_pressed(key));
         if response.lost_focus() && pressed(Key::Enter) && self.words.ends_with(".toml") {

@@ -21,8 +21,11 @@
 //! | `shown` | the sound that is shown |
 
 mod audition;
+mod body_edit;
 mod body_face;
 mod body_form;
+mod body_numbers;
+mod body_page;
 mod body_shape;
 mod body_view;
 mod browser;
@@ -43,6 +46,7 @@ mod kit_page;
 mod knob;
 mod knob_face;
 mod layout;
+mod made;
 mod manual;
 mod manual_text;
 mod meter;

@@ -1,5 +1,6 @@
 //! The row of tabs, and the page below it: sections of parameters, the kit's keys, the tuning.
 
+use super::body_page::BodyPage;
 use super::buttons::tab;
 use super::controls::Controls;
 use super::key_grid::KeyGrid;
@@ -12,9 +13,10 @@ use crate::link::Link;
 use egui::{Rect, Ui, pos2, vec2};
 
 /// The pages after those with sections.
-const OTHERS: [&str; 2] = ["Kit", "Tuning"];
+const OTHERS: [&str; 3] = ["Model", "Kit", "Tuning"];
 /// The pages of the manual that belong to them all, in their order.
-const TOPICS: [&str; 8] = ["exciters", "bodies", "modulation", "modulation", "space", "tuning", "kits", "tuning"];
+const TOPICS: [&str; 9] =
+    ["exciters", "bodies", "modulation", "modulation", "space", "tuning", "bodies", "kits", "tuning"];
 /// The least width of a page that has room for the voices beside its sections.
 const WIDE: f32 = 840.0;
 
@@ -29,6 +31,7 @@ pub(super) enum Asked {
 #[derive(Default)]
 pub(super) struct Pages {
     page: usize,
+    body: BodyPage,
     kit: KeyGrid,
     tuning: TuningPage,
 }
@@ -44,8 +47,15 @@ impl Pages {
         TOPICS.get(self.page).copied().unwrap_or("window")
     }
 
+    /// Ends what the user is doing, and lets go of the keys that are held.
+    pub(super) fn leave(&mut self, controls: &mut Controls) {
+        self.body.leave(controls);
+        self.release(controls.params.link());
+    }
+
     /// Lets go of the keys that are held.
     pub(super) fn release(&mut self, link: &Link) {
+        self.body.release(link);
         self.kit.release(link);
         self.tuning.grid.release(link);
     }
@@ -78,7 +88,8 @@ impl Pages {
                 }
                 asked
             }
-            Some(0) => {
+            Some(0) => self.body.show(ui, rect, shown, controls).map(Asked::Say).or(asked),
+            Some(1) => {
                 kit_page::show(ui, rect, &mut self.kit, shown, down, controls);
                 asked
             }
@@ -94,7 +105,7 @@ impl Pages {
             let place_of_tab = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height() - 2.0));
             left = place_of_tab.right() + GAP / 4.0;
             if tab(ui, place_of_tab, name, place == self.page, controls.palette).clicked() {
-                self.release(controls.params.link());
+                self.leave(controls);
                 self.page = place;
             }
         }

@@ -3,7 +3,7 @@
 use super::controls::Hint;
 use super::text::{line, width};
 use super::theme::{Palette, SMALL};
-use egui::{Align2, Rect, Ui, pos2};
+use egui::{Align2, Id, Rect, Role, Sense, Ui, WidgetInfo, pos2};
 use sprung::engine::Telemetry;
 use sprung::text::counted;
 
@@ -55,6 +55,11 @@ pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, righ
     let right_width = width(painter, right, SMALL);
     line(painter, rect, Align2::RIGHT_CENTER, right, SMALL, palette.muted);
     let left = rect.with_max_x(rect.right() - right_width - 16.0);
+    // A message is read out whatever is under the pointer.
+    if !message.is_empty() {
+        let response = ui.interact(left, Id::unique("message"), Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Status, true, message));
+    }
     match hint {
         Some(Hint { title, help }) => {
             let title = line(painter, left, Align2::LEFT_CENTER, title, SMALL, palette.text);

@@ -155,7 +155,7 @@ impl Window {
         if self.over.is_some() {
             self.modes.cancel(&mut controls);
             self.motion.cancel(&mut controls);
-            self.pages.release(params.link());
+            self.pages.leave(&mut controls);
         }
         match self.over {
             Some(Over::Browser) => {

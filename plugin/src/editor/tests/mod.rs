@@ -1,5 +1,6 @@
 //! The window without a screen: driven by simulated input, compared with pictures.
 
+mod body_numbers;
 mod browsing;
 mod dropped;
 mod fake_host;

@@ -1,0 +1,132 @@
+//! What the modes of a sound are made from: a body, two joined bodies, or a table that says nothing of them.
+
+use sprung::patch::ModeTable;
+use sprung::preset::{body_of_modes, modes_of_body, modes_of_pair, pair_of_modes};
+use sprung::sound::bodies::{Body, Model, Pitch};
+use sprung::sound::pairs::{Link, Pair};
+
+/// What the modes of a sound were made from.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Made {
+    FromBody(Box<Body>),
+    FromPair(Box<Pair>),
+    Table,
+}
+
+impl Made {
+    pub(super) fn of(modes: &ModeTable) -> Self {
+        match (body_of_modes(modes), pair_of_modes(modes)) {
+            (_, Some(pair)) => Self::FromPair(Box::new(pair)),
+            (Some(body), None) => Self::FromBody(Box::new(body)),
+            (None, None) => Self::Table,
+        }
+    }
+
+    /// A body whose model says nothing of places is a table to those who draw it.
+    pub(super) fn with_places(self) -> Self {
+        match self {
+            Self::FromBody(body) if matches!(body.model, Model::Custom(_) | Model::Mass) => Self::Table,
+            other => other,
+        }
+    }
+
+    /// The body that is struck.
+    pub(super) fn body(&self) -> Option<&Body> {
+        match self {
+            Self::FromBody(body) => Some(body),
+            Self::FromPair(pair) => Some(&pair.first),
+            Self::Table => None,
+        }
+    }
+
+    /// As [`Made::body`], to be changed.
+    pub(super) fn body_mut(&mut self) -> Option<&mut Body> {
+        match self {
+            Self::FromBody(body) => Some(body),
+            Self::FromPair(pair) => Some(&mut pair.first),
+            Self::Table => None,
+        }
+    }
+
+    /// The two bodies, if there are two.
+    pub(super) fn pair(&self) -> Option<&Pair> {
+        match self {
+            Self::FromPair(pair) => Some(pair),
+            _ => None,
+        }
+    }
+
+    /// As [`Made::pair`], to be changed.
+    pub(super) fn pair_mut(&mut self) -> Option<&mut Pair> {
+        match self {
+            Self::FromPair(pair) => Some(pair),
+            _ => None,
+        }
+    }
+
+    /// The modes, made anew; none of a table, which is made of nothing. The error says why two bodies have none.
+    pub(super) fn modes(&self) -> Result<Option<ModeTable>, String> {
+        match self {
+            Self::FromBody(body) => Ok(Some(modes_of_body(body))),
+            Self::FromPair(pair) => modes_of_pair(pair).map(Some).map_err(|error| error.to_string()),
+            Self::Table => Ok(None),
+        }
+    }
+
+    /// The T60 that decays of modes are multiples of; none of a table. Not fast.
+    pub(super) fn t60(&self) -> Option<f64> {
+        match self {
+            Self::FromBody(body) => Some(body.t60()),
+            Self::FromPair(pair) => Some(pair.t60()),
+            Self::Table => None,
+        }
+    }
+
+    /// The same with a body of another model: the only one or the first of two, or the second. Without a model, there is
+    /// no second body.
+    pub(super) fn with_model(&self, is_second: bool, model: Option<&Model>) -> Self {
+        let new = model.map(|model| Body::new(model.clone()));
+        match (self, new, is_second) {
+            (Self::Table, Some(new), _) => Self::FromBody(Box::new(new)),
+            (Self::FromBody(body), Some(new), false) => Self::FromBody(Box::new(like(body, new))),
+            (Self::FromBody(body), Some(new), true) => {
+                Self::FromPair(Box::new(Pair::new((**body).clone(), new, Link::Apart)))
+            }
+            (Self::FromPair(pair), Some(new), false) => {
+                Self::FromPair(Box::new(Pair { first: like(&pair.first, new), ..(**pair).clone() }))
+            }
+            (Self::FromPair(pair), Some(new), true) => {
+                Self::FromPair(Box::new(Pair { second: like(&pair.second, new), ..(**pair).clone() }))
+            }
+            // A body by itself follows the keys.
+            (Self::FromPair(pair), None, true) => {
+                Self::FromBody(Box::new(Body { follows_key: true, ..pair.first.clone() }))
+            }
+            (other, None, _) => other.clone(),
+        }
+    }
+
+    /// Two bodies that act on each other in another way.
+    pub(super) fn linked(&self, link: Link) -> Self {
+        match self {
+            Self::FromPair(pair) => {
+                let new = Pair::new(pair.first.clone(), pair.second.clone(), link);
+                let Pair { mass, heard, polarisation, keys, .. } = **pair;
+                Self::FromPair(Box::new(Pair { mass, heard, polarisation, keys, ..new }))
+            }
+            other => other.clone(),
+        }
+    }
+}
+
+/// A body with what another one had that its model does not determine.
+fn like(old: &Body, new: Body) -> Body {
+    let Body { pitch, damping, spread, pan, strike_share, follows_key, modes, seed, .. } = *old;
+    let pitch = if matches!(pitch, Pitch::Frequency(_)) { pitch } else { new.pitch };
+    Body { pitch, damping, spread, pan, strike_share, follows_key, modes, seed, ..new }
+}
+
+/// The name of a model for people.
+pub(super) fn model_name(id: &str) -> String {
+    id.replace('_', " ")
+}
