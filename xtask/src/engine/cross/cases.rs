@@ -1,5 +1,6 @@
 //! Compares the digests that a CPU has computed with the accepted ones.
 
+use crate::sha256;
 use sprung::analysis::digest::Digest;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,6 +13,8 @@ pub(crate) struct Accepted(BTreeMap<String, Digest>);
 pub(crate) struct Outcome {
     pub(crate) same: usize,
     pub(crate) differing: Vec<String>,
+    /// The beginning of one SHA-256 of the names and sums of all cases: equal for CPUs with the same bits.
+    pub(crate) digest: String,
 }
 
 impl Accepted {
@@ -41,7 +44,9 @@ impl Accepted {
             let frames: usize = frames.parse().map_err(|_| format!("not a digest: {line}"))?;
             found.insert(name, (frames, sha256, chunks.split(',').collect::<Vec<_>>()));
         }
-        let mut outcome = Outcome { same: 0, differing: Vec::new() };
+        let sums: String = found.iter().map(|(name, (frames, sum, _))| format!("{name} {frames} {sum}\n")).collect();
+        let digest = sha256::of(sums.as_bytes())[..16].to_owned();
+        let mut outcome = Outcome { same: 0, differing: Vec::new(), digest };
         for (name, accepted) in self.0.iter().filter(|(name, _)| with_songs || !name.starts_with("song-")) {
             let same = found.get(name.as_str()).is_some_and(|(frames, sha256, chunks)| {
                 let is_whole = *frames == accepted.frames && *sha256 == accepted.sha256;
@@ -71,6 +76,7 @@ mod tests {
         };
         let accepted = Accepted(["preset-a", "song-b"].map(|name| (name.to_owned(), digest.clone())).into());
         let other = Digest::of(&samples[1..], &samples[1..], 48_000.0);
+        let mut digests = std::collections::BTreeSet::new();
         for (lines, differing) in [
             (vec![line("preset-a", &digest, 3), line("song-b", &digest, 2)], vec![]),
             (vec![line("preset-a", &digest, 2), line("song-b", &digest, 3)], vec!["preset-a"]),
@@ -80,7 +86,13 @@ mod tests {
             let outcome = accepted.compare(&lines, true).unwrap();
             assert_eq!(outcome.differing, differing, "{lines:?}");
             assert_eq!(outcome.same, 2 - differing.len());
+            digests.insert(outcome.digest);
         }
+        assert_eq!(digests.len(), 4, "what differs has another digest");
+        let [one, two] = [line("preset-a", &digest, 3), line("song-b", &digest, 2)];
+        let [forwards, backwards] =
+            [[one.clone(), two.clone()], [two, one]].map(|lines| accepted.compare(&lines, true).unwrap().digest);
+        assert_eq!(forwards, backwards, "the order in which cases end does not matter");
         assert!(accepted.compare(&["level neon".to_owned(), "noise".to_owned()], true).is_err());
     }
 }

@@ -102,27 +102,29 @@ fn program_of(command: &Command) -> String {
 
 /// Prints a table with a row for each CPU, and what is missing for the others. Differing bits and failed runs are an error.
 pub(crate) fn run(options: &Options) -> Result<(), String> {
-    let (mut table, mut missing, mut failures) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut ran, mut missing, mut failures) = (0, Vec::new(), Vec::new());
+    // Each row appears when its CPU is done: QEMU takes long.
+    println!("| CPU | instructions | cases with the accepted bits | SHA-256 of all | time |\n|---|---|---|---|---|");
     for row in Row::all().iter().filter(|row| options.only.is_none_or(|only| row.name().contains(only))) {
         eprintln!("── {}", row.name());
         match row.run(options) {
             Ok((outcome, time)) => {
-                table.push(format!(
-                    "| {} | {} | {} of {} | {} |",
+                ran += 1;
+                println!(
+                    "| {} | {} | {} of {} | `{}…` | {} |",
                     row.cpu,
                     row.level,
                     outcome.same,
                     outcome.same + outcome.differing.len(),
+                    outcome.digest,
                     duration(time)
-                ));
+                );
                 failures.extend(outcome.differing.iter().map(|case| format!("{}: {case}", row.name())));
             }
             Err(Missing(message)) => missing.push(format!("{}: {message}", row.name())),
             Err(Failed(message)) => failures.push(format!("{}: {message}", row.name())),
         }
     }
-    println!("| CPU | instructions | cases with the accepted bits | time |\n|---|---|---|---|");
-    table.iter().for_each(|line| println!("{line}"));
     let songs = match options.song_seconds {
         0 => "without songs".to_owned(),
         seconds => format!("of each song, at most the first {seconds} s"),
@@ -132,7 +134,7 @@ pub(crate) fn run(options: &Options) -> Result<(), String> {
     if !failures.is_empty() {
         return Err(failures.join("\n"));
     }
-    if table.is_empty() { Err("nothing was run".to_owned()) } else { Ok(()) }
+    if ran == 0 { Err("nothing was run".to_owned()) } else { Ok(()) }
 }
 
 fn duration(time: Duration) -> String {
