@@ -8,6 +8,14 @@ use std::path::Path;
 /// The accepted digests by the names of their cases.
 pub(crate) struct Accepted(BTreeMap<String, Digest>);
 
+/// Which cases a program was asked for.
+pub(crate) enum Asked<'a> {
+    /// Those whose names pass.
+    Named(&'a dyn Fn(&str) -> bool),
+    /// Some of them: those that it has printed.
+    Printed,
+}
+
 /// How many cases have the accepted bits, and which do not.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Outcome {
@@ -35,8 +43,8 @@ impl Accepted {
     }
 
     /// Compares lines of the form `name frames sha256 chunk,chunk,…`. The program may end a song after some chunks. A case
-    /// without a line differs.
-    pub(crate) fn compare(&self, lines: &[String], with_songs: bool) -> Result<Outcome, String> {
+    /// that was asked for and has no line differs.
+    pub(crate) fn compare(&self, lines: &[String], asked: Asked) -> Result<Outcome, String> {
         let mut found = BTreeMap::new();
         for line in lines.iter().filter(|line| !line.starts_with("level ")) {
             let words: Vec<&str> = line.split(' ').collect();
@@ -47,7 +55,14 @@ impl Accepted {
         let sums: String = found.iter().map(|(name, (frames, sum, _))| format!("{name} {frames} {sum}\n")).collect();
         let digest = sha256::of(sums.as_bytes())[..16].to_owned();
         let mut outcome = Outcome { same: 0, differing: Vec::new(), digest };
-        for (name, accepted) in self.0.iter().filter(|(name, _)| with_songs || !name.starts_with("song-")) {
+        let is_asked = |name: &str| match asked {
+            Asked::Named(is_asked) => is_asked(name),
+            Asked::Printed => found.contains_key(name),
+        };
+        if found.is_empty() {
+            return Err("the program has printed no digest".to_owned());
+        }
+        for (name, accepted) in self.0.iter().filter(|(name, _)| is_asked(name)) {
             let same = found.get(name.as_str()).is_some_and(|(frames, sha256, chunks)| {
                 let is_whole = *frames == accepted.frames && *sha256 == accepted.sha256;
                 let is_beginning = name.starts_with("song-")
@@ -83,16 +98,23 @@ mod tests {
             (vec![line("preset-a", &other, 3), line("song-b", &other, 1)], vec!["preset-a", "song-b"]),
             (vec![line("preset-a", &digest, 3)], vec!["song-b"]),
         ] {
-            let outcome = accepted.compare(&lines, true).unwrap();
+            let outcome = accepted.compare(&lines, Asked::Named(&|_| true)).unwrap();
             assert_eq!(outcome.differing, differing, "{lines:?}");
             assert_eq!(outcome.same, 2 - differing.len());
             digests.insert(outcome.digest);
         }
         assert_eq!(digests.len(), 4, "what differs has another digest");
         let [one, two] = [line("preset-a", &digest, 3), line("song-b", &digest, 2)];
-        let [forwards, backwards] =
-            [[one.clone(), two.clone()], [two, one]].map(|lines| accepted.compare(&lines, true).unwrap().digest);
+        let [forwards, backwards] = [[one.clone(), two.clone()], [two, one]]
+            .map(|lines| accepted.compare(&lines, Asked::Named(&|_| true)).unwrap().digest);
+        let some = accepted.compare(&[line("song-b", &other, 1)], Asked::Printed).unwrap();
+        assert_eq!(
+            (some.same, &some.differing[..]),
+            (0, &["song-b".to_owned()][..]),
+            "what was not asked for does not differ"
+        );
+        assert!(accepted.compare(&["level neon".to_owned()], Asked::Printed).is_err(), "nothing was run");
         assert_eq!(forwards, backwards, "the order in which cases end does not matter");
-        assert!(accepted.compare(&["level neon".to_owned(), "noise".to_owned()], true).is_err());
+        assert!(accepted.compare(&["level neon".to_owned(), "noise".to_owned()], Asked::Printed).is_err());
     }
 }
