@@ -37,6 +37,11 @@ impl Preset {
         FACTORY.get_or_init(|| (0..PRESETS.len()).map(|place| preset(place).clone()).collect())
     }
 
+    /// The preset at a place of [`Preset::factory`]; none beyond the last. Reads this one alone, when it is first asked for.
+    pub fn factory_at(place: usize) -> Option<&'static Preset> {
+        (place < PRESETS.len()).then(|| preset(place))
+    }
+
     /// The factory preset of this name; case does not matter.
     ///
     /// # Errors
@@ -109,6 +114,10 @@ mod tests {
         let error = Preset::find("kcik").unwrap_err().to_string();
         assert_eq!(error, "preset: there is no factory preset ‘kcik’; the nearest is ‘Kick’");
         assert!(Preset::find("").is_err());
+        for (place, preset) in Preset::factory().iter().enumerate() {
+            assert_eq!(Preset::factory_at(place), Some(preset));
+        }
+        assert_eq!(Preset::factory_at(Preset::factory().len()), None);
         for kit in KitPreset::factory() {
             assert_eq!(Playable::find(&kit.name.to_uppercase()).unwrap(), Playable::Kit(kit.clone()));
         }

@@ -48,6 +48,9 @@ pub(crate) enum Chore {
         /// Seconds of each song; 0 for none.
         #[arg(long, default_value_t = 10, value_name = "N")]
         song_seconds: usize,
+        /// Only one case of N, where all take too long: QEMU needs seconds for each.
+        #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+        every: u16,
         /// Only CPUs and instructions whose name contains this, such as wasm32.
         only: Option<String>,
     },
@@ -90,9 +93,12 @@ pub(crate) fn run(chore: &Chore) -> Result<(), String> {
         Chore::BenchTable { again } => bench_table::run(*again),
         Chore::Callgrind { accept } => callgrind::run(*accept),
         Chore::CallgrindWork { name, rounds } => callgrind::work(name, *rounds),
-        Chore::Cross { rustc, song_seconds, only } => {
-            cross::run(&cross::Options { rustc: rustc.as_deref(), song_seconds: *song_seconds, only: only.as_deref() })
-        }
+        Chore::Cross { rustc, song_seconds, every, only } => cross::run(&cross::Options {
+            rustc: rustc.as_deref(),
+            song_seconds: *song_seconds,
+            every: usize::from(*every),
+            only: only.as_deref(),
+        }),
         Chore::Web { rustc, serve, check, picture } => {
             let (serve, check, picture) = (*serve, *check, picture.as_deref());
             web::run(&web::Options { rustc: rustc.as_deref(), serve, check, picture })

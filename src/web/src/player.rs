@@ -48,7 +48,7 @@ impl Player {
     }
 
     pub(crate) fn load(&mut self, preset: usize) {
-        let Some(preset) = Preset::factory().get(preset) else { return };
+        let Some(preset) = Preset::factory_at(preset) else { return };
         self.synth.set_kit(&preset.kit());
         let mut ratios = preset.patch.modes.as_slice().iter().map(|mode| mode.ratio);
         self.shown[1 + SHOWN..].fill_with(|| ratios.next().unwrap_or(0.0));

@@ -153,7 +153,7 @@ fn wheel(folder: &Path) -> Result<Made, String> {
     if !program.is_file() {
         let python = environment.join("bin/python");
         let made = succeeds("python3", &["-m", "venv", &environment.to_string_lossy()])
-            && succeeds(&python.to_string_lossy(), &["-m", "pip", "install", "--quiet", "maturin>=1.9,<2"]);
+            && succeeds(&python.to_string_lossy(), &["-m", "pip", "install", "--quiet", "maturin>=1.10,<2"]);
         if !made {
             return Ok(Made::Nothing("the wheel: maturin could not be installed (python3-venv, pip)".to_owned()));
         }

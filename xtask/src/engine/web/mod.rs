@@ -7,6 +7,7 @@ use crate::engine::cross::Target;
 use crate::files::{copy, replace};
 use crate::shell::root;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// The port of `--serve`.
 const PORT: u16 = 8017;
@@ -40,7 +41,8 @@ pub(crate) fn run(options: &Options) -> Result<(), String> {
     Ok(())
 }
 
-/// Builds the module, with the vector instructions that browsers have had since 2023, and puts it beside the page's files. Returns the folder, which any web server can serve.
+/// Builds the module, with the vector instructions that browsers have had since 2023, and puts it beside the page’s files.
+/// Returns the folder, which any web server can serve.
 fn build(rustc: Option<&Path>) -> Result<PathBuf, String> {
     let mut build = Target::WasmSimd.cargo("build --release --manifest-path src/web/Cargo.toml", rustc)?;
     if !build.status().map_err(|error| format!("cargo: {error}"))?.success() {
@@ -52,7 +54,23 @@ fn build(rustc: Option<&Path>) -> Result<PathBuf, String> {
         copy(&module, &aside.join("sprung.wasm"))
     })?;
     let files = std::fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let sizes = files.flatten().filter_map(|file| file.metadata().ok()).map(|about| about.len());
-    println!("{}: {:.2} MB in all", folder.display(), sizes.sum::<u64>() as f64 / 1e6);
+    let paths: Vec<PathBuf> = files.flatten().map(|file| file.path()).collect();
+    let plain: u64 = paths.iter().filter_map(|path| path.metadata().ok()).map(|about| about.len()).sum();
+    let compressed =
+        compressed(&paths).map_or(String::new(), |bytes| format!(", {:.1} MB compressed", megabytes(bytes)));
+    println!("{}: {:.1} MB in all{compressed}", folder.display(), megabytes(plain));
     Ok(folder)
+}
+
+fn megabytes(bytes: u64) -> f64 {
+    bytes as f64 / 1e6
+}
+
+/// How many bytes a web server sends that compresses each file; none without gzip.
+fn compressed(paths: &[PathBuf]) -> Option<u64> {
+    let sent = |path: &PathBuf| {
+        let output = Command::new("gzip").args(["-9", "--stdout"]).arg(path).output().ok()?;
+        output.status.success().then_some(output.stdout.len() as u64)
+    };
+    paths.iter().map(sent).sum()
 }
