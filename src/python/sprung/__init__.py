@@ -257,6 +257,23 @@ def batch(
     ``jobs`` is a file, or jobs as dictionaries. ``shard`` is ``(i, n)``. ``progress`` is called with how many jobs are done,
     of how many.
     """
+    path = _make_batch(jobs, out, shard=shard, resume=resume, seed=seed, format=format, at_once=at_once, progress=progress)
+    with open(path, encoding="utf-8") as lines:
+        return [json.loads(line) for line in lines]
+
+
+def _make_batch(
+    jobs: str | os.PathLike[str] | Iterable[Mapping[str, Any]],
+    out: str | os.PathLike[str],
+    *,
+    shard: tuple[int, int],
+    resume: bool,
+    seed: int,
+    format: str,
+    at_once: int | None,
+    progress: Callable[[int, int], object] | None = None,
+) -> str:
+    """As :func:`batch`, but gives the path of the manifest, which may be longer than memory."""
     if format not in ("wav", "flac"):
         raise Error(f"format: ‘{format}’: expected wav or flac")
     with ExitStack() as stack:
@@ -269,8 +286,7 @@ def batch(
                 file.writelines(json.dumps(_plain(job)) + "\n" for job in jobs)
         _sprung.batch(path, os.fspath(out), shard, resume, seed, format == "flac", at_once, progress)
     name = "manifest.jsonl" if shard[1] == 1 else f"manifest-{shard[0]}-of-{shard[1]}.jsonl"
-    with open(os.path.join(out, name), encoding="utf-8") as lines:
-        return [json.loads(line) for line in lines]
+    return os.path.join(out, name)
 
 
 def _plain(value: Any) -> Any:
