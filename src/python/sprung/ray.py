@@ -18,7 +18,8 @@ from typing import Any, Union
 import ray
 from ray.exceptions import RayError, RayTaskError
 
-from . import Error, _make_batch
+from ._batch import make
+from ._sprung import Error
 
 __all__ = ["batch"]
 
@@ -98,7 +99,7 @@ def _wait_and_make(jobs: _Jobs, out: str, **options: Any) -> None:
     started = time.monotonic()
     while True:
         try:
-            _make_batch(jobs, out, **options)
+            make(jobs, out, **options)
             return
         except Error as error:
             if not str(error).endswith("another process is writing it") or time.monotonic() - started > _LOCKED:
