@@ -63,13 +63,16 @@ def batch(
             _result(done, waiting.pop(done))
             if progress is not None:
                 progress(shards - len(waiting), shards)
+        whole = start(None)
+        waiting[whole] = "the manifest of the whole"
+        _result(whole, waiting[whole])
+        del waiting[whole]
     finally:
         for left in waiting:
             ray.cancel(left)
         if waiting:
             # Whoever calls again must not meet them.
             ray.wait(list(waiting), num_returns=len(waiting), timeout=_LOCKED)
-    _result(start(None), "the manifest of the whole")
     return Path(out, "manifest.jsonl")
 
 

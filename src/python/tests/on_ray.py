@@ -76,6 +76,11 @@ def made(folder: Path) -> int:
     return sum(1 for _ in folder.glob("*/*.wav"))
 
 
+def made_by(manifest: Path) -> int:
+    """How many lines a manifest has."""
+    return manifest.read_bytes().count(b"\n")
+
+
 def writers(folder: Path) -> dict[int, Path]:
     """The processes that write a manifest in a folder, beside this one."""
     found = {}
@@ -111,13 +116,12 @@ def test_a_worker_is_killed_half_way(cluster: Any, alone: Path, tmp_path: Path) 
     told: list[tuple[int, int]] = []
 
     def kill() -> None:
-        while not killed:
+        while not killed and made(out) < JOBS:
             for process, manifest in writers(out).items():
-                os.kill(process, signal.SIGKILL)
-                lines = manifest.read_bytes().count(b"\n")
-                # It may have been about to end.
-                if lines < JOBS // SHARDS:
-                    killed.append((process, manifest.name, lines))
+                # In the middle of its shard.
+                if made_by(manifest) in range(10, 40):
+                    os.kill(process, signal.SIGKILL)
+                    killed.append((process, manifest.name, made_by(manifest)))
                     break
 
     jobs = tmp_path / "jobs.jsonl"
@@ -126,6 +130,7 @@ def test_a_worker_is_killed_half_way(cluster: Any, alone: Path, tmp_path: Path) 
     manifest = on_ray.batch(jobs, out, seed=SEED, shards=SHARDS, progress=lambda done, of: told.append((done, of)))
     watch.join()
     [(process, name, lines)] = killed
+    assert 10 <= lines < JOBS // SHARDS
     print(f"killed process {process} after {lines} of {JOBS // SHARDS} lines of {name}")
     assert manifest == out / "manifest.jsonl" and told[-1] == (SHARDS, SHARDS) and len(told) == SHARDS
     assert_same(out, alone)
