@@ -18,7 +18,7 @@ const JOBS: &str = r#"{"preset": "Kick", "note": "C2", "length": 0.1, "tail": "n
 const COUNT: usize = 25;
 
 /// Every file below a folder, with its contents.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+pub(crate) fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut all = BTreeMap::new();
     let mut open = vec![folder.to_owned()];
     while let Some(next) = open.pop() {
@@ -39,7 +39,7 @@ fn lines(sandbox: &Sandbox, manifest: &str) -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-fn start(sandbox: &Sandbox, args: &str) -> Child {
+pub(crate) fn start(sandbox: &Sandbox, args: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sprung"));
     command.current_dir(sandbox.path("")).args(args.split_whitespace()).stderr(Stdio::null());
     command.spawn().unwrap()

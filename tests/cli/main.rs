@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod batches;
+mod batches_at_scale;
 #[cfg(unix)]
 mod completion;
 mod fits;

@@ -1,5 +1,6 @@
 //! `cargo xtask …`: the project's chores.
 
+mod batch_table;
 mod bless;
 mod bundle;
 mod dist;
@@ -67,6 +68,12 @@ enum Chore {
         #[arg(long = "try")]
         trial: bool,
     },
+    /// Time `sprung batch` beside Python's plugin hosts on the same notes, and print a table of it.
+    BatchTable {
+        /// Sounds of a second each.
+        #[arg(long, default_value_t = 2000, value_parser = clap::value_parser!(u32).range(20..))]
+        sounds: u32,
+    },
     #[command(flatten)]
     Engine(engine::Chore),
 }
@@ -97,6 +104,7 @@ fn main() -> ExitCode {
         Chore::Uninstall(place) => install::uninstall(place.scope()),
         Chore::Bless { case } => bless::run(case.as_deref()),
         Chore::Dist { no_plugin, wheel, trial } => dist::run(&dist::Options { no_plugin, wheel, trial }),
+        Chore::BatchTable { sounds } => batch_table::run(sounds),
         Chore::Engine(chore) => engine::run(&chore),
     };
     match result {

@@ -9,6 +9,10 @@ const EXCUSED: &[(&str, &str)] = &[
     ("round_trip_of_every_preset", "it takes minutes: ‘cargo test --release --test fit -- --include-ignored’ runs it"),
     ("recordings", RECORDINGS),
     ("layers_of_recordings", RECORDINGS),
+    (
+        "batches_at_scale::killed_ten_times_or_in_four_shards_it_is_the_same",
+        "it takes minutes: ‘cargo test --release --test cli -- --ignored at_scale’ runs it",
+    ),
 ];
 
 const RECORDINGS: &str =

@@ -14,11 +14,10 @@ from __future__ import annotations
 
 import base64
 import io
-import json
 import os
 import tempfile
 import wave
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Union
@@ -27,6 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _sprung
+from ._batch import batch
 from ._sprung import Error, params, presets
 
 __all__ = ["Error", "Patch", "Sound", "analyze", "batch", "diff", "fit", "params", "presets", "render"]
@@ -239,51 +239,6 @@ def fit(
 def diff(expected: SoundLike, actual: SoundLike) -> dict[str, Any] | None:
     """In what two sounds of one rate differ; ``None`` if they are the same, bit for bit."""
     return _sprung.diff(_sound(expected), _sound(actual))
-
-
-def batch(
-    jobs: str | os.PathLike[str] | Iterable[Mapping[str, Any]],
-    out: str | os.PathLike[str],
-    *,
-    shard: tuple[int, int] = (1, 1),
-    resume: bool = False,
-    seed: int = 0,
-    format: str = "wav",
-    at_once: int | None = None,
-    progress: Callable[[int, int], object] | None = None,
-) -> list[dict[str, Any]]:
-    """Makes a batch of sounds, as ``sprung batch`` does, and gives the lines of its manifest.
-
-    ``jobs`` is a file, or jobs as dictionaries. ``shard`` is ``(i, n)``. ``progress`` is called with how many jobs are done,
-    of how many.
-    """
-    if format not in ("wav", "flac"):
-        raise Error(f"format: ‘{format}’: expected wav or flac")
-    with ExitStack() as stack:
-        if isinstance(jobs, (str, os.PathLike)):
-            path = os.fspath(jobs)
-        else:
-            folder = stack.enter_context(tempfile.TemporaryDirectory())
-            path = os.path.join(folder, "jobs.jsonl")
-            with open(path, "w", encoding="utf-8") as file:
-                file.writelines(json.dumps(_plain(job)) + "\n" for job in jobs)
-        _sprung.batch(path, os.fspath(out), shard, resume, seed, format == "flac", at_once, progress)
-    name = "manifest.jsonl" if shard[1] == 1 else f"manifest-{shard[0]}-of-{shard[1]}.jsonl"
-    with open(os.path.join(out, name), encoding="utf-8") as lines:
-        return [json.loads(line) for line in lines]
-
-
-def _plain(value: Any) -> Any:
-    """A value that JSON has."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(inner) for key, inner in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(inner) for inner in value]
-    if isinstance(value, np.generic):
-        return value.item()
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
 def _text(value: Any) -> str:
