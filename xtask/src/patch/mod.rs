@@ -242,12 +242,6 @@ mod tests {
         }
         assert_eq!(table(&ours, &["workspace", "resolver"]), table(&plugin, &["workspace", "resolver"]));
         assert_eq!(table(&ours, &["workspace", "lints"]), table(&plugin, &["lints"]));
-        assert_eq!(table(&ours, &["profile", "dev"]), table(&plugin, &["profile", "dev"]));
-        assert_eq!(
-            table(&ours, &["profile", "release", "debug"]),
-            table(&plugin, &["profile", "release", "debug"]),
-            "line numbers"
-        );
         for Package { name, .. } in PACKAGES {
             let place = table(&plugin, &["patch", "crates-io", name, "path"]).as_str().unwrap();
             assert_eq!(place, format!("../{PLACE}/{name}"));
