@@ -3,7 +3,7 @@
 use super::controls::Hint;
 use super::text::{line, width};
 use super::theme::{Palette, SMALL};
-use egui::{Align2, Rect, Ui, pos2};
+use egui::{Align2, Id, Rect, Role, Sense, Ui, WidgetInfo, pos2};
 use sprung::engine::Telemetry;
 use sprung::text::counted;
 
@@ -61,8 +61,14 @@ pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, righ
             let rest = Rect::from_min_max(pos2(title.right() + 10.0, left.top()), left.max);
             line(painter, rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
         }
+        None if message.is_empty() => {}
         None => {
             line(painter, left, Align2::LEFT_CENTER, message, SMALL, palette.warning);
+            let response = ui.interact(left, Id::unique("message"), Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, message));
+            if width(painter, message, SMALL) > left.width() {
+                response.on_hover_text(message);
+            }
         }
     }
 }

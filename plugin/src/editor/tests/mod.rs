@@ -1,8 +1,10 @@
 //! The window without a screen: driven by simulated input, compared with pictures.
 
+mod animation;
 mod browsing;
 mod dropped;
 mod fake_host;
+mod fitted;
 mod gestures;
 mod mode_edits;
 mod moving;
