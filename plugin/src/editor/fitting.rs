@@ -6,7 +6,7 @@ use super::files;
 use super::recordings::Work;
 use super::text::line;
 use super::theme::{PADDING, Palette, RADIUS, SMALL, TEXT};
-use egui::{Align2, Id, Rect, Response, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use sprung::preset::Playable;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -85,8 +85,7 @@ pub(super) fn paint(ui: &Ui, within: Rect, face: &Face, palette: &Palette) -> Re
     let panel = Rect::from_center_size(within.center(), size);
     // What lies under it is not to be hit through it.
     ui.interact(panel, Id::unique("fit"), Sense::click_and_drag());
-    ui.painter().rect_filled(panel.expand(4.0), RADIUS, palette.ground);
-    palette.paint_panel(ui.painter(), panel);
+    ui.painter().rect(panel, RADIUS, palette.ground, Stroke::new(1.0, palette.line), StrokeKind::Inside);
     let inner = panel.shrink(PADDING + 2.0);
     let percent = Rect::from_min_max(pos2(inner.right() - 44.0, inner.top()), pos2(inner.right(), inner.top() + 18.0));
     let written = format!("{:.0} %", 100.0 * face.share);

@@ -1,4 +1,4 @@
-//! The picture that the project's front page shows: a bell that is struck twice and rings down, as an animated PNG.
+//! The picture that README shows: a bell on which two keys are struck and that rings down, as an animated PNG.
 
 use super::pictures::{differing, finish, rounded};
 use super::sounding::Band;

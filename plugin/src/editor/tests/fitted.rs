@@ -119,7 +119,7 @@ fn pictures_of_the_panel_are_as_accepted() {
                 theme.apply(ui.ctx());
             }
             let window = ui.ctx().content_rect();
-            ui.painter().rect_filled(window, 0.0, theme.palette().ground);
+            ui.painter().rect_filled(window, 0.0, theme.palette().panel);
             let face = Face { name: "church bell, struck softly.wav", share: 0.43, is_ending };
             paint(ui, window, &face, theme.palette());
         };
