@@ -13,7 +13,7 @@
 //! | `render` | the offline renderer (feature `render`) |
 //! | `request` | what to render and how, by the names that the command, batches and Python share (feature `batch`) |
 //! | `batch` | sounds by the thousand, from a file of jobs, with exact labels (feature `batch`) |
-//! | `analysis` | what sound is measured with: the modes of a recorded strike, differences, spectra (feature `analysis`) |
+//! | `analysis` | what sound is measured with: the modes of a recorded strike, differences, spectra (feature `fit`), and figures of them (feature `analysis`) |
 //! | `lab` | ways to integrate a mass on a spring, side by side: what the oscillator is measured against (feature `lab`) |
 //! | `realtime` | sound devices, MIDI ports and a terminal to play from (feature `realtime`) |
 //!
@@ -39,7 +39,7 @@
 //! # }
 //! ```
 
-#[cfg(feature = "analysis")]
+#[cfg(feature = "fit")]
 pub mod analysis;
 #[cfg(feature = "batch")]
 pub mod batch;

@@ -1,4 +1,6 @@
-//! Makes text from outside (files, names, devices) safe to show in a terminal or to call a file by.
+//! Makes text from outside (files, names, devices) safe to show in a terminal or to call a file by; [`number`]s as people read them.
+
+pub mod number;
 
 use std::borrow::Cow;
 

@@ -1,17 +1,20 @@
 //! What sound is measured with: fits, spectra, levels, digests, differences and figures. All arithmetic is in `f64`.
 //!
 //! For tests, documentation and people; nothing here is real-time safe, and no sample that the engine makes depends
-//! on it.
+//! on it. With the feature `fit` alone there are no digests, figures and measures.
 
 pub mod alignment;
 pub mod comparison;
 pub mod damped_sine;
 pub mod diff;
+#[cfg(feature = "analysis")]
 pub mod digest;
+#[cfg(feature = "analysis")]
 pub mod figure;
 pub mod fit;
 pub mod level;
 pub mod log_mel;
+#[cfg(feature = "analysis")]
 pub mod measures;
 pub mod modes;
 pub mod spectrum;

@@ -56,9 +56,6 @@ pub(super) struct Args {
     output: PathBuf,
 }
 
-/// Most characters of a preset's name.
-const LONGEST_NAME: usize = 60;
-
 pub(super) fn run(args: &Args) -> Result<()> {
     let target = Target::new(&args.output);
     if let Target::Path(path) = &target {
@@ -87,7 +84,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let fitted = fitted?;
     fitted.warnings.iter().for_each(|warning| complain("warning", warning));
 
-    let preset = fitted.preset(&name(args), &comment(&takes, &fitted));
+    let preset = fitted.named(&name(args), &takes);
     write(&mut output, preset.to_toml().as_bytes())?;
     if let Some(mut page) = page {
         let title = format!("{}: fitted to {}", preset.name, file_name(&takes[fitted.base].name));
@@ -143,18 +140,11 @@ fn file_name(name: &str) -> String {
 /// The preset's name: as asked for, or that of its file.
 fn name(args: &Args) -> String {
     let stem = args.output.file_stem().and_then(OsStr::to_str).filter(|stem| *stem != "-");
-    let name = args.name.as_deref().or(stem).unwrap_or("Fitted");
-    name.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).take(LONGEST_NAME).collect()
-}
-
-/// What the preset was fitted to, by file names only.
-fn comment(takes: &[Take], fitted: &Fitted) -> String {
-    let names: Vec<String> = takes.iter().map(|take| file_name(&take.name)).collect();
-    format!("Fitted to {}.\n{}", names.join(", "), report::summary(fitted))
+    args.name.as_deref().or(stem).unwrap_or("Fitted").to_owned()
 }
 
 fn text(takes: &[Take], fitted: &Fitted) -> String {
-    let mut text = report::summary(fitted) + "\n";
+    let mut text = fitted.summary() + "\n";
     if takes.len() > 1 {
         for (take, distance) in takes.iter().zip(&fitted.distances) {
             text += &format!("{}: {distance:.2} dB\n", take.name);

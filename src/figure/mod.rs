@@ -2,7 +2,6 @@
 
 pub mod colour;
 pub mod envelope;
-pub mod number;
 pub mod page;
 pub mod panel;
 

@@ -1,8 +1,8 @@
 //! A chart with axes in units, and lines that are clipped at its edges.
 
 use super::colour::{GRID, INK};
-use super::number::short;
 use super::{Area, Drawn, text};
+use crate::text::number::short;
 use libm::{ceil, floor, log10, pow};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::*;

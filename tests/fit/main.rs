@@ -97,7 +97,7 @@ fn round_trips(notes: &[Note]) -> Result<(), Failed> {
 }
 
 /// Calls of the progress, after one of which the work is cancelled, and how often it may be told again.
-const CALLS: [usize; 4] = [1, 2, 6, 20];
+const CALLS: [usize; 6] = [1, 2, 6, 20, 60, 150];
 const AGAIN: usize = 8;
 
 /// Cancelled at any time, a fit ends with the next word of its progress.

@@ -1,4 +1,4 @@
-//! Files that are dropped on the window: presets join the user's sounds, scales and mappings tune the sound.
+//! Files that are dropped on the window: presets join the user's sounds, scales and mappings tune the sound, recordings become one.
 
 use super::controls::Controls;
 use super::{files, tuning_page};
@@ -12,17 +12,24 @@ pub(super) fn dropped(ui: &Ui) -> Vec<PathBuf> {
     ui.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect())
 }
 
-/// Does what belongs to a file. Returns a message.
+fn ending(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+/// Whether a file is called as recordings are.
+pub(super) fn is_recording(path: &Path) -> bool {
+    ["aif", "aifc", "aiff", "flac", "mp3", "oga", "ogg", "wav", "wave"].contains(&ending(path).as_str())
+}
+
+/// Does what belongs to a file that is no recording. Returns a message.
 pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    match ending.as_str() {
+    match ending(path).as_str() {
         "scl" | "kbm" => tuning_page::take(path, controls),
         "toml" => sound(path, library, controls),
-        "wav" | "aif" | "aiff" | "flac" | "ogg" | "mp3" => {
-            let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            format!("a recording becomes a sound by the command: sprung fit “{}” -o “{name}.toml”", path.display())
-        }
-        _ => format!("{}: expected a preset (.toml), a scale (.scl) or a keyboard mapping (.kbm)", path.display()),
+        _ => format!(
+            "{}: expected a recording (.wav, .flac …), a preset (.toml), a scale (.scl) or a keyboard mapping (.kbm)",
+            path.display()
+        ),
     }
 }
 

@@ -13,7 +13,7 @@
 //! | `piano`, `meter` | the keyboard; levels |
 //! | `pages`, `kit_page`, `tuning_page`, `voices_panel`, `key_grid` | the tabs and their pages: a kit's keys, the tuning, the voices; all keys as a grid |
 //! | `manual`, `manual_text` | the manual over the window; its pages taken apart |
-//! | `drops` | files that are dropped on the window |
+//! | `drops`, `recordings`, `fitting` | files that are dropped on the window; recordings that become a sound in the background; how far that is |
 //! | `browser`, `details`, `star`, `sounds`, `files` | the page on which sounds are found and saved; the sounds that there are |
 //! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets, and what they are painted with |
 //! | `variation` | other sounds by chance, with locks |
@@ -36,6 +36,7 @@ mod curves;
 mod details;
 mod drops;
 mod files;
+mod fitting;
 mod focus;
 mod fonts;
 mod gestures;
@@ -59,6 +60,7 @@ mod outlines;
 mod pages;
 mod phase;
 mod piano;
+mod recordings;
 mod ringing;
 mod routes;
 mod scope;

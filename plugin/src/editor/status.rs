@@ -66,8 +66,14 @@ pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, righ
             let rest = Rect::from_min_max(pos2(title.right() + 10.0, left.top()), left.max);
             line(painter, rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
         }
+        None if message.is_empty() => {}
         None => {
             line(painter, left, Align2::LEFT_CENTER, message, SMALL, palette.warning);
+            let response = ui.interact(left, Id::unique("message"), Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, message));
+            if width(painter, message, SMALL) > left.width() {
+                response.on_hover_text(message);
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use super::browser::Browser;
 use super::controls::{Controls, Hands};
 use super::drops;
 use super::files::{load, neighbour, summary};
+use super::fitting::Fitting;
 use super::focus::Focus;
 use super::header::{self, Header, Wish};
 use super::history::{History, restore};
@@ -61,6 +62,7 @@ pub(super) struct Window {
     focus: Focus,
     pages: Pages,
     manual: Manual,
+    fitting: Fitting,
     over: Option<Over>,
     /// The other one of two versions of the sound.
     other: Option<State>,
@@ -92,6 +94,7 @@ impl Window {
             focus: Focus::default(),
             pages: Pages::default(),
             manual: Manual::default(),
+            fitting: Fitting::default(),
             over: None,
             other: None,
             is_b: false,
@@ -184,9 +187,17 @@ impl Window {
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.over = None;
         }
-        for path in drops::dropped(ui) {
+        let (recordings, files): (Vec<_>, Vec<_>) =
+            drops::dropped(ui).into_iter().partition(|path| drops::is_recording(path));
+        for path in files {
             self.message = drops::take(&path, self.browser.library(), &mut controls);
             self.browser.forget();
+        }
+        if !recordings.is_empty() {
+            self.message = self.fitting.begin(recordings);
+        }
+        if let Some(message) = self.fitting.show(ui, layout.modes, &mut controls) {
+            self.message = message;
         }
         self.browser.follow_time(ui.input(|input| input.time), &controls);
         self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);

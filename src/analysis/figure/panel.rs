@@ -2,7 +2,8 @@
 
 use crate::analysis::spectrum::spectrogram;
 use crate::figure::colour::{GRID, INK, viridis};
-use crate::figure::{Area, Drawn, envelope::envelope, number::short, text};
+use crate::figure::{Area, Drawn, envelope::envelope, text};
+use crate::text::number::short;
 use libm::pow;
 use plotters::prelude::*;
 

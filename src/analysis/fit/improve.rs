@@ -31,8 +31,8 @@ type Found = (Draft, Option<Strike>);
 /// The draft of a take with at most `most` modes, and the strike that its modes were found in.
 pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) -> bool) -> Result<Found> {
     let mut tell = |share: f64| if progress(share) { Ok(()) } else { Err(Error::Interrupted) };
-    let mut listener = Listener::new(take);
     let found = drafts(take, most, &mut |share| tell(ANALYSED * share))?;
+    let mut listener = Listener::new(take, progress);
     let (count, mut best, mut least) = (found.len() as f64, None, f64::INFINITY);
     for (n, (draft, strike)) in found.into_iter().enumerate() {
         let lines = match &strike {
@@ -41,12 +41,13 @@ pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) ->
         };
         let part = |share: f64| ANALYSED + (1.0 - ANALYSED) * (n as f64 + share) / count;
         let slow = take.rise > SLOW;
-        let draft = improved(draft, &mut listener, &lines, most, slow, &mut |share| tell(part(share)))?;
+        let draft = improved(draft, &mut listener, &lines, most, slow, &part)?;
         let distance = listener.distance(&draft, usize::MAX);
         if distance < least {
             (best, least) = (Some((draft, strike)), distance);
         }
     }
+    listener.tell(1.0)?;
     best.ok_or(Error::Interrupted)
 }
 
@@ -92,13 +93,13 @@ fn improved(
     lines: &Lines,
     most: usize,
     slow: bool,
-    tell: &mut dyn FnMut(f64) -> Result<()>,
+    part: &dyn Fn(f64) -> f64,
 ) -> Result<Draft> {
     if slow {
         listener.choose_swell(&mut draft);
     }
     listener.choose_hardness(&mut draft);
-    tell(0.3)?;
+    listener.tell(part(0.3))?;
     // Twice: what decays in two stages gets two beds.
     for (pass, seed) in [(1.0, 11), (2.0, 12)] {
         let heard = listener.hear(&draft);
@@ -113,7 +114,7 @@ fn improved(
         if listener.distance(&other, usize::MAX) < listener.distance(&draft, usize::MAX) - WORTH_A_BED {
             draft = other;
         }
-        tell(0.3 + 0.2 * pass)?;
+        listener.tell(part(0.3 + 0.2 * pass))?;
     }
     listener.correct(&mut draft, ROUNDS);
     if slow {
@@ -122,6 +123,6 @@ fn improved(
     listener.choose_hardness(&mut draft);
     listener.choose_sweep(&mut draft);
     listener.correct(&mut draft, ROUNDS);
-    tell(1.0)?;
+    listener.tell(part(1.0))?;
     Ok(draft)
 }

@@ -15,9 +15,11 @@ mod layers;
 mod levels;
 mod pitch;
 mod refine;
+#[cfg(feature = "analysis")]
 pub mod report;
 mod simplex;
 mod start;
+mod summary;
 mod sweep;
 mod take;
 mod tuned;
@@ -31,7 +33,7 @@ use super::modes::Strike;
 use crate::error::{Error, Result};
 use crate::patch::Patch;
 use crate::preset::{Guide, Preset};
-use crate::units::{key_from_frequency, note_name};
+use crate::units::key_from_frequency;
 use audition::Audition;
 use draft::MOST_MODES;
 use layers::Layer;
@@ -186,14 +188,6 @@ impl Fitted {
             patch: self.patch.clone(),
             tuning: None,
         }
-    }
-
-    /// The key as musicians write it: `C4`, or `C4 +13 ct` where it lies between two.
-    pub fn key_name(&self) -> String {
-        let nearest = self.key.round().clamp(0.0, 127.0);
-        let cents = (100.0 * (self.key - nearest)).round();
-        let name = note_name(nearest as u8);
-        if cents == 0.0 { name } else { format!("{name} {cents:+} ct") }
     }
 
     /// Sample rate in Hz of its sounds.

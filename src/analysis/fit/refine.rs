@@ -6,6 +6,7 @@ use super::draft::{Draft, Noise, Swell};
 use super::simplex;
 use super::take::Prepared;
 use crate::analysis::log_mel::{HOP, LogMel, MelBands};
+use crate::error::{Error, Result};
 use crate::params::NoiseDecay;
 use crate::units::key_from_frequency;
 
@@ -39,17 +40,36 @@ pub(super) struct Listener<'a> {
     bands: MelBands,
     take: &'a Prepared,
     pub(super) target: LogMel,
+    progress: &'a mut dyn FnMut(f64) -> bool,
+    /// The share of the work that was told last, and whether the answer was to end.
+    told: f64,
+    is_over: bool,
 }
 
 impl<'a> Listener<'a> {
-    pub(super) fn new(take: &'a Prepared) -> Self {
+    pub(super) fn new(take: &'a Prepared, progress: &'a mut dyn FnMut(f64) -> bool) -> Self {
         let mut bands = MelBands::new();
         let target = bands.measure(&take.mean);
-        Self { audition: Audition::new(), bands, take, target }
+        Self { audition: Audition::new(), bands, take, target, progress, told: 0.0, is_over: false }
+    }
+
+    /// Tells the share of the work that is done.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] if it is to end.
+    pub(super) fn tell(&mut self, share: f64) -> Result<()> {
+        self.told = share;
+        self.is_over = self.is_over || !(self.progress)(share);
+        if self.is_over { Err(Error::Interrupted) } else { Ok(()) }
     }
 
     /// The bands of a draft over the first windows.
     fn listen(&mut self, draft: &Draft, windows: usize) -> LogMel {
+        // Hundreds of drafts may be played between two shares. Once it is over they cost nothing, and what they are is of no
+        // interest.
+        if self.tell(self.told).is_err() {
+            return self.target.clone();
+        }
         let frames = self.take.mean.len().min(windows.saturating_mul(HOP));
         let key = key_from_frequency(draft.note, 440.0);
         let sound = self.audition.mean(&draft.patch(), key, draft.velocity, frames + 1024);

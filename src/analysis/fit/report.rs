@@ -5,8 +5,8 @@ use crate::analysis::figure::Render;
 use crate::analysis::figure::sound::{DrawnMode, SoundFigure, modes_of};
 use crate::analysis::modes::Mode;
 use crate::error::Result;
-use crate::figure::number::measured;
 use crate::figure::page::{STYLE, data_link, escaped, fill};
+use crate::text::number::measured;
 use crate::units::frequency_from_key;
 use libm::{fabs, log2};
 
@@ -35,7 +35,7 @@ pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
     Ok(fill(PAGE, |name| match name {
         "style" => STYLE.to_owned(),
         "title" => escaped(title),
-        "summary" => escaped(&summary(fitted)),
+        "summary" => escaped(&fitted.summary()),
         "recording" => data_link("audio/wav", &wav([first, last], fitted.sample_rate() as u32)),
         "preset" => data_link("audio/wav", &wav([left, right], fitted.sample_rate() as u32)),
         "recording-figure" => recording.clone(),
@@ -43,30 +43,6 @@ pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
         "note" => escaped(&note(fitted, &modes)),
         _ => rows(fitted, &modes),
     }))
-}
-
-/// What came of the fit, in a few sentences.
-pub fn summary(fitted: &Fitted) -> String {
-    let noisy = fitted.patch.modes.as_slice().iter().filter(|mode| mode.strike < 0.5).count();
-    let struck = fitted.patch.modes.as_slice().len() - noisy;
-    let key = if fitted.is_estimated { "estimated as " } else { "" };
-    let mut text = format!(
-        "Key {key}{} ({} Hz), {struck} modes that are struck and {noisy} that noise moves, {:.2} dB from the recording.",
-        fitted.key_name(),
-        measured(frequency_from_key(fitted.key, super::A4)),
-        fitted.distances[fitted.base],
-    );
-    if let Some(explained) = &fitted.explained {
-        text += &format!(
-            " As a {}: {} of {} modes are its own, {:.1} cents off on average; {:.1} dB of their energy remain unexplained.",
-            explained.model.replace('_', " "),
-            explained.modes.0,
-            explained.modes.1,
-            explained.cents,
-            explained.unexplained_db
-        );
-    }
-    text
 }
 
 fn note(fitted: &Fitted, modes: &[DrawnMode]) -> String {

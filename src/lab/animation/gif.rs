@@ -3,7 +3,8 @@
 use super::{Animation, Track, coils, share};
 use crate::error::{Error, Result};
 use crate::figure::colour::{GRID, INK, series};
-use crate::figure::{Area, Drawn, Picture, number::short, text};
+use crate::figure::{Area, Drawn, Picture, text};
+use crate::text::number::short;
 use ::gif::{Encoder, Frame, Repeat};
 use plotters::prelude::*;
 use std::borrow::Cow;

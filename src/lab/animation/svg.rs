@@ -1,7 +1,7 @@
 //! The animation as a self-moving SVG (SMIL), and as a page around it with a pause button.
 
 use super::{Animation, Track, coils, share};
-use crate::figure::number::short;
+use crate::text::number::short;
 use std::fmt::Write;
 
 const ROW: f64 = 76.0;

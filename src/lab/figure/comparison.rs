@@ -5,9 +5,9 @@ use super::super::energy::Energy;
 use super::super::system::State;
 use super::super::trajectory::Trajectory;
 use super::legend;
-use crate::figure::number::short;
 use crate::figure::panel::{Axis, Panel, Stroke, line};
 use crate::figure::{Area, Drawn, Picture, colour, text};
+use crate::text::number::short;
 use plotters::prelude::*;
 use std::ops::Range;
 

@@ -5,8 +5,8 @@ use super::energy::Energy;
 use super::method::{Method, Order};
 use super::system::{Spring, State, System};
 use super::trajectory::Trajectory;
-use crate::figure::number::{measured, short};
 use crate::figure::page;
+use crate::text::number::{measured, short};
 use serde_json::{Value, json};
 
 const PAGE: &str = include_str!("report.html");

@@ -1,9 +1,11 @@
 //! The window without a screen: driven by simulated input, compared with pictures.
 
+mod animation;
 mod body_numbers;
 mod browsing;
 mod dropped;
 mod fake_host;
+mod fitted;
 mod gestures;
 mod mode_edits;
 mod moving;

@@ -12,8 +12,8 @@ use crate::state::State;
 use egui::{Pos2, Rect, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use image::RgbaImage;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{Rgba, RgbaImage};
 use sprung::preset::Playable;
 use sprung::preset::library::Library;
 use std::fs::File;
@@ -90,18 +90,26 @@ fn check(name: &str, found: RgbaImage) {
     assert_eq!(differing, 0, "{name}: see target/pictures; `cargo xtask bless pictures` accepts the present pictures");
 }
 
+/// A picture with its colours in steps.
+pub(super) fn rounded(picture: &RgbaImage) -> RgbaImage {
+    let mut picture = picture.clone();
+    for Rgba([colours @ .., _]) in picture.pixels_mut() {
+        colours.iter_mut().for_each(|level| *level = level.saturating_add(STEP / 2) / STEP * STEP);
+    }
+    picture
+}
+
 /// Stores a picture in a small file.
 fn store(picture: &RgbaImage, file: &Path) {
-    let mut rgb = image::DynamicImage::ImageRgba8(picture.clone()).into_rgb8();
-    rgb.iter_mut().for_each(|level| *level = level.saturating_add(STEP / 2) / STEP * STEP);
+    let rgb = image::DynamicImage::ImageRgba8(rounded(picture)).into_rgb8();
     let to = BufWriter::new(File::create(file).unwrap());
     rgb.write_with_encoder(PngEncoder::new_with_quality(to, CompressionType::Best, FilterType::Adaptive)).unwrap();
 }
 
 /// How many pixels differ.
-fn differing(one: &RgbaImage, other: &RgbaImage) -> usize {
+pub(super) fn differing(one: &RgbaImage, other: &RgbaImage) -> usize {
     assert_eq!(one.dimensions(), other.dimensions());
-    let differs = |(one, other): (&image::Rgba<u8>, &image::Rgba<u8>)| {
+    let differs = |(one, other): (&Rgba<u8>, &Rgba<u8>)| {
         one.0.iter().zip(other.0).any(|(one, other)| one.abs_diff(other) > TOLERANCE)
     };
     one.pixels().zip(other.pixels()).filter(|pair| differs(*pair)).count()

@@ -1,6 +1,7 @@
 //! Synthetic strikes whose modes are known, clean and in noise, and sounds that are no strikes.
 
 mod dense;
+#[cfg(feature = "analysis")]
 mod presets;
 
 use super::fit::energy;

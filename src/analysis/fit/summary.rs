@@ -1,0 +1,58 @@
+//! What came of a fit, in words: for the preset's comment, and to tell users.
+
+use super::{A4, Fitted, Take};
+use crate::preset::Preset;
+use crate::text::number::measured;
+use crate::units::{frequency_from_key, note_name};
+use std::path::Path;
+
+/// Most characters of a preset's name.
+const LONGEST_NAME: usize = 60;
+
+impl Fitted {
+    /// The preset that was fitted to these takes. Its name is cut off where it is too long, and its comment calls the takes by
+    /// their file names alone. Allocates.
+    pub fn named(&self, name: &str, takes: &[Take]) -> Preset {
+        let name: String =
+            name.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).take(LONGEST_NAME).collect();
+        let files: Vec<String> = takes.iter().map(|take| file_name(&take.name)).collect();
+        self.preset(&name, &format!("Fitted to {}.\n{}", files.join(", "), self.summary()))
+    }
+
+    /// What came of the fit, in a few sentences.
+    pub fn summary(&self) -> String {
+        let noisy = self.patch.modes.as_slice().iter().filter(|mode| mode.strike < 0.5).count();
+        let struck = self.patch.modes.as_slice().len() - noisy;
+        let key = if self.is_estimated { "estimated as " } else { "" };
+        let mut text = format!(
+            "Key {key}{} ({} Hz), {struck} modes that are struck and {noisy} that noise moves, {:.2} dB from the recording.",
+            self.key_name(),
+            measured(frequency_from_key(self.key, A4)),
+            self.distances[self.base],
+        );
+        if let Some(explained) = &self.explained {
+            text += &format!(
+                " As a {}: {} of {} modes are its own, {:.1} cents off on average; {:.1} dB of their energy remain unexplained.",
+                explained.model.replace('_', " "),
+                explained.modes.0,
+                explained.modes.1,
+                explained.cents,
+                explained.unexplained_db
+            );
+        }
+        text
+    }
+
+    /// The key as musicians write it: `C4`, or `C4 +13 ct` where it lies between two.
+    pub fn key_name(&self) -> String {
+        let nearest = self.key.round().clamp(0.0, 127.0);
+        let cents = (100.0 * (self.key - nearest)).round();
+        let name = note_name(nearest as u8);
+        if cents == 0.0 { name } else { format!("{name} {cents:+} ct") }
+    }
+}
+
+/// The last part of a path.
+fn file_name(path: &str) -> String {
+    Path::new(path).file_name().map_or(path.to_owned(), |name| name.to_string_lossy().into_owned())
+}
