@@ -55,10 +55,13 @@ pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, righ
     let right_width = width(painter, right, SMALL);
     line(painter, rect, Align2::RIGHT_CENTER, right, SMALL, palette.muted);
     let left = rect.with_max_x(rect.right() - right_width - 16.0);
-    // A message is read out whatever is under the pointer.
     if !message.is_empty() {
+        // A message is read out whatever is under the pointer.
         let response = ui.interact(left, Id::unique("message"), Sense::hover());
-        response.widget_info(|| WidgetInfo::labeled(Role::Status, true, message));
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, message));
+        if hint.is_none() && width(painter, message, SMALL) > left.width() {
+            response.on_hover_text(message);
+        }
     }
     match hint {
         Some(Hint { title, help }) => {
@@ -66,14 +69,8 @@ pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, righ
             let rest = Rect::from_min_max(pos2(title.right() + 10.0, left.top()), left.max);
             line(painter, rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
         }
-        None if message.is_empty() => {}
         None => {
             line(painter, left, Align2::LEFT_CENTER, message, SMALL, palette.warning);
-            let response = ui.interact(left, Id::unique("message"), Sense::hover());
-            response.widget_info(|| WidgetInfo::labeled(Role::Label, true, message));
-            if width(painter, message, SMALL) > left.width() {
-                response.on_hover_text(message);
-            }
         }
     }
 }
