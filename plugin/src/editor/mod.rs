@@ -18,7 +18,6 @@
 //! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets, and what they are painted with |
 //! | `variation` | other sounds by chance, with locks |
 //! | `focus` | who has the keyboard: the host, unless the user types |
-//! | `screen_reader` | tells screen readers what the window shows (the program on Linux) |
 //! | `shown` | the sound that is shown |
 
 mod audition;
@@ -60,8 +59,6 @@ mod piano;
 mod ringing;
 mod routes;
 mod scope;
-#[cfg(all(feature = "standalone", target_os = "linux"))]
-mod screen_reader;
 mod sections;
 mod shown;
 mod snap;

@@ -13,10 +13,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 impl NiceEguiApp for Window {
     fn build(&mut self, context: egui::Context, host: GuiContext, _: &mut Frame) -> Result<(), HandlerError> {
-        #[cfg(all(feature = "standalone", target_os = "linux"))]
-        if host.plugin_api() == PluginApi::Standalone {
-            crate::editor::screen_reader::attach(&context);
-        }
         self.open(host);
         context.set_zoom_factor(self.params.view().zoom as f32 / 100.0);
         Ok(())
