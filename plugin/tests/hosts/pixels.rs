@@ -53,7 +53,8 @@ pub(crate) fn work() -> ExitCode {
     found.save(&file).unwrap();
     let most = differing.iter().map(|[_, _, by]| by).max().unwrap_or(&0);
     let report = format!("{} of {} pixels differ, by {most} at most", differing.len(), width * height);
-    assert!(differing.len() <= HANDFUL, "{report}: see {}; the first: {:?}", file.display(), &differing[..40]);
+    let first: Vec<_> = differing.iter().take(40).collect();
+    assert!(differing.len() <= HANDFUL, "{report}: see {}; the first: {first:?}", file.display());
     println!("{report}: {differing:?}");
     ExitCode::SUCCESS
 }
@@ -72,5 +73,5 @@ fn difference(one: &RgbImage, other: &RgbImage) -> Vec<[u32; 3]> {
         [x, y, by.unwrap_or(0).into()]
     });
     let is_corner = |x: u32, y: u32| x + CORNER >= width && y + CORNER >= height;
-    by.filter(|[x, y, by]| *by > TOLERANCE.into() && !is_corner(*x, *y)).collect()
+    by.filter(|[x, y, by]| *by > u32::from(TOLERANCE) && !is_corner(*x, *y)).collect()
 }
