@@ -69,7 +69,12 @@ impl Stand {
         let jack = Running(jack.spawn().unwrap());
         let screen = Screen::new();
         let onlooker = Onlooker::new(Some(&screen.display));
-        Self { onlooker, screen, server, _jack: jack, folder: tempfile::tempdir().unwrap() }
+        let stand = Self { onlooker, screen, server, _jack: jack, folder: tempfile::tempdir().unwrap() };
+        wait_until("the server", || {
+            let list = stand.command(&["--list"]).output().unwrap().stdout;
+            String::from_utf8_lossy(&list).contains("JACK Output")
+        });
+        stand
     }
 
     fn command(&self, arguments: &[&str]) -> Command {
@@ -88,22 +93,11 @@ impl Stand {
     #[track_caller]
     fn start(&self, arguments: &[&str]) -> (Running, PathBuf) {
         let said = self.folder.path().join("stderr");
-        // The server may need a moment: until then there is nothing to play on.
-        let mut running = None;
-        wait_until("the window", || {
-            let started = running.get_or_insert_with(|| {
-                let mut command = self.command(&["--host", "jack", "--midi-in", "none"]);
-                Running(command.args(arguments).stderr(File::create(&said).unwrap()).spawn().unwrap())
-            });
-            if started.0.try_wait().unwrap().is_some() {
-                let text = std::fs::read_to_string(&said).unwrap();
-                assert!(text.contains("no JACK server is running") || text.contains("JACK"), "{text}");
-                running = None;
-            }
-            self.onlooker.find("Sprung").is_some()
-        });
+        let mut command = self.command(&["--host", "jack", "--midi-in", "none"]);
+        let running = Running(command.args(arguments).stderr(File::create(&said).unwrap()).spawn().unwrap());
+        wait_until("the window", || self.onlooker.find("Sprung").is_some());
         wait_until("a picture", || self.onlooker.sees_a_picture(600, 400));
-        (running.unwrap(), said)
+        (running, said)
     }
 }
 
