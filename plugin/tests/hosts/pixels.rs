@@ -6,6 +6,7 @@ use crate::process::scratch;
 use crate::window::{Editor, Parent, on_a_screen};
 use image::RgbImage;
 use sprung::preset::Preset;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -55,13 +56,27 @@ pub(crate) fn work() -> ExitCode {
     let report = format!("{} of {} pixels differ, by {most} at most", differing.len(), width * height);
     let first: Vec<_> = differing.iter().take(40).collect();
     assert!(differing.len() <= HANDFUL, "{report}: see {}; the first: {first:?}", file.display());
-    println!("{report}: {differing:?}");
+    println!("by more than {TOLERANCE}: {report}; {differing:?}");
+    println!(
+        "how far they are from the picture, which is stored in steps of 4, and how many: {:?}",
+        counts(&found, &accepted)
+    );
     ExitCode::SUCCESS
 }
 
 fn picture(parent: &Parent, width: u32, height: u32) -> RgbImage {
     let pixels = parent.onlooker.pixels(width, height).into_iter().flat_map(|[blue, green, red]| [red, green, blue]);
     RgbImage::from_raw(width, height, pixels.collect()).expect("as many pixels as were asked for")
+}
+
+/// How many pixels differ by how much.
+fn counts(one: &RgbImage, other: &RgbImage) -> BTreeMap<u8, u32> {
+    let mut counts = BTreeMap::new();
+    for (one, other) in one.pixels().zip(other.pixels()) {
+        let by = one.0.iter().zip(other.0).map(|(one, other)| one.abs_diff(other)).max();
+        *counts.entry(by.unwrap_or(0)).or_default() += 1;
+    }
+    counts
 }
 
 /// The pixels that differ by more than the tolerance: column, row and by how much.
