@@ -215,7 +215,13 @@ impl Live {
             self.telemetry.note_event(event);
         }
         self.synth.process(events, left, right);
-        note_sound(&mut self.telemetry, &self.synth, left, right);
+        // Also while no window looks: the end of the program waits for silence.
+        let synth = &self.synth;
+        self.telemetry.note_sound(left, right, synth.is_silent(), || {
+            let mut snapshot = Snapshot::default();
+            synth.show(&mut snapshot);
+            snapshot
+        });
         if !self.synth.is_silent() {
             self.repaint.request_repaint();
         }

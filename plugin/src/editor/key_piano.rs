@@ -126,7 +126,7 @@ mod tests {
             };
             let input = RawInput { events: keys.iter().map(event).collect(), ..RawInput::default() };
             let mut said = None;
-            let _ = context.run_ui(input, |ui| said = piano.follow(ui, &link));
+            context.run_ui(input, |ui| said = piano.follow(ui, &link)).textures_delta.clear();
             (std::iter::from_fn(|| touches.pop().ok()).collect::<Vec<_>>(), said)
         };
         let down = |key| Touch::Down { key, velocity: VELOCITY };

@@ -66,6 +66,7 @@ mod tests {
     use crate::state::{State, VIEW};
     use sprung::engine::{EventKind, Synth};
     use sprung::preset::Playable;
+    use sprung::realtime::{LiveEvent, Stamp};
     use std::time::{Duration, Instant};
 
     const ON: EventKind = EventKind::NoteOn { key: 69, detune: 0.0, velocity: 1.0, id: None };
@@ -110,8 +111,13 @@ mod tests {
     fn midi_sounds_and_the_end_is_a_fade() {
         let (mut player, [mut sender], params) = player();
         fill(&mut player, 480);
-        sender.send_now(0, ON);
-        let played: Vec<f32> = (0..10).flat_map(|_| fill(&mut player, 480)).collect();
+        let start = Instant::now();
+        sender.send(LiveEvent { stamp: Stamp::System(start), channel: 0, kind: ON });
+        let mut played = vec![0.0_f32; 960];
+        for block in 1..=10 {
+            let since = Duration::from_millis(10 * block);
+            player.fill(&mut played, 2, Moment { now: start + since, called: since, heard: since });
+        }
         assert!(played.iter().any(|sample| *sample != 0.0) && !params.link().telemetry.is_silent());
         player.status.fade();
         for _ in 0..61 {
