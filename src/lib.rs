@@ -15,7 +15,7 @@
 //! | `batch` | sounds by the thousand, from a file of jobs, with exact labels (feature `batch`) |
 //! | `analysis` | what sound is measured with: the modes of a recorded strike, differences, spectra (feature `fit`), and figures of them (feature `analysis`) |
 //! | `lab` | ways to integrate a mass on a spring, side by side: what the oscillator is measured against (feature `lab`) |
-//! | `realtime` | sound devices, MIDI ports and a terminal to play from (feature `realtime`) |
+//! | `realtime` | sound devices and MIDI ports (feature `live`), and a terminal to play from (feature `realtime`) |
 //!
 //! A note, rendered:
 //!
@@ -54,7 +54,7 @@ pub mod lab;
 pub mod params;
 pub mod patch;
 pub mod preset;
-#[cfg(feature = "realtime")]
+#[cfg(feature = "live")]
 pub mod realtime;
 #[cfg(feature = "render")]
 pub mod render;

@@ -5,7 +5,7 @@ use sprung::engine::EventKind;
 use sprung::io::{Inputs, Output, Song, Target};
 use sprung::patch::Patch;
 use sprung::realtime::convert::DeviceSample;
-use sprung::realtime::{LiveInputs, Moment, Player, Recording, Setup, Status};
+use sprung::realtime::{LiveInputs, Moment, Player, Recording, Setup, Source, Status};
 use sprung::sound::{Kit, Tuning};
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -12,6 +12,7 @@
 //! | `state` | the state that a host stores in its project |
 //! | `editor` | the window |
 //! | `export` | the entry points of the library |
+//! | `standalone` | the window as a program, with a sound device of its own (feature `standalone`) |
 //!
 //! The wrapper is nice-plug. Its normalised values are called positions here: knob positions from 0 to 1.
 
@@ -23,6 +24,8 @@ mod live;
 mod loaded;
 mod params;
 mod plugin;
+#[cfg(feature = "standalone")]
+pub mod standalone;
 mod state;
 mod tail;
 

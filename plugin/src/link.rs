@@ -3,8 +3,8 @@
 use nice_plug_egui::RepaintNotifier;
 use rtrb::{Consumer, Producer, RingBuffer};
 use sprung::engine::{EventKind, Telemetry};
-use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, AtomicU32};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// How many touches can wait for the audio thread. Half of the room is for keys that go up.
@@ -39,6 +39,10 @@ pub(crate) struct Link {
     sample_rate: AtomicU32,
     /// To the audio thread; none before it has been there. Never locked by it.
     touches: Mutex<Option<Producer<Touch>>>,
+    /// To the window of the program: that it is to close.
+    closing: AtomicBool,
+    /// To the window of the program: what has become of devices and ports.
+    news: Mutex<Option<String>>,
 }
 
 impl Link {
@@ -59,6 +63,30 @@ impl Link {
                 let _ = producer.push(touch);
             }
         }
+    }
+
+    /// Asks the window to close.
+    #[cfg(feature = "standalone")]
+    pub(crate) fn close(&self) {
+        self.closing.store(true, Relaxed);
+        self.repaint.request_repaint();
+    }
+
+    /// Whether the window is to close.
+    pub(crate) fn is_closing(&self) -> bool {
+        self.closing.load(Relaxed)
+    }
+
+    /// Tells the window something that its user should read. Not for the audio thread.
+    #[cfg(feature = "standalone")]
+    pub(crate) fn tell(&self, news: String) {
+        *self.news.lock().unwrap_or_else(PoisonError::into_inner) = Some(news);
+        self.repaint.request_repaint();
+    }
+
+    /// What the window was told since the last call.
+    pub(crate) fn take_news(&self) -> Option<String> {
+        self.news.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
     /// The sample rate in Hz; 0 if there was none yet.

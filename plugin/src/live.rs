@@ -206,6 +206,33 @@ impl Live {
         self.tail.status(&mut self.synth, frames)
     }
 
+    /// Renders a block without a host: the program's own window, and events with their frames. Overwrites the outputs.
+    #[cfg(feature = "standalone")]
+    pub(crate) fn play(&mut self, params: &SprungParams, events: &[Event], left: &mut [f32], right: &mut [f32]) {
+        self.follow(params);
+        self.follow_touches();
+        for event in events {
+            self.telemetry.note_event(event);
+        }
+        self.synth.process(events, left, right);
+        // Also while no window looks: the end of the program waits for silence.
+        let synth = &self.synth;
+        self.telemetry.note_sound(left, right, synth.is_silent(), || {
+            let mut snapshot = Snapshot::default();
+            synth.show(&mut snapshot);
+            snapshot
+        });
+        if !self.synth.is_silent() {
+            self.repaint.request_repaint();
+        }
+    }
+
+    /// Tells the window how long a block of the program took.
+    #[cfg(feature = "standalone")]
+    pub(crate) fn note_block(&self, frames: usize, busy: std::time::Duration) {
+        self.telemetry.note_block(frames, busy);
+    }
+
     /// Handles one event at a frame of the block.
     fn take<P: Plugin<SysExMessage = ()>>(
         &mut self,

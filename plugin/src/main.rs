@@ -1,11 +1,5 @@
-//! `sprung-standalone`: the plugin with its own sound device, for trying it without a host.
-
-use nice_plug::prelude::nice_export_standalone;
+//! `sprung-standalone`: the plugin's window as a program, with a sound device of its own.
 
 fn main() -> std::process::ExitCode {
-    if nice_export_standalone::<sprung_plugin::Sprung>() {
-        std::process::ExitCode::SUCCESS
-    } else {
-        std::process::ExitCode::FAILURE
-    }
+    sprung_plugin::standalone::run()
 }

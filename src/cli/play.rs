@@ -9,8 +9,8 @@ use sprung::io::{Inputs, Output, Target};
 use sprung::preset::Playable;
 use sprung::preset::library::Library;
 use sprung::realtime::{
-    Choice, Found, JackMidi, KitSender, LiveInputs, LiveSender, MidiPorts, Player, Recording, Session, Setup, Status,
-    Wanted, device, midi_ports, view,
+    Choice, Found, KitSender, LiveInputs, LiveSender, MidiIn, Player, Recording, Session, Setup, Status, device,
+    midi_ports, view,
 };
 use sprung::render::BLOCKS;
 use sprung::request::Sounds;
@@ -127,47 +127,12 @@ pub(super) fn run(args: &Args) -> Result<()> {
 }
 
 fn list() -> Result<()> {
-    let ports = midi_ports::list();
-    let ports: String = match ports.is_empty() {
-        true => "  no ports\n".to_owned(),
-        false => ports.iter().map(|name| format!("  --midi-in {name:?}\n")).collect(),
-    };
-    print(&format!("{}MIDI\n{ports}", device::list()))
+    print(&(device::list() + &midi_ports::list()))
 }
 
 /// Prints a line on stderr.
 fn say(line: &str) {
     complain_lines(&format!("sprung: {}\n", printable(line)));
-}
-
-/// The source of live MIDI input.
-enum MidiIn {
-    None,
-    Ports(MidiPorts),
-    Jack(Box<JackMidi>),
-}
-
-impl MidiIn {
-    fn new(wanted: &str, jack: bool, sender: LiveSender) -> Self {
-        let wanted = match wanted {
-            "none" => None,
-            "all" => Some(Wanted::All),
-            name => Some(Wanted::Named(name.to_owned())),
-        };
-        match wanted {
-            wanted if jack => Self::Jack(Box::new(JackMidi::new(wanted, sender))),
-            Some(wanted) => Self::Ports(MidiPorts::new(wanted, sender)),
-            None => Self::None,
-        }
-    }
-
-    fn poll(&mut self) -> Vec<String> {
-        match self {
-            Self::None => vec![],
-            Self::Ports(ports) => ports.poll(),
-            Self::Jack(port) => port.poll(),
-        }
-    }
 }
 
 /// A recording, and whether its early end was reported.

@@ -120,10 +120,15 @@ impl MidiPorts {
     }
 }
 
-/// Names of all MIDI ports.
-pub fn list() -> Vec<String> {
-    let Ok(input) = MidiInput::new(CLIENT) else { return vec![] };
-    input.ports().iter().filter_map(|port| input.port_name(port).ok()).collect()
+/// The MIDI ports of this system, as text.
+pub fn list() -> String {
+    let ports = MidiInput::new(CLIENT)
+        .map_or_else(|_| vec![], |input| input.ports().iter().filter_map(|port| input.port_name(port).ok()).collect());
+    let ports: String = match ports.is_empty() {
+        true => "  no ports\n".to_owned(),
+        false => ports.iter().map(|name| format!("  --midi-in {name:?}\n")).collect(),
+    };
+    format!("MIDI\n{ports}")
 }
 
 fn connect(port: &MidiInputPort, name: &str, sender: Arc<Mutex<LiveSender>>) -> Option<MidiInputConnection<()>> {

@@ -1,27 +1,33 @@
 //! Playing live: sound devices, MIDI ports, a recorder, and a terminal to play from.
 //!
-//! The audio thread owns the [`Player`]. Everything that it receives (live events, kits) and sends (recording, status)
+//! The audio thread owns the [`Player`], or another [`Source`]. Everything that it receives (live events, kits) and sends (recording, status)
 //! goes through queues of fixed size and atomics, so that it never allocates, locks or waits.
 
 pub mod block_clock;
 pub mod convert;
 pub mod device;
+mod fade;
 mod jack_midi;
 pub mod live;
+mod midi_in;
 pub mod midi_ports;
 pub mod player;
 pub mod recorder;
 pub mod session;
 pub mod status;
-mod stream;
+pub mod stream;
+#[cfg(feature = "realtime")]
 pub mod view;
 
 pub use block_clock::{BlockClock, Moment, Stamp};
 pub use device::{Choice, Found};
+pub use fade::Fade;
 pub use jack_midi::JackMidi;
 pub use live::{LiveEvent, LiveInputs, LiveSender};
+pub use midi_in::MidiIn;
 pub use midi_ports::{MidiPorts, Wanted};
 pub use player::{KitSender, Player, Setup};
 pub use recorder::{Recorded, Recording, Tap};
 pub use session::Session;
 pub use status::Status;
+pub use stream::Source;

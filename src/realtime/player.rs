@@ -2,9 +2,11 @@
 
 use super::block_clock::{BlockClock, Moment};
 use super::convert::{DeviceSample, interleave};
+use super::fade::Fade;
 use super::live::LiveInputs;
 use super::recorder::Tap;
 use super::status::Status;
+use super::stream::Source;
 use crate::engine::{Ensemble, Event, EventKind, TelemetryWriter};
 use crate::io::{SILENCE_INTERVAL, Song, SongCursor};
 use crate::sound::kit::KEYS;
@@ -52,7 +54,7 @@ impl KitSender {
     }
 }
 
-/// Plays on the audio thread. [`Player::fill`] is real-time safe: it never allocates, locks or fails.
+/// Plays on the audio thread. [`Source::fill`] is real-time safe: it never allocates, locks or fails.
 pub struct Player {
     ensemble: Ensemble,
     sample_rate: f64,
@@ -67,6 +69,7 @@ pub struct Player {
     tap: Option<Tap>,
     status: Arc<Status>,
     telemetry: TelemetryWriter,
+    fade: Fade,
     /// Frames since the end of the song.
     tail: u64,
     ended: bool,
@@ -106,6 +109,7 @@ impl Player {
             tap,
             telemetry: TelemetryWriter::new(status.telemetry().clone(), sample_rate),
             status,
+            fade: Fade::new(sample_rate),
             tail: 0,
             ended: false,
             _shelf: shelf.clone(),
@@ -118,8 +122,36 @@ impl Player {
         self.sample_rate as u32
     }
 
-    /// Renders the next block into the interleaved samples of a device with this many channels.
-    pub fn fill<T: DeviceSample>(&mut self, out: &mut [T], channels: usize, moment: Moment) {
+    /// Renders a piece of a block that begins `start` frames after the start of the block.
+    fn render(&mut self, start: u32, len: usize) {
+        self.events.clear();
+        let was_over = self.song.as_ref().is_none_or(SongCursor::is_over);
+        if let Some(song) = &mut self.song {
+            song.advance(len, &mut self.events);
+        }
+        self.inputs.merge(&self.clock, start, start + len as u32, &mut self.events);
+        for event in &self.events {
+            let known = !matches!(event.kind, EventKind::Program(number) if usize::from(number) >= self.programs);
+            if known {
+                self.telemetry.note_event(event);
+            }
+        }
+        let (left, right) = (&mut self.left[..len], &mut self.right[..len]);
+        self.ensemble.process(&self.events, left, right);
+        self.fade.apply(&self.status, left, right);
+        if let Some(tap) = &mut self.tap {
+            tap.record(left, right);
+        }
+        let silent = self.ensemble.is_silent();
+        self.tail = if was_over { self.tail + len as u64 } else { 0 };
+        self.ended = silent && was_over && (self.ended || self.tail >= SILENCE_INTERVAL);
+        self.status.note_song(self.ended);
+        self.telemetry.note_sound(left, right, silent, || self.ensemble.snapshot());
+    }
+}
+
+impl Source for Player {
+    fn fill<T: DeviceSample>(&mut self, out: &mut [T], channels: usize, moment: Moment) {
         let channels = channels.max(1);
         let frames = out.len() / channels;
         self.clock.begin(moment, frames as u32);
@@ -139,32 +171,6 @@ impl Player {
         }
         self.status.note_delay(self.clock.delay());
         self.telemetry.note_block(frames, moment.now.elapsed());
-    }
-
-    /// Renders a piece of a block that begins `start` frames after the start of the block.
-    fn render(&mut self, start: u32, len: usize) {
-        self.events.clear();
-        let was_over = self.song.as_ref().is_none_or(SongCursor::is_over);
-        if let Some(song) = &mut self.song {
-            song.advance(len, &mut self.events);
-        }
-        self.inputs.merge(&self.clock, start, start + len as u32, &mut self.events);
-        for event in &self.events {
-            let known = !matches!(event.kind, EventKind::Program(number) if usize::from(number) >= self.programs);
-            if known {
-                self.telemetry.note_event(event);
-            }
-        }
-        let (left, right) = (&mut self.left[..len], &mut self.right[..len]);
-        self.ensemble.process(&self.events, left, right);
-        if let Some(tap) = &mut self.tap {
-            tap.record(left, right);
-        }
-        let silent = self.ensemble.is_silent();
-        self.tail = if was_over { self.tail + len as u64 } else { 0 };
-        self.ended = silent && was_over && (self.ended || self.tail >= SILENCE_INTERVAL);
-        self.status.note_song(self.ended);
-        self.telemetry.note_sound(left, right, silent, || self.ensemble.snapshot());
     }
 }
 

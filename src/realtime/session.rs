@@ -1,10 +1,11 @@
 //! A session: plays on a device that may disappear and come back.
 
 use super::device::{Choice, Found};
+use super::fade::FADE;
 use super::live::LiveSender;
 use super::player::Player;
 use super::status::Status;
-use super::stream;
+use super::stream::{self, Source};
 use crate::error::{Error, Result};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -16,7 +17,7 @@ const RETRY: Duration = Duration::from_secs(1);
 /// A device that requests no block for this long is lost.
 const PATIENCE: Duration = Duration::from_secs(4);
 
-/// How long released notes may sound at the end.
+/// How long released notes may sound at the end, before what still sounds is faded out.
 const RELEASE: Duration = Duration::from_millis(700);
 
 /// How long a stream may take to end.
@@ -24,26 +25,26 @@ const END: Duration = Duration::from_secs(2);
 
 /// Plays on a device from [`Session::start`] until it is finished or dropped. [`Session::poll`] must be called
 /// regularly.
-pub struct Session {
+pub struct Session<S: Source = Player> {
     choice: Choice,
     description: String,
     sample_rate: u32,
     status: Arc<Status>,
     stream: Option<cpal::Stream>,
     /// Held here while there is no stream.
-    player: Option<Box<Player>>,
-    home: (Sender<Box<Player>>, Receiver<Box<Player>>),
+    player: Option<Box<S>>,
+    home: (Sender<Box<S>>, Receiver<Box<S>>),
     trouble: (Sender<String>, Receiver<String>),
     retry_at: Instant,
     last_frames: (u64, Instant),
 }
 
-impl Session {
+impl<S: Source> Session<S> {
     /// Starts to play on a device. `choice` is the choice that led to the device; it is used again to find the device.
     ///
     /// # Errors
     /// [`Error::Value`] if the device cannot be started.
-    pub fn start(found: &Found, choice: Choice, player: Player, status: Arc<Status>) -> Result<Self> {
+    pub fn start(found: &Found, choice: Choice, player: S, status: Arc<Status>) -> Result<Self> {
         let mut session = Self {
             choice: Choice { rate: Some(found.sample_rate()), ..choice },
             description: found.to_string(),
@@ -95,26 +96,29 @@ impl Session {
         Some(format!("the sound device is back: {found}"))
     }
 
-    /// Stops the song, releases all notes, waits a moment until they are silent, and ends the stream. Returns false if
-    /// the device hangs and does not give the player back.
+    /// Stops the song, releases all notes, waits a moment until they are silent, fades out what is not, for example a
+    /// reverberation, and ends the stream. Returns false if the device hangs and does not give the player back.
     pub fn finish(mut self, live: &mut LiveSender) -> bool {
         self.status.halt_song();
         live.release_all();
-        if !self.wait_for_silence(RELEASE) {
-            live.silence_all();
-            self.wait_for_silence(RELEASE);
+        // What was sent is heard this much later.
+        let delay = Duration::from_secs_f64(self.status.delay()).min(RELEASE);
+        let start = Instant::now();
+        if !self.wait(RELEASE, |status| status.telemetry().is_silent() && start.elapsed() > delay) {
+            self.status.fade();
+            if self.wait(FADE + 2 * RELEASE, Status::is_faded) {
+                std::thread::sleep(delay);
+            }
         }
         self.close();
         self.player.is_some()
     }
 
-    /// Waits until nothing sounds and everything that was sent has been heard.
-    fn wait_for_silence(&self, limit: Duration) -> bool {
+    /// Waits until something is so, as long as the device plays. Returns false if that takes too long.
+    fn wait(&self, limit: Duration, so: impl Fn(&Status) -> bool) -> bool {
         let start = Instant::now();
-        let sent = self.status.delay().min(limit.as_secs_f64());
-        let heard = start + Duration::from_secs_f64(sent);
         while self.is_playing() && start.elapsed() < limit {
-            if self.status.telemetry().is_silent() && Instant::now() > heard {
+            if so(&self.status) {
                 return true;
             }
             std::thread::sleep(Duration::from_millis(5));

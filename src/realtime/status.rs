@@ -14,9 +14,26 @@ pub struct Status {
     delay: AtomicU32,
     song_over: AtomicBool,
     song_halted: AtomicBool,
+    fading: AtomicBool,
+    faded: AtomicBool,
 }
 
 impl Status {
+    /// A status whose engine is shown elsewhere too.
+    pub fn of(telemetry: Arc<Telemetry>) -> Self {
+        Self { telemetry, ..Self::default() }
+    }
+
+    /// Asks for everything to be faded out, for good.
+    pub fn fade(&self) {
+        self.fading.store(true, Relaxed);
+    }
+
+    /// Whether everything has been faded out.
+    pub fn is_faded(&self) -> bool {
+        self.faded.load(Relaxed)
+    }
+
     /// The engine's state, and the processing load of the audio thread.
     pub fn telemetry(&self) -> &Arc<Telemetry> {
         &self.telemetry
@@ -46,6 +63,14 @@ impl Status {
         self.song_halted.load(Relaxed)
     }
 
+    pub(super) fn is_fading(&self) -> bool {
+        self.fading.load(Relaxed)
+    }
+
+    pub(super) fn note_faded(&self) {
+        self.faded.store(true, Relaxed);
+    }
+
     pub(super) fn count_xrun(&self) {
         self.xruns.fetch_add(1, Relaxed);
     }
@@ -54,7 +79,8 @@ impl Status {
         self.song_over.store(is_over, Relaxed);
     }
 
-    pub(super) fn note_delay(&self, seconds: f64) {
+    /// Tells how many seconds pass from the time stamp of an event to the time at which it is heard.
+    pub fn note_delay(&self, seconds: f64) {
         self.delay.store((seconds.max(0.0) as f32).to_bits(), Relaxed);
     }
 }

@@ -1,9 +1,8 @@
-//! The stream of a device: it calls the player for every block, and returns the player when it ends.
+//! The stream of a device: it calls what it plays for every block, and returns it when it ends.
 
 use super::block_clock::Moment;
 use super::convert::DeviceSample;
 use super::device::Found;
-use super::player::Player;
 use super::status::Status;
 use cpal::traits::{DeviceTrait, StreamTrait};
 use cpal::{ErrorKind, OutputCallbackInfo, SampleFormat, SizedSample};
@@ -14,13 +13,19 @@ use std::time::{Duration, Instant};
 /// How long a device may take to respond.
 const TIMEOUT: Duration = Duration::from_secs(2);
 
-/// The player while a stream has it. Returns it through `home` when the stream is dropped.
-struct Loan {
-    player: Option<Box<Player>>,
-    home: Sender<Box<Player>>,
+/// What a device plays, for example a [`super::Player`].
+pub trait Source: Send + 'static {
+    /// Renders the next block into the interleaved samples of a device with this many channels. Real-time safe.
+    fn fill<T: DeviceSample>(&mut self, out: &mut [T], channels: usize, moment: Moment);
 }
 
-impl Drop for Loan {
+/// The player while a stream has it. Returns it through `home` when the stream is dropped.
+struct Loan<S: Source> {
+    player: Option<Box<S>>,
+    home: Sender<Box<S>>,
+}
+
+impl<S: Source> Drop for Loan<S> {
     fn drop(&mut self) {
         if let Some(player) = self.player.take() {
             // This fails if the receiver no longer exists.
@@ -31,27 +36,27 @@ impl Drop for Loan {
 
 /// Starts to play. If the stream fails, the reason is sent to `trouble`. The player is sent to `home` when the stream
 /// is dropped, or at once if it cannot be started.
-pub(super) fn open(
+pub(super) fn open<S: Source>(
     found: &Found,
-    player: Box<Player>,
-    home: Sender<Box<Player>>,
+    player: Box<S>,
+    home: Sender<Box<S>>,
     trouble: Sender<String>,
     status: Arc<Status>,
 ) -> Result<cpal::Stream, cpal::Error> {
     let loan = Loan { player: Some(player), home };
     let stream = match found.format {
-        SampleFormat::F32 => build::<f32>(found, loan, trouble, status),
-        SampleFormat::I32 => build::<i32>(found, loan, trouble, status),
-        SampleFormat::I16 => build::<i16>(found, loan, trouble, status),
-        _ => build::<u8>(found, loan, trouble, status),
+        SampleFormat::F32 => build::<f32, S>(found, loan, trouble, status),
+        SampleFormat::I32 => build::<i32, S>(found, loan, trouble, status),
+        SampleFormat::I16 => build::<i16, S>(found, loan, trouble, status),
+        _ => build::<u8, S>(found, loan, trouble, status),
     }?;
     stream.play()?;
     Ok(stream)
 }
 
-fn build<T: DeviceSample + SizedSample>(
+fn build<T: DeviceSample + SizedSample, S: Source>(
     found: &Found,
-    mut loan: Loan,
+    mut loan: Loan<S>,
     trouble: Sender<String>,
     status: Arc<Status>,
 ) -> Result<cpal::Stream, cpal::Error> {

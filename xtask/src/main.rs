@@ -14,6 +14,7 @@ mod setup;
 mod sha256;
 mod shell;
 mod skipped;
+mod standalone;
 mod steps;
 mod test;
 
@@ -49,6 +50,12 @@ enum Chore {
     },
     /// Build the plugin for release and copy it to where DAWs look.
     Install(Place),
+    /// Build the plugin's window as a program with a sound device of its own, and run it.
+    Standalone {
+        /// Arguments of the program; --help lists them.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
     /// Remove what `install` has copied.
     Uninstall(Place),
     /// Accept what the golden cases sound like now, and verify.
@@ -101,6 +108,7 @@ fn main() -> ExitCode {
         Chore::Patch => patch::run().map(drop),
         Chore::Bundle { release } => bundle::run(release).map(drop),
         Chore::Install(place) => install::install(place.scope()),
+        Chore::Standalone { arguments } => standalone::run(&arguments),
         Chore::Uninstall(place) => install::uninstall(place.scope()),
         Chore::Bless { case } => bless::run(case.as_deref()),
         Chore::Dist { no_plugin, wheel, trial } => dist::run(&dist::Options { no_plugin, wheel, trial }),

@@ -72,11 +72,11 @@ impl Count {
     }
 }
 
-/// Runs the plugin's own tests, and tests the bundles that musicians install in real hosts.
+/// Runs the plugin's own tests and those of the program, and tests the bundles that musicians install in real hosts.
 fn plugin() -> (Count, &'static str) {
     match bundle::run(false) {
         Ok(folder) => {
-            let mut command = cargo("test --manifest-path plugin/Cargo.toml --no-fail-fast");
+            let mut command = cargo("test --manifest-path plugin/Cargo.toml --features standalone --no-fail-fast");
             command.env("SPRUNG_BUNDLES", folder);
             run_command(command, Shows::Tests)
         }

@@ -10,7 +10,7 @@
 //! | `motion`, `phase`, `scope`, `spectrum`, `ringing` | what moves: the phase plane; waveform and spectrum; how the modes ring down |
 //! | `body_view`, `body_face`, `body_shape`, `body_form` | the body that swings: what the user does with it, its picture, the shapes of its modes, its form |
 //! | `audition` | a key that the window holds by itself, so that a change is heard |
-//! | `piano`, `meter` | the keyboard; levels |
+//! | `piano`, `key_piano`, `meter` | the keyboard; the computer's keys as one; levels |
 //! | `pages`, `kit_page`, `tuning_page`, `voices_panel`, `key_grid` | the tabs and their pages: a kit's keys, the tuning, the voices; all keys as a grid |
 //! | `manual`, `manual_text` | the manual over the window; its pages taken apart |
 //! | `drops`, `recordings`, `fitting` | files that are dropped on the window; recordings that become a sound in the background; how far that is |
@@ -43,6 +43,7 @@ mod gestures;
 mod header;
 mod history;
 mod key_grid;
+mod key_piano;
 mod kit_page;
 mod knob;
 mod knob_face;
@@ -83,7 +84,7 @@ mod window;
 use crate::params::SprungParams;
 use nice_plug_core::context::gui::GuiContext;
 use nice_plug_core::editor::dpi::{LogicalSize, NativeSize};
-use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
+use nice_plug_core::editor::{Editor, EditorHandle, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
 use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, create_egui_editor};
 use sprung::preset::library::Library;
 use std::error::Error;
@@ -110,6 +111,17 @@ fn state(params: &SprungParams) -> Arc<EguiEditorState> {
     let view = params.view();
     let [width, height] = view.size.map(|side| side as f32);
     EguiEditorState::from_size(LogicalSize { width, height }, view.zoom as f32 / 100.0)
+}
+
+#[cfg(feature = "standalone")]
+impl SprungEditor {
+    /// Opens a window of its own, with this context for a host, and waits until it is closed.
+    pub(crate) fn run(&self, context: GuiContext) -> Result<(), Box<dyn Error>> {
+        let SpawnedEditor { handle, window } = self.spawn(None, false, None, context, None)?;
+        let ended = EguiEditorHandle::run_until_closed(window);
+        drop(handle);
+        Ok(ended?)
+    }
 }
 
 impl Editor for SprungEditor {

@@ -8,6 +8,7 @@ use super::fitting::Fitting;
 use super::focus::Focus;
 use super::header::{self, Header, Wish};
 use super::history::{History, restore};
+use super::key_piano::KeyPiano;
 use super::layout::Layout;
 use super::manual::Manual;
 use super::meter::Meter;
@@ -23,6 +24,7 @@ use super::{fonts, status};
 use crate::params::SprungParams;
 use crate::state::State;
 use egui::{Key, Ui};
+use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::preset::Playable;
 use sprung::preset::library::Library;
@@ -54,6 +56,7 @@ pub(super) struct Window {
     modes: ModesView,
     motion: Motion,
     piano: Piano,
+    key_piano: KeyPiano,
     meter: Meter,
     load: Load,
     /// Sections that variations leave as they are, and the seed of the next one.
@@ -86,6 +89,7 @@ impl Window {
             modes: ModesView::default(),
             motion: Motion::default(),
             piano: Piano::default(),
+            key_piano: KeyPiano::default(),
             meter: Meter::default(),
             load: Load::default(),
             locked: BTreeSet::new(),
@@ -201,6 +205,12 @@ impl Window {
         }
         self.browser.follow_time(ui.input(|input| input.time), &controls);
         self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);
+        // A host needs the keys itself.
+        let is_alone = host.plugin_api() == PluginApi::Standalone;
+        let played = is_alone.then(|| self.key_piano.follow(ui, params.link())).flatten();
+        if let Some(news) = params.link().take_news().or(played) {
+            self.message = news;
+        }
         let complaint = controls.hands.typing.as_ref().and_then(|typing| typing.complaint.clone());
         let complaints = || summary(&params.complaints()).unwrap_or_default();
         let message = if self.message.is_empty() { complaints() } else { self.message.clone() };

@@ -3,6 +3,7 @@
 //! `plugin/tests/README.md` lists what is covered and where.
 
 mod automation;
+mod cpu;
 mod damage;
 mod expression;
 mod fuzz;
@@ -13,11 +14,13 @@ mod notes;
 mod parameters;
 mod patches;
 mod phrase;
+mod pixels;
 mod process;
 mod realtime;
 mod scan;
 mod screen;
 mod song;
+mod standalone;
 mod state;
 mod storm;
 mod vst3;
@@ -35,14 +38,12 @@ enum Needs {
     Nothing,
     /// A screen that nobody sees (Xvfb).
     Screen,
+    /// A screen, the program and a JACK server.
+    Program,
     /// The Python hosts.
     Python,
     /// Both.
     PythonAndScreen,
-    /// A library without the logger of the standalone program, which allocates. Libraries in bundles have none.
-    NoLogger,
-    /// A library without the logger, and a screen.
-    NoLoggerAndScreen,
 }
 
 impl Needs {
@@ -53,18 +54,11 @@ impl Needs {
         match self {
             Needs::Nothing => None,
             Needs::Screen => SCREEN.clone(),
+            Needs::Program => standalone::missing().or_else(|| SCREEN.clone()),
             Needs::Python => PYTHON.clone(),
             Needs::PythonAndScreen => PYTHON.clone().or_else(|| SCREEN.clone()),
-            Needs::NoLogger => logger(),
-            Needs::NoLoggerAndScreen => logger().or_else(|| SCREEN.clone()),
         }
     }
-}
-
-/// Why this build's library contains the logger, if it does.
-fn logger() -> Option<String> {
-    let logs = cfg!(feature = "standalone") && !host::bundle::are_given();
-    logs.then(|| "the feature `standalone` has the library log, which allocates: test without it".to_owned())
 }
 
 /// Makes the list of tests from their modules and names, with what the tests of each module need.
@@ -79,6 +73,8 @@ fn main() -> ExitCode {
         return match work.as_str() {
             "growth" | "reopen" => growth::work(&work),
             "storm" | "endings" => storm::work(&work),
+            "window-cpu" => cpu::work(),
+            "window-pixels" => pixels::work(),
             "window" | "window-keys" | "window-playing" => window::work(&work),
             _ => realtime::work(&work),
         };
@@ -172,16 +168,27 @@ fn main() -> ExitCode {
         Nothing: realtime {
             the_watch_bites
         }
-        NoLogger: realtime {
+        Nothing: realtime {
             process_neither_allocates_nor_locks_nor_calls_the_system
         }
-        NoLoggerAndScreen: realtime {
+        Screen: realtime {
             nor_does_it_with_the_window_open
         }
         Screen: window {
             opens_and_closes_fifty_times
             opens_and_closes_while_audio_runs
             keys_go_to_the_host_unless_somebody_types
+        }
+        Screen: pixels {
+            the_real_window_has_the_pixels_of_the_accepted_picture
+        }
+        Screen: cpu {
+            a_silent_window_costs_next_to_nothing
+        }
+        Program: standalone {
+            it_keeps_its_state_whatever_ends_it
+            a_broken_state_is_set_aside
+            what_is_missing_is_said
         }
         Nothing: vst3_state {
             parameters_have_the_numbers_of_their_ids

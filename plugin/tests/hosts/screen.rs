@@ -7,6 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use x11rb::connection::Connection as _;
 use x11rb::protocol::Event;
+use x11rb::protocol::damage::{ConnectionExt as _, ReportLevel};
 use x11rb::protocol::xproto::{
     AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, InputFocus, MapState,
     WindowClass,
@@ -199,6 +200,37 @@ impl Onlooker {
             heard |= matches!(event, Event::KeyPress(press) if press.detail == key);
         }
         heard
+    }
+
+    /// Moves the mouse to a place at once.
+    pub(crate) fn point(&self, [x, y]: [i16; 2]) {
+        const MOVE: u8 = 6;
+        self.connection.xtest_fake_input(MOVE, 0, 0, self.root, x, y, 0).unwrap();
+        self.connection.flush().unwrap();
+    }
+
+    /// From now on, [`Onlooker::pictures_since`] counts what is drawn in a window and those inside it.
+    pub(crate) fn watch(&self, window: u32) -> u32 {
+        self.connection.damage_query_version(1, 1).unwrap().reply().expect("the screen tells what is drawn");
+        let damage = self.connection.generate_id().unwrap();
+        self.connection.damage_create(damage, window, ReportLevel::RAW_RECTANGLES).unwrap().check().unwrap();
+        self.pictures_since();
+        damage
+    }
+
+    /// The number of pictures since the last call.
+    pub(crate) fn pictures_since(&self) -> u32 {
+        let mut pictures = 0;
+        while let Some(event) = self.connection.poll_for_event().unwrap() {
+            // Large pictures come in several pieces.
+            pictures += u32::from(matches!(event, Event::DamageNotify(drawn) if drawn.area.y == 0));
+        }
+        pictures
+    }
+
+    /// Counts no more.
+    pub(crate) fn unwatch(&self, damage: u32) {
+        self.connection.damage_destroy(damage).unwrap().check().unwrap();
     }
 
     /// Moves the mouse about near a place, as a hand does before it clicks.

@@ -14,23 +14,24 @@ use std::time::Duration;
 const TIMES: usize = 50;
 
 pub(crate) fn opens_and_closes_fifty_times() {
-    on_a_screen("window");
+    drop(on_a_screen("window"));
 }
 
 pub(crate) fn opens_and_closes_while_audio_runs() {
-    on_a_screen("window-playing");
+    drop(on_a_screen("window-playing"));
 }
 
 pub(crate) fn keys_go_to_the_host_unless_somebody_types() {
-    on_a_screen("window-keys");
+    drop(on_a_screen("window-keys"));
 }
 
+/// Does a piece of work in a process of its own, with a screen, and returns what it prints.
 #[track_caller]
-fn on_a_screen(work: &str) {
+pub(crate) fn on_a_screen(work: &str) -> String {
     let screen = Screen::new();
     let mut command = command(work);
     command.env("DISPLAY", &screen.display);
-    succeeds(command);
+    succeeds(command)
 }
 
 /// Runs in the processes that these tests start.
@@ -148,8 +149,8 @@ fn turn_something(instance: &mut Instance, parent: &Parent) {
 
 /// A window of the host that contains the plugin's window.
 pub(crate) struct Parent {
-    onlooker: Onlooker,
-    window: u32,
+    pub(crate) onlooker: Onlooker,
+    pub(crate) window: u32,
     /// A window for the host's keys beside the plugin's, as JUCE has one.
     proxy: u32,
 }

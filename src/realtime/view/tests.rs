@@ -5,7 +5,7 @@ use super::{Desk, draw};
 use crate::params::Param;
 use crate::preset::library::Library;
 use crate::preset::{KitPreset, Playable, Preset};
-use crate::realtime::{LiveInputs, Moment, Player, Setup, Status};
+use crate::realtime::{LiveInputs, Moment, Player, Setup, Source, Status};
 use crate::sound::Tuning;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;

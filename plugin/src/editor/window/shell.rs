@@ -4,6 +4,7 @@ use super::Window;
 use crate::editor::theme::LEAST_SIZE;
 use crate::state::{View, WINDOW_RANGE};
 use egui::Ui;
+use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use nice_plug_egui::baseview::{HandlerError, WindowSize};
 use nice_plug_egui::resizable_window::ResizableWindow;
@@ -24,8 +25,13 @@ impl NiceEguiApp for Window {
         // Keys go to the host, except while the user is typing.
         let typing = ui.ctx().egui_wants_keyboard_input();
         frame.set_key_capture(if typing { KeyCapture::CaptureAll } else { KeyCapture::IgnoreAll });
-        let is_pressed = ui.input(|input| input.pointer.any_down());
-        self.focus.follow(frame, typing, is_pressed);
+        if host.plugin_api() != PluginApi::Standalone {
+            let is_pressed = ui.input(|input| input.pointer.any_down());
+            self.focus.follow(frame, typing, is_pressed);
+        }
+        if self.params.link().is_closing() {
+            frame.baseview_window().request_close();
+        }
     }
 
     fn resized(&mut self, size: WindowSize) {
@@ -41,6 +47,7 @@ impl Drop for Window {
     fn drop(&mut self) {
         let link = self.params.link();
         self.piano.release(link);
+        self.key_piano.release(link);
         self.browser.release(link);
         self.modes.release(link);
         self.motion.release(link);

@@ -1,0 +1,172 @@
+//! The file in which the program keeps its state between runs.
+
+use crate::params::SprungParams;
+use crate::state::State;
+use sprung::io::{Inputs, Output, Target};
+use std::ffi::OsString;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The name of the file.
+const NAME: &str = "standalone.json";
+
+/// The file of the state; none if the system does not say where such files are.
+pub(super) struct Kept {
+    file: Option<PathBuf>,
+    /// The state as it is in the file, as far as it was noticed.
+    last: Option<State>,
+}
+
+impl Kept {
+    /// That of this user.
+    pub(super) fn of_user() -> Self {
+        Self { file: folder(&|name| std::env::var_os(name)).map(|folder| folder.join(NAME)), last: None }
+    }
+
+    /// Loads the state of the last time. Returns what the user should know. A file that is not understood as a whole is
+    /// set aside, so that nothing in it is lost.
+    pub(super) fn restore(&mut self, params: &SprungParams) -> Option<String> {
+        let file = self.file.clone()?;
+        let text = match std::fs::read(&file) {
+            Ok(bytes) => String::from_utf8(bytes).map_err(|_| "not a state of Sprung: it is not text".to_owned()),
+            Err(error) if error.kind() == ErrorKind::NotFound => return None,
+            Err(error) => Err(error.to_string()),
+        };
+        let complaint = match text.and_then(|text| State::parse(&text)) {
+            Ok(read) => {
+                let complaint = (!read.complaints.is_empty()).then(|| read.complaints.join("; "));
+                params.load(read);
+                self.last = complaint.is_none().then(|| params.state());
+                complaint?
+            }
+            Err(complaint) => complaint,
+        };
+        let aside = match set_aside(&file) {
+            Ok(aside) => format!("it is kept as {}", aside.display()),
+            Err(error) => {
+                // What cannot be moved must not be overwritten.
+                self.file = None;
+                format!("it stays, and nothing else is kept this time: {error}")
+            }
+        };
+        Some(format!("{}: {complaint}; {aside}", file.display()))
+    }
+
+    /// Writes the state if it has changed since the last time.
+    pub(super) fn keep_what_changed(&mut self, params: &Arc<SprungParams>) -> Result<(), String> {
+        if self.last.as_ref() == Some(&params.state()) { Ok(()) } else { self.keep(params) }
+    }
+
+    /// Writes the state. The file is replaced when all of it is on disk.
+    pub(super) fn keep(&mut self, params: &SprungParams) -> Result<(), String> {
+        let Some(file) = &self.file else { return Ok(()) };
+        let state = params.state();
+        if let Some(folder) = file.parent() {
+            std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        }
+        let written = Output::create(&Target::new(file), true, &Inputs::default()).and_then(|mut output| {
+            let failed = |error| sprung::Error::io(file.display().to_string(), error);
+            output.stream().write_all(state.to_json().as_bytes()).map_err(failed)?;
+            output.commit()
+        });
+        written.map_err(|error| format!("the state cannot be kept: {error}"))?;
+        self.last = Some(state);
+        Ok(())
+    }
+}
+
+/// Gives a file another name, which no file has yet, and returns it.
+fn set_aside(file: &Path) -> std::io::Result<PathBuf> {
+    let mut number = 1;
+    loop {
+        let aside = file.with_file_name(format!("standalone.not-understood-{number}.json"));
+        // A link fails if the name is taken, and renaming would replace that file.
+        match std::fs::hard_link(file, &aside) {
+            Ok(()) => return std::fs::remove_file(file).map(|()| aside),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => number += 1,
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// The folder for this program's state of the user.
+fn folder(variable: &dyn Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+    let folder = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    if cfg!(windows) {
+        return Some(folder("LOCALAPPDATA")?.join("Sprung"));
+    }
+    if cfg!(target_os = "macos") {
+        return Some(folder("HOME")?.join("Library/Application Support/Sprung"));
+    }
+    // XDG Base Directory Specification 0.8: a relative path is to be ignored.
+    let state = folder("XDG_STATE_HOME").or_else(|| Some(folder("HOME")?.join(".local/state")))?;
+    Some(state.join("sprung"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::VIEW;
+    use sprung::preset::Playable;
+
+    fn kept(folder: &Path) -> Kept {
+        Kept { file: Some(folder.join("sprung").join(NAME)), last: None }
+    }
+
+    fn marimba() -> Arc<SprungParams> {
+        let params = Arc::new(SprungParams::default());
+        params.load(State::new(Playable::find("Marimba").unwrap(), 7, VIEW).into());
+        params
+    }
+
+    #[test]
+    fn the_state_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let (params, empty) = (marimba(), SprungParams::default());
+        params.set_view(|view| view.zoom = 150);
+        assert_eq!(kept(folder.path()).restore(&empty), None, "there is nothing yet");
+        let mut writer = kept(folder.path());
+        writer.keep_what_changed(&params).unwrap();
+        assert_eq!(kept(folder.path()).restore(&empty), None);
+        assert_eq!(empty.state(), params.state());
+        let file = folder.path().join("sprung").join(NAME);
+        std::fs::remove_file(&file).unwrap();
+        writer.keep_what_changed(&params).unwrap();
+        assert!(!file.exists(), "what has not changed is not written again");
+        params.set_view(|view| view.zoom = 75);
+        writer.keep_what_changed(&params).unwrap();
+        assert!(file.exists());
+    }
+
+    #[test]
+    fn what_is_not_understood_is_kept_aside_and_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("sprung").join(NAME);
+        std::fs::create_dir(file.parent().unwrap()).unwrap();
+        let newer = marimba().state().to_json().replacen('{', "{\"of_next_year\":1,", 1);
+        for (number, text) in [(1, &b"{\"preset\": 1"[..]), (2, b"\xff\xfe"), (3, newer.as_bytes())] {
+            std::fs::write(&file, text).unwrap();
+            let params = SprungParams::default();
+            let said = kept(folder.path()).restore(&params).unwrap();
+            let aside = file.with_file_name(format!("standalone.not-understood-{number}.json"));
+            assert!(said.contains(NAME) && said.contains(aside.to_str().unwrap()), "{said}");
+            assert_eq!(std::fs::read(&aside).unwrap(), text, "nothing of it is lost");
+            assert!(!file.exists());
+            assert_eq!(params.name() == "Marimba", number == 3, "what can be read of a newer state is taken over");
+        }
+    }
+
+    #[test]
+    fn the_folder_is_that_of_the_system() {
+        let find = |variables: &[(&str, &str)]| {
+            let variable = |name: &str| variables.iter().find(|(known, _)| *known == name).map(|(_, path)| path.into());
+            folder(&variable)
+        };
+        if cfg!(target_os = "linux") {
+            assert_eq!(find(&[("XDG_STATE_HOME", "/s"), ("HOME", "/h")]), Some("/s/sprung".into()));
+            assert_eq!(find(&[("XDG_STATE_HOME", "s"), ("HOME", "/h")]), Some("/h/.local/state/sprung".into()));
+        }
+        assert_eq!(find(&[]), None);
+    }
+}

@@ -1,0 +1,128 @@
+//! The audio thread of the program: MIDI and the window play, the device takes the sound.
+
+use crate::live::Live;
+use crate::params::SprungParams;
+use sprung::engine::Event;
+use sprung::realtime::convert::{DeviceSample, interleave};
+use sprung::realtime::player::MAX_BLOCK;
+use sprung::realtime::{BlockClock, Fade, LiveInputs, Moment, Source, Status};
+use std::sync::Arc;
+
+/// Plays what the window shows. [`Source::fill`] is real-time safe.
+pub(super) struct WindowPlayer {
+    params: Arc<SprungParams>,
+    live: Live,
+    inputs: LiveInputs,
+    clock: BlockClock,
+    events: Vec<Event>,
+    left: Vec<f32>,
+    right: Vec<f32>,
+    fade: Fade,
+    status: Arc<Status>,
+}
+
+impl WindowPlayer {
+    /// For a sample rate in Hz. Allocates.
+    pub(super) fn new(sample_rate: u32, params: Arc<SprungParams>, inputs: LiveInputs, status: Arc<Status>) -> Self {
+        let sample_rate = f64::from(sample_rate);
+        Self {
+            live: Live::new(sample_rate, false, &params),
+            params,
+            events: Vec::with_capacity(inputs.capacity()),
+            inputs,
+            clock: BlockClock::new(sample_rate),
+            left: vec![0.0; MAX_BLOCK],
+            right: vec![0.0; MAX_BLOCK],
+            fade: Fade::new(sample_rate),
+            status,
+        }
+    }
+}
+
+impl Source for WindowPlayer {
+    fn fill<T: DeviceSample>(&mut self, out: &mut [T], channels: usize, moment: Moment) {
+        let channels = channels.max(1);
+        let frames = out.len() / channels;
+        self.clock.begin(moment, frames as u32);
+        for (piece, out) in out.chunks_mut(MAX_BLOCK * channels).enumerate() {
+            let start = (piece * MAX_BLOCK) as u32;
+            let len = out.len() / channels;
+            self.events.clear();
+            self.inputs.merge(&self.clock, start, start + len as u32, &mut self.events);
+            let (left, right) = (&mut self.left[..len], &mut self.right[..len]);
+            self.live.play(&self.params, &self.events, left, right);
+            self.fade.apply(&self.status, left, right);
+            interleave(left, right, channels, out);
+        }
+        self.status.note_delay(self.clock.delay());
+        self.live.note_block(frames, moment.now.elapsed());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::Touch;
+    use crate::state::{State, VIEW};
+    use sprung::engine::{EventKind, Synth};
+    use sprung::preset::Playable;
+    use sprung::realtime::{LiveEvent, Stamp};
+    use std::time::{Duration, Instant};
+
+    const ON: EventKind = EventKind::NoteOn { key: 69, detune: 0.0, velocity: 1.0, id: None };
+
+    fn player() -> (WindowPlayer, [sprung::realtime::LiveSender; 1], Arc<SprungParams>) {
+        let params = Arc::new(SprungParams::default());
+        params.load(State::new(Playable::find("Marimba").unwrap(), 0, VIEW).into());
+        let (senders, inputs) = LiveInputs::new();
+        let status = Arc::new(Status::of(params.link().telemetry.clone()));
+        (WindowPlayer::new(48_000, params.clone(), inputs, status), senders, params)
+    }
+
+    fn fill(player: &mut WindowPlayer, frames: usize) -> Vec<f32> {
+        let mut out = vec![9.0; 2 * frames];
+        let moment = Moment { now: Instant::now(), called: Duration::ZERO, heard: Duration::ZERO };
+        player.fill(&mut out, 2, moment);
+        out
+    }
+
+    #[test]
+    fn keys_midi_and_knobs_are_heard_with_the_bits_of_the_engine() {
+        let (mut player, _, params) = player();
+        assert!(fill(&mut player, 64).iter().all(|sample| *sample == 0.0), "silence before anything is played");
+        let mut synth = Synth::new(48_000.0, 0);
+        synth.set_kit(&params.loaded().kit);
+        params.link().play(Touch::Down { key: 69, velocity: 1.0 });
+        let (mut left, mut right) = (vec![0.0; 10_000], vec![0.0; 10_000]);
+        synth.process(&[Event { frame: 0, channel: 0, kind: ON }], &mut left, &mut right);
+        let expected: Vec<f32> = left.into_iter().zip(right).flat_map(|(left, right)| [left, right]).collect();
+        assert!(expected.iter().any(|sample| *sample != 0.0));
+        // Longer than the pieces in which it is rendered.
+        assert!(fill(&mut player, 10_000) == expected);
+        let silence = &params.knobs()[sprung::params::Param::Gain as usize];
+        let before = fill(&mut player, 4_800).into_iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+        silence.turn(0.0);
+        fill(&mut player, 4_800);
+        let after = fill(&mut player, 480).into_iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+        assert!(after < before / 100.0, "a knob is followed: {before} {after}");
+    }
+
+    #[test]
+    fn midi_sounds_and_the_end_is_a_fade() {
+        let (mut player, [mut sender], params) = player();
+        fill(&mut player, 480);
+        let start = Instant::now();
+        sender.send(LiveEvent { stamp: Stamp::System(start), channel: 0, kind: ON });
+        let mut played = vec![0.0_f32; 960];
+        for block in 1..=10 {
+            let since = Duration::from_millis(10 * block);
+            player.fill(&mut played, 2, Moment { now: start + since, called: since, heard: since });
+        }
+        assert!(played.iter().any(|sample| *sample != 0.0) && !params.link().telemetry.is_silent());
+        player.status.fade();
+        for _ in 0..61 {
+            fill(&mut player, 480);
+        }
+        assert!(player.status.is_faded() && fill(&mut player, 480).iter().all(|sample| *sample == 0.0));
+    }
+}

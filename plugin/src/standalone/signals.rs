@@ -1,0 +1,20 @@
+//! Ctrl-C and the request to end.
+
+/// Calls `handler` on a thread of its own at each interrupt.
+#[cfg(unix)]
+pub(super) fn catch(mut handler: impl FnMut() + Send + 'static) -> Result<(), String> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM]).map_err(failed)?;
+    let wait = move || signals.forever().for_each(|_| handler());
+    std::thread::Builder::new().name("interrupt".to_owned()).spawn(wait).map(drop).map_err(failed)
+}
+
+/// Calls `handler` on a thread of its own at each interrupt.
+#[cfg(windows)]
+pub(super) fn catch(handler: impl FnMut() + Send + 'static) -> Result<(), String> {
+    ctrlc::set_handler(handler).map_err(failed)
+}
+
+fn failed(error: impl std::fmt::Display) -> String {
+    format!("Ctrl-C: {error}")
+}

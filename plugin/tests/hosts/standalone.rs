@@ -1,0 +1,180 @@
+//! The window as a program, on a screen that nobody sees and a JACK server without a sound card.
+
+use crate::process::{scratch, wait_until};
+use crate::screen::{Onlooker, Screen};
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+
+/// The program, if it was built with these tests.
+const PROGRAM: Option<&str> = option_env!("CARGO_BIN_EXE_sprung-standalone");
+
+/// What is missing for these tests besides a screen.
+pub(crate) fn missing() -> Option<String> {
+    if PROGRAM.is_none() {
+        return Some("the program (‘cargo test --features standalone’ builds it)".to_owned());
+    }
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    let is_there = std::env::split_paths(&paths).any(|folder| folder.join("jackd").is_file());
+    (!is_there).then(|| "jackd".to_owned())
+}
+
+/// A process that ends with the test.
+struct Running(Child);
+
+impl Running {
+    fn signal(&self, signal: i32) {
+        let id = i32::try_from(self.0.id()).unwrap();
+        // SAFETY: the process was started here, and has not been waited for.
+        #[allow(unsafe_code)]
+        let sent = unsafe { libc::kill(id, signal) };
+        assert_eq!(sent, 0);
+    }
+
+    #[track_caller]
+    fn ends(&mut self) -> ExitStatus {
+        let mut status = None;
+        wait_until("the program ends", || {
+            status = self.0.try_wait().unwrap();
+            status.is_some()
+        });
+        status.unwrap()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if self.0.try_wait().is_ok_and(|status| status.is_none()) {
+            self.signal(libc::SIGTERM);
+            let _ = self.0.wait();
+        }
+    }
+}
+
+/// A screen, a JACK server and a user's folders.
+struct Stand {
+    screen: Screen,
+    onlooker: Onlooker,
+    server: String,
+    _jack: Running,
+    folder: tempfile::TempDir,
+}
+
+impl Stand {
+    fn new(name: &str) -> Self {
+        let server = format!("sprung-window-{name}-{}", std::process::id());
+        let mut jack = Command::new("jackd");
+        jack.args(["-n", &server, "--no-realtime", "-S", "-t", "5000", "-d", "dummy", "-r", "44100", "-p", "256"]);
+        jack.env("JACK_NO_AUDIO_RESERVATION", "1").stdout(Stdio::null()).stderr(Stdio::null());
+        let jack = Running(jack.spawn().unwrap());
+        let screen = Screen::new();
+        let onlooker = Onlooker::new(Some(&screen.display));
+        let stand = Self { onlooker, screen, server, _jack: jack, folder: tempfile::tempdir().unwrap() };
+        wait_until("the server", || {
+            let list = stand.command(&["--list"]).output().unwrap().stdout;
+            String::from_utf8_lossy(&list).contains("JACK Output")
+        });
+        stand
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(PROGRAM.unwrap());
+        command.args(arguments).stdin(Stdio::null()).env("DISPLAY", &self.screen.display);
+        command.env("JACK_DEFAULT_SERVER", &self.server).env("JACK_NO_START_SERVER", "1");
+        command.env("XDG_STATE_HOME", self.folder.path()).env("XDG_DATA_HOME", self.folder.path());
+        command
+    }
+
+    fn state(&self) -> PathBuf {
+        self.folder.path().join("sprung/standalone.json")
+    }
+
+    /// Starts the program on the server, and waits for its window. Returns it and the file with what it says.
+    #[track_caller]
+    fn start(&self, arguments: &[&str]) -> (Running, PathBuf) {
+        let said = self.folder.path().join("stderr");
+        let mut command = self.command(&["--host", "jack", "--midi-in", "none"]);
+        let running = Running(command.args(arguments).stderr(File::create(&said).unwrap()).spawn().unwrap());
+        wait_until("the window", || self.onlooker.find("Sprung").is_some());
+        wait_until("a picture", || self.onlooker.sees_a_picture(600, 400));
+        (running, said)
+    }
+}
+
+fn preset(file: &Path) -> String {
+    let text = std::fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    let state: serde_json::Value = serde_json::from_str(&text).unwrap();
+    state["preset"].as_str().unwrap().to_owned()
+}
+
+pub(crate) fn it_keeps_its_state_whatever_ends_it() {
+    let stand = Stand::new("state");
+    let (mut running, said) = stand.start(&["Church Bell"]);
+    let said = std::fs::read_to_string(said).unwrap();
+    assert!(said.contains("playing on JACK") && said.contains("44100 Hz"), "the rate is the device's: {said}");
+    running.signal(libc::SIGINT);
+    assert_eq!(running.ends().code(), Some(0));
+    let first = preset(&stand.state());
+    assert!(first.contains("Church Bell"), "{first}");
+
+    // The sound of the last time comes back; what is changed in the window is kept when a signal ends the program.
+    let (mut running, _) = stand.start(&[]);
+    stand.onlooker.drag_slowly([200, 500], [200, 440]);
+    let mut changed = first.clone();
+    wait_until("a change is kept while the window is open", || {
+        for y in (440..640).step_by(20) {
+            stand.onlooker.drag_slowly([60, y], [60, y - 30]);
+        }
+        changed = preset(&stand.state());
+        changed != first
+    });
+    running.signal(libc::SIGTERM);
+    assert_eq!(running.ends().code(), Some(0));
+    assert!(preset(&stand.state()).contains("Church Bell"));
+
+    // Its close button ends it too.
+    let changed = preset(&stand.state());
+    let (mut running, _) = stand.start(&[]);
+    stand.onlooker.close(stand.onlooker.find("Sprung").unwrap());
+    assert_eq!(running.ends().code(), Some(0));
+    assert_eq!(preset(&stand.state()), changed);
+    let files = std::fs::read_dir(stand.state().parent().unwrap()).unwrap().count();
+    assert_eq!(files, 1, "nothing else is left behind");
+}
+
+pub(crate) fn a_broken_state_is_set_aside() {
+    let stand = Stand::new("broken");
+    std::fs::create_dir(stand.state().parent().unwrap()).unwrap();
+    std::fs::write(stand.state(), "{\"preset\": 1").unwrap();
+    let (mut running, said) = stand.start(&[]);
+    running.signal(libc::SIGINT);
+    assert_eq!(running.ends().code(), Some(0));
+    let said = std::fs::read_to_string(said).unwrap();
+    let aside = stand.state().with_file_name("standalone.not-understood-1.json");
+    assert!(said.contains("not a state of Sprung") && said.contains(aside.to_str().unwrap()), "{said}");
+    assert_eq!(std::fs::read_to_string(aside).unwrap(), "{\"preset\": 1");
+    assert!(preset(&stand.state()).contains("Init"));
+}
+
+pub(crate) fn what_is_missing_is_said() {
+    let stand = Stand::new("missing");
+    let refused = |command: &mut Command, word: &str| {
+        let output = command.output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        let last = said.lines().last().unwrap_or_default();
+        assert!(last.starts_with("error: ") && last.contains(word), "{said}");
+    };
+    let nowhere = format!("{}-nowhere", stand.server);
+    refused(stand.command(&["--host", "jack"]).env("JACK_DEFAULT_SERVER", nowhere), "JACK");
+    refused(&mut stand.command(&["--host", "tape"]), "tape");
+    refused(&mut stand.command(&["No Such Sound"]), "No Such Sound");
+    let list = stand.command(&["--list"]).output().unwrap();
+    let list = String::from_utf8_lossy(&list.stdout).into_owned();
+    assert!(list.contains("--host jack") && list.contains("MIDI"), "{list}");
+    drop(stand.start(&[]));
+    let mut blind = stand.command(&["--host", "jack", "--midi-in", "none"]);
+    let output = blind.env_remove("DISPLAY").stderr(File::create(scratch("blind")).unwrap()).status().unwrap();
+    let said = std::fs::read_to_string(scratch("blind")).unwrap();
+    assert!(output.code() == Some(1) && said.contains("the window cannot be shown"), "{said}");
+}

@@ -1,0 +1,41 @@
+//! Live MIDI input: the system's ports, or a port of the JACK server.
+
+use super::jack_midi::JackMidi;
+use super::live::LiveSender;
+use super::midi_ports::{MidiPorts, Wanted};
+
+/// The source of live MIDI input.
+pub enum MidiIn {
+    /// No input.
+    None,
+    /// The system's ports.
+    Ports(MidiPorts),
+    /// A port of the JACK server.
+    Jack(Box<JackMidi>),
+}
+
+impl MidiIn {
+    /// Listens to `all` ports, to `none`, or to those whose name contains this text; `jack` if the sound goes to a JACK
+    /// server.
+    pub fn new(wanted: &str, jack: bool, sender: LiveSender) -> Self {
+        let wanted = match wanted {
+            "none" => None,
+            "all" => Some(Wanted::All),
+            name => Some(Wanted::Named(name.to_owned())),
+        };
+        match wanted {
+            wanted if jack => Self::Jack(Box::new(JackMidi::new(wanted, sender))),
+            Some(wanted) => Self::Ports(MidiPorts::new(wanted, sender)),
+            None => Self::None,
+        }
+    }
+
+    /// Looks for ports that have come or gone, and returns messages about them. Must be called regularly.
+    pub fn poll(&mut self) -> Vec<String> {
+        match self {
+            Self::None => vec![],
+            Self::Ports(ports) => ports.poll(),
+            Self::Jack(port) => port.poll(),
+        }
+    }
+}
