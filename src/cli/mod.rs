@@ -154,7 +154,7 @@ fn finish(result: Result<()>) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             complain("error", &error);
-            if matches!(error, Error::Interrupted) { ExitCode::from(INTERRUPTED) } else { ExitCode::FAILURE }
+            if error.is_interrupt() { ExitCode::from(INTERRUPTED) } else { ExitCode::FAILURE }
         }
     }
 }
