@@ -4,10 +4,12 @@
 //! installed are skipped by name. What takes minutes is ignored unless `--include-ignored` or `--ignored` asks for it.
 
 mod bodies;
+mod clock;
 mod installed;
 mod measures;
 mod played;
 mod round_trip;
+mod speed;
 
 use installed::Pair;
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -29,6 +31,7 @@ fn main() -> ExitCode {
         Trial::test("the_progress_never_runs_backwards", progress),
         Trial::test("bodies_have_the_levels_of_their_modes", bodies::levels),
         Trial::test("round_trip_of_every_preset", || round_trips(&every())).with_ignored_flag(true),
+        Trial::test("sixty_modes_in_three_seconds", speed::sixty_modes).with_ignored_flag(true),
         Trial::test("recordings", recordings).with_ignored_flag(true),
         Trial::test("layers_of_recordings", layers).with_ignored_flag(true),
     ];

@@ -1,10 +1,10 @@
 //! Presets rendered and fitted again: how far the fit's sound is from the preset's.
 
+use crate::clock::Clock;
 use crate::played::{Stereo, fitted_while, in_parallel, log_mel_distance, preset_at, preset_of_seed};
 use libtest_mimic::Failed;
 use sprung::Error;
 use sprung::preset::Preset;
-use std::time::Instant;
 
 const KEYS: [u8; 3] = [48, 60, 72];
 /// Presets of the suite's part: every so many of the bank, each at one of [`KEYS`].
@@ -59,34 +59,11 @@ const FEW: f64 = 0.15;
 const WORST: f64 = 4.0;
 
 /// The distance of a note's fit from it.
-fn round_trip(sound: &Stereo, (preset, key): &Note, clock: &Clock) -> Result<f64, Error> {
+fn round_trip(sound: &Stereo, (_, key): &Note, clock: &Clock) -> Result<f64, Error> {
     let fit = fitted_while(sound, (*key).into(), &mut |_| clock.seconds() < LONGEST)?;
     // From the text of the preset, which is what users get.
     let written = Preset::parse(&fit.preset("again", "").to_toml(), "again")?;
     Ok(log_mel_distance(sound, &preset_at(&written, *key)))
-}
-
-/// Seconds for which this thread has been at work: on a busy machine, far fewer than have passed.
-struct Clock {
-    started: Instant,
-    worked: Option<f64>,
-}
-
-impl Clock {
-    fn start() -> Self {
-        Self { started: Instant::now(), worked: Self::worked() }
-    }
-
-    /// Where Linux tells it: nanoseconds.
-    fn worked() -> Option<f64> {
-        let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-        text.split(' ').next()?.parse().ok().map(|nanoseconds: f64| 1e-9 * nanoseconds)
-    }
-
-    fn seconds(&self) -> f64 {
-        let worked = self.worked.and_then(|before| Some(Self::worked()? - before));
-        worked.unwrap_or_else(|| self.started.elapsed().as_secs_f64())
-    }
 }
 
 /// A line of the table as soon as it is known, and the distance: infinite where there is no fit.
