@@ -72,7 +72,7 @@ fn told(note: &Note) -> f64 {
     let (sound, clock) = (preset_at(preset, *key), Clock::start());
     let distance = round_trip(&sound, note, &clock);
     let seconds = clock.seconds();
-    // What noise moves sounds different each time: no fit can be expected to be nearer.
+    // What noise moves sounds different each time: by as much, a fit may be off by chance.
     let again = log_mel_distance(&sound, &preset_of_seed(preset, *key, OTHER_SEED));
     let text = match &distance {
         Ok(distance) => format!("{distance:.2} dB"),
