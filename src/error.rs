@@ -37,9 +37,20 @@ pub enum Error {
     /// The work was stopped from outside before its end; nothing was written.
     #[error("interrupted; nothing was written")]
     Interrupted,
+    /// The work was stopped from outside before its end, and some of it was written.
+    #[error("interrupted; {left}")]
+    InterruptedAfter {
+        /// What was written, and what was not.
+        left: String,
+    },
 }
 
 impl Error {
+    /// Whether the work was stopped from outside.
+    pub fn is_interrupt(&self) -> bool {
+        matches!(self, Self::Interrupted | Self::InterruptedAfter { .. })
+    }
+
     /// An [`Error::Value`] of `name`.
     pub fn value(name: impl Into<String>, message: impl Into<String>) -> Self {
         Self::Value { name: name.into(), message: message.into() }

@@ -25,8 +25,8 @@ mod usage;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use interrupt::INTERRUPTED;
+use sprung::Result;
 use sprung::request::quantity;
-use sprung::{Error, Result};
 use std::io::Write;
 use std::process::ExitCode;
 use terminal::{checked, complain};
@@ -132,7 +132,7 @@ fn execute(command: &Command) -> Result<()> {
         #[cfg(feature = "realtime")]
         Command::Play(args) => play::run(args),
         #[cfg(not(feature = "realtime"))]
-        Command::Play { .. } => Err(Error::value(
+        Command::Play { .. } => Err(sprung::Error::value(
             "play",
             "this sprung was built without sound devices: expected one built with ‘cargo build --features realtime’; \
              ‘sprung render’ writes a file",
@@ -154,7 +154,7 @@ fn finish(result: Result<()>) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             complain("error", &error);
-            if matches!(error, Error::Interrupted) { ExitCode::from(INTERRUPTED) } else { ExitCode::FAILURE }
+            if error.is_interrupt() { ExitCode::from(INTERRUPTED) } else { ExitCode::FAILURE }
         }
     }
 }

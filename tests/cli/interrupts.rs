@@ -1,6 +1,7 @@
 //! What remains when a command is interrupted or killed.
 
-use crate::{DEFAULT_SIGNALS, Sandbox, Wav};
+use crate::{DEFAULT_SIGNALS, Sandbox, Wav, signals};
+use sprung::preset::{KitPreset, Preset};
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
@@ -17,7 +18,7 @@ fn start(sandbox: &Sandbox, below: &[&str], args: &str, mut ready: impl FnMut(&m
         .args(&words[1..])
         .current_dir(sandbox.path("."))
         .stdout(Stdio::piped())
-        .stderr(Stdio::null())
+        .stderr(Stdio::piped())
         .spawn()
         .unwrap();
     let limit = Instant::now() + Duration::from_secs(60);
@@ -54,6 +55,58 @@ fn interrupts_leave_nothing_behind() {
     let ready = |child: &mut Child| child.stdout.as_mut().unwrap().read_exact(&mut [0; 100]).is_ok();
     let child = start(&sandbox, &[], &format!("{ENDLESS} --tail none -o -"), ready);
     assert_eq!(end(child, "-INT").code(), Some(130), "also while nobody reads the pipe");
+}
+
+/// Interrupts a child. Its exit code, and what it says.
+fn interrupted(child: Child) -> (Option<i32>, String) {
+    send(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+#[test]
+fn an_interrupted_analysis_writes_nothing() {
+    // Noise is no sum of modes: both look for them for long.
+    let noise = signals::wav(&signals::noise(8 * 44_100), 44_100, 1);
+    for args in [
+        "analyze noise.wav --figure modes.png",
+        "analyze noise.wav --hits --json --figure modes.svg",
+        "fit noise.wav -o noise.toml --report noise.html",
+        "fit noise.wav@C4@40 noise.wav@C4@100 -o noise.toml",
+    ] {
+        let sandbox = Sandbox::new();
+        sandbox.write("noise.wav", &noise);
+        let ready = |_: &mut Child| sandbox.files().iter().any(|name| name.starts_with(".sprung-"));
+        let child = start(&sandbox, &[], args, ready);
+        let expected = (Some(130), "sprung: error: interrupted; nothing was written\n".to_owned());
+        assert_eq!(interrupted(child), expected, "{args}");
+        assert_eq!(sandbox.files(), ["noise.wav"], "{args}");
+    }
+}
+
+#[test]
+fn an_interrupted_audition_says_what_it_has_written() {
+    let files = |sandbox: &Sandbox, ending: &str| {
+        let folder = std::fs::read_dir(sandbox.path("page")).into_iter().flatten();
+        folder.filter(|entry| entry.as_ref().unwrap().file_name().to_str().unwrap().ends_with(ending)).count()
+    };
+    let audition = |ending: &str| {
+        let sandbox = Sandbox::new();
+        let ready = |_: &mut Child| files(&sandbox, ending) > 0;
+        let (code, said) = interrupted(start(&sandbox, &[], "presets audition --out page", ready));
+        assert_eq!(code, Some(130), "{said}");
+        let sounds = files(&sandbox, ".wav");
+        assert_eq!((files(&sandbox, ".png"), files(&sandbox, "")), (sounds, 2 * sounds), "{said}");
+        let all = Preset::factory().len() + KitPreset::factory().len();
+        let expected = match sounds {
+            0 => "nothing was written".to_owned(),
+            _ => format!("{sounds} of {all} sounds are in page, without a page"),
+        };
+        assert_eq!(said, format!("sprung: error: interrupted; {expected}\n"));
+        assert_eq!(sandbox.path("page").exists(), sounds > 0, "an empty folder does not remain");
+    };
+    audition(".part");
+    audition(".png");
 }
 
 #[test]

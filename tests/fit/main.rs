@@ -4,15 +4,20 @@
 //! installed are skipped by name. What takes minutes is ignored unless `--include-ignored` or `--ignored` asks for it.
 
 mod bodies;
+mod clock;
 mod installed;
 mod measures;
 mod played;
+mod round_trip;
+mod speed;
 
 use installed::Pair;
 use libtest_mimic::{Arguments, Failed, Trial};
 use measures::Measures;
 use played::{fitted, in_parallel, log_mel_distance, preset_at};
+use round_trip::{every, round_trips, some};
 use sprung::Error;
+use sprung::analysis::fit::Family;
 use sprung::analysis::log_mel::RATE;
 use sprung::analysis::measures::{DRUMS, TUNED};
 use sprung::preset::Preset;
@@ -23,95 +28,73 @@ fn main() -> ExitCode {
     let trials = vec![
         Trial::test("round_trip_of_some_presets", || round_trips(&some())),
         Trial::test("a_cancelled_fit_asks_no_more", cancelled),
+        Trial::test("the_progress_never_runs_backwards", progress),
         Trial::test("bodies_have_the_levels_of_their_modes", bodies::levels),
         Trial::test("round_trip_of_every_preset", || round_trips(&every())).with_ignored_flag(true),
+        Trial::test("sixty_modes_in_three_seconds", speed::sixty_modes).with_ignored_flag(true),
         Trial::test("recordings", recordings).with_ignored_flag(true),
         Trial::test("layers_of_recordings", layers).with_ignored_flag(true),
     ];
     libtest_mimic::run(&arguments, trials).exit_code()
 }
 
-const KEYS: [u8; 3] = [48, 60, 72];
-/// Presets of the suite's part: every so many of the bank, each at one of [`KEYS`].
-const SOME: usize = 24;
-
-type Note = (&'static Preset, u8);
-
-fn some() -> Vec<Note> {
-    // A debug build takes twenty times as long.
-    let count = if cfg!(debug_assertions) { 2 } else { SOME };
-    let bank = Preset::factory();
-    let step = bank.len().div_ceil(count);
-    let notes = bank.iter().step_by(step).enumerate().map(|(n, preset)| (preset, KEYS[n % KEYS.len()]));
-    notes.filter(|(preset, _)| is_struck(preset)).collect()
-}
-
-/// Whether a preset is struck or plucked and rings freely: what lasts as long as its key is held is not what a fit explains.
-fn is_struck(preset: &Preset) -> bool {
-    use sprung::preset::Family::{Bowed, Drone, Lead, Pad, Wind};
-    !matches!(preset.guide.family, Some(Bowed | Drone | Lead | Pad | Wind))
-        && preset.tags.iter().all(|tag| !["organ", "voice", "bow"].contains(&tag.as_str()))
-}
-
-/// Every preset at its home key and an octave below and above, where its range has them; with `SPRUNG_EVERY=N` only
-/// every Nth of these notes.
-fn every() -> Vec<Note> {
-    let step = std::env::var("SPRUNG_EVERY").ok().and_then(|step| step.parse().ok()).unwrap_or(1_usize);
-    let notes = |preset: &'static Preset| {
-        let guide = &preset.guide;
-        let keys = [guide.home.checked_sub(12), Some(guide.home), guide.home.checked_add(12)];
-        let within = move |key: &u8| *key == guide.home || (guide.lowest..=guide.highest).contains(key);
-        keys.into_iter().flatten().filter(within).map(move |key| (preset, key))
-    };
-    Preset::factory().iter().flat_map(notes).step_by(step.max(1)).collect()
-}
-
-/// Median distance in dB of a fit from its preset, and that from which on it is far; and the share of notes that may be.
-const MEDIAN: f64 = 1.0;
-const FAR: f64 = 3.0;
-const FEW: f64 = 0.15;
-/// Greatest distance in dB.
-const WORST: f64 = 4.0;
-
-fn round_trip((preset, key): &Note) -> Result<f64, Failed> {
-    let sound = preset_at(preset, *key);
-    let fit = fitted(&sound, (*key).into())?;
-    // From the text of the preset, which is what users get.
-    let written = Preset::parse(&fit.preset("again", "").to_toml(), "again")?;
-    Ok(log_mel_distance(&sound, &preset_at(&written, *key)))
-}
-
-fn round_trips(notes: &[Note]) -> Result<(), Failed> {
-    let mut table: Vec<(f64, &Note)> = in_parallel(notes, |note| round_trip(note).map(|distance| (distance, note)))
-        .into_iter()
-        .collect::<Result<_, _>>()?;
-    table.sort_by(|a, b| a.0.total_cmp(&b.0));
-    println!("| preset | key | distance |\n|---|---|---|");
-    table.iter().for_each(|(distance, (preset, key))| println!("| {} | {key} | {distance:.2} dB |", preset.name));
-    let (median, worst) = (table[table.len() / 2].0, table[table.len() - 1].0);
-    let far = table.iter().filter(|(distance, _)| *distance > FAR).count();
-    let summary = format!("median {median:.2} dB, worst {worst:.2} dB; {far} of {} beyond {FAR} dB", table.len());
-    println!("{summary}");
-    assert!(median < MEDIAN && worst < WORST && far as f64 <= FEW * table.len() as f64, "{summary}");
-    Ok(())
-}
-
 /// Calls of the progress, after one of which the work is cancelled, and how often it may be told again.
 const CALLS: [usize; 6] = [1, 2, 6, 20, 60, 150];
 const AGAIN: usize = 8;
+const KEY: u8 = 60;
+/// Samples in which noise swells.
+const SWELL: usize = RATE as usize / 5;
+/// Least number of shares that a progress is told in.
+const STEPS: usize = 8;
 
 /// Cancelled at any time, a fit ends with the next word of its progress.
 fn cancelled() -> Result<(), Failed> {
     let preset = Preset::find("init")?;
-    let sound = preset_at(preset, KEYS[1]).map(|channel| channel[..RATE as usize / 4].to_vec());
+    let sound = preset_at(preset, KEY).map(|channel| channel[..RATE as usize / 4].to_vec());
     for most in CALLS {
         let mut calls = 0;
-        let result = played::fitted_while(&sound, KEYS[1].into(), &mut |_| {
+        let result = played::fitted_while(&sound, KEY.into(), &mut |_| {
             calls += 1;
             calls < most
         });
         if !matches!(result, Err(Error::Interrupted)) || calls > most + AGAIN {
             return Err(format!("{calls} calls, cancelled at {most}: {:?}", result.map(|_| ())).into());
+        }
+    }
+    Ok(())
+}
+
+/// What is told of the progress never falls, and ends with 1: of a stroke, of noise that swells, which is drafted in every way that
+/// there is, and of a body.
+fn progress() -> Result<(), Failed> {
+    let swell = |n: usize, noise: f32| (n as f32 / SWELL as f32).min(1.0) * noise;
+    let mut chance = 1_u32;
+    let noise: Vec<f32> = (0..2 * SWELL)
+        .map(|n| {
+            chance = chance.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            swell(n, chance as f32 / u32::MAX as f32 - 0.5)
+        })
+        .collect();
+    let stroke = preset_at(Preset::find("init")?, KEY).map(|channel| channel[..RATE as usize / 4].to_vec());
+    let cases = [
+        ("a stroke", &stroke, Family::Table),
+        ("noise", &[noise.clone(), noise], Family::Table),
+        ("a bar", &stroke, Family::Bar),
+    ];
+    for (name, sound, family) in cases {
+        let mut told = Vec::new();
+        played::fitted_by(sound, KEY.into(), family, &mut |share| {
+            told.push(share);
+            true
+        })?;
+        if let Some(pair) = told.windows(2).find(|pair| pair[1] < pair[0]) {
+            return Err(format!("{name}: {} follows {}", pair[1], pair[0]).into());
+        }
+        let mut steps = told.clone();
+        steps.dedup();
+        let (first, last) = (told[0], told[told.len() - 1]);
+        if first < 0.0 || last != 1.0 || steps.len() < STEPS {
+            return Err(format!("{name}: {first} to {last} in {} steps", steps.len()).into());
         }
     }
     Ok(())

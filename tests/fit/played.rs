@@ -19,9 +19,18 @@ pub(crate) fn preset_at(preset: &Preset, key: u8) -> Stereo {
     preset_struck(preset, key, VELOCITY as u8)
 }
 
+/// As [`preset_at`], with the noise of another seed.
+pub(crate) fn preset_of_seed(preset: &Preset, key: u8, seed: u64) -> Stereo {
+    played(preset, key, VELOCITY as u8, seed)
+}
+
 /// A note of a preset.
 pub(crate) fn preset_struck(preset: &Preset, key: u8, velocity: u8) -> Stereo {
-    let mut synth = Synth::new(RATE.into(), 0);
+    played(preset, key, velocity, 0)
+}
+
+fn played(preset: &Preset, key: u8, velocity: u8, seed: u64) -> Stereo {
+    let mut synth = Synth::new(RATE.into(), seed);
     synth.set_kit(&preset.kit());
     synth.reset();
     let [mut left, mut right] = [0, 1].map(|_| vec![0.0; SECONDS * RATE as usize]);
@@ -41,12 +50,17 @@ pub(crate) fn fitted(sound: &Stereo, key: f64) -> sprung::Result<Fitted> {
 
 /// The fit of a sound at [`RATE`], unless `progress` ends it.
 pub(crate) fn fitted_while(sound: &Stereo, key: f64, progress: &mut dyn FnMut(f64) -> bool) -> sprung::Result<Fitted> {
-    fit(&[take(sound, key)], &Settings::default(), progress)
+    fitted_by(sound, key, Family::Table, progress)
 }
 
-/// The fit of a sound at [`RATE`] by a body.
-pub(crate) fn fitted_by(sound: &Stereo, key: f64, family: Family) -> sprung::Result<Fitted> {
-    fit(&[take(sound, key)], &Settings { family, ..Settings::default() }, &mut |_| true)
+/// The fit of a sound at [`RATE`] by a body, unless `progress` ends it.
+pub(crate) fn fitted_by(
+    sound: &Stereo,
+    key: f64,
+    family: Family,
+    progress: &mut dyn FnMut(f64) -> bool,
+) -> sprung::Result<Fitted> {
+    fit(&[take(sound, key)], &Settings { family, ..Settings::default() }, progress)
 }
 
 fn take(sound: &Stereo, key: f64) -> Take {

@@ -7,6 +7,10 @@ const EXCUSED: &[(&str, &str)] = &[
     ("level::avx512", "some x86-64 CPUs have AVX-512"),
     ("level::neon", "AArch64 CPUs have NEON"),
     ("round_trip_of_every_preset", "it takes minutes: ‘cargo test --release --test fit -- --include-ignored’ runs it"),
+    (
+        "sixty_modes_in_three_seconds",
+        "a debug build is too slow: ‘cargo test --release --test fit -- --include-ignored’ runs it",
+    ),
     ("recordings", RECORDINGS),
     ("layers_of_recordings", RECORDINGS),
     (

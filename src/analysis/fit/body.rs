@@ -2,7 +2,8 @@
 
 use super::draft::{Draft, Partial, digits};
 use super::levels::{Levels, weight};
-use crate::analysis::modes::Strike;
+use super::start::at_onset;
+use crate::analysis::modes::{Mode, Strike};
 use crate::params::Param;
 use crate::patch::Patch;
 use crate::preset::modes_of_body;
@@ -21,6 +22,8 @@ const ASPECTS: [f64; 13] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 2.0, 2.
 const SLENDERNESSES: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0];
 /// Cents by which a mode may be off the model's to be that one.
 const NEAR: f64 = 60.0;
+/// Cents by which a mode that was found twice may differ.
+const SAME: f64 = 5.0;
 /// Partials that the body's own modes are laid on in turn, and how many of these.
 const PLACED: usize = 5;
 const LOWEST: usize = 6;
@@ -136,13 +139,20 @@ fn lay(body: &Body, frequency: f64, partials: &[Partial]) -> Match {
     Match { body, pairs, score }
 }
 
+/// The mode that a partial of a frequency in Hz is: not the same number, where the partial was found later in the sound.
+fn nearest(modes: &[Mode], frequency: f64) -> Option<&Mode> {
+    let off = |mode: &&Mode| fabs(1200.0 * log2(mode.frequency / frequency));
+    modes.iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|mode| off(mode) < SAME)
+}
+
 /// Finds the body of a family that explains a draft best, given the strike that its modes were found in. None if it has no modes.
 pub(super) fn find(draft: &Draft, strike: Option<&Strike>, family: Family) -> Option<(Body, Levels, Explained)> {
     let mut partials: Vec<Partial> = draft.partials.iter().copied().filter(|partial| partial.struck).collect();
     // What was corrected by bands is what those have; a body is asked for the levels of modes.
     for partial in &mut partials {
-        let own = strike.and_then(|strike| strike.modes.iter().find(|mode| mode.frequency == partial.frequency));
-        partial.amplitude = own.map_or(partial.amplitude, |mode| pow(10.0, mode.level_db / 20.0));
+        let own = strike.and_then(|strike| Some((nearest(&strike.modes, partial.frequency)?, strike)));
+        partial.amplitude =
+            own.map_or(partial.amplitude, |(mode, strike)| at_onset(mode, strike.fitted_from - strike.onset));
     }
     partials.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     partials.truncate(2 * MODES);

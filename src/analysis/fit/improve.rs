@@ -30,8 +30,9 @@ type Found = (Draft, Option<Strike>);
 
 /// The draft of a take with at most `most` modes, and the strike that its modes were found in.
 pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) -> bool) -> Result<Found> {
-    let mut tell = |share: f64| if progress(share) { Ok(()) } else { Err(Error::Interrupted) };
-    let found = drafts(take, most, &mut |share| tell(ANALYSED * share))?;
+    let found = drafts(take, most, &mut |share| {
+        if progress(ANALYSED * share) { Ok(()) } else { Err(Error::Interrupted) }
+    })?;
     let mut listener = Listener::new(take, progress);
     let (count, mut best, mut least) = (found.len() as f64, None, f64::INFINITY);
     for (n, (draft, strike)) in found.into_iter().enumerate() {
@@ -42,7 +43,7 @@ pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) ->
         let part = |share: f64| ANALYSED + (1.0 - ANALYSED) * (n as f64 + share) / count;
         let slow = take.rise > SLOW;
         let draft = improved(draft, &mut listener, &lines, most, slow, &part)?;
-        let distance = listener.distance(&draft, usize::MAX);
+        let distance = listener.distance(&draft, usize::MAX)?;
         if distance < least {
             (best, least) = (Some((draft, strike)), distance);
         }
@@ -54,16 +55,19 @@ pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) ->
 /// What a take may be: its modes, with the movements of the pitch that explain it best, and, if these explain little, modes
 /// that noise alone has moved: those that are left when it is over.
 fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
-    let mut analysed = |source: Source, [from, to]: [f64; 2]| {
+    // One after the other: what is not asked for is passed over.
+    let [of_still, of_search, first, second, of_noise, of_held] =
+        [[0.0, 0.35], [0.35, 0.45], [0.45, 0.6], [0.6, 0.75], [0.75, 0.9], [0.9, 1.0]];
+    let analysed = |source: Source, [from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>| {
         start::draft(take, source, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
     };
     let all = Source { swept: Sweep::NONE, late: 0.0, struck: true };
-    let mut found = vec![analysed(all, [0.0, 0.4])?];
+    let mut found = vec![analysed(all, of_still, tell)?];
     let still = residual_db(&found[0]);
     if still > EXPLAINED_DB {
-        let sweeps = sweep::find(&take.mean);
-        for (sweep, part) in sweeps.into_iter().zip([[0.5, 0.75], [0.75, 1.0]]) {
-            let swept = analysed(Source { swept: sweep, ..all }, part)?;
+        let sweeps = sweep::find(&take.mean, &mut || tell(of_search[0]))?;
+        for (sweep, part) in sweeps.into_iter().zip([first, second]) {
+            let swept = analysed(Source { swept: sweep, ..all }, part, tell)?;
             found.extend(Some(swept).filter(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB));
         }
     }
@@ -71,12 +75,13 @@ fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
     found.truncate(MOST_DRAFTS);
     let strike = found[0].1.clone();
     if residual_db(&found[0]) > NOISE_DB {
-        let (driven, _) = analysed(Source { late: LATE * take.seconds(), struck: false, ..all }, [0.75, 1.0])?;
+        let late = Source { late: LATE * take.seconds(), struck: false, ..all };
+        let (driven, _) = analysed(late, of_noise, tell)?;
         found.push((driven, strike.clone()));
     }
     if take.rise > SLOW {
         let swept = found[0].0.sweep;
-        let (held, _) = analysed(Source { late: take.rise, swept, ..all }, [0.75, 1.0])?;
+        let (held, _) = analysed(Source { late: take.rise, swept, ..all }, of_held, tell)?;
         found.push((held, strike));
     }
     Ok(found)
@@ -95,34 +100,35 @@ fn improved(
     slow: bool,
     part: &dyn Fn(f64) -> f64,
 ) -> Result<Draft> {
+    listener.tell(part(0.0))?;
     if slow {
-        listener.choose_swell(&mut draft);
+        listener.choose_swell(&mut draft)?;
     }
-    listener.choose_hardness(&mut draft);
+    listener.choose_hardness(&mut draft)?;
     listener.tell(part(0.3))?;
     // Twice: what decays in two stages gets two beds.
     for (pass, seed) in [(1.0, 11), (2.0, 12)] {
-        let heard = listener.hear(&draft);
+        let heard = listener.hear(&draft)?;
         let room = most.saturating_sub(draft.partials.len());
         let mut other = draft.clone();
         other.partials.extend(bed::bed([&listener.target, &heard], lines, &draft.sweep, room, seed));
         if other.partials.is_empty() {
             break;
         }
-        listener.choose_noise(&mut other);
-        listener.correct(&mut other, ROUNDS);
-        if listener.distance(&other, usize::MAX) < listener.distance(&draft, usize::MAX) - WORTH_A_BED {
+        listener.choose_noise(&mut other)?;
+        listener.correct(&mut other, ROUNDS)?;
+        if listener.distance(&other, usize::MAX)? < listener.distance(&draft, usize::MAX)? - WORTH_A_BED {
             draft = other;
         }
         listener.tell(part(0.3 + 0.2 * pass))?;
     }
-    listener.correct(&mut draft, ROUNDS);
+    listener.correct(&mut draft, ROUNDS)?;
     if slow {
-        listener.choose_swell(&mut draft);
+        listener.choose_swell(&mut draft)?;
     }
-    listener.choose_hardness(&mut draft);
-    listener.choose_sweep(&mut draft);
-    listener.correct(&mut draft, ROUNDS);
+    listener.choose_hardness(&mut draft)?;
+    listener.choose_sweep(&mut draft)?;
+    listener.correct(&mut draft, ROUNDS)?;
     listener.tell(part(1.0))?;
     Ok(draft)
 }

@@ -113,7 +113,8 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         return Err(Error::value("recordings", "there are none: expected at least one"));
     }
     let prepared: Vec<Prepared> = takes.iter().map(Prepared::new).collect::<Result<_>>()?;
-    let count = takes.len() as f64;
+    // What is listened to again for a body takes about as long as a take.
+    let count = takes.len() as f64 + if settings.family == Family::Table { 0.0 } else { 1.0 };
     let mut fits = Vec::new();
     for (n, take) in prepared.iter().enumerate() {
         let most = settings.most_modes.clamp(1, MOST_MODES);
@@ -136,7 +137,8 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
                     "no mode rings in it: expected a sound that a body can explain, or the body table",
                 )
             })?;
-            (tuned::patch(&draft, &body, &levels, take, key_from_frequency(draft.note, A4)), Some(explained))
+            let told = &mut |share| progress((takes.len() as f64 + share) / count);
+            (tuned::patch(&draft, &body, &levels, take, key_from_frequency(draft.note, A4), told)?, Some(explained))
         }
     };
     let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
@@ -161,6 +163,9 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
             distances[base]
         );
         warnings.push(format!("{}: {message}", takes[base].name));
+    }
+    if !progress(1.0) {
+        return Err(Error::Interrupted);
     }
     Ok(Fitted {
         patch,

@@ -34,163 +34,163 @@ const ATTACK: usize = 26;
 /// Steps of the search for a sweep.
 const SIMPLEX_STEPS: usize = 36;
 
-/// Plays drafts and measures how far they are from a recording.
+/// Plays drafts and measures how far they are from a recording. Each time, it tells the progress.
 pub(super) struct Listener<'a> {
     audition: Audition,
     bands: MelBands,
     take: &'a Prepared,
     pub(super) target: LogMel,
     progress: &'a mut dyn FnMut(f64) -> bool,
-    /// The share of the work that was told last, and whether the answer was to end.
-    told: f64,
-    is_over: bool,
+    /// The share of the work that is done.
+    share: f64,
 }
 
 impl<'a> Listener<'a> {
     pub(super) fn new(take: &'a Prepared, progress: &'a mut dyn FnMut(f64) -> bool) -> Self {
         let mut bands = MelBands::new();
         let target = bands.measure(&take.mean);
-        Self { audition: Audition::new(), bands, take, target, progress, told: 0.0, is_over: false }
+        Self { audition: Audition::new(), bands, take, target, progress, share: 0.0 }
     }
 
-    /// Tells the share of the work that is done.
+    /// Tells that a share of the work is done.
     ///
     /// # Errors
     /// [`Error::Interrupted`] if it is to end.
     pub(super) fn tell(&mut self, share: f64) -> Result<()> {
-        self.told = share;
-        self.is_over = self.is_over || !(self.progress)(share);
-        if self.is_over { Err(Error::Interrupted) } else { Ok(()) }
+        self.share = share;
+        if (self.progress)(share) { Ok(()) } else { Err(Error::Interrupted) }
     }
 
     /// The bands of a draft over the first windows.
-    fn listen(&mut self, draft: &Draft, windows: usize) -> LogMel {
-        // Hundreds of drafts may be played between two shares. Once it is over they cost nothing, and what they are is of no
-        // interest.
-        if self.tell(self.told).is_err() {
-            return self.target.clone();
-        }
+    fn listen(&mut self, draft: &Draft, windows: usize) -> Result<LogMel> {
+        self.tell(self.share)?;
         let frames = self.take.mean.len().min(windows.saturating_mul(HOP));
         let key = key_from_frequency(draft.note, 440.0);
         let sound = self.audition.mean(&draft.patch(), key, draft.velocity, frames + 1024);
         let sound = crate::analysis::log_mel::from_onset(&sound);
-        self.bands.measure(&sound[..sound.len().min(frames)])
+        Ok(self.bands.measure(&sound[..sound.len().min(frames)]))
     }
 
     /// All of a draft's bands.
-    pub(super) fn hear(&mut self, draft: &Draft) -> LogMel {
+    pub(super) fn hear(&mut self, draft: &Draft) -> Result<LogMel> {
         self.listen(draft, usize::MAX)
     }
 
     /// Distance of a draft over the first windows, in dB.
-    pub(super) fn distance(&mut self, draft: &Draft, windows: usize) -> f64 {
-        let heard = self.listen(draft, windows);
+    pub(super) fn distance(&mut self, draft: &Draft, windows: usize) -> Result<f64> {
+        let heard = self.listen(draft, windows)?;
         if windows >= self.target.columns.len() {
-            return heard.distance(&self.target);
+            return Ok(heard.distance(&self.target));
         }
         let start = LogMel { columns: self.target.columns[..windows].to_vec() };
-        heard.distance(&start)
+        Ok(heard.distance(&start))
     }
 
     /// The best of some drafts over the first windows, and the present one.
-    fn best(&mut self, draft: &mut Draft, windows: usize, others: impl IntoIterator<Item = Draft>) {
-        let mut least = self.distance(draft, windows);
+    fn best(&mut self, draft: &mut Draft, windows: usize, others: impl IntoIterator<Item = Draft>) -> Result<()> {
+        let mut least = self.distance(draft, windows)?;
         for other in others {
-            let distance = self.distance(&other, windows);
+            let distance = self.distance(&other, windows)?;
             if distance < least {
                 (*draft, least) = (other, distance);
             }
         }
+        Ok(())
     }
 
     /// Chooses the hardness of the mallet by the attack.
-    pub(super) fn choose_hardness(&mut self, draft: &mut Draft) {
+    pub(super) fn choose_hardness(&mut self, draft: &mut Draft) -> Result<()> {
         let with = |draft: &Draft, hardness| Draft { hardness, ..draft.clone() };
         let coarse: Vec<Draft> = HARDNESSES.iter().map(|hardness| with(draft, Some(*hardness))).collect();
-        self.best(draft, ATTACK, coarse);
+        self.best(draft, ATTACK, coarse)?;
         for step in [0.05, 0.025, 0.012] {
             if let Some(hardness) = draft.hardness {
                 let near = [-step, step].map(|by| with(draft, Some((hardness + by).clamp(0.0, 1.0))));
-                self.best(draft, ATTACK, near);
+                self.best(draft, ATTACK, near)?;
             }
         }
+        Ok(())
     }
 
     /// Chooses how the sound comes to its level.
-    pub(super) fn choose_swell(&mut self, draft: &mut Draft) {
+    pub(super) fn choose_swell(&mut self, draft: &mut Draft) -> Result<()> {
         let with = |draft: &Draft, swell| Draft { swell, ..draft.clone() };
         let swell = |seconds| CURVES.map(|curve| Swell { seconds, depth: SWELL_DB, curve });
         let swells: Vec<Draft> = SWELLS.into_iter().flat_map(swell).map(|swell| with(draft, Some(swell))).collect();
-        self.best(draft, usize::MAX, swells);
+        self.best(draft, usize::MAX, swells)?;
         for step in [0.35, 0.2, 0.1] {
-            let Some(swell) = draft.swell else { return };
+            let Some(swell) = draft.swell else { break };
             let times = [1.0 - step, 1.0 + step].map(|factor| Swell { seconds: factor * swell.seconds, ..swell });
             let depths = [1.0 - step, 1.0 + step].map(|factor| Swell { depth: factor * swell.depth, ..swell });
             let curves = [-step, step].map(|by| Swell { curve: (swell.curve + by).clamp(-1.0, 1.0), ..swell });
             let near: Vec<Draft> =
                 times.into_iter().chain(depths).chain(curves).map(|swell| with(draft, Some(swell))).collect();
-            self.best(draft, usize::MAX, near);
+            self.best(draft, usize::MAX, near)?;
         }
+        Ok(())
     }
 
     /// Chooses length and rise of the noise burst.
-    pub(super) fn choose_noise(&mut self, draft: &mut Draft) {
+    pub(super) fn choose_noise(&mut self, draft: &mut Draft) -> Result<()> {
         if draft.partials.iter().all(|partial| partial.struck) {
-            return;
+            return Ok(());
         }
         let with = |draft: &Draft, noise| Draft { noise, ..draft.clone() };
         let noise = draft.noise;
         // Decays of the modes were measured on the whole: what the burst takes is to be left out of them.
         let bursts = LENGTHS.map(|seconds| Noise { seconds, ..noise });
-        self.best_corrected(draft, bursts);
+        self.best_corrected(draft, bursts)?;
         let noise = draft.noise;
         self.best_corrected(
             draft,
             [Noise { seconds: (EXPONENTIAL * noise.seconds).min(1.0), decay: NoiseDecay::Exponential, ..noise }],
-        );
+        )?;
         let noise = draft.noise;
         let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
-        self.best(draft, usize::MAX, rises);
+        self.best(draft, usize::MAX, rises)?;
         let noise = draft.noise;
         let several = HITS.map(|hits| SPACINGS.map(|spacing| with(draft, Noise { hits, spacing, ..noise })));
         let mut other = draft.clone();
-        self.best(&mut other, ATTACK, several.into_iter().flatten());
-        if self.distance(&other, ATTACK) < self.distance(draft, ATTACK) - WORTH_HITS {
+        self.best(&mut other, ATTACK, several.into_iter().flatten())?;
+        if self.distance(&other, ATTACK)? < self.distance(draft, ATTACK)? - WORTH_HITS {
             *draft = other;
         }
+        Ok(())
     }
 
     /// The best of some bursts of noise, each with the levels and decays that it asks for, and the present one.
-    fn best_corrected(&mut self, draft: &mut Draft, bursts: impl IntoIterator<Item = Noise>) {
-        let mut least = self.distance(draft, usize::MAX);
+    fn best_corrected(&mut self, draft: &mut Draft, bursts: impl IntoIterator<Item = Noise>) -> Result<()> {
+        let mut least = self.distance(draft, usize::MAX)?;
         let before = draft.clone();
         for noise in bursts {
             let mut other = Draft { noise, ..before.clone() };
             if noise.seconds > SHORT {
-                self.correct(&mut other, 2);
+                self.correct(&mut other, 2)?;
             }
-            let distance = self.distance(&other, usize::MAX);
+            let distance = self.distance(&other, usize::MAX)?;
             if distance < least {
                 (*draft, least) = (other, distance);
             }
         }
+        Ok(())
     }
 
     /// Moves the sweep to where the distance is least.
-    pub(super) fn choose_sweep(&mut self, draft: &mut Draft) {
+    pub(super) fn choose_sweep(&mut self, draft: &mut Draft) -> Result<()> {
         if draft.sweep.semitones == 0.0 {
-            return;
+            return Ok(());
         }
         let start = draft.sweep;
         let (place, _) = simplex::least(SIMPLEX_STEPS, |place| {
             self.distance(&Draft { sweep: start.moved(place), ..draft.clone() }, usize::MAX)
-        });
+        })?;
         draft.sweep = start.moved(place);
+        Ok(())
     }
 
     /// Corrects level and decay of the modes, as long as the distance falls.
-    pub(super) fn correct(&mut self, draft: &mut Draft, rounds: usize) {
-        let mut heard = self.hear(draft);
+    pub(super) fn correct(&mut self, draft: &mut Draft, rounds: usize) -> Result<()> {
+        let mut heard = self.hear(draft)?;
         let (mut least, mut share, mut idle) = (heard.distance(&self.target), 0.8, 0);
         for round in 0..rounds {
             // What one way of looking at the errors cannot mend, the other one may.
@@ -198,7 +198,7 @@ impl<'a> Listener<'a> {
                 0 => by_bands(draft, &self.target, &heard, share),
                 _ => by_moments(draft, &self.target, &heard, share),
             };
-            let other_heard = self.hear(&other);
+            let other_heard = self.hear(&other)?;
             let distance = other_heard.distance(&self.target);
             if distance < least {
                 idle = if distance > least - 0.005 { idle + 1 } else { 0 };
@@ -210,8 +210,9 @@ impl<'a> Listener<'a> {
             if idle == 2 && share > 0.3 {
                 share *= 0.5;
             } else if idle > 2 {
-                return;
+                break;
             }
         }
+        Ok(())
     }
 }

@@ -100,7 +100,7 @@ pub(super) fn draft(
 
 /// The amplitude at the onset of a mode that was found so many seconds after it. Where the exciter is at work for long, a short mode
 /// is only seen when little is left of it, and would have been loud before if nothing had moved it meanwhile.
-fn at_onset(mode: &Mode, after: f64) -> f64 {
+pub(super) fn at_onset(mode: &Mode, after: f64) -> f64 {
     let fallen = 60.0 * after / mode.t60;
     pow(10.0, (mode.level_db - (fallen - MOST_FALLEN_DB).max(0.0)) / 20.0)
 }

@@ -9,6 +9,7 @@ use super::layers::slope;
 use super::simplex;
 use crate::analysis::level::rms;
 use crate::analysis::log_mel::RATE;
+use crate::error::Result;
 use libm::{cos, exp, log, pow, sqrt};
 use realfft::{RealFftPlanner, RealToComplex};
 use std::f64::consts::PI;
@@ -42,12 +43,15 @@ struct Peaks<'a> {
     stretch: f64,
     fft: Arc<dyn RealToComplex<f64>>,
     input: Vec<f64>,
+    /// Says that the search goes on.
+    tell: &'a mut dyn FnMut() -> Result<()>,
 }
 
 impl Peaks<'_> {
     /// Integral of the squared density of power over the logarithm of frequency. How narrow a peak is against its frequency
     /// depends on the number of its cycles, and so not on how fast the clock runs.
-    fn height(&mut self, sweep: &Sweep) -> f64 {
+    fn height(&mut self, sweep: &Sweep) -> Result<f64> {
+        (self.tell)()?;
         let len = ((self.stretch * f64::from(RATE)) as usize).min(self.samples.len());
         self.input.fill(0.0);
         let mut end = 0;
@@ -71,7 +75,7 @@ impl Peaks<'_> {
             squares += bin as f64 * power * power;
             sum += power;
         }
-        if sum > 0.0 { squares / (sum * sum) } else { 0.0 }
+        Ok(if sum > 0.0 { squares / (sum * sum) } else { 0.0 })
     }
 }
 
@@ -142,25 +146,29 @@ pub(super) fn decay(samples: &[f32]) -> f64 {
     slope(points).map_or(0.0, |slope| (-slope).max(0.0))
 }
 
-/// The movements of the pitch that samples at [`RATE`] may have, from their onset on; none if it stands still.
-pub(super) fn find(samples: &[f32]) -> Vec<Sweep> {
+/// The movements of the pitch that samples at [`RATE`] may have, from their onset on; none if it stands still. `tell` is called often,
+/// and ends the search by an error.
+pub(super) fn find(samples: &[f32], tell: &mut dyn FnMut() -> Result<()>) -> Result<Vec<Sweep>> {
     let fft = RealFftPlanner::new().plan_fft_forward(POINTS);
-    let mut peaks = Peaks { samples, stretch: STRETCHES.0, input: fft.make_input_vec(), fft };
+    let mut peaks = Peaks { samples, stretch: STRETCHES.0, input: fft.make_input_vec(), fft, tell };
     let mut coarse = Vec::new();
     for semitones in SEMITONES {
         for seconds in SECONDS {
             // The best curve of each is enough.
             let curved = CURVES.map(|curve| Sweep { semitones, seconds, curve, ..Sweep::NONE });
-            let curved = curved.map(|sweep| (peaks.height(&sweep), sweep));
+            let curved: Vec<(f64, Sweep)> =
+                curved.into_iter().map(|sweep| Ok((peaks.height(&sweep)?, sweep))).collect::<Result<_>>()?;
             coarse.extend(curved.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)));
         }
     }
     coarse.sort_by(|a, b| b.0.total_cmp(&a.0));
     coarse.truncate(REFINED);
     peaks.stretch = STRETCHES.1;
-    let still = peaks.height(&Sweep::NONE);
-    let refined = coarse.into_iter().map(|(_, sweep)| refine(&mut peaks, sweep));
+    let still = peaks.height(&Sweep::NONE)?;
+    let refined: Vec<(f64, Sweep)> =
+        coarse.into_iter().map(|(_, sweep)| refine(&mut peaks, sweep)).collect::<Result<_>>()?;
     let mut found: Vec<Sweep> = refined
+        .into_iter()
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .filter(|(height, _)| *height > CLEARLY * still)
         .map(|(_, sweep)| sweep)
@@ -168,15 +176,15 @@ pub(super) fn find(samples: &[f32]) -> Vec<Sweep> {
         .collect();
     // What the strongest partial does is a sweep of all if it makes the others stand still, too.
     let followed = course::find(samples);
-    if !followed.is_none() && peaks.height(&followed) > HARDLY * still {
-        found.push(refine(&mut peaks, followed).1);
+    if !followed.is_none() && peaks.height(&followed)? > HARDLY * still {
+        found.push(refine(&mut peaks, followed)?.1);
     }
-    found
+    Ok(found)
 }
 
 /// Moves a sweep to where the peaks are tallest. Gives their height, too.
-fn refine(peaks: &mut Peaks, start: Sweep) -> (f64, Sweep) {
-    let (place, _) = simplex::least(STEPS, |place| -peaks.height(&start.moved(place)));
+fn refine(peaks: &mut Peaks, start: Sweep) -> Result<(f64, Sweep)> {
+    let (place, _) = simplex::least(STEPS, |place| Ok(-peaks.height(&start.moved(place))?))?;
     let swept = start.moved(place);
     let trembling = |[depth, rate]: [f64; 2]| {
         let Vibrato { semitones, rate: before, delay } = swept.vibrato;
@@ -184,8 +192,11 @@ fn refine(peaks: &mut Peaks, start: Sweep) -> (f64, Sweep) {
         Sweep { vibrato, ..swept }
     };
     let still = swept.vibrato.semitones == 0.0;
-    let best = if still { swept } else { trembling(simplex::least(STEPS, |place| -peaks.height(&trembling(place))).0) };
-    (peaks.height(&best), best)
+    let best = match still {
+        true => swept,
+        false => trembling(simplex::least(STEPS, |place| Ok(-peaks.height(&trembling(place))?))?.0),
+    };
+    Ok((peaks.height(&best)?, best))
 }
 
 #[cfg(test)]
@@ -209,13 +220,14 @@ mod tests {
     #[test]
     fn a_sweep_is_found_and_a_still_sound_has_hardly_any() {
         let sweep = Sweep { semitones: 15.0, seconds: 0.09, curve: 0.6, ..Sweep::NONE };
-        let found = *find(&swept(&sweep)).last().unwrap();
+        let found = *find(&swept(&sweep), &mut || Ok(())).unwrap().last().unwrap();
         // The same fall can be had from slightly different numbers: what counts is where the pitch is.
         for t in [0.0, 0.02, 0.05] {
             let off = (found.envelope().at(t) - sweep.envelope().at(t)).abs();
             assert!(off < 1.5, "{found:?} at {t} s: {off} semitones off");
         }
         // What is proposed is tried against no sweep at all.
-        assert!(find(&swept(&Sweep::NONE)).iter().all(|sweep| sweep.semitones.abs() < 2.0));
+        let still = find(&swept(&Sweep::NONE), &mut || Ok(())).unwrap();
+        assert!(still.iter().all(|sweep| sweep.semitones.abs() < 2.0));
     }
 }

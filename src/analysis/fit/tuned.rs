@@ -11,6 +11,7 @@ use super::simplex;
 use super::take::Prepared;
 use crate::analysis::level::{dbfs, rms};
 use crate::analysis::log_mel::{MelBands, from_onset};
+use crate::error::{Error, Result};
 use crate::params::{Choice, MalletPulse, Param};
 use crate::patch::Patch;
 use crate::sound::bodies::{Body, Loss, Point};
@@ -35,7 +36,18 @@ const TILTS: (f64, f64) = (-24.0, 24.0);
 
 /// The patch of a body, played on a fractional MIDI key, struck so, with such losses and such a mallet, that it is nearest to a take.
 /// Nor are its modes far from the levels that they have there.
-pub(super) fn patch(draft: &Draft, body: &Body, levels: &Levels, take: &Prepared, key: f64) -> Patch {
+/// `progress` is told the share of the work that is done.
+///
+/// # Errors
+/// [`Error::Interrupted`] if `progress` ends it.
+pub(super) fn patch(
+    draft: &Draft,
+    body: &Body,
+    levels: &Levels,
+    take: &Prepared,
+    key: f64,
+    progress: &mut dyn FnMut(f64) -> bool,
+) -> Result<Patch> {
     let (mut audition, mut bands) = (Audition::new(), MelBands::new());
     let recording = from_onset(&take.mean);
     let target = bands.measure(recording);
@@ -59,21 +71,28 @@ pub(super) fn patch(draft: &Draft, body: &Body, levels: &Levels, take: &Prepared
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     starts.truncate(STARTS);
     let mut best = (f64::INFINITY, draft.patch());
+    // A step of the simplex tries a place or two, a round two for each number.
+    let most = (starts.len() * (2 * STEPS + ROUNDS * 12)) as f64;
+    let mut tried = 0.0;
     for (_, hardness, body) in starts {
         let mut error = |place: [f64; 6]| {
+            tried += 1.0;
+            if !progress((tried / most).min(1.0)) {
+                return Err(Error::Interrupted);
+            }
             let (body, hardness) = moved(&body, hardness, place);
             let mut patch = struck(draft, &body, hardness);
-            (heard(&body, &mut patch), patch)
+            Ok((heard(&body, &mut patch), patch))
         };
-        let (mut place, _) = simplex::least(STEPS, |place| error(place).0);
-        let mut found = error(place);
+        let (mut place, _) = simplex::least(STEPS, |place| Ok(error(place)?.0))?;
+        let mut found = error(place)?;
         let mut step = FINEST_FROM;
         for _ in 0..ROUNDS {
             for number in 0..place.len() {
                 for by in [-step, step] {
                     let mut other = place;
                     other[number] += by;
-                    let next = error(other);
+                    let next = error(other)?;
                     if next.0 < found.0 {
                         (place, found) = (other, next);
                     }
@@ -85,7 +104,7 @@ pub(super) fn patch(draft: &Draft, body: &Body, levels: &Levels, take: &Prepared
             best = found;
         }
     }
-    best.1
+    Ok(best.1)
 }
 
 /// A body with its places of striking and of listening, tilt and losses moved, and a hardness.

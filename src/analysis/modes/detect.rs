@@ -6,6 +6,7 @@
 use super::pole::{LN_60_DB, Pole};
 use libm::exp;
 use realfft::RealFftPlanner;
+use std::cell::RefCell;
 use std::f64::consts::PI;
 
 /// Shortest and longest T60 that spectra are matched to, in seconds; each is twice the one before.
@@ -96,16 +97,20 @@ fn running_median(energies: &[f64], half: usize) -> Vec<f64> {
     (0..energies.len()).map(between).collect()
 }
 
+/// Plans transforms, each of them once.
+#[derive(Default)]
+pub(super) struct Planner(RefCell<RealFftPlanner<f64>>);
+
 /// Spectra matched to each decay.
 pub(super) struct Spectra(Vec<Spectrum>);
 
 impl Spectra {
-    pub(super) fn new(samples: &[f64], sample_rate: f64) -> Self {
-        let mut planner = RealFftPlanner::new();
+    pub(super) fn new(samples: &[f64], sample_rate: f64, planner: &Planner) -> Self {
+        let planner = &mut planner.0.borrow_mut();
         let longest = LONGEST.min(6.0 * samples.len() as f64 / sample_rate);
         let t60s = std::iter::successors(Some(SHORTEST), |t60| Some(2.0 * t60)).take_while(|t60| *t60 < 2.0 * longest);
         let decay = |t60: f64| LN_60_DB / (t60 * sample_rate);
-        Self(t60s.map(|t60| Spectrum::new(samples, decay(t60), sample_rate, &mut planner)).collect())
+        Self(t60s.map(|t60| Spectrum::new(samples, decay(t60), sample_rate, planner)).collect())
     }
 
     /// Average energy that noise explains for a mode of that pole.

@@ -102,8 +102,7 @@ impl Band {
             return (Vec::new(), false);
         }
         let columns = band.len() - rows + 1;
-        let data = DMatrix::from_fn(rows, columns, |row, column| band[row + column]);
-        let covariance = &data * data.adjoint();
+        let covariance = covariance(&band, rows, columns);
         let Some(SymmetricEigen { eigenvectors, eigenvalues }) = SymmetricEigen::try_new(covariance, 1e-15, 10_000)
         else {
             return (Vec::new(), false);
@@ -134,6 +133,19 @@ impl Band {
         (inside && !grows && pole.theta > 0.0 && pole.theta < PI)
             .then_some(Pole { decay: pole.decay.max(1e-3 / (self.hop * self.count) as f64), ..pole })
     }
+}
+
+/// The Hankel matrix of some samples times its adjoint: each row of the matrix is a stretch of the samples.
+fn covariance(band: &[Complex<f64>], rows: usize, columns: usize) -> DMatrix<Complex<f64>> {
+    let mut covariance = DMatrix::zeros(rows, rows);
+    for column in 0..rows {
+        for row in column..rows {
+            let pairs = band[row..row + columns].iter().zip(&band[column..column + columns]);
+            let product: Complex<f64> = pairs.map(|(a, b)| a * b.conj()).sum();
+            (covariance[(row, column)], covariance[(column, row)]) = (product, product.conj());
+        }
+    }
+    covariance
 }
 
 /// How many of the falling eigenvalues of a covariance over so many snapshots are no noise.

@@ -1,6 +1,6 @@
 //! Which modes of a fit are dropped: those that explain no more than noise would, the weakest first.
 
-use super::detect::Spectra;
+use super::detect::{Planner, Spectra};
 use super::fit::{Fit, Inverses, energy};
 use nalgebra::DMatrix;
 use realfft::num_complex::Complex;
@@ -24,13 +24,14 @@ pub(super) fn prune(
     samples: &[f64],
     sample_rate: f64,
     least: f64,
+    planner: &Planner,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Option<Fit> {
     for _ in 0..MOST_FLOORS {
         if fit.poles.is_empty() {
             break;
         }
-        let spectra = Spectra::new(&fit.residual(samples), sample_rate);
+        let spectra = Spectra::new(&fit.residual(samples), sample_rate, planner);
         let floors: Vec<f64> = fit.poles.iter().map(|pole| spectra.floor(*pole).max(1e-300)).collect();
         let mut elimination = Elimination::new(fit.inverses()?, fit.amplitudes.clone());
         while let Some((worth, k)) = elimination.weakest(&floors, least)

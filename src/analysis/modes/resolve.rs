@@ -1,6 +1,6 @@
 //! Where something stands out of what the modes of a fit leave, bands are resolved into poles.
 
-use super::detect::Spectra;
+use super::detect::{Planner, Spectra};
 use super::esprit::Band;
 use super::fit::Fit;
 use super::pole::{LN_60_DB, Pole, add};
@@ -29,13 +29,20 @@ pub(super) enum Where {
 }
 
 /// The poles of a fit together with those of bands that are resolved anew; none if nothing stands out.
-pub(super) fn resolve(fit: &Fit, samples: &[f64], sample_rate: f64, most_modes: usize, place: Where) -> Vec<Pole> {
+pub(super) fn resolve(
+    fit: &Fit,
+    samples: &[f64],
+    sample_rate: f64,
+    most_modes: usize,
+    place: Where,
+    planner: &Planner,
+) -> Vec<Pole> {
     let range = (2.0 * PI * LOWEST / sample_rate, HIGHEST * PI);
     let residual = fit.residual(samples);
     let reach = |pole: Pole| band(pole, samples.len()).half_width();
     let candidates: Vec<Pole> = match place {
         Where::StandsOut(least) => {
-            let spectra = Spectra::new(&residual, sample_rate);
+            let spectra = Spectra::new(&residual, sample_rate, planner);
             let strongest = spectra.strongest(DETECTION, least, range);
             let mut candidates = spectra.candidates(DETECTION, least.max(ROUND_SPAN * strongest), range, reach);
             candidates.truncate(most_modes.saturating_sub(fit.poles.len()));

@@ -3,7 +3,7 @@
 //! What stands out of the residual is resolved into poles, fitted together with all others, and kept if it explains more
 //! than noise would.
 
-use super::detect::Spectra;
+use super::detect::{Planner, Spectra};
 use super::fit::{Certainty, Fit};
 use super::plausible::{Limits, implausible};
 use super::prune::{join, prune};
@@ -49,7 +49,9 @@ pub(super) fn find(
     };
     let energy: f64 = samples.iter().map(|sample| sample * sample).sum();
     let least = LEAST_SHARE * energy;
-    let pruned = |fit, go_on: &mut dyn FnMut() -> bool| prune(fit, samples, sample_rate, least, go_on);
+    let planner = Planner::default();
+    let pruned = |fit, go_on: &mut dyn FnMut() -> bool| prune(fit, samples, sample_rate, least, &planner, go_on);
+    let floors = |fit: &Fit| floors(fit, samples, sample_rate, &planner);
     // A mode that just stands out of noise takes a little more than that away from it.
     let least_gain = |unexplained: f64| LEAST_GAIN * unexplained + least;
     let mut fit = Fit::new(samples, Vec::new()).ok_or_else(unsolvable)?;
@@ -61,7 +63,7 @@ pub(super) fn find(
         }
         let mut go_on = || progress(share);
         let place = if split { Where::Modes } else { Where::StandsOut(least) };
-        let poles = resolve(&fit, samples, sample_rate, most_modes, place);
+        let poles = resolve(&fit, samples, sample_rate, most_modes, place, &planner);
         let next = if split {
             // What hides beneath another mode explains nothing before it has found its place.
             Fit::new(samples, poles).map(|fit| fit.refine(samples, 1e-2, 8, &mut go_on))
@@ -106,7 +108,7 @@ pub(super) fn find(
     fit = pruned(fit.clone(), &mut go_on).unwrap_or(fit);
     fit = join(fit, samples, least, &mut go_on);
     for _ in 0..MOST_REMOVALS {
-        let dropped = implausible(&fit, &floors(&fit, samples, sample_rate), samples.len(), limits);
+        let dropped = implausible(&fit, &floors(&fit), samples.len(), limits);
         if dropped.is_empty() {
             break;
         }
@@ -118,24 +120,24 @@ pub(super) fn find(
     }
     fit = fit.refine(samples, 1e-8, 20, &mut go_on);
     // Dropping a mode changes the others, which may then be implausible: this is repeated until none is.
-    loop {
-        let dropped = implausible(&fit, &floors(&fit, samples, sample_rate), samples.len(), limits);
+    let floors = loop {
+        let floors = floors(&fit);
+        let dropped = implausible(&fit, &floors, samples.len(), limits);
         if dropped.is_empty() {
-            break;
+            break floors;
         }
         if !go_on() {
             return Err(Error::Interrupted);
         }
         let left = (0..fit.poles.len()).filter(|k| !dropped.contains(k)).map(|k| fit.poles[k]).collect();
         fit = Fit::new(samples, left).ok_or_else(unsolvable)?;
-    }
+    };
     let certainty = fit.certainty(samples.len()).ok_or_else(unsolvable)?;
-    let floors = floors(&fit, samples, sample_rate);
     if progress(1.0) { Ok(Found { fit, certainty, floors }) } else { Err(Error::Interrupted) }
 }
 
 /// Average energy that noise explains for each mode.
-fn floors(fit: &Fit, samples: &[f64], sample_rate: f64) -> Vec<f64> {
-    let spectra = Spectra::new(&fit.residual(samples), sample_rate);
+fn floors(fit: &Fit, samples: &[f64], sample_rate: f64, planner: &Planner) -> Vec<f64> {
+    let spectra = Spectra::new(&fit.residual(samples), sample_rate, planner);
     fit.poles.iter().map(|pole| spectra.floor(*pole)).collect()
 }

@@ -4,6 +4,7 @@ use super::select::Select;
 use crate::cli::figure;
 use crate::cli::interrupt;
 use crate::cli::progress::Bar;
+use crate::cli::terminal::counted;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use sprung::analysis::figure::sound::modes_of;
 use sprung::analysis::measures::preset::{Measure, measure};
@@ -62,12 +63,31 @@ pub(super) fn run(args: &Args) -> Result<()> {
     if found.is_empty() {
         return Err(Error::value("presets", "no sound is meant: expected filters that leave some"));
     }
-    if !args.out.is_dir() {
+    interrupt::catch(true)?;
+    let is_new = !args.out.is_dir();
+    if is_new {
         std::fs::create_dir(&args.out).map_err(|source| Error::io(args.out.display().to_string(), source))?;
     }
+    let done = AtomicUsize::new(0);
+    page(&found, args, &done).map_err(|error| {
+        let done = done.load(Ordering::Relaxed);
+        if matches!(error, Error::Interrupted) && done > 0 {
+            let left =
+                format!("{done} of {} are in {}, without a page", counted(found.len(), "sound"), args.out.display());
+            return Error::InterruptedAfter { left };
+        }
+        if is_new {
+            // What is in it after another error stays: then the folder is not removed.
+            let _ = std::fs::remove_dir(&args.out);
+        }
+        error
+    })
+}
+
+/// Writes sounds, pictures and the page; `done` counts the sounds that are complete.
+fn page(found: &[Arc<Listed>], args: &Args, done: &AtomicUsize) -> Result<()> {
     let page = create(&args.out, "index.html", args.force)?;
-    interrupt::catch(true)?;
-    let mut all = in_parallel(&found, args)?;
+    let mut all = in_parallel(found, args, done)?;
     // Alone, since other work on the same cores would count as the sound's.
     for one in &mut all {
         interrupt::check()?;
@@ -77,10 +97,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
 }
 
 /// Auditions all sounds on all cores, with a progress bar.
-fn in_parallel(found: &[Arc<Listed>], args: &Args) -> Result<Vec<Auditioned>> {
-    let (done, is_over) = (AtomicUsize::new(0), AtomicBool::new(false));
+fn in_parallel(found: &[Arc<Listed>], args: &Args, done: &AtomicUsize) -> Result<Vec<Auditioned>> {
+    let is_over = AtomicBool::new(false);
     let work = || {
-        let auditioned = found.par_iter().map(|one| audition(one, args, &done)).collect();
+        let auditioned = found.par_iter().map(|one| audition(one, args, done)).collect();
         is_over.store(true, Ordering::Relaxed);
         auditioned
     };

@@ -1,0 +1,26 @@
+//! How long this thread has been at work.
+
+use std::time::Instant;
+
+/// Seconds for which this thread has been at work: on a busy machine, far fewer than have passed.
+pub(crate) struct Clock {
+    started: Instant,
+    worked: Option<f64>,
+}
+
+impl Clock {
+    pub(crate) fn start() -> Self {
+        Self { started: Instant::now(), worked: Self::worked() }
+    }
+
+    /// Where Linux tells it: nanoseconds.
+    fn worked() -> Option<f64> {
+        let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+        text.split(' ').next()?.parse().ok().map(|nanoseconds: f64| 1e-9 * nanoseconds)
+    }
+
+    pub(crate) fn seconds(&self) -> f64 {
+        let worked = self.worked.and_then(|before| Some(Self::worked()? - before));
+        worked.unwrap_or_else(|| self.started.elapsed().as_secs_f64())
+    }
+}
