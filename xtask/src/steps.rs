@@ -115,6 +115,12 @@ pub(crate) const STEPS: &[Step] = &[
         shows: Shows::OneCheck,
     },
     Step {
+        name: "plugin, lint as bundled",
+        arguments: "clippy --manifest-path plugin/Cargo.toml -- -D warnings",
+        environment: &[],
+        shows: Shows::OneCheck,
+    },
+    Step {
         name: "Python, format",
         arguments: "fmt --manifest-path src/python/Cargo.toml --check",
         environment: &[],

@@ -84,7 +84,7 @@ mod window;
 use crate::params::SprungParams;
 use nice_plug_core::context::gui::GuiContext;
 use nice_plug_core::editor::dpi::{LogicalSize, NativeSize};
-use nice_plug_core::editor::{Editor, EditorHandle, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
+use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
 use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, create_egui_editor};
 use sprung::preset::library::Library;
 use std::error::Error;
@@ -118,7 +118,7 @@ impl SprungEditor {
     /// Opens a window of its own, with this context for a host, and waits until it is closed.
     pub(crate) fn run(&self, context: GuiContext) -> Result<(), Box<dyn Error>> {
         let SpawnedEditor { handle, window } = self.spawn(None, false, None, context, None)?;
-        let ended = EguiEditorHandle::run_until_closed(window);
+        let ended = <EguiEditorHandle as nice_plug_core::editor::EditorHandle>::run_until_closed(window);
         drop(handle);
         Ok(ended?)
     }

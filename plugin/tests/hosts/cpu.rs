@@ -1,4 +1,6 @@
 //! What the open window costs: CPU time of its threads, while nothing moves and while all of it does.
+//!
+//! Only that no picture is drawn for nothing is asserted: times depend on the machine, and are for those who read them.
 
 use crate::host::{Address, Instance, Player, Sent};
 use crate::patches::enclosed;
@@ -14,10 +16,7 @@ use std::time::{Duration, Instant};
 /// How long each is measured.
 const MEASURED: Duration = Duration::from_secs(10);
 
-/// The most that the open window may cost while nothing moves, in per cent of a core.
-const MOST_SILENT: f64 = 0.5;
-
-pub(crate) fn a_silent_window_costs_next_to_nothing() {
+pub(crate) fn a_silent_window_draws_nothing() {
     print!("{}", on_a_screen("window-cpu"));
 }
 
@@ -65,12 +64,12 @@ pub(crate) fn work() -> ExitCode {
         silent
     });
     Player { instance, audio }.stop();
-    assert!(silent < MOST_SILENT, "the silent window takes {silent:.2} % of a core: at most {MOST_SILENT} % was meant");
+    assert_eq!(silent, 0, "nothing moves in the silent window, and yet it is drawn");
     ExitCode::SUCCESS
 }
 
-/// Measures the threads that were not there `before`, prints what they took, and returns the sum in per cent of a core.
-fn measure(name: &str, before: &BTreeMap<u32, f64>, instance: &mut Instance, parent: &Parent) -> f64 {
+/// Measures the threads that were not there `before` and prints what they took. Returns how many pictures were drawn.
+fn measure(name: &str, before: &BTreeMap<u32, f64>, instance: &mut Instance, parent: &Parent) -> u32 {
     let (start, began) = (tasks(), Instant::now());
     let pictures = parent.onlooker.watch(parent.window);
     let mut drawn = 0;
@@ -85,12 +84,12 @@ fn measure(name: &str, before: &BTreeMap<u32, f64>, instance: &mut Instance, par
     let new = now.iter().filter(|(task, _)| !before.contains_key(task));
     let took = new.map(|(task, took)| (took - start.get(task).unwrap_or(&0.0)) / seconds * 100.0);
     let took: Vec<f64> = took.collect();
-    let sum = took.iter().sum();
+    let sum: f64 = took.iter().sum();
     println!(
         "{name}: {sum:.2} % of a core, {:.1} pictures a second; by thread: {took:.2?}",
         f64::from(drawn) / seconds
     );
-    sum
+    drawn
 }
 
 /// The CPU time in seconds of each thread of this process.

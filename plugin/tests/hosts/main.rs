@@ -183,7 +183,7 @@ fn main() -> ExitCode {
             the_real_window_has_the_pixels_of_the_accepted_picture
         }
         Screen: cpu {
-            a_silent_window_costs_next_to_nothing
+            a_silent_window_draws_nothing
         }
         Program: standalone {
             it_keeps_its_state_whatever_ends_it
