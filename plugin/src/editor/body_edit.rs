@@ -15,8 +15,8 @@ const CHANGES: f64 = 0.06;
 /// A change of a body in progress.
 pub(super) struct BodyEdit {
     made: Made,
-    /// The last one that could be made.
-    good: Made,
+    /// The last one that could be made, and what had been changed by then.
+    good: (Made, String),
     is_new: bool,
     /// What has been changed, for the name of the step.
     what: String,
@@ -37,7 +37,7 @@ impl BodyEdit {
         let decay = f64::from(controls.value(Param::Decay.info()));
         Self {
             made: made.clone(),
-            good: made.clone(),
+            good: (made.clone(), String::new()),
             is_new: false,
             what: String::new(),
             decay: made.t60().map_or(1.0, |t60| decay / t60),
@@ -72,11 +72,12 @@ impl BodyEdit {
             Ok(Some(modes)) => modes,
             Ok(None) => return Ok(()),
             Err(message) => {
-                self.made = self.good.clone();
+                (self.made, self.what) = self.good.clone();
+                self.next = now + rest(start);
                 return Err(message);
             }
         };
-        self.good = self.made.clone();
+        self.good = (self.made.clone(), self.what.clone());
         let mut state = controls.params.state();
         let Playable::Preset(preset) = &mut state.playable else { return Ok(()) };
         preset.patch.modes = modes;
@@ -89,8 +90,7 @@ impl BodyEdit {
             state.positions[Param::Decay as usize] = decay.normalise(value) as f32;
         }
         self.loaded = controls.params.load(state.into());
-        // Most of the time is left for the window.
-        self.next = now + CHANGES.max(4.0 * start.elapsed().as_secs_f64());
+        self.next = now + rest(start);
         Ok(())
     }
 
@@ -106,4 +106,9 @@ impl BodyEdit {
         }
         result
     }
+}
+
+/// How long to wait after work that began at `start`, in seconds: most of the time is left for the window.
+fn rest(start: Instant) -> f64 {
+    CHANGES.max(4.0 * start.elapsed().as_secs_f64())
 }

@@ -5,6 +5,7 @@ use crate::screen::{Onlooker, Screen};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
 
 /// The program, if it was built with these tests.
 const PROGRAM: Option<&str> = option_env!("CARGO_BIN_EXE_sprung-standalone");
@@ -44,10 +45,22 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        if self.0.try_wait().is_ok_and(|status| status.is_none()) {
-            self.signal(libc::SIGTERM);
-            let _ = self.0.wait();
+        let is_over = |child: &mut Child| child.try_wait().is_ok_and(|status| status.is_some());
+        if is_over(&mut self.0) {
+            return;
         }
+        if let Ok(id) = i32::try_from(self.0.id()) {
+            // SAFETY: the process was started here, and has not been waited for.
+            #[allow(unsafe_code)]
+            let _ = unsafe { libc::kill(id, libc::SIGTERM) };
+        }
+        // What does not end in order is ended: a test that failed must not wait for it.
+        let start = Instant::now();
+        while start.elapsed() < Duration::from_secs(5) && !is_over(&mut self.0) {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        let _ = self.0.kill();
+        let _ = self.0.wait();
     }
 }
 

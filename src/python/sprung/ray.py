@@ -119,5 +119,5 @@ def _result(task: Any, what: str) -> None:
             raise error.cause from None
         raise
     except RayError as error:
-        reason = str(error).strip().splitlines()[0]
+        reason = next(iter(str(error).strip().splitlines()), type(error).__name__)
         raise Error(f"{what}: {reason}; what is finished stays: the same call goes on with it") from error
