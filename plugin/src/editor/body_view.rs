@@ -1,6 +1,7 @@
 //! The body as it swings in slow motion, and where it is struck.
 
 use super::audition::Audition;
+use super::body_edit::rest;
 use super::body_face;
 use super::body_form::Form;
 use super::body_shape::BodyShape;
@@ -20,8 +21,6 @@ use std::sync::Arc;
 const TURNS: f32 = 0.8;
 /// How far from the body a click still touches it, in pixels.
 const REACH: f32 = 26.0;
-/// The shortest time between two changes of the sound while the strike is dragged, in seconds: some sounds take long to make.
-const CHANGES: f64 = 0.06;
 
 /// The strike as it is dragged.
 struct Drag {
@@ -145,8 +144,7 @@ impl BodyView {
         if (is_over || now >= drag.next) && drag.written != Some(drag.point) {
             let start = std::time::Instant::now();
             write(drag.point, &mut shape.made, controls);
-            // Most of the time is left for the window.
-            drag.next = now + CHANGES.max(4.0 * start.elapsed().as_secs_f64());
+            drag.next = now + rest(start);
             drag.written = Some(drag.point);
             drag.loaded = controls.params.loaded();
         }

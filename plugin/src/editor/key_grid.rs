@@ -1,9 +1,10 @@
 //! All 128 keys as a grid of cells that play and light up.
 
 use super::controls::Controls;
+use super::held_key::HeldKey;
 use super::text::line;
 use super::theme::SMALL;
-use crate::link::{Link, Touch};
+use crate::link::Link;
 use egui::style::ScrollAnimation;
 use egui::{
     Align, Align2, Id, Pos2, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
@@ -27,10 +28,10 @@ pub(super) struct Cell {
     pub(super) is_marked: bool,
 }
 
-/// The key that the mouse holds.
+/// What a grid remembers.
 #[derive(Default)]
 pub(super) struct KeyGrid {
-    held: Option<u8>,
+    held: HeldKey,
     /// The key under the pointer, in the last pass.
     hovered: Option<u8>,
     /// Whether the grid has been shown since it was opened.
@@ -46,13 +47,7 @@ impl KeyGrid {
     /// The page is left: lets go of the key that the mouse holds.
     pub(super) fn release(&mut self, link: &Link) {
         self.is_seen = false;
-        self.let_go(link);
-    }
-
-    fn let_go(&mut self, link: &Link) {
-        if let Some(key) = self.held.take() {
-            link.play(Touch::Up { key });
-        }
+        self.held.release(link);
     }
 
     /// Shows the cells of all keys; `down` are those that are held, one bit each. A click plays, louder towards the lower edge.
@@ -89,7 +84,7 @@ impl KeyGrid {
                 let shown = cell(key);
                 let response = ui.interact(place, Id::unique((name, key)), Sense::click_and_drag());
                 let label = format!("{name} {} {}", note_name(key), shown.text);
-                let is_down = down >> key & 1 == 1 || self.held == Some(key);
+                let is_down = down >> key & 1 == 1 || self.held.key() == Some(key);
                 response.widget_info(|| WidgetInfo::selected(Role::Button, shown.is_on, is_down, &label));
                 if response.hovered() {
                     hovered = Some(key);
@@ -102,14 +97,7 @@ impl KeyGrid {
             }
         });
         (self.hovered, self.is_seen) = (hovered, true);
-        let link = controls.params.link();
-        if touched.map(|(key, _)| key) != self.held {
-            self.let_go(link);
-            if let Some((key, velocity)) = touched {
-                self.held = Some(key);
-                link.play(Touch::Down { key, velocity });
-            }
-        }
+        self.held.follow(touched, controls.params.link());
     }
 }
 

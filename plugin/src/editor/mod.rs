@@ -41,6 +41,7 @@ mod focus;
 mod fonts;
 mod gestures;
 mod header;
+mod held_key;
 mod history;
 mod key_grid;
 mod key_piano;

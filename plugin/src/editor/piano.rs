@@ -1,9 +1,10 @@
 //! The keyboard: it shows the keys that are held, and plays those that are clicked.
 
 use super::controls::{Controls, Hint};
+use super::held_key::HeldKey;
 use super::text::line;
 use super::theme::Palette;
-use crate::link::{Link, Touch};
+use crate::link::Link;
 use egui::{Align2, Id, Painter, Pos2, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use sprung::preset::Guide;
 use sprung::units::note_name;
@@ -28,10 +29,10 @@ const OCTAVE: [(usize, bool); 12] = [
     (6, false),
 ];
 
-/// The key that the mouse holds.
+/// What the keyboard remembers.
 #[derive(Default)]
 pub(super) struct Piano {
-    held: Option<u8>,
+    held: HeldKey,
 }
 
 /// Which keys are shown, and where.
@@ -87,27 +88,18 @@ impl Piano {
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Keyboard"));
         let touched = response.is_pointer_button_down_on().then(|| response.interact_pointer_pos()).flatten();
         let touched = touched.and_then(|place| keys.at(place));
-        let link = controls.params.link();
-        if touched.map(|(key, _)| key) != self.held {
-            self.release(link);
-            if let Some((key, velocity)) = touched {
-                self.held = Some(key);
-                link.play(Touch::Down { key, velocity });
-            }
-        }
+        self.held.follow(touched, controls.params.link());
         if let Some((key, velocity)) = response.hover_pos().and_then(|place| keys.at(place)) {
             let range = format!("made for {} to {}", note_name(guide.lowest), note_name(guide.highest));
             let title = format!("{} at velocity {:.0}", note_name(key), velocity * 127.0);
             *controls.hint = Hint::new(title, format!("lower on the key is louder   {range}"));
         }
-        paint(ui.painter(), &keys, down | self.held.map_or(0, |key| 1 << key), guide, controls.palette);
+        paint(ui.painter(), &keys, down | self.held.key().map_or(0, |key| 1 << key), guide, controls.palette);
     }
 
     /// Lets go of the key that the mouse holds.
     pub(super) fn release(&mut self, link: &Link) {
-        if let Some(key) = self.held.take() {
-            link.play(Touch::Up { key });
-        }
+        self.held.release(link);
     }
 }
 

@@ -1,0 +1,32 @@
+//! The key that the mouse holds, on the keyboard or on a page's grid.
+
+use crate::link::{Link, Touch};
+
+/// The key that the mouse holds.
+#[derive(Default)]
+pub(super) struct HeldKey(Option<u8>);
+
+impl HeldKey {
+    pub(super) fn key(&self) -> Option<u8> {
+        self.0
+    }
+
+    /// Plays the key that is touched with this velocity, and lets go of another one.
+    pub(super) fn follow(&mut self, touched: Option<(u8, f32)>, link: &Link) {
+        if touched.map(|(key, _)| key) == self.0 {
+            return;
+        }
+        self.release(link);
+        if let Some((key, velocity)) = touched {
+            self.0 = Some(key);
+            link.play(Touch::Down { key, velocity });
+        }
+    }
+
+    /// Lets go of it.
+    pub(super) fn release(&mut self, link: &Link) {
+        if let Some(key) = self.0.take() {
+            link.play(Touch::Up { key });
+        }
+    }
+}
