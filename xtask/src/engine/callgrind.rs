@@ -161,8 +161,8 @@ mod tests {
         let kept = parse("avx2 ringing 1.0\nsilent synth 1000");
         assert_eq!(kept[1], ("silent synth".to_owned(), 1000.0));
         for (found, lines) in [
-            ("avx2 ringing 1.04\nsilent synth 400", 0),
-            ("avx2 ringing 1.06\nsilent synth 1051", 2),
+            ("avx2 ringing 1.14\nsilent synth 400", 0),
+            ("avx2 ringing 1.16\nsilent synth 1151", 2),
             ("avx2 driven 0.1", 1),
         ] {
             assert_eq!(grown(&kept, &parse(found)).len(), lines, "{found}");
