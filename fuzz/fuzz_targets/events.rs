@@ -10,6 +10,10 @@ mod bound;
 mod case;
 #[path = "../../tests/storm/check.rs"]
 mod check;
+#[path = "../../tests/storm/gains.rs"]
+mod gains;
+#[path = "../../tests/storm/heard_by.rs"]
+mod heard_by;
 #[path = "../../tests/storm/noise.rs"]
 mod noise;
 #[path = "../../tests/storm/reach.rs"]

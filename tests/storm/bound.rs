@@ -10,11 +10,13 @@
 //! all modes shared it, in phase and all on the louder side.
 
 use crate::case::Case;
+use crate::gains::{Sides, finite, modulated, most_gain, pan_gains, unit};
+use crate::heard_by::heard_by;
 use crate::noise::Noise;
 use crate::reach::{Reach, add};
 use libm::{fabs, hypot, pow, sin, sqrt};
 use sprung::engine::{Event, EventKind, Expression};
-use sprung::params::{PARAM_COUNT, PARAMS, Param};
+use sprung::params::{PARAM_COUNT, Param};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::units::gain_from_db;
 use std::f64::consts::{LOG2_10, PI, SQRT_2};
@@ -25,9 +27,6 @@ use std::f64::consts::{LOG2_10, PI, SQRT_2};
 const CLASSIC: f64 = 8.0 * 7.1;
 /// What the soft pedal leaves of the force.
 const SOFT: f64 = 0.6;
-
-/// Amplitudes, left and right.
-type Sides = [f64; 2];
 
 /// The bound from a certain frame on.
 #[derive(Clone, Copy, Debug)]
@@ -52,45 +51,6 @@ pub(crate) fn bound(case: &Case) -> Vec<Step> {
         *step = Step { frame: step.frame, ..sum };
     }
     all
-}
-
-/// For each event, whether the synth of a channel receives it: events of its channel, or of a zone's members if it is
-/// the master; all events if it is the only synth.
-fn hears(case: &Case, index: u8) -> Vec<bool> {
-    let (mut lower, mut upper, mut chosen) = (0_u8, 0_u8, [[127_u8; 2]; 16]);
-    let mut is_heard = |event: &Event| {
-        let channel = event.channel & 15;
-        let master = |channel: u8| match channel {
-            1..=15 if channel <= lower => Some(0),
-            0..=14 if channel >= 15 - upper => Some(15),
-            _ => None,
-        };
-        let owner = master(channel).unwrap_or(channel);
-        if let EventKind::Control { controller, value } = event.kind {
-            let data = (unit(value) * 127.0 + 0.5) as u8;
-            match controller {
-                101 => chosen[usize::from(channel)][0] = data,
-                100 => chosen[usize::from(channel)][1] = data,
-                98 | 99 => chosen[usize::from(channel)] = [127; 2],
-                121 => {
-                    let reset = (0..16_u8).filter(|other| *other == channel || master(*other) == Some(channel));
-                    reset.for_each(|other| chosen[usize::from(other)] = [127; 2]);
-                }
-                6 if channel == 0 && chosen[0] == [0, 6] => {
-                    lower = data.min(15);
-                    upper = upper.min(14_u8.saturating_sub(lower));
-                }
-                6 if channel == 15 && chosen[15] == [0, 6] => {
-                    upper = data.min(15);
-                    lower = lower.min(14_u8.saturating_sub(upper));
-                }
-                _ => {}
-            }
-        }
-        // The program changes of members do not apply to the master.
-        owner == index && (owner == channel || !matches!(event.kind, EventKind::Program(_)))
-    };
-    case.events.iter().map(|event| !case.ensemble || is_heard(event)).collect()
 }
 
 /// One synth, with its patch as changed by events.
@@ -140,7 +100,7 @@ impl Part {
         let (offsets, soft) = ([0.0; PARAM_COUNT], [false; 16]);
         let mut part = Self {
             ensemble,
-            hears: hears(case, index),
+            hears: heard_by(case, index),
             patch,
             offsets,
             soft,
@@ -150,7 +110,8 @@ impl Part {
             bloom: None,
             reach: None,
         };
-        part.unison = part.most_unison(case);
+        // A voice that is struck again keeps the number of its note’s start, so any of them may be in force.
+        part.unison = part.most(case, Param::Unison).max(1.0);
         part.bow = part.most_bow(case);
         part.bloom = part.most_bloom(case);
         let has_route = |patch: &Patch| patch.routes.iter().any(|(_, route)| route.destination == Param::Tilt);
@@ -164,31 +125,23 @@ impl Part {
         part
     }
 
-    /// The largest number of unison voices in the case, because a voice that is struck again keeps the number of its
-    /// note's start.
-    fn most_unison(&self, case: &Case) -> f64 {
+    /// The highest value of a parameter in the case: set by a patch or an event, or modulated to its maximum.
+    fn most(&self, case: &Case, asked: Param) -> f64 {
         let programs = case.programs.iter().filter(|_| self.ensemble);
-        let set = programs.chain([&self.patch]).map(|patch| patch.get(Param::Unison));
+        let set = programs.chain([&self.patch]).map(|patch| patch.get(asked));
         let moved = self.events(case).filter_map(|event| match event.kind {
-            EventKind::Param { param: Param::Unison, value } => Some(Param::Unison.info().clamp(value)),
-            EventKind::Modulate { param: Param::Unison, .. } => Some(Param::Unison.info().max),
+            EventKind::Param { param, value } if param == asked => Some(asked.info().clamp(value)),
+            EventKind::Modulate { param, .. } if param == asked => Some(asked.info().max),
             _ => None,
         });
-        set.chain(moved).fold(1.0, f32::max).into()
+        set.chain(moved).fold(f32::NEG_INFINITY, f32::max).into()
     }
 
     /// A frame of a bow adds at most twice friction times speed to the squared amplitudes, and friction is at most the speed;
     /// so `n` frames give the amplitude `√(2 n) · speed`, which up to 64 modes may share.
     fn most_bow(&self, case: &Case) -> f64 {
-        let programs = case.programs.iter().filter(|_| self.ensemble);
-        let set = programs.chain([&self.patch]).map(|patch| patch.get(Param::BowLevel));
-        let moved = self.events(case).filter_map(|event| match event.kind {
-            EventKind::Param { param: Param::BowLevel, value } => Some(Param::BowLevel.info().clamp(value)),
-            EventKind::Modulate { param: Param::BowLevel, .. } => Some(Param::BowLevel.info().max),
-            _ => None,
-        });
-        let level = set.chain(moved).fold(-60.0, f32::max);
-        if level > -60.0 { gain_from_db(level.into()) * sqrt(2.0 * case.frames as f64 * 64.0) } else { 0.0 }
+        let level = self.most(case, Param::BowLevel);
+        if level > -60.0 { gain_from_db(level) * sqrt(2.0 * case.frames as f64 * 64.0) } else { 0.0 }
     }
 
     /// The amplitudes of `n` modes add up to at most `√n` times the root of their energy, and the root of the energy that
@@ -212,7 +165,8 @@ impl Part {
 
     /// The increments of the bound.
     fn bound(mut self, case: &Case) -> Vec<Step> {
-        let gain = self.output_gain(case);
+        let events = self.events(case);
+        let gain = most_gain(case, &self.patch, self.ensemble, events);
         let (mut steps, mut strikes) = (vec![], Vec::<Strike>::new());
         for event in self.events(case) {
             self.apply(case, event);
@@ -347,93 +301,10 @@ impl Part {
         }
         reach
     }
-
-    /// The largest possible output gain for each side: each factor at its highest value in the case.
-    fn output_gain(&self, case: &Case) -> Sides {
-        let mut levels = vec![self.patch.get(Param::Gain)];
-        let mut pans = vec![self.patch.get(Param::Pan)];
-        let (mut level_offsets, mut pan_offsets) = (vec![0.0], vec![0.0]);
-        // A route to the gain can move it all the way, since events can change its amount.
-        let mut patches = std::iter::once(&self.patch).chain(&case.programs);
-        if patches.any(|patch| patch.routes.iter().any(|(_, route)| route.destination == Param::Gain)) {
-            level_offsets.push(1.0);
-        }
-        let mut volume = 1.0_f32;
-        let mut positions = vec![0.5_f32];
-        // The highest values on channels that can be masters, and on all channels.
-        let (mut masters, mut channels, mut zones) = (vec![0.5_f32], vec![0.5_f32], false);
-        for event in self.events(case) {
-            match event.kind {
-                EventKind::Param { param: Param::Gain, value } => levels.push(Param::Gain.info().clamp(value)),
-                EventKind::Param { param: Param::Pan, value } => pans.push(Param::Pan.info().clamp(value)),
-                EventKind::Modulate { param: Param::Gain, offset, .. } => level_offsets.push(finite(offset)),
-                EventKind::Modulate { param: Param::Pan, offset, .. } => pan_offsets.push(finite(offset)),
-                EventKind::Program(number) if self.ensemble => {
-                    if let Some(patch) = case.programs.get(usize::from(number)) {
-                        levels.push(patch.get(Param::Gain));
-                        pans.push(patch.get(Param::Pan));
-                    }
-                }
-                EventKind::Express { expression: Expression::Volume, value, .. } => {
-                    volume = volume.max(finite(value).clamp(0.0, 4.0));
-                }
-                EventKind::Express { expression: Expression::Pan, value, .. } => {
-                    positions.push(finite(value).clamp(-1.0, 1.0) * 0.5 + 0.5);
-                }
-                EventKind::Control { controller: 10, value } => {
-                    let position = ((unit(value) * 127.0 - 1.0) / 126.0).clamp(0.0, 1.0);
-                    channels.push(position);
-                    if matches!(event.channel & 15, 0 | 15) {
-                        masters.push(position);
-                    }
-                }
-                EventKind::Control { controller: 6, .. } => zones = true,
-                _ => {}
-            }
-        }
-        if !zones {
-            masters = vec![0.5];
-        }
-        let most = |values: &[f32]| values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        let least = |values: &[f32]| values.iter().copied().fold(f32::INFINITY, f32::min);
-        let level = modulated(most(&levels), Param::Gain, most(&level_offsets));
-        let pan_ends = [
-            modulated(least(&pans), Param::Pan, least(&pan_offsets)),
-            modulated(most(&pans), Param::Pan, most(&pan_offsets)),
-        ];
-        let pans = pan_ends.map(|pan| pan * 0.005 + 0.5);
-        let gain = gain_from_db(level.into()) * f64::from(volume);
-        [0, 1].map(|side| {
-            let widest = |positions: &[f32]| {
-                positions.iter().map(|position| pan_gains(f64::from(*position))[side]).fold(0.0, f64::max)
-            };
-            gain * widest(&pans) * widest(&positions) * widest(&channels) * widest(&masters)
-        })
-    }
 }
 
 /// The gains of a mode, left and right, and 1 for its displacement.
 fn heard(mode: &Mode, width: f64) -> [f64; 3] {
     let [left, right] = pan_gains(f64::from(mode.pan) * width * 0.01 * 0.5 + 0.5);
     [left, right, 1.0]
-}
-
-/// Constant-power gains of a position from 0 (left) to 1 (right).
-fn pan_gains(position: f64) -> Sides {
-    [1.0 - position, position].map(|share| SQRT_2 * sqrt(share.max(0.0)))
-}
-
-fn finite(value: f32) -> f32 {
-    if value.is_nan() { 0.0 } else { value }
-}
-
-fn unit(value: f32) -> f32 {
-    finite(value).clamp(0.0, 1.0)
-}
-
-/// A parameter's value, moved by an offset of the knob position.
-fn modulated(value: f32, param: Param, offset: f32) -> f32 {
-    let info = &PARAMS[param as usize];
-    let offset = offset.clamp(-1.0, 1.0);
-    if offset == 0.0 { value } else { info.denormalise(info.normalise(value) + f64::from(offset)) }
 }

@@ -12,6 +12,8 @@ mod chance;
 mod check;
 #[path = "../events/mod.rs"]
 mod events;
+mod gains;
+mod heard_by;
 mod known;
 mod noise;
 mod reach;

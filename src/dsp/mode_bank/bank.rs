@@ -392,5 +392,5 @@ impl ModeBank {
 }
 
 #[cfg(test)]
-#[path = "tests.rs"]
+#[path = "tests/mod.rs"]
 mod tests;
