@@ -5,14 +5,12 @@ use super::part::Part;
 use crate::dsp::ramp::Ramp;
 use crate::engine::EventKind;
 use crate::engine::event::unit;
+use crate::engine::midi::DEFAULT_REVERB_SEND;
 use crate::engine::midi::controller::REVERB_SEND;
 use crate::engine::note::nearest_channel;
 use crate::engine::space::{Space, needs_bodies};
 use crate::engine::synth::flush;
 use crate::params::{Param, Values};
-
-/// The send of a channel before its controller says anything (General MIDI 2, 1999).
-const DEFAULT_SEND: f32 = 40.0 / 127.0;
 
 /// Gain of a full send, −8 dB. Measured on the demo songs and a plate: it then returns 3 dB less than it was sent, and 11 to
 /// 13 dB less at the default; FluidSynth 2.3 returns 16 to 20 dB less, an SC-55 more.
@@ -46,7 +44,7 @@ impl SharedSpace {
         space.set_all(&values, true);
         Some(Self {
             space,
-            sends: [Ramp::at_rest(FULL_SEND * DEFAULT_SEND); 16],
+            sends: [Ramp::at_rest(FULL_SEND * DEFAULT_REVERB_SEND); 16],
             smoothing_frames: (SMOOTHING_SECONDS * sample_rate) as u32,
             left: vec![0.0; frames],
             right: vec![0.0; frames],

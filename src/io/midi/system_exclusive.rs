@@ -2,6 +2,7 @@
 
 use crate::engine::EventKind;
 use crate::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL, MELODIC_BANK};
+use crate::engine::midi::DEFAULT_REVERB_SEND;
 use crate::engine::midi::controller::REVERB_SEND;
 
 /// Resets, without the first byte F0 and without numbers of devices: General MIDI 1 and 2 on, and off (Universal
@@ -36,7 +37,7 @@ fn bank(value: u8) -> EventKind {
 /// All channels return to their first bank, and what they send to the shared space to its default (General MIDI 2). What they
 /// play changes with their next program change.
 fn reset() -> Vec<(u8, EventKind)> {
-    let send = EventKind::Control { controller: REVERB_SEND, value: 40.0 / 127.0 };
+    let send = EventKind::Control { controller: REVERB_SEND, value: DEFAULT_REVERB_SEND };
     (0..16).flat_map(|channel| [(channel, bank(0)), (channel, send)]).collect()
 }
 
