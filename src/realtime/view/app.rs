@@ -115,7 +115,7 @@ impl App {
         let catalogue = Catalogue::read(library.as_ref());
         let message =
             catalogue.broken.first().map(|error| (printable(&error.to_string()).into_owned(), Instant::now()));
-        Self {
+        let mut app = Self {
             device,
             status,
             keyboard: Keyboard::new(keys),
@@ -141,7 +141,9 @@ impl App {
             peaks: [0.0; 2],
             message,
             ticked: Instant::now(),
-        }
+        };
+        app.show_all();
+        app
     }
 
     /// Shows a message for some time.
@@ -225,6 +227,20 @@ impl App {
         let last = self.rows().saturating_sub(1);
         let selected = self.selected().unwrap_or(0);
         self.selected[self.list as usize] = selected.saturating_add_signed(rows).min(last);
+    }
+
+    /// Shows the whole list, and in that of the sounds selects the one that plays.
+    pub(super) fn show_all(&mut self) {
+        self.search[self.list as usize].clear();
+        if self.list == List::Sounds {
+            let playing = self.sounds().iter().position(|listed| printable(listed.name()) == self.playing().name);
+            self.selected[List::Sounds as usize] = playing.unwrap_or(0);
+        }
+    }
+
+    /// The search has changed: what fits it best is selected.
+    pub(super) fn select_best(&mut self) {
+        self.selected[self.list as usize] = 0;
     }
 
     /// Selects a row of those that are shown. Returns whether it was selected before; none if there is no such row.

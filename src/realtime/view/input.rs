@@ -44,7 +44,7 @@ impl App {
             KeyCode::Char(character) if self.keyboard.press(character, self.channel, now) => {}
             KeyCode::Char('?') => self.help = true,
             KeyCode::Char('/') => {
-                self.search[self.list as usize].clear();
+                self.show_all();
                 self.typing = Typing::Search;
             }
             KeyCode::Char('[') => self.keyboard.octave = (self.keyboard.octave - 1).max(0),
@@ -64,12 +64,13 @@ impl App {
             KeyCode::Right => self.nudge(1, fine),
             KeyCode::Enter => self.open(),
             KeyCode::Backspace => self.reset(),
-            KeyCode::Esc => self.search[self.list as usize].clear(),
+            KeyCode::Esc => self.show_all(),
             _ => {}
         }
     }
 
     fn type_key(&mut self, code: KeyCode) {
+        let is_search = self.typing == Typing::Search;
         let text = match &mut self.typing {
             Typing::Value(text) | Typing::Name(text) => text,
             _ => &mut self.search[self.list as usize],
@@ -80,8 +81,10 @@ impl App {
             KeyCode::Up => self.select(-1),
             KeyCode::Down => self.select(1),
             KeyCode::Esc => {
-                text.clear();
                 self.typing = Typing::Nothing;
+                if is_search {
+                    self.show_all();
+                }
             }
             KeyCode::Enter => {
                 self.typing = match std::mem::replace(&mut self.typing, Typing::Nothing) {
@@ -94,6 +97,9 @@ impl App {
                 }
             }
             _ => {}
+        }
+        if is_search && matches!(code, KeyCode::Char(_) | KeyCode::Backspace) {
+            self.select_best();
         }
     }
 

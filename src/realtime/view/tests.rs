@@ -144,6 +144,13 @@ fn a_preset_is_found_and_loaded() {
     assert!(stand.screen(80, 24).contains("channel 1 plays ‘Kick’"));
     stand.press(KeyCode::Esc);
     assert_eq!(stand.app.sounds().len(), Preset::factory().len() + KitPreset::factory().len());
+    let selected = |stand: &Stand| stand.app.sounds()[stand.app.selected().unwrap()].name().to_owned();
+    assert_eq!(selected(&stand), "Kick", "the sound that plays is selected in the whole list");
+    assert!(stand.screen(80, 24).contains("▸ Kick"));
+    stand.type_text("/marimba");
+    assert!(selected(&stand).contains("Marimba"), "and the best find in a search");
+    assert_eq!(stand.app.selected(), Some(0));
+    stand.press(KeyCode::Enter);
     stand.type_text("/no such preset");
     stand.press(KeyCode::Enter);
     stand.press(KeyCode::Enter);
