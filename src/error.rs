@@ -18,6 +18,12 @@ pub enum Error {
         /// The file.
         path: String,
     },
+    /// Another process writes the file.
+    #[error("{path}: another process is writing it")]
+    Locked {
+        /// The file.
+        path: String,
+    },
     /// The contents of a file are not what they should be.
     #[error("{origin}: {message}")]
     Format {

@@ -4,6 +4,7 @@ use super::Batch;
 use super::draw::Chance;
 use super::template::{Drawn, Fault, Template};
 use crate::error::{Error, Result};
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 
@@ -40,7 +41,11 @@ impl<'a> Jobs<'a> {
     /// Reads all lines, checks them, and gives the number of jobs of the shard.
     pub(super) fn count(mut self) -> Result<u64> {
         let mut all = 0_u64;
+        let mut read = BTreeSet::new();
         while self.next_template()? {
+            if let Some(template) = &self.template {
+                template.check_sounds(self.batch, &mut read).map_err(|fault| self.fault(fault))?;
+            }
             all = all.saturating_add(self.left);
         }
         let [index, count] = self.batch.shard.of();

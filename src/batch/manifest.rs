@@ -172,7 +172,7 @@ impl Manifest {
             _ => failed(error),
         })?;
         match file.try_lock() {
-            Err(TryLockError::WouldBlock) => return Err(Error::value(&name, "another process is writing it")),
+            Err(TryLockError::WouldBlock) => return Err(Error::Locked { path: name }),
             // Some file systems have no locks.
             Ok(()) | Err(TryLockError::Error(_)) => {}
         }

@@ -6,6 +6,7 @@ use super::scalar::{Scale, text_of};
 use crate::params::{PARAMS, Param};
 use crate::request::{Name, Request};
 use serde_json::{Map, Value};
+use std::collections::BTreeSet;
 
 /// How many jobs a line makes.
 const REPEAT: &str = "repeat";
@@ -14,12 +15,19 @@ const REPEAT: &str = "repeat";
 const SET: &str = "set";
 const CHANNEL: &str = "channel";
 
+/// The options that name a sound, or a list of sounds.
+const PRESET: &str = "preset";
+const PROGRAMS: &str = "programs";
+
 /// Options that can contradict each other, or the format of the files, whatever the others are.
 const TOGETHER: [&[&str]; 4] =
     [&["song", "note", "scale", "keymap"], &["bits", "dither"], &["normalize", "gain_db"], &["rate"]];
 
 /// How many combinations of them are checked before the first job is made. Others are found when they are drawn.
 const MOST_COMBINATIONS: usize = 1 << 16;
+
+/// How many names of sounds are remembered as read, so that memory use does not grow with the number of lines.
+const MOST_NAMES: usize = 1 << 12;
 
 /// What is wrong with a line: a key, and a message.
 pub(super) type Fault = (String, String);
@@ -99,6 +107,28 @@ impl Template {
             }
         }
         TOGETHER.iter().try_for_each(|options| self.check_together(options, batch))
+    }
+
+    /// Reads the kits and lists of programs that are not among those `read` before. Returns an error if one of them names a file
+    /// that the batch writes.
+    pub(super) fn check_sounds(&self, batch: &Batch, read: &mut BTreeSet<String>) -> Result<(), Fault> {
+        for entry in self.entries.iter().filter(|entry| entry.is_sound()) {
+            for candidate in entry.candidates() {
+                if read.len() == MOST_NAMES {
+                    read.clear();
+                }
+                let is_programs = entry.name() == PROGRAMS;
+                if !read.insert(format!("{is_programs} {candidate}")) {
+                    continue;
+                }
+                let mut one = Request::default();
+                entry.set(&mut one, &candidate)?;
+                if let Some(own) = one.sound.files().paths().find_map(|file| batch.own(file)) {
+                    return Err((entry.path.join("."), own));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Checks all combinations of some options, each with one value of the others.
@@ -192,8 +222,13 @@ impl Entry {
 
     /// Whether it may name a file.
     fn is_file(&self) -> bool {
-        const FILES: [&str; 7] = ["song", "input", "preset", CHANNEL, "programs", "scale", "keymap"];
+        const FILES: [&str; 7] = ["song", "input", PRESET, CHANNEL, PROGRAMS, "scale", "keymap"];
         self.path.first().is_some_and(|option| FILES.contains(&option.as_str()))
+    }
+
+    /// Whether it names a sound or a list of sounds, whose files may name others.
+    fn is_sound(&self) -> bool {
+        self.path.first().is_some_and(|option| [PRESET, CHANNEL, PROGRAMS].contains(&option.as_str()))
     }
 
     /// Sets the option of a request to a value.

@@ -4,11 +4,11 @@ use crate::error::{Error, Result};
 use same_file::Handle;
 use std::fs::File;
 use std::io::{self, Stdin};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The open input files, identified by device and inode, so that links and other paths to them are recognised too.
 #[derive(Debug, Default)]
-pub struct Inputs(Vec<(String, Handle)>);
+pub struct Inputs(Vec<(PathBuf, Handle)>);
 
 impl Inputs {
     /// Opens a file to read.
@@ -19,7 +19,7 @@ impl Inputs {
         let name = path.display().to_string();
         let file = File::open(path).map_err(|source| Error::io(&name, source))?;
         let handle = file.try_clone().and_then(Handle::from_file).map_err(|source| Error::io(&name, source))?;
-        self.add(name, handle);
+        self.add(path.to_owned(), handle);
         Ok(file)
     }
 
@@ -29,12 +29,18 @@ impl Inputs {
     /// [`Error::Io`] if it cannot be read.
     pub fn stdin(&mut self) -> Result<Stdin> {
         let handle = Handle::stdin().map_err(|source| Error::io("stdin", source))?;
-        self.add("stdin".to_owned(), handle);
+        self.add("stdin".into(), handle);
         Ok(io::stdin())
     }
 
+    /// The paths of the files that were opened.
+    #[cfg(feature = "batch")]
+    pub(crate) fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.0.iter().map(|(path, _)| path.as_path())
+    }
+
     /// Adds an input if it is a file. Terminals and sockets can safely be input and output at once.
-    fn add(&mut self, name: String, handle: Handle) {
+    fn add(&mut self, name: PathBuf, handle: Handle) {
         if handle.as_file().metadata().is_ok_and(|metadata| metadata.is_file()) {
             self.0.push((name, handle));
         }
@@ -44,6 +50,7 @@ impl Inputs {
     pub(super) fn check(&self, name: &str, output: &Handle) -> Result<()> {
         match self.0.iter().find(|(_, input)| input == output) {
             Some((input, _)) => {
+                let input = input.display();
                 Err(Error::value(name, format!("this is the input ‘{input}’: expected another file to write to")))
             }
             None => Ok(()),

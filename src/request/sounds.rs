@@ -128,6 +128,25 @@ impl SoundRequest {
         Ok(Sounds { kit, channels, programs, mix, list, tuning: self.tuning.read(inputs)? })
     }
 
+    /// Opens every file that is read for these names: of a kit and a list of programs also the files that they name. What
+    /// cannot be read now is left out, and is an error when it is loaded.
+    #[cfg(feature = "batch")]
+    pub(crate) fn files(&self) -> Inputs {
+        let mut inputs = Inputs::default();
+        let given = self.preset.iter().cloned().chain(self.channels.iter().map(|(_, name)| name.into()));
+        let mut names: BTreeSet<OsString> = given.collect();
+        // The factory's list names no files.
+        if self.programs != "gm"
+            && let Ok(Some(list)) = programs::list(&self.programs, &mut inputs)
+        {
+            names.extend((0..=u8::MAX).filter_map(|number| list.name_of(number)).map(OsString::from));
+        }
+        for name in names {
+            drop(playable(&name, &mut inputs, &mut |_| {}));
+        }
+        inputs
+    }
+
     /// Warns of program changes that have no sound or lead away from what the user asked for, of keys that the tuning does
     /// not map, and of what stays silent.
     pub fn warn(&self, song: &Song, sounds: &Sounds, warn: &mut dyn FnMut(&str)) {

@@ -3,6 +3,7 @@
 use crate::{Sandbox, Wav};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
+use sprung::preset::Preset;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -112,6 +113,34 @@ fn what_is_there_is_neither_replaced_nor_read_while_it_is_written() {
         sandbox.fails(&format!("batch jobs.jsonl --out {out} --resume"), 1, &message);
     }
     assert_eq!(sandbox.read("sounds/0000/0000000.wav"), b"mine");
+}
+
+#[test]
+fn what_only_a_kit_names_is_not_replaced() {
+    let sandbox = Sandbox::new();
+    fs::create_dir(sandbox.path("0000")).unwrap();
+    let preset = Preset::find("Kick").unwrap().to_toml();
+    for name in ["0000/0000000.wav", "0000/mine.wav"] {
+        sandbox.write(name, &preset);
+    }
+    let plain = r#""note": "C2", "length": 0.01, "tail": "none"}"#;
+    let kit = |file: &str| format!("kit = 1\nname = \"k\"\nkeys = [{{ key = 36, sound = '{file}' }}]");
+    sandbox.write("list.toml", "programs = 1\nname = \"l\"\nsounds = [\"./kit.toml\"]");
+    for option in [r#""preset": "kit.toml""#, r#""channel": {"10": "kit.toml"}"#, r#""programs": "list.toml""#] {
+        let key = if option.contains("channel") { "channel.10" } else { option.split('"').nth(1).unwrap() };
+        sandbox.write("jobs.jsonl", format!("{{{plain}\n{{{option}, {plain}"));
+        sandbox.write("kit.toml", kit("0000/0000000.wav"));
+        let file = sandbox.path("0000/0000000.wav").canonicalize().unwrap();
+        let message = format!("jobs.jsonl:2: {key}: ‘{}’ is a file that this batch writes", file.display());
+        sandbox.fails("batch jobs.jsonl --out . --resume", 1, &message);
+        assert_eq!(sandbox.read("0000/0000000.wav"), preset.as_bytes());
+    }
+    // Another file in the same folder is not in the way.
+    sandbox.write("kit.toml", kit("0000/mine.wav"));
+    sandbox.write("jobs.jsonl", format!(r#"{{"preset": "kit.toml", {plain}"#));
+    fs::remove_file(sandbox.path("0000/0000000.wav")).unwrap();
+    sandbox.succeeds("batch jobs.jsonl --out . --resume");
+    assert_eq!(sandbox.read("0000/mine.wav"), preset.as_bytes());
 }
 
 #[test]

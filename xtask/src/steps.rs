@@ -163,6 +163,18 @@ pub(crate) const STEPS: &[Step] = &[
         shows: Shows::OneCheck,
     },
     Step {
+        name: "emulation, format",
+        arguments: "fmt --manifest-path benches/fused/Cargo.toml --check",
+        environment: &[],
+        shows: Shows::OneCheck,
+    },
+    Step {
+        name: "emulation, lint",
+        arguments: "clippy --manifest-path benches/fused/Cargo.toml --all-targets -- -D warnings",
+        environment: &[],
+        shows: Shows::OneCheck,
+    },
+    Step {
         name: "plugin, documentation",
         arguments: "doc --manifest-path plugin/Cargo.toml --no-deps --all-features",
         environment: &[DENY],

@@ -27,9 +27,9 @@ import numpy.typing as npt
 
 from . import _sprung
 from ._batch import batch
-from ._sprung import Error, params, presets
+from ._sprung import Error, Locked, params, presets
 
-__all__ = ["Error", "Patch", "Sound", "analyze", "batch", "diff", "fit", "params", "presets", "render"]
+__all__ = ["Error", "Locked", "Patch", "Sound", "analyze", "batch", "diff", "fit", "params", "presets", "render"]
 
 #: A name or file of a preset or kit, or a patch.
 PresetLike = Union[str, "os.PathLike[str]", "Patch"]

@@ -9,6 +9,9 @@ import numpy.typing as npt
 class Error(ValueError):
     """What is wrong, where, and what would be right."""
 
+class Locked(Error):
+    """Another process writes the file."""
+
 class NativePatch:
     """A preset's values, modes and routes."""
 

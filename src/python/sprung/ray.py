@@ -8,8 +8,11 @@ Ray runs the shards where there is room, and again where a worker or a node has 
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import json
 import os
+import re
 import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -19,12 +22,18 @@ import ray
 from ray.exceptions import RayError, RayTaskError
 
 from ._batch import make
-from ._sprung import Error
+from ._sprung import Error, Locked
 
 __all__ = ["batch"]
 
 # Seconds in which a file system lets go of what a dead node has locked: NFS gives it 90.
 _LOCKED = 120.0
+
+# The manifest of a shard, of any number of shards.
+_PART = re.compile(r"manifest-\d+-of-\d+\.jsonl")
+
+# The most threads that a batch can be given.
+_MOST_CPUS = 65535
 
 _Jobs = Union[str, "list[Mapping[str, Any]]"]
 
@@ -47,8 +56,14 @@ def batch(
     worker dies (-1: always). ``progress`` is called with how many shards are done, of how many. Without ``ray.init``, Ray
     connects as it does by itself.
     """
-    if shards < 1 or cpus < 1 or retries < -1:
-        raise Error("shards, cpus: expected 1 or more; retries: -1 or more")
+    if shards < 1:
+        raise Error(f"shards: {shards}: expected 1 or more")
+    if not 1 <= cpus <= _MOST_CPUS:
+        raise Error(f"cpus: {cpus}: expected 1 to {_MOST_CPUS}")
+    if retries < -1:
+        raise Error(f"retries: {retries}: expected 0 or more, or -1 for always")
+    if format not in ("wav", "flac"):
+        raise Error(f"format: ‘{format}’: expected wav or flac")
     given: _Jobs = os.fspath(jobs) if isinstance(jobs, (str, os.PathLike)) else list(jobs)
     if not ray.is_initialized():
         ray.init()
@@ -67,12 +82,11 @@ def batch(
         waiting[whole] = "the manifest of the whole"
         _result(whole, waiting[whole])
         del waiting[whole]
-    finally:
-        for left in waiting:
-            ray.cancel(left)
-        if waiting:
-            # Whoever calls again must not meet them.
-            ray.wait(list(waiting), num_returns=len(waiting), timeout=_LOCKED)
+    except BaseException:
+        # What is wrong is told, even if the cluster has gone and nothing can be cancelled.
+        with contextlib.suppress(Exception):
+            _cancel(list(waiting))
+        raise
     return Path(out, "manifest.jsonl")
 
 
@@ -88,13 +102,38 @@ def _part(
     try:
         shard = (1, 1) if number is None else (number, shards)
         _wait_and_make(jobs, out, shard=shard, resume=True, seed=seed, format=format, at_once=at_once)
-        if number is None and shards > 1:
-            # The whole has all their lines. What is left in the folder is what one machine writes.
-            for one in range(1, shards + 1):
-                Path(out, f"manifest-{one}-of-{shards}.jsonl").unlink(missing_ok=True)
+        if number is None:
+            _remove_parts(Path(out))
     finally:
-        # The worker goes on with other tasks.
-        os.chdir(before)
+        # The worker goes on with other tasks. If its folder has gone, what happened here is still what is told.
+        with contextlib.suppress(OSError):
+            os.chdir(before)
+
+
+def _cancel(tasks: list[Any]) -> None:
+    """Ends tasks, and waits until they have ended: whoever calls again must not meet them."""
+    for task in tasks:
+        ray.cancel(task)
+    if tasks:
+        ray.wait(tasks, num_returns=len(tasks), timeout=_LOCKED)
+
+
+def _remove_parts(out: Path) -> None:
+    """Removes the manifests of shards, also those of an earlier call with another number of shards.
+
+    The whole has all their lines, and what is left in the folder is what one machine writes. A manifest with jobs that the
+    whole does not have stays.
+    """
+    with open(out / "manifest.jsonl", "rb") as lines:
+        whole = sum(1 for _ in lines)
+    for part in [path for path in out.iterdir() if _PART.fullmatch(path.name)]:
+        last = None
+        with open(part, "rb") as lines:
+            for line in lines:
+                # A line without an end was cut off when its writer was killed.
+                last = line if line.endswith(b"\n") else last
+        if last is None or json.loads(last)["number"] < whole:
+            part.unlink(missing_ok=True)
 
 
 def _wait_and_make(jobs: _Jobs, out: str, **options: Any) -> None:
@@ -104,8 +143,8 @@ def _wait_and_make(jobs: _Jobs, out: str, **options: Any) -> None:
         try:
             make(jobs, out, **options)
             return
-        except Error as error:
-            if not str(error).endswith("another process is writing it") or time.monotonic() - started > _LOCKED:
+        except Locked:
+            if time.monotonic() - started > _LOCKED:
                 raise
         time.sleep(1.0)
 

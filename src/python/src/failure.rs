@@ -12,11 +12,13 @@ thread_local! {
 }
 
 create_exception!(sprung, Error, PyValueError, "What is wrong, where, and what would be right.");
+create_exception!(sprung, Locked, Error, "Another process writes the file.");
 
 /// The exception for an error. Interrupted work raises what interrupted it.
 pub(crate) fn raised(error: sprung::Error) -> PyErr {
     match error {
         sprung::Error::Interrupted => RAISED.take().unwrap_or_else(|| PyKeyboardInterrupt::new_err("interrupted")),
+        error @ sprung::Error::Locked { .. } => Locked::new_err(error.to_string()),
         error => Error::new_err(error.to_string()),
     }
 }

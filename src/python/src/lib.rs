@@ -14,7 +14,7 @@ mod _sprung {
     #[pymodule_export]
     use crate::batch::batch;
     #[pymodule_export]
-    use crate::failure::Error;
+    use crate::failure::{Error, Locked};
     #[pymodule_export]
     use crate::patch::{NativePatch, params, presets};
     #[pymodule_export]

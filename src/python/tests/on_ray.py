@@ -167,8 +167,40 @@ def test_errors_are_those_of_the_command(cluster: Any, tmp_path: Path, monkeypat
     Path("jobs.jsonl").write_text(json.dumps(job) + "\n" + json.dumps({**job, "decay": "2 m"}) + "\n")
     with pytest.raises(sprung.Error, match=r"^jobs\.jsonl:2: decay: ‘2 m’ is not a number in s"):
         on_ray.batch("jobs.jsonl", "sounds", shards=2)
-    with pytest.raises(sprung.Error, match="shards, cpus: expected 1 or more"):
-        on_ray.batch("jobs.jsonl", "sounds", shards=0)
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"shards": 0}, "^shards: 0: expected 1 or more$"),
+        ({"cpus": 0}, "^cpus: 0: expected 1 to 65535$"),
+        ({"retries": -2}, "^retries: -2: expected 0 or more, or -1 for always$"),
+        ({"format": "mp3"}, "^format: ‘mp3’: expected wav or flac$"),
+    ]
+    for options, message in wrong:
+        with pytest.raises(sprung.Error, match=message):
+            on_ray.batch("jobs.jsonl", "sounds", **options)
+
+
+def test_what_is_wrong_is_told_when_nothing_can_be_cancelled(cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(task: Any) -> None:
+        raise ConnectionError("the cluster has gone")
+
+    monkeypatch.setattr(ray, "cancel", refuse)
+    with pytest.raises(sprung.Error, match="decay: ‘2 m’ is not a number in s"):
+        on_ray.batch([{"note": "C2", "length": 0.01, "decay": "2 m"}], tmp_path, shards=4)
+
+
+def test_manifests_of_another_number_of_shards_go(cluster: Any, tmp_path: Path) -> None:
+    jobs = [{"note": "C2", "length": 0.01, "tail": "none", "repeat": 7}]
+    alone, out = tmp_path / "alone", tmp_path / "out"
+    sprung.batch(jobs, alone)
+    # Broken off: one of three shards is made, and another has a line that was cut off.
+    sprung.batch(jobs, out, shard=(2, 3))
+    (out / "manifest-3-of-3.jsonl").write_bytes(b'{"number": 2, "ver')
+    # Of another batch with more jobs.
+    other = {**json.loads((out / "manifest-2-of-3.jsonl").read_text().splitlines()[-1]), "number": 7}
+    (out / "manifest-8-of-8.jsonl").write_text(json.dumps(other) + "\n")
+    on_ray.batch(jobs, out, shards=2)
+    assert sorted(path.name for path in out.glob("*.jsonl")) == ["manifest-8-of-8.jsonl", "manifest.jsonl"]
+    (out / "manifest-8-of-8.jsonl").unlink()
+    assert digest(out) == digest(alone)
 
 
 def test_a_worker_that_always_dies_is_an_error(cluster: Any, tmp_path: Path) -> None:

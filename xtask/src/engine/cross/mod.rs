@@ -36,7 +36,7 @@ struct Row {
 }
 
 impl Row {
-    /// All rows, this machine's own levels first.
+    /// All rows, this machine's own levels first and QEMU, which takes longest, last.
     fn all() -> Vec<Row> {
         let own = if cfg!(target_arch = "x86_64") { "x86-64" } else { std::env::consts::ARCH };
         let levels = Level::ALL.into_iter().filter(|level| cfg!(target_arch = "x86_64") != (*level == Level::Neon));
@@ -45,14 +45,14 @@ impl Row {
             .filter(|level| cfg!(target_arch = "x86_64") || matches!(level, Level::Scalar | Level::Neon))
             .map(|level| Row { cpu: own, level: level.name().to_owned(), target: Target::Own, forced: Some(level) })
             .collect();
+        for (name, target) in [("scalar, in Node", Target::Wasm), ("simd128, in Node", Target::WasmSimd)] {
+            rows.push(Row { cpu: "wasm32", level: name.to_owned(), target, forced: None });
+        }
         if !cfg!(target_arch = "aarch64") {
             for level in [Level::Neon, Level::Scalar] {
                 let name = format!("{}, by QEMU", level.name());
                 rows.push(Row { cpu: "aarch64", level: name, target: Target::Aarch64, forced: Some(level) });
             }
-        }
-        for (name, target) in [("scalar, in Node", Target::Wasm), ("simd128, in Node", Target::WasmSimd)] {
-            rows.push(Row { cpu: "wasm32", level: name.to_owned(), target, forced: None });
         }
         rows
     }

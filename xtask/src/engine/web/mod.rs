@@ -1,6 +1,7 @@
 //! `cargo xtask web`: a static page that plays Sprung in a browser, in `target/web`.
 
 mod check;
+mod midi;
 mod serve;
 
 use crate::engine::cross::Target;
