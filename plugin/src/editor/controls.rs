@@ -5,6 +5,7 @@ use super::history::History;
 use super::theme::Palette;
 use crate::params::SprungParams;
 use nice_plug_core::context::gui::GuiContext;
+use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, ParamInfo};
 
 /// Text that is being typed instead of a parameter's value.
@@ -46,6 +47,8 @@ pub(super) struct Controls<'a> {
     pub(super) hands: &'a mut Hands,
     pub(super) history: &'a mut History,
     pub(super) hint: &'a mut Option<Hint>,
+    /// The notes that sound, the newest first.
+    pub(super) notes: &'a [SoundingNote],
 }
 
 impl Controls<'_> {
@@ -58,6 +61,12 @@ impl Controls<'_> {
     /// The value of a parameter as text.
     pub(super) fn text(&self, info: &ParamInfo) -> String {
         info.format(self.value(info))
+    }
+
+    /// The values that a parameter has in the notes that sound and modulate it, the newest note's first.
+    pub(super) fn modulated(&self, info: &ParamInfo) -> impl Iterator<Item = f32> {
+        let of = |note: &SoundingNote| note.moved.iter().flatten().find(|(param, _)| *param == info.param).copied();
+        self.notes.iter().filter_map(of).map(|(_, value)| value)
     }
 
     /// Moves a knob; [`Controls::release`] ends the gesture.

@@ -34,6 +34,7 @@ mod choice;
 mod controls;
 mod curves;
 mod details;
+mod devices_page;
 mod drops;
 mod files;
 mod fitting;

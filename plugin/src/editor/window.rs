@@ -136,6 +136,7 @@ impl Window {
         if !is_silent || self.meter.is_moving() {
             ui.ctx().request_repaint_after(FRAME);
         }
+        let notes: Vec<_> = snapshot.notes.into_iter().flatten().filter(|_| !is_silent).collect();
         let mut hint = None;
         let name = params.name();
         let mut controls = Controls {
@@ -145,6 +146,7 @@ impl Window {
             hands: &mut self.hands,
             history: &mut self.history,
             hint: &mut hint,
+            notes: &notes,
         };
         let header = Header {
             name: &name,

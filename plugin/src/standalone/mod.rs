@@ -4,37 +4,31 @@
 //! |---|---|
 //! | `player` | the audio thread |
 //! | `host` | what the window takes for its host |
+//! | `keeper` | looks after devices, ports and the file of the state |
 //! | `kept` | the file of the state |
 //! | `signals` | Ctrl-C |
 
 mod host;
+mod keeper;
 mod kept;
 mod player;
 mod signals;
 
+use crate::devices::Chosen;
 use crate::editor::SprungEditor;
 use crate::params::SprungParams;
 use crate::state::State;
 use clap::Parser;
 use host::Alone;
+use keeper::Keeper;
 use kept::Kept;
 use player::WindowPlayer;
 use sprung::preset::Playable;
-use sprung::realtime::{Choice, Found, LiveInputs, LiveSender, MidiIn, Session, Status, device, midi_ports};
+use sprung::realtime::{Choice, Found, LiveInputs, Session, Status, device, midi_ports};
 use sprung::text::printable;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::time::{Duration, Instant};
-
-/// Time between two looks at devices and ports.
-const POLL: Duration = Duration::from_millis(50);
-
-/// Time between two looks at whether there is something to keep.
-const KEEP: Duration = Duration::from_secs(5);
-
-/// How long a window that was asked to close may take. One that nobody can see may never do it.
-const PATIENCE: Duration = Duration::from_secs(2);
 
 const EXAMPLES: &str = "\
 Examples:
@@ -49,10 +43,10 @@ Examples:
 struct Args {
     /// Factory preset or kit to begin with, by its name [default: the sound of the last time]
     sound: Option<String>,
-    /// MIDI ports to listen to: all, none, or those with this in their name
-    #[arg(long, default_value = "all", value_name = "NAME|all|none")]
-    midi_in: String,
-    /// Sound device, by its name or a part of it. See --list
+    /// MIDI ports to listen to: all, none, or those with this in their name [default: those of the last time, or all]
+    #[arg(long, value_name = "NAME|all|none")]
+    midi_in: Option<String>,
+    /// Sound device, by its name or a part of it. See --list [default: that of the last time, or the system's]
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
     /// Sound system: alsa, jack or another that --list shows
@@ -101,22 +95,23 @@ fn start(args: Args) -> Result<(), String> {
         let playable = Playable::find(name).map_err(|error| error.to_string())?;
         params.load(State::new(playable, 0, params.view()).into());
     }
-    let choice = Choice { host: args.host, device: args.device, rate: args.rate, buffer: args.buffer };
-    let found = Found::find(&choice).map_err(|error| error.to_string())?;
+    let (last, said) = kept.chosen();
+    tell(&params, said);
+    let given =
+        Chosen { host: args.host, device: args.device, rate: args.rate, buffer: args.buffer, midi_in: args.midi_in };
+    let (chosen, found) = find(given, last, |said| tell(&params, Some(said)))?;
     let status = Arc::new(Status::of(params.link().telemetry.clone()));
     let ([midi, closing], inputs) = LiveInputs::new();
     let player = WindowPlayer::new(found.sample_rate(), params.clone(), inputs, status.clone());
-    let is_jack = found.is_jack();
-    let session = Session::start(&found, choice, player, status).map_err(|error| error.to_string())?;
+    let session = Session::start(&found, choice(&chosen), player, status).map_err(|error| error.to_string())?;
     complain(&format!("sprung: playing on {}", session.description()));
     signals::catch({
         let params = params.clone();
         move || params.link().close()
     })?;
     let is_closed = Arc::new(AtomicBool::new(false));
-    let keeper = Keeper { params: params.clone(), kept, session, closing, is_closed: is_closed.clone() };
-    let wanted = args.midi_in;
-    let keeper = std::thread::spawn(move || keeper.run(|| MidiIn::new(&wanted, is_jack, midi)));
+    let keeper = Keeper { params: params.clone(), kept, session, closing, is_closed: is_closed.clone(), chosen };
+    let keeper = std::thread::spawn(move || keeper.run(midi));
     let closed = SprungEditor::new(params).run(Alone::context());
     is_closed.store(true, Relaxed);
     let ended = keeper.join().map_err(|_| "the thread that looks after the device has failed".to_owned())?;
@@ -124,51 +119,32 @@ fn start(args: Args) -> Result<(), String> {
     ended
 }
 
-/// Looks after the device, the ports and the file of the state while the window is open.
-struct Keeper {
-    params: Arc<SprungParams>,
-    kept: Kept,
-    session: Session<WindowPlayer>,
-    closing: LiveSender,
-    /// Whether the window is closed.
-    is_closed: Arc<AtomicBool>,
+/// Finds the device that was given, or that of the last time, or if that is not there now, the system's.
+fn find(given: Chosen, last: Chosen, say: impl Fn(String)) -> Result<(Chosen, Found), String> {
+    let midi_in = given.midi_in.clone().or(last.midi_in.clone());
+    let is_given = Chosen { midi_in: None, ..given.clone() } != Chosen::default();
+    // Sample rate and block size of the last time belong to the device of that time.
+    let chosen = Chosen { midi_in: midi_in.clone(), ..if is_given { given } else { last } };
+    match Found::find(&choice(&chosen)) {
+        Ok(found) => Ok((chosen, found)),
+        Err(error) if is_given => Err(error.to_string()),
+        Err(error) => {
+            let chosen = Chosen { midi_in, ..Chosen::default() };
+            let found = Found::find(&Choice::default()).map_err(|error| error.to_string())?;
+            say(format!("not on the device of the last time: {}", plain(&error)));
+            Ok((chosen, found))
+        }
+    }
 }
 
-impl Keeper {
-    fn run(mut self, midi: impl FnOnce() -> MidiIn) -> Result<(), String> {
-        let mut midi = midi();
-        let mut asked: Option<Instant> = None;
-        let mut keep_at = Instant::now() + KEEP;
-        // A problem with the file is told once.
-        let mut told = false;
-        while !self.is_closed.load(Relaxed) {
-            tell(&self.params, self.session.poll());
-            tell(&self.params, midi.poll());
-            if Instant::now() > keep_at {
-                keep_at = Instant::now() + KEEP;
-                let problem = self.kept.keep_what_changed(&self.params).err();
-                let is_new = problem.is_some() && !std::mem::replace(&mut told, problem.is_some());
-                tell(&self.params, problem.filter(|_| is_new));
-            }
-            if self.params.link().is_closing() && asked.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
-                break;
-            }
-            std::thread::sleep(POLL);
-        }
-        drop(midi);
-        if !self.session.finish(&mut self.closing) {
-            complain("warning: the sound device does not answer; left it behind");
-        }
-        let ended = self.kept.keep(&self.params);
-        if !self.is_closed.load(Relaxed) {
-            // The window's thread still waits for a window that does not close.
-            if let Err(error) = &ended {
-                complain(&format!("error: {error}"));
-            }
-            std::process::exit(ended.is_err().into());
-        }
-        ended
-    }
+/// What is chosen, as the library has it.
+fn choice(Chosen { host, device, rate, buffer, .. }: &Chosen) -> Choice {
+    Choice { host: host.clone(), device: device.clone(), rate: *rate, buffer: *buffer }
+}
+
+/// An error of a device as a line for the window, where nothing is called by its option.
+fn plain(error: &sprung::Error) -> String {
+    error.to_string().trim_start_matches("--").to_owned()
 }
 
 /// Tells the user on stderr and in the window.
@@ -188,7 +164,14 @@ mod tests {
     fn the_command_line_is_sound() {
         Args::command().debug_assert();
         let args = Args::parse_from(["x", "Kick", "--rate", "44100", "--host", "jack"]);
-        assert_eq!((args.sound.as_deref(), args.rate, args.midi_in.as_str()), (Some("Kick"), Some(44_100), "all"));
+        assert_eq!((args.sound.as_deref(), args.rate, args.midi_in), (Some("Kick"), Some(44_100), None));
         assert!(Args::try_parse_from(["x", "--rate", "10"]).is_err());
+    }
+
+    #[test]
+    fn a_device_that_was_given_must_be_there() {
+        let tape = Chosen { host: Some("tape".to_owned()), ..Chosen::default() };
+        let said = find(tape, Chosen::default(), |_| unreachable!()).err().unwrap();
+        assert!(said.contains("no ‘tape’ here"), "{said}");
     }
 }

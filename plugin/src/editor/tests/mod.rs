@@ -3,6 +3,7 @@
 mod animation;
 mod body_numbers;
 mod browsing;
+mod devices;
 mod dropped;
 mod fake_host;
 mod fitted;
@@ -13,4 +14,5 @@ mod paging;
 mod pictures;
 mod random_events;
 mod renderer;
+mod rings;
 mod sounding;
