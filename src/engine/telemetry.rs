@@ -1,5 +1,6 @@
 //! State that the audio thread publishes for a display: voices, levels, keys, and the processing load.
 
+mod moved;
 mod sounding;
 
 use super::atomic::AtomicF32;
@@ -8,6 +9,8 @@ use super::note::{NoteId, nearest_channel, nearest_key};
 use super::scope::Scope;
 use super::{Event, EventKind, Notes, Snapshot};
 use crate::dsp::mode_bank::MAX_MODES;
+use moved::LastMoved;
+pub use moved::Moved;
 use sounding::Sounding;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -40,6 +43,7 @@ pub struct Telemetry {
     /// Number of the selected program plus 1; 0 for none.
     programs: [AtomicU16; 16],
     sounding: AtomicBool,
+    moved: LastMoved,
     scope: Scope,
     /// How many snapshots to publish before somebody looks again.
     wanted: AtomicU32,
@@ -110,6 +114,11 @@ impl Telemetry {
         stored.checked_sub(1).map(|program| program as u8)
     }
 
+    /// How many movements of controllers, pitch wheel and pressure there were so far, and what was moved last.
+    pub fn moved(&self) -> (u64, Option<Moved>) {
+        self.moved.read()
+    }
+
     /// The last frames of the sound.
     pub fn scope(&self) -> &Scope {
         &self.scope
@@ -136,8 +145,9 @@ impl TelemetryWriter {
         Self { telemetry, sample_rate, frames_to_snapshot: 0.0, ids: Box::new([[None; 128]; 16]) }
     }
 
-    /// Records an event that the engine receives: keys that go down and up, and program changes.
+    /// Records an event that the engine receives: keys that go down and up, controllers that move, and program changes.
     pub fn note_event(&mut self, event: &Event) {
+        self.telemetry.moved.note(&event.kind);
         let channel = usize::from(nearest_channel(event.channel));
         let keys = &self.telemetry.keys[channel];
         let mut press = |key: u8, id: Option<NoteId>| {

@@ -2,6 +2,7 @@
 
 use super::gestures::Gestures;
 use super::history::History;
+use super::learn::Learning;
 use super::theme::Palette;
 use crate::params::SprungParams;
 use nice_plug_core::context::gui::GuiContext;
@@ -25,6 +26,8 @@ pub(super) struct Hands {
     /// Position of the knob that is dragged, which has more digits than the knob's own.
     pub(super) dragged: f64,
     pub(super) typing: Option<Typing>,
+    /// The parameter that waits for a controller.
+    pub(super) learning: Option<Learning>,
 }
 
 /// What the status line says of the thing under the pointer.

@@ -50,6 +50,7 @@ mod kit_page;
 mod knob;
 mod knob_face;
 mod layout;
+mod learn;
 mod made;
 mod manual;
 mod manual_text;

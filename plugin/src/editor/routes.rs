@@ -2,6 +2,7 @@
 
 use super::controls::Controls;
 use super::gestures::load;
+use super::learn::Learning;
 use crate::loaded::positions_of;
 use crate::state::State;
 use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
@@ -14,7 +15,7 @@ use sprung::preset::{Guide, Playable};
 const AMOUNT: f32 = 25.0;
 
 /// The name of a source for people, of a macro the preset's own.
-fn source_name(source: Source, guide: &Guide) -> String {
+pub(super) fn source_name(source: Source, guide: &Guide) -> String {
     guide.macro_name(source.id()).map_or_else(|| source.id().replace('_', " "), str::to_owned)
 }
 
@@ -93,10 +94,14 @@ pub(super) fn show(ui: &Ui, rect: Rect, place: usize, routes: &Routes, guide: &G
     });
 }
 
-/// The part of a knob's menu that adds a route to it.
-pub(super) fn menu(ui: &mut Ui, info: &ParamInfo, controls: &mut Controls) {
+/// The part of a knob's menu that adds a route to it, from a source that is chosen or moved.
+pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Controls) {
     if !info.is_modulatable() {
         return;
+    }
+    if ui.button("MIDI learn").clicked() {
+        Learning::begin(info, controls);
+        ui.close();
     }
     ui.menu_button("Modulate by", |ui| {
         let Playable::Preset(preset) = controls.params.state().playable else {

@@ -32,8 +32,13 @@ impl Running {
         assert_eq!(sent, 0);
     }
 
+    /// As Ctrl-C.
+    pub(crate) fn interrupt(&self) {
+        self.signal(libc::SIGINT);
+    }
+
     #[track_caller]
-    fn ends(&mut self) -> ExitStatus {
+    pub(crate) fn ends(&mut self) -> ExitStatus {
         let mut status = None;
         wait_until("the program ends", || {
             status = self.0.try_wait().unwrap();
@@ -71,6 +76,8 @@ pub(crate) struct Stand {
     server: String,
     _jack: Running,
     pub(crate) folder: tempfile::TempDir,
+    /// ALSA's configuration; none for the system's.
+    pub(crate) alsa: Option<PathBuf>,
 }
 
 impl Stand {
@@ -82,7 +89,7 @@ impl Stand {
         let jack = Running(jack.spawn().unwrap());
         let screen = Screen::new();
         let onlooker = Onlooker::new(Some(&screen.display));
-        let stand = Self { onlooker, screen, server, _jack: jack, folder: tempfile::tempdir().unwrap() };
+        let stand = Self { onlooker, screen, server, _jack: jack, folder: tempfile::tempdir().unwrap(), alsa: None };
         wait_until("the server", || {
             let list = stand.command(&["--list"]).output().unwrap().stdout;
             String::from_utf8_lossy(&list).contains("JACK Output")
@@ -94,6 +101,7 @@ impl Stand {
         let mut command = Command::new(PROGRAM.unwrap());
         command.args(arguments).stdin(Stdio::null()).env("DISPLAY", &self.screen.display);
         command.env("JACK_DEFAULT_SERVER", &self.server).env("JACK_NO_START_SERVER", "1");
+        command.envs(self.alsa.iter().map(|file| ("ALSA_CONFIG_PATH", file)));
         command.env("XDG_STATE_HOME", self.folder.path()).env("XDG_DATA_HOME", self.folder.path());
         command
     }
@@ -105,8 +113,14 @@ impl Stand {
     /// Starts the program on the server, and waits for its window. Returns it and the file with what it says.
     #[track_caller]
     pub(crate) fn start(&self, arguments: &[&str]) -> (Running, PathBuf) {
+        self.start_with(&["--host", "jack", "--midi-in", "none"], arguments)
+    }
+
+    /// As [`Stand::start`], with options instead of those for the server.
+    #[track_caller]
+    pub(crate) fn start_with(&self, options: &[&str], arguments: &[&str]) -> (Running, PathBuf) {
         let said = self.folder.path().join("stderr");
-        let mut command = self.command(&["--host", "jack", "--midi-in", "none"]);
+        let mut command = self.command(options);
         let running = Running(command.args(arguments).stderr(File::create(&said).unwrap()).spawn().unwrap());
         wait_until("the window", || self.onlooker.find("Sprung").is_some());
         wait_until("a picture", || self.onlooker.sees_a_picture(600, 400));

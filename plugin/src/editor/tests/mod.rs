@@ -8,6 +8,7 @@ mod dropped;
 mod fake_host;
 mod fitted;
 mod gestures;
+mod learning;
 mod mode_edits;
 mod moving;
 mod paging;

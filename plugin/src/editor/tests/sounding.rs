@@ -32,7 +32,7 @@ impl Band {
         Self { stage, synth, touches, writer, heard: Vec::new() }
     }
 
-    fn play(&mut self, kind: EventKind) {
+    pub(super) fn play(&mut self, kind: EventKind) {
         let event = Played { frame: 0, channel: 0, kind };
         self.writer.note_event(&event);
         self.synth.handle(&event);
