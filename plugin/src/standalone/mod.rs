@@ -144,7 +144,7 @@ fn choice(Chosen { host, device, rate, buffer, .. }: &Chosen) -> Choice {
 
 /// An error of a device as a line for the window, where nothing is called by its option.
 fn plain(error: &sprung::Error) -> String {
-    error.to_string().trim_start_matches("--").to_owned()
+    error.to_string().trim_start_matches("--").trim_end_matches('.').to_owned()
 }
 
 /// Tells the user on stderr and in the window.

@@ -16,8 +16,9 @@ pcm.broken { type hw
 /// Where the tab *Devices* and the field *Output* are.
 const TAB: [i16; 2] = [612, 344];
 const FIELD: [i16; 2] = [280, 377];
-/// Heights where the list's lines may be, from the first to the last.
-const LINES: std::ops::Range<i16> = 400..520;
+/// Where the lines of its list may be: to the right, and down from the first to the last.
+const LIST: i16 = 150;
+const LINES: std::ops::Range<i16> = 415..570;
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The devices that the program has said that it plays on, and whether one was refused.
@@ -44,7 +45,7 @@ pub(crate) fn another_device_is_chosen_while_it_plays() {
         let text = std::fs::read_to_string(&said).unwrap();
         assert!(start.elapsed() < PATIENCE, "no other device, or none that is refused: {text}");
         click(FIELD);
-        click([FIELD[0], lines.next().unwrap()]);
+        click([LIST, lines.next().unwrap()]);
     }
     let (playing, _) = heard(&said);
     assert!(playing[0].contains("JACK") && playing[1..].iter().any(|name| name.contains("ALSA")), "{playing:?}");
