@@ -2,7 +2,6 @@
 
 use super::gestures::Gestures;
 use super::history::History;
-use super::learn::Learning;
 use super::theme::Palette;
 use crate::params::SprungParams;
 use nice_plug_core::context::gui::GuiContext;
@@ -17,6 +16,15 @@ pub(super) struct Typing {
     pub(super) is_open: bool,
     /// Why the text is no value.
     pub(super) complaint: Option<String>,
+}
+
+/// A parameter that waits for a controller.
+pub(super) struct Learning {
+    pub(super) info: &'static ParamInfo,
+    /// How many movements there were when it was last looked.
+    pub(super) seen: u64,
+    /// Whether the user was told what to do.
+    pub(super) is_told: bool,
 }
 
 /// What the user is doing with parameters.

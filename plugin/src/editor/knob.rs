@@ -2,6 +2,7 @@
 
 use super::controls::{Controls, Hint, Typing};
 use super::knob_face::{self, Face};
+use super::learn;
 use super::routes::{self, Ring};
 use super::text::{line, name_field};
 use super::theme::{KNOB, SMALL, font};
@@ -221,6 +222,10 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
         ui.close();
     }
     routes::menu(ui, info, controls);
+    if info.is_modulatable() && ui.button("MIDI learn").clicked() {
+        learn::begin(info, controls);
+        ui.close();
+    }
 }
 
 /// Shows the field for a value while one is typed. Enter sets the value, Escape keeps the old one.

@@ -1,6 +1,6 @@
 //! MIDI learn: what is moved next on the keyboard modulates a parameter, by a route.
 
-use super::controls::Controls;
+use super::controls::{Controls, Learning};
 use super::routes::{change, source_name};
 use egui::{Key, Ui};
 use sprung::engine::telemetry::Moved;
@@ -14,20 +14,10 @@ const PAUSE: Duration = Duration::from_millis(50);
 /// The least part of a knob's travel that is worth a route.
 const LEAST: f32 = 0.05;
 
-/// A parameter that waits for a controller.
-#[derive(Clone, Copy)]
-pub(super) struct Learning {
-    info: &'static ParamInfo,
-    /// How many movements there were when it was last looked.
-    seen: u64,
-    is_told: bool,
-}
-
-impl Learning {
-    pub(super) fn begin(info: &'static ParamInfo, controls: &mut Controls) {
-        let (seen, _) = controls.params.link().telemetry.moved();
-        controls.hands.learning = Some(Self { info, seen, is_told: false });
-    }
+/// Waits for what is moved next.
+pub(super) fn begin(info: &'static ParamInfo, controls: &mut Controls) {
+    let (seen, _) = controls.params.link().telemetry.moved();
+    controls.hands.learning = Some(Learning { info, seen, is_told: false });
 }
 
 /// Looks whether something was moved, and makes a route from it. Returns a message.

@@ -2,7 +2,6 @@
 
 use super::controls::Controls;
 use super::gestures::load;
-use super::learn::Learning;
 use crate::loaded::positions_of;
 use crate::state::State;
 use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
@@ -94,14 +93,10 @@ pub(super) fn show(ui: &Ui, rect: Rect, place: usize, routes: &Routes, guide: &G
     });
 }
 
-/// The part of a knob's menu that adds a route to it, from a source that is chosen or moved.
-pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Controls) {
+/// The part of a knob's menu that adds a route to it, from a source that is chosen.
+pub(super) fn menu(ui: &mut Ui, info: &ParamInfo, controls: &mut Controls) {
     if !info.is_modulatable() {
         return;
-    }
-    if ui.button("MIDI learn").clicked() {
-        Learning::begin(info, controls);
-        ui.close();
     }
     ui.menu_button("Modulate by", |ui| {
         let Playable::Preset(preset) = controls.params.state().playable else {

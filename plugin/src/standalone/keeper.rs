@@ -1,8 +1,9 @@
 //! Looks after devices, ports and the file of the state, while the window is open.
 
+use super::chosen::{choice, plain};
 use super::kept::Kept;
 use super::player::WindowPlayer;
-use super::{choice, complain, plain, tell};
+use super::told::{complain, tell};
 use crate::devices::{Chosen, Devices, Output};
 use crate::params::SprungParams;
 use sprung::realtime::{LiveSender, MidiIn, Session, device, midi_ports};

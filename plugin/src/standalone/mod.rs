@@ -3,32 +3,37 @@
 //! | module | holds |
 //! |---|---|
 //! | `player` | the audio thread |
+//! | `chosen` | the device that was chosen, or that of the last time |
 //! | `host` | what the window takes for its host |
 //! | `keeper` | looks after devices, ports and the file of the state |
 //! | `kept` | the file of the state |
 //! | `signals` | Ctrl-C |
+//! | `told` | what the user is told |
 
+mod chosen;
 mod host;
 mod keeper;
 mod kept;
 mod player;
 mod signals;
+mod told;
 
 use crate::devices::Chosen;
 use crate::editor::SprungEditor;
 use crate::params::SprungParams;
 use crate::state::State;
+use chosen::{choice, find};
 use clap::Parser;
 use host::Alone;
 use keeper::Keeper;
 use kept::Kept;
 use player::WindowPlayer;
 use sprung::preset::Playable;
-use sprung::realtime::{Choice, Found, LiveInputs, Session, Status, device, midi_ports};
-use sprung::text::printable;
+use sprung::realtime::{LiveInputs, Session, Status, device, midi_ports};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use told::{complain, tell};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -75,12 +80,6 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Prints a line on stderr, whether or not anybody reads it.
-fn complain(line: &str) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stderr(), "{}", printable(line));
-}
-
 fn start(args: Args) -> Result<(), String> {
     device::silence_library();
     if args.list {
@@ -119,42 +118,6 @@ fn start(args: Args) -> Result<(), String> {
     ended
 }
 
-/// Finds the device that was given, or that of the last time, or if that is not there now, the system's.
-fn find(given: Chosen, last: Chosen, say: impl Fn(String)) -> Result<(Chosen, Found), String> {
-    let midi_in = given.midi_in.clone().or(last.midi_in.clone());
-    let is_given = Chosen { midi_in: None, ..given.clone() } != Chosen::default();
-    // Sample rate and block size of the last time belong to the device of that time.
-    let chosen = Chosen { midi_in: midi_in.clone(), ..if is_given { given } else { last } };
-    match Found::find(&choice(&chosen)) {
-        Ok(found) => Ok((chosen, found)),
-        Err(error) if is_given => Err(error.to_string()),
-        Err(error) => {
-            let chosen = Chosen { midi_in, ..Chosen::default() };
-            let found = Found::find(&Choice::default()).map_err(|error| error.to_string())?;
-            say(format!("not on the device of the last time: {}", plain(&error)));
-            Ok((chosen, found))
-        }
-    }
-}
-
-/// What is chosen, as the library has it.
-fn choice(Chosen { host, device, rate, buffer, .. }: &Chosen) -> Choice {
-    Choice { host: host.clone(), device: device.clone(), rate: *rate, buffer: *buffer }
-}
-
-/// An error of a device as a line for the window, where nothing is called by its option.
-fn plain(error: &sprung::Error) -> String {
-    error.to_string().trim_start_matches("--").trim_end_matches('.').to_owned()
-}
-
-/// Tells the user on stderr and in the window.
-fn tell(params: &SprungParams, news: impl IntoIterator<Item = String>) {
-    for line in news {
-        complain(&format!("sprung: {line}"));
-        params.link().tell(line);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,12 +129,5 @@ mod tests {
         let args = Args::parse_from(["x", "Kick", "--rate", "44100", "--host", "jack"]);
         assert_eq!((args.sound.as_deref(), args.rate, args.midi_in), (Some("Kick"), Some(44_100), None));
         assert!(Args::try_parse_from(["x", "--rate", "10"]).is_err());
-    }
-
-    #[test]
-    fn a_device_that_was_given_must_be_there() {
-        let tape = Chosen { host: Some("tape".to_owned()), ..Chosen::default() };
-        let said = find(tape, Chosen::default(), |_| unreachable!()).err().unwrap();
-        assert!(said.contains("no ‘tape’ here"), "{said}");
     }
 }

@@ -47,10 +47,11 @@ pub(crate) fn another_device_is_chosen_while_it_plays() {
         click(FIELD);
         click([LIST, lines.next().unwrap()]);
     }
-    let (playing, _) = heard(&said);
-    assert!(playing[0].contains("JACK") && playing[1..].iter().any(|name| name.contains("ALSA")), "{playing:?}");
     running.interrupt();
     assert_eq!(running.ends().code(), Some(0));
+    // Now, since the last click may have been followed only after the look above.
+    let (playing, _) = heard(&said);
+    assert!(playing[0].contains("JACK") && playing[1..].iter().any(|name| name.contains("ALSA")), "{playing:?}");
     let kept = std::fs::read_to_string(stand.state().with_file_name("devices.json")).unwrap();
     // Without options, the last choice holds.
     let (mut running, said) = stand.start_with(&[], &["--midi-in", "none"]);
