@@ -7,6 +7,7 @@
 //! | `loaded` | the loaded sound with exact values, and how the audio thread gets it without waiting |
 //! | `live` | the audio thread: follows parameters, passes events on, renders |
 //! | `link` | what the window and the audio thread tell each other |
+//! | `devices` | the program's devices and ports, as its window chooses them |
 //! | `events` | converts the wrapper's note events to the engine's |
 //! | `tail` | how long the sound continues |
 //! | `state` | the state that a host stores in its project |
@@ -16,6 +17,7 @@
 //!
 //! The wrapper is nice-plug. Its normalised values are called positions here: knob positions from 0 to 1.
 
+mod devices;
 mod editor;
 mod events;
 mod export;

@@ -1,5 +1,6 @@
 //! What the window and the audio thread tell each other: no side ever waits for the other.
 
+use crate::devices::Desk;
 use nice_plug_egui::RepaintNotifier;
 use rtrb::{Consumer, Producer, RingBuffer};
 use sprung::engine::{EventKind, Telemetry};
@@ -9,6 +10,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// How many touches can wait for the audio thread. Half of the room is for keys that go up.
 const WAITING: usize = 64;
+
+/// How many lines can wait for the window.
+const NEWS: usize = 16;
 
 /// A note that is played in the window. It is neither part of the state nor of what a host renders to a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,8 +45,10 @@ pub(crate) struct Link {
     touches: Mutex<Option<Producer<Touch>>>,
     /// To the window of the program: that it is to close.
     closing: AtomicBool,
-    /// To the window of the program: what has become of devices and ports.
-    news: Mutex<Option<String>>,
+    /// To the window of the program: what has become of devices and ports, the oldest first.
+    news: Mutex<Vec<String>>,
+    /// Between the program and its window: the devices and ports.
+    pub(crate) desk: Desk,
 }
 
 impl Link {
@@ -80,13 +86,20 @@ impl Link {
     /// Tells the window something that its user should read. Not for the audio thread.
     #[cfg(feature = "standalone")]
     pub(crate) fn tell(&self, news: String) {
-        *self.news.lock().unwrap_or_else(PoisonError::into_inner) = Some(news);
+        let mut waiting = self.news.lock().unwrap_or_else(PoisonError::into_inner);
+        // The newest are those that matter, if nobody reads.
+        if waiting.len() == NEWS {
+            waiting.remove(0);
+        }
+        waiting.push(news);
+        drop(waiting);
         self.repaint.request_repaint();
     }
 
-    /// What the window was told since the last call.
+    /// What the window was told since the last call, as one line.
     pub(crate) fn take_news(&self) -> Option<String> {
-        self.news.lock().unwrap_or_else(PoisonError::into_inner).take()
+        let news = std::mem::take(&mut *self.news.lock().unwrap_or_else(PoisonError::into_inner));
+        (!news.is_empty()).then(|| news.join("; "))
     }
 
     /// The sample rate in Hz; 0 if there was none yet.
@@ -119,5 +132,17 @@ mod tests {
         link.play(Touch::Up { key: 1 });
         let mut consumer = link.connect(48_000.0);
         assert!(consumer.pop().is_err(), "what was sent to an earlier one is dropped");
+    }
+
+    #[cfg(feature = "standalone")]
+    #[test]
+    fn news_wait_for_the_window_and_none_replaces_another() {
+        let link = Link::default();
+        link.tell("one".to_owned());
+        link.tell("two".to_owned());
+        assert_eq!((link.take_news(), link.take_news()), (Some("one; two".to_owned()), None));
+        (0..2 * NEWS).for_each(|line| link.tell(line.to_string()));
+        let news = link.take_news().unwrap();
+        assert!(news.starts_with("16; 17") && news.ends_with("; 31"), "the newest: {news}");
     }
 }

@@ -28,7 +28,7 @@ mod zones;
 pub use ensemble::Ensemble;
 pub use event::{Event, EventKind, Expression};
 pub use note::{Note, NoteId, Notes};
-pub use snapshot::Snapshot;
+pub use snapshot::{SHOWN_NOTES, Snapshot, SoundingNote};
 pub use synth::Synth;
 pub use telemetry::{Telemetry, TelemetryWriter};
 pub use voice_state::{ModeState, VoiceState};

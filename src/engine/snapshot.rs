@@ -1,7 +1,32 @@
-//! What a display shows of a sounding instrument: the number of voices, and the motion of their masses.
+//! What a display shows of a sounding instrument: the number of voices, the motion of their masses, and the newest notes
+//! with what modulates them.
 
+use super::note::Note;
 use super::voice::SynthVoice;
 use crate::dsp::mode_bank::MAX_MODES;
+use crate::params::Param;
+use crate::patch::routes::MAX_ROUTES;
+
+/// Most notes that a snapshot tells of.
+pub const SHOWN_NOTES: usize = 16;
+
+/// A note that sounds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SoundingNote {
+    /// MIDI channel, 0–15.
+    pub channel: u8,
+    /// MIDI key, 0–127.
+    pub key: u8,
+    /// Velocity of its last strike, 0–1.
+    pub velocity: f32,
+    /// Its pitch in semitones on the MIDI scale, with glide, sweep, bend and vibrato.
+    pub pitch: f32,
+    /// Seconds since its last strike.
+    pub age: f32,
+    /// Parameters that its routes and its own offsets modulate, with their values now. What only strikes read has the value
+    /// of the last strike.
+    pub moved: [Option<(Param, f32)>; MAX_ROUTES],
+}
 
 /// One mass, or the sum over the voices that have the same mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,23 +44,53 @@ pub struct Snapshot {
     pub voices: u32,
     /// The masses by mode number, added up over all voices. Modes after the first [`MAX_MODES`] are left out.
     pub masses: [Mass; MAX_MODES],
+    /// The notes whose last strikes are the newest, the newest first; none after the last.
+    pub notes: [Option<SoundingNote>; SHOWN_NOTES],
 }
 
 impl Default for Snapshot {
     /// Silence.
     fn default() -> Self {
-        Self { voices: 0, masses: [Mass::default(); MAX_MODES] }
+        Self { voices: 0, masses: [Mass::default(); MAX_MODES], notes: [None; SHOWN_NOTES] }
     }
 }
 
 impl Snapshot {
-    /// Adds a voice.
-    pub(super) fn add(&mut self, voice: &SynthVoice) {
+    /// Adds a voice of a note.
+    pub(super) fn add(&mut self, note: &Note, voice: &SynthVoice) {
+        // The unison voices of a note have the same routes.
+        if voice.unison_index() == 0 {
+            self.add_note(note, voice);
+        }
         self.voices += 1;
         for (mass, (displacement, energy)) in self.masses.iter_mut().zip(voice.bank.masses()) {
             mass.displacement += displacement;
             mass.energy += energy;
         }
+    }
+
+    /// Puts a note before the older ones. If there is no place left, the oldest is left out.
+    fn add_note(&mut self, note: &Note, voice: &SynthVoice) {
+        let (age, pitch) = (voice.age() as f32, voice.sounding_pitch() as f32);
+        let Some(place) = self.notes.iter().position(|other| other.is_none_or(|other| age < other.age)) else { return };
+        self.notes[place..].rotate_right(1);
+        let mut shown = SoundingNote {
+            channel: note.channel,
+            key: note.key,
+            velocity: note.velocity,
+            pitch,
+            age,
+            ..Default::default()
+        };
+        let mut count = 0;
+        voice.each_moved(|param, value| {
+            let is_new = shown.moved.iter().flatten().all(|(known, _)| *known != param);
+            if is_new && let Some(place) = shown.moved.get_mut(count) {
+                *place = Some((param, value));
+                count += 1;
+            }
+        });
+        self.notes[place] = Some(shown);
     }
 }
 
@@ -43,6 +98,7 @@ impl Snapshot {
 mod tests {
     use super::*;
     use crate::engine::{Ensemble, Event, EventKind};
+    use crate::patch::routes::{Route, Routes, Source, amount_param};
     use crate::patch::{Mode, ModeTable, Patch};
 
     #[test]
@@ -63,5 +119,59 @@ mod tests {
         assert!((snapshot.masses[0].energy - 2.0).abs() < 0.02, "{:?}", snapshot.masses[0]);
         assert!((snapshot.masses[1].energy - 0.5).abs() < 0.01, "{:?}", snapshot.masses[1]);
         assert_eq!(snapshot.masses[2], Mass::default());
+    }
+
+    #[test]
+    fn notes_tell_what_moves_their_parameters() {
+        let mut patch =
+            Patch::default().with(Param::Pan, 10.0).with(Param::MalletHardness, 20.0).with(Param::Macro1, 40.0);
+        // The default patch has a vibrato by the wheel.
+        patch.routes = Routes::NONE;
+        let routes = [
+            (Source::Velocity, Param::MalletHardness),
+            (Source::Key, Param::Pan),
+            (Source::Wheel, Param::Macro1),
+            (Source::Wheel, amount_param(4)),
+        ];
+        for (place, (source, destination)) in routes.into_iter().enumerate() {
+            patch.routes.set(place, Some(Route::linear(source, destination)));
+            patch.set(amount_param(place), 50.0);
+        }
+        let mut ensemble = Ensemble::new(48_000.0, 0, &patch, &[]);
+        let (mut left, mut right) = ([0.0; 480], [0.0; 480]);
+        for (key, velocity) in [(60, 0.5), (90, 0.25)] {
+            let kind = EventKind::NoteOn { key, detune: 0.0, velocity, id: None };
+            ensemble.process(&[Event { frame: 0, channel: 2, kind }], &mut left, &mut right);
+        }
+        let wheel = EventKind::Control { controller: 1, value: 1.0 };
+        ensemble.process(&[Event { frame: 0, channel: 2, kind: wheel }], &mut left, &mut right);
+        let notes = ensemble.snapshot().notes;
+        let [Some(newest), Some(first), None, ..] = notes else { panic!("{notes:?}") };
+        assert_eq!((newest.channel, newest.key, first.key, newest.velocity), (2, 90, 60, 0.25));
+        assert!((newest.age - 0.02).abs() < 1e-6 && (first.age - 0.03).abs() < 1e-6, "{notes:?}");
+        assert!((newest.pitch - 90.0).abs() < 1e-4, "{newest:?}");
+        let moved = |note: &SoundingNote| {
+            [Param::MalletHardness, Param::Pan, Param::Macro1, amount_param(4)].map(|param| {
+                note.moved.iter().flatten().find(|(moved, _)| *moved == param).map_or(f32::NAN, |(_, value)| *value)
+            })
+        };
+        // Half of the knob's travel, times the source: of 100 % for hardness and macro, of 200 for pan and amount.
+        let near =
+            |found: [f32; 4], expected: [f32; 4]| found.iter().zip(expected).all(|(one, two)| (one - two).abs() < 1e-3);
+        assert!(near(moved(&first), [45.0, 10.0, 90.0, 100.0]), "{:?}", moved(&first));
+        assert!(near(moved(&newest), [32.5, 60.0, 90.0, 100.0]), "{:?}", moved(&newest));
+    }
+
+    #[test]
+    fn of_many_notes_the_newest_are_told() {
+        let mut ensemble = Ensemble::new(48_000.0, 0, &Patch::default(), &[]);
+        let (mut left, mut right) = ([0.0; 64], [0.0; 64]);
+        for key in 40..40 + SHOWN_NOTES as u8 + 4 {
+            let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
+            ensemble.process(&[Event { frame: 0, channel: 0, kind }], &mut left, &mut right);
+        }
+        let keys = ensemble.snapshot().notes.map(|note| note.map_or(0, |note| note.key));
+        let expected: [u8; SHOWN_NOTES] = std::array::from_fn(|place| 59 - place as u8);
+        assert_eq!(keys, expected);
     }
 }

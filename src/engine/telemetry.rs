@@ -1,11 +1,17 @@
 //! State that the audio thread publishes for a display: voices, levels, keys, and the processing load.
 
+mod moved;
+mod sounding;
+
 use super::atomic::AtomicF32;
 use super::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF};
 use super::note::{NoteId, nearest_channel, nearest_key};
 use super::scope::Scope;
 use super::{Event, EventKind, Notes, Snapshot};
 use crate::dsp::mode_bank::MAX_MODES;
+use moved::LastMoved;
+pub use moved::Moved;
+use sounding::Sounding;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU16, AtomicU32, AtomicU64};
@@ -18,7 +24,8 @@ const SNAPSHOT_RATE: f64 = 40.0;
 const SNAPSHOTS_PER_LOOK: u32 = 40;
 
 /// State that the audio thread publishes through a [`TelemetryWriter`]. Any thread may read it at any time without
-/// waiting. Each number is consistent, but two numbers may come from different blocks.
+/// waiting. Each number is consistent, but two numbers may come from different blocks; those of the sounding notes come from
+/// the same.
 #[derive(Default)]
 pub struct Telemetry {
     frames: AtomicU64,
@@ -31,10 +38,12 @@ pub struct Telemetry {
     peaks: [AtomicF32; 2],
     voices: AtomicU32,
     masses: Masses,
+    sounding_notes: Sounding,
     keys: [[AtomicU64; 2]; 16],
     /// Number of the selected program plus 1; 0 for none.
     programs: [AtomicU16; 16],
     sounding: AtomicBool,
+    moved: LastMoved,
     scope: Scope,
     /// How many snapshots to publish before somebody looks again.
     wanted: AtomicU32,
@@ -85,7 +94,8 @@ impl Telemetry {
     /// after each call.
     pub fn snapshot(&self) -> Snapshot {
         self.wanted.store(SNAPSHOTS_PER_LOOK, Relaxed);
-        let mut snapshot = Snapshot { voices: self.voices.load(Relaxed), ..Snapshot::default() };
+        let (voices, notes) = (self.voices.load(Relaxed), self.sounding_notes.read());
+        let mut snapshot = Snapshot { voices, notes, ..Snapshot::default() };
         for (mass, [displacement, energy]) in snapshot.masses.iter_mut().zip(&self.masses.0) {
             (mass.displacement, mass.energy) = (displacement.load(), energy.load());
         }
@@ -102,6 +112,11 @@ impl Telemetry {
     pub fn program(&self, channel: u8) -> Option<u8> {
         let stored = self.programs[usize::from(nearest_channel(channel))].load(Relaxed);
         stored.checked_sub(1).map(|program| program as u8)
+    }
+
+    /// How many movements of controllers, pitch wheel and pressure there were so far, and what was moved last.
+    pub fn moved(&self) -> (u64, Option<Moved>) {
+        self.moved.read()
     }
 
     /// The last frames of the sound.
@@ -130,8 +145,9 @@ impl TelemetryWriter {
         Self { telemetry, sample_rate, frames_to_snapshot: 0.0, ids: Box::new([[None; 128]; 16]) }
     }
 
-    /// Records an event that the engine receives: keys that go down and up, and program changes.
+    /// Records an event that the engine receives: keys that go down and up, controllers that move, and program changes.
     pub fn note_event(&mut self, event: &Event) {
+        self.telemetry.moved.note(&event.kind);
         let channel = usize::from(nearest_channel(event.channel));
         let keys = &self.telemetry.keys[channel];
         let mut press = |key: u8, id: Option<NoteId>| {
@@ -206,6 +222,7 @@ impl TelemetryWriter {
         self.frames_to_snapshot = self.sample_rate / SNAPSHOT_RATE;
         let snapshot = snapshot();
         telemetry.voices.store(snapshot.voices, Relaxed);
+        telemetry.sounding_notes.write(&snapshot.notes);
         for (mass, [displacement, energy]) in snapshot.masses.iter().zip(&telemetry.masses.0) {
             displacement.store(mass.displacement);
             energy.store(mass.energy);

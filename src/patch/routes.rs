@@ -89,6 +89,14 @@ named! {
     }
 }
 
+impl Source {
+    /// Whether its values are from −1 to 1; the others' are from 0 to 1.
+    pub fn is_bipolar(self) -> bool {
+        use Source::{Alternation, Bend, Key, Lfo1, Lfo2, Lfo3, Random, Timbre};
+        matches!(self, Key | Random | Alternation | Timbre | Bend | Lfo1 | Lfo2 | Lfo3)
+    }
+}
+
 named! {
     /// The curve that a route applies to its source. It keeps 0 and ±1, and is symmetrical for negative values.
     Response {

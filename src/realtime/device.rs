@@ -8,6 +8,9 @@ use std::fmt::Write;
 /// Default sample rates: the first one that the device supports is used.
 const USUAL_RATES: [u32; 4] = [48_000, 44_100, 96_000, 88_200];
 
+/// Sample rates that are offered to choose from.
+const OFFERED_RATES: [u32; 6] = [44_100, 48_000, 88_200, 96_000, 176_400, 192_000];
+
 /// Default block size in frames: 5 ms at 48 kHz, which players do not notice.
 const USUAL_BLOCK: u32 = 256;
 
@@ -107,6 +110,33 @@ pub fn list() -> String {
     out
 }
 
+/// A device to play on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// The audio system, as in [`Choice::host`].
+    pub host: String,
+    /// The device, as in [`Choice::device`].
+    pub id: String,
+    /// What it is called.
+    pub description: String,
+}
+
+/// The devices of all audio systems that can be used now. May take some tenths of a second.
+pub fn outputs() -> Vec<Output> {
+    let of = |id: HostId| {
+        let devices = open_host(id).map(|host| devices(&host)).unwrap_or_default();
+        let host = id.name().to_lowercase();
+        devices.into_iter().map(move |(_, id, description)| Output { host: host.clone(), id, description })
+    };
+    cpal::available_hosts().into_iter().flat_map(of).collect()
+}
+
+/// The usual sample rates that a device has; none if it cannot be found or asked.
+pub fn rates(choice: &Choice) -> Vec<u32> {
+    let has = |rate: &u32| Found::find(&Choice { rate: Some(*rate), ..choice.clone() }).is_ok();
+    OFFERED_RATES.into_iter().filter(has).collect()
+}
+
 /// Stops ALSA's library from printing its errors to stderr on this thread. They are returned as errors anyway.
 pub fn silence_library() {
     #[cfg(target_os = "linux")]
@@ -153,8 +183,8 @@ fn named(host: &cpal::Host, id: HostId, wanted: &str) -> Result<(cpal::Device, S
         return Ok((device, name));
     }
     let hint = match nearest(wanted, devices.iter().map(|(_, name, _)| name.as_str())) {
-        Some(near) => format!("the nearest is {near}; ‘sprung play --list’ shows them all"),
-        None => "‘sprung play --list’ shows them all".to_owned(),
+        Some(near) => format!("the nearest is {near}; ‘--list’ shows them all"),
+        None => "‘--list’ shows them all".to_owned(),
     };
     Err(Error::value("--device", format!("{} has no device ‘{wanted}’, or several; {hint}", id.name())))
 }
@@ -162,7 +192,7 @@ fn named(host: &cpal::Host, id: HostId, wanted: &str) -> Result<(cpal::Device, S
 fn none(id: HostId, reason: &str) -> Error {
     let host = id.name();
     let server = if host == "JACK" { "no JACK server is running" } else { "there is no sound device to play on" };
-    let advice = "‘sprung play --list’ shows what there is, and ‘sprung render’ writes a file without any";
+    let advice = "‘--list’ shows what there is";
     Error::value("--device", format!("{server}: {host} has none{reason}; {advice}"))
 }
 

@@ -13,6 +13,9 @@ use std::time::{Duration, Instant};
 /// Time between two searches for ports, or for a server that was lost.
 const SCAN: Duration = Duration::from_secs(1);
 
+/// How long a client may take to end.
+const END: Duration = Duration::from_secs(2);
+
 /// A MIDI input port in the JACK graph. [`JackMidi::poll`] must be called regularly.
 pub struct JackMidi {
     wanted: Option<Wanted>,
@@ -75,6 +78,17 @@ impl JackMidi {
             gone: Arc::new(AtomicBool::new(false)),
             scan_at: Instant::now(),
         }
+    }
+
+    /// Closes the port, lets go of the keys that are down, and gives the sender back; none if the server does not answer.
+    pub(super) fn into_sender(mut self) -> Option<LiveSender> {
+        if let Some(client) = self.client.take() {
+            // Dropping the client of a dead server can take long.
+            std::thread::spawn(move || drop(client));
+        }
+        let mut sender = self.sender.take().or_else(|| self.home.1.recv_timeout(END).ok())?;
+        sender.release_held();
+        Some(sender)
     }
 
     /// Opens the port if there is a server, and connects the wanted ports. Returns messages for the user.

@@ -7,7 +7,7 @@ use super::midi_ports::{MidiPorts, Wanted};
 /// The source of live MIDI input.
 pub enum MidiIn {
     /// No input.
-    None,
+    None(LiveSender),
     /// The system's ports.
     Ports(MidiPorts),
     /// A port of the JACK server.
@@ -26,14 +26,23 @@ impl MidiIn {
         match wanted {
             wanted if jack => Self::Jack(Box::new(JackMidi::new(wanted, sender))),
             Some(wanted) => Self::Ports(MidiPorts::new(wanted, sender)),
-            None => Self::None,
+            None => Self::None(sender),
+        }
+    }
+
+    /// Ends the input and gives the sender back, for another input; none if the system does not give it back.
+    pub fn into_sender(self) -> Option<LiveSender> {
+        match self {
+            Self::None(sender) => Some(sender),
+            Self::Ports(ports) => ports.into_sender(),
+            Self::Jack(port) => port.into_sender(),
         }
     }
 
     /// Looks for ports that have come or gone, and returns messages about them. Must be called regularly.
     pub fn poll(&mut self) -> Vec<String> {
         match self {
-            Self::None => vec![],
+            Self::None(_) => vec![],
             Self::Ports(ports) => ports.poll(),
             Self::Jack(port) => port.poll(),
         }

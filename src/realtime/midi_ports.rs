@@ -58,6 +58,15 @@ impl MidiPorts {
         self.connected.iter().map(|connected| connected.name.as_str())
     }
 
+    /// Ends the connections, lets go of the keys that are down, and gives the sender back.
+    pub(super) fn into_sender(mut self) -> Option<LiveSender> {
+        // Each connection ends its thread, which has the sender too.
+        self.connected.clear();
+        let mut sender = Arc::into_inner(self.sender)?.into_inner().ok()?;
+        sender.release_held();
+        Some(sender)
+    }
+
     /// Connects new ports and drops those that have disappeared. Returns messages for the user.
     pub fn poll(&mut self) -> Vec<String> {
         if Instant::now() < self.scan_at {
@@ -120,10 +129,15 @@ impl MidiPorts {
     }
 }
 
+/// The names of the MIDI ports of this system.
+pub fn names() -> Vec<String> {
+    MidiInput::new(CLIENT)
+        .map_or_else(|_| vec![], |input| input.ports().iter().filter_map(|port| input.port_name(port).ok()).collect())
+}
+
 /// The MIDI ports of this system, as text.
 pub fn list() -> String {
-    let ports = MidiInput::new(CLIENT)
-        .map_or_else(|_| vec![], |input| input.ports().iter().filter_map(|port| input.port_name(port).ok()).collect());
+    let ports = names();
     let ports: String = match ports.is_empty() {
         true => "  no ports\n".to_owned(),
         false => ports.iter().map(|name| format!("  --midi-in {name:?}\n")).collect(),

@@ -29,6 +29,7 @@ pub struct Session<S: Source = Player> {
     choice: Choice,
     description: String,
     sample_rate: u32,
+    is_jack: bool,
     status: Arc<Status>,
     stream: Option<cpal::Stream>,
     /// Held here while there is no stream.
@@ -49,6 +50,7 @@ impl<S: Source> Session<S> {
             choice: Choice { rate: Some(found.sample_rate()), ..choice },
             description: found.to_string(),
             sample_rate: found.sample_rate(),
+            is_jack: found.is_jack(),
             status,
             stream: None,
             player: Some(Box::new(player)),
@@ -71,9 +73,46 @@ impl<S: Source> Session<S> {
         self.sample_rate
     }
 
+    /// Whether the device belongs to a JACK server.
+    pub fn is_jack(&self) -> bool {
+        self.is_jack
+    }
+
     /// Whether the device is present.
     pub fn is_playing(&self) -> bool {
         self.stream.is_some()
+    }
+
+    /// Plays on another device, or with other settings, from now on. `fit` makes the player fit for a sample rate, while no
+    /// device has it.
+    ///
+    /// # Errors
+    /// [`Error::Value`] if the device cannot be found or started: then the session goes on as before.
+    pub fn change(&mut self, choice: Choice, fit: impl Fn(&mut S, u32)) -> Result<()> {
+        let found = Found::find(&choice)?;
+        self.close();
+        if self.player.is_none() {
+            return Err(Error::value("--device", "the present one does not answer, so it cannot be left".to_owned()));
+        }
+        let before = self.sample_rate;
+        self.player.iter_mut().for_each(|player| fit(player, found.sample_rate()));
+        match self.open(&found) {
+            Ok(()) => {
+                self.choice = Choice { rate: Some(found.sample_rate()), ..choice };
+                (self.description, self.sample_rate) = (found.to_string(), found.sample_rate());
+                self.is_jack = found.is_jack();
+                Ok(())
+            }
+            Err(error) => {
+                self.player.iter_mut().for_each(|player| fit(player, before));
+                // If that fails too, it is looked for as a device that is gone.
+                self.retry_at = Instant::now();
+                if let Ok(found) = Found::find(&self.choice) {
+                    let _ = self.open(&found);
+                }
+                Err(error)
+            }
+        }
     }
 
     /// Checks the device. Returns a message when it has disappeared or come back.

@@ -5,6 +5,7 @@ use super::history::History;
 use super::theme::Palette;
 use crate::params::SprungParams;
 use nice_plug_core::context::gui::GuiContext;
+use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, ParamInfo};
 
 /// Text that is being typed instead of a parameter's value.
@@ -17,6 +18,15 @@ pub(super) struct Typing {
     pub(super) complaint: Option<String>,
 }
 
+/// A parameter that waits for a controller.
+pub(super) struct Learning {
+    pub(super) info: &'static ParamInfo,
+    /// How many movements there were when it was last looked.
+    pub(super) seen: u64,
+    /// Whether the user was told what to do.
+    pub(super) is_told: bool,
+}
+
 /// What the user is doing with parameters.
 #[derive(Default)]
 pub(super) struct Hands {
@@ -24,6 +34,8 @@ pub(super) struct Hands {
     /// Position of the knob that is dragged, which has more digits than the knob's own.
     pub(super) dragged: f64,
     pub(super) typing: Option<Typing>,
+    /// The parameter that waits for a controller.
+    pub(super) learning: Option<Learning>,
 }
 
 /// What the status line says of the thing under the pointer.
@@ -46,6 +58,8 @@ pub(super) struct Controls<'a> {
     pub(super) hands: &'a mut Hands,
     pub(super) history: &'a mut History,
     pub(super) hint: &'a mut Option<Hint>,
+    /// The notes that sound, the newest first.
+    pub(super) notes: &'a [SoundingNote],
 }
 
 impl Controls<'_> {
@@ -58,6 +72,12 @@ impl Controls<'_> {
     /// The value of a parameter as text.
     pub(super) fn text(&self, info: &ParamInfo) -> String {
         info.format(self.value(info))
+    }
+
+    /// The values that a parameter has in the notes that sound and modulate it, the newest note's first.
+    pub(super) fn modulated(&self, info: &ParamInfo) -> impl Iterator<Item = f32> {
+        let of = |note: &SoundingNote| note.moved.iter().flatten().find(|(param, _)| *param == info.param).copied();
+        self.notes.iter().filter_map(of).map(|(_, value)| value)
     }
 
     /// Moves a knob; [`Controls::release`] ends the gesture.

@@ -2,7 +2,7 @@
 
 use super::controls::Controls;
 use super::held_key::HeldKey;
-use super::text::line;
+use super::text::{line, width};
 use super::theme::SMALL;
 use crate::link::Link;
 use egui::style::ScrollAnimation;
@@ -11,8 +11,12 @@ use egui::{
 };
 use sprung::units::note_name;
 
-/// The least width of a cell in which its text can be read, and the least height.
-const LEAST: [f32; 2] = [70.0, 18.0];
+/// The least width and the least height of a cell.
+const LEAST: f32 = 70.0;
+const HEIGHT: f32 = 18.0;
+/// What a cell has beside its text: the note's name and the space around both; and, in some, a number.
+const BESIDE: f32 = 36.0;
+const NUMBER: f32 = 14.0;
 /// The key that is in the middle at first.
 const MIDDLE: u8 = 54;
 
@@ -60,19 +64,25 @@ impl KeyGrid {
         cell: &dyn Fn(u8) -> Cell,
         controls: &Controls,
     ) {
-        // A row is an octave, or a part of one.
-        let columns = [12, 6, 4].into_iter().find(|columns| rect.width() / *columns as f32 >= LEAST[0]).unwrap_or(4);
+        // A row is an octave, or a part of one: as many keys as have room for the longest text.
+        let of = |cell: Cell| {
+            let number = if cell.group > 0 { NUMBER } else { 0.0 };
+            width(ui.painter(), &cell.text, SMALL) + number + BESIDE
+        };
+        let longest = (0..128).map(|key| of(cell(key))).fold(0.0, f32::max);
+        let least = LEAST.max(longest);
+        let columns = [12, 6, 4].into_iter().find(|columns| rect.width() / *columns as f32 >= least).unwrap_or(4);
         let rows = 128_usize.div_ceil(columns);
-        let height = (rect.height() / rows as f32).max(LEAST[1]);
+        let height = (rect.height() / rows as f32).max(HEIGHT);
         let (mut hovered, mut touched) = (None, None);
         let mut inner = ui.new_child(UiBuilder::new().id_salt(("keys", name)).max_rect(rect));
         ScrollArea::vertical().id_salt(("keys", name)).auto_shrink(false).show(&mut inner, |ui| {
-            let width = ui.available_width();
-            let (area, _) = ui.allocate_exact_size(vec2(width, rows as f32 * height), Sense::hover());
+            let whole = ui.available_width();
+            let (area, _) = ui.allocate_exact_size(vec2(whole, rows as f32 * height), Sense::hover());
             for key in 0..128_u8 {
                 // The lowest keys are at the bottom, as in sequencers.
                 let (column, row) = (usize::from(key) % columns, rows - 1 - usize::from(key) / columns);
-                let size = vec2(width / columns as f32, height);
+                let size = vec2(whole / columns as f32, height);
                 let corner = area.min + vec2(column as f32 * size.x, row as f32 * size.y);
                 let place = Rect::from_min_size(corner, size).shrink(1.0);
                 if key == MIDDLE && !self.is_seen {
@@ -119,7 +129,7 @@ fn paint(ui: &Ui, rect: Rect, key: u8, cell: &Cell, is_down: bool, controls: &Co
     let note = line(painter, inside, Align2::LEFT_CENTER, &note_name(key), SMALL, muted);
     let mut rest = Rect::from_min_max(pos2(note.right().max(rect.left() + 24.0) + 4.0, rect.top()), inside.max);
     if cell.group > 0 {
-        let number = rest.with_min_x(rest.right() - 14.0);
+        let number = rest.with_min_x(rest.right() - NUMBER);
         let colour = if is_down { palette.on_accent } else { palette.modulation };
         line(painter, number, Align2::RIGHT_CENTER, &cell.group.to_string(), SMALL, colour);
         rest.max.x = number.left();

@@ -2,7 +2,8 @@
 
 use super::controls::{Controls, Hint, Typing};
 use super::knob_face::{self, Face};
-use super::routes;
+use super::learn;
+use super::routes::{self, Ring};
 use super::text::{line, name_field};
 use super::theme::{KNOB, SMALL, font};
 use egui::accesskit::{Action, ActionData};
@@ -38,18 +39,24 @@ pub(super) fn name_rect(cell: Rect) -> Rect {
     Parts::of(cell).name
 }
 
+/// Where the face is in the part of a cell that is turned.
+#[cfg(test)]
+pub(super) fn face_in(turned: Rect) -> Rect {
+    Parts::of(turned).face
+}
+
 /// The widget's identity, of which a parameter has one in a window.
 pub(super) fn id(info: &ParamInfo) -> Id {
     Id::unique(("knob", info.id))
 }
 
-/// Shows a parameter's knob in a cell, called `name`. `ranges` are the parts of its travel that routes modulate.
+/// Shows a parameter's knob in a cell, called `name`; `ring` is what modulates it.
 pub(super) fn show(
     ui: &mut Ui,
     cell: Rect,
     info: &'static ParamInfo,
     name: &str,
-    ranges: &[[f32; 2]],
+    ring: &Ring,
     controls: &mut Controls,
 ) {
     let parts = Parts::of(cell);
@@ -79,14 +86,16 @@ pub(super) fn show(
     });
     let is_hovered = response.hovered() || response.dragged() || value_response.hovered();
     if is_hovered {
-        *controls.hint = Hint::new(format!("{} {text}", info.name), info.help);
+        let newest = controls.modulated(info).next();
+        let now = newest.map_or(String::new(), |value| format!(" › {}", info.format(value)));
+        *controls.hint = Hint::new(format!("{} {text}{now}", info.name), info.help);
     }
     let palette = controls.palette;
     let face = Face {
         position: knob.position(),
         origin: info.normalise(info.default) as f32,
         offset: knob.offset(),
-        ranges,
+        ring,
         is_hovered,
         is_focused: response.has_focus(),
     };
@@ -213,6 +222,10 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
         ui.close();
     }
     routes::menu(ui, info, controls);
+    if info.is_modulatable() && ui.button("MIDI learn").clicked() {
+        learn::begin(info, controls);
+        ui.close();
+    }
 }
 
 /// Shows the field for a value while one is typed. Enter sets the value, Escape keeps the old one.

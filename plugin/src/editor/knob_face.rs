@@ -1,5 +1,6 @@
 //! Draws the face of a knob: an arc from the default to the position, a hand, and rings for modulation.
 
+use super::routes::Ring;
 use super::theme::Palette;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use std::f32::consts::PI;
@@ -11,8 +12,8 @@ pub(super) struct Face<'a> {
     pub(super) origin: f32,
     /// What the host's modulation adds to the position.
     pub(super) offset: f32,
-    /// The parts of the travel that routes modulate.
-    pub(super) ranges: &'a [[f32; 2]],
+    /// What modulates it in notes.
+    pub(super) ring: &'a Ring,
     pub(super) is_hovered: bool,
     pub(super) is_focused: bool,
 }
@@ -28,6 +29,20 @@ fn arc(painter: &Painter, centre: Pos2, radius: f32, [from, to]: [f32; 2], strok
     painter.add(Shape::line((0..=steps).map(point).collect(), stroke));
 }
 
+/// The middle of a mark on the ring of the face in `rect`, outside of which nothing is drawn.
+pub(super) fn on_ring(rect: Rect, position: f32) -> Pos2 {
+    rect.center() + (rect.width() / 2.0 + 1.0) * direction(position)
+}
+
+/// The marks of the notes: the newest one's is the largest, and above the others.
+fn paint_marks(painter: &Painter, rect: Rect, marks: &[f32], palette: &Palette) {
+    for (place, mark) in marks.iter().enumerate().rev() {
+        let (radius, edge) = if place == 0 { (3.2, 1.2) } else { (2.0, 0.8) };
+        let centre = on_ring(rect, *mark);
+        painter.circle(centre, radius, palette.modulation, Stroke::new(edge, palette.panel));
+    }
+}
+
 pub(super) fn paint(painter: &Painter, rect: Rect, palette: &Palette, face: &Face) {
     let (centre, radius) = (rect.center(), rect.width() / 2.0);
     let track = if face.is_hovered { palette.muted.gamma_multiply(0.55) } else { palette.line };
@@ -35,7 +50,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, palette: &Palette, face: &Fac
     if (face.position - face.origin).abs() > 1e-4 {
         arc(painter, centre, radius - 2.0, [face.origin, face.position], Stroke::new(3.0, palette.accent));
     }
-    for range in face.ranges {
+    for range in &face.ring.ranges {
         arc(painter, centre, radius + 1.0, *range, Stroke::new(1.5, palette.modulation));
     }
     painter.circle_filled(centre, radius - 6.5, palette.raised);
@@ -49,9 +64,9 @@ pub(super) fn paint(painter: &Painter, rect: Rect, palette: &Palette, face: &Fac
     if face.offset.abs() > 1e-4 {
         let modulated = (face.position + face.offset).clamp(0.0, 1.0);
         arc(painter, centre, radius + 1.0, [face.position, modulated], Stroke::new(1.5, palette.modulation));
-        let dot = centre + (radius + 1.0) * direction(modulated);
-        painter.circle_filled(dot, 2.2, palette.modulation);
+        painter.circle_filled(on_ring(rect, modulated), 2.2, palette.modulation);
     }
     let colour: Color32 = palette.text;
     hand(face.position, radius * 0.22, Stroke::new(2.0, colour));
+    paint_marks(painter, rect, &face.ring.marks, palette);
 }

@@ -10,6 +10,8 @@ use egui::{Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Stroke, U
 const SIDE: f32 = 112.0;
 /// The widest line of text: longer ones are hard to read.
 const WIDEST: f32 = 720.0;
+/// Width of the bar that scrolls it, and a little space.
+const BAR: f32 = 14.0;
 
 /// The page that is shown.
 #[derive(Default)]
@@ -46,7 +48,8 @@ impl Manual {
         let text = inner.with_min_x(side.right() + 2.0 * GAP);
         let mut child = ui.new_child(UiBuilder::new().id_salt("manual").max_rect(text));
         ScrollArea::vertical().id_salt(("manual", self.page)).auto_shrink(false).show(&mut child, |ui| {
-            ui.set_max_width(ui.available_width().min(WIDEST));
+            // The bar lies over the text.
+            ui.set_max_width((ui.available_width() - BAR).min(WIDEST));
             for block in blocks(PAGES[self.page].1) {
                 show_block(ui, &block, palette);
             }

@@ -8,17 +8,22 @@ use super::layout::Layout;
 use super::shown::Shown;
 use super::theme::{GAP, TEXT};
 use super::tuning_page::TuningPage;
-use super::{kit_page, sections, text, voices_panel};
+use super::{devices_page, kit_page, sections, text, voices_panel};
 use crate::link::Link;
 use egui::{Rect, Ui, pos2, vec2};
+use nice_plug_core::context::PluginApi;
 
 /// The pages after those with sections.
 const OTHERS: [&str; 3] = ["Model", "Kit", "Tuning"];
+/// The page after these, which the program has and a plugin has not.
+const DEVICES: &str = "Devices";
 /// The pages of the manual that belong to them all, in their order.
-const TOPICS: [&str; 9] =
-    ["exciters", "bodies", "modulation", "modulation", "space", "tuning", "bodies", "kits", "tuning"];
+const TOPICS: [&str; 10] =
+    ["exciters", "bodies", "modulation", "modulation", "space", "tuning", "bodies", "kits", "tuning", "window"];
 /// The least width of a page that has room for the voices beside its sections.
 const WIDE: f32 = 840.0;
+/// The width of the sections beside the voices.
+const SECTIONS: f32 = 344.0;
 
 /// What the user asks for.
 pub(super) enum Asked {
@@ -76,7 +81,7 @@ impl Pages {
             None => {
                 let is_voices = sections::pages().nth(page) == Some("Voices");
                 let (left, right) = if is_voices && rect.width() >= WIDE {
-                    let split = rect.right() - voices_panel::WIDTH;
+                    let split = rect.right() - (rect.width() - SECTIONS - GAP).max(voices_panel::WIDTH);
                     (rect.with_max_x(split - GAP), Some(rect.with_min_x(split)))
                 } else {
                     (rect, None)
@@ -93,6 +98,10 @@ impl Pages {
                 kit_page::show(ui, rect, &mut self.kit, shown, down, controls);
                 asked
             }
+            Some(3) => {
+                devices_page::show(ui, rect, controls);
+                asked
+            }
             Some(_) => self.tuning.show(ui, rect, shown, down, controls).map(Asked::Say).or(asked),
         }
     }
@@ -100,7 +109,8 @@ impl Pages {
     fn tabs(&mut self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Asked> {
         let mut left = rect.left();
         let gap = if rect.width() < 700.0 { GAP } else { 2.0 * GAP };
-        for (place, name) in names().enumerate() {
+        let is_alone = controls.host.plugin_api() == PluginApi::Standalone;
+        for (place, name) in names().chain(is_alone.then_some(DEVICES)).enumerate() {
             let width = text::width(ui.painter(), name, TEXT) + gap;
             let place_of_tab = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height() - 2.0));
             left = place_of_tab.right() + GAP / 4.0;
@@ -125,7 +135,7 @@ mod tests {
 
     #[test]
     fn every_page_has_a_page_of_the_manual() {
-        assert_eq!(names().count(), TOPICS.len());
+        assert_eq!(names().count() + 1, TOPICS.len(), "and the page of devices");
         assert!(TOPICS.iter().all(|topic| PAGES.iter().any(|(name, _)| name == topic)));
     }
 }

@@ -14,7 +14,7 @@ use sprung::preset::{Guide, Playable};
 const AMOUNT: f32 = 25.0;
 
 /// The name of a source for people, of a macro the preset's own.
-fn source_name(source: Source, guide: &Guide) -> String {
+pub(super) fn source_name(source: Source, guide: &Guide) -> String {
     guide.macro_name(source.id()).map_or_else(|| source.id().replace('_', " "), str::to_owned)
 }
 
@@ -27,12 +27,29 @@ pub(super) fn name(place: usize, routes: &Routes, guide: &Guide) -> String {
     format!("{}{scale} › {}", source_name(source, guide), destination.info().name)
 }
 
-/// The parts of a parameter's travel that routes modulate: from its position by each amount.
-pub(super) fn ranges(info: &ParamInfo, routes: &Routes, controls: &Controls) -> Vec<[f32; 2]> {
-    let position = controls.params.knobs()[info.param as usize].position();
-    let to = |place: usize| position + controls.value(amount_param(place).info()) / 100.0;
-    let these = routes.iter().filter(|(_, route)| route.destination == info.param);
-    these.map(|(place, _)| [position, to(place).clamp(0.0, 1.0)]).filter(|[from, to]| from != to).collect()
+/// What modulates a parameter.
+#[derive(Default)]
+pub(super) struct Ring {
+    /// The parts of its travel that routes can move it to: by each amount, to both sides if the source has both.
+    pub(super) ranges: Vec<[f32; 2]>,
+    /// Where each sounding note has it now, the newest note first.
+    pub(super) marks: Vec<f32>,
+}
+
+impl Ring {
+    pub(super) fn of(info: &ParamInfo, routes: &Routes, controls: &Controls) -> Self {
+        let position = controls.params.knobs()[info.param as usize].position();
+        let range = |(place, route): (usize, Route)| {
+            let amount = controls.value(amount_param(place).info()) / 100.0;
+            let goes_back = route.source.is_bipolar() || route.scale.is_some_and(Source::is_bipolar);
+            let from = if goes_back { position - amount } else { position };
+            [from, position + amount].map(|end| end.clamp(0.0, 1.0))
+        };
+        let these = routes.iter().filter(|(_, route)| route.destination == info.param);
+        let ranges = these.map(range).filter(|[from, to]| from != to).collect();
+        let marks = controls.modulated(info).map(|value| info.normalise(value) as f32).collect();
+        Self { ranges, marks }
+    }
 }
 
 /// The name of a route as a button that opens its menu.
@@ -76,7 +93,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, place: usize, routes: &Routes, guide: &G
     });
 }
 
-/// The part of a knob's menu that adds a route to it.
+/// The part of a knob's menu that adds a route to it, from a source that is chosen.
 pub(super) fn menu(ui: &mut Ui, info: &ParamInfo, controls: &mut Controls) {
     if !info.is_modulatable() {
         return;

@@ -1,6 +1,7 @@
 //! The parameters by section, some sections on each page.
 
 use super::controls::Controls;
+use super::routes::Ring;
 use super::text::line;
 use super::theme::{CELL_HEIGHT, CELL_WIDTH, GAP, KNOB, PADDING, SMALL, TITLE_HEIGHT};
 use super::{choice, curves, knob, routes};
@@ -103,11 +104,11 @@ pub(super) fn show(
                 let offset = vec2(column as f32 * cell_width, row as f32 * CELL_HEIGHT);
                 let corner = panel.min + vec2(PADDING, TITLE_HEIGHT) + offset;
                 let cell = Rect::from_min_size(corner, vec2(cell_width, CELL_HEIGHT - 4.0)).shrink2(vec2(1.0, 0.0));
-                let ranges = routes::ranges(info, &patch.routes, controls);
+                let ring = Ring::of(info, &patch.routes, controls);
                 match place_of_amount(info.param) {
                     Some(place) => {
                         let name = routes::name(place, &patch.routes, guide);
-                        knob::show(ui, cell, info, &name, &ranges, controls);
+                        knob::show(ui, cell, info, &name, &ring, controls);
                         if is_editable {
                             routes::show(ui, knob::name_rect(cell), place, &patch.routes, guide, controls);
                         }
@@ -115,7 +116,7 @@ pub(super) fn show(
                     None if info.unit == Unit::Choice => {
                         choice::show(ui, cell, info, &short_name(info, guide), controls);
                     }
-                    None => knob::show(ui, cell, info, &short_name(info, guide), &ranges, controls),
+                    None => knob::show(ui, cell, info, &short_name(info, guide), &ring, controls),
                 }
             }
         }

@@ -1,20 +1,29 @@
-//! The voices that sound, and the channels that hold keys: with MPE, each note has a channel of its own.
+//! The voices that sound with their notes, and the channels that hold keys: with MPE, each note has a channel of its own.
 
 use super::controls::Controls;
 use super::text::{line, paragraph};
 use super::theme::{PADDING, SMALL, TITLE_HEIGHT};
-use egui::{Align2, Painter, Rect, Stroke, StrokeKind, pos2, vec2};
+use egui::{Align2, Color32, Painter, Rect, Stroke, StrokeKind, pos2, vec2};
 use sprung::params::Param;
 use sprung::units::note_name;
 
 /// The least width of the panel.
 pub(super) const WIDTH: f32 = 300.0;
+/// From this width on, the notes are listed beside the channels.
+const WIDE: f32 = 500.0;
+/// Height of a row of the list.
+const ROW: f32 = 16.0;
 
 /// Shows the panel; `voices` is how many sound.
 pub(super) fn show(painter: &Painter, rect: Rect, voices: u32, controls: &Controls) {
     let palette = controls.palette;
     palette.paint_panel(painter, rect);
-    let inner = rect.shrink(PADDING);
+    let mut inner = rect.shrink(PADDING);
+    if rect.width() >= WIDE {
+        let list = inner.with_min_x(rect.center().x + PADDING);
+        inner.set_right(rect.center().x - PADDING);
+        show_notes(painter, list, controls);
+    }
     let title = Rect::from_min_size(rect.min + vec2(PADDING, 2.0), vec2(inner.width(), TITLE_HEIGHT - 2.0));
     let text = line(painter, title, Align2::LEFT_CENTER, "SOUNDING", SMALL, palette.muted);
     let most = controls.value(Param::Voices.info()) as u32;
@@ -56,5 +65,30 @@ pub(super) fn show(painter: &Painter, rect: Rect, voices: u32, controls: &Contro
         let text = "The channels, and what each holds. With MPE, every note has a channel of its own: its bend, pressure and slide are \
                     that note’s alone. A controller’s configuration message makes the zones; members bend by 48 semitones.";
         paragraph(painter, below, text, SMALL, palette.muted);
+    }
+}
+
+/// Lists the newest notes: channel, key, pitch as it is bent, velocity, and time since the strike.
+fn show_notes(painter: &Painter, rect: Rect, controls: &Controls) {
+    let palette = controls.palette;
+    let row = |top: f32, texts: [&str; 5], colour: Color32| {
+        let width = rect.width() / texts.len() as f32;
+        for (column, text) in texts.into_iter().enumerate() {
+            let place = Rect::from_min_size(pos2(rect.left() + column as f32 * width, top), vec2(width - 4.0, ROW));
+            line(painter, place, Align2::LEFT_CENTER, text, SMALL, colour);
+        }
+    };
+    row(rect.top() - 4.0, ["CHANNEL", "KEY", "PITCH", "VELOCITY", "AGE"], palette.muted);
+    let rows = ((rect.height() - ROW) / ROW).max(0.0) as usize;
+    for (place, note) in controls.notes.iter().take(rows).enumerate() {
+        let texts = [
+            format!("{}", note.channel + 1),
+            note_name(note.key),
+            format!("{:.2}", note.pitch),
+            format!("{:.0} %", note.velocity * 100.0),
+            format!("{:.1} s", note.age),
+        ];
+        let top = rect.top() + ROW * (place as f32 + 1.0) - 4.0;
+        row(top, texts.each_ref().map(String::as_str), palette.text);
     }
 }

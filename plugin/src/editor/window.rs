@@ -20,7 +20,7 @@ use super::shown::Shown;
 use super::status::Load;
 use super::theme::Theme;
 use super::variation::{Asked, Variation};
-use super::{fonts, status};
+use super::{fonts, learn, status};
 use crate::params::SprungParams;
 use crate::state::State;
 use egui::{Key, Ui};
@@ -136,6 +136,7 @@ impl Window {
         if !is_silent || self.meter.is_moving() {
             ui.ctx().request_repaint_after(FRAME);
         }
+        let notes: Vec<_> = snapshot.notes.into_iter().flatten().filter(|_| !is_silent).collect();
         let mut hint = None;
         let name = params.name();
         let mut controls = Controls {
@@ -145,6 +146,7 @@ impl Window {
             hands: &mut self.hands,
             history: &mut self.history,
             hint: &mut hint,
+            notes: &notes,
         };
         let header = Header {
             name: &name,
@@ -208,7 +210,8 @@ impl Window {
         // A host needs the keys itself.
         let is_alone = host.plugin_api() == PluginApi::Standalone;
         let played = is_alone.then(|| self.key_piano.follow(ui, params.link())).flatten();
-        if let Some(news) = params.link().take_news().or(played) {
+        let learnt = learn::follow(ui, &mut controls);
+        if let Some(news) = learnt.or_else(|| params.link().take_news()).or(played) {
             self.message = news;
         }
         let complaint = controls.hands.typing.as_ref().and_then(|typing| typing.complaint.clone());

@@ -1,9 +1,11 @@
 //! The file in which the program keeps its state between runs.
 
+use crate::devices::Chosen;
 use crate::params::SprungParams;
 use crate::state::State;
 use sprung::io::{Inputs, Output, Target};
 use std::ffi::OsString;
+use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,22 +18,56 @@ pub(super) struct Kept {
     file: Option<PathBuf>,
     /// The state as it is in the file, as far as it was noticed.
     last: Option<State>,
+    /// What shows other programs that this one writes the file, as long as it is open.
+    lock: Option<File>,
 }
 
 impl Kept {
     /// That of this user.
     pub(super) fn of_user() -> Self {
-        Self { file: folder(&|name| std::env::var_os(name)).map(|folder| folder.join(NAME)), last: None }
+        let file = folder(&|name| std::env::var_os(name)).map(|folder| folder.join(NAME));
+        Self { file, last: None, lock: None }
     }
 
     /// Loads the state of the last time. Returns what the user should know. A file that is not understood as a whole is
     /// set aside, so that nothing in it is lost.
     pub(super) fn restore(&mut self, params: &SprungParams) -> Option<String> {
         let file = self.file.clone()?;
-        let text = match std::fs::read(&file) {
+        let is_taken = self.claim(&file);
+        if is_taken {
+            self.file = None;
+        }
+        let taken = "another Sprung is open and keeps its state: what is changed in this one is not kept".to_owned();
+        let told = self.read(&file, params);
+        match told {
+            Some(told) if is_taken => Some(format!("{taken}; {told}")),
+            told => told.or(is_taken.then_some(taken)),
+        }
+    }
+
+    /// Claims the file. Returns whether another program has.
+    fn claim(&mut self, file: &Path) -> bool {
+        let open = || {
+            std::fs::create_dir_all(file.parent()?).ok()?;
+            File::options().create(true).truncate(false).write(true).open(file.with_extension("lock")).ok()
+        };
+        // Where nothing can be locked or written, keeping the state says so, if it fails too.
+        let Some(lock) = open() else { return false };
+        let is_taken = matches!(lock.try_lock(), Err(TryLockError::WouldBlock));
+        self.lock = Some(lock);
+        is_taken
+    }
+
+    fn read(&mut self, file: &Path, params: &SprungParams) -> Option<String> {
+        let text = match std::fs::read(file) {
             Ok(bytes) => String::from_utf8(bytes).map_err(|_| "not a state of Sprung: it is not text".to_owned()),
             Err(error) if error.kind() == ErrorKind::NotFound => return None,
-            Err(error) => Err(error.to_string()),
+            Err(error) => {
+                // What cannot be read must not be overwritten.
+                self.file = None;
+                let stays = "it stays as it is, and what is changed now is not kept";
+                return Some(format!("{}: cannot be read: {error}; {stays}", file.display()));
+            }
         };
         let complaint = match text.and_then(|text| State::parse(&text)) {
             Ok(read) => {
@@ -42,7 +78,10 @@ impl Kept {
             }
             Err(complaint) => complaint,
         };
-        let aside = match set_aside(&file) {
+        if self.file.is_none() {
+            return Some(format!("{}: {complaint}", file.display()));
+        }
+        let aside = match set_aside(file) {
             Ok(aside) => format!("it is kept as {}", aside.display()),
             Err(error) => {
                 // What cannot be moved must not be overwritten.
@@ -62,18 +101,45 @@ impl Kept {
     pub(super) fn keep(&mut self, params: &SprungParams) -> Result<(), String> {
         let Some(file) = &self.file else { return Ok(()) };
         let state = params.state();
-        if let Some(folder) = file.parent() {
-            std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        }
-        let written = Output::create(&Target::new(file), true, &Inputs::default()).and_then(|mut output| {
-            let failed = |error| sprung::Error::io(file.display().to_string(), error);
-            output.stream().write_all(state.to_json().as_bytes()).map_err(failed)?;
-            output.commit()
-        });
-        written.map_err(|error| format!("the state cannot be kept: {error}"))?;
+        write(file, &state.to_json()).map_err(|error| format!("the state cannot be kept: {error}"))?;
         self.last = Some(state);
         Ok(())
     }
+
+    /// The choice of devices of the last time, and what the user should know of it.
+    pub(super) fn chosen(&self) -> (Chosen, Option<String>) {
+        let Some(file) = self.devices() else { return Default::default() };
+        match std::fs::read(&file) {
+            Ok(bytes) => match serde_json::from_slice(&bytes) {
+                Ok(chosen) => (chosen, None),
+                Err(error) => (Chosen::default(), Some(format!("{}: no choice of devices: {error}", file.display()))),
+            },
+            Err(error) if error.kind() == ErrorKind::NotFound => Default::default(),
+            Err(error) => (Chosen::default(), Some(format!("{}: cannot be read: {error}", file.display()))),
+        }
+    }
+
+    /// Writes the choice of devices.
+    pub(super) fn keep_chosen(&self, chosen: &Chosen) -> Result<(), String> {
+        let Some(file) = self.devices() else { return Ok(()) };
+        let written = serde_json::to_string(chosen).map_err(|error| error.to_string());
+        let written = written.and_then(|text| write(&file, &(text + "\n")).map_err(|error| error.to_string()));
+        written.map_err(|error| format!("the choice of devices cannot be kept: {error}"))
+    }
+
+    /// The file of the choice, beside that of the state: projects of hosts have the one, and not the other.
+    fn devices(&self) -> Option<PathBuf> {
+        self.file.as_ref().map(|file| file.with_file_name("devices.json"))
+    }
+}
+
+/// Writes a file, which is replaced when all of it is on disk.
+fn write(file: &Path, text: &str) -> sprung::Result<()> {
+    let failed = |error| sprung::Error::io(file.display().to_string(), error);
+    file.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(failed)?;
+    let mut output = Output::create(&Target::new(file), true, &Inputs::default())?;
+    output.stream().write_all(text.as_bytes()).map_err(failed)?;
+    output.commit()
 }
 
 /// Gives a file another name, which no file has yet, and returns it.
@@ -111,7 +177,7 @@ mod tests {
     use sprung::preset::Playable;
 
     fn kept(folder: &Path) -> Kept {
-        Kept { file: Some(folder.join("sprung").join(NAME)), last: None }
+        Kept { file: Some(folder.join("sprung").join(NAME)), last: None, lock: None }
     }
 
     fn marimba() -> Arc<SprungParams> {
@@ -155,6 +221,51 @@ mod tests {
             assert!(!file.exists());
             assert_eq!(params.name() == "Marimba", number == 3, "what can be read of a newer state is taken over");
         }
+    }
+
+    #[test]
+    fn one_program_at_a_time_keeps_its_state() {
+        let folder = tempfile::tempdir().unwrap();
+        let (mut first, mut second) = (kept(folder.path()), kept(folder.path()));
+        first.keep(&marimba()).unwrap();
+        assert_eq!(first.restore(&SprungParams::default()), None);
+        let params = SprungParams::default();
+        let said = second.restore(&params).unwrap();
+        assert!(said.starts_with("another Sprung is open") && params.name() == "Marimba", "it begins with it: {said}");
+        let file = folder.path().join("sprung").join(NAME);
+        let before = std::fs::read(&file).unwrap();
+        second.keep(&SprungParams::default()).unwrap();
+        second.keep_chosen(&Chosen { rate: Some(44_100), ..Chosen::default() }).unwrap();
+        assert_eq!(std::fs::read(&file).unwrap(), before, "and leaves it as it is");
+        assert_eq!(first.chosen(), Default::default());
+        drop(first);
+        assert_eq!(kept(folder.path()).restore(&params), None, "the next one may");
+    }
+
+    #[test]
+    fn what_cannot_be_read_stays_where_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        // A folder of that name can be opened, but not read.
+        let file = folder.path().join("sprung").join(NAME);
+        std::fs::create_dir_all(&file).unwrap();
+        let (mut kept, params) = (kept(folder.path()), SprungParams::default());
+        let said = kept.restore(&params).unwrap();
+        assert!(said.contains("cannot be read") && !said.contains("kept as"), "{said}");
+        kept.keep(&params).unwrap();
+        assert!(file.is_dir());
+    }
+
+    #[test]
+    fn the_choice_of_devices_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let kept = kept(folder.path());
+        assert_eq!(kept.chosen(), (Chosen::default(), None));
+        let chosen = Chosen { host: Some("jack".to_owned()), rate: Some(96_000), ..Chosen::default() };
+        kept.keep_chosen(&chosen).unwrap();
+        assert_eq!(kept.chosen(), (chosen, None));
+        std::fs::write(folder.path().join("sprung/devices.json"), "{\"speed\": 1}").unwrap();
+        let (chosen, said) = kept.chosen();
+        assert!(chosen == Chosen::default() && said.is_some_and(|said| said.contains("devices.json")));
     }
 
     #[test]

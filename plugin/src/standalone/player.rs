@@ -37,6 +37,13 @@ impl WindowPlayer {
             status,
         }
     }
+
+    /// Goes on at another sample rate: what sounds, ends. Allocates.
+    pub(super) fn set_sample_rate(&mut self, sample_rate: u32) {
+        let sample_rate = f64::from(sample_rate);
+        self.live = Live::new(sample_rate, false, &self.params);
+        (self.clock, self.fade) = (BlockClock::new(sample_rate), Fade::new(sample_rate));
+    }
 }
 
 impl Source for WindowPlayer {

@@ -5,6 +5,9 @@
 mod automation;
 mod cpu;
 mod damage;
+mod devices;
+mod drag;
+mod drops;
 mod expression;
 mod fuzz;
 mod growth;
@@ -189,6 +192,12 @@ fn main() -> ExitCode {
             it_keeps_its_state_whatever_ends_it
             a_broken_state_is_set_aside
             what_is_missing_is_said
+        }
+        Program: devices {
+            another_device_is_chosen_while_it_plays
+        }
+        Program: drops {
+            a_recording_that_is_dropped_on_the_real_window_becomes_the_sound
         }
         Nothing: vst3_state {
             parameters_have_the_numbers_of_their_ids

@@ -3,7 +3,7 @@
 use super::bus::{Bus, places};
 use super::destination::Target;
 use super::envelope::Times;
-use super::link::{Amounts, Offsets, SOURCES_AT_REST, Sources, bit};
+use super::link::{Amounts, Mover, Offsets, SOURCES_AT_REST, Sources, bit};
 use super::moving::Moving;
 use super::settings::{LFOS, Settings, SharedLfos, of_lfo};
 use crate::dsp::random;
@@ -149,6 +149,22 @@ impl Modulators {
         match place {
             Some(place) => self.bus.destinations()[place].moved(value(param), self.struck_offsets[place]),
             None => value(param),
+        }
+    }
+
+    /// Calls `tell` with each destination and its value: as of the last control tick, or for what only strikes read, as of
+    /// the last strike.
+    pub(crate) fn each_value(&self, mut tell: impl FnMut(Param, f32)) {
+        for (place, destination) in self.bus.destinations().iter().enumerate() {
+            let base = self.settings.bases[place];
+            let value = match (Mover::of(destination.param), destination.target) {
+                (Some(Mover::Amount(route)), _) => 100.0 * self.amounts[usize::from(route)],
+                (Some(Mover::Macro(index)), _) => 100.0 * self.sources[Source::Macro1 as usize + usize::from(index)],
+                (None, Target::Strike) => destination.moved(base, self.struck_offsets[place]),
+                (None, Target::Lfo(index)) if self.settings.are_synchronised[usize::from(index)] => continue,
+                (None, Target::Control | Target::Lfo(_)) => destination.moved(base, self.offsets[place]),
+            };
+            tell(destination.param, value);
         }
     }
 

@@ -88,6 +88,12 @@ impl NoteModulation {
         self.moved.iter().flatten().find(|moved| moved.param == param).map(|moved| moved.value.after(frames))
     }
 
+    /// Calls `tell` with each parameter that has an offset, and its value now.
+    pub(crate) fn each_value(&self, mut tell: impl FnMut(Param, f32)) {
+        let moved = self.moved.iter().map_while(Option::as_ref).filter(|moved| moved.has_offset);
+        moved.for_each(|moved| tell(moved.param, moved.value.after(0)));
+    }
+
     /// Advances the ramps by `frames` frames.
     pub(crate) fn advance(&mut self, frames: u32) {
         self.moved.iter_mut().map_while(Option::as_mut).for_each(|moved| moved.value.advance(frames));

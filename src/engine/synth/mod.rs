@@ -197,7 +197,7 @@ impl Synth {
 
     /// Adds the voices that sound now to a snapshot. Real-time safe.
     pub fn show(&self, snapshot: &mut Snapshot) {
-        self.manager.sounding_voices().for_each(|voice| snapshot.add(voice));
+        self.manager.sounding_voices().for_each(|(note, voice)| snapshot.add(note, voice));
     }
 
     /// Calls `visit` with each voice that sounds now, in an order that is always the same. Real-time safe if `visit` is.

@@ -60,6 +60,7 @@ fn peaks_and_masses_are_those_of_the_sound_and_only_while_somebody_looks() {
     let mut moved = Snapshot { voices: 2, ..Snapshot::default() };
     moved.masses[63].displacement = -0.5;
     moved.masses[63].energy = 0.25;
+    moved.notes[0] = Some(crate::engine::SoundingNote { key: 60, ..Default::default() });
     writer.note_sound(&[0.25, -0.5], &[0.0, 0.125], false, || unreachable!("nobody looks"));
     assert_eq!((telemetry.take_peaks(), telemetry.take_peaks()), ([0.5, 0.125], [0.0, 0.0]));
     assert_eq!((telemetry.snapshot(), telemetry.is_silent()), (Snapshot::default(), false));

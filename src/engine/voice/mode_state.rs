@@ -1,6 +1,7 @@
-//! The modes of a voice as they are now, for labels.
+//! The state of a voice as it is now, for displays; and of its modes, for labels.
 
 use super::SynthVoice;
+use crate::params::Param;
 
 /// A mode of a sounding voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +19,23 @@ impl SynthVoice {
     /// Which of its note's unison voices it is.
     pub(crate) fn unison_index(&self) -> usize {
         self.unison.index
+    }
+
+    /// Seconds since its last strike.
+    pub(crate) fn age(&self) -> f64 {
+        self.clock.seconds(self.clock.age)
+    }
+
+    /// Its pitch in semitones on the MIDI scale, with all that bends it.
+    pub(crate) fn sounding_pitch(&self) -> f64 {
+        self.pitch.sounding()
+    }
+
+    /// Calls `tell` with each parameter that its routes or its own offsets modulate, and the value now. One that both
+    /// modulate is told twice: first as the routes have it, which includes the offset.
+    pub(crate) fn each_moved(&self, mut tell: impl FnMut(Param, f32)) {
+        self.modulators.each_value(&mut tell);
+        self.modulation.each_value(tell);
     }
 
     /// Whether mallet, pluck or noise still act.

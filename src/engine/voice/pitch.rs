@@ -94,6 +94,11 @@ impl Pitch {
         self.note + self.glide.at(clock.seconds(clock.age - self.glide_start))
     }
 
+    /// The pitch with all that bends it, as of the last control tick, in semitones on the MIDI scale.
+    pub(super) fn sounding(&self) -> f64 {
+        self.note + self.tune + self.offset
+    }
+
     /// Starts a glide from a pitch, in semitones on the MIDI scale, to that of `note`. `is_legato` says that another
     /// key is down.
     pub(super) fn slide(&mut self, from: f64, note: &Note, controls: &Controls, is_legato: bool, clock: &Clock) {

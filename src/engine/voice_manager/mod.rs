@@ -105,9 +105,9 @@ impl<V: Voice> VoiceManager<V> {
         })
     }
 
-    /// The voices that play or fade, read-only.
-    pub fn sounding_voices(&self) -> impl Iterator<Item = &V> {
-        self.slots.in_use().iter().flat_map(Slot::voices)
+    /// The voices that play or fade, with their notes, read-only.
+    pub fn sounding_voices(&self) -> impl Iterator<Item = (&Note, &V)> {
+        self.slots.in_use().iter().flat_map(|slot| slot.voices().map(|voice| (&slot.note, voice)))
     }
 
     /// The voices and cells that no note uses.

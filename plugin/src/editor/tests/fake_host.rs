@@ -6,6 +6,7 @@ use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::{GuiContext, GuiContextInner};
 use nice_plug_core::params::internals::ParamPtr;
 use nice_plug_core::plugin::PluginState;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
 /// What a window tells its host of a parameter, by its name.
@@ -20,6 +21,8 @@ pub(super) enum Said {
 #[derive(Default)]
 pub(super) struct FakeHost {
     said: Mutex<Vec<Said>>,
+    /// Whether it is the program.
+    pub(super) is_alone: AtomicBool,
 }
 
 impl FakeHost {
@@ -39,7 +42,7 @@ impl FakeHost {
 
 impl GuiContextInner for FakeHost {
     fn plugin_api(&self) -> PluginApi {
-        PluginApi::Clap
+        if self.is_alone.load(Relaxed) { PluginApi::Standalone } else { PluginApi::Clap }
     }
 
     unsafe fn raw_begin_set_parameter(&self, param: ParamPtr) {

@@ -3,14 +3,17 @@
 mod animation;
 mod body_numbers;
 mod browsing;
+mod devices;
 mod dropped;
 mod fake_host;
 mod fitted;
 mod gestures;
+mod learning;
 mod mode_edits;
 mod moving;
 mod paging;
 mod pictures;
 mod random_events;
 mod renderer;
+mod rings;
 mod sounding;

@@ -44,7 +44,7 @@ fn pictures_of_kit_tuning_voices_and_manual_are_as_accepted() {
         }
         compare_page(name, &mut band.stage.harness);
     }
-    for (size, theme, name) in [(SIZE, Theme::Dark, "manual"), (LEAST_SIZE, Theme::Light, "manual-least")] {
+    for (size, theme, name) in [(SIZE, Theme::Dark, "manual"), (LEAST_SIZE, Theme::Dark, "manual-least")] {
         let mut stage = stage("Marimba", size, 1.0, theme);
         stage.harness.get_by_role_and_label(Role::Tab, "?").click();
         stage.harness.run_steps(3);

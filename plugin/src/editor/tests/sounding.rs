@@ -7,6 +7,7 @@ use egui::{Event, Modifiers, PointerButton, Pos2, Rect, vec2};
 use egui_kittest::kittest::Queryable as _;
 use rtrb::Consumer;
 use sprung::engine::{Event as Played, EventKind, Snapshot, Synth, TelemetryWriter};
+use sprung::params::Param;
 use std::time::Duration;
 
 const RATE: f64 = 48_000.0;
@@ -31,16 +32,35 @@ impl Band {
         Self { stage, synth, touches, writer, heard: Vec::new() }
     }
 
-    fn play(&mut self, kind: EventKind) {
+    pub(super) fn play(&mut self, kind: EventKind) {
         let event = Played { frame: 0, channel: 0, kind };
         self.writer.note_event(&event);
         self.synth.handle(&event);
     }
 
     pub(super) fn strike(&mut self, keys: &[u8]) {
-        for key in keys {
-            self.play(EventKind::NoteOn { key: *key, detune: 0.0, velocity: 0.8, id: None });
-        }
+        keys.iter().for_each(|key| self.strike_at(*key, 0.8));
+    }
+
+    pub(super) fn strike_at(&mut self, key: u8, velocity: f32) {
+        self.play(EventKind::NoteOn { key, detune: 0.0, velocity, id: None });
+    }
+
+    /// Plays the sound that is loaded now.
+    pub(super) fn follow(&mut self) {
+        self.synth.set_kit(&self.stage.params.loaded().kit);
+    }
+
+    /// Ends all notes.
+    pub(super) fn silence(&mut self) {
+        self.play(EventKind::Silence { notes: Default::default() });
+    }
+
+    /// Where the notes that sound have a parameter, the newest first.
+    pub(super) fn marks(&self, param: Param) -> Vec<f32> {
+        let notes = self.stage.params.link().telemetry.snapshot().notes;
+        let moved = notes.into_iter().flatten().flat_map(|note| note.moved).flatten();
+        moved.filter(|(moved, _)| *moved == param).map(|(_, value)| param.info().normalise(value) as f32).collect()
     }
 
     /// Renders a sixtieth of a second before each of some passes of the window.

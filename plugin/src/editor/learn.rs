@@ -1,0 +1,70 @@
+//! MIDI learn: what is moved next on the keyboard modulates a parameter, by a route.
+
+use super::controls::{Controls, Learning};
+use super::routes::{change, source_name};
+use egui::{Key, Ui};
+use sprung::engine::telemetry::Moved;
+use sprung::params::ParamInfo;
+use sprung::patch::routes::{MAX_ROUTES, Route, Source};
+use sprung::preset::Playable;
+use std::time::Duration;
+
+/// Time between two looks at what is moved.
+const PAUSE: Duration = Duration::from_millis(50);
+/// The least part of a knob's travel that is worth a route.
+const LEAST: f32 = 0.05;
+
+/// Waits for what is moved next.
+pub(super) fn begin(info: &'static ParamInfo, controls: &mut Controls) {
+    let (seen, _) = controls.params.link().telemetry.moved();
+    controls.hands.learning = Some(Learning { info, seen, is_told: false });
+}
+
+/// Looks whether something was moved, and makes a route from it. Returns a message.
+pub(super) fn follow(ui: &Ui, controls: &mut Controls) -> Option<String> {
+    let learning = controls.hands.learning.as_mut()?;
+    let info = learning.info;
+    if ui.input(|input| input.key_pressed(Key::Escape)) {
+        controls.hands.learning = None;
+        return Some("nothing was learnt".to_owned());
+    }
+    ui.ctx().request_repaint_after(PAUSE);
+    let (count, moved) = controls.params.link().telemetry.moved();
+    if count == std::mem::replace(&mut learning.seen, count) {
+        let is_told = std::mem::replace(&mut learning.is_told, true);
+        return (!is_told).then(|| {
+            let sources = "wheel, pitch wheel, pressure, breath, expression or controller 74";
+            format!("{}: move what is to modulate it ({sources}); Escape gives up", info.name)
+        });
+    }
+    match moved? {
+        Moved::Controller(number) if moved?.source().is_none() => Some(format!(
+            "controller {number} is no source of routes: expected 1 (wheel), 2 (breath), 11 (expression), 74 (timbre), \
+             the pitch wheel or pressure"
+        )),
+        moved => {
+            controls.hands.learning = None;
+            Some(learn(moved.source()?, info, controls))
+        }
+    }
+}
+
+/// Adds a route from a source, by which the knob goes as far as it can. Returns a message.
+fn learn(source: Source, info: &'static ParamInfo, controls: &mut Controls) -> String {
+    let Playable::Preset(preset) = controls.params.state().playable else {
+        return "a kit’s sounds have routes of their own".to_owned();
+    };
+    let routes = &preset.patch.routes;
+    let name = source_name(source, &preset.guide);
+    if let Some((place, _)) = routes.iter().find(|(_, route)| route.source == source && route.destination == info.param)
+    {
+        return format!("{name} modulates {} already: route {}", info.name, place + 1);
+    }
+    let Some(place) = (0..MAX_ROUTES).find(|place| routes.get(*place).is_none()) else {
+        return "all sixteen routes are taken".to_owned();
+    };
+    let position = controls.params.knobs()[info.param as usize].position();
+    let travel = if 1.0 - position >= LEAST { 1.0 - position } else { -position };
+    change(place, Some(Route::linear(source, info.param)), Some((100.0 * travel).round()), controls);
+    format!("{name} modulates {}: route {}", info.name, place + 1)
+}

@@ -1,0 +1,86 @@
+//! The program's page of devices and ports.
+
+use super::pictures::{Stage, compare_page, finish, stage};
+use crate::devices::{Chosen, Devices, Output};
+use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use egui::Role;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use std::sync::atomic::Ordering::Relaxed;
+
+/// What a machine might have.
+fn devices() -> Devices {
+    let output = |host: &str, id: &str, description: &str| Output {
+        host: host.to_owned(),
+        id: id.to_owned(),
+        description: description.to_owned(),
+    };
+    Devices {
+        outputs: vec![
+            output("alsa", "default", "default"),
+            output("alsa", "hw:CARD=PCH,DEV=0", "HDA Intel PCH, ALC257 Analog"),
+            output("jack", "JACK Output", ""),
+        ],
+        rates: vec![44_100, 48_000, 96_000],
+        ports: vec!["Keystation 49:Keystation 49 MIDI 1 24:0".to_owned()],
+        chosen: Chosen { buffer: Some(128), ..Chosen::default() },
+        playing: "ALSA ‘default’, 48000 Hz, 2 × f32".to_owned(),
+    }
+}
+
+/// The page of a program that shows some devices.
+fn page(size: [u32; 2], theme: Theme) -> Stage {
+    let mut stage = stage("Marimba", size, 1.0, theme);
+    assert!(stage.harness.query_by_role_and_label(Role::Tab, "Devices").is_none(), "a host has its own");
+    stage.host.is_alone.store(true, Relaxed);
+    stage.params.link().desk.show(devices());
+    stage.harness.run_steps(3);
+    assert!(!stage.params.link().desk.was_watched(), "nothing is looked for while another page is shown");
+    stage.harness.get_by_role_and_label(Role::Tab, "Devices").click();
+    stage.harness.run_steps(3);
+    assert!(stage.params.link().desk.was_watched());
+    stage
+}
+
+impl Stage {
+    fn pick_device(&mut self, field: &str, name: &str) -> Option<Chosen> {
+        self.harness.get_by_role_and_label(Role::ComboBox, field).click();
+        self.harness.run_steps(3);
+        self.harness.get_by_role_and_label(Role::Button, name).click();
+        self.harness.run_steps(3);
+        self.params.link().desk.take_wish()
+    }
+}
+
+#[test]
+fn what_is_picked_is_asked_for() {
+    let mut stage = page(SIZE, Theme::Dark);
+    let before = devices().chosen;
+    let text = |name: &str| Some(name.to_owned());
+    assert_eq!(stage.pick_device("Sample rate", "96000 Hz"), Some(Chosen { rate: Some(96_000), ..before.clone() }));
+    assert_eq!(stage.pick_device("Block", "256 frames, or the nearest"), Some(Chosen::default()));
+    assert_eq!(stage.pick_device("MIDI in", "no port"), Some(Chosen { midi_in: text("none"), ..before.clone() }));
+    let port = "Keystation 49:Keystation 49 MIDI 1 24:0";
+    assert_eq!(stage.pick_device("MIDI in", port), Some(Chosen { midi_in: text(port), ..before.clone() }));
+    let jack = Chosen { host: text("jack"), device: text("JACK Output"), ..Chosen::default() };
+    assert_eq!(stage.pick_device("Output", "jack: JACK Output"), Some(jack), "with the rate and blocks that suit it");
+    assert_eq!(stage.pick_device("Block", "128 frames"), None, "as it is");
+    assert!(stage.host.said().is_empty(), "no parameter is concerned");
+    // What was chosen and is not there now is shown all the same.
+    let gone = Chosen { host: text("alsa"), device: text("hw:9"), rate: Some(22_050), ..Chosen::default() };
+    stage.params.link().desk.show(Devices { chosen: gone, ..devices() });
+    stage.harness.run_steps(3);
+    let shown = |field| stage.harness.get_by_role_and_label(Role::ComboBox, field).accesskit_node().value();
+    assert_eq!([shown("Output"), shown("Sample rate")], [text("alsa: hw:9"), text("22050 Hz")]);
+}
+
+#[test]
+fn pictures_of_devices_are_as_accepted() {
+    for (size, theme, name) in [
+        (SIZE, Theme::Dark, "devices"),
+        (SIZE, Theme::Light, "devices-light"),
+        (LEAST_SIZE, Theme::HighContrast, "devices-least"),
+    ] {
+        compare_page(name, &mut page(size, theme).harness);
+    }
+    finish();
+}

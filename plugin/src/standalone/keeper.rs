@@ -1,0 +1,132 @@
+//! Looks after devices, ports and the file of the state, while the window is open.
+
+use super::chosen::{choice, plain};
+use super::kept::Kept;
+use super::player::WindowPlayer;
+use super::told::{complain, tell};
+use crate::devices::{Chosen, Devices, Output};
+use crate::params::SprungParams;
+use sprung::realtime::{LiveSender, MidiIn, Session, device, midi_ports};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+/// Time between two looks at devices and ports.
+const POLL: Duration = Duration::from_millis(50);
+
+/// Time between two looks at whether there is something to keep.
+const KEEP: Duration = Duration::from_secs(5);
+
+/// Time between two searches for devices, while the window shows them.
+const SEARCH: Duration = Duration::from_secs(3);
+
+/// How long a window that was asked to close may take. One that nobody can see may never do it.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Looks after the device, the ports and the file of the state while the window is open.
+pub(super) struct Keeper {
+    pub(super) params: Arc<SprungParams>,
+    pub(super) kept: Kept,
+    pub(super) session: Session<WindowPlayer>,
+    pub(super) closing: LiveSender,
+    /// Whether the window is closed.
+    pub(super) is_closed: Arc<AtomicBool>,
+    pub(super) chosen: Chosen,
+}
+
+impl Keeper {
+    /// `midi` sends what MIDI ports receive.
+    pub(super) fn run(mut self, midi: LiveSender) -> Result<(), String> {
+        device::silence_library();
+        let mut midi = Some(self.listen(midi));
+        let mut asked: Option<Instant> = None;
+        let mut keep_at = Instant::now() + KEEP;
+        let mut search_at = Instant::now();
+        // A problem with the file is told once.
+        let mut told = false;
+        while !self.is_closed.load(Relaxed) {
+            tell(&self.params, self.session.poll());
+            tell(&self.params, midi.iter_mut().flat_map(MidiIn::poll).collect::<Vec<_>>());
+            let params = self.params.clone();
+            let desk = &params.link().desk;
+            if let Some(wish) = desk.take_wish() {
+                self.change(wish, &mut midi);
+                search_at = Instant::now();
+            }
+            if Instant::now() >= search_at && desk.was_watched() {
+                desk.show(self.devices());
+                params.link().repaint.request_repaint();
+                search_at = Instant::now() + SEARCH;
+            }
+            if Instant::now() > keep_at {
+                keep_at = Instant::now() + KEEP;
+                let problem = self.kept.keep_what_changed(&self.params).err();
+                let is_new = problem.is_some() && !std::mem::replace(&mut told, problem.is_some());
+                tell(&self.params, problem.filter(|_| is_new));
+            }
+            if self.params.link().is_closing() && asked.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
+                break;
+            }
+            std::thread::sleep(POLL);
+        }
+        drop(midi);
+        if !self.session.finish(&mut self.closing) {
+            complain("warning: the sound device does not answer; left it behind");
+        }
+        let ended = self.kept.keep(&self.params);
+        if !self.is_closed.load(Relaxed) {
+            // The window's thread still waits for a window that does not close.
+            if let Err(error) = &ended {
+                complain(&format!("error: {error}"));
+            }
+            std::process::exit(ended.is_err().into());
+        }
+        ended
+    }
+
+    /// Listens to the chosen MIDI ports.
+    fn listen(&self, sender: LiveSender) -> MidiIn {
+        MidiIn::new(self.chosen.midi_in.as_deref().unwrap_or("all"), self.session.is_jack(), sender)
+    }
+
+    /// Plays on what the window wishes. If that cannot be, all stays as it was.
+    fn change(&mut self, wish: Chosen, midi: &mut Option<MidiIn>) {
+        let was_jack = self.session.is_jack();
+        if choice(&wish) != choice(&self.chosen) {
+            let changed = self.session.change(choice(&wish), WindowPlayer::set_sample_rate);
+            let said = match &changed {
+                Ok(()) => format!("playing on {}", self.session.description()),
+                Err(error) => format!("{}; still on {}", plain(error), self.session.description()),
+            };
+            tell(&self.params, Some(said));
+            if changed.is_err() {
+                return;
+            }
+        }
+        let is_other_port = wish.midi_in != self.chosen.midi_in || was_jack != self.session.is_jack();
+        self.chosen = wish;
+        if is_other_port {
+            *midi = midi.take().and_then(MidiIn::into_sender).map(|sender| self.listen(sender));
+            let is_lost = midi.is_none().then(|| "MIDI does not answer: start the program again to hear it".to_owned());
+            tell(&self.params, is_lost);
+        }
+        tell(&self.params, self.kept.keep_chosen(&self.chosen).err());
+    }
+
+    /// What there is now.
+    fn devices(&self) -> Devices {
+        let output = |device::Output { host, id, description }| Output { host, id, description };
+        let mut rates = device::rates(&choice(&self.chosen));
+        // A device that plays may not tell what else it could do.
+        if !rates.contains(&self.session.sample_rate()) {
+            rates.push(self.session.sample_rate());
+        }
+        Devices {
+            outputs: device::outputs().into_iter().map(output).collect(),
+            rates,
+            ports: midi_ports::names(),
+            chosen: self.chosen.clone(),
+            playing: self.session.description().to_owned(),
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The program's page of devices: another one is chosen while it plays, and one that cannot be opened changes nothing.
+
+use crate::standalone::Stand;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Devices that take anything, and one that is not there.
+const ALSA: &str = "pcm.!default { type null
+ hint { show on
+ description \"Nothing\" } }
+pcm.broken { type hw
+ card 9
+ hint { show on
+ description \"Broken\" } }
+";
+/// Where the tab *Devices* and the field *Output* are.
+const TAB: [i16; 2] = [612, 344];
+const FIELD: [i16; 2] = [280, 377];
+/// Where the lines of its list may be: to the right, and down from the first to the last.
+const LIST: i16 = 150;
+const LINES: std::ops::Range<i16> = 415..570;
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The devices that the program has said that it plays on, and whether one was refused.
+fn heard(said: &Path) -> (Vec<String>, bool) {
+    let text = std::fs::read_to_string(said).unwrap();
+    let playing = text.lines().filter_map(|line| line.split_once("playing on ")).map(|(_, name)| name.to_owned());
+    (playing.collect(), text.contains("; still on "))
+}
+
+pub(crate) fn another_device_is_chosen_while_it_plays() {
+    let mut stand = Stand::new("devices");
+    let config = stand.folder.path().join("asound.conf");
+    std::fs::write(&config, ALSA).unwrap();
+    stand.alsa = Some(config);
+    let (mut running, said) = stand.start(&["Marimba"]);
+    let click = |place| {
+        stand.onlooker.drag_slowly(place, place);
+        std::thread::sleep(Duration::from_millis(250));
+    };
+    click(TAB);
+    let start = Instant::now();
+    let mut lines = LINES.step_by(10).cycle();
+    while !matches!(heard(&said), (playing, true) if playing.len() > 1) {
+        let text = std::fs::read_to_string(&said).unwrap();
+        assert!(start.elapsed() < PATIENCE, "no other device, or none that is refused: {text}");
+        click(FIELD);
+        click([LIST, lines.next().unwrap()]);
+    }
+    running.interrupt();
+    assert_eq!(running.ends().code(), Some(0));
+    // Now, since the last click may have been followed only after the look above.
+    let (playing, _) = heard(&said);
+    assert!(playing[0].contains("JACK") && playing[1..].iter().any(|name| name.contains("ALSA")), "{playing:?}");
+    let kept = std::fs::read_to_string(stand.state().with_file_name("devices.json")).unwrap();
+    // Without options, the last choice holds.
+    let (mut running, said) = stand.start_with(&[], &["--midi-in", "none"]);
+    assert_eq!(heard(&said).0.first(), playing.last(), "{kept}");
+    running.interrupt();
+    assert_eq!(running.ends().code(), Some(0));
+}
