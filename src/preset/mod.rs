@@ -64,6 +64,12 @@ pub struct Preset {
 }
 
 impl Preset {
+    /// A preset of a name and a sound alone. Allocates.
+    pub fn new(name: impl Into<String>, patch: Patch) -> Self {
+        let (author, tags, comment, guide) = (String::new(), Vec::new(), String::new(), Guide::default());
+        Self { name: name.into(), author, tags, comment, guide, patch, tuning: None }
+    }
+
     /// The sound of the preset, with its own tuning if it has one. Allocates.
     pub fn sound(&self) -> Arc<Sound> {
         let tuning = self.tuning.as_ref().map(|own| *own.tuning());

@@ -4,7 +4,7 @@ use crate::host::Instance;
 use sprung::params::Param;
 use sprung::patch::routes::Source;
 use sprung::patch::{Mode, ModeTable, Patch};
-use sprung::preset::{Guide, Playable, Preset};
+use sprung::preset::{Playable, Preset};
 use std::fs::File;
 use std::path::Path;
 
@@ -39,16 +39,7 @@ pub(crate) fn patches() -> Vec<(&'static str, Patch)> {
 
 /// The state that contains a patch.
 pub(crate) fn state(patch: &Patch) -> Vec<u8> {
-    let preset = Preset {
-        name: "Of a test".to_owned(),
-        author: String::new(),
-        tags: Vec::new(),
-        comment: String::new(),
-        guide: Guide::default(),
-        patch: patch.clone(),
-        tuning: None,
-    };
-    state_of_text(&preset.to_toml())
+    state_of_text(&Preset::new("Of a test", patch.clone()).to_toml())
 }
 
 /// The state that contains the text of a preset file.

@@ -1,5 +1,6 @@
 //! A sound as the fit thinks of it, in Hz and amplitudes, and the patch that plays it.
 
+use crate::analysis::log_mel::RATE;
 use crate::dsp::pitch::SweepEnvelope;
 use crate::params::{Choice, MalletPulse, NoiseDecay, NoteOff, Param};
 use crate::patch::routes::Source;
@@ -16,8 +17,6 @@ pub(super) const T60: (f64, f64) = (0.004, 60.0);
 const LEAST_OF_CONTACT: f64 = 0.01;
 /// Place of the route of a swell; those of several takes are before it, those of a new patch behind.
 const SWELL_ROUTE: usize = 3;
-/// Points at which the spectrum of a contact is summed up.
-const POINTS: usize = 48;
 
 /// A mode of the sound.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,15 +133,18 @@ pub(super) struct Draft {
 }
 
 /// Share of a strike's force that a mode of a frequency in Hz is given by a contact of so many seconds: the spectrum of the
-/// engine's pulse `u² (1 − u)²` about its middle. It is negative where the pulse pushes more against the wave than with it.
+/// engine's pulse `u² (1 − u)²`, of whole frames at [`RATE`], about its middle. It is negative where the pulse pushes more against the
+/// wave than with it.
 pub(super) fn contact_share(frequency: f64, seconds: f64) -> f64 {
-    let phase = 2.0 * PI * frequency * seconds;
-    let point = |n: usize| {
-        let u = (n as f64 + 0.5) / POINTS as f64;
-        30.0 * u * u * (1.0 - u) * (1.0 - u) * cos(phase * (u - 0.5))
-    };
-    // More than half a turn from point to point cannot be summed up; by then nothing is left.
-    if phase > PI * POINTS as f64 { 0.0 } else { (0..POINTS).map(point).sum::<f64>() / POINTS as f64 }
+    let frames = ((seconds * f64::from(RATE) + 0.5) as usize).max(1);
+    let turn = 2.0 * PI * frequency * frames as f64 / f64::from(RATE);
+    let (mut sum, mut all) = (0.0, 0.0);
+    for n in 0..frames {
+        let u = (n as f64 + 0.5) / frames as f64;
+        let force = u * u * (1.0 - u) * (1.0 - u);
+        (sum, all) = (sum + force * cos(turn * (u - 0.5)), all + force);
+    }
+    sum / all
 }
 
 /// What a pan does to the mean of both channels: the engine's pan law has constant power.

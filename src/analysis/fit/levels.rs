@@ -1,6 +1,6 @@
 //! Where a body is struck and heard, by the levels of the modes that a sound has of it.
 
-use super::draft::{Partial, digits};
+use super::draft::{Partial, contact_share, digits};
 use crate::analysis::log_mel::RATE;
 use crate::sound::bodies::{Body, BodyMode, LN_1000, Point};
 use crate::sound::contact_time;
@@ -70,7 +70,7 @@ impl Levels {
 
     /// What a contact leaves of each mode in dB; none is a strike in a single sample.
     fn shares(&self, hardness: Option<f64>) -> Vec<f64> {
-        let share = |frequency: f64, hardness: f64| share_of_frames(frequency, contact_time(hardness));
+        let share = |frequency: f64, hardness: f64| fabs(contact_share(frequency, contact_time(hardness)));
         let of = |(partial, _): &(Partial, f64)| hardness.map_or(1.0, |hardness| share(partial.frequency, hardness));
         self.0.iter().map(|pair| 20.0 * log10(of(pair).max(LEAST_SHARE))).collect()
     }
@@ -126,20 +126,6 @@ impl Levels {
         }
         best
     }
-}
-
-/// Share of a strike's force that a mode of a frequency in Hz is given by a contact of so many seconds: of the
-/// engine's whole frames at [`RATE`], which counts where a contact has several cycles; `draft::contact_share` is the same with a sign
-/// and without the frames' rounding.
-fn share_of_frames(frequency: f64, seconds: f64) -> f64 {
-    let frames = ((seconds * f64::from(RATE) + 0.5) as usize).max(1);
-    let (mut re, mut im, mut all) = (0.0, 0.0, 0.0);
-    for n in 0..frames {
-        let u = (n as f64 + 0.5) / frames as f64;
-        let (force, phase) = (u * u * (1.0 - u) * (1.0 - u), 2.0 * PI * frequency * n as f64 / f64::from(RATE));
-        (re, im, all) = (re + force * cos(phase), im + force * sin(phase), all + force);
-    }
-    sqrt(re * re + im * im) / all
 }
 
 /// The amplitude of a mode of some frequency in Hz and T60 in seconds in samples at [`RATE`] that begin with it, by the filter that is

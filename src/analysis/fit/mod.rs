@@ -185,13 +185,10 @@ impl Fitted {
     /// The preset. Allocates.
     pub fn preset(&self, name: &str, comment: &str) -> Preset {
         Preset {
-            name: name.to_owned(),
-            author: String::new(),
             tags: vec!["fitted".to_owned()],
             comment: comment.to_owned(),
             guide: Guide { home: self.key.round().clamp(0.0, 127.0) as u8, ..Guide::default() },
-            patch: self.patch.clone(),
-            tuning: None,
+            ..Preset::new(name, self.patch.clone())
         }
     }
 

@@ -1,4 +1,4 @@
-//! Which modes of a fit the sound cannot have had: louder than its peak allows, or not known at all.
+//! Which modes of a fit the sound cannot have had: louder than its peak allows, not known at all, or lost beside a neighbour.
 //!
 //! Sounds that are no sums of damped sinusoids, such as glides, are explained best by modes that all but cancel. Such modes
 //! explain much, so they stand out of noise, but they say nothing of the sound.
@@ -17,6 +17,10 @@ const SHORTEST: f64 = 0.005;
 const LEAST_QUALITY: f64 = 1.0;
 /// Largest standard deviations of a pole in its widths, and of an amplitude as a share of it.
 const DEVIATION: f64 = 0.5;
+/// Amplitude over that of a neighbour, and how near this is in their widths, for a mode that nobody could hear beside it: it explains
+/// by how little the neighbour is no pure damped sinusoid.
+const SKIRT: f64 = 1e-5;
+const BESIDE: f64 = 8.0;
 /// Lowest frequency that is heard, in Hz.
 pub(super) const AUDIBLE: f64 = 20.0;
 
@@ -60,8 +64,16 @@ pub(super) fn implausible(fit: &Fit, floors: &[f64], len: usize, limits: &Limits
         let known = deviation(0) < DEVIATION * width && deviation(1) < DEVIATION * width && deviation(2) < DEVIATION;
         !known
     };
+    let is_on_a_skirt = |k: usize| {
+        let is_of = |other: usize| {
+            let distance = (fit.poles[k].theta - fit.poles[other].theta).abs();
+            fit.amplitudes[k].norm() < SKIRT * fit.amplitudes[other].norm()
+                && distance < BESIDE * (fit.poles[k].width(len) + fit.poles[other].width(len))
+        };
+        (0..fit.poles.len()).any(is_of)
+    };
     let mut dropped: Vec<usize> = (0..fit.poles.len())
-        .filter(|k| limits.audible(fit.poles[*k]) && (!limits.rings(fit.poles[*k]) || unknown(*k)))
+        .filter(|k| limits.audible(fit.poles[*k]) && (!limits.rings(fit.poles[*k]) || unknown(*k) || is_on_a_skirt(*k)))
         .collect();
     let excess = |k: usize| limits.excess(fit.poles[k], fit.amplitudes[k].norm());
     let is_loud = |k: usize| excess(k) > 1.0 || excess(k).is_nan();

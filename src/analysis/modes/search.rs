@@ -13,8 +13,10 @@ use crate::error::{Error, Result};
 /// Least share of the sound's energy: what rounding to single precision leaves.
 const LEAST_SHARE: f64 = 1e-13;
 
-/// Share of what is unexplained that a round has to explain.
+/// Share of what is unexplained that a round has to explain: so much at least, and so much of noise alone, by as many modes as there
+/// may be. Of noise ever more can be explained by ever more modes, little by little, and it means nothing.
 const LEAST_GAIN: f64 = 1e-4;
+const GAIN_OF_NOISE: f64 = 0.05;
 
 const MOST_ROUNDS: usize = 24;
 /// Rounds without progress after which a sound is taken for no sum of modes. Modes that are resolved anew with their
@@ -53,7 +55,11 @@ pub(super) fn find(
     let pruned = |fit, go_on: &mut dyn FnMut() -> bool| prune(fit, samples, sample_rate, least, &planner, go_on);
     let floors = |fit: &Fit| floors(fit, samples, sample_rate, &planner);
     // A mode that just stands out of noise takes a little more than that away from it.
-    let least_gain = |unexplained: f64| LEAST_GAIN * unexplained + least;
+    let least_gain = |fit: &Fit| {
+        let noise = fit.unexplained / energy.max(f64::MIN_POSITIVE);
+        let of_noise = GAIN_OF_NOISE * noise * fit.poles.len() as f64 / most_modes as f64;
+        of_noise.max(LEAST_GAIN) * fit.unexplained + least
+    };
     let mut fit = Fit::new(samples, Vec::new()).ok_or_else(unsolvable)?;
     let (mut best, mut idle, mut split) = (fit.clone(), 0, false);
     for round in 0..MOST_ROUNDS {
@@ -82,10 +88,10 @@ pub(super) fn find(
         // Poles that all but coincide can make equations without a solution: then the best so far is what is found.
         let Some(next) = next.and_then(|fit| pruned(fit, &mut go_on)) else { break };
         // Where a round ends where it began, so would those that follow.
-        let stands = next.poles.len() == fit.poles.len()
-            && (next.unexplained - fit.unexplained).abs() < least_gain(fit.unexplained);
+        let stands =
+            next.poles.len() == fit.poles.len() && (next.unexplained - fit.unexplained).abs() < least_gain(&fit);
         fit = next;
-        let better = fit.unexplained < best.unexplained - least_gain(best.unexplained);
+        let better = fit.unexplained < best.unexplained - least_gain(&best);
         if better {
             best = fit.clone();
         } else if split {

@@ -3,7 +3,7 @@
 use super::app::{App, Playing};
 use crate::error::Error;
 use crate::preset::catalogue::{Catalogue, Listed};
-use crate::preset::{Guide, Playable, Preset};
+use crate::preset::{Playable, Preset};
 use crate::text::printable;
 use std::sync::Arc;
 
@@ -54,15 +54,7 @@ impl App {
         let about = match listed.map(|listed| &listed.playable) {
             Some(Playable::Preset(preset)) => preset.clone(),
             Some(Playable::Kit(_)) => return None,
-            None => Preset {
-                name: String::new(),
-                author: String::new(),
-                tags: Vec::new(),
-                comment: String::new(),
-                guide: Guide::default(),
-                patch: patch.clone(),
-                tuning: None,
-            },
+            None => Preset::new(name, patch.clone()),
         };
         Some(Preset { name: name.to_owned(), patch, ..about })
     }

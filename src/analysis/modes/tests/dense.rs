@@ -29,3 +29,14 @@ fn modes_denser_than_their_bandwidths_are_told_apart() {
         assert!(strike.residual_db < -90.0 && 4 * found >= 3 * count && modes <= count + 4, "{case}");
     }
 }
+
+#[test]
+fn what_nobody_could_hear_beside_its_neighbour_is_no_mode() {
+    let mut chance = Chance(1);
+    for (level_db, heard) in [(-90.0, true), (-115.0, false)] {
+        let faint = Known(442.7, 0.95, pow(10.0, level_db / 20.0), 0.3);
+        let (samples, ..) = sound(&[Known(440.0, 1.0, 1.0, 0.0), faint], 1.5, -300.0, &mut chance);
+        let found = &taken_apart(samples).strikes[0];
+        assert_eq!(found.modes.len(), if heard { 2 } else { 1 }, "{level_db} dB: {:?}", found.modes);
+    }
+}
