@@ -69,7 +69,7 @@ impl Template {
         let whole = |message: String| ("line".to_owned(), message);
         let value: Value = serde_json::from_str(line).map_err(|error| whole(format!("no JSON: {error}")))?;
         let Value::Object(object) = value else {
-            return Err(whole("expected an object, as in {\"preset\": \"Kick\", \"note\": \"C2\"}".to_owned()));
+            return Err(whole("expected an object, as in {\"preset\": \"Kick\", \"note\": \"C4\"}".to_owned()));
         };
         let (mut entries, mut repeat) = (Vec::new(), 1);
         for (key, value) in object {

@@ -13,7 +13,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 pub(super) const EXAMPLES: &str = r#"A job is a line of JSON with the options of `sprung render` and with parameters. Values may be drawn:
-  {"preset": "Kick", "note": "C2", "length": 1, "tail": "none", "repeat": 2000,
+  {"preset": "Kick", "note": "C4", "length": 1, "tail": "none", "repeat": 2000,
    "sweep": {"uniform": [0, 36]}, "decay": {"log_uniform": ["50 ms", "2 s"]}, "velocity": {"integer": [40, 127]}}
 (in one line). Ways to draw: uniform, log_uniform, integer, normal [mean, deviation], choice.
 

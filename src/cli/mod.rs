@@ -47,7 +47,7 @@ struct Cli {
 const EXAMPLES: &str = "\
 Examples:
   sprung render song.mid -o song.wav
-  sprung render --note C2 --preset Kick -o kick.wav
+  sprung render --note C4 --preset Kick -o kick.wav
   sprung batch jobs.jsonl --out sounds
   sprung presets list
   sprung params

@@ -20,7 +20,7 @@ pub(super) const EXAMPLES: &str = "\
 Examples:
   sprung render song.mid -o song.wav
   sprung render song.mid --preset mine.toml --normalize lufs=-14 --bits 16 --dither -o song.wav
-  sprung render --note C2 --preset Kick --tail none --length 0.5 -o kick.wav
+  sprung render --note C4 --preset Kick --tail none --length 0.5 -o kick.wav
   sprung render --note C4,E4,67.5,440Hz --set decay=\"3 s\" --set mallet_pulse=contact -o chord.wav
   sprung render song.mid --preset Marimba --channel 10=drums.toml --programs none -o song.wav
   sprung render --note C4 --preset Marimba --figure marimba.png -o marimba.wav
