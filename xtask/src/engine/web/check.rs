@@ -1,11 +1,7 @@
 //! Plays the page in headless Chromium: its samples are those of the renderer; keys, mouse and masses sound; how fast it is.
 
-#[path = "../../../../tests/lab/browser.rs"]
-#[allow(dead_code, reason = "the lab's tests use more of it")]
-pub(super) mod browser;
-
 use super::midi;
-use browser::Page;
+use super::page::{Page, installed, until};
 use serde_json::{Value, json};
 use sprung::analysis::digest::Digest;
 use sprung::io::Song;
@@ -83,7 +79,7 @@ const SPEED: &str = "(async (preset) => {
 
 /// Opens the page, and checks it or takes its picture.
 pub(super) fn run(address: &str, check: bool, picture: Option<&Path>) -> Result<(), String> {
-    let Some(program) = browser::installed() else {
+    let Some(program) = installed() else {
         return Err("there is no chromium; install it with: sudo apt-get install chromium".to_owned());
     };
     let mut page = Page::open_at(&program, address);
@@ -103,17 +99,6 @@ pub(super) fn run(address: &str, check: bool, picture: Option<&Path>) -> Result<
 fn with_constants(script: &str) -> String {
     let constants = [("SECONDS", f64::from(SECONDS)), ("RATE", f64::from(RATE)), ("VOICES", VOICES)];
     constants.iter().fold(script.to_owned(), |script, (name, value)| script.replace(name, &value.to_string()))
-}
-
-/// Waits up to twenty seconds until an expression is true.
-pub(super) fn until(page: &mut Page, expression: &str) -> Result<(), String> {
-    for _ in 0..200 {
-        if page.value(expression) == json!(true) {
-            return Ok(());
-        }
-        page.value("new Promise((done) => setTimeout(done, 100))");
-    }
-    Err(format!("never true in the page: {expression}; errors: {:?}", page.errors))
 }
 
 fn number_of(preset: &str) -> usize {

@@ -1,7 +1,6 @@
 //! Plays the page by MIDI ports that stand in for the browser's.
 
-use super::check::browser::Page;
-use super::check::until;
+use super::page::{Page, until};
 
 /// JavaScript: gives the page a port. `midi.send` sends a message through a port, as a keyboard does, and `midi.plug` adds one.
 const PORTS: &str = "(() => {

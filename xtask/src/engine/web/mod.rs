@@ -2,6 +2,7 @@
 
 mod check;
 mod midi;
+mod page;
 mod serve;
 
 use crate::engine::cross::Target;
