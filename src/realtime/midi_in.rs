@@ -7,7 +7,7 @@ use super::midi_ports::{MidiPorts, Wanted};
 /// The source of live MIDI input.
 pub enum MidiIn {
     /// No input.
-    None(LiveSender),
+    None(Box<LiveSender>),
     /// The system's ports.
     Ports(MidiPorts),
     /// A port of the JACK server.
@@ -26,14 +26,14 @@ impl MidiIn {
         match wanted {
             wanted if jack => Self::Jack(Box::new(JackMidi::new(wanted, sender))),
             Some(wanted) => Self::Ports(MidiPorts::new(wanted, sender)),
-            None => Self::None(sender),
+            None => Self::None(Box::new(sender)),
         }
     }
 
     /// Ends the input and gives the sender back, for another input; none if the system does not give it back.
     pub fn into_sender(self) -> Option<LiveSender> {
         match self {
-            Self::None(sender) => Some(sender),
+            Self::None(sender) => Some(*sender),
             Self::Ports(ports) => ports.into_sender(),
             Self::Jack(port) => port.into_sender(),
         }
