@@ -162,18 +162,14 @@ fn pictures_are_small() {
 
 #[test]
 fn pictures_of_model_browser_and_manual_in_every_theme_are_as_accepted() {
-    let open: [(&str, fn(&mut Stage)); 3] = [
-        ("model", |stage| stage.harness.get_by_role_and_label(egui::Role::Tab, "Model").click()),
-        ("browser", |stage| stage.harness.get_by_label("Browse").click()),
-        ("manual", |stage| stage.harness.get_by_role_and_label(egui::Role::Tab, "?").click()),
-    ];
+    let pages = [("model", "Model"), ("browser", "Browse"), ("manual", "?")];
     for theme in Theme::ALL {
-        for (page, open) in open {
+        for (page, opens) in pages {
             // A sound that has a model.
             let sound = if page == "model" { "Church Bell" } else { "Marimba" };
             let shown = |size, scale| {
                 let mut stage = stage(sound, size, scale, theme);
-                open(&mut stage);
+                stage.harness.get_by_label(opens).click();
                 stage.harness.run_steps(3);
                 stage
             };
