@@ -1,5 +1,4 @@
-//! What a display shows of a sounding instrument: the number of voices, the motion of their masses, and the newest notes
-//! with what modulates them.
+//! What a display shows of a sounding instrument: the motion of its masses, and its newest notes with what modulates them.
 
 use super::note::Note;
 use super::voice::SynthVoice;
