@@ -6,6 +6,7 @@ const EXCUSED: &[(&str, &str)] = &[
     ("level::avx2", "x86-64 CPUs since 2013 have AVX2"),
     ("level::avx512", "some x86-64 CPUs have AVX-512"),
     ("level::neon", "AArch64 CPUs have NEON"),
+    ("level::simd128", "WebAssembly has it"),
     ("round_trip_of_every_preset", "it takes minutes: ‘cargo test --release --test fit -- --include-ignored’ runs it"),
     (
         "sixty_modes_in_three_seconds",

@@ -16,6 +16,8 @@ mod dsp {
         mod sse2;
         #[allow(clippy::needless_range_loop, reason = "several arrays are indexed in step")]
         mod vector;
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        mod wasm;
     }
 }
 

@@ -75,6 +75,9 @@ fused!(
     |this: Self, to: &mut [f32]| to[..4].copy_from_slice(&this.0)
 );
 
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+now!(super::wasm::Simd128);
+
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::*;
@@ -165,9 +168,11 @@ pub(crate) fn print() {
     let name = match (cfg!(target_family = "wasm"), cfg!(target_feature = "simd128")) {
         (false, _) => std::env::consts::ARCH.to_owned() + " scalar",
         (true, false) => "wasm32 scalar".to_owned(),
-        (true, true) => "wasm32 simd128".to_owned(),
+        (true, true) => "wasm32 simd128, scalar code".to_owned(),
     };
     compare::<rounded_to_odd::Scalar, Now<vector::Scalar>>(&name);
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    compare::<rounded_to_odd::Scalar, Now<super::wasm::Simd128>>("wasm32 simd128, own kernel");
     #[cfg(target_arch = "x86_64")]
     compare::<rounded_to_odd::Sse2, Now<super::sse2::Sse2>>("x86_64 sse2");
 }

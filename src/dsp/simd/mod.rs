@@ -1,6 +1,6 @@
 //! Vector instructions: detects which levels the CPU has, and runs kernels, written once, with the best of them.
 //!
-//! `vector` defines the operations that kernels may use; `sse2`, `x86` and `neon` implement them and contain the only
+//! `vector` defines the operations that kernels may use; `sse2`, `x86`, `neon` and `wasm` implement them and contain the only
 //! unsafe code of the crate. `fused` emulates fused multiplication for CPUs without an instruction for it.
 
 mod fused;
@@ -12,6 +12,9 @@ mod neon;
 mod sse2;
 #[allow(clippy::needless_range_loop, reason = "several arrays are indexed in step")]
 pub(super) mod vector;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+#[allow(unsafe_code)]
+mod wasm;
 #[cfg(target_arch = "x86_64")]
 #[allow(unsafe_code)]
 mod x86;
@@ -24,6 +27,8 @@ use vector::{Scalar, Vector};
 use neon::Neon;
 #[cfg(target_arch = "x86_64")]
 use sse2::Sse2;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+use wasm::Simd128;
 #[cfg(target_arch = "x86_64")]
 use x86::{Avx2, Avx512, HasAvx2, HasAvx512};
 
@@ -40,11 +45,13 @@ pub enum Level {
     Avx512,
     /// AArch64: four numbers, fused multiplication.
     Neon,
+    /// WebAssembly compiled for vectors: four numbers, fused multiplication emulated.
+    Simd128,
 }
 
 impl Level {
     /// Every level, slowest first.
-    pub const ALL: [Level; 5] = [Level::Scalar, Level::Sse2, Level::Avx2, Level::Avx512, Level::Neon];
+    pub const ALL: [Level; 6] = [Level::Scalar, Level::Sse2, Level::Avx2, Level::Avx512, Level::Neon, Level::Simd128];
 
     /// The level's name, as in the environment variable `SPRUNG_SIMD`.
     pub fn name(self) -> &'static str {
@@ -54,6 +61,7 @@ impl Level {
             Level::Avx2 => "avx2",
             Level::Avx512 => "avx512",
             Level::Neon => "neon",
+            Level::Simd128 => "simd128",
         }
     }
 
@@ -114,6 +122,8 @@ pub(in crate::dsp) enum Instructions {
     Avx512(HasAvx512),
     #[cfg(target_arch = "aarch64")]
     Neon,
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    Simd128,
 }
 
 impl Instructions {
@@ -134,8 +144,10 @@ impl Instructions {
             Level::Avx512 => HasAvx512::detect().map(Self::Avx512),
             #[cfg(target_arch = "aarch64")]
             Level::Neon => Some(Self::Neon),
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            Level::Simd128 => Some(Self::Simd128),
             #[cfg(target_arch = "x86_64")]
-            Level::Neon => None,
+            Level::Neon | Level::Simd128 => None,
             #[cfg(not(target_arch = "x86_64"))]
             _ => None,
         }
@@ -153,6 +165,8 @@ impl Instructions {
             Self::Avx512(_) => Level::Avx512,
             #[cfg(target_arch = "aarch64")]
             Self::Neon => Level::Neon,
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            Self::Simd128 => Level::Simd128,
         }
     }
 
@@ -171,6 +185,8 @@ impl Instructions {
             Self::Avx512(proof) => unsafe { run_avx512(kernel, proof) },
             #[cfg(target_arch = "aarch64")]
             Self::Neon => kernel.run::<Neon>(()),
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            Self::Simd128 => kernel.run::<Simd128>(()),
         }
     }
 }
