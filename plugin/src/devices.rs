@@ -20,7 +20,7 @@ pub(crate) struct Chosen {
     /// Frames per block.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) buffer: Option<u32>,
-    /// `all`, `none`, or a part of the name of a MIDI port; none is all.
+    /// `all`, `none`, or a part of the name of a MIDI port. No value means `all`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) midi_in: Option<String>,
 }
@@ -60,16 +60,22 @@ impl Desk {
         self.shown.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// For the window: asks for another choice.
+    /// For the window: asks for another choice. It is shown as chosen at once, since the next wish builds on it.
     pub(crate) fn ask(&self, wish: Chosen) {
-        *self.wish.lock().unwrap_or_else(PoisonError::into_inner) = Some(wish);
+        let mut waiting = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
+        Arc::make_mut(&mut *self.shown.lock().unwrap_or_else(PoisonError::into_inner)).chosen = wish.clone();
+        *waiting = Some(wish);
     }
 }
 
 #[cfg(any(feature = "standalone", test))]
 impl Desk {
-    /// For the program: shows what there is.
-    pub(crate) fn show(&self, devices: Devices) {
+    /// For the program: shows what there is. A wish that still waits stays shown as chosen.
+    pub(crate) fn show(&self, mut devices: Devices) {
+        let waiting = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(wish) = &*waiting {
+            devices.chosen = wish.clone();
+        }
         *self.shown.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(devices);
     }
 

@@ -111,14 +111,14 @@ impl Template {
 
     /// Reads the kits and lists of programs that are not among those `read` before. Returns an error if one of them names a file
     /// that the batch writes.
-    pub(super) fn check_sounds(&self, batch: &Batch, read: &mut BTreeSet<String>) -> Result<(), Fault> {
+    pub(super) fn check_sounds(&self, batch: &Batch, read: &mut BTreeSet<(bool, String)>) -> Result<(), Fault> {
         for entry in self.entries.iter().filter(|entry| entry.is_sound()) {
             for candidate in entry.candidates() {
                 if read.len() == MOST_NAMES {
                     read.clear();
                 }
                 let is_programs = entry.name() == PROGRAMS;
-                if !read.insert(format!("{is_programs} {candidate}")) {
+                if !read.insert((is_programs, candidate.to_string())) {
                     continue;
                 }
                 let mut one = Request::default();

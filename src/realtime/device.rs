@@ -40,6 +40,7 @@ pub struct Found {
     pub(super) format: SampleFormat,
     host: HostId,
     name: String,
+    rates: Vec<u32>,
 }
 
 impl Found {
@@ -68,7 +69,14 @@ impl Found {
             sample_rate: rate,
             buffer_size: BufferSize::Fixed(block(range.buffer_size(), choice.buffer, &name)?),
         };
-        Ok(Self { device, config, format: range.sample_format(), host: id, name })
+        let has = |rate: &u32| choose(&ranges, Some(*rate), &name).is_ok();
+        let rates = OFFERED_RATES.into_iter().filter(has).collect();
+        Ok(Self { device, config, format: range.sample_format(), host: id, name, rates })
+    }
+
+    /// The usual sample rates that the device has, in Hz.
+    pub fn rates(&self) -> &[u32] {
+        &self.rates
     }
 
     /// Frames per second.
@@ -129,12 +137,6 @@ pub fn outputs() -> Vec<Output> {
         devices.into_iter().map(move |(_, id, description)| Output { host: host.clone(), id, description })
     };
     cpal::available_hosts().into_iter().flat_map(of).collect()
-}
-
-/// The usual sample rates that a device has; none if it cannot be found or asked.
-pub fn rates(choice: &Choice) -> Vec<u32> {
-    let has = |rate: &u32| Found::find(&Choice { rate: Some(*rate), ..choice.clone() }).is_ok();
-    OFFERED_RATES.into_iter().filter(has).collect()
 }
 
 /// Stops ALSA's library from printing its errors to stderr on this thread. They are returned as errors anyway.

@@ -30,6 +30,7 @@ pub struct Session<S: Source = Player> {
     description: String,
     sample_rate: u32,
     is_jack: bool,
+    rates: Vec<u32>,
     status: Arc<Status>,
     stream: Option<cpal::Stream>,
     /// Held here while there is no stream.
@@ -51,6 +52,7 @@ impl<S: Source> Session<S> {
             description: found.to_string(),
             sample_rate: found.sample_rate(),
             is_jack: found.is_jack(),
+            rates: found.rates().to_vec(),
             status,
             stream: None,
             player: Some(Box::new(player)),
@@ -78,6 +80,11 @@ impl<S: Source> Session<S> {
         self.is_jack
     }
 
+    /// The usual sample rates that the device has, in Hz.
+    pub fn rates(&self) -> &[u32] {
+        &self.rates
+    }
+
     /// Whether the device is present.
     pub fn is_playing(&self) -> bool {
         self.stream.is_some()
@@ -87,20 +94,32 @@ impl<S: Source> Session<S> {
     /// device has it.
     ///
     /// # Errors
-    /// [`Error::Value`] if the device cannot be found or started: then the session goes on as before.
+    /// [`Error::Value`] if the device cannot be found or started: then the session goes back to its device, or waits for it.
     pub fn change(&mut self, choice: Choice, fit: impl Fn(&mut S, u32)) -> Result<()> {
-        let found = Found::find(&choice)?;
-        self.close();
+        let is_same = (&choice.host, &choice.device) == (&self.choice.host, &self.choice.device);
+        let found = match Found::find(&choice) {
+            // A device for one stream tells nothing while it plays.
+            Err(_) if is_same => None,
+            found => Some(found?),
+        };
+        // A device that is still being closed could not be opened.
+        if let Some(ended) = self.close() {
+            let _ = ended.recv_timeout(END);
+        }
         if self.player.is_none() {
             return Err(Error::value("--device", "the present one does not answer, so it cannot be left".to_owned()));
         }
         let before = self.sample_rate;
-        self.player.iter_mut().for_each(|player| fit(player, found.sample_rate()));
-        match self.open(&found) {
-            Ok(()) => {
+        let opened = found.map_or_else(|| Found::find(&choice), Ok).and_then(|found| {
+            self.player.iter_mut().for_each(|player| fit(player, found.sample_rate()));
+            self.open(&found).map(|()| found)
+        });
+        match opened {
+            Ok(found) => {
                 self.choice = Choice { rate: Some(found.sample_rate()), ..choice };
                 (self.description, self.sample_rate) = (found.to_string(), found.sample_rate());
                 self.is_jack = found.is_jack();
+                self.rates = found.rates().to_vec();
                 Ok(())
             }
             Err(error) => {
@@ -181,12 +200,17 @@ impl<S: Source> Session<S> {
         }
     }
 
-    /// Ends the stream on another thread, so that a device that hangs cannot hang the program.
-    fn close(&mut self) {
-        if let Some(stream) = self.stream.take() {
-            std::thread::spawn(move || drop(stream));
-            self.player = self.home.1.recv_timeout(END).ok();
-        }
+    /// Ends the stream on another thread, so that a device that hangs cannot hang the program. The player is back before the
+    /// device is free, which the receiver hears of.
+    fn close(&mut self) -> Option<Receiver<()>> {
+        let stream = self.stream.take()?;
+        let (done, ended) = channel();
+        std::thread::spawn(move || {
+            drop(stream);
+            let _ = done.send(());
+        });
+        self.player = self.home.1.recv_timeout(END).ok();
+        Some(ended)
     }
 
     fn stalled(&mut self) -> Option<String> {

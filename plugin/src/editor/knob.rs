@@ -11,6 +11,7 @@ use egui::{
     Align2, CursorIcon, Event, EventFilter, Id, Key, Rect, Response, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2,
 };
 use sprung::params::{ParamInfo, Unit};
+use sprung::preset::Playable;
 
 /// Pixels of the mouse for the whole travel of a knob.
 const TRAVEL: f32 = 220.0;
@@ -222,7 +223,8 @@ pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
         ui.close();
     }
     routes::menu(ui, info, controls);
-    if info.is_modulatable() && ui.button("MIDI learn").clicked() {
+    let has_routes = matches!(controls.params.state().playable, Playable::Preset(_));
+    if info.is_modulatable() && has_routes && ui.button("MIDI learn").clicked() {
         learn::begin(info, controls);
         ui.close();
     }

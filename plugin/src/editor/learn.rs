@@ -3,7 +3,6 @@
 use super::controls::{Controls, Learning};
 use super::routes::{change, source_name};
 use egui::{Key, Ui};
-use sprung::engine::telemetry::Moved;
 use sprung::params::ParamInfo;
 use sprung::patch::routes::{MAX_ROUTES, Route, Source};
 use sprung::preset::Playable;
@@ -37,16 +36,15 @@ pub(super) fn follow(ui: &Ui, controls: &mut Controls) -> Option<String> {
             format!("{}: move what is to modulate it ({sources}); Escape gives up", info.name)
         });
     }
-    match moved? {
-        Moved::Controller(number) if moved?.source().is_none() => Some(format!(
-            "controller {number} is no source of routes: expected 1 (wheel), 2 (breath), 11 (expression), 74 (timbre), \
-             the pitch wheel or pressure"
-        )),
-        moved => {
-            controls.hands.learning = None;
-            Some(learn(moved.source()?, info, controls))
-        }
-    }
+    let moved = moved?;
+    let Some(source) = moved.source() else {
+        return Some(format!(
+            "{moved} is no source of routes: expected controller 1 (wheel), 2 (breath), 11 (expression), 74 (timbre), the \
+             pitch wheel or pressure"
+        ));
+    };
+    controls.hands.learning = None;
+    Some(learn(source, info, controls))
 }
 
 /// Adds a route from a source, by which the knob goes as far as it can. Returns a message.

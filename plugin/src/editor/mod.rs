@@ -4,14 +4,14 @@
 //! |---|---|
 //! | `window` | an open window: what it shows, and what the user asks for |
 //! | `theme`, `fonts`, `layout` | the table of colours and measures; the fonts; where the parts are |
-//! | `controls`, `gestures`, `history` | what every widget needs; changes that hosts see; undo and redo |
+//! | `controls`, `gestures`, `history`, `learn` | what every widget needs; changes that hosts see; undo and redo; MIDI learn |
 //! | `header`, `sections`, `routes`, `curves`, `outlines`, `status` | the parts of the window; menus of routes; small pictures in sections |
 //! | `modes`, `modes_face`, `mode_axes`, `mode_table`, `snap` | the modes: what the user does with them, their picture, its axes, their table, series of ratios |
 //! | `motion`, `phase`, `scope`, `spectrum`, `ringing` | what moves: the phase plane; waveform and spectrum; how the modes ring down |
 //! | `body_view`, `body_face`, `body_shape`, `body_form` | the body that swings: what the user does with it, its picture, the shapes of its modes, its form |
 //! | `audition` | a key that the window holds by itself, so that a change is heard |
 //! | `piano`, `key_piano`, `meter` | the keyboard; the computer's keys as one; levels |
-//! | `pages`, `kit_page`, `tuning_page`, `voices_panel`, `key_grid` | the tabs and their pages: a kit's keys, the tuning, the voices; all keys as a grid |
+//! | `pages`, `kit_page`, `tuning_page`, `voices_panel`, `devices_page`, `key_grid` | the tabs and their pages: a kit's keys, the tuning, the voices, the program's devices; all keys as a grid |
 //! | `manual`, `manual_text` | the manual over the window; its pages taken apart |
 //! | `drops`, `recordings`, `fitting` | files that are dropped on the window; recordings that become a sound in the background; how far that is |
 //! | `browser`, `details`, `star`, `sounds`, `files` | the page on which sounds are found and saved; the sounds that there are |

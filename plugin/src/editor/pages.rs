@@ -81,8 +81,8 @@ impl Pages {
             None => {
                 let is_voices = sections::pages().nth(page) == Some("Voices");
                 let (left, right) = if is_voices && rect.width() >= WIDE {
-                    let split = rect.right() - (rect.width() - SECTIONS - GAP).max(voices_panel::WIDTH);
-                    (rect.with_max_x(split - GAP), Some(rect.with_min_x(split)))
+                    let left = rect.left() + SECTIONS;
+                    (rect.with_max_x(left), Some(rect.with_min_x(left + GAP)))
                 } else {
                     (rect, None)
                 };

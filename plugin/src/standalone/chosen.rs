@@ -5,10 +5,9 @@ use sprung::realtime::{Choice, Found};
 
 /// Finds the device that was given, or that of the last time, or if that is not there now, the system's.
 pub(super) fn find(given: Chosen, last: Chosen, say: impl Fn(String)) -> Result<(Chosen, Found), String> {
-    let midi_in = given.midi_in.clone().or(last.midi_in.clone());
     let is_given = Chosen { midi_in: None, ..given.clone() } != Chosen::default();
-    // Sample rate and block size of the last time belong to the device of that time.
-    let chosen = Chosen { midi_in: midi_in.clone(), ..if is_given { given } else { last } };
+    let chosen = merged(given, last);
+    let midi_in = chosen.midi_in.clone();
     match Found::find(&choice(&chosen)) {
         Ok(found) => Ok((chosen, found)),
         Err(error) if is_given => Err(error.to_string()),
@@ -21,14 +20,25 @@ pub(super) fn find(given: Chosen, last: Chosen, say: impl Fn(String)) -> Result<
     }
 }
 
+/// What is given, and of the last time what is not. Sample rate and block size of the last time belong to its device.
+fn merged(given: Chosen, last: Chosen) -> Chosen {
+    let midi_in = given.midi_in.or(last.midi_in);
+    if given.host.is_some() || given.device.is_some() {
+        return Chosen { midi_in, ..given };
+    }
+    Chosen { midi_in, rate: given.rate.or(last.rate), buffer: given.buffer.or(last.buffer), ..last }
+}
+
 /// What is chosen, as the library has it.
 pub(super) fn choice(Chosen { host, device, rate, buffer, .. }: &Chosen) -> Choice {
     Choice { host: host.clone(), device: device.clone(), rate: *rate, buffer: *buffer }
 }
 
-/// An error of a device as a line for the window, where nothing is called by its option.
+/// An error of a device as a line for the window, which has no options and lists the devices itself.
 pub(super) fn plain(error: &sprung::Error) -> String {
-    error.to_string().trim_start_matches("--").trim_end_matches('.').to_owned()
+    let error = error.to_string();
+    let said = error.split("; ‘--list’").next().unwrap_or(&error);
+    said.trim_start_matches("--").trim_end_matches('.').to_owned()
 }
 
 #[cfg(test)]
@@ -40,5 +50,25 @@ mod tests {
         let tape = Chosen { host: Some("tape".to_owned()), ..Chosen::default() };
         let said = find(tape, Chosen::default(), |_| unreachable!()).err().unwrap();
         assert!(said.contains("no ‘tape’ here"), "{said}");
+    }
+
+    #[test]
+    fn options_change_what_was_chosen_the_last_time() {
+        let text = |text: &str| Some(text.to_owned());
+        let last =
+            Chosen { host: text("alsa"), device: text("hw:1"), rate: Some(96_000), buffer: Some(64), midi_in: None };
+        let given = Chosen { buffer: Some(128), midi_in: text("Key"), ..Chosen::default() };
+        let expected = Chosen { buffer: Some(128), midi_in: text("Key"), ..last.clone() };
+        assert_eq!(merged(given, last.clone()), expected, "the device stays");
+        let given = Chosen { host: text("jack"), ..Chosen::default() };
+        assert_eq!(merged(given.clone(), last.clone()), given, "another one has its own rate and blocks");
+        assert_eq!(merged(Chosen::default(), last.clone()), last);
+    }
+
+    #[test]
+    fn errors_name_no_options() {
+        let error =
+            sprung::Error::value("--device", "ALSA has no device ‘x’, or several; ‘--list’ shows them all".to_owned());
+        assert_eq!(plain(&error), "device: ALSA has no device ‘x’, or several");
     }
 }

@@ -70,10 +70,12 @@ impl Keeper {
             std::thread::sleep(POLL);
         }
         drop(midi);
+        // Before the sound fades: who starts the program again at once finds the state, and nobody who writes it.
+        let ended = self.kept.keep(&self.params);
+        drop(self.kept);
         if !self.session.finish(&mut self.closing) {
             complain("warning: the sound device does not answer; left it behind");
         }
-        let ended = self.kept.keep(&self.params);
         if !self.is_closed.load(Relaxed) {
             // The window's thread still waits for a window that does not close.
             if let Err(error) = &ended {
@@ -90,20 +92,28 @@ impl Keeper {
     }
 
     /// Plays on what the window wishes. If that cannot be, all stays as it was.
-    fn change(&mut self, wish: Chosen, midi: &mut Option<MidiIn>) {
+    fn change(&mut self, mut wish: Chosen, midi: &mut Option<MidiIn>) {
         let was_jack = self.session.is_jack();
         if choice(&wish) != choice(&self.chosen) {
             let changed = self.session.change(choice(&wish), WindowPlayer::set_sample_rate);
             let said = match &changed {
                 Ok(()) => format!("playing on {}", self.session.description()),
-                Err(error) => format!("{}; still on {}", plain(error), self.session.description()),
+                Err(error) if self.session.is_playing() => {
+                    format!("{}; still on {}", plain(error), self.session.description())
+                }
+                Err(error) => format!("{}; waiting for {}", plain(error), self.session.description()),
             };
             tell(&self.params, Some(said));
             if changed.is_err() {
                 return;
             }
         }
-        let is_other_port = wish.midi_in != self.chosen.midi_in || was_jack != self.session.is_jack();
+        let is_other_system = was_jack != self.session.is_jack();
+        // Ports have other names there.
+        if is_other_system && wish.midi_in.as_deref() != Some("none") {
+            wish.midi_in = None;
+        }
+        let is_other_port = wish.midi_in != self.chosen.midi_in || is_other_system;
         self.chosen = wish;
         if is_other_port {
             *midi = midi.take().and_then(MidiIn::into_sender).map(|sender| self.listen(sender));
@@ -116,17 +126,42 @@ impl Keeper {
     /// What there is now.
     fn devices(&self) -> Devices {
         let output = |device::Output { host, id, description }| Output { host, id, description };
-        let mut rates = device::rates(&choice(&self.chosen));
-        // A device that plays may not tell what else it could do.
-        if !rates.contains(&self.session.sample_rate()) {
-            rates.push(self.session.sample_rate());
-        }
+        // A JACK server connects its ports itself.
+        let ports = if self.session.is_jack() { vec![] } else { midi_ports::names() };
+        let playing = if self.session.is_playing() { self.session.description() } else { "" };
         Devices {
             outputs: device::outputs().into_iter().map(output).collect(),
-            rates,
-            ports: midi_ports::names(),
+            rates: self.session.rates().to_vec(),
+            ports: ports.into_iter().map(lasting).collect(),
             chosen: self.chosen.clone(),
-            playing: self.session.description().to_owned(),
+            playing: playing.to_owned(),
+        }
+    }
+}
+
+/// A port’s name without the numbers that ALSA adds, which are others when it is plugged in again.
+fn lasting(mut name: String) -> String {
+    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let numbers = name.rsplit_once(' ').and_then(|(_, last)| last.split_once(':'));
+    if numbers.is_some_and(|(client, port)| is_number(client) && is_number(port)) {
+        name.truncate(name.rfind(' ').unwrap_or(name.len()));
+    }
+    name
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ports_keep_their_names_when_they_are_plugged_in_again() {
+        for (name, kept) in [
+            ("Keystation 49:Keystation 49 MIDI 1 24:0", "Keystation 49:Keystation 49 MIDI 1"),
+            ("Midi Through", "Midi Through"),
+            ("Synth 1:2a", "Synth 1:2a"),
+            ("", ""),
+        ] {
+            assert_eq!(lasting(name.to_owned()), kept);
         }
     }
 }

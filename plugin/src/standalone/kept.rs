@@ -16,6 +16,8 @@ const NAME: &str = "standalone.json";
 /// The file of the state; none if the system does not say where such files are.
 pub(super) struct Kept {
     file: Option<PathBuf>,
+    /// Whether this program may write what it keeps: nobody else does, and nothing that is there would be lost.
+    is_ours: bool,
     /// The state as it is in the file, as far as it was noticed.
     last: Option<State>,
     /// What shows other programs that this one writes the file, as long as it is open.
@@ -26,7 +28,7 @@ impl Kept {
     /// That of this user.
     pub(super) fn of_user() -> Self {
         let file = folder(&|name| std::env::var_os(name)).map(|folder| folder.join(NAME));
-        Self { file, last: None, lock: None }
+        Self { file, is_ours: true, last: None, lock: None }
     }
 
     /// Loads the state of the last time. Returns what the user should know. A file that is not understood as a whole is
@@ -34,9 +36,7 @@ impl Kept {
     pub(super) fn restore(&mut self, params: &SprungParams) -> Option<String> {
         let file = self.file.clone()?;
         let is_taken = self.claim(&file);
-        if is_taken {
-            self.file = None;
-        }
+        self.is_ours = !is_taken;
         let taken = "another Sprung is open and keeps its state: what is changed in this one is not kept".to_owned();
         let told = self.read(&file, params);
         match told {
@@ -64,7 +64,7 @@ impl Kept {
             Err(error) if error.kind() == ErrorKind::NotFound => return None,
             Err(error) => {
                 // What cannot be read must not be overwritten.
-                self.file = None;
+                self.is_ours = false;
                 let stays = "it stays as it is, and what is changed now is not kept";
                 return Some(format!("{}: cannot be read: {error}; {stays}", file.display()));
             }
@@ -78,18 +78,23 @@ impl Kept {
             }
             Err(complaint) => complaint,
         };
-        if self.file.is_none() {
-            return Some(format!("{}: {complaint}", file.display()));
+        Some(self.not_understood(file, &complaint))
+    }
+
+    /// Sets a file aside that is not understood, if this program may. Returns what the user should know.
+    fn not_understood(&mut self, file: &Path, complaint: &str) -> String {
+        if !self.is_ours {
+            return format!("{}: {complaint}", file.display());
         }
         let aside = match set_aside(file) {
             Ok(aside) => format!("it is kept as {}", aside.display()),
             Err(error) => {
                 // What cannot be moved must not be overwritten.
-                self.file = None;
+                self.is_ours = false;
                 format!("it stays, and nothing else is kept this time: {error}")
             }
         };
-        Some(format!("{}: {complaint}; {aside}", file.display()))
+        format!("{}: {complaint}; {aside}", file.display())
     }
 
     /// Writes the state if it has changed since the last time.
@@ -99,7 +104,7 @@ impl Kept {
 
     /// Writes the state. The file is replaced when all of it is on disk.
     pub(super) fn keep(&mut self, params: &SprungParams) -> Result<(), String> {
-        let Some(file) = &self.file else { return Ok(()) };
+        let Some(file) = self.file.as_ref().filter(|_| self.is_ours) else { return Ok(()) };
         let state = params.state();
         write(file, &state.to_json()).map_err(|error| format!("the state cannot be kept: {error}"))?;
         self.last = Some(state);
@@ -107,21 +112,26 @@ impl Kept {
     }
 
     /// The choice of devices of the last time, and what the user should know of it.
-    pub(super) fn chosen(&self) -> (Chosen, Option<String>) {
+    pub(super) fn chosen(&mut self) -> (Chosen, Option<String>) {
         let Some(file) = self.devices() else { return Default::default() };
         match std::fs::read(&file) {
             Ok(bytes) => match serde_json::from_slice(&bytes) {
                 Ok(chosen) => (chosen, None),
-                Err(error) => (Chosen::default(), Some(format!("{}: no choice of devices: {error}", file.display()))),
+                Err(error) => {
+                    (Chosen::default(), Some(self.not_understood(&file, &format!("no choice of devices: {error}"))))
+                }
             },
             Err(error) if error.kind() == ErrorKind::NotFound => Default::default(),
-            Err(error) => (Chosen::default(), Some(format!("{}: cannot be read: {error}", file.display()))),
+            Err(error) => {
+                self.is_ours = false;
+                (Chosen::default(), Some(format!("{}: cannot be read: {error}", file.display())))
+            }
         }
     }
 
     /// Writes the choice of devices.
     pub(super) fn keep_chosen(&self, chosen: &Chosen) -> Result<(), String> {
-        let Some(file) = self.devices() else { return Ok(()) };
+        let Some(file) = self.devices().filter(|_| self.is_ours) else { return Ok(()) };
         let written = serde_json::to_string(chosen).map_err(|error| error.to_string());
         let written = written.and_then(|text| write(&file, &(text + "\n")).map_err(|error| error.to_string()));
         written.map_err(|error| format!("the choice of devices cannot be kept: {error}"))
@@ -144,9 +154,10 @@ fn write(file: &Path, text: &str) -> sprung::Result<()> {
 
 /// Gives a file another name, which no file has yet, and returns it.
 fn set_aside(file: &Path) -> std::io::Result<PathBuf> {
+    let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let mut number = 1;
     loop {
-        let aside = file.with_file_name(format!("standalone.not-understood-{number}.json"));
+        let aside = file.with_file_name(format!("{name}.not-understood-{number}.json"));
         // A link fails if the name is taken, and renaming would replace that file.
         match std::fs::hard_link(file, &aside) {
             Ok(()) => return std::fs::remove_file(file).map(|()| aside),
@@ -177,7 +188,7 @@ mod tests {
     use sprung::preset::Playable;
 
     fn kept(folder: &Path) -> Kept {
-        Kept { file: Some(folder.join("sprung").join(NAME)), last: None, lock: None }
+        Kept { file: Some(folder.join("sprung").join(NAME)), is_ours: true, last: None, lock: None }
     }
 
     fn marimba() -> Arc<SprungParams> {
@@ -235,9 +246,12 @@ mod tests {
         let file = folder.path().join("sprung").join(NAME);
         let before = std::fs::read(&file).unwrap();
         second.keep(&SprungParams::default()).unwrap();
+        let chosen = Chosen { rate: Some(96_000), ..Chosen::default() };
+        first.keep_chosen(&chosen).unwrap();
+        assert_eq!(second.chosen(), (chosen.clone(), None));
         second.keep_chosen(&Chosen { rate: Some(44_100), ..Chosen::default() }).unwrap();
         assert_eq!(std::fs::read(&file).unwrap(), before, "and leaves it as it is");
-        assert_eq!(first.chosen(), Default::default());
+        assert_eq!(first.chosen(), (chosen, None));
         drop(first);
         assert_eq!(kept(folder.path()).restore(&params), None, "the next one may");
     }
@@ -258,7 +272,7 @@ mod tests {
     #[test]
     fn the_choice_of_devices_comes_back() {
         let folder = tempfile::tempdir().unwrap();
-        let kept = kept(folder.path());
+        let mut kept = kept(folder.path());
         assert_eq!(kept.chosen(), (Chosen::default(), None));
         let chosen = Chosen { host: Some("jack".to_owned()), rate: Some(96_000), ..Chosen::default() };
         kept.keep_chosen(&chosen).unwrap();
@@ -266,6 +280,8 @@ mod tests {
         std::fs::write(folder.path().join("sprung/devices.json"), "{\"speed\": 1}").unwrap();
         let (chosen, said) = kept.chosen();
         assert!(chosen == Chosen::default() && said.is_some_and(|said| said.contains("devices.json")));
+        let aside = folder.path().join("sprung/devices.not-understood-1.json");
+        assert_eq!(std::fs::read_to_string(aside).unwrap(), "{\"speed\": 1}", "nothing of it is lost");
     }
 
     #[test]

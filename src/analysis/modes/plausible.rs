@@ -17,8 +17,8 @@ const SHORTEST: f64 = 0.005;
 const LEAST_QUALITY: f64 = 1.0;
 /// Largest standard deviations of a pole in its widths, and of an amplitude as a share of it.
 const DEVIATION: f64 = 0.5;
-/// Amplitude over that of a neighbour, and how near this is in their widths, for a mode that nobody could hear beside it: it explains
-/// by how little the neighbour is no pure damped sinusoid.
+/// A mode 100 dB below a neighbour, and within so many times the sum of their widths, cannot be heard: it only corrects the
+/// neighbour's shape.
 const SKIRT: f64 = 1e-5;
 const BESIDE: f64 = 8.0;
 /// Lowest frequency that is heard, in Hz.

@@ -13,9 +13,10 @@ use crate::error::{Error, Result};
 /// Least share of the sound's energy: what rounding to single precision leaves.
 const LEAST_SHARE: f64 = 1e-13;
 
-/// Share of what is unexplained that a round has to explain: so much at least, and so much of noise alone, by as many modes as there
-/// may be. Of noise ever more can be explained by ever more modes, little by little, and it means nothing.
+/// Share of what is unexplained that a round has to explain, at least.
 const LEAST_GAIN: f64 = 1e-4;
+/// That share for a sound of which nothing is explained yet by all the modes that are allowed. With fewer modes, or less left, it is
+/// lower in proportion. More modes always explain a little more of noise, which means nothing.
 const GAIN_OF_NOISE: f64 = 0.05;
 
 const MOST_ROUNDS: usize = 24;
@@ -54,7 +55,6 @@ pub(super) fn find(
     let planner = Planner::default();
     let pruned = |fit, go_on: &mut dyn FnMut() -> bool| prune(fit, samples, sample_rate, least, &planner, go_on);
     let floors = |fit: &Fit| floors(fit, samples, sample_rate, &planner);
-    // A mode that just stands out of noise takes a little more than that away from it.
     let least_gain = |fit: &Fit| {
         let noise = fit.unexplained / energy.max(f64::MIN_POSITIVE);
         let of_noise = GAIN_OF_NOISE * noise * fit.poles.len() as f64 / most_modes as f64;

@@ -20,8 +20,20 @@ pub enum Moved {
 /// The numbers of what is no controller.
 const BEND: u8 = 128;
 const PRESSURE: u8 = 129;
+/// Half of the way, as MIDI has it.
+const BRIGHTNESS_AT_REST: f32 = 64.0 / 127.0;
 /// Bits below the count.
 const NUMBER: u32 = 8;
+
+impl std::fmt::Display for Moved {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Controller(number) => write!(f, "controller {number}"),
+            Self::Bend => f.write_str("the pitch wheel"),
+            Self::Pressure => f.write_str("pressure"),
+        }
+    }
+}
 
 impl Moved {
     /// The source of routes that follows it.
@@ -37,9 +49,10 @@ impl Moved {
         }
     }
 
-    /// What an event moves. Controllers of MPE send rest with each note, which moves nothing.
+    /// What an event moves. Keyboards for MPE send the wheel, pressure and brightness at rest with each note, which moves nothing.
     fn by(kind: &EventKind) -> Option<Self> {
         match *kind {
+            EventKind::Control { controller: BRIGHTNESS, value } if value == BRIGHTNESS_AT_REST => None,
             // From 120 on they are commands.
             EventKind::Control { controller: controller @ 0..120, .. } => Some(Self::Controller(controller)),
             EventKind::PitchBend(value) if value != 0.0 => Some(Self::Bend),
@@ -101,6 +114,7 @@ mod tests {
             last.note(&EventKind::PitchBend(0.0));
             last.note(&EventKind::ChannelPressure(0.0));
             last.note(&EventKind::Control { controller: 123, value: 0.0 });
+            last.note(&EventKind::Control { controller: 74, value: 64.0 / 127.0 });
             assert_eq!((last.read(), moved.source()), ((count as u64 + 1, Some(moved)), source));
         }
     }

@@ -126,7 +126,10 @@ mod tests {
             })
         };
         let mut found = std::collections::BTreeSet::new();
-        for _ in 0..20_000 {
+        let (start, mut reads) = (std::time::Instant::now(), 0);
+        // On a busy machine the writer may come late.
+        while (reads < 20_000 || found.len() < 2) && start.elapsed().as_secs() < 60 {
+            reads += 1;
             let Some(read) = sounding.try_to_read() else { continue };
             let Some(first) = read[0] else { continue };
             assert_eq!(read, notes(first.key), "parts of two");

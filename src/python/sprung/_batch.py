@@ -36,6 +36,12 @@ def batch(
         return [json.loads(line) for line in lines]
 
 
+def check_format(format: str) -> None:
+    """Raises an error unless the files can be written so."""
+    if format not in ("wav", "flac"):
+        raise Error(f"format: ‘{format}’: expected wav or flac")
+
+
 def make(
     jobs: str | os.PathLike[str] | Iterable[Mapping[str, Any]],
     out: str | os.PathLike[str],
@@ -48,8 +54,7 @@ def make(
     progress: Callable[[int, int], object] | None = None,
 ) -> str:
     """As :func:`batch`, but gives the path of the manifest, which may be longer than memory."""
-    if format not in ("wav", "flac"):
-        raise Error(f"format: ‘{format}’: expected wav or flac")
+    check_format(format)
     with ExitStack() as stack:
         if isinstance(jobs, (str, os.PathLike)):
             path = os.fspath(jobs)

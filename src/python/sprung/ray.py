@@ -21,7 +21,7 @@ from typing import Any, Union
 import ray
 from ray.exceptions import RayError, RayTaskError
 
-from ._batch import make
+from ._batch import check_format, make
 from ._sprung import Error, Locked
 
 __all__ = ["batch"]
@@ -62,8 +62,7 @@ def batch(
         raise Error(f"cpus: {cpus}: expected 1 to {_MOST_CPUS}")
     if retries < -1:
         raise Error(f"retries: {retries}: expected 0 or more, or -1 for always")
-    if format not in ("wav", "flac"):
-        raise Error(f"format: ‘{format}’: expected wav or flac")
+    check_format(format)
     given: _Jobs = os.fspath(jobs) if isinstance(jobs, (str, os.PathLike)) else list(jobs)
     if not ray.is_initialized():
         ray.init()
@@ -121,8 +120,8 @@ def _cancel(tasks: list[Any]) -> None:
 def _remove_parts(out: Path) -> None:
     """Removes the manifests of shards, also those of an earlier call with another number of shards.
 
-    The whole has all their lines, and what is left in the folder is what one machine writes. A manifest with jobs that the
-    whole does not have stays.
+    The whole has all their lines, and what is left in the folder is what one machine writes. A manifest with jobs of higher
+    numbers than the whole has stays, and so does what is no manifest.
     """
     with open(out / "manifest.jsonl", "rb") as lines:
         whole = sum(1 for _ in lines)
@@ -132,7 +131,11 @@ def _remove_parts(out: Path) -> None:
             for line in lines:
                 # A line without an end was cut off when its writer was killed.
                 last = line if line.endswith(b"\n") else last
-        if last is None or json.loads(last)["number"] < whole:
+        try:
+            is_done = last is None or json.loads(last)["number"] < whole
+        except (ValueError, KeyError, TypeError):
+            continue
+        if is_done:
             part.unlink(missing_ok=True)
 
 

@@ -42,7 +42,14 @@ fn page(size: [u32; 2], theme: Theme) -> Stage {
 }
 
 impl Stage {
+    /// Picks from the devices as they are at first.
     fn pick_device(&mut self, field: &str, name: &str) -> Option<Chosen> {
+        self.params.link().desk.show(devices());
+        self.harness.run_steps(1);
+        self.pick_another(field, name)
+    }
+
+    fn pick_another(&mut self, field: &str, name: &str) -> Option<Chosen> {
         self.harness.get_by_role_and_label(Role::ComboBox, field).click();
         self.harness.run_steps(3);
         self.harness.get_by_role_and_label(Role::Button, name).click();
@@ -64,6 +71,9 @@ fn what_is_picked_is_asked_for() {
     let jack = Chosen { host: text("jack"), device: text("JACK Output"), ..Chosen::default() };
     assert_eq!(stage.pick_device("Output", "jack: JACK Output"), Some(jack), "with the rate and blocks that suit it");
     assert_eq!(stage.pick_device("Block", "128 frames"), None, "as it is");
+    stage.pick_device("Sample rate", "96000 Hz");
+    let both = Chosen { rate: Some(96_000), midi_in: text("none"), ..before.clone() };
+    assert_eq!(stage.pick_another("MIDI in", "no port"), Some(both), "a wish builds on the one before");
     assert!(stage.host.said().is_empty(), "no parameter is concerned");
     // What was chosen and is not there now is shown all the same.
     let gone = Chosen { host: text("alsa"), device: text("hw:9"), rate: Some(22_050), ..Chosen::default() };
