@@ -7,8 +7,6 @@ use egui::{Align2, Color32, Painter, Rect, Stroke, StrokeKind, pos2, vec2};
 use sprung::params::Param;
 use sprung::units::note_name;
 
-/// The least width of the panel.
-pub(super) const WIDTH: f32 = 300.0;
 /// From this width on, the notes are listed beside the channels.
 const WIDE: f32 = 500.0;
 /// Height of a row of the list.
