@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 const WAITING: usize = 64;
 
 /// How many lines can wait for the window.
+#[cfg(feature = "standalone")]
 const NEWS: usize = 16;
 
 /// A note that is played in the window. It is neither part of the state nor of what a host renders to a file.
