@@ -132,7 +132,7 @@ impl Keeper {
         Devices {
             outputs: device::outputs().into_iter().map(output).collect(),
             rates: self.session.rates().to_vec(),
-            ports: ports.into_iter().map(lasting).collect(),
+            ports: ports.iter().map(|name| lasting(name).to_owned()).collect(),
             chosen: self.chosen.clone(),
             playing: playing.to_owned(),
         }
@@ -140,13 +140,11 @@ impl Keeper {
 }
 
 /// A port’s name without the numbers that ALSA adds, which are others when it is plugged in again.
-fn lasting(mut name: String) -> String {
+fn lasting(name: &str) -> &str {
     let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
-    let numbers = name.rsplit_once(' ').and_then(|(_, last)| last.split_once(':'));
-    if numbers.is_some_and(|(client, port)| is_number(client) && is_number(port)) {
-        name.truncate(name.rfind(' ').unwrap_or(name.len()));
-    }
-    name
+    let are_numbers =
+        |last: &str| last.split_once(':').is_some_and(|(client, port)| is_number(client) && is_number(port));
+    name.rsplit_once(' ').filter(|(_, last)| are_numbers(last)).map_or(name, |(kept, _)| kept)
 }
 
 #[cfg(test)]
@@ -161,7 +159,7 @@ mod tests {
             ("Synth 1:2a", "Synth 1:2a"),
             ("", ""),
         ] {
-            assert_eq!(lasting(name.to_owned()), kept);
+            assert_eq!(lasting(name), kept);
         }
     }
 }

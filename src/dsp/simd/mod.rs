@@ -50,7 +50,7 @@ pub enum Level {
 }
 
 impl Level {
-    /// Every level, slowest first.
+    /// Every level; those of one CPU, slowest first.
     pub const ALL: [Level; 6] = [Level::Scalar, Level::Sse2, Level::Avx2, Level::Avx512, Level::Neon, Level::Simd128];
 
     /// The level's name, as in the environment variable `SPRUNG_SIMD`.
