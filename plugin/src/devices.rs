@@ -1,11 +1,11 @@
-//! Devices, sample rates and MIDI ports of the program, as its window shows and chooses them. In a host there are none.
+//! Audio devices, sample rates and MIDI ports of the standalone program, for its window; a host chooses its own.
 
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What is chosen. What has no value is chosen by the program.
+/// The user's choices. A field without a value leaves the choice to the program.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Chosen {
@@ -33,7 +33,7 @@ pub(crate) struct Output {
     pub(crate) description: String,
 }
 
-/// What there is, and what is used.
+/// The devices and ports that exist, and those in use.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Devices {
     pub(crate) outputs: Vec<Output>,
@@ -41,11 +41,12 @@ pub(crate) struct Devices {
     pub(crate) rates: Vec<u32>,
     pub(crate) ports: Vec<String>,
     pub(crate) chosen: Chosen,
-    /// The device with its settings, for people.
+    /// The device in use with its settings, as text for the user.
     pub(crate) playing: String,
 }
 
-/// Where the program shows what there is, and the window says what it wishes. Neither waits for the other's work.
+/// Exchange between the program and the window: the program publishes the devices, the window requests a choice.
+/// Neither waits for the other's work.
 #[derive(Default)]
 pub(crate) struct Desk {
     shown: Mutex<Arc<Devices>>,
@@ -54,13 +55,13 @@ pub(crate) struct Desk {
 }
 
 impl Desk {
-    /// For the window: what there is. The program looks for it again while it is looked at.
+    /// For the window: the devices and ports. As long as the window calls this, the program keeps the list up to date.
     pub(crate) fn look(&self) -> Arc<Devices> {
         self.is_watched.store(true, Relaxed);
         self.shown.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// For the window: asks for another choice. It is shown as chosen at once, since the next wish builds on it.
+    /// For the window: requests another choice. It is shown as chosen at once, since the next request is based on it.
     pub(crate) fn ask(&self, wish: Chosen) {
         let mut waiting = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
         Arc::make_mut(&mut *self.shown.lock().unwrap_or_else(PoisonError::into_inner)).chosen = wish.clone();
@@ -70,7 +71,7 @@ impl Desk {
 
 #[cfg(any(feature = "standalone", test))]
 impl Desk {
-    /// For the program: shows what there is. A wish that still waits stays shown as chosen.
+    /// For the program: publishes the devices and ports. A request that still waits stays shown as chosen.
     pub(crate) fn show(&self, mut devices: Devices) {
         let waiting = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(wish) = &*waiting {
@@ -79,12 +80,12 @@ impl Desk {
         *self.shown.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(devices);
     }
 
-    /// For the program: what the window wishes since the last call.
+    /// For the program: the window's request since the last call.
     pub(crate) fn take_wish(&self) -> Option<Chosen> {
         self.wish.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
-    /// For the program: whether somebody has looked since the last call.
+    /// For the program: whether the window has called [`Desk::look`] since the last call.
     pub(crate) fn was_watched(&self) -> bool {
         self.is_watched.swap(false, Relaxed)
     }

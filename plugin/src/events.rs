@@ -6,10 +6,10 @@ use sprung::engine::midi::parse_message;
 use sprung::engine::{EventKind, Expression, NoteId, Notes};
 use sprung::params::PARAMS;
 
-/// The engine's event, and its channel. `None` for events that the instrument does not use, and for a note without a
+/// The engine's event, and its channel. `None` for events that the instrument does not use, and for a note-on without a
 /// key. Real-time safe.
 pub(crate) fn translate(event: &NoteEvent<()>, api: PluginApi) -> Option<(u8, EventKind)> {
-    // The wrapper confuses these two when they arrive through VST3.
+    // Through VST3, the wrapper exchanges these two expressions.
     let (swell, brightness) = match api {
         PluginApi::Vst3 => (Expression::Brightness, Expression::Swell),
         PluginApi::Clap | PluginApi::Standalone => (Expression::Swell, Expression::Brightness),
@@ -110,7 +110,7 @@ mod tests {
             (on(ID, CHANNEL, Key::Wildcard), None),
             (off(ID, CHANNEL, KEY), release(one())),
             (off(VoiceID::Wildcard, CHANNEL, KEY), release(Notes { id: None, ..one() })),
-            // From VST3 hosts without note ids.
+            // Sent by VST3 hosts without note ids.
             (off(VoiceID::ID(-1), CHANNEL, KEY), release(Notes { id: None, ..one() })),
             (off(VoiceID::Wildcard, Channel::Wildcard, Key::Wildcard), release(Notes::default())),
             (choke, Some((0, EventKind::Silence { notes: one() }))),
@@ -183,7 +183,7 @@ mod tests {
             let event = NoteEvent::MidiPitchBend { timing: 0, channel: 3, value: f32::from(steps) / 16_383.0 };
             assert_eq!(translate(&event, PluginApi::Clap), file, "{steps}");
         }
-        // From a host whose wheel has no steps.
+        // A host whose pitch wheel is not limited to 14 bits.
         for (value, expected) in [(0.5, 0.0), (0.250_01, -0.499_98), (f32::NAN, f32::NAN)] {
             let EventKind::PitchBend(bend) = bend(value) else { panic!("a bend is a bend") };
             assert!((bend - expected).abs() < 1e-6 || (bend.is_nan() && expected.is_nan()), "{bend}");

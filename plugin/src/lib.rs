@@ -6,8 +6,8 @@
 //! | `params` | the host's parameters, made from [`sprung::params::PARAMS`] |
 //! | `loaded` | the loaded sound with exact values, and how the audio thread gets it without waiting |
 //! | `live` | the audio thread: follows parameters, passes events on, renders |
-//! | `link` | what the window and the audio thread tell each other |
-//! | `devices` | the program's devices and ports, as its window chooses them |
+//! | `link` | messages between the window and the audio thread |
+//! | `devices` | the standalone program's devices and ports, as its window chooses them |
 //! | `events` | converts the wrapper's note events to the engine's |
 //! | `tail` | how long the sound continues |
 //! | `state` | the state that a host stores in its project |

@@ -1,4 +1,4 @@
-//! What the window and the audio thread tell each other: no side ever waits for the other.
+//! Messages between the window and the audio thread, neither of which ever waits for the other.
 
 use crate::devices::Desk;
 use nice_plug_egui::RepaintNotifier;
@@ -8,14 +8,14 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How many touches can wait for the audio thread. Half of the room is for keys that go up.
+/// How many touches can wait for the audio thread. Half of the space is reserved for releases of keys.
 const WAITING: usize = 64;
 
-/// How many lines can wait for the window.
+/// How many messages can wait for the window.
 #[cfg(feature = "standalone")]
 const NEWS: usize = 16;
 
-/// A note that is played in the window. It is neither part of the state nor of what a host renders to a file.
+/// A note played in the window. It is neither part of the state nor of a host's rendering to a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Touch {
     /// A key goes down, with a velocity from 0 to 1.
@@ -25,7 +25,7 @@ pub(crate) enum Touch {
 }
 
 impl Touch {
-    /// As the engine's event. Real-time safe.
+    /// The touch as an event of the engine. Real-time safe.
     pub(crate) fn event(self) -> EventKind {
         match self {
             Self::Down { key, velocity } => EventKind::NoteOn { key, detune: 0.0, velocity, id: None },
@@ -34,26 +34,27 @@ impl Touch {
     }
 }
 
-/// The two directions.
+/// The channels between the window, the audio thread and the standalone program.
 #[derive(Default)]
 pub(crate) struct Link {
-    /// From the audio thread: what sounds.
+    /// From the audio thread: the sounding notes, levels and load.
     pub(crate) telemetry: Arc<Telemetry>,
-    /// From the audio thread: that something sounds, so that the window draws it.
+    /// From the audio thread: a request to repaint while something sounds.
     pub(crate) repaint: RepaintNotifier,
     sample_rate: AtomicU32,
-    /// To the audio thread; none before it has been there. Never locked by it.
+    /// To the audio thread; none before it has connected. The audio thread never locks it.
     touches: Mutex<Option<Producer<Touch>>>,
-    /// To the window of the program: that it is to close.
+    /// To the standalone program's window: a request to close.
     closing: AtomicBool,
-    /// To the window of the program: what has become of devices and ports, the oldest first.
+    /// To the standalone program's window: messages about devices and ports, the oldest first.
     news: Mutex<Vec<String>>,
-    /// Between the program and its window: the devices and ports.
+    /// Between the standalone program and its window: the devices and ports.
     pub(crate) desk: Desk,
 }
 
 impl Link {
-    /// The end of the audio thread, at a sample rate in Hz. What was sent to an earlier one is dropped. Allocates.
+    /// Creates the audio thread's end of the link, for a sample rate in Hz. Touches sent to an earlier one are dropped.
+    /// Allocates.
     pub(crate) fn connect(&self, sample_rate: f64) -> Consumer<Touch> {
         let (producer, consumer) = RingBuffer::new(WAITING);
         self.sample_rate.store(sample_rate.round() as u32, Relaxed);
@@ -61,10 +62,10 @@ impl Link {
         consumer
     }
 
-    /// Plays a note. Nothing happens while no audio thread listens. Not for the audio thread.
+    /// Plays a note. Without an audio thread nothing happens. Not for the audio thread.
     pub(crate) fn play(&self, touch: Touch) {
         if let Some(producer) = &mut *self.touches.lock().unwrap_or_else(PoisonError::into_inner) {
-            // A key that has gone down must be able to go up: so notes are dropped while there is room for that.
+            // Each key that goes down must be able to go up: only half of the space is used for keys that go down.
             let is_down = matches!(touch, Touch::Down { .. });
             if !is_down || producer.slots() > WAITING / 2 {
                 let _ = producer.push(touch);
@@ -79,16 +80,16 @@ impl Link {
         self.repaint.request_repaint();
     }
 
-    /// Whether the window is to close.
+    /// Whether the window should close.
     pub(crate) fn is_closing(&self) -> bool {
         self.closing.load(Relaxed)
     }
 
-    /// Tells the window something that its user should read. Not for the audio thread.
+    /// Sends the window a message for the user. Not for the audio thread.
     #[cfg(feature = "standalone")]
     pub(crate) fn tell(&self, news: String) {
         let mut waiting = self.news.lock().unwrap_or_else(PoisonError::into_inner);
-        // The newest are those that matter, if nobody reads.
+        // If nothing reads the messages, the newest ones are kept.
         if waiting.len() == NEWS {
             waiting.remove(0);
         }
@@ -97,13 +98,13 @@ impl Link {
         self.repaint.request_repaint();
     }
 
-    /// What the window was told since the last call, as one line.
+    /// The messages since the last call, joined to one line.
     pub(crate) fn take_news(&self) -> Option<String> {
         let news = std::mem::take(&mut *self.news.lock().unwrap_or_else(PoisonError::into_inner));
         (!news.is_empty()).then(|| news.join("; "))
     }
 
-    /// The sample rate in Hz; 0 if there was none yet.
+    /// The sample rate in Hz; 0 before the first one is known.
     pub(crate) fn sample_rate(&self) -> u32 {
         self.sample_rate.load(Relaxed)
     }

@@ -1,4 +1,4 @@
-//! The audio thread: it follows the parameters, passes events on at their frames, and renders.
+//! The audio thread: it follows the parameters, handles events at their frames, and renders.
 
 use crate::events::translate;
 use crate::link::Touch;
@@ -30,8 +30,8 @@ pub(crate) const MAX_VOICES: u32 = sprung::engine::voice_manager::MAX_VOICES as 
 /// A synth that a host plays. Real-time safe once built.
 pub(crate) struct Live {
     synth: Synth,
-    /// The sound that is played, with its positions. `SprungParams` also refers to it, so that it is never freed here.
-    /// It keeps the synth's kit alive.
+    /// The loaded sound with its knob positions. It keeps the synth's kit alive. `SprungParams` also refers to it, so
+    /// that the audio thread never frees it.
     loaded: Arc<Loaded>,
     /// The knob positions in the last block.
     positions: [f32; PARAM_COUNT],
@@ -41,9 +41,9 @@ pub(crate) struct Live {
     /// Number of voices that was last reported to the host.
     voices: u32,
     tail: Tail,
-    /// How many of the synth's ended notes have been reported to the host.
+    /// Number of the synth's ended notes that have been reported to the host.
     told: usize,
-    /// Events that the wrapper has passed on too early, with the part of the block before theirs.
+    /// Events that the wrapper delivered too early, with the part of the block before their own.
     early: Vec<NoteEvent<()>>,
     /// Buffers for the instrument's stereo output if the host has only one channel for it.
     stereo: [[f32; MONO_FRAMES]; 2],
@@ -60,7 +60,7 @@ impl Live {
     pub(crate) fn new(sample_rate: f64, offline: bool, params: &SprungParams) -> Self {
         let loaded = params.loaded();
         let mut synth = Synth::new(sample_rate, loaded.seed);
-        // So that every kit has room on the audio thread.
+        // Reserves room for every kit and space, so that the audio thread need not allocate.
         synth.reserve(KEYS);
         synth.reserve_space();
         synth.set_kit(&loaded.kit);
@@ -85,7 +85,7 @@ impl Live {
         live
     }
 
-    /// Silences everything, and restarts with the present sound.
+    /// Silences everything, and restarts with the loaded sound.
     pub(crate) fn reset(&mut self, params: &SprungParams) {
         self.follow(params);
         self.synth.reset();
@@ -95,18 +95,18 @@ impl Live {
     }
 
     /// Applies changes of the sound, of the knobs, and of the modulation of the whole instrument. While another thread
-    /// is writing, everything stays as it was until the next block.
+    /// is writing them, nothing changes until the next block.
     fn follow(&mut self, params: &SprungParams) {
         let Some(Look { positions, offsets, news }) = params.look(&self.loaded) else { return };
         let before = std::mem::replace(&mut self.positions, positions);
         let moved = |index: usize| positions[index].to_bits() != before[index].to_bits();
-        // While nothing sounds, values change without smoothing, so that what a host sets before it plays is valid from
-        // the first note on. Nothing sounds of a new kit either.
+        // While nothing sounds, values change without smoothing, so that values set before playing apply from the first
+        // note on. The same holds for a new kit, which does not sound yet.
         let at_once = news.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
         if let Some(loaded) = news {
             self.synth.set_seed(loaded.seed);
             self.synth.set_kit(&loaded.kit);
-            // Last, since the previous `loaded` has kept the previous kit alive until here.
+            // Assigned last: until here, the previous `loaded` has kept the previous kit alive.
             self.loaded = loaded;
         }
         if at_once {
@@ -144,9 +144,10 @@ impl Live {
         self.synth.handle(&event);
     }
 
-    /// Plays what the window has sent, at the first frame of the block. A click must not get into a file.
+    /// Plays the window's touches at the first frame of the block. Offline they are discarded: a click must not get
+    /// into a file.
     fn follow_touches(&mut self) {
-        // No more than there is room for: the window may send while this runs.
+        // The number is limited, since the window may send more while this loop runs.
         for _ in 0..self.touches.buffer().capacity() {
             let Ok(touch) = self.touches.pop() else { return };
             if !self.is_offline {
@@ -164,7 +165,7 @@ impl Live {
         outputs: &mut [&mut [f32]],
         context: &mut impl ProcessContext<P>,
     ) -> ProcessStatus {
-        // Reading the clock takes neither a lock nor, on the systems in use, a call of the kernel.
+        // Reading the clock takes no lock, and no system call on the supported systems.
         let start = self.telemetry.is_watched().then(Instant::now);
         self.follow(params);
         self.follow_tempo(context.transport().tempo);
@@ -185,8 +186,9 @@ impl Live {
         self.early.clear();
         while let Some(event) = context.next_event() {
             let at = (event.timing() as usize).max(frame);
-            // The wrapper splits blocks at parameter changes, and passes events at the frame of the change with the
-            // part before. Keep them: at the same frame, parameters always come first, wherever the host's blocks end.
+            // The wrapper splits blocks at parameter changes, and delivers events at the frame of a change with the
+            // part before it. Such events are kept for the next part: parameters at the same frame are always applied
+            // first, wherever the host's blocks end.
             if at >= frames && self.early.len() < self.early.capacity() {
                 self.early.push(event);
                 continue;
@@ -206,7 +208,7 @@ impl Live {
         self.tail.status(&mut self.synth, frames)
     }
 
-    /// Renders a block without a host: the program's own window, and events with their frames. Overwrites the outputs.
+    /// Renders a block for the standalone program, with events at their frames. Overwrites the outputs.
     #[cfg(feature = "standalone")]
     pub(crate) fn play(&mut self, params: &SprungParams, events: &[Event], left: &mut [f32], right: &mut [f32]) {
         self.follow(params);
@@ -215,7 +217,7 @@ impl Live {
             self.telemetry.note_event(event);
         }
         self.synth.process(events, left, right);
-        // Also while no window looks: the end of the program waits for silence.
+        // This is also reported while no window is open: the program waits for silence before it ends.
         let synth = &self.synth;
         self.telemetry.note_sound(left, right, synth.is_silent(), || {
             let mut snapshot = Snapshot::default();
@@ -227,7 +229,7 @@ impl Live {
         }
     }
 
-    /// Tells the window how long a block of the program took.
+    /// Reports how long the standalone program took to render a block.
     #[cfg(feature = "standalone")]
     pub(crate) fn note_block(&self, frames: usize, busy: std::time::Duration) {
         self.telemetry.note_block(frames, busy);
@@ -290,7 +292,7 @@ impl Live {
         let ended = self.synth.ended();
         for note in ended.get(self.told..).unwrap_or_default() {
             let voice_id = note.id.map_or(VoiceID::Wildcard, |id| VoiceID::ID(id.number()));
-            // Ignore it if the host accepts no events, or no more of them.
+            // An error means that the host accepts no events, or no more of them: it is ignored.
             let _ = context.try_send_event(NoteEvent::VoiceTerminated {
                 timing: frame as u32,
                 voice_id,
@@ -302,7 +304,7 @@ impl Live {
     }
 }
 
-/// Tells the window what sounds, while there is one that looks.
+/// Reports the sound to the window, if one is watching.
 fn note_sound(telemetry: &mut TelemetryWriter, synth: &Synth, left: &[f32], right: &[f32]) {
     if telemetry.is_watched() {
         telemetry.note_sound(left, right, synth.is_silent(), || {

@@ -1,11 +1,11 @@
-//! The sound that was loaded last, with exact values and their knob positions, shared between threads.
+//! The sound that was loaded last, with exact values and their knob positions, for all threads.
 
 use sprung::params::{PARAM_COUNT, PARAMS, Values};
 use sprung::sound::Kit;
 use std::array::from_fn;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
-/// A kit, with the value of each parameter and the knob position of that value. Never changed after it is shared.
+/// A kit with the values of its parameters and their knob positions. It never changes after it has been shared.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Loaded {
     pub(crate) kit: Arc<Kit>,
@@ -29,7 +29,7 @@ impl Loaded {
         }
     }
 
-    /// As [`Loaded::value`], for all parameters. Real-time safe.
+    /// Like [`Loaded::value`], for all parameters. Real-time safe.
     pub(crate) fn values_at(&self, positions: &[f32; PARAM_COUNT]) -> Values {
         let mut values = self.values;
         for (index, info) in PARAMS.iter().enumerate() {
@@ -44,13 +44,13 @@ pub(crate) fn positions_of(values: &Values) -> [f32; PARAM_COUNT] {
     from_fn(|index| PARAMS[index].normalise(values.get(PARAMS[index].param)) as f32)
 }
 
-/// The place where the audio thread finds the sound that was loaded last. It never waits: if another thread is using
-/// the slot, it continues with its present sound until the next block.
+/// The slot from which the audio thread gets the sound that was loaded last. The audio thread never waits: if another
+/// thread is using the slot, it continues with its present sound until the next block.
 ///
-/// No thread blocks on the mutex: writers try again until they get it. So nobody has to be woken up when it is
-/// unlocked, and the audio thread makes no system call. A writer keeps a reference to each sound on a shelf. The audio
-/// thread takes references only from the slot, so it never returns to a sound that it has dropped, and it never drops
-/// the last reference.
+/// No thread blocks on the mutex: writers try again until they get it. So unlocking never has to wake a thread, and the
+/// audio thread makes no system call. A writer keeps a reference to each sound on a shelf. The audio thread takes
+/// references only from the slot, so that it never returns to a sound that it has dropped, and never drops the last
+/// reference.
 pub(crate) struct Slot(Mutex<Arc<Loaded>>);
 
 impl Slot {
@@ -58,7 +58,7 @@ impl Slot {
         Self(Mutex::new(loaded))
     }
 
-    /// Replaces the contents. `meanwhile` runs before any other thread can look at them. Not for the audio thread.
+    /// Replaces the contents. `meanwhile` runs before any other thread can read them. Not for the audio thread.
     pub(crate) fn put(&self, loaded: Arc<Loaded>, meanwhile: impl FnOnce()) {
         let mut slot = loop {
             match self.enter() {
@@ -104,7 +104,7 @@ mod tests {
     fn a_reader_gets_what_belongs_together_or_nothing_and_frees_nothing() {
         let both = ["Church Bell", "Kick"].map(|name| &Preset::find(name).unwrap().patch);
         let first = Arc::new(loaded(both[0], 0));
-        // Data beside the slot, as the knobs are.
+        // Data beside the slot, like the knobs.
         let (slot, beside) = (Slot::new(first.clone()), AtomicU64::new(0));
         let done = AtomicBool::new(false);
         let shelf = Shelf::default();
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_knob_that_comes_back_has_the_exact_value_again() {
-        // A value that its knob's position, as an `f32`, would not give back.
+        // A value that cannot be restored from its knob's position as an `f32`.
         let mut loaded = loaded(&Patch::default().with(Param::Decay, 0.123_456_79), 0);
         let index = Param::Decay as usize;
         let position = loaded.positions[index];

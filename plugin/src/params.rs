@@ -67,8 +67,8 @@ impl Knob {
     }
 }
 
-/// Sets a knob that modulation has moved by `offset`. The wrapper ignores a new value if the modulated value does not
-/// change, at the end of the range: then the knob is set without modulation, and the modulation is applied again.
+/// Sets a knob that modulation has moved by `offset`. At the end of the range, the wrapper ignores a new value because
+/// the modulated value does not change: then the knob is set without modulation, and the modulation is applied again.
 fn turn<P: Param + InternalParamMut>(knob: &P, position: f32, offset: f32)
 where
     P::Plain: PartialEq,
@@ -85,7 +85,7 @@ where
     }
 }
 
-/// The data that the audio thread reads in one look.
+/// The data that the audio thread reads at once.
 pub(crate) struct Look {
     pub(crate) positions: [f32; PARAM_COUNT],
     /// Offsets of the knobs by modulation of the whole instrument.
@@ -94,15 +94,15 @@ pub(crate) struct Look {
     pub(crate) news: Option<Arc<Loaded>>,
 }
 
-/// State that the audio thread does not use.
+/// State that the audio thread does not use, behind a mutex.
 struct Kept {
     /// The preset or kit as it was loaded.
     playable: Playable,
-    /// How the window looks.
+    /// Size, zoom and theme of the window.
     view: View,
-    /// What was not understood of the last state, one line each.
+    /// The parts of the last state that were not understood, one line each.
     complaints: Arc<[String]>,
-    /// The sound that was loaded last, which is also in the slot.
+    /// The sound that was loaded last; the slot has it too.
     loaded: Arc<Loaded>,
     /// All sounds that the audio thread may still refer to, including the last one.
     may_sound: Shelf<Loaded>,
@@ -137,7 +137,7 @@ impl SprungParams {
         &self.knobs
     }
 
-    /// What the window and the audio thread tell each other.
+    /// The channels between the window and the audio thread.
     pub(crate) fn link(&self) -> &Link {
         &self.link
     }
@@ -159,23 +159,23 @@ impl SprungParams {
         }
     }
 
-    /// How the window looks. Not for the audio thread.
+    /// Size, zoom and theme of the window. Not for the audio thread.
     pub(crate) fn view(&self) -> View {
         self.kept().view
     }
 
-    /// Changes how the window looks. Not for the audio thread.
+    /// Changes size, zoom or theme of the window. Not for the audio thread.
     pub(crate) fn set_view(&self, change: impl FnOnce(&mut View)) {
         change(&mut self.kept().view);
     }
 
-    /// What was not understood of the last state, one line each. Not for the audio thread.
+    /// The parts of the last state that were not understood, one line each. Not for the audio thread.
     pub(crate) fn complaints(&self) -> Arc<[String]> {
         self.kept().complaints.clone()
     }
 
-    /// Loads a sound, its knob positions and the rest, all at once. Not for the audio thread: it makes the sound and
-    /// frees those that are no longer played. Does not tell the host. Returns what was loaded.
+    /// Loads a sound, its knob positions and the rest at once. Not for the audio thread: it computes the sound, and
+    /// frees sounds that are no longer played. Does not notify the host. Returns the loaded sound.
     pub(crate) fn load(&self, Read { state, complaints }: Read) -> Arc<Loaded> {
         let loaded = Arc::new(state.loaded());
         let mut kept = self.kept();
@@ -210,8 +210,8 @@ impl SprungParams {
         self.kept().loaded.clone()
     }
 
-    /// The knob positions, their offsets, and the sound if it is another one than `known`. `None` while another thread
-    /// is writing. Real-time safe.
+    /// The knob positions, their offsets, and the sound if it differs from `known`. `None` while another thread is
+    /// writing. Real-time safe.
     pub(crate) fn look(&self, known: &Arc<Loaded>) -> Option<Look> {
         self.slot.read(|loaded| Look {
             positions: from_fn(|index| self.knobs[index].position()),
@@ -237,7 +237,7 @@ unsafe impl Params for SprungParams {
     }
 
     fn deserialize_fields(&self, fields: &BTreeMap<String, String>) {
-        // Anything that is not a state has been removed before.
+        // `filter` has already removed data that is not a state.
         if let Some(Ok(read)) = fields.get(state::FIELD).map(|json| State::parse(json)) {
             read.complaints
                 .iter()

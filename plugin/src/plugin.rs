@@ -97,8 +97,8 @@ impl Plugin for Sprung {
     }
 }
 
-/// What comes in on *Exciter in*, the mean of its channels: nothing if the host has no such port. The wrapper's buffers are
-/// copies, so that the first channel can take the mean.
+/// The signal at *Exciter in*, the mean of its channels; empty if the host has no such port. The wrapper's buffers are
+/// copies, so the mean is written to the first channel.
 fn mono_input<'a>(aux: &'a mut AuxiliaryBuffers) -> &'a [f32] {
     match aux.inputs.first_mut().map(|input| input.as_slice()) {
         Some([left, right, ..]) => {
@@ -139,7 +139,7 @@ impl ClapPlugin for Sprung {
 }
 
 impl Vst3Plugin for Sprung {
-    // Stored in every project that uses the plugin, as is CLAP_ID: neither may ever change.
+    // Stored in every project that uses the plugin, like CLAP_ID: neither may ever change.
     const VST3_CLASS_ID: [u8; 16] = *b"SprungMassSpring";
     const VST3_SUBCATEGORIES: &'static [Vst3SubCategory] =
         &[Vst3SubCategory::Instrument, Vst3SubCategory::Synth, Vst3SubCategory::Drum];

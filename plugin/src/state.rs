@@ -23,7 +23,7 @@ const FORMAT: u64 = 2;
 const KEYS: [&str; 10] =
     ["format", "preset", "kit", "sounds", "values", "positions", "seed", "window", "zoom", "theme"];
 
-/// How the window looks.
+/// Size and look of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct View {
     /// Width and height at a zoom of 100 %.
@@ -33,7 +33,7 @@ pub(crate) struct View {
     pub(crate) theme: Theme,
 }
 
-/// A new window.
+/// The view of a new window.
 pub(crate) const VIEW: View = View { size: theme::SIZE, zoom: 100, theme: Theme::Dark };
 
 /// Smallest and largest width and height of a window.
@@ -50,7 +50,7 @@ pub(crate) struct State {
     pub(crate) positions: [f32; PARAM_COUNT],
     /// Seed of all random numbers.
     pub(crate) seed: u64,
-    /// How the window looks.
+    /// Size, zoom and theme of the window.
     pub(crate) view: View,
 }
 
@@ -85,7 +85,7 @@ struct Saved {
     /// Left out at 100 %.
     #[serde(skip_serializing_if = "Option::is_none")]
     zoom: Option<u32>,
-    /// Left out if it is that of a new window.
+    /// Left out if it is the default theme.
     #[serde(skip_serializing_if = "Option::is_none")]
     theme: Option<&'static str>,
 }
@@ -115,7 +115,7 @@ impl State {
         Self { playable, values, positions: positions_of(&values), seed, view }
     }
 
-    /// The part of the state for the audio thread. Makes the sounds.
+    /// The part of the state for the audio thread. Computes the sounds.
     pub(crate) fn loaded(&self) -> Loaded {
         let Self { playable, values, positions, seed, .. } = self;
         Loaded { kit: playable.kit(), values: *values, positions: *positions, seed: *seed }
@@ -190,7 +190,8 @@ impl State {
                 let complaint = format!("{position} is not a position of that knob: expected 0 to 1");
                 complaints.push(format!("positions.{}: {complaint}", info.id));
             } else if !rebased.contains(&param) {
-                // If a route now modulates a parameter from a new base value, the knob belongs at that value.
+                // A route that replaces a retired parameter may have given this one a new base value: then the knob
+                // stays at that value.
                 state.positions[param as usize] = position;
             }
         }
@@ -204,8 +205,8 @@ fn changes(now: impl Fn(Param) -> f32, before: impl Fn(Param) -> f32) -> BTreeMa
     changed.map(|info| (info.id, now(info.param))).collect()
 }
 
-/// The preset or kit of a state. Parameters whose value differs from the text, since a route modulates them now, are
-/// added to `rebased`.
+/// The preset or kit of a state. If a route that replaces a retired parameter changes a parameter's base value, the
+/// parameter is added to `rebased`.
 fn read_playable(
     saved: &Map<String, Value>,
     complaints: &mut Vec<String>,
@@ -241,7 +242,7 @@ fn read_playable(
     Ok(playable)
 }
 
-/// How the window looks. What is missing or cannot be read is as in a new window.
+/// Size, zoom and theme of the window. Parts that are missing or cannot be read are as in a new window.
 fn read_view(saved: &Map<String, Value>, complaints: &mut Vec<String>) -> View {
     let mut view = VIEW;
     let [least, most] = WINDOW_RANGE;
@@ -271,7 +272,7 @@ fn read_view(saved: &Map<String, Value>, complaints: &mut Vec<String>) -> View {
     view
 }
 
-/// The numbers by parameter id in a part of the state. Retired parameters are ignored, since routes have replaced them.
+/// The numbers by parameter id in a part of the state. Retired parameters are ignored: routes have replaced them.
 fn numbers(saved: &Map<String, Value>, key: &str, complaints: &mut Vec<String>) -> Vec<(Param, f32)> {
     let numbers = match saved.get(key) {
         None => return Vec::new(),
@@ -292,8 +293,8 @@ fn numbers(saved: &Map<String, Value>, key: &str, complaints: &mut Vec<String>) 
     read
 }
 
-/// Removes everything from the wrapper's state that [`State::parse`] cannot read. So the wrapper sets no parameter on
-/// its own, and data that is no state changes nothing.
+/// Removes everything from the wrapper's state that [`State::parse`] cannot read. Then the wrapper sets no parameter by
+/// itself, and data that is not a state changes nothing.
 pub(crate) fn filter(state: &mut PluginState) {
     let is_state = |json: &str| State::parse(json).inspect_err(|error| nice_error!("{error}")).is_ok();
     state.params.clear();

@@ -1,16 +1,16 @@
-//! Reports to the host how long the sound continues, without computing the tail in every block.
+//! Reports the tail's length to the host, without computing it in every block.
 
 use nice_plug::prelude::ProcessStatus;
 use sprung::engine::Synth;
 
-/// Frames between two computations of the tail in real time: it takes some microseconds for each voice that has
-/// changed.
+/// Frames between two computations of the tail in real time: a computation takes some microseconds for each voice that
+/// has changed.
 const RECOUNT: usize = 4096;
 
 /// The tail that is reported to the host. Between two computations it shrinks by the rendered frames. Real-time safe.
 pub(crate) struct Tail {
     frames: u64,
-    /// No event or change has happened since the last computation.
+    /// Whether no event or change has happened since the last computation.
     holds: bool,
     /// Frames since the last computation.
     since: usize,

@@ -1,10 +1,10 @@
-//! A key that the window holds by itself, so that a change or a choice is heard.
+//! A key that the window plays by itself, so that the user hears a change or a chosen sound.
 
 use crate::link::{Link, Touch};
 
-/// How long a sound is held that is tried, in seconds.
+/// How long a key is held when a sound is tried, in seconds.
 const HELD: f64 = 0.7;
-/// How often a sound is struck while it is changed, in seconds.
+/// Time between two strikes while a sound is being changed, in seconds.
 const STRIKES: f64 = 0.25;
 /// The velocity of these strikes.
 pub(super) const VELOCITY: f32 = 0.7;
@@ -13,7 +13,7 @@ pub(super) const VELOCITY: f32 = 0.7;
 #[derive(Default)]
 pub(super) struct Audition {
     key: Option<u8>,
-    /// When it is let go, and when it was last struck again.
+    /// When the key is released, and when it was last struck.
     end: f64,
     struck: f64,
 }
@@ -26,28 +26,28 @@ impl Audition {
         (self.key, self.end, self.struck) = (Some(key), now + HELD, now);
     }
 
-    /// Strikes a key now and then, as long as something is dragged. To be called in each pass.
+    /// Strikes a key at regular intervals as long as the user drags something. To be called in each pass.
     pub(super) fn repeat(&mut self, key: u8, now: f64, link: &Link) {
         if self.key != Some(key) || !(self.struck..self.struck + STRIKES).contains(&now) {
             self.strike(key, VELOCITY, now, link);
         }
     }
 
-    /// Lets go of the key when it is time.
+    /// Releases the key when its time is over.
     pub(super) fn follow_time(&mut self, now: f64, link: &Link) {
         if now >= self.end {
             self.release(link);
         }
     }
 
-    /// Lets go of the key at once.
+    /// Releases the key at once.
     pub(super) fn release(&mut self, link: &Link) {
         if let Some(key) = self.key.take() {
             link.play(Touch::Up { key });
         }
     }
 
-    /// Seconds until the key is let go; none if none is held.
+    /// Seconds until the key is released; none if no key is held.
     pub(super) fn rest(&self, now: f64) -> Option<f64> {
         self.key.map(|_| (self.end - now).max(0.0))
     }

@@ -1,4 +1,4 @@
-//! A change of a body in progress: made anew now and then while a number is dragged, and one step to undo.
+//! A change of a body in progress: the sound is made again at intervals while a number is dragged; all is one undo step.
 
 use super::controls::Controls;
 use super::gestures::{Gestures, touch};
@@ -9,28 +9,28 @@ use sprung::preset::Playable;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// The shortest time between two changes of the sound, in seconds: some sounds take long to make.
+/// The shortest time between two changes of the sound, in seconds: some sounds take long to compute.
 const CHANGES: f64 = 0.06;
 
 /// A change of a body in progress.
 pub(super) struct BodyEdit {
     made: Made,
-    /// The last one that could be made, and what had been changed by then.
+    /// The last body whose sound could be made, and the description of the change up to then.
     good: (Made, String),
     is_new: bool,
-    /// What has been changed, for the name of the step.
+    /// The description of the change, for the name of the undo step.
     what: String,
     /// The parameter *Decay* as a multiple of the body's T60, and its position before the change.
     decay: f64,
     position: f32,
     /// When the sound may be changed again.
     next: f64,
-    /// The sound that was made last. If another one is loaded, the change is over.
+    /// The sound that was made last. If another sound is loaded, the change is over.
     loaded: Arc<Loaded>,
 }
 
 impl BodyEdit {
-    /// Begins to change what `loaded` is made from.
+    /// Begins to change the body from which the modes of `loaded` are made.
     pub(super) fn begin(made: &Made, loaded: &Arc<Loaded>, controls: &mut Controls) -> Self {
         controls.release();
         controls.history.begin(controls.params);
@@ -47,7 +47,7 @@ impl BodyEdit {
         }
     }
 
-    /// Whether it is a change of this sound.
+    /// Whether this change belongs to this sound.
     pub(super) fn is_of(&self, loaded: &Arc<Loaded>) -> bool {
         Arc::ptr_eq(&self.loaded, loaded)
     }
@@ -56,12 +56,12 @@ impl BodyEdit {
         &self.made
     }
 
-    /// What the sound is to be made from.
+    /// Sets the body from which the sound is made next.
     pub(super) fn change(&mut self, made: Made, what: String) {
         (self.made, self.what, self.is_new) = (made, what, true);
     }
 
-    /// Makes the sound anew if that is due. The error says why it cannot be made; the last good one is kept.
+    /// Makes the sound again if it is time. The error says why it cannot be made; the last body that worked is kept.
     pub(super) fn write(&mut self, now: f64, controls: &mut Controls) -> Result<(), String> {
         if !self.is_new || now < self.next {
             return Ok(());
@@ -81,7 +81,7 @@ impl BodyEdit {
         let mut state = controls.params.state();
         let Playable::Preset(preset) = &mut state.playable else { return Ok(()) };
         preset.patch.modes = modes;
-        // Decays of modes are multiples of the parameter.
+        // The modes' decays are relative to the parameter *Decay*.
         let decay = Param::Decay.info();
         let value = decay.clamp((self.decay * self.made.t60().unwrap_or(1.0)) as f32);
         if value != state.values.get(Param::Decay) {
@@ -94,7 +94,7 @@ impl BodyEdit {
         Ok(())
     }
 
-    /// Makes the sound at last, and a step of the change. The error is that of [`BodyEdit::write`].
+    /// Makes the sound a last time and ends the undo step. The error is that of [`BodyEdit::write`].
     pub(super) fn end(mut self, controls: &mut Controls) -> Result<(), String> {
         let result = self.write(f64::INFINITY, controls);
         controls.history.end(self.what, controls.params);

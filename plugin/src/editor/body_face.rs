@@ -1,4 +1,4 @@
-//! Draws a body: its points where they are now, coloured by how far they are from their rest.
+//! Draws a body: its points at their present places, coloured by their displacement.
 
 use super::body_form::Form;
 use super::body_shape::BodyShape;
@@ -7,7 +7,7 @@ use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 use sprung::sound::bodies::Point;
 
-/// Displacements in the picture's unit, and where the body is struck.
+/// Paints the body. Displacements are in the picture's unit; `strike` is the place where the body is struck.
 pub(super) fn paint(
     painter: &Painter,
     rect: Rect,
@@ -42,7 +42,8 @@ pub(super) fn paint(
     }
 }
 
-/// What stands out is of the accent's colour, what is dented of that of modulation: both can be told apart without red and green.
+/// Positive displacements get the accent's colour, negative ones the colour of modulation: both can be told apart
+/// without red and green.
 fn colour(displacement: f32, reach: f32, palette: &Palette) -> Color32 {
     let share = (displacement / reach).clamp(-1.0, 1.0);
     let towards = if share >= 0.0 { palette.accent } else { palette.modulation };
@@ -58,7 +59,7 @@ fn surface(painter: &Painter, rect: Rect, shape: &BodyShape, displacements: &[f3
         color: colour(displacements[number], reach, palette),
     };
     let mut mesh = Mesh { vertices: (0..columns * rows).map(vertex).collect(), ..Mesh::default() };
-    // What is farther away is painted first.
+    // The farthest patches are painted first.
     let mut patches: Vec<usize> =
         (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| row * columns + column)).collect();
     let depth = |patch: &usize| {
@@ -80,7 +81,7 @@ fn surface(painter: &Painter, rect: Rect, shape: &BodyShape, displacements: &[f3
     let edge = Stroke::new(1.6, palette.text.gamma_multiply(0.75));
     let is_hidden = |column: usize, row: usize| form.is_behind(shape.points[row * columns + column]);
     let lines = |points: Vec<(usize, usize)>, stroke: Stroke, all: bool| {
-        // Parts that lie behind are not drawn, apart from a rim.
+        // Lines behind the body are not drawn, except a rim.
         for run in points.chunk_by(|a, b| all || is_hidden(a.0, a.1) == is_hidden(b.0, b.1)) {
             if all || !is_hidden(run[0].0, run[0].1) {
                 painter.add(Shape::line(run.iter().map(|(column, row)| at(*column, *row)).collect(), stroke));

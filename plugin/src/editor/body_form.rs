@@ -4,16 +4,16 @@ use egui::{Pos2, Rect, Vec2, pos2, vec2};
 use sprung::sound::bodies::{Model, Point};
 use std::f32::consts::TAU;
 
-/// How far the picture looks down on a body: sine and cosine of the angle.
+/// How steeply the picture looks down on a body: sine and cosine of the angle.
 const LOOK: [f32; 2] = [0.5, 0.866];
 /// The outline of a bell from its crown to its rim: height and radius.
 const BELL: [[f32; 2]; 8] =
     [[1.0, 0.0], [1.0, 0.3], [0.93, 0.4], [0.72, 0.45], [0.4, 0.52], [0.2, 0.62], [0.08, 0.78], [0.0, 0.92]];
-/// That of a bowl or a glass, from the bottom to the rim.
+/// The outline of a bowl or a glass, from the bottom to the rim.
 const BOWL: [[f32; 2]; 8] =
     [[0.0, 0.0], [0.02, 0.3], [0.1, 0.56], [0.24, 0.74], [0.42, 0.86], [0.62, 0.92], [0.82, 0.95], [1.0, 0.96]];
 
-/// The form of a body. Its points are named as in [`Model`]: `x` and `y` from 0 to 1.
+/// The form of a body. The coordinates of its points are those of [`Model`]: `x` and `y` from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Form {
     /// A string, a bar, the air in a tube.
@@ -28,7 +28,7 @@ pub(super) enum Form {
     Bowl,
 }
 
-/// A point in space, with the way in which it moves.
+/// A point in space, with the direction in which it moves.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     at: [f32; 3],
@@ -66,8 +66,8 @@ impl Form {
         (0..columns * rows).map(point).collect()
     }
 
-    /// How much of its shape the picture shows at a point: a bell's crown hardly moves, which its model, whose modes were
-    /// measured at the rim, does not say.
+    /// Factor for the drawn displacement at a point. A bell's crown hardly moves; its model does not contain this,
+    /// since its modes were measured at the rim.
     pub(super) fn weight(self, point: Point) -> f32 {
         if self == Self::Bell { (point.x * point.x) as f32 } else { 1.0 }
     }
@@ -75,7 +75,7 @@ impl Form {
     fn place(self, point: Point) -> Place {
         let (x, y) = (point.x as f32, point.y as f32);
         let turned = |[height, radius]: [f32; 2]| {
-            // The place that is struck to begin with is in front.
+            // The default place of the strike is in front.
             let around = Vec2::angled(TAU * (y + 0.25));
             Place { at: [radius * around.x, radius * around.y, height], normal: [around.x, around.y, 0.0] }
         };
@@ -91,7 +91,7 @@ impl Form {
         }
     }
 
-    /// Where a point is in the picture if it is displaced by so much of the picture's unit.
+    /// Where a point is in the picture. The displacement is in the picture's unit.
     pub(super) fn on(self, rect: Rect, point: Point, displacement: f32) -> Pos2 {
         let Place { at, normal } = self.place(point);
         let [x, y, z]: [f32; 3] = std::array::from_fn(|axis| at[axis] + normal[axis] * displacement);
@@ -103,12 +103,12 @@ impl Form {
         }
     }
 
-    /// Pixels of the picture's unit, and the height that is in the middle.
+    /// Size of the picture's unit in pixels, and the height in space that is shown in the middle.
     fn scale(self, rect: Rect) -> (f32, f32) {
         let [width, height] = [rect.width() / 2.0, rect.height() / 2.0];
         match self {
             Self::Line => (width * 0.92, 0.0),
-            // With room for what moves up and down.
+            // Leaves room for displacements up and down.
             Self::Round => ((width * 0.9).min(height / 0.8), 0.0),
             Self::Plate { .. } => ((width * 0.9).min(height / 0.8), 0.0),
             Self::Bell | Self::Bowl => ((width * 0.85).min(height / 1.05), 0.5),
@@ -124,7 +124,7 @@ impl Form {
         }
     }
 
-    /// Whether a point lies behind others, so that it is neither seen clearly nor touched.
+    /// Whether a point lies behind others, so that it is drawn faintly or not at all and cannot be touched.
     pub(super) fn is_behind(self, point: Point) -> bool {
         matches!(self, Self::Bell | Self::Bowl) && self.place(point).normal[1] < -0.05
     }
@@ -140,7 +140,7 @@ impl Form {
         let points = (0..(STEPS + 1) * rows).map(point).filter(|point| !self.is_behind(*point));
         let far = |point: &Point| {
             let off = self.on(rect, *point, 0.0) - place;
-            // Along a line, only the direction of the line counts.
+            // Along a line, only the distance in the line's direction counts.
             if self == Self::Line {
                 vec2(off.x, (off.y.abs() - rect.height() / 2.0).max(0.0)).length()
             } else {
@@ -158,7 +158,7 @@ impl Form {
     }
 }
 
-/// The outline at a share of its length, between its points.
+/// The point of the outline at a share of its length, interpolated.
 fn along(outline: &[[f32; 2]], share: f32) -> [f32; 2] {
     let place = share.clamp(0.0, 1.0) * (outline.len() - 1) as f32;
     let before = (place as usize).min(outline.len() - 2);

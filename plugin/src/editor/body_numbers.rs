@@ -1,10 +1,10 @@
-//! The numbers of bodies and of their joint, as the page of the body shows them: names, values with units, what each does.
+//! The numbers of bodies and of their joint on the page of the body: names, values with units, and help texts.
 
 use super::made::Made;
 use sprung::sound::bodies::{Body, FIELDS};
 use sprung::sound::pairs::LINK_FIELDS;
 
-/// One of two bodies, or what joins them.
+/// One of two bodies, or the joint between them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Part {
     #[default]
@@ -135,7 +135,7 @@ impl Number {
 
     /// What it does.
     pub(super) fn help(&self) -> &'static str {
-        // A joint’s damping is not a body’s.
+        // The damping of a joint differs from that of a body.
         if self.name == "damping" && self.range[0] == 0.0 {
             return "Damping between the bodies, as a share of the critical one.";
         }

@@ -1,4 +1,4 @@
-//! The page of the body: what it is, what it is made of, and its numbers; those of a second body, and of their joint.
+//! The page of the body: its model, material and numbers, and those of a second body and of their joint.
 
 use super::audition::Audition;
 use super::body_edit::BodyEdit;
@@ -21,29 +21,29 @@ use std::time::Duration;
 
 /// Width of the part with model and material.
 const SIDE: f32 = 188.0;
-/// Height of a row of it, and width of its names.
+/// Height of a row in that part, and width of the names.
 const ROW: f32 = 25.0;
 const NAMES: f32 = 54.0;
 /// Size of a number with its name.
 const CELL: [f32; 2] = [88.0, 36.0];
-/// The width to which it grows where there is room.
+/// Largest width of a number's cell, where there is room.
 const WIDEST: f32 = 124.0;
-/// In place of a model, if there is none.
+/// Shown in place of a model if there is none.
 const NONE: &str = "none";
 const TABLE: &str = "a table of modes";
 
-/// What the page remembers.
+/// The page's state.
 #[derive(Default)]
 pub(super) struct BodyPage {
     part: Part,
-    /// What the modes of a loaded sound are made from.
+    /// The loaded sound, and the body from which its modes are made.
     read: Option<(Arc<Loaded>, Made)>,
     edit: Option<BodyEdit>,
     audition: Audition,
 }
 
 impl BodyPage {
-    /// Lets go of the key that is held.
+    /// Releases the key that is held.
     pub(super) fn release(&mut self, link: &Link) {
         self.audition.release(link);
     }
@@ -51,7 +51,7 @@ impl BodyPage {
     /// Ends what the user is doing with a number.
     pub(super) fn leave(&mut self, controls: &mut Controls) {
         if let Some(edit) = self.edit.take() {
-            // What cannot be made was told while it was dragged.
+            // The error was already shown during the drag.
             let _ = edit.end(controls);
         }
     }
@@ -93,7 +93,7 @@ impl BodyPage {
         message
     }
 
-    /// What is shown: while a number is dragged, what it makes.
+    /// The body to show: while a number is dragged, the one that is being changed.
     fn made(&mut self, shown: &Shown) -> Made {
         if let Some(edit) = &self.edit {
             return edit.made().clone();
@@ -108,7 +108,7 @@ impl BodyPage {
         }
     }
 
-    /// Which body, its model and its material. Returns what they are changed to, and the name of the step.
+    /// Shows which body is edited, its model and its material. Returns the changed body and the name of the undo step.
     fn side(&mut self, ui: &Ui, rect: Rect, made: &Made, controls: &mut Controls) -> Option<(Made, String)> {
         let row =
             |place: usize| Rect::from_min_size(rect.min + vec2(0.0, place as f32 * ROW), vec2(rect.width(), ROW - 4.0));
@@ -182,7 +182,7 @@ impl BodyPage {
         None
     }
 
-    /// The numbers. Returns a message.
+    /// Shows the numbers. Returns a message.
     fn numbers(
         &mut self,
         ui: &mut Ui,
@@ -234,7 +234,7 @@ impl BodyPage {
     }
 }
 
-/// A number with its name, which is dragged or typed. Returns its new value.
+/// Shows a number with its name; it can be dragged or typed. Returns its new value.
 fn show(ui: &mut Ui, cell: Rect, number: &Number, controls: &mut Controls) -> (Response, f64) {
     let palette = controls.palette;
     let name = Rect::from_min_size(cell.min, vec2(cell.width() - 4.0, 13.0));

@@ -1,4 +1,4 @@
-//! The body that is drawn for a sound: its form, and the shape of each mode in it.
+//! The body that is drawn for a sound: its form, and each mode's shape on it.
 
 use super::body_form::Form;
 use super::made::{Made, model_name};
@@ -7,10 +7,10 @@ use sprung::preset::Family;
 use sprung::sound::bodies::{Body, Model, Point};
 use sprung::units::semitones_from_ratio;
 
-/// Most modes that are drawn on a line, and on what has a surface: finer shapes are lost in its points.
+/// The most modes that are drawn on a line, and on a surface: the grid of points is too coarse for finer shapes.
 const DRAWN: [usize; 2] = [64, 32];
-/// How far from a mode of the body one of the sound may lie that moves as it does, in semitones: in a body's own table, and in one
-/// that was not made from a body.
+/// The largest distance, in semitones, between a mode of the sound and the mode of the body whose shape it is drawn
+/// with: for a table made from the body, and for one that was not made from a body.
 const NEAR: [f64; 2] = [0.6, 5.0];
 
 /// A body to draw.
@@ -18,11 +18,11 @@ pub(super) struct BodyShape {
     pub(super) made: Made,
     pub(super) form: Form,
     pub(super) points: Vec<Point>,
-    /// For each mode of the sound, its shape at the points; none if it moves something that is not drawn.
+    /// For each mode of the sound, its shape at the points; none if the mode belongs to a body that is not drawn.
     shapes: Vec<Option<Vec<f32>>>,
-    /// Turns of each mode in slow motion, as multiples of those of the lowest.
+    /// Rotation speed of each mode in slow motion, as a multiple of the lowest mode's.
     pub(super) speeds: Vec<f32>,
-    /// What is drawn.
+    /// Description of the drawn body.
     pub(super) caption: String,
 }
 
@@ -42,7 +42,7 @@ fn model_of(family: Option<Family>) -> (&'static str, Model) {
 }
 
 impl BodyShape {
-    /// The body of a sound of this family. Not fast: it computes the shapes of all modes.
+    /// The body of a sound of this family. This is slow: it computes the shapes of all modes.
     pub(super) fn of(modes: &ModeTable, family: Option<Family>) -> Self {
         let made = Made::of(modes).with_places();
         let (body, near, caption) = match &made {
@@ -58,7 +58,7 @@ impl BodyShape {
         };
         let form = Form::of(&body.model);
         let most = DRAWN[usize::from(form != Form::Line)];
-        // A bed's modes depend on their number.
+        // A bed's modes depend on how many there are.
         let count = if matches!(body.model, Model::Bed(_)) { body.modes } else { body.modes.min(DRAWN[0]) };
         let points = form.points();
         let found = Body { modes: count, ..body }.modes_at(&points);
@@ -74,19 +74,20 @@ impl BodyShape {
             let pitch = semitones_from_ratio(f64::from(ratio));
             let far = |place: &usize| (found[*place].0 - pitch).abs();
             let best = (0..found.len()).min_by(|a, b| far(a).total_cmp(&far(b))).filter(|best| far(best) <= near);
-            // Of a table with other ratios than the model's, the first mode moves as the model's first does, and so on.
+            // In a table with other ratios than the model's, the first mode gets the shape of the model's first mode,
+            // and so on.
             let by_order = (made == Made::Table).then_some(place % found.len().max(1));
             best.or(by_order).and_then(|best| found.get(best)).map(|(_, shape)| shape.clone())
         };
         let modes = &modes.as_slice()[..modes.as_slice().len().min(DRAWN[0])];
         let lowest = modes.iter().map(|mode| mode.ratio).fold(f32::INFINITY, f32::min);
-        // High modes as fast as they are would be a blur.
+        // High modes at their true speed would be a blur.
         let speeds = modes.iter().map(|mode| (mode.ratio / lowest).sqrt().min(6.0)).collect();
         let shapes = modes.iter().map(|mode| mode.ratio).enumerate().map(shape).collect();
         Self { made, form, points, shapes, speeds, caption }
     }
 
-    /// How far each point is from its rest, for the amplitudes of the modes.
+    /// The displacement of each point, for the amplitudes of the modes.
     pub(super) fn displacements(&self, amplitudes: &[f32]) -> Vec<f32> {
         let mut sum = vec![0.0; self.points.len()];
         for (shape, amplitude) in self.shapes.iter().zip(amplitudes) {

@@ -1,4 +1,4 @@
-//! The body as it swings in slow motion, and where it is struck.
+//! Shows the body's motion in slow motion, and where it is struck.
 
 use super::audition::Audition;
 use super::body_edit::rest;
@@ -17,26 +17,26 @@ use sprung::sound::bodies::Point;
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-/// Turns per second of the lowest mode: that of slow motion.
+/// Cycles per second of the lowest mode in slow motion.
 const TURNS: f32 = 0.8;
 /// How far from the body a click still touches it, in pixels.
 const REACH: f32 = 26.0;
 
-/// The strike as it is dragged.
+/// A drag of the strike's place in progress.
 struct Drag {
     point: Point,
     written: Option<Point>,
     /// When the sound may be changed again.
     next: f64,
-    /// The sound that was written last. If another one is loaded, the drag is over.
+    /// The sound that was written last. If another sound is loaded, the drag is over.
     loaded: Arc<Loaded>,
 }
 
-/// What the picture remembers.
+/// The picture's state.
 #[derive(Default)]
 pub(super) struct BodyView {
     shape: Option<(Arc<Loaded>, BodyShape)>,
-    /// In radians.
+    /// Phase of each mode, in radians.
     angles: Vec<f32>,
     /// The greatest amplitude since the body was at rest.
     greatest: f32,
@@ -52,7 +52,7 @@ impl BodyView {
         }
     }
 
-    /// Shows the body of a sound. Returns what is drawn, as a caption.
+    /// Shows the body of a sound. Returns the caption.
     pub(super) fn show(
         &mut self,
         ui: &Ui,
@@ -89,7 +89,7 @@ impl BodyView {
         caption
     }
 
-    /// Moves on, and returns the amplitude of each mode as a share of the greatest.
+    /// Advances the phases by one pass, and returns the amplitude of each mode as a share of the greatest.
     fn advance(&mut self, ui: &Ui, shape: &BodyShape, energies: &[f32]) -> Vec<f32> {
         let total = energies.iter().sum::<f32>().sqrt();
         if total <= 1e-6 {
@@ -104,11 +104,11 @@ impl BodyView {
             *angle = (*angle + turned * speed) % TAU;
         }
         let share = |energy: &f32| energy.max(0.0).sqrt() / self.greatest;
-        // A strike starts from rest.
+        // The sine starts at 0: a strike starts from rest.
         self.angles.iter().zip(energies).map(|(angle, energy)| share(energy) * Vec2::angled(*angle).y).collect()
     }
 
-    /// Follows the pointer: it moves the place of the strike.
+    /// Follows the pointer, which moves the place of the strike.
     fn touch(
         &mut self,
         ui: &Ui,
@@ -166,13 +166,13 @@ impl BodyView {
     }
 }
 
-/// The exciter whose place a table of modes knows: the pluck's, or else the bow's, if it is on.
+/// The exciter that has a place, for a table of modes: the pluck if it is on, or else the bow if it is on.
 fn exciter(controls: &Controls) -> Option<Param> {
     let levels = [(Param::PluckLevel, Param::PluckPosition), (Param::BowLevel, Param::BowPosition)];
     levels.into_iter().find(|(level, _)| controls.value(level.info()) > level.info().min).map(|(_, place)| place)
 }
 
-/// Where the sound is struck; none if that cannot be said or changed.
+/// Where the sound is struck; none if the place is unknown or cannot be changed.
 fn strike(shape: &BodyShape, shown: &Shown, controls: &Controls) -> Option<Point> {
     shown.preset()?;
     match shape.made.body() {
@@ -189,7 +189,7 @@ fn confined(point: Point, shape: &BodyShape) -> Point {
     let rounded = |share: f64| (share * 1000.0).round() / 1000.0;
     let point = Point { x: rounded(point.x), y: rounded(point.y) };
     match (shape.made.body(), shape.form) {
-        // Along a string, a place counts from the nearer end.
+        // On a string, the place is counted from the nearer end.
         (None, _) => Point { x: point.x.min(1.0 - point.x).clamp(0.01, 0.5), y: 0.0 },
         (Some(body), Form::Line) => Point { y: body.strike.y, ..point },
         (Some(body), Form::Bell) => Point { x: body.strike.x, ..point },
@@ -207,7 +207,7 @@ fn describe(point: Point, shape: &BodyShape) -> String {
     }
 }
 
-/// Gives the sound another place of the strike.
+/// Changes the place of the strike in the sound.
 fn write(point: Point, made: &mut Made, controls: &mut Controls) {
     if let Some(body) = made.body_mut() {
         body.strike = point;

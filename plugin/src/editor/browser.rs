@@ -1,4 +1,4 @@
-//! The browser: finds sounds, plays them, keeps favourites, and saves under a name.
+//! The browser: finds sounds, plays them, keeps favourites, and saves sounds under a name.
 
 use super::audition::Audition;
 use super::buttons::{Look, button};
@@ -19,10 +19,10 @@ use sprung::preset::{Guide, Playable};
 use std::sync::Arc;
 
 const ROW: f32 = 22.0;
-/// Width of the list of shelves, and of what is said of a sound.
+/// Width of the list of shelves, and of the details of a sound.
 const SIDE: [f32; 2] = [112.0, 250.0];
 
-/// What the browser remembers.
+/// The browser's state.
 pub(super) struct Browser {
     /// Read when the browser is first opened.
     sounds: Option<Sounds>,
@@ -30,13 +30,13 @@ pub(super) struct Browser {
     shelf: Shelf,
     words: String,
     details: Details,
-    /// The key of the sound that is tried.
+    /// The key that plays the sound being tried.
     audition: Audition,
     is_new: bool,
 }
 
 impl Browser {
-    /// A browser of a library; none if the system has no place for one.
+    /// A browser of a library; `None` if the system names no folder for user data.
     pub(super) fn new(library: Option<Library>) -> Self {
         Self {
             sounds: None,
@@ -59,7 +59,7 @@ impl Browser {
         self.sounds = None;
     }
 
-    /// Prepares for being shown, with the name of the present sound.
+    /// Prepares for being shown, with the name of the loaded sound.
     pub(super) fn open(&mut self, name: &str) {
         self.details.open(name);
         self.is_new = true;
@@ -90,7 +90,7 @@ impl Browser {
         let found = sounds.find(self.shelf, &self.words);
         let chosen = match asks {
             Ask::Nothing => None,
-            // In another field, the arrows are that field's.
+            // While another field has the focus, the arrow keys belong to that field.
             Ask::Step(_) if !has_arrows(ui, found.len()) => None,
             Ask::Step(places) => {
                 let place = found.iter().position(|sound| sound.name() == present);
@@ -115,12 +115,12 @@ impl Browser {
         said.map(|(message, _)| message).or(message).or(broken)
     }
 
-    /// Lets go of the sound that is tried, when it is time.
+    /// Releases the key of the tried sound when its time is over.
     pub(super) fn follow_time(&mut self, now: f64, controls: &Controls) {
         self.audition.follow_time(now, controls.params.link());
     }
 
-    /// Lets go of the sound that is tried, at once.
+    /// Releases the key of the tried sound at once.
     pub(super) fn release(&mut self, link: &Link) {
         self.audition.release(link);
     }
@@ -150,7 +150,7 @@ impl Browser {
         name_field(&response, "Search", &self.words);
         if std::mem::take(&mut self.is_new) {
             response.request_focus();
-            // What is typed takes the place of the words of the last search.
+            // Typed text replaces the words of the last search.
             let mut state = TextEditState::load(ui.ctx(), field).unwrap_or_default();
             let all = CCursorRange::two(CCursor::default(), CCursor::new(self.words.chars().count()));
             state.cursor.set_char_range(Some(all));
@@ -236,7 +236,7 @@ impl Browser {
         clicked
     }
 
-    /// Loads a sound and plays the key on which it sounds most like itself.
+    /// Loads a sound and plays it on the key that suits it best.
     fn try_out(&mut self, ui: &Ui, sound: &Listed, controls: &mut Controls) {
         controls.history.begin(controls.params);
         load(sound.playable.clone(), controls.params, controls.host);
@@ -273,13 +273,14 @@ fn row(place: usize) -> Id {
     Id::unique(("sound", place))
 }
 
-/// Whether the arrow keys are for the list of so many sounds: it or the search has the focus, or nothing has.
+/// Whether the arrow keys belong to the list with so many rows: true if the list or the search has the focus, or
+/// nothing has.
 fn has_arrows(ui: &Ui, rows: usize) -> bool {
     let focused = ui.memory(|memory| memory.focused());
     focused.is_none_or(|focused| focused == search_field() || (0..rows).any(|place| focused == row(place)))
 }
 
-/// What the user asks for by the search field's keys.
+/// A request made with the search field's keys.
 enum Ask {
     Nothing,
     /// The sound so many places further.

@@ -1,4 +1,4 @@
-//! Buttons and tabs, painted in the window's own manner.
+//! Buttons and tabs in the window's own style.
 
 use super::text::line;
 use super::theme::{Palette, SMALL, TEXT};
@@ -8,9 +8,9 @@ use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Widg
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Look {
     Plain,
-    /// Pressed, or what it stands for is on.
+    /// Pressed, or its setting is on.
     On,
-    /// Nothing to do for it now.
+    /// It cannot be used now.
     Disabled,
 }
 

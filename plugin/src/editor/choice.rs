@@ -32,14 +32,14 @@ pub(super) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str
 /// A field that shows one of several names, and opens the list of them.
 pub(super) struct Field<'a> {
     pub(super) id: Id,
-    /// What it is called for accessibility, and at the head of its list.
+    /// Its name for accessibility, also shown at the top of its list.
     pub(super) name: &'a str,
     pub(super) value: &'a str,
     pub(super) is_default: bool,
 }
 
 impl Field<'_> {
-    /// Shows it. Returns the place of the name that was picked.
+    /// Shows the field. Returns the index of the name that was picked.
     pub(super) fn show(&self, ui: &Ui, rect: Rect, names: &[&str], palette: &Palette) -> (Response, Option<usize>) {
         let Self { id, name, value, is_default } = *self;
         let response = ui.interact(rect, id, Sense::click());
@@ -49,7 +49,7 @@ impl Field<'_> {
             about
         });
         let mut picked = None;
-        // The menu of a right click has the usual id.
+        // The menu of a right click already uses the default id.
         Popup::menu(&response).id(response.id.with("list")).show(|ui| {
             ui.set_min_width(110.0);
             ui.label(name);

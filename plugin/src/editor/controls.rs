@@ -1,4 +1,4 @@
-//! What every widget of the window needs: the parameters, the host, the colours, and what the user is doing.
+//! The context of every widget: the parameters, the host, the colours, and the user's actions in progress.
 
 use super::gestures::Gestures;
 use super::history::History;
@@ -14,31 +14,31 @@ pub(super) struct Typing {
     pub(super) text: String,
     /// Whether the field has taken the focus.
     pub(super) is_open: bool,
-    /// Why the text is no value.
+    /// Why the text is not a valid value.
     pub(super) complaint: Option<String>,
 }
 
-/// A parameter that waits for a controller.
+/// A parameter that waits to be assigned to a controller.
 pub(super) struct Learning {
     pub(super) info: &'static ParamInfo,
-    /// How many movements there were when it was last looked.
+    /// The number of controller movements at the last look.
     pub(super) seen: u64,
-    /// Whether the user was told what to do.
+    /// Whether the user has been asked to move a controller.
     pub(super) is_told: bool,
 }
 
-/// What the user is doing with parameters.
+/// The user's actions on parameters in progress.
 #[derive(Default)]
 pub(super) struct Hands {
     pub(super) gestures: Gestures,
-    /// Position of the knob that is dragged, which has more digits than the knob's own.
+    /// Position of the dragged knob, more precise than the knob's own.
     pub(super) dragged: f64,
     pub(super) typing: Option<Typing>,
-    /// The parameter that waits for a controller.
+    /// The parameter that waits to be assigned to a controller.
     pub(super) learning: Option<Learning>,
 }
 
-/// What the status line says of the thing under the pointer.
+/// The text of the status line about the thing under the pointer.
 pub(super) struct Hint {
     pub(super) title: String,
     pub(super) help: String,
@@ -50,7 +50,7 @@ impl Hint {
     }
 }
 
-/// What every widget needs, during one pass.
+/// The context of every widget, during one pass.
 pub(super) struct Controls<'a> {
     pub(super) params: &'a SprungParams,
     pub(super) host: &'a GuiContext,
@@ -74,7 +74,8 @@ impl Controls<'_> {
         info.format(self.value(info))
     }
 
-    /// The values that a parameter has in the notes that sound and modulate it, the newest note's first.
+    /// The modulated values of a parameter in the sounding notes, the newest note's first. Notes that do not modulate
+    /// it are skipped.
     pub(super) fn modulated(&self, info: &ParamInfo) -> impl Iterator<Item = f32> {
         let of = |note: &SoundingNote| note.moved.iter().flatten().find(|(param, _)| *param == info.param).copied();
         self.notes.iter().filter_map(of).map(|(_, value)| value)

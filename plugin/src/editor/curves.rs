@@ -1,4 +1,4 @@
-//! Small pictures of what the parameters of a section do together.
+//! Small pictures of the combined effect of a section's parameters.
 
 use super::controls::Controls;
 use super::outlines;
@@ -7,9 +7,9 @@ use sprung::params::{Choice as _, MalletPulse, NoiseDecay, Shape};
 use sprung::params::{PARAMS, Param, ParamInfo};
 use sprung::units::ratio_from_semitones;
 
-/// The part of an envelope's picture that the sustain takes, which has no length.
+/// Share of an envelope's picture for the sustain, which has no duration.
 const SUSTAIN: f64 = 0.2;
-/// Points of each bent stage.
+/// Number of points of each curved stage.
 const POINTS: usize = 16;
 
 /// Draws the picture of a section, if it has one.
@@ -60,13 +60,13 @@ pub(super) fn paint(painter: &Painter, rect: Rect, section: &[ParamInfo], contro
         _ => return,
     };
     painter.hline(rect.x_range(), ground, Stroke::new(1.0, palette.line));
-    // What is off is grey.
+    // A section that is off is drawn in grey.
     let colour = if is_quiet { palette.muted.gamma_multiply(0.6) } else { palette.accent };
     painter.add(egui::Shape::line(points, Stroke::new(1.5, colour)));
 }
 
-/// An envelope with the values of its rows: delay, attack, hold, decay, sustain, release, curve. The widths of its stages
-/// are as their square roots, so that short ones are seen beside long ones.
+/// An envelope from the values of its rows: delay, attack, hold, decay, sustain, release, curve. The width of a stage
+/// is proportional to the square root of its time, so that short stages stay visible beside long ones.
 fn envelope(rect: Rect, value: &dyn Fn(usize) -> f64) -> Vec<Pos2> {
     let [delay, attack, hold, decay, release] = [0, 1, 2, 3, 5].map(|row| value(row).max(0.0).sqrt());
     let (sustain, bend) = (value(4) / 100.0, ratio_from_semitones(12.0 * -0.04 * value(6)));
@@ -92,7 +92,7 @@ fn envelope(rect: Rect, value: &dyn Fn(usize) -> f64) -> Vec<Pos2> {
         }
         start += length;
     }
-    // A line through the same point twice has no direction there.
+    // A line segment between two equal points has no direction.
     points.dedup_by(|next, point| (*next - *point).length() < 0.05);
     points
 }

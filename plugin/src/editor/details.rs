@@ -1,4 +1,4 @@
-//! What the browser says of a sound, and the field to save under a name.
+//! The browser's details of a sound, and the field to save a sound under a name.
 
 use super::buttons::{Look, button};
 use super::controls::{Controls, Hint};
@@ -11,7 +11,7 @@ use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
 use sprung::units::note_name;
 
-/// What is typed.
+/// The state of the text field.
 #[derive(Default)]
 pub(super) struct Details {
     /// The name to save under.
@@ -21,12 +21,12 @@ pub(super) struct Details {
 }
 
 impl Details {
-    /// Starts anew, with the name of the present sound.
+    /// Resets the field to the name of the loaded sound.
     pub(super) fn open(&mut self, name: &str) {
         (self.name, self.confirm) = (name.to_owned(), None);
     }
 
-    /// Shows what is known of a sound, and what one can do with it. Returns a message, and whether the list has changed.
+    /// Shows the details of a sound and the buttons for it. Returns a message, and whether the list has changed.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -101,7 +101,7 @@ impl Details {
         None
     }
 
-    /// Gives a file of the user's the name that was typed, and a favourite its star.
+    /// Renames a file of the user's. If the sound is a favourite, it stays one under the new name.
     fn rename(&mut self, own: &Listed, library: &Library, controls: &Controls) -> (String, bool) {
         let name = self.name.trim().to_owned();
         let Some(path) = &own.path else { return (String::new(), false) };

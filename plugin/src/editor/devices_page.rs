@@ -12,19 +12,19 @@ const FIELD: f32 = 22.0;
 const ROW: f32 = 28.0;
 /// Width of the names.
 const NAMES: f32 = 78.0;
-/// Widths of the two columns at most.
+/// Largest widths of the two columns.
 const COLUMNS: [f32; 2] = [460.0, 260.0];
 /// Block sizes to choose from, in frames.
 const BLOCKS: [u32; 7] = [32, 64, 128, 256, 512, 1024, 2048];
 
-/// Something to choose: its names with what each stands for, and the name of what is chosen.
+/// A list to choose from: names with their values, and the name of the chosen one.
 struct Choices<T> {
     all: Vec<(String, T)>,
     chosen: String,
 }
 
 impl<T: PartialEq + Clone> Choices<T> {
-    /// What is chosen is among the names, also if it is not there now.
+    /// The chosen value is always in the list, even if it is not available now.
     fn new(mut all: Vec<(String, T)>, chosen: &T, missing: impl FnOnce() -> String) -> Self {
         let known = all.iter().find(|(_, one)| one == chosen).map(|(name, _)| name.clone());
         let name = known.unwrap_or_else(|| {
@@ -35,7 +35,7 @@ impl<T: PartialEq + Clone> Choices<T> {
         Self { all, chosen: name }
     }
 
-    /// Shows it in a row. Returns what was picked.
+    /// Shows the choice in a row. Returns the picked value.
     fn show(&self, ui: &Ui, row: Rect, [name, help]: [&str; 2], controls: &mut Controls) -> Option<T> {
         let palette = controls.palette;
         let label = row.with_max_x(row.left() + NAMES);
@@ -68,7 +68,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
     let chosen = &devices.chosen;
     let mut wish = chosen.clone();
     if let Some((host, device)) = outputs(&devices).show(ui, row(0, 0), OUTPUT, controls) {
-        // Another device may not have the same rates and blocks.
+        // Another device may not support the same sample rates and block sizes.
         wish = Chosen { host, device, midi_in: chosen.midi_in.clone(), ..Chosen::default() };
     }
     if let Some(port) = ports(&devices).show(ui, row(0, 1), PORTS, controls) {

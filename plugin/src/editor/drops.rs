@@ -1,4 +1,4 @@
-//! Files that are dropped on the window: presets join the user's sounds, scales and mappings tune the sound, recordings become one.
+//! Files dropped on the window: presets are imported, scales and mappings tune the sound, recordings are fitted.
 
 use super::controls::Controls;
 use super::{files, tuning_page};
@@ -16,12 +16,12 @@ fn ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
-/// Whether a file is called as recordings are.
+/// Whether the file's extension is that of a recording.
 pub(super) fn is_recording(path: &Path) -> bool {
     ["aif", "aifc", "aiff", "flac", "mp3", "oga", "ogg", "wav", "wave"].contains(&ending(path).as_str())
 }
 
-/// Does what belongs to a file that is no recording. Returns a message.
+/// Handles a dropped file that is not a recording. Returns a message.
 pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
     match ending(path).as_str() {
         "scl" | "kbm" => tuning_page::take(path, controls),
@@ -33,7 +33,7 @@ pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Contro
     }
 }
 
-/// Whether a file is in the user's folder already.
+/// Whether a file is already in the user's folder.
 fn is_own(path: &Path, library: &Library) -> bool {
     // Both may be reached by symbolic links.
     let folder = path.parent().and_then(|folder| folder.canonicalize().ok());

@@ -1,4 +1,4 @@
-//! Sounds are loaded: those that the window lists, and preset and kit files by their path.
+//! Loads sounds: those that the window lists, and preset and kit files given by path.
 
 use super::gestures;
 use crate::params::SprungParams;
@@ -8,8 +8,8 @@ use sprung::preset::{Playable, Preset, Replaced};
 use std::fs::File;
 use std::path::Path;
 
-/// A message about the project's last state, if not all of it was understood: the first complaint, and the number of
-/// others.
+/// A message if the last state that was loaded was not understood completely: the first complaint, and the number of
+/// the others.
 pub(super) fn summary(complaints: &[String]) -> Option<String> {
     let [first, rest @ ..] = complaints else { return None };
     let rest = if rest.is_empty() { String::new() } else { format!(" (and {} more)", rest.len()) };
@@ -22,7 +22,7 @@ pub(super) fn load(playable: Playable, params: &SprungParams, host: &GuiContext)
     gestures::load(State::new(playable, seed, view), params, host);
 }
 
-/// The factory sound some places after the one of this name, in the order of the list.
+/// The factory sound at this distance from the named one, in the order of the list.
 pub(super) fn neighbour(name: &str, places: isize) -> Option<&'static Preset> {
     let all = Preset::factory();
     let place = all.iter().position(|preset| preset.name == name).unwrap_or(0);

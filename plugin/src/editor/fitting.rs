@@ -11,7 +11,7 @@ use sprung::preset::Playable;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Between two pictures while the bar grows.
+/// Time between two repaints while the bar grows.
 const PAUSE: Duration = Duration::from_millis(50);
 /// Greatest width of the panel, and its height.
 const SIZE: [f32; 2] = [380.0, 68.0];
@@ -39,8 +39,8 @@ impl Fitting {
         }
     }
 
-    /// Shows how far it is, in the middle of a part of the window, and loads what came of it as one step. Returns a message when
-    /// it is over.
+    /// Shows the progress in the middle of a part of the window. When the fit ends, loads the result as one undo step
+    /// and returns a message.
     pub(super) fn show(&mut self, ui: &Ui, within: Rect, controls: &mut Controls) -> Option<String> {
         let work = self.work.as_mut()?;
         if let Some(ended) = work.take() {
@@ -79,11 +79,11 @@ pub(super) struct Face<'a> {
     pub(super) is_ending: bool,
 }
 
-/// Paints the panel. Returns its button.
+/// Paints the panel. Returns the response of its button.
 pub(super) fn paint(ui: &Ui, within: Rect, face: &Face, palette: &Palette) -> Response {
     let size = vec2(SIZE[0].min(within.width() - 2.0 * PADDING), SIZE[1]);
     let panel = Rect::from_center_size(within.center(), size);
-    // What lies under it is not to be hit through it.
+    // Clicks on the panel do not reach the widgets under it.
     ui.interact(panel, Id::unique("fit"), Sense::click_and_drag());
     ui.painter().rect(panel, RADIUS, palette.ground, Stroke::new(1.0, palette.line), StrokeKind::Inside);
     let inner = panel.shrink(PADDING + 2.0);

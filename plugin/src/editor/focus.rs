@@ -1,9 +1,9 @@
-//! The keyboard belongs to the host, apart from the time in which the user types.
+//! Keyboard focus: the host keeps it, except while the user types.
 
 use nice_plug_egui::Frame;
 
-/// Who has the keyboard. On X11 a window that has taken the focus gets every key, and cannot hand keys on to the host: so
-/// the focus itself is handed back.
+/// Tracks which window has the keyboard focus. On X11 a focused window gets every key and cannot pass keys on to the
+/// host, so the focus itself is given back.
 #[derive(Default)]
 pub(super) struct Focus {
     #[cfg(target_os = "linux")]
@@ -39,7 +39,7 @@ mod x11 {
     use x11rb::protocol::xproto::{ConnectionExt as _, InputFocus};
     use x11rb::rust_connection::RustConnection;
 
-    /// How often to ask who has the focus.
+    /// Shortest time between two queries of the focused window.
     const INTERVAL: Duration = Duration::from_millis(200);
 
     #[derive(Default)]
@@ -51,7 +51,7 @@ mod x11 {
     }
 
     impl Focus {
-        /// Remembers who has the focus, while it is another window.
+        /// Remembers which window has the focus, if it is not this one.
         pub(super) fn remember(&mut self, window: &WindowContext) -> Option<()> {
             if self.asked.is_some_and(|asked| asked.elapsed() < INTERVAL) {
                 return None;
@@ -59,17 +59,17 @@ mod x11 {
             self.asked = Some(Instant::now());
             let own = id(window)?;
             let focus = self.screen()?.get_input_focus().ok()?.reply().ok()?.focus;
-            // 0 is no window, and 1 the one under the pointer.
+            // X11: 0 means no window, 1 means the window under the pointer.
             self.before = Some(focus).filter(|focus| *focus > 1 && *focus != own).or(self.before);
             Some(())
         }
 
-        /// Gives the focus to the window that had it before, or if there is none, to that around this one. Keys then go to
-        /// that window; X11 gives them to this one nevertheless if the pointer is in it and it is inside that window.
+        /// Gives the focus to the window that had it before or, if there is none, to this window's parent. Keys then go
+        /// to that window; but X11 still sends them to this window if it is inside that one and has the pointer.
         pub(super) fn give_back(&mut self, window: &WindowContext) -> Option<()> {
             let (own, before) = (id(window)?, self.before);
             let screen = self.screen()?;
-            // Another window may have taken it meanwhile.
+            // Another window may have taken the focus meanwhile.
             if screen.get_input_focus().ok()?.reply().ok()?.focus != own {
                 return None;
             }
@@ -89,7 +89,7 @@ mod x11 {
         }
     }
 
-    /// The window's number.
+    /// The window's X11 id.
     fn id(window: &WindowContext) -> Option<u32> {
         match window.platform_handle().window_handle().ok()?.as_raw() {
             RawWindowHandle::Xlib(handle) => u32::try_from(handle.window).ok(),

@@ -2,7 +2,7 @@
 
 use egui::{Context, FontDefinitions, FontFamily};
 
-/// Lets the font of code stand in for letters that the font of text does not have: arrows, Greek, Cyrillic.
+/// Adds the code font as a fallback for characters that the text font does not have: arrows, Greek, Cyrillic.
 pub(super) fn install(context: &Context) {
     let mut fonts = FontDefinitions::default();
     if let Some(names) = fonts.families.get_mut(&FontFamily::Proportional) {

@@ -9,7 +9,7 @@ use std::array::from_fn;
 /// A parameter's change in progress, which the host sees as one gesture.
 #[derive(Default)]
 pub(super) struct Gestures {
-    /// Index of the parameter for which the host was told that a gesture has begun.
+    /// Index of the parameter whose gesture the host has seen begin.
     moving: Option<usize>,
 }
 
@@ -19,7 +19,7 @@ impl Gestures {
         self.moving
     }
 
-    /// Moves a knob. The first call begins the gesture, after the end of another one.
+    /// Moves a knob. The first call ends any other gesture and begins this one.
     pub(super) fn turn(&mut self, params: &SprungParams, host: &GuiContext, index: usize, position: f32) {
         if self.moving != Some(index) {
             self.end(params, host);
@@ -69,8 +69,8 @@ pub(super) fn load(state: State, params: &SprungParams, host: &GuiContext) {
     announce(params, host, &before);
 }
 
-/// Tells the host that something has changed which is no knob, so that it saves the project: the wrapper has no other way than
-/// a gesture that leaves a knob where it is.
+/// Tells the host that something other than a knob has changed, so that it saves the project. The wrapper offers only
+/// one way: a gesture that leaves a knob where it is.
 pub(super) fn touch(params: &SprungParams, host: &GuiContext) {
     let index = Param::Voices as usize;
     Gestures::default().set(params, host, index, params.knobs()[index].position());

@@ -1,4 +1,4 @@
-//! The top of the window: the sound, what to do with it, and its level.
+//! The top of the window: the sound's name, the buttons for it, and its level.
 
 use super::buttons::{Look, button};
 use super::controls::{Controls, Hint};
@@ -10,18 +10,18 @@ use crate::state::View;
 use egui::{Align2, Id, Popup, PopupCloseBehavior, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use std::collections::BTreeSet;
 
-/// What the user asks for.
+/// A request of the user's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Wish {
-    /// The preset so many places further in the list.
+    /// Load the preset at this distance in the list.
     Step(isize),
     Browse,
     Save,
     Undo,
     Redo,
-    /// The other one of two versions of the sound.
+    /// Switch to the other one of the two versions of the sound.
     Swap,
-    /// The other version becomes a copy of this one.
+    /// Replace the other version by a copy of this one.
     Copy,
     Zoom(u32),
     Theme(Theme),
@@ -39,7 +39,7 @@ pub(super) struct Header<'a> {
     pub(super) view: View,
     /// Sections that variations leave as they are.
     pub(super) locked: &'a BTreeSet<&'static str>,
-    /// Levels, left and right, as parts of the meter.
+    /// Levels of left and right, as shares of the meter's length.
     pub(super) levels: [f32; 2],
 }
 

@@ -11,7 +11,7 @@ impl HeldKey {
         self.0
     }
 
-    /// Plays the key that is touched with this velocity, and lets go of another one.
+    /// Plays the touched key with this velocity, and releases the previous one.
     pub(super) fn follow(&mut self, touched: Option<(u8, f32)>, link: &Link) {
         if touched.map(|(key, _)| key) == self.0 {
             return;
@@ -23,7 +23,7 @@ impl HeldKey {
         }
     }
 
-    /// Lets go of it.
+    /// Releases the key.
     pub(super) fn release(&mut self, link: &Link) {
         if let Some(key) = self.0.take() {
             link.play(Touch::Up { key });

@@ -1,4 +1,4 @@
-//! Undo and redo: the states before and after what the user did, by name.
+//! Undo and redo: the states before and after each action of the user's, by name.
 
 use super::gestures::{Gestures, load};
 use crate::params::SprungParams;
@@ -10,44 +10,44 @@ use sprung::preset::Playable;
 /// How many steps can be undone.
 const STEPS: usize = 100;
 
-/// A state, and what was done to it.
+/// A state, with the name of the action before or after it.
 struct Step {
     name: String,
     state: State,
-    /// Whether the other one of two versions took the place of the sound.
+    /// Whether the action replaced the sound by the other one of the two versions.
     swaps: bool,
 }
 
-/// What can be undone and redone.
+/// The steps that can be undone and redone.
 #[derive(Default)]
 pub(super) struct History {
     /// The states before each step, the last one at the end.
     undo: Vec<Step>,
     /// The states after each step that was undone, the next one at the end.
     redo: Vec<Step>,
-    /// The state before what the user is doing.
+    /// The state before the action in progress.
     open: Option<State>,
 }
 
 impl History {
-    /// Keeps the state before something that the user begins to do. Has no effect until [`History::end`].
+    /// Keeps the state before an action of the user's begins. It becomes a step only at [`History::end`].
     pub(super) fn begin(&mut self, params: &SprungParams) {
         if self.open.is_none() {
             self.open = Some(params.state());
         }
     }
 
-    /// What the user began to do is given up: it becomes no step.
+    /// Drops the action in progress: it becomes no step.
     pub(super) fn cancel(&mut self) {
         self.open = None;
     }
 
-    /// What the user did is over: it becomes a step if it has changed anything.
+    /// Ends the action in progress: it becomes a step if it has changed anything.
     pub(super) fn end(&mut self, name: impl Into<String>, params: &SprungParams) {
         self.end_step(name.into(), false, params);
     }
 
-    /// As [`History::end`], after the other one of two versions took the place of the sound.
+    /// Like [`History::end`], after the sound was replaced by the other one of the two versions.
     pub(super) fn end_swap(&mut self, name: &str, params: &SprungParams) {
         self.end_step(name.to_owned(), true, params);
     }
@@ -64,22 +64,22 @@ impl History {
         }
     }
 
-    /// The name of what would be undone.
+    /// The name of the step that would be undone.
     pub(super) fn undo_name(&self) -> Option<&str> {
         self.undo.last().map(|step| step.name.as_str())
     }
 
-    /// The name of what would be redone.
+    /// The name of the step that would be redone.
     pub(super) fn redo_name(&self) -> Option<&str> {
         self.redo.last().map(|step| step.name.as_str())
     }
 
-    /// Undoes the last step. Returns whether two versions swap their places by that.
+    /// Undoes the last step. Returns whether the two versions change places by this.
     pub(super) fn undo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
         go(&mut self.undo, &mut self.redo, params, host)
     }
 
-    /// Does again what was undone last. Returns whether two versions swap their places by that.
+    /// Redoes the step that was undone last. Returns whether the two versions change places by this.
     pub(super) fn redo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
         go(&mut self.redo, &mut self.undo, params, host)
     }
@@ -92,19 +92,19 @@ fn go(from: &mut Vec<Step>, to: &mut Vec<Step>, params: &SprungParams, host: &Gu
     swaps
 }
 
-/// Returns to a state, apart from how the window looks, and tells the host which knobs have moved.
+/// Restores a state, except the size and colours of the window, and tells the host which knobs have moved.
 pub(super) fn restore(mut state: State, params: &SprungParams, host: &GuiContext) {
     let now = params.state();
     state.view = now.view;
     if same_but_for_knobs(&state, &now) {
-        // Sounding notes follow a knob, and keep what they play if a sound is loaded.
+        // Sounding notes follow a moved knob; they would not follow if the sound were loaded again.
         let mut gestures = Gestures::default();
         for index in 0..PARAM_COUNT {
             if state.positions[index].to_bits() != now.positions[index].to_bits() {
                 gestures.set(params, host, index, state.positions[index]);
             }
         }
-        // A knob cannot say a value that was loaded and lies between its positions.
+        // A loaded value may lie between the positions of a knob, so that setting the position does not restore it.
         if params.state().values == state.values {
             return;
         }
@@ -112,7 +112,7 @@ pub(super) fn restore(mut state: State, params: &SprungParams, host: &GuiContext
     load(state, params, host);
 }
 
-/// Whether two states sound the same, and are called the same.
+/// Whether two states have the same sound and the same name.
 pub(super) fn same_sound(one: &State, other: &State) -> bool {
     one.positions == other.positions && one.values == other.values && same_but_for_knobs(one, other)
 }

@@ -11,13 +11,13 @@ use egui::{
 };
 use sprung::units::note_name;
 
-/// The least width and the least height of a cell.
+/// The smallest width and height of a cell.
 const LEAST: f32 = 70.0;
 const HEIGHT: f32 = 18.0;
-/// What a cell has beside its text: the note's name and the space around both; and, in some, a number.
+/// Width in a cell beside its text: the note's name with the space around both; and, in some cells, a number.
 const BESIDE: f32 = 36.0;
 const NUMBER: f32 = 14.0;
-/// The key that is in the middle at first.
+/// The key that is centred when the grid is opened.
 const MIDDLE: u8 = 54;
 
 /// What a cell shows.
@@ -28,11 +28,11 @@ pub(super) struct Cell {
     pub(super) is_on: bool,
     /// A number in its corner; 0 is none.
     pub(super) group: u8,
-    /// Whether it belongs to the cell under the pointer.
+    /// Whether the cell belongs together with the cell under the pointer.
     pub(super) is_marked: bool,
 }
 
-/// What a grid remembers.
+/// The grid's state.
 #[derive(Default)]
 pub(super) struct KeyGrid {
     held: HeldKey,
@@ -48,13 +48,14 @@ impl KeyGrid {
         self.hovered
     }
 
-    /// The page is left: lets go of the key that the mouse holds.
+    /// To be called when the page is left: releases the key that the mouse holds.
     pub(super) fn release(&mut self, link: &Link) {
         self.is_seen = false;
         self.held.release(link);
     }
 
-    /// Shows the cells of all keys; `down` are those that are held, one bit each. A click plays, louder towards the lower edge.
+    /// Shows the cells of all keys; `down` has one bit for each held key. A click plays the key, louder towards the
+    /// lower edge.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -64,7 +65,7 @@ impl KeyGrid {
         cell: &dyn Fn(u8) -> Cell,
         controls: &Controls,
     ) {
-        // A row is an octave, or a part of one: as many keys as have room for the longest text.
+        // A row is an octave, half or a third of one: the most keys of which each has room for the longest text.
         let of = |cell: Cell| {
             let number = if cell.group > 0 { NUMBER } else { 0.0 };
             width(ui.painter(), &cell.text, SMALL) + number + BESIDE

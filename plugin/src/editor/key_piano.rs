@@ -1,4 +1,4 @@
-//! The computer's keys as a piano, where no host needs them.
+//! The computer's keyboard as a piano, in the standalone program only.
 
 use crate::link::{Link, Touch};
 use egui::{Event, Key, Ui};
@@ -31,17 +31,17 @@ const ROWS: [(&[Key], u8); 2] = [
     ),
 ];
 
-/// The octaves of the lower C, and the one to begin with.
+/// The octaves that the lower C can have, and the one at the start.
 const OCTAVES: std::ops::RangeInclusive<u8> = 0..=8;
 const OCTAVE: u8 = 4;
 
 const VELOCITY: f32 = 0.75;
 
-/// What the computer's keys hold.
+/// The keys of the computer that are held, and the notes that they play.
 pub(super) struct KeyPiano {
     octave: u8,
     held: Vec<(Key, u8)>,
-    /// Keys that have gone up in the last pass. X11 repeats a held key by letting it go and pressing it again.
+    /// Keys released in the last pass. X11 repeats a held key by releasing and pressing it again.
     lifted: Vec<Key>,
 }
 
@@ -52,7 +52,7 @@ impl Default for KeyPiano {
 }
 
 impl KeyPiano {
-    /// Plays what is pressed, unless somebody types. Returns what the user should know.
+    /// Plays the pressed keys, unless the user types text. Returns a message for the user.
     pub(super) fn follow(&mut self, ui: &Ui, link: &Link) -> Option<String> {
         let (modifiers, is_focused) = ui.input(|input| (input.modifiers, input.focused));
         if ui.ctx().egui_wants_keyboard_input() || modifiers.ctrl || modifiers.alt || modifiers.command || !is_focused {
@@ -81,7 +81,7 @@ impl KeyPiano {
         (self.octave != octave).then(|| format!("the key z plays {}", note_name(12 + 12 * self.octave)))
     }
 
-    /// Lets go of everything that is held.
+    /// Releases all held keys.
     pub(super) fn release(&mut self, link: &Link) {
         self.lifted.clear();
         for (_, key) in self.held.drain(..) {

@@ -1,4 +1,4 @@
-//! The page of a kit: what each key plays, and what it chokes.
+//! The page of a kit: the sound and the choke group of each key.
 
 use super::controls::{Controls, Hint};
 use super::key_grid::{Cell, KeyGrid};
@@ -9,7 +9,7 @@ use sprung::params::Param;
 use sprung::sound::Pad;
 use sprung::units::note_name;
 
-/// Shows the keys of a sound or kit; `down` are those that are held.
+/// Shows the keys of a sound or kit; `down` has one bit for each held key.
 pub(super) fn show(ui: &mut Ui, rect: Rect, grid: &mut KeyGrid, shown: &Shown, down: u128, controls: &mut Controls) {
     controls.palette.paint_panel(ui.painter(), rect);
     let kit = &shown.loaded().kit;

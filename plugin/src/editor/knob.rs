@@ -1,4 +1,4 @@
-//! A knob with its name and value: dragged, turned by the wheel or by keys, reset, or typed.
+//! A knob with its name and value: dragged, turned by the wheel or by keys, reset, or typed into.
 
 use super::controls::{Controls, Hint, Typing};
 use super::knob_face::{self, Face};
@@ -13,11 +13,11 @@ use egui::{
 use sprung::params::{ParamInfo, Unit};
 use sprung::preset::Playable;
 
-/// Pixels of the mouse for the whole travel of a knob.
+/// Mouse movement for the whole travel of a knob, in pixels.
 const TRAVEL: f32 = 220.0;
-/// Travel of one step of the wheel or of an arrow key.
+/// Share of the travel for one step of the wheel or of an arrow key.
 const STEP: f64 = 0.01;
-/// How much slower everything is with Shift.
+/// Factor for all movements while Shift is held.
 const FINE: f64 = 0.1;
 
 /// Where the parts of a knob are in its cell.
@@ -46,12 +46,12 @@ pub(super) fn face_in(turned: Rect) -> Rect {
     Parts::of(turned).face
 }
 
-/// The widget's identity, of which a parameter has one in a window.
+/// The widget's id. A parameter has one widget in a window.
 pub(super) fn id(info: &ParamInfo) -> Id {
     Id::unique(("knob", info.id))
 }
 
-/// Shows a parameter's knob in a cell, called `name`; `ring` is what modulates it.
+/// Shows a parameter's knob in a cell, under the title `name`; `ring` shows its modulation.
 pub(super) fn show(
     ui: &mut Ui,
     cell: Rect,
@@ -168,7 +168,7 @@ pub(super) fn wheel(ui: &Ui, response: &Response, info: &'static ParamInfo, cont
     }
 }
 
-/// Turns by the arrow keys, resets, and does what a screen reader asks for.
+/// Handles the arrow keys, the keys that reset, and the actions of a screen reader.
 pub(super) fn keys(ui: &Ui, response: &Response, info: &'static ParamInfo, controls: &mut Controls) {
     let mut steps = ui.input(|input| {
         let asked = |action| input.num_accesskit_action_requests(response.id, action) as f64;
@@ -255,7 +255,7 @@ fn typed(ui: &mut Ui, rect: Rect, info: &'static ParamInfo, controls: &mut Contr
                 controls.set(info, value);
                 return true;
             }
-            // A click elsewhere leaves the field, whatever was typed.
+            // A click elsewhere closes the field, even if its text is not a value.
             Err(_) if !ui.input(|input| input.key_pressed(Key::Enter)) => return true,
             Err(complaint) => {
                 typing.complaint = Some(format!("{}: {complaint}", info.name));

@@ -1,18 +1,18 @@
-//! Draws the face of a knob: an arc from the default to the position, a hand, and rings for modulation.
+//! Draws the face of a knob: an arc from the default to the position, a pointer, and rings for modulation.
 
 use super::routes::Ring;
 use super::theme::Palette;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use std::f32::consts::PI;
 
-/// What a face shows. Positions are 0 to 1.
+/// Contents of a face. Positions are 0 to 1.
 pub(super) struct Face<'a> {
     pub(super) position: f32,
-    /// Where the arc begins: the position of the default.
+    /// Start of the arc: the position of the default.
     pub(super) origin: f32,
-    /// What the host's modulation adds to the position.
+    /// Offset of the position by the host's modulation.
     pub(super) offset: f32,
-    /// What modulates it in notes.
+    /// The modulation by the sound's routes, and the modulated values in the sounding notes.
     pub(super) ring: &'a Ring,
     pub(super) is_hovered: bool,
     pub(super) is_focused: bool,
@@ -29,12 +29,12 @@ fn arc(painter: &Painter, centre: Pos2, radius: f32, [from, to]: [f32; 2], strok
     painter.add(Shape::line((0..=steps).map(point).collect(), stroke));
 }
 
-/// The middle of a mark on the ring of the face in `rect`, outside of which nothing is drawn.
+/// The centre of a mark on the ring around the face in `rect`.
 pub(super) fn on_ring(rect: Rect, position: f32) -> Pos2 {
     rect.center() + (rect.width() / 2.0 + 1.0) * direction(position)
 }
 
-/// The marks of the notes: the newest one's is the largest, and above the others.
+/// Paints the marks of the sounding notes: that of the newest note is the largest and on top.
 fn paint_marks(painter: &Painter, rect: Rect, marks: &[f32], palette: &Palette) {
     for (place, mark) in marks.iter().enumerate().rev() {
         let (radius, edge) = if place == 0 { (3.2, 1.2) } else { (2.0, 0.8) };

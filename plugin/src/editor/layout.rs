@@ -1,4 +1,4 @@
-//! Where the parts of the window are.
+//! Places of the parts of the window.
 
 use super::theme::{CELL_HEIGHT, GAP, HEADER_HEIGHT, PADDING, STATUS_HEIGHT, TABS_HEIGHT, TITLE_HEIGHT};
 use egui::{Rect, pos2};
@@ -47,7 +47,7 @@ impl Layout {
         Self { header, modes, motion, tabs, sections, piano, status }
     }
 
-    /// The part between header and piano, which a page such as the browser takes.
+    /// The area between header and piano, for a page such as the browser.
     pub(super) fn page(&self) -> Rect {
         Rect::from_min_max(self.modes.min, pos2(self.header.right(), self.piano.top() - GAP))
     }

@@ -1,4 +1,4 @@
-//! MIDI learn: what is moved next on the keyboard modulates a parameter, by a route.
+//! MIDI learn: the controller that the user moves next modulates a parameter, by a route.
 
 use super::controls::{Controls, Learning};
 use super::routes::{change, source_name};
@@ -8,18 +8,18 @@ use sprung::patch::routes::{MAX_ROUTES, Route, Source};
 use sprung::preset::Playable;
 use std::time::Duration;
 
-/// Time between two looks at what is moved.
+/// Time between two looks for a movement.
 const PAUSE: Duration = Duration::from_millis(50);
-/// The least part of a knob's travel that is worth a route.
+/// If less than this share of the travel is left above a knob's position, a new route moves it downwards.
 const LEAST: f32 = 0.05;
 
-/// Waits for what is moved next.
+/// Waits for the next movement of a controller.
 pub(super) fn begin(info: &'static ParamInfo, controls: &mut Controls) {
     let (seen, _) = controls.params.link().telemetry.moved();
     controls.hands.learning = Some(Learning { info, seen, is_told: false });
 }
 
-/// Looks whether something was moved, and makes a route from it. Returns a message.
+/// Checks whether a controller was moved, and makes a route from it. Returns a message.
 pub(super) fn follow(ui: &Ui, controls: &mut Controls) -> Option<String> {
     let learning = controls.hands.learning.as_mut()?;
     let info = learning.info;
@@ -47,7 +47,7 @@ pub(super) fn follow(ui: &Ui, controls: &mut Controls) -> Option<String> {
     Some(learn(source, info, controls))
 }
 
-/// Adds a route from a source, by which the knob goes as far as it can. Returns a message.
+/// Adds a route from a source. Its amount moves the knob to the end of its travel. Returns a message.
 fn learn(source: Source, info: &'static ParamInfo, controls: &mut Controls) -> String {
     let Playable::Preset(preset) = controls.params.state().playable else {
         return "a kit’s sounds have routes of their own".to_owned();

@@ -1,11 +1,11 @@
-//! What the modes of a sound are made from: a body, two joined bodies, or a table that says nothing of them.
+//! The origin of a sound's modes: a body, two joined bodies, or a table without a body.
 
 use sprung::patch::ModeTable;
 use sprung::preset::{body_of_modes, modes_of_body, modes_of_pair, pair_of_modes};
 use sprung::sound::bodies::{Body, Model, Pitch};
 use sprung::sound::pairs::{Link, Pair};
 
-/// What the modes of a sound were made from.
+/// The origin of a sound's modes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Made {
     FromBody(Box<Body>),
@@ -22,7 +22,7 @@ impl Made {
         }
     }
 
-    /// A body whose model says nothing of places is a table to those who draw it.
+    /// Treats a body whose model has no places to strike as a table: it cannot be drawn.
     pub(super) fn with_places(self) -> Self {
         match self {
             Self::FromBody(body) if matches!(body.model, Model::Custom(_) | Model::Mass) => Self::Table,
@@ -39,7 +39,7 @@ impl Made {
         }
     }
 
-    /// As [`Made::body`], to be changed.
+    /// Like [`Made::body`], to be changed.
     pub(super) fn body_mut(&mut self) -> Option<&mut Body> {
         match self {
             Self::FromBody(body) => Some(body),
@@ -56,7 +56,7 @@ impl Made {
         }
     }
 
-    /// As [`Made::pair`], to be changed.
+    /// Like [`Made::pair`], to be changed.
     pub(super) fn pair_mut(&mut self) -> Option<&mut Pair> {
         match self {
             Self::FromPair(pair) => Some(pair),
@@ -64,7 +64,7 @@ impl Made {
         }
     }
 
-    /// The modes, made anew; none of a table, which is made of nothing. The error says why two bodies have none.
+    /// Computes the modes; `None` for a table, which has no body. The error says why the two bodies have no modes.
     pub(super) fn modes(&self) -> Result<Option<ModeTable>, String> {
         match self {
             Self::FromBody(body) => Ok(Some(modes_of_body(body))),
@@ -73,7 +73,7 @@ impl Made {
         }
     }
 
-    /// The T60 that decays of modes are multiples of; none of a table. Not fast.
+    /// The T60 to which the modes' decays are relative, in seconds; `None` for a table. This is slow.
     pub(super) fn t60(&self) -> Option<f64> {
         match self {
             Self::FromBody(body) => Some(body.t60()),
@@ -82,8 +82,8 @@ impl Made {
         }
     }
 
-    /// The same with a body of another model: the only one or the first of two, or the second. Without a model, there is
-    /// no second body.
+    /// The same, with the model of a body replaced: of the second body if `is_second`, otherwise of the only or first
+    /// one. Without a model, the second body is removed.
     pub(super) fn with_model(&self, is_second: bool, model: Option<&Model>) -> Self {
         let new = model.map(|model| Body::new(model.clone()));
         match (self, new, is_second) {
@@ -98,7 +98,7 @@ impl Made {
             (Self::FromPair(pair), Some(new), true) => {
                 Self::FromPair(Box::new(Pair { second: like(&pair.second, new), ..(**pair).clone() }))
             }
-            // A body by itself follows the keys.
+            // A single body always follows the keys.
             (Self::FromPair(pair), None, true) => {
                 Self::FromBody(Box::new(Body { follows_key: true, ..pair.first.clone() }))
             }
@@ -106,7 +106,7 @@ impl Made {
         }
     }
 
-    /// Two bodies that act on each other in another way.
+    /// The two bodies with another kind of joint.
     pub(super) fn linked(&self, link: Link) -> Self {
         match self {
             Self::FromPair(pair) => {
@@ -119,14 +119,14 @@ impl Made {
     }
 }
 
-/// A body with what another one had that its model does not determine.
+/// The new body, with those properties of the old one that the model does not determine.
 fn like(old: &Body, new: Body) -> Body {
     let Body { pitch, damping, spread, pan, strike_share, follows_key, modes, seed, .. } = *old;
     let pitch = if matches!(pitch, Pitch::Frequency(_)) { pitch } else { new.pitch };
     Body { pitch, damping, spread, pan, strike_share, follows_key, modes, seed, ..new }
 }
 
-/// The name of a model for people.
+/// The name of a model as shown to the user.
 pub(super) fn model_name(id: &str) -> String {
     id.replace('_', " ")
 }

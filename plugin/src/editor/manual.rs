@@ -8,19 +8,19 @@ use egui::{Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Stroke, U
 
 /// Width of the list of pages.
 const SIDE: f32 = 112.0;
-/// The widest line of text: longer ones are hard to read.
+/// Longest line of text, in points: longer lines are hard to read.
 const WIDEST: f32 = 720.0;
-/// Width of the bar that scrolls it, and a little space.
+/// Width of the scroll bar with a little space.
 const BAR: f32 = 14.0;
 
-/// The page that is shown.
+/// The manual's state: the page that is shown.
 #[derive(Default)]
 pub(super) struct Manual {
     page: usize,
 }
 
 impl Manual {
-    /// Turns to the page of this name.
+    /// Opens the page of this name.
     pub(super) fn open(&mut self, name: &str) {
         self.page = PAGES.iter().position(|(known, _)| *known == name).unwrap_or(0);
     }
@@ -48,7 +48,7 @@ impl Manual {
         let text = inner.with_min_x(side.right() + 2.0 * GAP);
         let mut child = ui.new_child(UiBuilder::new().id_salt("manual").max_rect(text));
         ScrollArea::vertical().id_salt(("manual", self.page)).auto_shrink(false).show(&mut child, |ui| {
-            // The bar lies over the text.
+            // The scroll bar is drawn over the text.
             ui.set_max_width((ui.available_width() - BAR).min(WIDEST));
             for block in blocks(PAGES[self.page].1) {
                 show_block(ui, &block, palette);
@@ -62,7 +62,7 @@ fn mono(size: f32) -> FontId {
     FontId::monospace(size)
 }
 
-/// A line with its marks as colours.
+/// Lays out a line, with its Markdown marks turned into fonts and colours.
 fn job(text: &str, size: f32, colour: Color32, palette: &Palette, width: f32) -> LayoutJob {
     let mut job = LayoutJob::default();
     job.wrap.max_width = width;
@@ -114,7 +114,7 @@ fn show_block(ui: &mut Ui, block: &Block, palette: &Palette) {
     }
 }
 
-/// A table: its columns are as wide as their longest cells ask for, within limits.
+/// A table whose column widths follow their longest cells, within limits.
 fn table(ui: &mut Ui, rows: &[Vec<String>], width: f32, palette: &Palette) {
     let columns = rows[0].len().max(1);
     let length = |column: usize| {

@@ -1,4 +1,4 @@
-//! The manual's pages, and their Markdown taken apart into blocks.
+//! The manual's pages, and their Markdown split into blocks.
 
 macro_rules! pages {
     ($($name:literal)*) => {
@@ -13,20 +13,20 @@ pages! {
     "daw" "window" "recordings" "lab"
 }
 
-/// A piece of a page.
+/// A block of a page.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Block {
     Title(String),
     Heading(String),
     Paragraph(String),
-    /// A point of a list, with what comes before it: a number, or nothing.
+    /// A list item with its mark: a bullet or a number.
     Item(String, String),
     Code(String),
     /// Rows of cells, the first with the names of the columns.
     Table(Vec<Vec<String>>),
 }
 
-/// How a piece of a line is to look.
+/// The style of a piece of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Style {
     Plain,
@@ -34,11 +34,11 @@ pub(super) enum Style {
     Code,
 }
 
-/// Takes a page apart.
+/// Splits a page into blocks.
 pub(super) fn blocks(page: &str) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     let mut lines = page.lines().peekable();
-    // Whether the next line goes on with the last block.
+    // Whether the next line continues the last block.
     let mut is_open = false;
     while let Some(line) = lines.next() {
         let text = line.trim();
@@ -59,7 +59,7 @@ pub(super) fn blocks(page: &str) -> Vec<Block> {
             while let Some(row) = lines.next_if(|line| line.trim().starts_with('|')) {
                 rows.push(cells(row.trim()));
             }
-            // The line below the names has dashes only.
+            // The line below the header row has only dashes.
             rows.retain(|row| !row.iter().all(|cell| cell.chars().all(|letter| "-: ".contains(letter))));
             blocks.push(Block::Table(rows));
             is_open = false;
@@ -77,7 +77,7 @@ pub(super) fn blocks(page: &str) -> Vec<Block> {
     blocks
 }
 
-/// A point of a list and its mark.
+/// The mark and text of a list item.
 fn item(text: &str) -> Option<(String, String)> {
     if let Some(item) = text.strip_prefix("- ").or(text.strip_prefix("* ")) {
         return Some(("•".to_owned(), item.to_owned()));
@@ -90,7 +90,7 @@ fn cells(row: &str) -> Vec<String> {
     row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
 }
 
-/// Takes a line apart by its marks: `code`, **strong**, and the texts of links.
+/// Splits a line by its marks: `code`, **strong**, and the texts of links.
 pub(super) fn pieces(text: &str) -> Vec<(Style, String)> {
     let mut pieces: Vec<(Style, String)> = Vec::new();
     let mut rest = text;

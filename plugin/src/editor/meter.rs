@@ -1,4 +1,4 @@
-//! The level of the sound, as two bars.
+//! The level of the sound, as a bar for each channel.
 
 use super::theme::Palette;
 use egui::{Painter, Rect, pos2, vec2};
@@ -6,15 +6,15 @@ use sprung::units::db_from_gain;
 
 /// Decibels below full scale that the bars show.
 const RANGE: f32 = 60.0;
-/// How fast the bars fall, in their length per second.
+/// How fast the bars fall, as a share of their length per second.
 const FALL: f32 = 0.7;
 
-/// Levels that rise at once and fall slowly, as parts of a bar. Above 1 the sound is above full scale.
+/// Levels that rise at once and fall slowly, as shares of the bar. Above 1, the sound is above full scale.
 #[derive(Default)]
 pub(super) struct Meter([f32; 2]);
 
 impl Meter {
-    /// The levels after some seconds, in which the sound had these peaks.
+    /// The levels after some seconds in which the sound had these peaks.
     pub(super) fn levels(&mut self, peaks: [f32; 2], seconds: f32) -> [f32; 2] {
         for (level, peak) in self.0.iter_mut().zip(peaks) {
             let db = db_from_gain(f64::from(peak)) as f32;
@@ -36,7 +36,7 @@ pub(super) fn paint(painter: &Painter, rect: Rect, levels: [f32; 2], palette: &P
         let colour = if level > 1.0 { palette.warning } else { palette.level };
         painter.rect_filled(bar.with_max_x(bar.left() + bar.width() * level.clamp(0.0, 1.0)), 3.0, colour);
         if level > 1.0 {
-            // Not by colour alone: without red and green, both are alike.
+            // A shape as well as a colour, for users who cannot tell the two colours apart.
             painter.rect_filled(bar.with_min_x(bar.right() - 8.0), 0.0, palette.text);
         }
     }

@@ -2,22 +2,23 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `window` | an open window: what it shows, and what the user asks for |
-//! | `theme`, `fonts`, `layout` | the table of colours and measures; the fonts; where the parts are |
-//! | `controls`, `gestures`, `history`, `learn` | what every widget needs; changes that hosts see; undo and redo; MIDI learn |
+//! | `window` | an open window: what it shows, and the user's requests |
+//! | `theme`, `fonts`, `layout` | colours and sizes; the fonts; the places of the parts |
+//! | `controls`, `gestures`, `history`, `learn` | the context of every widget; changes that hosts see; undo and redo; MIDI learn |
 //! | `header`, `sections`, `routes`, `curves`, `outlines`, `status` | the parts of the window; menus of routes; small pictures in sections |
-//! | `modes`, `modes_face`, `mode_axes`, `mode_table`, `snap` | the modes: what the user does with them, their picture, its axes, their table, series of ratios |
-//! | `motion`, `phase`, `scope`, `spectrum`, `ringing` | what moves: the phase plane; waveform and spectrum; how the modes ring down |
-//! | `body_view`, `body_face`, `body_shape`, `body_form` | the body that swings: what the user does with it, its picture, the shapes of its modes, its form |
-//! | `audition` | a key that the window holds by itself, so that a change is heard |
-//! | `piano`, `key_piano`, `meter` | the keyboard; the computer's keys as one; levels |
+//! | `modes`, `modes_face`, `mode_axes`, `mode_table`, `snap` | the modes: changes by the user, their picture, its axes, their table, series of ratios |
+//! | `motion`, `phase`, `scope`, `spectrum`, `ringing` | moving pictures: the phase plane; waveform and spectrum; the decay of the modes |
+//! | `body_view`, `body_face`, `body_shape`, `body_form` | the moving body: changes by the user, its picture, the shapes of its modes, its form |
+//! | `body_page`, `body_numbers`, `body_edit`, `made` | the page of the body; its numbers; a change in progress; the body from which the modes are made |
+//! | `audition` | a key that the window plays by itself, so that the user hears a change |
+//! | `piano`, `key_piano`, `held_key`, `meter` | the piano keyboard; the computer's keyboard as one; the key that the mouse holds; levels |
 //! | `pages`, `kit_page`, `tuning_page`, `voices_panel`, `devices_page`, `key_grid` | the tabs and their pages: a kit's keys, the tuning, the voices, the program's devices; all keys as a grid |
-//! | `manual`, `manual_text` | the manual over the window; its pages taken apart |
-//! | `drops`, `recordings`, `fitting` | files that are dropped on the window; recordings that become a sound in the background; how far that is |
-//! | `browser`, `details`, `star`, `sounds`, `files` | the page on which sounds are found and saved; the sounds that there are |
-//! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets, and what they are painted with |
-//! | `variation` | other sounds by chance, with locks |
-//! | `focus` | who has the keyboard: the host, unless the user types |
+//! | `manual`, `manual_text` | the manual over the window; its pages split into blocks |
+//! | `drops`, `recordings`, `fitting` | files dropped on the window; fitting recordings in the background; its progress |
+//! | `browser`, `details`, `star`, `sounds`, `files` | the page on which the user finds and saves sounds; the list of sounds; reading files |
+//! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets and their painting |
+//! | `variation` | random variations of a sound, with locks |
+//! | `focus` | keyboard focus: the host keeps it, except while the user types |
 //! | `shown` | the sound that is shown |
 
 mod audition;

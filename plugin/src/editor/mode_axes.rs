@@ -1,4 +1,4 @@
-//! The axes of the modes' picture: ratio by octaves from left to right, level in decibels from below.
+//! The axes of the modes' picture: ratios in octaves from left to right, levels in decibels from bottom to top.
 
 use egui::{Pos2, Rect, pos2};
 use sprung::patch::Mode;
@@ -7,7 +7,7 @@ use sprung::units::{db_from_gain, gain_from_db, ratio_from_semitones, semitones_
 /// How many decibels are on the axis.
 const RANGE: f64 = 60.0;
 
-/// Which ratios and which pixels the picture has.
+/// The ranges of ratio and level that the picture shows, and its pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Axes {
     pub(super) rect: Rect,
@@ -19,7 +19,7 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    /// Axes on which all modes have room, with at least two octaves and some decibels above the loudest mode.
+    /// Axes with room for all modes: at least two octaves, and 10 to 20 dB above the loudest mode, but not above 0 dB.
     pub(super) fn around(modes: &[Mode], rect: Rect) -> Self {
         let ratios = || modes.iter().map(|mode| semitones_from_ratio(f64::from(mode.ratio)));
         let lowest = ratios().fold(0.0, f64::min) - 4.0;
@@ -39,7 +39,7 @@ impl Axes {
         self.ceiling - RANGE
     }
 
-    /// Levels for lines of a grid, in decibels.
+    /// Levels of the grid lines, in decibels.
     pub(super) fn decades(&self) -> impl Iterator<Item = f64> + use<> {
         let ceiling = self.ceiling;
         (0..=3).map(move |step| ceiling - 20.0 * f64::from(step))
@@ -50,13 +50,13 @@ impl Axes {
         self.rect.left() + self.rect.width() * share as f32
     }
 
-    /// The height of a level in decibels; outside, the nearest end.
+    /// The vertical position of a level in decibels, clamped to the range.
     pub(super) fn y_of_db(&self, db: f64) -> f32 {
         let share = (self.ceiling - db.clamp(self.floor(), self.ceiling)) / RANGE;
         self.rect.top() + self.rect.height() * share as f32
     }
 
-    /// The height of a level, whatever its sign.
+    /// The vertical position of a level's absolute value.
     pub(super) fn y(&self, level: f32) -> f32 {
         self.y_of_db(db_from_gain(f64::from(level.abs())))
     }
@@ -70,7 +70,7 @@ impl Axes {
         ratio_from_semitones(self.lowest + share * (self.highest - self.lowest)) as f32
     }
 
-    /// The level at a height: 0 at the lower end.
+    /// The level at a vertical position; 0 at the lower end.
     pub(super) fn level(&self, y: f32) -> f32 {
         let db = self.ceiling - f64::from((y - self.rect.top()) / self.rect.height()) * RANGE;
         if db <= self.floor() { 0.0 } else { gain_from_db(db.min(0.0)) as f32 }

@@ -1,4 +1,4 @@
-//! The table of modes as the user changes it.
+//! The table of modes, for changes by the user.
 
 use super::controls::Controls;
 use crate::loaded::Loaded;
@@ -6,7 +6,7 @@ use sprung::patch::{Mode, ModeTable};
 use sprung::preset::Playable;
 use std::sync::Arc;
 
-/// The modes as a preset file can say them: those of two joined bodies may decay faster.
+/// The modes within the limits of a preset file. Modes of two joined bodies may decay faster than these limits allow.
 pub(super) fn clamped(modes: &[Mode]) -> Vec<Mode> {
     modes.iter().map(Mode::clamped).collect()
 }
@@ -17,7 +17,7 @@ pub(super) fn phases(table: &ModeTable) -> Vec<f32> {
     (0..modes).map(|mode| table.phase(mode)).collect()
 }
 
-/// Gives the sound another table of modes, with a phase for each or none. Returns what was loaded; nothing if it is a
+/// Replaces the sound's table of modes, with a phase for each mode or none. Returns the loaded sound; nothing for a
 /// kit.
 pub(super) fn replace(modes: &[Mode], phases: &[f32], controls: &Controls) -> Option<Arc<Loaded>> {
     let mut state = controls.params.state();

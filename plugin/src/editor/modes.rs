@@ -1,4 +1,4 @@
-//! The modes of the sound: what they are, what they do now, and how to change them.
+//! The modes of the sound: shows them with their present levels, and lets the user change them.
 
 use super::audition::{Audition, VELOCITY};
 use super::buttons::{Look, button};
@@ -18,12 +18,12 @@ use sprung::params::Param;
 use sprung::patch::{MAX_MODES, Mode, Patch};
 use std::sync::Arc;
 
-/// How far from a mode's circle it can be grabbed, in pixels.
+/// Greatest distance from a mode's circle at which it can be grabbed, in pixels.
 const REACH: f32 = 14.0;
 /// The shortest time between two changes of the sound while a mode is dragged, in seconds.
 const CHANGES: f64 = 0.04;
 
-/// What the pointer changes of a mode.
+/// The property of a mode that a drag changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Aspect {
     LevelAndRatio,
@@ -35,18 +35,18 @@ enum Aspect {
 struct Drag {
     mode: usize,
     aspect: Aspect,
-    /// The mode as it was, and how far the pointer has moved since.
+    /// The mode before the drag, and how far the pointer has moved since.
     before: Mode,
     moved: Vec2,
-    /// The modes as they are to be, and those that the sound has.
+    /// The modes as dragged, and those that were loaded last.
     modes: Vec<Mode>,
     written: Vec<Mode>,
-    /// The sound that has them. If another one is loaded, the drag is over.
+    /// The sound that was loaded last. If another sound is loaded, the drag is over.
     loaded: Arc<Loaded>,
     changed: f64,
 }
 
-/// What the user does with the modes.
+/// The state of the modes' picture.
 #[derive(Default)]
 pub(super) struct ModesView {
     axes: Option<Axes>,
@@ -63,7 +63,7 @@ impl ModesView {
         self.selected
     }
 
-    /// Gives up the drag, if there is one, and lets go of the key: a double click holds it as well.
+    /// Drops the drag, if there is one, and releases the key, which a double click holds too.
     pub(super) fn cancel(&mut self, controls: &mut Controls) {
         if self.drag.is_some() {
             controls.history.cancel();
@@ -71,13 +71,13 @@ impl ModesView {
         self.release(controls.params.link());
     }
 
-    /// Ends the drag, if there is one, and lets go of its key.
+    /// Ends the drag, if there is one, and releases its key.
     pub(super) fn release(&mut self, link: &Link) {
         self.drag = None;
         self.audition.release(link);
     }
 
-    /// Shows the modes of a sound, which is struck on its home key. Those of kits cannot be changed.
+    /// Shows the modes of a sound; changes are played on its home key. The modes of kits cannot be changed.
     pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, energies: &[f32], controls: &mut Controls) {
         let palette = controls.palette;
         let (patch, is_editable) = (shown.patch(), shown.preset().is_some());
@@ -202,7 +202,7 @@ impl ModesView {
     fn add_or_remove(&mut self, pointer: Pos2, axes: &Axes, patch: &Patch, controls: &mut Controls) {
         let (mut modes, mut phases) = (clamped(patch.modes.as_slice()), phases(&patch.modes));
         let name = match nearest(&modes, axes, pointer) {
-            // A body has at least one.
+            // A body has at least one mode.
             Some(_) if modes.len() == 1 => return,
             Some(place) => {
                 if !phases.is_empty() {
@@ -213,7 +213,7 @@ impl ModesView {
             None if modes.len() >= MAX_MODES => return,
             None => {
                 let ratio = self.snap.nearest(axes.ratio(pointer.x));
-                // As long as its neighbour.
+                // The new mode gets the other properties of the nearest one, such as its decay.
                 let distance = |mode: &Mode| (mode.ratio / ratio).max(ratio / mode.ratio);
                 let like = modes.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
                 let like = like.unwrap_or(Mode::UNIT);
@@ -238,7 +238,7 @@ fn nearest(modes: &[Mode], axes: &Axes, place: Pos2) -> Option<usize> {
     distances.filter(|(_, distance)| *distance <= REACH).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(mode, _)| mode)
 }
 
-/// The dragged mode, where the pointer is now.
+/// The dragged mode at the pointer's present place.
 fn moved(drag: &Drag, axes: &Axes, snap: Snap) -> Mode {
     let (mut mode, moved) = (drag.before, drag.moved);
     match drag.aspect {

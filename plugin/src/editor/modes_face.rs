@@ -1,4 +1,4 @@
-//! Draws the modes: a stem for each, its tail, and what it sounds like now.
+//! Draws the modes: for each a stem, its decay as a horizontal line, and its present level.
 
 use super::mode_axes::Axes;
 use super::text::line;
@@ -7,18 +7,18 @@ use egui::{Align2, Painter, Rect, Stroke, pos2, vec2};
 use sprung::patch::Mode;
 use sprung::units::{db_from_gain, semitones_from_ratio};
 
-/// What is drawn.
+/// The contents of the picture.
 pub(super) struct Face<'a> {
     pub(super) modes: &'a [Mode],
     /// T60 of a mode whose own factor is 1, in seconds.
     pub(super) decay: f32,
-    /// Squared amplitudes of the first modes, now.
+    /// Present squared amplitudes of the first modes.
     pub(super) energies: &'a [f32],
-    /// The mode that is dragged, or under the pointer.
+    /// The mode that is dragged or under the pointer.
     pub(super) selected: Option<usize>,
 }
 
-/// Pixels of the tail of a mode that rings for this many seconds: 6 for each doubling from 20 ms on.
+/// Length in pixels of the line for a decay time: 6 for each doubling from 20 ms on, within limits.
 fn tail(seconds: f32) -> f32 {
     (semitones_from_ratio(f64::from(seconds.max(0.02) / 0.02)) as f32 / 2.0).clamp(2.0, 60.0)
 }
@@ -26,7 +26,7 @@ fn tail(seconds: f32) -> f32 {
 pub(super) fn paint(painter: &Painter, axes: &Axes, palette: &Palette, face: &Face) {
     grid(painter, axes, palette);
     let painter = &painter.with_clip_rect(axes.rect.expand2(vec2(6.0, 6.0)).intersect(painter.clip_rect()));
-    // Many modes get small circles and no tails, so that one sees each of them.
+    // Many modes get small circles and no decay lines, so that each stays visible.
     let room = axes.rect.width() / face.modes.len().max(1) as f32;
     let (is_dense, circle) = (room < 4.0, (room * 0.45).clamp(1.6, 4.0));
     let stem = Stroke::new(1.0, if is_dense { palette.line } else { palette.muted.gamma_multiply(0.6) });

@@ -1,4 +1,4 @@
-//! What moves: one mass in slow motion on its phase plane, the body, the waveform with its spectrum, or how the modes ring down.
+//! Moving pictures: the phase plane of one mass, the body, the waveform with its spectrum, and the modes' decay.
 
 use super::audition::Audition;
 use super::body_view::BodyView;
@@ -31,31 +31,31 @@ const PICTURES: [(Picture, &str, f32); 4] = [
     (Picture::Ringing, "Ringing", 52.0),
 ];
 
-/// The pictures' memory.
+/// The state of the pictures.
 #[derive(Default)]
 pub(super) struct Motion {
     picture: Picture,
     phase: Phase,
     body: BodyView,
     ringing: Ringing,
-    /// The key that the pictures hold.
+    /// The key that a picture holds.
     audition: Audition,
 }
 
 impl Motion {
-    /// Gives up what the user does with a picture.
+    /// Drops the user's action in a picture.
     pub(super) fn cancel(&mut self, controls: &mut Controls) {
         self.phase.cancel();
         self.body.cancel(controls);
         self.release(controls.params.link());
     }
 
-    /// Lets go of the key that is held.
+    /// Releases the key that is held.
     pub(super) fn release(&mut self, link: &Link) {
         self.audition.release(link);
     }
 
-    /// Shows the picture of the energies of the modes; `selected` is the one that was touched last.
+    /// Shows the chosen picture for the energies of the modes; `selected` is the mode that was touched last.
     pub(super) fn show(
         &mut self,
         ui: &Ui,

@@ -1,4 +1,4 @@
-//! What the pictures of sections show, as points: a mallet's force, a burst of noise, a sweep, a slow oscillator.
+//! The curves in the pictures of sections, as points: a mallet's force, bursts of noise, a sweep, an LFO.
 //!
 //! Time runs from 0 to 1, values from −1 to 1.
 
@@ -9,19 +9,20 @@ use sprung::units::{ratio_from_semitones, semitones_from_ratio};
 use std::f32::consts::TAU;
 use std::f64::consts::{LN_2, LOG2_10};
 
-/// Points of a bent line.
+/// Number of points of a curve.
 const POINTS: usize = 40;
-/// The time that a mallet's picture shows, in seconds: what takes longer is cut off.
+/// The duration that a mallet's picture shows, in seconds: longer contacts are cut off.
 const CONTACT: f64 = 0.012;
-/// The power of a mallet's mass that its contact time grows with, by Hertz's law.
+/// Exponent of a mallet's mass in its contact time, by Hertz's law.
 const MASS_POWER: f64 = 0.4;
-/// How many times a level is halved when it falls by 60 dB.
+/// How many halvings a fall by 60 dB has.
 const HALVINGS: f64 = 3.0 * LOG2_10;
-/// The numbers of an oscillator that moves by chance.
+/// Fixed example values for LFO shapes with random values.
 const CHANCE: [f32; 4] = [0.5, -0.8, 0.9, -0.3];
 
-/// The force of a mallet: `u² (1 − u)²` over its contact, whose width is as its square root so that short ones are seen. A
-/// line straight up if it lasts one sample.
+/// The force of a mallet: `u² (1 − u)²` over its contact, scaled to a peak of 1. The width is proportional to the
+/// square root of the contact time, so that short contacts stay visible. For an impulse, which lasts one sample, a
+/// vertical line.
 pub(super) fn mallet(hardness: f64, mass: f64, is_impulse: bool) -> Vec<Vec2> {
     if is_impulse {
         return vec![vec2(0.0, 0.0), vec2(0.02, 0.0), vec2(0.02, 1.0), vec2(0.02, 0.0), vec2(1.0, 0.0)];
@@ -30,13 +31,14 @@ pub(super) fn mallet(hardness: f64, mass: f64, is_impulse: bool) -> Vec<Vec2> {
     let width = (seconds / CONTACT).sqrt() as f32;
     let force = |share: f32| 16.0 * share * share * (1.0 - share) * (1.0 - share);
     let points = (0..=POINTS).map(|point| point as f32 / POINTS as f32);
-    // What lasts longer than the picture is cut off.
+    // A contact longer than the picture is cut off.
     let bump = points.map(|share| vec2(share * width, force(share))).filter(|point| point.x < 1.0);
     let end = vec2(1.0, force((1.0 / width).min(1.0)));
     bump.chain([end]).collect()
 }
 
-/// The envelope of bursts: time in which one rises, time in which it falls, whether by 60 dB, how many there are and how far apart.
+/// The envelope of bursts of noise: the times of attack and decay, the distance between bursts, the kind of decay (an
+/// exponential one falls by 60 dB), and the number of bursts.
 pub(super) fn noise([attack, time, spacing]: [f64; 3], is_exponential: bool, hits: u32) -> Vec<Vec2> {
     let total = attack + time + spacing * f64::from(hits - 1);
     let level = |since: f64| {
@@ -58,7 +60,7 @@ pub(super) fn noise([attack, time, spacing]: [f64; 3], is_exponential: bool, hit
         .collect()
 }
 
-/// A sweep to the note: how far it starts away, in semitones, and its curve from −1 to 1.
+/// A sweep to the note's pitch: its start relative to the note, in semitones, and its curve from −1 to 1.
 pub(super) fn sweep(semitones: f64, curve: f64) -> Vec<Vec2> {
     let steepness = 8.0 * curve;
     let exp = |power: f64| ratio_from_semitones(12.0 * power / LN_2);
@@ -70,13 +72,13 @@ pub(super) fn sweep(semitones: f64, curve: f64) -> Vec<Vec2> {
         }
     };
     let scale = semitones / semitones.abs().max(12.0);
-    // It takes the first two thirds, and the note follows.
+    // The sweep takes the first two thirds; the note's pitch takes the rest.
     let points = (0..=POINTS).map(|point| point as f64 / POINTS as f64);
     let swept = points.map(|share| vec2(share as f32 * 0.67, (scale * rest(share)) as f32));
     swept.chain([vec2(1.0, 0.0)]).collect()
 }
 
-/// Two rounds of an oscillator that starts somewhere in its round.
+/// Two cycles of an LFO; `start` is its phase at the start, in cycles.
 pub(super) fn oscillator(shape: Shape, start: f32) -> Vec<Vec2> {
     let value = |round: usize, phase: f32| match shape {
         Shape::Sine => Vec2::angled(TAU * phase).y,

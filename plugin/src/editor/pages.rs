@@ -1,4 +1,4 @@
-//! The row of tabs, and the page below it: sections of parameters, the kit's keys, the tuning.
+//! The row of tabs and the page below it: sections of parameters, the body, the kit's keys, the tuning, the devices.
 
 use super::body_page::BodyPage;
 use super::buttons::tab;
@@ -15,24 +15,24 @@ use nice_plug_core::context::PluginApi;
 
 /// The pages after those with sections.
 const OTHERS: [&str; 3] = ["Model", "Kit", "Tuning"];
-/// The page after these, which the program has and a plugin has not.
+/// The page after these; only the standalone program has it.
 const DEVICES: &str = "Devices";
-/// The pages of the manual that belong to them all, in their order.
+/// The manual's page for each page, in their order.
 const TOPICS: [&str; 10] =
     ["exciters", "bodies", "modulation", "modulation", "space", "tuning", "bodies", "kits", "tuning", "window"];
-/// The least width of a page that has room for the voices beside its sections.
+/// Smallest width at which the voices fit beside the page's sections.
 const WIDE: f32 = 840.0;
 /// The width of the sections beside the voices.
 const SECTIONS: f32 = 344.0;
 
-/// What the user asks for.
+/// A request of the user's.
 pub(super) enum Asked {
     Manual,
-    /// Something is to be said.
+    /// Show this message.
     Say(String),
 }
 
-/// The page that is shown.
+/// The state of the pages.
 #[derive(Default)]
 pub(super) struct Pages {
     page: usize,
@@ -47,25 +47,25 @@ pub(super) fn names() -> impl Iterator<Item = &'static str> {
 }
 
 impl Pages {
-    /// The page of the manual that explains what is shown.
+    /// The page of the manual that explains the present page.
     pub(super) fn topic(&self) -> &'static str {
         TOPICS.get(self.page).copied().unwrap_or("window")
     }
 
-    /// Ends what the user is doing, and lets go of the keys that are held.
+    /// Ends the user's action, and releases the held keys.
     pub(super) fn leave(&mut self, controls: &mut Controls) {
         self.body.leave(controls);
         self.release(controls.params.link());
     }
 
-    /// Lets go of the keys that are held.
+    /// Releases the held keys.
     pub(super) fn release(&mut self, link: &Link) {
         self.body.release(link);
         self.kit.release(link);
         self.tuning.grid.release(link);
     }
 
-    /// Shows tabs and page; `down` are the keys that are held, `voices` is how many sound.
+    /// Shows tabs and page; `down` has one bit for each held key, `voices` is the number of sounding voices.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,

@@ -1,4 +1,4 @@
-//! The phase plane: one mass in slow motion, which can be pulled and let go.
+//! The phase plane: one mass in slow motion, which the user can pull and release.
 
 use super::audition::Audition;
 use super::controls::{Controls, Hint};
@@ -9,19 +9,19 @@ use egui::{Align2, CursorIcon, Id, Painter, Pos2, Rect, Role, Sense, Stroke, Ui,
 use std::collections::VecDeque;
 use std::f32::consts::TAU;
 
-/// Turns per second of the mass on its phase plane: that of slow motion, since the true motion cannot be seen.
+/// Turns per second on the phase plane: slow motion, since the eye cannot follow the true motion.
 const TURNS: f32 = 1.0;
-/// How many points of its way are shown.
+/// Number of points in the trail.
 const TRAIL: usize = 420;
-/// The least velocity of a mass that is let go: less is no strike.
+/// The smallest velocity that strikes when the mass is released.
 const LEAST: f32 = 0.03;
 
-/// What the picture remembers.
+/// The picture's state.
 #[derive(Default)]
 pub(super) struct Phase {
     /// In radians.
     angle: f32,
-    /// Points of the unit disk, the last one at the end.
+    /// Points of the unit disk, the newest one at the end.
     trail: VecDeque<Pos2>,
     /// The greatest energy since the mass was at rest.
     greatest: f32,
@@ -31,12 +31,12 @@ pub(super) struct Phase {
 }
 
 impl Phase {
-    /// Gives up pulling: nothing is struck.
+    /// Ends the pull without striking.
     pub(super) fn cancel(&mut self) {
         self.pulled = None;
     }
 
-    /// Shows the mass of the mode `selected`, or that with the most energy. Returns what is shown, as a caption.
+    /// Shows the mass of the mode `selected`, or of the mode with the most energy. Returns the caption.
     pub(super) fn show(
         &mut self,
         ui: &Ui,
@@ -56,7 +56,8 @@ impl Phase {
         }
     }
 
-    /// Follows the pointer: it pulls the mass, and letting go strikes as strongly as it was pulled.
+    /// Follows the pointer: a drag pulls the mass, and releasing it strikes with a velocity that grows with the
+    /// distance.
     fn pull(
         &mut self,
         ui: &Ui,
@@ -80,19 +81,20 @@ impl Phase {
         }
         let Some(pulled) = self.pulled.take().filter(|pulled| velocity(*pulled) >= LEAST) else { return };
         self.trail.clear();
-        // The mass goes on from where it was let go.
+        // The mass continues from where it was released.
         (self.angle, self.greatest) = ((-pulled.angle()).rem_euclid(TAU), 0.0);
         let now = ui.input(|input| input.time);
         audition.strike(shown.guide().home, velocity(pulled), now, controls.params.link());
         ui.ctx().request_repaint();
     }
 
-    /// Moves the mass on.
+    /// Advances the mass by one pass.
     fn advance(&mut self, ui: &Ui, energies: &[f32], selected: Option<usize>) {
         let energy = |mode: usize| energies.get(mode).copied().unwrap_or(0.0);
         let loudest = (0..energies.len()).max_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap_or(0);
         let mode = selected.filter(|mode| *mode < energies.len()).unwrap_or(loudest);
-        // The loudest one is followed only when the other has almost died away, so that the picture does not jump.
+        // Without a selection, the picture changes to the loudest mode only when the present one has almost died away,
+        // so that it does not jump.
         if mode != self.mode && (selected.is_some() || energy(self.mode) < 0.01 * energy(mode)) {
             (self.greatest, self.mode) = (0.0, mode);
             self.trail.clear();
@@ -106,7 +108,7 @@ impl Phase {
         self.greatest = self.greatest.max(now);
         let radius = (now / self.greatest).sqrt();
         let turned = TAU * TURNS * ui.input(|input| input.stable_dt.min(0.1));
-        // Points between two passes, so that the way is round.
+        // Points between two passes, so that the trail is round.
         for step in 1..=4 {
             let along = Vec2::angled(-self.angle - turned * step as f32 / 4.0);
             self.trail.push_back((along * radius).to_pos2());
@@ -143,7 +145,7 @@ impl Phase {
     }
 }
 
-/// The velocity with which a mass is struck that was pulled so far.
+/// The velocity of a strike by a mass that was pulled this far.
 fn velocity(pulled: Vec2) -> f32 {
     pulled.length().min(1.0)
 }

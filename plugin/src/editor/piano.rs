@@ -1,4 +1,4 @@
-//! The keyboard: it shows the keys that are held, and plays those that are clicked.
+//! The piano keyboard: it shows the held keys, and plays those that are clicked.
 
 use super::controls::{Controls, Hint};
 use super::held_key::HeldKey;
@@ -9,11 +9,11 @@ use egui::{Align2, Id, Painter, Pos2, Rect, Role, Sense, Ui, WidgetInfo, pos2, v
 use sprung::preset::Guide;
 use sprung::units::note_name;
 
-/// Width of a white key that is aimed at.
+/// Desired width of a white key, in points.
 const WIDTH: f32 = 22.0;
-/// The parts of a white key's width and height that a black key has.
+/// Width and height of a black key, as shares of a white key's.
 const BLACK: [f32; 2] = [0.62, 0.62];
-/// The number of white keys below each key of an octave, and whether it is black.
+/// For each key of an octave, the number of white keys below it, and whether it is black.
 const OCTAVE: [(usize, bool); 12] = [
     (0, false),
     (1, true),
@@ -29,13 +29,13 @@ const OCTAVE: [(usize, bool); 12] = [
     (6, false),
 ];
 
-/// What the keyboard remembers.
+/// The keyboard's state.
 #[derive(Default)]
 pub(super) struct Piano {
     held: HeldKey,
 }
 
-/// Which keys are shown, and where.
+/// The keys that are shown, and their place.
 struct Keys {
     rect: Rect,
     lowest: u8,
@@ -45,7 +45,7 @@ struct Keys {
 impl Keys {
     fn of(rect: Rect) -> Self {
         let octaves = ((rect.width() / WIDTH / 7.0) as usize).clamp(2, 10);
-        // Around C4, and the whole range if there is room for it.
+        // Around C4; the whole range if there is room for it.
         let lowest = 12 * (5_usize.saturating_sub(octaves / 2)).max(if octaves >= 10 { 0 } else { 1 });
         Self { rect, lowest: lowest.min(127) as u8, octaves }
     }
@@ -68,7 +68,7 @@ impl Keys {
         (Rect::from_min_size(pos2(left, self.rect.top()), vec2(width, self.rect.height())), false)
     }
 
-    /// The key at a place, and the velocity of a click there: from above to the lower edge of the key.
+    /// The key at a place, and the velocity of a click there, which rises from the key's upper to its lower edge.
     fn at(&self, place: Pos2) -> Option<(u8, f32)> {
         let found = |black: bool| {
             self.keys()
@@ -81,7 +81,7 @@ impl Keys {
 }
 
 impl Piano {
-    /// Shows the keys; `down` are those that are held, one bit each.
+    /// Shows the keys; `down` has one bit for each held key.
     pub(super) fn show(&mut self, ui: &Ui, rect: Rect, down: u128, guide: &Guide, controls: &mut Controls) {
         let keys = Keys::of(rect);
         let response = ui.interact(rect, Id::unique("piano"), Sense::click_and_drag());
@@ -97,7 +97,7 @@ impl Piano {
         paint(ui.painter(), &keys, down | self.held.key().map_or(0, |key| 1 << key), guide, controls.palette);
     }
 
-    /// Lets go of the key that the mouse holds.
+    /// Releases the key that the mouse holds.
     pub(super) fn release(&mut self, link: &Link) {
         self.held.release(link);
     }

@@ -1,4 +1,4 @@
-//! Recordings that become a sound, on a thread of their own: read, taken apart, and fitted as `sprung fit` does.
+//! Makes a sound from recordings on a thread of its own: reads them and fits a preset as `sprung fit` does.
 
 use sprung::analysis::fit::{Settings, Take, VELOCITY, fit};
 use sprung::io::sound_file;
@@ -11,29 +11,29 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::thread::{Builder, JoinHandle};
 
-/// Largest file that is read, in bytes: of what is longer, little would be fitted, and reading cannot be cancelled.
+/// Largest file that is read, in bytes: the fit would use little of a longer one, and reading cannot be cancelled.
 const LARGEST: u64 = 32 << 20;
-/// Steps in which progress is told.
+/// Number of steps in which progress is reported.
 const STEPS: f64 = 1000.0;
 
-/// What recordings became.
+/// The result of a fit.
 pub(super) struct Done {
     pub(super) preset: Preset,
-    /// What is doubtful, and what the sound is.
+    /// Warnings, and a summary of the sound.
     pub(super) said: String,
 }
 
-/// What both threads know.
+/// State shared by both threads.
 #[derive(Default)]
 struct Shared {
-    /// Steps of the work that are done.
+    /// Number of completed steps.
     steps: AtomicU32,
     is_cancelled: AtomicBool,
 }
 
 /// A fit in progress.
 pub(super) struct Work {
-    /// What is fitted, for people.
+    /// What is being fitted, as text for the user.
     pub(super) name: String,
     shared: Arc<Shared>,
     worker: Option<JoinHandle<Result<Done>>>,
@@ -64,7 +64,7 @@ impl Work {
         f64::from(self.shared.steps.load(Ordering::Relaxed)) / STEPS
     }
 
-    /// Ends the work soon.
+    /// Asks the work to end; it ends soon after.
     pub(super) fn cancel(&self) {
         self.shared.is_cancelled.store(true, Ordering::Relaxed);
     }
@@ -73,11 +73,11 @@ impl Work {
         self.shared.is_cancelled.load(Ordering::Relaxed)
     }
 
-    /// What came of it, once it is over, or why nothing did.
+    /// The result or the error, once the work is over.
     pub(super) fn take(&mut self) -> Option<std::result::Result<Done, String>> {
         let worker = self.worker.take_if(|worker| worker.is_finished())?;
         Some(match worker.join() {
-            // What was cancelled too late is not wanted either.
+            // A result that came after the cancellation is dropped too.
             _ if self.is_cancelled() => Err(format!("cancelled: {} was not fitted", self.name)),
             Ok(Ok(done)) => Ok(done),
             Ok(Err(error)) => Err(error.to_string()),
@@ -86,12 +86,12 @@ impl Work {
     }
 }
 
-/// Nothing of the plugin may run when its code may be gone.
+/// No code of the plugin may run after it has been unloaded, so the thread is joined.
 impl Drop for Work {
     fn drop(&mut self) {
         self.cancel();
         if let Some(worker) = self.worker.take() {
-            // What came of it, even a panic, is of no interest.
+            // The result is not wanted, not even a panic.
             let _ = worker.join();
         }
     }
@@ -121,7 +121,7 @@ fn fitted(paths: &[PathBuf], shared: &Shared) -> Result<Done> {
 fn read(path: &Path) -> Result<Take> {
     let name = file_name(path);
     let failed = |source| Error::io(name.as_str(), source);
-    // A pipe would keep whoever opens it waiting.
+    // Opening a pipe would block.
     let about = std::fs::metadata(path).map_err(failed)?;
     if !about.is_file() {
         return Err(Error::format(&name, "this is not a file: expected a recording"));

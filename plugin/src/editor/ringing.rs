@@ -1,4 +1,4 @@
-//! How the modes ring down: the level of each over the last seconds.
+//! The decay of the modes: the level of each over the last seconds.
 
 use super::text::line;
 use super::theme::{Palette, SMALL};
@@ -6,16 +6,16 @@ use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
 use sprung::units::db_from_gain;
 use std::collections::VecDeque;
 
-/// Seconds that are shown.
+/// The time that is shown, in seconds.
 const SPAN: f64 = 4.0;
-/// The least time between two moments that are kept, in seconds.
+/// The shortest time between two stored moments, in seconds.
 const STEP: f64 = 1.0 / 40.0;
-/// Seconds between two moments that no line joins.
+/// Moments farther apart than this are not joined by a line, in seconds.
 const GAP: f64 = 0.25;
-/// Decibels that are shown.
+/// The level range that is shown, in decibels.
 const RANGE: f32 = 60.0;
 
-/// The last moments.
+/// The moments of the last seconds.
 #[derive(Default)]
 pub(super) struct Ringing {
     /// Time in seconds, and the energies of the modes: the oldest first.
@@ -28,7 +28,7 @@ fn level(energy: f32) -> f32 {
 }
 
 impl Ringing {
-    /// Keeps the energies of a moment, and forgets those that are too old.
+    /// Stores the energies of a moment, and drops moments that are too old.
     pub(super) fn note(&mut self, now: f64, energies: &[f32]) {
         self.moments.retain(|(time, _)| (now - SPAN..=now).contains(time));
         if self.moments.back().is_none_or(|(last, _)| now - last >= STEP) {
@@ -36,20 +36,21 @@ impl Ringing {
         }
     }
 
-    /// The level at the upper edge: that of the loudest mode, in steps of 10 dB.
+    /// The level at the upper edge: that of the loudest mode, rounded up to 10 dB.
     fn ceiling(&self) -> f32 {
         let loudest = self.moments.iter().flat_map(|(_, energies)| energies).fold(0.0_f32, |most, one| most.max(*one));
         // A negative zero would be written with its sign.
         ((level(loudest) / 10.0).ceil() * 10.0).clamp(-60.0, 20.0) + 0.0
     }
 
-    /// Where a mode was within a rectangle, as lines that end where it is below the range.
+    /// The curve of a mode's level within a rectangle, as lines that are interrupted where the level is below the
+    /// range.
     fn lines(&self, mode: usize, ceiling: f32, rect: Rect) -> Vec<Vec<Pos2>> {
         let last = self.moments.back().map_or(0.0, |(time, _)| *time);
         let (mut lines, mut before) = (vec![Vec::new()], f64::NEG_INFINITY);
         for (time, energies) in &self.moments {
             let db = level(energies.get(mode).copied().unwrap_or(0.0));
-            // Nothing was noted while another page was shown.
+            // While another page was shown, nothing was stored.
             if time - std::mem::replace(&mut before, *time) > GAP {
                 lines.push(Vec::new());
             }
@@ -90,7 +91,7 @@ impl Ringing {
         painter.rect_stroke(area, 2.0, grid, StrokeKind::Inside);
         let count = self.moments.iter().map(|(_, energies)| energies.len()).max().unwrap_or(0);
         for mode in (0..count).filter(|mode| Some(*mode) != selected) {
-            // Higher modes are fainter, so that one can follow the low ones, which last.
+            // Higher modes are fainter, so that the low ones, which last longest, stay visible.
             let colour = palette.accent.gamma_multiply(0.35 + 0.6 / (1.0 + mode as f32 / 6.0));
             for line in self.lines(mode, ceiling, area) {
                 painter.add(Shape::line(line, Stroke::new(1.2, colour)));
@@ -112,7 +113,7 @@ mod tests {
         let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(400.0, 120.0));
         let mut energy = 1.0;
         for step in 0..=100 {
-            // 0.4 dB each.
+            // A fall by 0.4 dB in each step.
             ringing.note(f64::from(step) * 0.03, &[energy, 0.0]);
             energy *= sprung::units::gain_from_db(-0.8) as f32;
         }

@@ -13,12 +13,12 @@ use sprung::preset::{Guide, Playable};
 /// The amount of a new route, in per cent.
 const AMOUNT: f32 = 25.0;
 
-/// The name of a source for people, of a macro the preset's own.
+/// The name of a source as shown to the user; for a macro, the preset's name for it.
 pub(super) fn source_name(source: Source, guide: &Guide) -> String {
     guide.macro_name(source.id()).map_or_else(|| source.id().replace('_', " "), str::to_owned)
 }
 
-/// `wheel › Vibrato`, or the number of a place without a route.
+/// The name of a route, such as `wheel › Vibrato`; for an empty place, its number.
 pub(super) fn name(place: usize, routes: &Routes, guide: &Guide) -> String {
     let Some(Route { source, destination, scale, .. }) = routes.get(place) else {
         return format!("{}: free", place + 1);
@@ -27,12 +27,12 @@ pub(super) fn name(place: usize, routes: &Routes, guide: &Guide) -> String {
     format!("{}{scale} › {}", source_name(source, guide), destination.info().name)
 }
 
-/// What modulates a parameter.
+/// The modulation of a parameter, as a knob shows it.
 #[derive(Default)]
 pub(super) struct Ring {
     /// The parts of its travel that routes can move it to: by each amount, to both sides if the source has both.
     pub(super) ranges: Vec<[f32; 2]>,
-    /// Where each sounding note has it now, the newest note first.
+    /// The modulated position in each sounding note, the newest note first.
     pub(super) marks: Vec<f32>,
 }
 
@@ -52,7 +52,7 @@ impl Ring {
     }
 }
 
-/// The name of a route as a button that opens its menu.
+/// Shows the name of a route as a button that opens its menu.
 pub(super) fn show(ui: &Ui, rect: Rect, place: usize, routes: &Routes, guide: &Guide, controls: &mut Controls) {
     let response = ui.interact(rect, Id::unique(("route", place)), Sense::click());
     let label = format!("Route {}: {}", place + 1, name(place, routes, guide));
@@ -93,7 +93,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, place: usize, routes: &Routes, guide: &G
     });
 }
 
-/// The part of a knob's menu that adds a route to it, from a source that is chosen.
+/// The part of a knob's menu that adds a route to its parameter from a chosen source.
 pub(super) fn menu(ui: &mut Ui, info: &ParamInfo, controls: &mut Controls) {
     if !info.is_modulatable() {
         return;
@@ -143,7 +143,7 @@ fn destinations(ui: &mut Ui) -> Option<Param> {
     chosen
 }
 
-/// Sets or removes a route, and gives it an amount.
+/// Sets or removes a route, and optionally sets its amount.
 pub(super) fn change(place: usize, route: Option<Route>, amount: Option<f32>, controls: &mut Controls) {
     let state = controls.params.state();
     let Playable::Preset(mut preset) = state.playable else { return };

@@ -1,4 +1,4 @@
-//! Draws the last frames of the sound as a waveform, and their spectrum beside it.
+//! Draws the last frames of the sound as a waveform, and their spectrum.
 
 use super::spectrum::{self, FLOOR};
 use super::text::line;
@@ -7,13 +7,14 @@ use egui::{Align2, Painter, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
 use sprung::engine::scope::SCOPE_FRAMES;
 use sprung::units::semitones_from_ratio;
 
-/// Frames of the waveform that are shown: half of those kept, so that it can begin at a zero.
+/// Number of frames that the waveform shows: half of those stored, so that it can begin at a zero crossing.
 pub(super) const SHOWN: usize = SCOPE_FRAMES / 2;
 
 /// Lowest and highest frequency of the spectrum, in Hz.
 const RANGE: [f64; 2] = [20.0, 20_000.0];
 
-/// Draws both; the spectrum only if the sample rate is known. It is below the waveform if there is room, else to the right.
+/// Draws both; the spectrum only if the sample rate is known. The spectrum is below the waveform if there is room,
+/// otherwise to its right.
 pub(super) fn paint(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], rate: u32, palette: &Palette) {
     if rate == 0 {
         return waveform(painter, rect, frames, palette);
@@ -33,7 +34,7 @@ fn waveform(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], palette
     let grid = Stroke::new(1.0, palette.line);
     painter.hline(rect.x_range(), painter.round_to_pixel_center(rect.center().y), grid);
     painter.rect_stroke(rect, 2.0, grid, StrokeKind::Inside);
-    // From a rising zero on, so that the picture of a steady tone stands still.
+    // Starts at a rising zero crossing, so that the picture of a steady tone stands still.
     let start = (1..SHOWN).find(|frame| frames[frame - 1] < 0.0 && frames[*frame] >= 0.0).unwrap_or(0);
     let shown = &frames[start..start + SHOWN];
     let peak = shown.iter().fold(0.0_f32, |peak, frame| peak.max(frame.abs()));
@@ -49,7 +50,7 @@ fn waveform(painter: &Painter, rect: Rect, frames: &[f32; SCOPE_FRAMES], palette
     }
 }
 
-/// Draws the levels of bands of equal width in Hz, by octaves from left to right.
+/// Draws the levels of bands of equal width in Hz on a logarithmic frequency axis.
 fn levels(painter: &Painter, rect: Rect, levels: &[f32], rate: f64, palette: &Palette) {
     let area = rect.with_max_y(rect.bottom() - 14.0);
     let octaves = semitones_from_ratio(RANGE[1] / RANGE[0]);
@@ -66,7 +67,7 @@ fn levels(painter: &Painter, rect: Rect, levels: &[f32], rate: f64, palette: &Pa
         painter.hline(area.x_range(), painter.round_to_pixel_center(y(db)), grid);
     }
     painter.rect_stroke(area, 2.0, grid, StrokeKind::Inside);
-    // The highest level in each column of pixels; between bands that are farther apart, a straight line.
+    // The highest level in each column of pixels; bands that are farther apart are joined by a straight line.
     let mut points: Vec<egui::Pos2> = Vec::with_capacity(area.width() as usize + 2);
     for (band, db) in levels.iter().enumerate().skip(1) {
         let hertz = band as f64 * rate / (2 * levels.len()) as f64;

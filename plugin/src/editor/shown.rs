@@ -7,7 +7,7 @@ use sprung::preset::{Guide, OwnTuning, Playable, Preset};
 use sprung::sound::Pad;
 use std::sync::Arc;
 
-/// The loaded preset or kit. Values of parameters are those that were loaded: the present ones are the knobs'.
+/// The loaded preset or kit. Its parameters have the loaded values; the knobs have the present ones.
 pub(super) struct Shown {
     loaded: Arc<Loaded>,
     playable: Playable,
@@ -16,7 +16,7 @@ pub(super) struct Shown {
 
 impl Shown {
     pub(super) fn new(params: &SprungParams) -> Self {
-        // First, so that a sound that is loaded meanwhile is another one at the next refresh.
+        // Read first: a sound that is loaded meanwhile is then noticed at the next refresh.
         let loaded = params.loaded();
         let playable = params.state().playable;
         let guide = match &playable {
@@ -38,7 +38,7 @@ impl Shown {
         &self.loaded
     }
 
-    /// The preset, if it is no kit.
+    /// The preset; none for a kit.
     pub(super) fn preset(&self) -> Option<&Preset> {
         match &self.playable {
             Playable::Preset(preset) => Some(preset),
@@ -59,7 +59,7 @@ impl Shown {
         if pad.name.is_empty() { of_sound() } else { pad.name.clone() }
     }
 
-    /// The sound's own tuning, of a kit that of its first sound that has one.
+    /// The sound's own tuning; for a kit, the first one among its sounds.
     pub(super) fn tuning(&self) -> Option<&OwnTuning> {
         match &self.playable {
             Playable::Preset(preset) => preset.tuning.as_ref(),
@@ -67,12 +67,12 @@ impl Shown {
         }
     }
 
-    /// The patch, of a kit that of its first sound.
+    /// The patch; for a kit, that of its first sound.
     pub(super) fn patch(&self) -> &Patch {
         self.loaded.kit.sounds()[0].patch()
     }
 
-    /// Words about the sound: family and tags.
+    /// Family and tags of the sound.
     pub(super) fn words(&self) -> String {
         match &self.playable {
             Playable::Preset(preset) => {

@@ -38,7 +38,7 @@ impl Snap {
         }
     }
 
-    /// The ratio of the series that is nearest to a ratio; beyond the series, and without one, the ratio itself.
+    /// The ratio of the series nearest to a ratio. Beyond the series, or without one, the ratio itself.
     pub(super) fn nearest(self, ratio: f32) -> f32 {
         match self {
             Self::Off => ratio,

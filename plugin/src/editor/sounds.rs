@@ -1,4 +1,4 @@
-//! The sounds that one can choose from: those of the factory and the user's own, by family, words and favourites.
+//! The sounds to choose from: the factory's and the user's own, by family, words and favourites.
 
 use sprung::preset::catalogue::{Catalogue, Listed};
 use sprung::preset::library::Library;
@@ -6,7 +6,7 @@ use sprung::preset::{Family, Playable};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Which sounds are listed.
+/// A category of sounds in the browser.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Shelf {
     #[default]
@@ -24,7 +24,7 @@ impl Shelf {
         [Self::All, Self::Favourites, Self::Own, Self::Kits].into_iter().chain(families)
     }
 
-    /// The name for people.
+    /// The name as shown to the user.
     pub(super) fn name(self) -> String {
         match self {
             Self::All => "All".to_owned(),
@@ -65,7 +65,7 @@ impl Sounds {
         self.favourites.contains(sound.name())
     }
 
-    /// The sounds of a shelf that have all words: first those that have them in their names.
+    /// The sounds of a shelf that contain all words; those with the words in their names come first.
     pub(super) fn find(&self, shelf: Shelf, words: &str) -> Vec<Arc<Listed>> {
         let is_on = |sound: &Listed| match shelf {
             Shelf::All => true,
@@ -79,7 +79,7 @@ impl Sounds {
         found
     }
 
-    /// Makes a sound a favourite, or not. Returns a message if that cannot be kept.
+    /// Adds a sound to the favourites or removes it. Returns a message if this cannot be stored.
     pub(super) fn set_favourite(&mut self, name: &str, is_favourite: bool) -> Option<String> {
         if is_favourite {
             self.favourites.insert(name.to_owned());

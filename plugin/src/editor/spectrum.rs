@@ -5,25 +5,25 @@ use sprung::engine::scope::SCOPE_FRAMES;
 use sprung::units::db_from_gain;
 use std::f32::consts::TAU;
 
-/// The lowest level, in decibels: nothing is lower.
+/// The lowest level, in decibels; lower levels are raised to it.
 pub(super) const FLOOR: f32 = -90.0;
 
-/// Levels in decibels of the bands from 0 to half the sample rate, of which a sine at full scale has 0 in its band. The
-/// window is von Hann's: a sine fills three bands.
+/// Levels in decibels of the bands from 0 Hz to half the sample rate. A sine at full scale has 0 dB in its band. The
+/// window is von Hann's, so that a sine fills three bands.
 pub(super) fn levels(frames: &[f32; SCOPE_FRAMES]) -> Vec<f32> {
     let turns = |number: usize| Vec2::angled(TAU * number as f32 / SCOPE_FRAMES as f32);
     let windowed = |(number, frame): (usize, &f32)| Vec2::new(frame * 0.5 * (1.0 - turns(number).x), 0.0);
     let mut values: Vec<Vec2> = frames.iter().enumerate().map(windowed).collect();
     let roots: Vec<Vec2> = (0..SCOPE_FRAMES / 2).map(turns).collect();
     transform(&mut values, &roots);
-    // Half of the amplitude is at the negative frequency, and the window halves it.
+    // The negative frequency has half of the amplitude, and the window's mean is one half.
     let scale = 4.0 / SCOPE_FRAMES as f32;
     let level = |value: &Vec2| (db_from_gain(f64::from(value.length() * scale)) as f32).max(FLOOR);
     values[..SCOPE_FRAMES / 2].iter().map(level).collect()
 }
 
-/// Transforms complex numbers in place (Cooley and Tukey 1965). Their count is a power of two; `roots` has half as many
-/// roots of one.
+/// Transforms complex numbers in place (Cooley and Tukey 1965). Their count is a power of two; `roots` has the first
+/// half of that many roots of unity.
 fn transform(values: &mut [Vec2], roots: &[Vec2]) {
     let count = values.len();
     for place in 0..count {
@@ -38,7 +38,7 @@ fn transform(values: &mut [Vec2], roots: &[Vec2]) {
             let (low, high) = block.split_at_mut(half);
             for (number, (low, high)) in low.iter_mut().zip(high).enumerate() {
                 let root = roots[number * (count / (2 * half))];
-                // By the conjugate.
+                // Multiplied by the conjugate root.
                 let turned = Vec2::new(high.x * root.x + high.y * root.y, high.y * root.x - high.x * root.y);
                 (*low, *high) = (*low + turned, *low - turned);
             }

@@ -15,7 +15,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, place: usize, name: &str, is_on: bool, p
         if is_on { palette.accent } else { palette.muted.gamma_multiply(if response.hovered() { 1.0 } else { 0.45 }) };
     let points: Vec<_> = (0..10).map(corner).collect();
     if is_on {
-        // A star is not convex: its five points and its middle are.
+        // A star is not convex, but its five points and its centre are.
         for number in (0..10).step_by(2) {
             let triangle = vec![points[number], points[(number + 1) % 10], points[(number + 9) % 10]];
             ui.painter().add(Shape::convex_polygon(triangle, colour, Stroke::NONE));

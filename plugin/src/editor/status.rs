@@ -1,4 +1,4 @@
-//! The lowest line of the window: what is under the pointer, the last message, and what the engine does.
+//! The status line: the thing under the pointer, the last message, and the state of the engine.
 
 use super::controls::Hint;
 use super::text::{line, width};
@@ -13,14 +13,14 @@ const INTERVAL: f64 = 0.5;
 /// The load of the audio thread over the last half second.
 #[derive(Default)]
 pub(super) struct Load {
-    /// When it was computed last, and the frames played and the seconds spent by then.
+    /// Time of the last computation, with the frames played and the seconds spent until then.
     last: Option<(f64, u64, f64)>,
     share: Option<f64>,
 }
 
 impl Load {
-    /// The part of its time for which the audio thread is busy; none if it plays nothing, or has not been watched for long
-    /// enough.
+    /// The share of the time during which the audio thread is busy; none if it plays nothing, or has not been observed
+    /// long enough.
     pub(super) fn share(&mut self, now: f64, telemetry: &Telemetry, sample_rate: u32) -> Option<f64> {
         if let Some((time, _, _)) = self.last
             && (time..time + INTERVAL).contains(&now)
@@ -38,7 +38,7 @@ impl Load {
     }
 }
 
-/// What the engine does.
+/// The state of the engine as text.
 pub(super) fn engine(voices: u32, load: Option<f64>, sample_rate: u32) -> String {
     match sample_rate {
         0 => "not playing".to_owned(),
@@ -49,14 +49,14 @@ pub(super) fn engine(voices: u32, load: Option<f64>, sample_rate: u32) -> String
     }
 }
 
-/// Shows the line. A message stays until the next one; a hint hides it as long as the pointer is there.
+/// Shows the line. A message stays until the next one; a hint hides it while the pointer is over the widget.
 pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, right: &str, palette: &Palette) {
     let painter = ui.painter();
     let right_width = width(painter, right, SMALL);
     line(painter, rect, Align2::RIGHT_CENTER, right, SMALL, palette.muted);
     let left = rect.with_max_x(rect.right() - right_width - 16.0);
     if !message.is_empty() {
-        // A message is read out whatever is under the pointer.
+        // Screen readers read a message even if a hint hides it.
         let response = ui.interact(left, Id::unique("message"), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, message));
         if hint.is_none() && width(painter, message, SMALL) > left.width() {

@@ -1,13 +1,13 @@
-//! Lines of text that become a little smaller, and then are cut off, where they do not fit.
+//! Lines of text. A line that does not fit is drawn a little smaller, and then cut off.
 
 use super::theme::font;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, Color32, Painter, Rect, Response, WidgetInfo};
 
-/// The size of text that would be too wide.
+/// Factor for the size of text that would be too wide.
 const SHRINK: f32 = 0.9;
 
-/// Draws a line of text into a rectangle, aligned within it. Returns where it ended up.
+/// Draws a line of text into a rectangle, aligned within it. Returns its place.
 pub(super) fn line(painter: &Painter, rect: Rect, align: Align2, text: &str, size: f32, colour: Color32) -> Rect {
     let size = if width(painter, text, size) > rect.width() { size * SHRINK } else { size };
     let mut job = LayoutJob::simple_singleline(text.to_owned(), font(size), colour);
@@ -31,7 +31,7 @@ pub(super) fn paragraph(painter: &Painter, rect: Rect, text: &str, size: f32, co
     height
 }
 
-/// Names a text field for accessibility, and says what is in it.
+/// Sets the name and content of a text field for accessibility.
 pub(super) fn name_field(response: &Response, name: &str, text: &str) {
     response.widget_info(|| {
         let mut about = WidgetInfo::text_edit(true, "", text, "");

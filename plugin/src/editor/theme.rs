@@ -1,4 +1,4 @@
-//! The window's colours and measures, in one table.
+//! The window's colours and sizes, in one table.
 
 use egui::style::Selection;
 use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Painter, Rect, Stroke, StrokeKind, TextStyle, Visuals};
@@ -11,7 +11,7 @@ const fn rgb(red: u8, green: u8, blue: u8) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
-/// The colours of a window. [`Palette::pairs`] lists which texts stand on which grounds.
+/// The colours of a window. [`Palette::pairs`] lists the combinations of text and ground.
 pub(super) struct Palette {
     /// Behind the panels.
     pub(super) ground: Color32,
@@ -21,23 +21,23 @@ pub(super) struct Palette {
     pub(super) raised: Color32,
     /// Grids and outlines.
     pub(super) line: Color32,
-    /// Around panels and buttons, where their colour alone does not set them apart.
+    /// Outline of panels and buttons where the fill colour alone does not set them apart.
     pub(super) outline: Color32,
-    /// Names, and whatever is to be read.
+    /// Names and other text of the first rank.
     pub(super) text: Color32,
-    /// Values, titles, and what is read less often.
+    /// Values, titles, and other text of the second rank.
     pub(super) muted: Color32,
-    /// What the user has set, and what sounds: arcs, energies, held keys.
+    /// The user's settings and present sound: arcs, energies, held keys.
     pub(super) accent: Color32,
-    /// The same as text.
+    /// The accent colour for text.
     pub(super) accent_text: Color32,
     /// Text on `accent`.
     pub(super) on_accent: Color32,
-    /// What modulation does.
+    /// Modulation.
     pub(super) modulation: Color32,
-    /// Levels that are fine.
+    /// Levels up to full scale.
     pub(super) level: Color32,
-    /// Messages about something that is wrong, and levels that are too high.
+    /// Error messages, and levels above full scale.
     pub(super) warning: Color32,
     pub(super) white_key: Color32,
     pub(super) black_key: Color32,
@@ -108,7 +108,7 @@ impl Palette {
         painter.rect(rect, RADIUS, self.panel, Stroke::new(1.0, self.outline), StrokeKind::Inside);
     }
 
-    /// Every colour of text with every ground that it is drawn on.
+    /// All combinations of text colour and ground in use.
     #[cfg(test)]
     fn pairs(&self) -> Vec<(Color32, Color32)> {
         let grounds = [self.ground, self.panel, self.raised];
@@ -136,7 +136,7 @@ pub(crate) enum Theme {
 impl Theme {
     pub(crate) const ALL: [Self; 3] = [Self::Dark, Self::Light, Self::HighContrast];
 
-    /// The name in a state.
+    /// The name in a saved state.
     pub(crate) fn id(self) -> &'static str {
         match self {
             Self::Dark => "dark",
@@ -145,7 +145,7 @@ impl Theme {
         }
     }
 
-    /// The name for people.
+    /// The name as shown to the user.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Dark => "Dark",
@@ -214,11 +214,11 @@ pub(crate) const ZOOM_RANGE: [u32; 2] = [75, 300];
 /// Scales that the window offers, in per cent.
 pub(super) const ZOOMS: [u32; 7] = [75, 100, 125, 150, 175, 200, 300];
 
-/// Between panels, and around them.
+/// Space between panels, and around them.
 pub(super) const GAP: f32 = 8.0;
-/// Inside a panel.
+/// Space inside a panel.
 pub(super) const PADDING: f32 = 8.0;
-/// Of the corners of panels.
+/// Radius of the corners of panels.
 pub(super) const RADIUS: u8 = 5;
 pub(super) const HEADER_HEIGHT: f32 = 30.0;
 pub(super) const TITLE_HEIGHT: f32 = 20.0;
@@ -264,7 +264,7 @@ mod tests {
         (one.max(other) + 0.05) / (one.min(other) + 0.05)
     }
 
-    /// WCAG 2.2, level AA: 4.5 for text; level AAA, 7, in the theme that is made for it.
+    /// WCAG 2.2 requires 4.5 for text at level AA, and 7 at level AAA, which is checked for the high-contrast theme.
     #[test]
     fn every_text_can_be_read_on_its_ground() {
         assert!((contrast(grey(255), grey(0)) - 21.0).abs() < 1e-9);
@@ -277,7 +277,7 @@ mod tests {
         }
     }
 
-    /// WCAG 2.2: 3 for parts of the picture that one must see to use it.
+    /// WCAG 2.2 requires 3 for graphical parts that are needed to use the window.
     #[test]
     fn every_mark_can_be_seen_on_its_ground() {
         for theme in Theme::ALL {

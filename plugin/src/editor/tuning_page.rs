@@ -16,14 +16,14 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
-/// Width of what is said of the scale.
+/// Width of the description of the scale.
 const SIDE: f32 = 188.0;
 /// Largest file that is read, in bytes.
 const LARGEST: u64 = 1 << 20;
-/// Twelve equal steps, under a mapping without a scale of its own.
+/// Twelve equal steps, for a mapping without a scale of its own.
 const EQUAL: &str = "Twelve equal steps\n12\n100.\n200.\n300.\n400.\n500.\n600.\n700.\n800.\n900.\n1000.\n1100.\n2/1\n";
 
-/// What the page remembers.
+/// The page's state.
 #[derive(Default)]
 pub(super) struct TuningPage {
     path: String,
@@ -31,7 +31,7 @@ pub(super) struct TuningPage {
 }
 
 impl TuningPage {
-    /// Shows the page; `down` are the keys that are held. Returns a message.
+    /// Shows the page; `down` has one bit for each held key. Returns a message.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -90,7 +90,7 @@ impl TuningPage {
     }
 }
 
-/// A frequency in few letters.
+/// A frequency with about four digits.
 fn written(hertz: f64) -> String {
     match hertz {
         ..100.0 => format!("{hertz:.2}"),
@@ -99,7 +99,7 @@ fn written(hertz: f64) -> String {
     }
 }
 
-/// The name of a scale, and how many steps it has.
+/// The name of a scale, and its number of steps.
 fn about(own: &OwnTuning) -> (String, String) {
     let mut lines = own.scale().lines().filter(|line| !line.starts_with('!')).map(str::trim);
     let name = lines.next().filter(|name| !name.is_empty()).unwrap_or("A scale without a name");
@@ -115,7 +115,7 @@ pub(super) fn take(path: &Path, controls: &mut Controls) -> String {
         if size > LARGEST {
             return Err(format!("{size} bytes: expected a scale or mapping of at most {LARGEST} bytes"));
         }
-        // What is no plain file does not say how large it is.
+        // Only a regular file reports its size, so that the number of bytes read is limited too.
         file.take(LARGEST).read_to_string(&mut text).map_err(|error| error.to_string())?;
         Ok(text)
     };
@@ -148,7 +148,7 @@ pub(super) fn take(path: &Path, controls: &mut Controls) -> String {
     }
 }
 
-/// Gives every sound a tuning, as one step.
+/// Sets the tuning of every preset, as one undo step.
 fn set(own: Option<OwnTuning>, name: &str, controls: &mut Controls) {
     controls.history.begin(controls.params);
     let mut state = controls.params.state();

@@ -1,4 +1,4 @@
-//! Other sounds by chance: made of parts of factory sounds, or changed a little. Locked sections stay as they are.
+//! Random variations of a sound: from parts of factory sounds, or by small changes. Locked sections stay as they are.
 
 use egui::Ui;
 use sprung::engine::{Event, EventKind, Synth};
@@ -8,23 +8,23 @@ use sprung::preset::Preset;
 use sprung::units::db_from_gain;
 use std::collections::BTreeSet;
 
-/// Sections that say how the instrument is played, or belong to routes: they always stay as they are.
+/// Sections that define how the instrument is played, or that belong to routes: they are never varied.
 const KEPT: [&str; 6] = ["Input", "Macros", "Routes", "Voices", "Control", "Output"];
 /// Mean level below which a sound counts as silent, in decibels.
 const SILENCE: f64 = -70.0;
-/// Tries before a sound is given up.
+/// Number of attempts before giving up.
 const TRIES: u64 = 8;
 
 /// How a sound is varied.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Variation {
-    /// Each section becomes that of a factory sound.
+    /// Each section is replaced by that of a factory sound.
     Randomise,
     /// Some parameters move a little.
     Mutate,
 }
 
-/// Random numbers, the same for each seed (Numerical Recipes, 7.1).
+/// Pseudorandom numbers, the same for each seed (Numerical Recipes, 7.1).
 struct Numbers(u64);
 
 impl Numbers {
@@ -48,8 +48,8 @@ impl Variation {
         }
     }
 
-    /// A variation of a preset, about as loud on its home key. None if all that was tried is silent. Renders: not for the
-    /// audio thread.
+    /// A variation of a preset, about equally loud on its home key. None if all attempts are silent. It renders notes:
+    /// not for the audio thread.
     pub(super) fn of(self, preset: &Preset, seed: u64, locked: &BTreeSet<&'static str>) -> Option<Preset> {
         let home = preset.guide.home;
         let before = level(&preset.patch, home);
@@ -78,7 +78,7 @@ impl Variation {
     }
 }
 
-/// Takes a section from a factory sound; that of the body with its modes.
+/// Copies a section from a random factory sound; the body's section comes with the modes.
 fn take(section: &[ParamInfo], patch: &mut Patch, numbers: &mut Numbers) {
     let all = Preset::factory();
     let source = &all[((numbers.next() * all.len() as f64) as usize).min(all.len() - 1)].patch;
@@ -90,8 +90,8 @@ fn take(section: &[ParamInfo], patch: &mut Patch, numbers: &mut Numbers) {
     }
 }
 
-/// Moves about a third of the quantities of a section by up to a tenth of their travel. What is at its least value, such
-/// as an exciter that is off, stays there.
+/// Moves about a third of a section's continuous parameters by up to a tenth of their travel. A parameter at its lowest
+/// value, such as the level of an exciter that is off, stays there.
 fn mutate(section: &[ParamInfo], patch: &mut Patch, numbers: &mut Numbers) {
     for info in section {
         let (chance, by) = (numbers.next(), numbers.next() - numbers.next());
@@ -115,11 +115,11 @@ fn level(patch: &Patch, key: u8) -> f64 {
     db_from_gain((energy / (2 * FRAMES) as f64).max(1e-20)) / 2.0
 }
 
-/// What the menu of variations asks for.
+/// A request made with the menu of variations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Asked {
     Vary(Variation),
-    /// A section is to be locked, or no longer.
+    /// Lock a section, or unlock it if it is locked.
     Lock(&'static str),
 }
 

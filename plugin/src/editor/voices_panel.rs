@@ -1,4 +1,4 @@
-//! The voices that sound with their notes, and the channels that hold keys: with MPE, each note has a channel of its own.
+//! The sounding voices with their notes, and the channels with held keys; with MPE, each note has a channel of its own.
 
 use super::controls::Controls;
 use super::text::{line, paragraph};
@@ -7,12 +7,12 @@ use egui::{Align2, Color32, Painter, Rect, Stroke, StrokeKind, pos2, vec2};
 use sprung::params::Param;
 use sprung::units::note_name;
 
-/// From this width on, the notes are listed beside the channels.
+/// From this width on, in points, the notes are listed beside the channels.
 const WIDE: f32 = 500.0;
 /// Height of a row of the list.
 const ROW: f32 = 16.0;
 
-/// Shows the panel; `voices` is how many sound.
+/// Shows the panel; `voices` is the number of sounding voices.
 pub(super) fn show(painter: &Painter, rect: Rect, voices: u32, controls: &Controls) {
     let palette = controls.palette;
     palette.paint_panel(painter, rect);
@@ -27,7 +27,7 @@ pub(super) fn show(painter: &Painter, rect: Rect, voices: u32, controls: &Contro
     let most = controls.value(Param::Voices.info()) as u32;
     let count = Rect::from_min_max(pos2(text.right() + 10.0, title.top()), title.max);
     line(painter, count, Align2::LEFT_CENTER, &format!("{voices} of {most}"), SMALL, palette.text);
-    // A dot for each voice; those that fade out beyond the number are added.
+    // A dot for each voice. Voices that still fade out beyond the limit are added.
     let dots = Rect::from_min_size(pos2(inner.left(), rect.top() + TITLE_HEIGHT + 2.0), vec2(inner.width(), 12.0));
     let all = most.max(voices).max(1);
     let step = (dots.width() / all as f32).min(13.0);
@@ -66,7 +66,7 @@ pub(super) fn show(painter: &Painter, rect: Rect, voices: u32, controls: &Contro
     }
 }
 
-/// Lists the newest notes: channel, key, pitch as it is bent, velocity, and time since the strike.
+/// Lists the newest notes: channel, key, pitch with bend, velocity, and time since the strike.
 fn show_notes(painter: &Painter, rect: Rect, controls: &Controls) {
     let palette = controls.palette;
     let row = |top: f32, texts: [&str; 5], colour: Color32| {

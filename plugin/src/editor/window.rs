@@ -35,10 +35,10 @@ use std::time::Duration;
 
 mod shell;
 
-/// Between two pictures while something moves.
+/// Time between two repaints while something moves.
 const FRAME: Duration = Duration::from_millis(16);
 
-/// What is shown over modes and parameters.
+/// The view that is shown in place of modes and parameters.
 #[derive(Clone, Copy, PartialEq)]
 enum Over {
     Browser,
@@ -67,16 +67,16 @@ pub(super) struct Window {
     manual: Manual,
     fitting: Fitting,
     over: Option<Over>,
-    /// The other one of two versions of the sound.
+    /// The other one of the two versions of the sound.
     other: Option<State>,
     is_b: bool,
-    /// The theme that egui's own widgets have.
+    /// The theme that was last applied to egui's own widgets.
     applied: Option<Theme>,
     message: String,
 }
 
 impl Window {
-    /// A window that keeps the user's sounds in a library; none if the system has no place for one.
+    /// A window that stores the user's sounds in a library; `None` if the system names no folder for user data.
     pub(super) fn new(params: Arc<SprungParams>, library: Option<Library>) -> Self {
         let shown = Shown::new(&params);
         Self {
@@ -93,7 +93,7 @@ impl Window {
             meter: Meter::default(),
             load: Load::default(),
             locked: BTreeSet::new(),
-            // Another one in each window.
+            // A different seed in each window.
             seed: RandomState::new().hash_one(0_u8),
             focus: Focus::default(),
             pages: Pages::default(),
@@ -107,13 +107,13 @@ impl Window {
         }
     }
 
-    /// Prepares for being shown in a host.
+    /// Prepares the window for being shown by a host.
     pub(super) fn open(&mut self, host: GuiContext) {
         self.host = Some(host);
         self.applied = None;
     }
 
-    /// Shows the window and does what the user asks for.
+    /// Shows the window and carries out the user's requests.
     pub(super) fn contents(&mut self, ui: &mut Ui, host: &GuiContext) {
         let params = self.params.clone();
         let view = params.view();
@@ -207,7 +207,7 @@ impl Window {
         }
         self.browser.follow_time(ui.input(|input| input.time), &controls);
         self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);
-        // A host needs the keys itself.
+        // In a plugin, the computer's keyboard belongs to the host.
         let is_alone = host.plugin_api() == PluginApi::Standalone;
         let played = is_alone.then(|| self.key_piano.follow(ui, params.link())).flatten();
         let learnt = learn::follow(ui, &mut controls);
@@ -227,7 +227,7 @@ impl Window {
         }
     }
 
-    /// Loads the factory sound some places further in the list.
+    /// Loads the factory sound at this distance in the list.
     fn step(&mut self, places: isize, host: &GuiContext) {
         let Some(preset) = neighbour(&self.params.name(), places) else { return };
         self.history.begin(&self.params);
@@ -235,7 +235,7 @@ impl Window {
         self.history.end(preset.name.as_str(), &self.params);
     }
 
-    /// Makes another sound of this one by chance.
+    /// Replaces the sound by a random variation.
     fn vary(&mut self, variation: Variation, host: &GuiContext) {
         let Playable::Preset(preset) = self.params.state().playable else {
             self.message = "a kit’s sounds cannot be varied together: load one of them".to_owned();
@@ -253,7 +253,7 @@ impl Window {
         }
     }
 
-    /// Undoes or redoes a step, which may bring the other one of the two versions.
+    /// Undoes or redoes a step, which may exchange the two versions.
     fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
         let now = self.params.state();
         if go(&mut self.history, &self.params, host) {

@@ -75,9 +75,9 @@ fn params(patch: Patch) -> SprungParams {
     params
 }
 
-/// A stereo block from the shell.
+/// Renders a stereo block with the shell.
 fn stereo(live: &mut Live, params: &SprungParams, host: &mut Host, frames: usize) -> ([Vec<f32>; 2], ProcessStatus) {
-    // Old contents of the host's buffers must not be heard.
+    // The shell must overwrite old contents of the host's buffers.
     let mut out = [vec![9.0; frames], vec![9.0; frames]];
     let [left, right] = &mut out;
     let status = live.process(params, &[], &mut [left, right], host);

@@ -1,9 +1,9 @@
-//! The device that was chosen: by options, or the last time.
+//! The choice of the device: from the command line or from the last run.
 
 use crate::devices::Chosen;
 use sprung::realtime::{Choice, Found};
 
-/// Finds the device that was given, or that of the last time, or if that is not there now, the system's.
+/// Finds the device of the command line, or of the last run; if the latter is not available now, the system's default.
 pub(super) fn find(given: Chosen, last: Chosen, say: impl Fn(String)) -> Result<(Chosen, Found), String> {
     let is_given = Chosen { midi_in: None, ..given.clone() } != Chosen::default();
     let chosen = merged(given, last);
@@ -20,7 +20,8 @@ pub(super) fn find(given: Chosen, last: Chosen, say: impl Fn(String)) -> Result<
     }
 }
 
-/// What is given, and of the last time what is not. Sample rate and block size of the last time belong to its device.
+/// The options of the command line, completed by the choice of the last run. The sample rate and block size of the last
+/// run belong to its device.
 fn merged(given: Chosen, last: Chosen) -> Chosen {
     let midi_in = given.midi_in.or(last.midi_in);
     if given.host.is_some() || given.device.is_some() {
@@ -29,12 +30,13 @@ fn merged(given: Chosen, last: Chosen) -> Chosen {
     Chosen { midi_in, rate: given.rate.or(last.rate), buffer: given.buffer.or(last.buffer), ..last }
 }
 
-/// What is chosen, as the library has it.
+/// The choice in the library's form.
 pub(super) fn choice(Chosen { host, device, rate, buffer, .. }: &Chosen) -> Choice {
     Choice { host: host.clone(), device: device.clone(), rate: *rate, buffer: *buffer }
 }
 
-/// An error of a device as a line for the window, which has no options and lists the devices itself.
+/// An error of a device as a line for the window, without the command-line options: the window lists the devices
+/// itself.
 pub(super) fn plain(error: &sprung::Error) -> String {
     let error = error.to_string();
     let said = error.split("; ‘--list’").next().unwrap_or(&error);

@@ -1,4 +1,4 @@
-//! What the window takes for its host: knobs turn at once, since nobody records them.
+//! The window's host in the standalone program: it sets parameters at once, and records nothing.
 
 #![allow(unsafe_code, reason = "the wrapper's interface is unsafe")]
 
@@ -9,7 +9,7 @@ use nice_plug_core::plugin::PluginState;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A program without a host.
+/// Stands for the missing host.
 pub(super) struct Alone;
 
 impl Alone {
@@ -32,7 +32,7 @@ impl GuiContextInner for Alone {
 
     unsafe fn raw_end_set_parameter(&self, _: ParamPtr) {}
 
-    // The window has the state itself, and does not ask the wrapper for it.
+    // The window has the state itself, and does not ask for it.
     fn get_state(&self) -> PluginState {
         PluginState { version: String::new(), params: BTreeMap::new(), fields: BTreeMap::new() }
     }

@@ -1,4 +1,4 @@
-//! Looks after devices, ports and the file of the state, while the window is open.
+//! Follows devices and ports, and saves the state, while the window is open.
 
 use super::chosen::{choice, plain};
 use super::kept::Kept;
@@ -11,19 +11,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-/// Time between two looks at devices and ports.
+/// Time between two checks of devices, ports and requests.
 const POLL: Duration = Duration::from_millis(50);
 
-/// Time between two looks at whether there is something to keep.
+/// Time between two checks for changes to save.
 const KEEP: Duration = Duration::from_secs(5);
 
 /// Time between two searches for devices, while the window shows them.
 const SEARCH: Duration = Duration::from_secs(3);
 
-/// How long a window that was asked to close may take. One that nobody can see may never do it.
+/// How long a window may take to close after it was asked to. A window that is not visible may never close.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Looks after the device, the ports and the file of the state while the window is open.
+/// The thread that follows devices and ports, and saves the state, while the window is open.
 pub(super) struct Keeper {
     pub(super) params: Arc<SprungParams>,
     pub(super) kept: Kept,
@@ -35,14 +35,14 @@ pub(super) struct Keeper {
 }
 
 impl Keeper {
-    /// `midi` sends what MIDI ports receive.
+    /// Runs until the window is closed. `midi` sends the events of MIDI ports to the audio thread.
     pub(super) fn run(mut self, midi: LiveSender) -> Result<(), String> {
         device::silence_library();
         let mut midi = Some(self.listen(midi));
         let mut asked: Option<Instant> = None;
         let mut keep_at = Instant::now() + KEEP;
         let mut search_at = Instant::now();
-        // A problem with the file is told once.
+        // A problem with the file is reported once.
         let mut told = false;
         while !self.is_closed.load(Relaxed) {
             tell(&self.params, self.session.poll());
@@ -70,14 +70,15 @@ impl Keeper {
             std::thread::sleep(POLL);
         }
         drop(midi);
-        // Before the sound fades: who starts the program again at once finds the state, and nobody who writes it.
+        // The state is written before the fade: if the user starts the program again at once, the file is complete and
+        // unlocked.
         let ended = self.kept.keep(&self.params);
         drop(self.kept);
         if !self.session.finish(&mut self.closing) {
             complain("warning: the sound device does not answer; left it behind");
         }
         if !self.is_closed.load(Relaxed) {
-            // The window's thread still waits for a window that does not close.
+            // The window's thread still waits for its window, which does not close.
             if let Err(error) = &ended {
                 complain(&format!("error: {error}"));
             }
@@ -91,7 +92,7 @@ impl Keeper {
         MidiIn::new(self.chosen.midi_in.as_deref().unwrap_or("all"), self.session.is_jack(), sender)
     }
 
-    /// Plays on what the window wishes. If that cannot be, all stays as it was.
+    /// Plays on the requested device. If that fails, everything stays as it was.
     fn change(&mut self, mut wish: Chosen, midi: &mut Option<MidiIn>) {
         let was_jack = self.session.is_jack();
         if choice(&wish) != choice(&self.chosen) {
@@ -109,7 +110,7 @@ impl Keeper {
             }
         }
         let is_other_system = was_jack != self.session.is_jack();
-        // Ports have other names there.
+        // The ports have other names on the other system.
         if is_other_system && wish.midi_in.as_deref() != Some("none") {
             wish.midi_in = None;
         }
@@ -123,7 +124,7 @@ impl Keeper {
         tell(&self.params, self.kept.keep_chosen(&self.chosen).err());
     }
 
-    /// What there is now.
+    /// The present devices and ports.
     fn devices(&self) -> Devices {
         let output = |device::Output { host, id, description }| Output { host, id, description };
         // A JACK server connects its ports itself.
@@ -139,7 +140,7 @@ impl Keeper {
     }
 }
 
-/// A port’s name without the numbers that ALSA adds, which are others when it is plugged in again.
+/// A port's name without the numbers that ALSA appends: they change when the port is plugged in again.
 fn lasting(name: &str) -> &str {
     let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
     let are_numbers =

@@ -1,4 +1,4 @@
-//! The file in which the program keeps its state between runs.
+//! The files in which the program keeps its state and its choice of devices between runs.
 
 use crate::devices::Chosen;
 use crate::params::SprungParams;
@@ -13,26 +13,26 @@ use std::sync::Arc;
 /// The name of the file.
 const NAME: &str = "standalone.json";
 
-/// The file of the state; none if the system does not say where such files are.
+/// The file of the state; none if the system names no folder for it.
 pub(super) struct Kept {
     file: Option<PathBuf>,
-    /// Whether this program may write what it keeps: nobody else does, and nothing that is there would be lost.
+    /// Whether this program may write the files: no other program does, and nothing in them would be lost.
     is_ours: bool,
-    /// The state as it is in the file, as far as it was noticed.
+    /// The state in the file, if it was read completely or written by this program.
     last: Option<State>,
-    /// What shows other programs that this one writes the file, as long as it is open.
+    /// An open lock file, which tells other programs that this one writes the state.
     lock: Option<File>,
 }
 
 impl Kept {
-    /// That of this user.
+    /// The files of this user.
     pub(super) fn of_user() -> Self {
         let file = folder(&|name| std::env::var_os(name)).map(|folder| folder.join(NAME));
         Self { file, is_ours: true, last: None, lock: None }
     }
 
-    /// Loads the state of the last time. Returns what the user should know. A file that is not understood as a whole is
-    /// set aside, so that nothing in it is lost.
+    /// Loads the state of the last run. Returns a message for the user. A file that is not understood completely is set
+    /// aside, so that nothing in it is lost.
     pub(super) fn restore(&mut self, params: &SprungParams) -> Option<String> {
         let file = self.file.clone()?;
         let is_taken = self.claim(&file);
@@ -45,13 +45,13 @@ impl Kept {
         }
     }
 
-    /// Claims the file. Returns whether another program has.
+    /// Claims the file. Returns whether another program has claimed it.
     fn claim(&mut self, file: &Path) -> bool {
         let open = || {
             std::fs::create_dir_all(file.parent()?).ok()?;
             File::options().create(true).truncate(false).write(true).open(file.with_extension("lock")).ok()
         };
-        // Where nothing can be locked or written, keeping the state says so, if it fails too.
+        // If the folder cannot be written or locked, saving the state reports the problem.
         let Some(lock) = open() else { return false };
         let is_taken = matches!(lock.try_lock(), Err(TryLockError::WouldBlock));
         self.lock = Some(lock);
@@ -63,7 +63,7 @@ impl Kept {
             Ok(bytes) => String::from_utf8(bytes).map_err(|_| "not a state of Sprung: it is not text".to_owned()),
             Err(error) if error.kind() == ErrorKind::NotFound => return None,
             Err(error) => {
-                // What cannot be read must not be overwritten.
+                // A file that cannot be read must not be overwritten.
                 self.is_ours = false;
                 let stays = "it stays as it is, and what is changed now is not kept";
                 return Some(format!("{}: cannot be read: {error}; {stays}", file.display()));
@@ -81,7 +81,7 @@ impl Kept {
         Some(self.not_understood(file, &complaint))
     }
 
-    /// Sets a file aside that is not understood, if this program may. Returns what the user should know.
+    /// Sets a file aside that is not understood, if this program may. Returns a message for the user.
     fn not_understood(&mut self, file: &Path, complaint: &str) -> String {
         if !self.is_ours {
             return format!("{}: {complaint}", file.display());
@@ -89,7 +89,7 @@ impl Kept {
         let aside = match set_aside(file) {
             Ok(aside) => format!("it is kept as {}", aside.display()),
             Err(error) => {
-                // What cannot be moved must not be overwritten.
+                // A file that cannot be moved must not be overwritten.
                 self.is_ours = false;
                 format!("it stays, and nothing else is kept this time: {error}")
             }
@@ -102,7 +102,7 @@ impl Kept {
         if self.last.as_ref() == Some(&params.state()) { Ok(()) } else { self.keep(params) }
     }
 
-    /// Writes the state. The file is replaced when all of it is on disk.
+    /// Writes the state. The file is replaced only when the new one is completely on disk.
     pub(super) fn keep(&mut self, params: &SprungParams) -> Result<(), String> {
         let Some(file) = self.file.as_ref().filter(|_| self.is_ours) else { return Ok(()) };
         let state = params.state();
@@ -111,7 +111,7 @@ impl Kept {
         Ok(())
     }
 
-    /// The choice of devices of the last time, and what the user should know of it.
+    /// The choice of devices of the last run, and a message for the user.
     pub(super) fn chosen(&mut self) -> (Chosen, Option<String>) {
         let Some(file) = self.devices() else { return Default::default() };
         match std::fs::read(&file) {
@@ -137,13 +137,14 @@ impl Kept {
         written.map_err(|error| format!("the choice of devices cannot be kept: {error}"))
     }
 
-    /// The file of the choice, beside that of the state: projects of hosts have the one, and not the other.
+    /// The file of the choice of devices, beside that of the state. It is separate, since the state has the same form
+    /// as in a host's project.
     fn devices(&self) -> Option<PathBuf> {
         self.file.as_ref().map(|file| file.with_file_name("devices.json"))
     }
 }
 
-/// Writes a file, which is replaced when all of it is on disk.
+/// Writes a file. An old one is replaced only when the new one is completely on disk.
 fn write(file: &Path, text: &str) -> sprung::Result<()> {
     let failed = |error| sprung::Error::io(file.display().to_string(), error);
     file.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(failed)?;
@@ -152,13 +153,13 @@ fn write(file: &Path, text: &str) -> sprung::Result<()> {
     output.commit()
 }
 
-/// Gives a file another name, which no file has yet, and returns it.
+/// Renames a file to a name that is not in use, and returns the new name.
 fn set_aside(file: &Path) -> std::io::Result<PathBuf> {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let mut number = 1;
     loop {
         let aside = file.with_file_name(format!("{name}.not-understood-{number}.json"));
-        // A link fails if the name is taken, and renaming would replace that file.
+        // A hard link fails if the name is in use; renaming would replace that file.
         match std::fs::hard_link(file, &aside) {
             Ok(()) => return std::fs::remove_file(file).map(|()| aside),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => number += 1,
@@ -167,7 +168,7 @@ fn set_aside(file: &Path) -> std::io::Result<PathBuf> {
     }
 }
 
-/// The folder for this program's state of the user.
+/// The folder for the program's state of this user.
 fn folder(variable: &dyn Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     let folder = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
     if cfg!(windows) {
@@ -176,7 +177,7 @@ fn folder(variable: &dyn Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     if cfg!(target_os = "macos") {
         return Some(folder("HOME")?.join("Library/Application Support/Sprung"));
     }
-    // XDG Base Directory Specification 0.8: a relative path is to be ignored.
+    // XDG Base Directory Specification 0.8: relative paths must be ignored.
     let state = folder("XDG_STATE_HOME").or_else(|| Some(folder("HOME")?.join(".local/state")))?;
     Some(state.join("sprung"))
 }
@@ -259,7 +260,7 @@ mod tests {
     #[test]
     fn what_cannot_be_read_stays_where_it_is() {
         let folder = tempfile::tempdir().unwrap();
-        // A folder of that name can be opened, but not read.
+        // A folder of that name can be opened, but not read as a file.
         let file = folder.path().join("sprung").join(NAME);
         std::fs::create_dir_all(&file).unwrap();
         let (mut kept, params) = (kept(folder.path()), SprungParams::default());

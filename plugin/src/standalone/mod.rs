@@ -1,14 +1,14 @@
-//! The window as a program: it plays on a sound device of its own, and keeps its state between runs.
+//! The standalone program: the plugin's window with a sound device of its own, whose state is kept between runs.
 //!
 //! | module | holds |
 //! |---|---|
 //! | `player` | the audio thread |
-//! | `chosen` | the device that was chosen, or that of the last time |
-//! | `host` | what the window takes for its host |
-//! | `keeper` | looks after devices, ports and the file of the state |
-//! | `kept` | the file of the state |
+//! | `chosen` | the choice of the device: from the command line or from the last run |
+//! | `host` | the window's host in this program |
+//! | `keeper` | follows devices and ports, and saves the state |
+//! | `kept` | the files of the state and of the choice of devices |
 //! | `signals` | Ctrl-C |
-//! | `told` | what the user is told |
+//! | `told` | messages for the user |
 
 mod chosen;
 mod host;

@@ -1,4 +1,4 @@
-//! The audio thread of the program: MIDI and the window play, the device takes the sound.
+//! The audio thread of the program: renders MIDI input and the window's notes for the device.
 
 use crate::live::Live;
 use crate::params::SprungParams;
@@ -8,7 +8,7 @@ use sprung::realtime::player::MAX_BLOCK;
 use sprung::realtime::{BlockClock, Fade, LiveInputs, Moment, Source, Status};
 use std::sync::Arc;
 
-/// Plays what the window shows. [`Source::fill`] is real-time safe.
+/// Plays the window's sound. [`Source::fill`] is real-time safe.
 pub(super) struct WindowPlayer {
     params: Arc<SprungParams>,
     live: Live,
@@ -38,7 +38,7 @@ impl WindowPlayer {
         }
     }
 
-    /// Goes on at another sample rate: what sounds, ends. Allocates.
+    /// Continues at another sample rate: sounding notes end. Allocates.
     pub(super) fn set_sample_rate(&mut self, sample_rate: u32) {
         let sample_rate = f64::from(sample_rate);
         self.live = Live::new(sample_rate, false, &self.params);
@@ -104,7 +104,7 @@ mod tests {
         synth.process(&[Event { frame: 0, channel: 0, kind: ON }], &mut left, &mut right);
         let expected: Vec<f32> = left.into_iter().zip(right).flat_map(|(left, right)| [left, right]).collect();
         assert!(expected.iter().any(|sample| *sample != 0.0));
-        // Longer than the pieces in which it is rendered.
+        // Longer than the pieces that are rendered at a time.
         assert!(fill(&mut player, 10_000) == expected);
         let silence = &params.knobs()[sprung::params::Param::Gain as usize];
         let before = fill(&mut player, 4_800).into_iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));

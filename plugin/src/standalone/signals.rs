@@ -1,6 +1,6 @@
-//! Ctrl-C and the request to end.
+//! Ctrl-C and the system's request to terminate.
 
-/// Calls `handler` on a thread of its own at each interrupt.
+/// Calls `handler` on a separate thread at each interrupt or request to terminate.
 #[cfg(unix)]
 pub(super) fn catch(mut handler: impl FnMut() + Send + 'static) -> Result<(), String> {
     use signal_hook::consts::{SIGINT, SIGTERM};
@@ -9,7 +9,7 @@ pub(super) fn catch(mut handler: impl FnMut() + Send + 'static) -> Result<(), St
     std::thread::Builder::new().name("interrupt".to_owned()).spawn(wait).map(drop).map_err(failed)
 }
 
-/// Calls `handler` on a thread of its own at each interrupt.
+/// Calls `handler` on a separate thread at each interrupt.
 #[cfg(windows)]
 pub(super) fn catch(handler: impl FnMut() + Send + 'static) -> Result<(), String> {
     ctrlc::set_handler(handler).map_err(failed)

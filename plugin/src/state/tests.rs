@@ -1,4 +1,4 @@
-//! States that are read back, states of old versions, and states that can only be read in part.
+//! States that are read back exactly, states of old versions, and states that can be read only in part.
 
 use super::*;
 use crate::params::{Knob, SprungParams};
@@ -23,8 +23,8 @@ fn odd_view() -> View {
     View { size: [1000, 500], zoom: 150, theme: Theme::Light }
 }
 
-/// A sound that has, for each kind of parameter, a value that its knob position would not give back, and a knob
-/// position that its value would not give.
+/// A sound with, for each kind of parameter, a value that cannot be restored from its knob position, and with a knob
+/// position that does not follow from its value.
 fn odd() -> State {
     let bell = Preset::find("Glockenspiel").unwrap();
     let patch = bell.patch.clone().with(Param::Decay, 0.123_456_79).with(Param::Fine, -0.1).with(Param::Voices, 7.0);
@@ -48,7 +48,7 @@ fn a_state_is_read_back_exactly_and_unchanged() {
     assert_eq!(serde_json::to_string(&wrapped(&other)).unwrap(), text);
 }
 
-/// A kit with factory presets and its own, and values that differ from its files.
+/// A kit with factory presets and one of its own, whose values differ from those of its files.
 fn odd_kit() -> State {
     let text = "kit = 1\nname = \"Odd\"\nvoices = 9\nkeys = [{ key = 36, sound = \"Kick\", pan = -0.3 },\
         { key = 38, sound = \"mine.toml\", choke = 2 }, { key = 40, sound = \"Kick\", pitch = 50.5 }]";
@@ -195,7 +195,7 @@ fn parameters_that_a_state_does_not_name_have_their_defaults() {
     assert!(params.complaints().is_empty());
 }
 
-/// The folder has, for each released version, a state that it wrote, and the preset that the state contains.
+/// For each released version, the folder has a state written by that version, and the preset in that state.
 #[test]
 fn states_of_all_versions_load() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/states");

@@ -1,4 +1,4 @@
-//! The picture that README shows: a bell on which two keys are struck and that rings down, as an animated PNG.
+//! The animated PNG in README: two keys are struck on a bell, which rings down.
 
 use super::pictures::{differing, finish, rounded};
 use super::sounding::Band;
@@ -10,7 +10,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter};
 
 const PLACE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/bell.png");
-/// Frames of the animation, frames in a second, and passes of the window for each.
+/// Frames of the animation, frames per second, and passes of the window per frame.
 const FRAMES: usize = 60;
 const PER_SECOND: usize = 15;
 const PASSES: usize = 60 / PER_SECOND;
@@ -38,7 +38,7 @@ fn picture(band: &mut Band) -> RgbaImage {
     rounded(&band.stage.harness.render().unwrap())
 }
 
-/// What of a frame differs from the one before: where, and its pixels, those that stay being transparent.
+/// The changed part of a frame: its place, and its pixels; unchanged pixels are transparent.
 fn change(before: &RgbaImage, now: &RgbaImage) -> ((u32, u32), RgbaImage) {
     let changed = |x: u32, y: u32| before.get_pixel(x, y) != now.get_pixel(x, y);
     let places: Vec<(u32, u32)> =

@@ -1,4 +1,4 @@
-//! What the user does on the page of the body, and the first five minutes of somebody who has never seen the window.
+//! The page of the body, and the first five minutes of a user who is new to the window.
 
 use super::pictures::{Stage, compare_page, finish, stage};
 use super::sounding::Band;

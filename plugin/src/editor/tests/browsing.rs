@@ -1,4 +1,4 @@
-//! What the user does in the browser.
+//! Finding, trying, saving and removing sounds in the browser.
 
 use super::pictures::{Stage, compare, finish, stage};
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};

@@ -7,7 +7,7 @@ use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use std::sync::atomic::Ordering::Relaxed;
 
-/// What a machine might have.
+/// Devices of an example machine.
 fn devices() -> Devices {
     let output = |host: &str, id: &str, description: &str| Output {
         host: host.to_owned(),
@@ -27,7 +27,7 @@ fn devices() -> Devices {
     }
 }
 
-/// The page of a program that shows some devices.
+/// The page in a program that has published devices.
 fn page(size: [u32; 2], theme: Theme) -> Stage {
     let mut stage = stage("Marimba", size, 1.0, theme);
     assert!(stage.harness.query_by_role_and_label(Role::Tab, "Devices").is_none(), "a host has its own");
@@ -42,7 +42,7 @@ fn page(size: [u32; 2], theme: Theme) -> Stage {
 }
 
 impl Stage {
-    /// Picks from the devices as they are at first.
+    /// Picks from the list of the original devices.
     fn pick_device(&mut self, field: &str, name: &str) -> Option<Chosen> {
         self.params.link().desk.show(devices());
         self.harness.run_steps(1);
@@ -75,7 +75,7 @@ fn what_is_picked_is_asked_for() {
     let both = Chosen { rate: Some(96_000), midi_in: text("none"), ..before.clone() };
     assert_eq!(stage.pick_another("MIDI in", "no port"), Some(both), "a wish builds on the one before");
     assert!(stage.host.said().is_empty(), "no parameter is concerned");
-    // What was chosen and is not there now is shown all the same.
+    // A chosen device that is not available now is still shown.
     let gone = Chosen { host: text("alsa"), device: text("hw:9"), rate: Some(22_050), ..Chosen::default() };
     stage.params.link().desk.show(Devices { chosen: gone, ..devices() });
     stage.harness.run_steps(3);

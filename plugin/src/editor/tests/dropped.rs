@@ -1,4 +1,4 @@
-//! Files that are dropped on the window, which reads them by their paths.
+//! Files dropped on the window, which reads them by their paths.
 
 use egui::DroppedFile;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! A host that does what the window asks for, and remembers it.
+//! A host that carries out the window's requests and records them.
 
 #![allow(unsafe_code, reason = "the wrapper's interface is unsafe")]
 
@@ -9,7 +9,7 @@ use nice_plug_core::plugin::PluginState;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-/// What a window tells its host of a parameter, by its name.
+/// A message of the window about a parameter, by the parameter's name.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Said {
     Begin(String),
@@ -17,11 +17,11 @@ pub(super) enum Said {
     End(String),
 }
 
-/// A host that does what it is asked for.
+/// A host that carries out the window's requests.
 #[derive(Default)]
 pub(super) struct FakeHost {
     said: Mutex<Vec<Said>>,
-    /// Whether it is the program.
+    /// Whether it plays the part of the standalone program.
     pub(super) is_alone: AtomicBool,
 }
 
@@ -30,7 +30,7 @@ impl FakeHost {
         GuiContext::new(self.clone())
     }
 
-    /// What it was told since the last call.
+    /// The messages since the last call.
     pub(super) fn said(&self) -> Vec<Said> {
         std::mem::take(&mut self.said.lock().unwrap())
     }

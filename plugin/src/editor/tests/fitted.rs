@@ -1,4 +1,4 @@
-//! Recordings that are dropped on the window and become a sound.
+//! Recordings dropped on the window are fitted to a sound.
 
 use super::dropped::Dropped;
 use super::fake_host::Said;
@@ -27,7 +27,7 @@ const PATIENCE: Duration = Duration::from_secs(300);
 /// Modes of a bar: ratio, T60 in seconds, amplitude.
 const MODES: [(f64, f64, f64); 3] = [(1.0, 0.35, 0.4), (2.756, 0.25, 0.25), (5.404, 0.15, 0.15)];
 
-/// A strike of so many seconds at a frequency; the decays are longer by `longer`.
+/// A strike at a frequency, of this length in seconds; the decay times are multiplied by `longer`.
 #[allow(clippy::disallowed_methods, reason = "the sound of a test")]
 fn strike(frequency: f64, seconds: f64, longer: f64) -> Vec<f64> {
     let at = |n: usize| {
@@ -72,7 +72,7 @@ impl Stage {
         self.harness.query_by_role(Role::ProgressIndicator).is_some()
     }
 
-    /// Waits until nothing is fitted any more.
+    /// Waits until the fit is over.
     #[track_caller]
     fn wait(&mut self) {
         let begun = Instant::now();
@@ -84,14 +84,14 @@ impl Stage {
         self.harness.run_steps(2);
     }
 
-    /// Whether the lowest line says so.
+    /// Checks that the status line contains these words.
     #[track_caller]
     fn assert_says(&self, words: &str) {
         assert!(self.harness.query_by_label_contains(words).is_some(), "the lowest line does not say: {words}");
     }
 }
 
-/// A sound's mode that is louder than its neighbours, as it is played on a key: frequency and T60.
+/// Frequency and T60 of the modes of a sound played on a key, the loudest first.
 fn heard(state: &State, key: u8) -> Vec<(f64, f64)> {
     let Playable::Preset(preset) = &state.playable else { panic!("a preset") };
     let mut synth = Synth::new(f64::from(RATE), 0);
@@ -147,7 +147,7 @@ fn a_recording_that_is_dropped_becomes_a_sound_of_its_pitch_and_modes_and_is_und
     assert_eq!(preset.guide.home, 69);
     assert!(preset.comment.starts_with("Fitted to small bar.wav.\n"), "{}", preset.comment);
     assert!(preset.patch.modes.as_slice().iter().any(|mode| (mode.ratio - 2.756).abs() < 0.01));
-    // As it is played, an octave higher as well.
+    // Played on its key, and an octave higher.
     for (key, octaves) in [(69, 1.0), (81, 2.0)] {
         let found = heard(&fitted, key);
         for (ratio, t60, _) in MODES {
@@ -176,12 +176,12 @@ fn a_fit_is_cancelled_and_a_second_one_refused_meanwhile() {
     stage.drop_files(&[&other]);
     stage.assert_says("long.wav is still being fitted");
     stage.button("Cancel the fit");
-    // What is under the pointer would be described in place of the message.
+    // With the pointer over a widget, the status line would show its hint instead of the message.
     stage.harness.event(egui::Event::PointerGone);
     stage.wait();
     stage.assert_says("cancelled: long.wav was not fitted");
     assert!(stage.params.state() == before && stage.host.said().is_empty());
-    // The panel is gone, and another recording can be dropped. The window is closed over it.
+    // The panel is gone, and another recording can be dropped. The window is then closed during that fit.
     stage.drop_files(&[&path]);
     assert!(stage.is_fitting());
 }

@@ -1,4 +1,4 @@
-//! What the user does with knobs, and what the host hears of it.
+//! The user's actions on knobs, and the gestures that the host receives.
 
 use super::fake_host::Said;
 use super::pictures::{Stage, stage};
@@ -54,7 +54,7 @@ impl Stage {
     }
 }
 
-/// Begin and end once, with values between them.
+/// Whether the messages are one begin and one end, with only values between them.
 fn is_one_gesture(said: &[Said], name: &str) -> bool {
     let [Said::Begin(first), sets @ .., Said::End(last)] = said else { return false };
     let is_set = |said: &Said| matches!(said, Said::Set(set, _) if set == name);

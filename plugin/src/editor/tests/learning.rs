@@ -33,7 +33,7 @@ fn the_next_controller_that_moves_modulates_the_knob() {
     band.control(11);
     band.learn("Mallet speed");
     assert!(band.routes() == before.1, "what was moved before does not count");
-    // One that no route can have is told, and the next one is waited for.
+    // A controller that cannot be a source gives a message, and learning goes on.
     band.control(21);
     assert!(band.routes() == before.1);
     band.play(EventKind::PitchBend(0.0));

@@ -1,4 +1,4 @@
-//! Modes that the user changes: they are saved as they are, and what is loaded meanwhile is left alone.
+//! Changes of modes by the user: they are saved exactly, and a sound that is loaded meanwhile is not changed.
 
 use super::fake_host::Said;
 use super::sounding::Band;
@@ -40,7 +40,7 @@ impl Band {
     }
 
     fn double_click(&mut self, place: Pos2) {
-        // So that it is no third click.
+        // A pause, so that it does not count as a triple click.
         self.passes(40);
         for pressed in [true, false, true, false] {
             self.press(place, pressed);

@@ -1,4 +1,4 @@
-//! The pictures that move: the body is struck elsewhere, the mass is pulled and let go.
+//! The moving pictures: the body is struck elsewhere, the mass is pulled and released.
 
 use super::fake_host::Said;
 use super::pictures::{compare, finish};
@@ -84,7 +84,7 @@ fn the_place_of_a_tables_pluck_is_a_parameter_that_the_host_sees() {
     let before = band.stage.params.state();
     let rect = band.rect("Struck body");
     let place = |x| Form::Line.on(rect, Point { x, y: 0.0 }, 0.0);
-    // Near the other end, which is the same.
+    // A place near the other end is equivalent.
     band.pull_to(place(0.5), place(0.75));
     let now = band.stage.params.state().values.get(Param::PluckPosition);
     assert!((now - 25.0).abs() < 1.5, "{now}");

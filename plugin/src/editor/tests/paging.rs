@@ -1,4 +1,4 @@
-//! The pages below the modes, the manual over them, and files that are dropped on the window.
+//! The pages below the modes, the manual over them, and files dropped on the window.
 
 use super::dropped::{Dropped, asset};
 use super::fake_host::Said;
@@ -61,7 +61,7 @@ fn a_pad_plays_lights_up_and_is_let_go() {
     band.press(pad.center_bottom() - vec2(0.0, 2.0), true);
     assert!(matches!(band.heard[..], [Touch::Down { key: 36, velocity }] if velocity > 0.8), "{:?}", band.heard);
     assert_eq!(band.stage.params.link().telemetry.keys(0), 1 << 36);
-    // A page that is left lets go.
+    // Leaving the page releases the key.
     band.open("Tuning");
     assert_eq!(band.stage.params.link().telemetry.keys(0), 0);
     band.press(pad.center(), false);
@@ -89,7 +89,7 @@ fn the_manual_opens_at_the_page_that_matters_and_escape_closes_it() {
 
 #[test]
 fn every_page_of_the_manual_can_be_shown() {
-    // High enough for the whole list.
+    // High enough for the whole list of pages.
     for size in [[1100, 900], [640, 900]] {
         let mut stage = stage("Marimba", size, 1.0, Theme::Dark);
         stage.harness.get_by_role_and_label(Role::Tab, "?").click();
@@ -118,11 +118,11 @@ fn scales_and_mappings_are_dropped_undone_and_complained_about() {
     band.drop_file(&asset("scales/19-equal-on-white-keys.kbm"));
     assert!((steps(&band) - 3.0).abs() < 1e-3, "mapped: {}", steps(&band));
     let mapped = band.stage.params.state();
-    // What is no scale changes nothing.
+    // A file that is not a scale changes nothing.
     let wrong = band.stage.folder.path().join("wrong.scl");
     std::fs::write(&wrong, "a\n2\nx\n").unwrap();
     band.drop_file(&wrong);
-    // Nor does one whose first part is a scale, but that is too large.
+    // Neither does a file that begins with a scale but is too large.
     let large = band.stage.folder.path().join("large.scl");
     std::fs::write(&large, "a\n1\n2/1\n".to_owned() + &" ".repeat(1 << 20)).unwrap();
     band.drop_file(&large);
@@ -165,12 +165,12 @@ fn a_preset_that_is_dropped_joins_the_users_sounds_and_is_renamed() {
         || std::fs::read_dir(band.stage.folder.path().join("presets")).unwrap().map(|file| file.unwrap().path());
     let own = files().next().unwrap();
     assert_eq!(files().count(), 1);
-    // A file that is there already is loaded, not copied.
+    // A file that is already in the user's folder is loaded, not copied.
     band.stage.button("Undo");
     band.drop_file(&own);
     assert_eq!(band.stage.params.name(), "Friend’s Bell 2");
     assert_eq!(std::fs::read_dir(own.parent().unwrap()).unwrap().count(), 1);
-    // A favourite that gets the name it has stays one.
+    // A favourite that is renamed to its own name stays a favourite.
     band.stage.button("Favourite Friend’s Bell 2");
     band.stage.button("Give your sound this name");
     let favourites = std::fs::read_to_string(band.stage.folder.path().join("favourites.txt")).unwrap();

@@ -1,6 +1,6 @@
 //! Pictures of the window, compared with those in `tests/pictures`.
 //!
-//! `SPRUNG_BLESS_PICTURES=1` accepts the present ones. A run that accepts fails, so that nobody accepts by mistake.
+//! `SPRUNG_BLESS_PICTURES=1` accepts the present pictures. Such a run fails, so that nobody accepts by mistake.
 
 use super::fake_host::FakeHost;
 use super::renderer::Renderer;
@@ -21,7 +21,7 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How far a channel of a pixel may be from the accepted picture: CPUs round glyphs differently by up to 3, and pictures are
+/// Largest accepted difference in a channel of a pixel: CPUs round glyphs differently by up to 3, and pictures are
 /// stored in steps of 4.
 const TOLERANCE: u8 = 3 + STEP / 2;
 /// Steps of the colours in stored pictures, which makes their files smaller.
@@ -64,14 +64,14 @@ pub(super) fn compare(name: &str, harness: &mut Harness) {
     check(name, found);
 }
 
-/// As [`compare`], of the part where the pages below the modes are: the rest is in other pictures.
+/// Like [`compare`], for the area of the pages below the modes; other pictures show the rest.
 #[track_caller]
 pub(super) fn compare_page(name: &str, harness: &mut Harness) {
     harness.check_accessibility();
     check(name, page_of(&harness.render().unwrap(), 1.0));
 }
 
-/// The part of a window's picture where the pages are.
+/// The area of the pages in a window's picture.
 fn page_of(window: &RgbaImage, scale: f32) -> RgbaImage {
     let size = vec2(window.width() as f32, window.height() as f32) / scale;
     let layout = Layout::of(Rect::from_min_size(Pos2::ZERO, size));
@@ -79,13 +79,13 @@ fn page_of(window: &RgbaImage, scale: f32) -> RgbaImage {
     image::imageops::crop_imm(window, 0, top, window.width(), bottom - top).to_image()
 }
 
-/// Compares a picture at 200 %, stored at a part of its width and height: the whole ones would take megabytes.
+/// Compares a picture at 200 %, stored at a fraction of its width and height: full-size pictures would take megabytes.
 #[track_caller]
 fn check_small(name: &str, part: u32, found: &RgbaImage) {
     check(name, image::imageops::thumbnail(found, found.width() / part, found.height() / part));
 }
 
-/// As [`compare`], of a picture that is stored as [`check_small`] does.
+/// Like [`compare`], for a picture that is stored as in [`check_small`].
 #[track_caller]
 fn compare_small(name: &str, part: u32, harness: &mut Harness) {
     harness.check_accessibility();
@@ -108,7 +108,7 @@ fn check(name: &str, found: RgbaImage) {
     assert_eq!(differing, 0, "{name}: see target/pictures; `cargo xtask bless pictures` accepts the present pictures");
 }
 
-/// A picture with its colours in steps.
+/// A picture with its colours rounded to steps.
 pub(super) fn rounded(picture: &RgbaImage) -> RgbaImage {
     let mut picture = picture.clone();
     for Rgba([colours @ .., _]) in picture.pixels_mut() {
@@ -124,7 +124,7 @@ fn store(picture: &RgbaImage, file: &Path) {
     rgb.write_with_encoder(PngEncoder::new_with_quality(to, CompressionType::Best, FilterType::Adaptive)).unwrap();
 }
 
-/// How many pixels differ.
+/// The number of pixels that differ.
 pub(super) fn differing(one: &RgbaImage, other: &RgbaImage) -> usize {
     assert_eq!(one.dimensions(), other.dimensions());
     let differs = |(one, other): (&Rgba<u8>, &Rgba<u8>)| {
@@ -187,7 +187,7 @@ fn pictures_of_browser_and_manual_in_every_theme_are_as_accepted() {
             };
             let name = format!("{page}-{}", theme.id());
             compare_small(&format!("{name}-twice"), 4, &mut shown(SIZE, 2.0).harness);
-            // The dark ones have names of their own.
+            // The dark ones are compared under other names.
             if theme != Theme::Dark {
                 compare(&name, &mut shown(SIZE, 1.0).harness);
                 compare(&format!("{name}-least"), &mut shown(LEAST_SIZE, 1.0).harness);

@@ -1,4 +1,4 @@
-//! Random input: nothing panics, no note is left, the state is read back.
+//! Random input: nothing panics, no note stays on, and the state can be read back.
 
 use super::dropped::{Dropped, asset};
 use super::sounding::Band;
@@ -7,7 +7,7 @@ use crate::state::State;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, pos2, vec2};
 use std::sync::Arc;
 
-/// Events in each of four windows.
+/// Number of events for each of the four windows.
 const EVENTS: usize = 5_000;
 /// Most events between two passes.
 const AT_ONCE: usize = 6;
@@ -24,7 +24,7 @@ const KEYS: [Key; 9] = [
 ];
 const TEXTS: [&str; 5] = ["1", "250 ms", "bell", "ä", "-"];
 
-/// Numbers below a limit, the same in each run (Numerical Recipes, 7.1).
+/// Pseudorandom numbers below a limit, the same in each run (Numerical Recipes, 7.1).
 struct Numbers(u64);
 
 impl Numbers {
@@ -34,13 +34,13 @@ impl Numbers {
     }
 }
 
-/// Some file that a user may drop.
+/// One of the files that a user may drop.
 fn file(number: usize) -> Arc<Dropped> {
     let files = ["scales/19-equal.scl", "scales/19-equal-on-white-keys.kbm", "kits/hand-kit.toml", "scales/none.scl"];
     Arc::new(Dropped(asset(files[number % files.len()])))
 }
 
-/// An event at a place, or one that moves there.
+/// A random event at the present place, or a movement to another place.
 fn event(numbers: &mut Numbers, place: &mut Pos2, size: [u32; 2]) -> Event {
     let modifiers = match numbers.below(8) {
         0 => Modifiers::SHIFT,

@@ -1,4 +1,4 @@
-//! Draws egui's triangles without a GPU, as its OpenGL shader does: colours are multiplied and blended in gamma space.
+//! Draws egui's triangles without a GPU like its OpenGL shader: colours are multiplied and blended in gamma space.
 
 use egui::epaint::{ImageData, ImageDelta, Mesh, Primitive, TextureId, Vertex};
 use egui::{Color32, Context, FullOutput, Rect, TexturesDelta};
@@ -7,10 +7,10 @@ use image::RgbaImage;
 use std::array::from_fn;
 use std::collections::HashMap;
 
-/// Steps of a pixel at which corners lie, as on GPUs: triangles that share an edge share it exactly.
+/// Corners lie on a grid with this many steps per pixel, as on GPUs: triangles that share an edge share it exactly.
 const GRID: f32 = 256.0;
 
-/// The textures, and how to draw with them.
+/// A software renderer with its textures.
 #[derive(Default)]
 pub(super) struct Renderer {
     textures: HashMap<TextureId, Texture>,
@@ -22,7 +22,7 @@ struct Texture {
 }
 
 impl Texture {
-    /// Takes over a whole texture, or a part of one.
+    /// Replaces a whole texture or a part of one.
     fn update(&mut self, delta: &ImageDelta) {
         let ImageData::Color(image) = &delta.image;
         let Some([left, top]) = delta.pos else {
@@ -41,7 +41,7 @@ impl Texture {
         self.pixels[y * width + x].to_array().map(f32::from)
     }
 
-    /// The colour at a point from 0 to 1, between the four nearest pixels.
+    /// The colour at a point with coordinates from 0 to 1, interpolated between the four nearest pixels.
     fn sample(&self, [u, v]: [f32; 2]) -> [f32; 4] {
         let (x, y) = (u * self.size[0] as f32 - 0.5, v * self.size[1] as f32 - 0.5);
         let (left, top) = (x.floor(), y.floor());
@@ -54,14 +54,14 @@ impl Texture {
     }
 }
 
-/// What is drawn into.
+/// The picture being drawn.
 struct Canvas {
     size: [i64; 2],
     pixels: Vec<[u8; 4]>,
 }
 
 impl Canvas {
-    /// Blends a colour, whose alpha is multiplied into it, over a pixel.
+    /// Blends a colour with premultiplied alpha over a pixel.
     fn blend(&mut self, x: i64, y: i64, colour: [f32; 4]) {
         let pixel = &mut self.pixels[(y * self.size[0] + x) as usize];
         let keep = 1.0 - colour[3] / 255.0;
@@ -111,8 +111,8 @@ impl Canvas {
     }
 }
 
-/// The weights of the corners at a point; none if it is outside. A point on an edge belongs to the triangle on the
-/// edge's right or below, and to no other.
+/// The weights of the corners at a point; none if it is outside. A point on an edge belongs only to the triangle to the
+/// right of the edge or below it.
 fn inside(corners: [[i64; 2]; 3], [x, y]: [i64; 2]) -> Option<[i64; 3]> {
     let mut weights = [0; 3];
     for (i, weight) in weights.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! Rings of modulated knobs: a mark for each note that sounds, where the note has the parameter now.
+//! Rings of modulated knobs: a mark for each sounding note at the parameter's modulated position.
 
 use super::pictures::{compare, finish};
 use super::sounding::Band;
@@ -33,7 +33,7 @@ fn band(size: [u32; 2], theme: Theme, routes: &[(Source, Param, f32)]) -> Band {
 }
 
 impl Band {
-    /// The face of a parameter's knob, whose cell is there.
+    /// The face of a parameter's knob.
     fn face(&self, param: Param) -> Rect {
         let named = self.stage.harness.get_by_role_and_label(egui::Role::Slider, param.info().name);
         knob::face_in(named.rect())
@@ -55,7 +55,7 @@ impl Band {
 
 #[test]
 fn each_note_has_a_mark_where_its_velocity_moves_the_knob() {
-    // From 20 % down by a fifth of the travel, times the velocity.
+    // From 20 % downwards by 20 % of the travel, multiplied by the velocity.
     let mut band = band(SIZE, Theme::Dark, &[(Source::Velocity, Param::MalletHardness, -20.0)]);
     band.passes(2);
     let [far, near] = [0.8_f32, 0.2].map(|velocity| 0.2 - 0.2 * velocity);
@@ -106,7 +106,7 @@ fn pictures_of_rings_are_as_accepted() {
             band.strike_at(key, velocity);
             band.passes(15);
         }
-        // The status line tells the newest note's value.
+        // The status line shows the newest note's value.
         let place = band.face(Param::MalletHardness).center();
         band.event(Event::PointerMoved(place));
         compare(name, &mut band.stage.harness);

@@ -1,4 +1,4 @@
-//! A window of a sound that sounds: an audio thread's work is done between its passes.
+//! A window with a playing engine: the audio thread's work is done between the window's passes.
 
 use super::pictures::{Stage, compare, finish, stage};
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
@@ -12,13 +12,13 @@ use std::time::Duration;
 
 const RATE: f64 = 48_000.0;
 
-/// A synth that follows a window.
+/// A synth that plays the events of a window.
 pub(super) struct Band {
     pub(super) stage: Stage,
     synth: Synth,
     pub(super) touches: Consumer<Touch>,
     writer: TelemetryWriter,
-    /// What the window has played.
+    /// The events that the window has played.
     pub(super) heard: Vec<Touch>,
 }
 
@@ -46,7 +46,7 @@ impl Band {
         self.play(EventKind::NoteOn { key, detune: 0.0, velocity, id: None });
     }
 
-    /// Plays the sound that is loaded now.
+    /// Loads the window's present sound into the synth.
     pub(super) fn follow(&mut self) {
         self.synth.set_kit(&self.stage.params.loaded().kit);
     }
@@ -56,14 +56,14 @@ impl Band {
         self.play(EventKind::Silence { notes: Default::default() });
     }
 
-    /// Where the notes that sound have a parameter, the newest first.
+    /// The positions of a parameter in the sounding notes, the newest note first.
     pub(super) fn marks(&self, param: Param) -> Vec<f32> {
         let notes = self.stage.params.link().telemetry.snapshot().notes;
         let moved = notes.into_iter().flatten().flat_map(|note| note.moved).flatten();
         moved.filter(|(moved, _)| *moved == param).map(|(_, value)| param.info().normalise(value) as f32).collect()
     }
 
-    /// Renders a sixtieth of a second before each of some passes of the window.
+    /// Does some passes of the window, and renders a sixtieth of a second before each.
     pub(super) fn passes(&mut self, count: usize) {
         for _ in 0..count {
             while let Ok(touch) = self.touches.pop() {
@@ -149,7 +149,7 @@ fn a_dragged_mode_changes_sounds_and_comes_back() {
     let modes = |band: &Band| band.stage.params.loaded().kit.sounds()[0].patch().modes.as_slice().to_vec();
     assert_eq!(modes(&band).len(), 1);
     let area = band.rect("Modes");
-    // A second mode, where there is none.
+    // Adds a second mode, at a place without one.
     let place = area.center();
     for _ in 0..2 {
         band.press(place, true);

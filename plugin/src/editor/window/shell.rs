@@ -42,7 +42,7 @@ impl NiceEguiApp for Window {
     }
 }
 
-/// A window is dropped when it is closed: nothing else tells it so.
+/// Dropping the window is the only sign that it was closed: held keys and the gesture are ended here.
 impl Drop for Window {
     fn drop(&mut self) {
         let link = self.params.link();
@@ -54,7 +54,8 @@ impl Drop for Window {
         self.pages.release(link);
         if let Some(host) = self.host.take() {
             let end = || self.hands.gestures.end(&self.params, &host);
-            // The wrapper panics if the plugin itself is dropped; then nobody waits for the end of a gesture.
+            // The wrapper panics if the plugin itself is being dropped; then the host no longer waits for the gesture's
+            // end.
             let _ = catch_unwind(AssertUnwindSafe(end));
         }
     }
