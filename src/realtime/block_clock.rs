@@ -1,12 +1,13 @@
-//! Converts time stamps to frames: the time at which each block is heard, and where in it an event belongs.
+//! Converts time stamps to frames: computes each block's time, and the frame in the block at which an event sounds.
 
 use std::time::{Duration, Instant};
 
-/// A greater difference than this, in seconds, means that the stream is new and has another clock. Less is jitter.
+/// A greater change of the clocks' difference, in seconds, means that the stream is new and has another clock. A
+/// smaller one is jitter.
 const ANOTHER_CLOCK: f64 = 0.05;
 
-/// Time constant in seconds with which the longest latency is forgotten, and with which a drift between the device's
-/// clock and the system's is followed.
+/// Time constant in seconds with which the longest latency decays, and with which the clock follows a drift between the
+/// device's clock and the system's.
 const SHRINK_SECONDS: f64 = 30.0;
 
 /// The times of a block: when it was requested, and when it will be heard.
@@ -31,8 +32,8 @@ pub enum Stamp {
 
 /// Places events inside blocks by their time stamps.
 ///
-/// If an event arrives a third of the way from one block's time to the next one's, it sounds a third of the way into
-/// the next block: exactly one block late. A block's time is the time at which it is heard, which the device knows,
+/// An event that arrives a third of the way from one block's time to the next one's sounds a third of the way into the
+/// next block: exactly one block late. A block's time is the time at which it is heard, as reported by the device,
 /// minus a constant; it is not the time of the callback. So notes have no jitter, even if the callbacks have, or if the
 /// device's clock runs unevenly. Real-time safe.
 #[derive(Clone, Debug)]
@@ -42,9 +43,9 @@ pub struct BlockClock {
     /// Seconds since the epoch at which the device's clock was 0. A callback may read the system's clock too late but
     /// never too early, so the smallest difference is the most accurate.
     offset: Option<f64>,
-    /// Longest time from a callback to the sound, in seconds. That is the time of a callback without delay.
+    /// Longest time from a callback to the sound, in seconds: that of a callback without delay.
     ahead: f64,
-    /// Times of the block before this one and of this one, in seconds on the device's clock.
+    /// Times of the previous block and of this one, in seconds on the device's clock.
     times: [f64; 2],
     frames: u32,
 }
@@ -114,8 +115,8 @@ mod tests {
         Moment { now: epoch + Duration::from_secs_f64(called), called: device(called), heard: device(heard) }
     }
 
-    /// Sends an event every `interval` frames through blocks whose callbacks are up to `jitter` seconds late. Returns,
-    /// from the second second on, how many frames after its time stamp each event sounds.
+    /// Sends an event every `interval` frames through blocks whose callbacks are up to `jitter` seconds late. Returns
+    /// for each event after the first second the number of frames from its time stamp to its sound.
     fn delays(jitter: f64, interval: f64) -> Vec<f64> {
         let mut clock = BlockClock::new(RATE);
         let epoch = Instant::now();

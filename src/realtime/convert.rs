@@ -45,8 +45,8 @@ impl DeviceSample for u8 {
     }
 }
 
-/// Writes stereo into the interleaved frames of a device. A single channel gets (L + R) / 2; of more than two, the
-/// first two get left and right, and the others silence. Real-time safe.
+/// Writes stereo into the interleaved frames of a device. A single channel gets (L + R) / 2. Of several channels, the
+/// first two get left and right, and the others get silence. Real-time safe.
 pub fn interleave<T: DeviceSample>(left: &[f32], right: &[f32], channels: usize, out: &mut [T]) {
     let frames = out.chunks_exact_mut(channels.max(1));
     for ((&left, &right), frame) in left.iter().zip(right).zip(frames) {

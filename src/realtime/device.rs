@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// Default sample rates: the first one that the device supports is used.
 const USUAL_RATES: [u32; 4] = [48_000, 44_100, 96_000, 88_200];
 
-/// Sample rates that are offered to choose from.
+/// Sample rates offered to the user, if the device supports them.
 const OFFERED_RATES: [u32; 6] = [44_100, 48_000, 88_200, 96_000, 176_400, 192_000];
 
 /// Default block size in frames: 5 ms at 48 kHz, which players do not notice.
@@ -74,7 +74,7 @@ impl Found {
         Ok(Self { device, config, format: range.sample_format(), host: id, name, rates })
     }
 
-    /// The usual sample rates that the device has, in Hz.
+    /// The sample rates to offer for this device, in Hz.
     pub fn rates(&self) -> &[u32] {
         &self.rates
     }
@@ -125,7 +125,7 @@ pub struct Output {
     pub host: String,
     /// The device, as in [`Choice::device`].
     pub id: String,
-    /// What it is called.
+    /// A name of the device for the user.
     pub description: String,
 }
 
@@ -169,7 +169,8 @@ fn devices(host: &cpal::Host) -> Vec<(cpal::Device, String, String)> {
         .collect()
 }
 
-/// The device whose name or description is `wanted`, or else the only one whose name or description contains it.
+/// The device whose identifier or description is `wanted`, or else the only one whose identifier or description
+/// contains it.
 fn named(host: &cpal::Host, id: HostId, wanted: &str) -> Result<(cpal::Device, String)> {
     let mut devices = devices(host);
     let lower = wanted.to_lowercase();
@@ -198,7 +199,8 @@ fn none(id: HostId, reason: &str) -> Error {
     Error::value("--device", format!("{server}: {host} has none{reason}; {advice}"))
 }
 
-/// The best settings: two channels, else one, else as few as possible; the format with the finest steps.
+/// The best settings: two channels, otherwise one, otherwise as few as possible; then the sample format with the finest
+/// steps.
 fn choose(
     ranges: &[SupportedStreamConfigRange],
     rate: Option<u32>,

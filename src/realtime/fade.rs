@@ -1,4 +1,4 @@
-//! The end of playing: whatever still sounds is faded out.
+//! The fade-out of all remaining sound when playing ends.
 
 use super::status::Status;
 use std::time::Duration;
@@ -8,7 +8,7 @@ pub(super) const FADE: Duration = Duration::from_millis(600);
 
 /// Fades everything out once [`Status::fade`] was called. Real-time safe.
 pub struct Fade {
-    /// Frames that the fade takes, and those that are left of it.
+    /// Length of the fade in frames, and the number of frames left.
     frames: u32,
     left: u32,
 }
@@ -20,7 +20,8 @@ impl Fade {
         Self { frames, left: frames }
     }
 
-    /// Fades a block if it is asked for, and tells when nothing is left to be heard. Before, no sample is changed.
+    /// Fades a block out if that was requested, and reports the end of the fade. Without a request, no sample is
+    /// changed.
     pub fn apply(&mut self, status: &Status, left: &mut [f32], right: &mut [f32]) {
         if !status.is_fading() {
             return;
@@ -28,7 +29,7 @@ impl Fade {
         for (left, right) in left.iter_mut().zip(right) {
             self.left = self.left.saturating_sub(1);
             let share = self.left as f32 / self.frames as f32;
-            // Its square falls evenly to the ear, and ends without a corner.
+            // The square sounds like an even fade, and reaches 0 without a corner.
             let gain = share * share;
             *left *= gain;
             *right *= gain;

@@ -1,4 +1,4 @@
-//! A JACK port as live input. JACK gives the exact frame of each event.
+//! A JACK port as live input, with the exact frame of each event from JACK.
 
 use super::block_clock::Stamp;
 use super::live::{LiveEvent, LiveSender};
@@ -20,7 +20,7 @@ const END: Duration = Duration::from_secs(2);
 pub struct JackMidi {
     wanted: Option<Wanted>,
     client: Option<AsyncClient<Notifications, Process>>,
-    /// Held here while there is no client.
+    /// Kept here while there is no client.
     sender: Option<LiveSender>,
     home: (Sender<LiveSender>, Receiver<LiveSender>),
     gone: Arc<AtomicBool>,
@@ -68,7 +68,7 @@ impl Drop for Process {
 }
 
 impl JackMidi {
-    /// Opens nothing yet. Ports that are not `wanted` can still be connected by hand.
+    /// Nothing is opened yet. The user can still connect ports that are not `wanted`.
     pub fn new(wanted: Option<Wanted>, sender: LiveSender) -> Self {
         Self {
             wanted,
@@ -80,7 +80,7 @@ impl JackMidi {
         }
     }
 
-    /// Closes the port, lets go of the keys that are down, and gives the sender back; none if the server does not answer.
+    /// Closes the port, releases the held keys, and returns the sender; none if the server does not answer.
     pub(super) fn into_sender(mut self) -> Option<LiveSender> {
         if let Some(client) = self.client.take() {
             // Dropping the client of a dead server can take long.

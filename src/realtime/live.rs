@@ -25,8 +25,7 @@ pub struct LiveEvent {
 /// The sending end of a queue. [`LiveSender::send`] is real-time safe.
 pub struct LiveSender {
     queue: Producer<LiveEvent>,
-    /// Keys that are down because of this sender, one bit each; and, in the next field, channels whose sustain pedal
-    /// is.
+    /// Keys held by this sender, one bit each; the next field has the channels whose sustain pedal it holds.
     keys: [u128; 16],
     pedals: u16,
     /// The banks by which program changes select sounds, if they do.
@@ -34,7 +33,7 @@ pub struct LiveSender {
 }
 
 impl LiveSender {
-    /// The same sender, whose program changes select from a list of melodic sounds and drum kits, by bank.
+    /// The same sender, but its program changes select from a list of melodic sounds and drum kits, by bank.
     #[must_use]
     pub fn with_banks(self) -> Self {
         Self { banks: Some(Banks::default()), ..self }
@@ -62,7 +61,7 @@ impl LiveSender {
         self.send(LiveEvent { stamp: Stamp::System(Instant::now()), channel, kind })
     }
 
-    /// Releases the keys and sustain pedals that are down because of this sender.
+    /// Releases the keys and sustain pedals that this sender holds.
     pub fn release_held(&mut self) {
         for channel in 0..16 {
             while self.keys[usize::from(channel)] != 0 {
@@ -113,15 +112,15 @@ impl LiveInputs {
     }
 
     /// Inserts the events that belong before frame `end` of the clock's block into `events`, which must be in order and
-    /// stays so. Frames in `events` count from `start`. At the same frame, events that are already there come first.
-    /// Events that are sent during the call may wait for the next one.
+    /// stays so. Frames in `events` count from `start`. At the same frame, existing events come first. Events sent
+    /// during the call may be left for the next one.
     ///
     /// Real-time safe if `events` has room for [`LiveInputs::capacity`] more events.
     pub fn merge(&mut self, clock: &BlockClock, start: u32, end: u32, events: &mut Vec<Event>) {
         for input in &mut self.0 {
             let mut earliest = 0;
-            // Only events that wait now: a sender that fills the queue as fast as it is emptied would keep this loop
-            // busy forever.
+            // Only the events that wait at the start: a sender that fills the queue as fast as it is emptied would keep
+            // this loop busy forever.
             for _ in 0..input.slots() {
                 let Ok(&LiveEvent { stamp, channel, kind }) = input.peek() else { break };
                 let Some(frame) = clock.frame_of(stamp).filter(|frame| *frame < end) else { break };

@@ -15,8 +15,8 @@ pub enum MidiIn {
 }
 
 impl MidiIn {
-    /// Listens to `all` ports, to `none`, or to those whose name contains this text; `jack` if the sound goes to a JACK
-    /// server.
+    /// Listens to `all` ports, to `none`, or to those whose name contains this text. `jack` is true if the device
+    /// belongs to a JACK server.
     pub fn new(wanted: &str, jack: bool, sender: LiveSender) -> Self {
         let wanted = match wanted {
             "none" => None,
@@ -30,7 +30,7 @@ impl MidiIn {
         }
     }
 
-    /// Ends the input and gives the sender back, for another input; none if the system does not give it back.
+    /// Ends the input and returns the sender for use by another input; none if the system does not release it.
     pub fn into_sender(self) -> Option<LiveSender> {
         match self {
             Self::None(sender) => Some(*sender),
@@ -39,7 +39,7 @@ impl MidiIn {
         }
     }
 
-    /// Looks for ports that have come or gone, and returns messages about them. Must be called regularly.
+    /// Checks for ports that have appeared or disappeared, and returns messages about them. Must be called regularly.
     pub fn poll(&mut self) -> Vec<String> {
         match self {
             Self::None(_) => vec![],

@@ -43,7 +43,7 @@ pub struct MidiPorts {
     sender: Arc<Mutex<LiveSender>>,
     connected: Vec<Connected>,
     scan_at: Instant,
-    /// A problem was found and has been reported.
+    /// Whether a problem has been reported. Only the first one is.
     told: bool,
 }
 
@@ -58,9 +58,9 @@ impl MidiPorts {
         self.connected.iter().map(|connected| connected.name.as_str())
     }
 
-    /// Ends the connections, lets go of the keys that are down, and gives the sender back.
+    /// Ends the connections, releases the held keys, and returns the sender.
     pub(super) fn into_sender(mut self) -> Option<LiveSender> {
-        // Each connection ends its thread, which has the sender too.
+        // Each connection's thread refers to the sender, and ends with the connection.
         self.connected.clear();
         let mut sender = Arc::into_inner(self.sender)?.into_inner().ok()?;
         sender.release_held();
@@ -96,7 +96,7 @@ impl MidiPorts {
         if self.connected.len() < released
             && let Ok(mut sender) = self.sender.lock()
         {
-            // The port can no longer release the keys that are down.
+            // A port that has disappeared cannot release its held keys.
             sender.release_held();
         }
         for (port, name) in &ports {

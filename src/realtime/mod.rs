@@ -1,7 +1,7 @@
 //! Playing live: sound devices, MIDI ports, a recorder, and a terminal to play from.
 //!
-//! The audio thread owns the [`Player`], or another [`Source`]. Everything that it receives (live events, kits) and sends (recording, status)
-//! goes through queues of fixed size and atomics, so that it never allocates, locks or waits.
+//! The audio thread owns the [`Player`], or another [`Source`]. Everything that it receives (live events, kits) and
+//! sends (recording, status) goes through queues of fixed size and atomics, so that it never allocates, locks or waits.
 
 pub mod block_clock;
 pub mod convert;

@@ -1,4 +1,4 @@
-//! The player on the audio thread: it plays songs, live events and kits into blocks for the device and the recorder.
+//! The player on the audio thread: it renders songs, live events and kits into blocks for the device and the recorder.
 
 use super::block_clock::{BlockClock, Moment};
 use super::convert::{DeviceSample, interleave};
@@ -32,7 +32,7 @@ pub struct Setup<'a> {
     pub channels: &'a [(u8, Arc<Kit>)],
     /// The kits that program changes select.
     pub programs: &'a [Arc<Kit>],
-    /// How channels are mixed; none for their plain sum.
+    /// The mix of the channels; with none, they are only added.
     pub mix: Option<&'a Mix>,
     /// The tuning of all channels.
     pub tuning: &'a Tuning,
@@ -73,7 +73,7 @@ pub struct Player {
     /// Frames since the end of the song.
     tail: u64,
     ended: bool,
-    /// Keeps the kits alive that were sent. Fields are dropped in order, so this one must come after the ensemble.
+    /// Keeps the received kits alive. Fields are dropped in order, so this one must come after the ensemble.
     _shelf: Shelf,
 }
 
@@ -88,7 +88,7 @@ impl Player {
         let ensemble = Ensemble::of_kits(sample_rate, setup.seed, setup.kit, setup.programs.to_vec());
         let channels = setup.channels.iter();
         let mut ensemble = channels.fold(ensemble, |ensemble, (channel, kit)| ensemble.with_kit(*channel, kit));
-        // So that any kit finds room on the audio thread.
+        // Reserves room for every kit and space, so that the audio thread need not allocate.
         ensemble.reserve(KEYS);
         ensemble.reserve_space();
         if let Some(mix) = setup.mix {

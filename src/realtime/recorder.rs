@@ -1,4 +1,4 @@
-//! Records the output to a file, on a thread of its own for which the audio thread never waits.
+//! Records the output to a file on a separate thread; the audio thread never waits for it.
 
 use crate::error::{Error, Result};
 use crate::io::{Output, SampleFormat, WavFormat, WavWriter};
@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicU8, AtomicU64};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Length of the queue in seconds: if the disk is slow for longer, frames are lost.
+/// Length of the queue in seconds: frames are lost if the disk stalls for longer.
 const QUEUE_SECONDS: usize = 20;
 
-/// Number of frames that are passed on at a time.
+/// Number of frames transferred at a time.
 const CHUNK: usize = 1024;
 
 /// How long the writer sleeps if the queue is empty.
@@ -85,7 +85,7 @@ impl Recording {
                 }
                 let (frames, problem) = match written {
                     Ok(frames) => (frames, None),
-                    // Turn the frames that are on the disk into a complete file.
+                    // The frames on the disk are made a complete file.
                     Err(error) => (output.salvage_wav(format)?, Some(error)),
                 };
                 output.commit()?;
@@ -124,7 +124,8 @@ fn write(mut queue: Consumer<f32>, output: &mut Output, format: WavFormat, order
     let (mut left, mut right) = (Vec::with_capacity(CHUNK), Vec::with_capacity(CHUNK));
     let mut frames = 0;
     loop {
-        // Read the order before the queue: then all frames that were played before the order are already in the queue.
+        // The order is read before the queue: then all frames that were played before the order are already in the
+        // queue.
         let stopping = order.load(Acquire) != RECORD;
         let waiting = (queue.slots() / 2).min(CHUNK);
         if waiting == 0 {

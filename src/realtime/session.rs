@@ -17,7 +17,7 @@ const RETRY: Duration = Duration::from_secs(1);
 /// A device that requests no block for this long is lost.
 const PATIENCE: Duration = Duration::from_secs(4);
 
-/// How long released notes may sound at the end, before what still sounds is faded out.
+/// How long released notes may sound at the end. After that, the remaining sound is faded out.
 const RELEASE: Duration = Duration::from_millis(700);
 
 /// How long a stream may take to end.
@@ -33,7 +33,7 @@ pub struct Session<S: Source = Player> {
     rates: Vec<u32>,
     status: Arc<Status>,
     stream: Option<cpal::Stream>,
-    /// Held here while there is no stream.
+    /// Kept here while there is no stream.
     player: Option<Box<S>>,
     home: (Sender<Box<S>>, Receiver<Box<S>>),
     trouble: (Sender<String>, Receiver<String>),
@@ -80,29 +80,30 @@ impl<S: Source> Session<S> {
         self.is_jack
     }
 
-    /// The usual sample rates that the device has, in Hz.
+    /// The sample rates to offer for this device, in Hz.
     pub fn rates(&self) -> &[u32] {
         &self.rates
     }
 
-    /// Whether the device is present.
+    /// Whether a stream is open on the device.
     pub fn is_playing(&self) -> bool {
         self.stream.is_some()
     }
 
-    /// Plays on another device, or with other settings, from now on. `fit` makes the player fit for a sample rate, while no
-    /// device has it.
+    /// Changes to another device or other settings. `fit` adapts the player to a sample rate while no stream has the
+    /// player.
     ///
     /// # Errors
-    /// [`Error::Value`] if the device cannot be found or started: then the session goes back to its device, or waits for it.
+    /// [`Error::Value`] if the device cannot be found or started: the session then returns to its old device, or waits
+    /// for it.
     pub fn change(&mut self, choice: Choice, fit: impl Fn(&mut S, u32)) -> Result<()> {
         let is_same = (&choice.host, &choice.device) == (&self.choice.host, &self.choice.device);
         let found = match Found::find(&choice) {
-            // A device for one stream tells nothing while it plays.
+            // A device that allows only one stream cannot be queried while it plays.
             Err(_) if is_same => None,
             found => Some(found?),
         };
-        // A device that is still being closed could not be opened.
+        // A device can be opened again only when it is completely closed.
         if let Some(ended) = self.close() {
             let _ = ended.recv_timeout(END);
         }
@@ -124,7 +125,7 @@ impl<S: Source> Session<S> {
             }
             Err(error) => {
                 self.player.iter_mut().for_each(|player| fit(player, before));
-                // If that fails too, it is looked for as a device that is gone.
+                // If this fails too, `poll` searches for the device as for one that has disappeared.
                 self.retry_at = Instant::now();
                 if let Ok(found) = Found::find(&self.choice) {
                     let _ = self.open(&found);
@@ -154,12 +155,12 @@ impl<S: Source> Session<S> {
         Some(format!("the sound device is back: {found}"))
     }
 
-    /// Stops the song, releases all notes, waits a moment until they are silent, fades out what is not, for example a
-    /// reverberation, and ends the stream. Returns false if the device hangs and does not give the player back.
+    /// Stops the song, releases all notes, waits a moment for silence, fades out the remaining sound, for example a
+    /// reverberation, and ends the stream. Returns false if the device hangs and does not return the player.
     pub fn finish(mut self, live: &mut LiveSender) -> bool {
         self.status.halt_song();
         live.release_all();
-        // What was sent is heard this much later.
+        // Samples are heard this long after they were rendered.
         let delay = Duration::from_secs_f64(self.status.delay()).min(RELEASE);
         let start = Instant::now();
         if !self.wait(RELEASE, |status| status.telemetry().is_silent() && start.elapsed() > delay) {
@@ -172,7 +173,7 @@ impl<S: Source> Session<S> {
         self.player.is_some()
     }
 
-    /// Waits until something is so, as long as the device plays. Returns false if that takes too long.
+    /// Waits until the condition holds, as long as a stream is open. Returns false if that takes longer than `limit`.
     fn wait(&self, limit: Duration, so: impl Fn(&Status) -> bool) -> bool {
         let start = Instant::now();
         while self.is_playing() && start.elapsed() < limit {
@@ -200,8 +201,8 @@ impl<S: Source> Session<S> {
         }
     }
 
-    /// Ends the stream on another thread, so that a device that hangs cannot hang the program. The player is back before the
-    /// device is free, which the receiver hears of.
+    /// Ends the stream on another thread, so that a hanging device cannot block the program. The player is returned
+    /// before the device is free; the receiver gets a message when it is.
     fn close(&mut self) -> Option<Receiver<()>> {
         let stream = self.stream.take()?;
         let (done, ended) = channel();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
 
-/// State that the audio thread reports, and requests to it. Reading and writing are real-time safe.
+/// State reported by the audio thread, and requests to it. Reading and writing are real-time safe.
 #[derive(Default)]
 pub struct Status {
     telemetry: Arc<Telemetry>,
@@ -19,12 +19,12 @@ pub struct Status {
 }
 
 impl Status {
-    /// A status whose engine is shown elsewhere too.
+    /// A status that shares its telemetry with another reader.
     pub fn of(telemetry: Arc<Telemetry>) -> Self {
         Self { telemetry, ..Self::default() }
     }
 
-    /// Asks for everything to be faded out, for good.
+    /// Requests that everything is faded out, for good.
     pub fn fade(&self) {
         self.fading.store(true, Relaxed);
     }
@@ -79,7 +79,7 @@ impl Status {
         self.song_over.store(is_over, Relaxed);
     }
 
-    /// Tells how many seconds pass from the time stamp of an event to the time at which it is heard.
+    /// Reports the time in seconds from the time stamp of an event to the time at which it is heard.
     pub fn note_delay(&self, seconds: f64) {
         self.delay.store((seconds.max(0.0) as f32).to_bits(), Relaxed);
     }

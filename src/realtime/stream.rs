@@ -1,4 +1,4 @@
-//! The stream of a device: it calls what it plays for every block, and returns it when it ends.
+//! The stream of a device: it gets every block from the source that it plays, and returns the source when it ends.
 
 use super::block_clock::Moment;
 use super::convert::DeviceSample;
@@ -13,13 +13,13 @@ use std::time::{Duration, Instant};
 /// How long a device may take to respond.
 const TIMEOUT: Duration = Duration::from_secs(2);
 
-/// What a device plays, for example a [`super::Player`].
+/// The source of a device's sound, for example a [`super::Player`].
 pub trait Source: Send + 'static {
     /// Renders the next block into the interleaved samples of a device with this many channels. Real-time safe.
     fn fill<T: DeviceSample>(&mut self, out: &mut [T], channels: usize, moment: Moment);
 }
 
-/// The player while a stream has it. Returns it through `home` when the stream is dropped.
+/// The player while a stream owns it. It is returned through `home` when the stream is dropped.
 struct Loan<S: Source> {
     player: Option<Box<S>>,
     home: Sender<Box<S>>,
@@ -73,7 +73,7 @@ fn build<T: DeviceSample + SizedSample, S: Source>(
     let failed = move |error: cpal::Error| match error.kind() {
         ErrorKind::Xrun => status.count_xrun(),
         ErrorKind::RealtimeDenied | ErrorKind::DeviceChanged => {}
-        // The stream has ended, so allocating does no harm.
+        // The stream has ended, so allocating here does no harm.
         _ => drop(trouble.send(error.to_string())),
     };
     found.device.build_output_stream(found.config, callback, failed, Some(TIMEOUT))

@@ -1,4 +1,4 @@
-//! The state of the view, and what changes it.
+//! The state of the view, and its changes.
 
 use super::desk::{Desk, MakeKit};
 use super::keyboard::Keyboard;
@@ -28,7 +28,7 @@ pub(super) enum List {
     Parameters,
 }
 
-/// What the user is typing.
+/// The text that the user is typing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Typing {
     Nothing,
@@ -43,9 +43,9 @@ pub(super) enum Typing {
 /// A mouse button that is held on a row of the list.
 #[derive(Clone, Copy)]
 pub(super) struct Press {
-    /// Where it was last.
+    /// The column at the last event.
     pub(super) column: u16,
-    /// Whether the row was chosen before.
+    /// Whether the row was already selected before.
     pub(super) again: bool,
     pub(super) moved: bool,
 }
@@ -56,7 +56,7 @@ pub(super) struct Playing {
     pub(super) kit: Arc<Kit>,
     pub(super) values: Values,
     program: Option<u8>,
-    /// Where it was chosen, if it was chosen from the list.
+    /// Its entry in the list of sounds, if it was chosen there.
     pub(super) listed: Option<Arc<Listed>>,
 }
 
@@ -89,12 +89,12 @@ pub(super) struct App {
     pub(super) typing: Typing,
     pub(super) search: [String; 2],
     selected: [usize; 2],
-    /// The first row of each list that is shown.
+    /// The first visible row of each list.
     first: [usize; 2],
     pub(super) layout: Layout,
     /// The row of the list that the mouse holds.
     pub(super) press: Option<Press>,
-    /// A name that exists, and that the next Enter writes over.
+    /// An existing name; the next Enter replaces its file.
     pub(super) replace: Option<String>,
     pub(super) help: bool,
     pub(super) quit: bool,
@@ -108,7 +108,7 @@ pub(super) struct App {
 impl App {
     pub(super) fn new(desk: Desk) -> Self {
         let Desk { device, status, keys, kits, kit, channels, programs, make, library } = desk;
-        // Nor must text from devices.
+        // Text from devices must not control the terminal either.
         let device = printable(&device).into_owned();
         let mut playing: Vec<Playing> = (0..16).map(|_| Playing::new(&kit, None)).collect();
         channels.iter().for_each(|(channel, kit)| playing[usize::from(*channel)] = Playing::new(kit, None));
@@ -181,12 +181,12 @@ impl App {
         (rows > 0).then(|| self.selected[self.list as usize].min(rows - 1))
     }
 
-    /// The first row of the list that is shown.
+    /// The first visible row of the list.
     pub(super) fn first(&self) -> usize {
         self.first[self.list as usize]
     }
 
-    /// Fits the view to a screen: the list shows its selected row.
+    /// Fits the view to a screen and scrolls the list to its selected row.
     pub(super) fn fit(&mut self, area: Rect) {
         self.layout = Layout::of(area);
         let (shown, selected) = (usize::from(self.layout.rows().height).max(1), self.selected().unwrap_or(0));
@@ -201,7 +201,7 @@ impl App {
         }
     }
 
-    /// Updates the state: meters fall, notes end, and program changes of the song are shown.
+    /// Updates the state: meters fall, held notes end, and the song's program changes are shown.
     pub(super) fn tick(&mut self, now: Instant) {
         self.keyboard.tick(now);
         self.message.take_if(|(_, since)| since.elapsed() > MESSAGE);
@@ -229,7 +229,7 @@ impl App {
         self.selected[self.list as usize] = selected.saturating_add_signed(rows).min(last);
     }
 
-    /// Shows the whole list, and in that of the sounds selects the one that plays.
+    /// Shows the whole list. In the list of sounds, the playing sound is selected.
     pub(super) fn show_all(&mut self) {
         self.search[self.list as usize].clear();
         if self.list == List::Sounds {
@@ -238,12 +238,12 @@ impl App {
         }
     }
 
-    /// The search has changed: what fits it best is selected.
+    /// After a change of the search, selects the best match.
     pub(super) fn select_best(&mut self) {
         self.selected[self.list as usize] = 0;
     }
 
-    /// Selects a row of those that are shown. Returns whether it was selected before; none if there is no such row.
+    /// Selects a visible row. Returns whether it was selected before; none if there is no such row.
     pub(super) fn point(&mut self, row: usize) -> Option<bool> {
         let row = self.first() + row;
         let before = self.selected().filter(|_| row < self.rows())?;
@@ -272,7 +272,7 @@ impl App {
         self.parameters().get(row).copied()
     }
 
-    /// Changes the selected parameter by so many steps, finely or not.
+    /// Changes the selected parameter by a number of steps, which are smaller if `fine`.
     pub(super) fn nudge(&mut self, steps: i32, fine: bool) {
         let Some(info) = self.parameter() else { return };
         let travel = if fine { 0.002 } else { 0.02 };

@@ -6,7 +6,7 @@ use crate::realtime::{KitSender, LiveSender, Status};
 use crate::sound::Kit;
 use std::sync::Arc;
 
-/// Makes the kit of a preset or kit that is chosen from the list.
+/// Makes the playable kit of a preset or kit from the list.
 pub type MakeKit = Box<dyn Fn(&Playable) -> Arc<Kit>>;
 
 /// The data that the view shows, and the senders through which it plays.
@@ -15,9 +15,9 @@ pub struct Desk {
     pub device: String,
     /// State that the audio thread reports.
     pub status: Arc<Status>,
-    /// Receives notes and parameters.
+    /// Takes notes and parameters.
     pub keys: LiveSender,
-    /// Receives kits.
+    /// Takes kits.
     pub kits: KitSender,
     /// The initial kit of the channels that are not in `channels`.
     pub kit: Arc<Kit>,
@@ -25,8 +25,8 @@ pub struct Desk {
     pub channels: Vec<(u8, Arc<Kit>)>,
     /// The kits that program changes select.
     pub programs: Vec<Arc<Kit>>,
-    /// Makes the kit of what is chosen from the list.
+    /// Makes the playable kit of an entry of the list.
     pub make: MakeKit,
-    /// The user's own sounds; none if the system does not say where they are kept.
+    /// The user's own sounds; none if the system names no folder for user data.
     pub library: Option<Library>,
 }

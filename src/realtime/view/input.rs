@@ -1,4 +1,4 @@
-//! How keys and the mouse change the view.
+//! Handles keys and the mouse.
 
 use super::app::{App, List, Press, Typing};
 use super::layout::key_at;
@@ -103,7 +103,8 @@ impl App {
         }
     }
 
-    /// Begins to type the name to save under: its own, if it is one that the user gave.
+    /// Begins to type the name to save under. A factory sound's name gets “My” in front; a name given by the user
+    /// stays.
     fn type_name(&mut self) {
         self.replace = None;
         let name = &self.playing().name;
@@ -111,8 +112,8 @@ impl App {
         self.typing = Typing::Name(if is_taken { format!("My {name}") } else { name.clone() });
     }
 
-    /// Handles the mouse: keys of the piano play, rows are chosen by a click and loaded or typed by another, and a
-    /// parameter is turned by dragging its row.
+    /// Handles the mouse: keys of the piano play; a click selects a row, and a click on a selected row loads the sound
+    /// or begins to type the value; dragging a parameter's row changes its value.
     pub(super) fn mouse(&mut self, event: MouseEvent) {
         let at = Position::new(event.column, event.row);
         let (rows, piano) = (self.layout.rows(), self.layout.piano);
@@ -123,7 +124,7 @@ impl App {
                 self.press = None;
                 self.keyboard.point(self.channel, key);
                 if self.layout.list.contains(at) {
-                    // What is being typed belongs to the row that was chosen; a search stays.
+                    // Text being typed belongs to the row that was selected; a search stays.
                     if self.typing != Typing::Search {
                         self.typing = Typing::Nothing;
                     }
@@ -157,7 +158,7 @@ impl App {
         }
     }
 
-    /// Loads the chosen sound, or begins to type the chosen parameter's value.
+    /// Loads the selected sound, or begins to type the selected parameter's value.
     fn open(&mut self) {
         match self.list {
             List::Sounds => self.load(),

@@ -1,4 +1,4 @@
-//! The computer's keyboard as a piano.
+//! The computer's keyboard and the mouse as a piano.
 
 use crate::engine::EventKind;
 use crate::realtime::LiveSender;
@@ -28,7 +28,7 @@ pub(super) fn character(semitone: u8) -> Option<char> {
     lower.chars().nth(place).or_else(|| upper.chars().nth(place.checked_sub(12)?))
 }
 
-/// What holds a note.
+/// The key or mouse that holds a note.
 #[derive(Clone, Copy, PartialEq)]
 enum Holder {
     Character(char),
@@ -85,7 +85,8 @@ impl Keyboard {
         self.down.push(Down { holder, channel, key, until });
     }
 
-    /// Plays a key under the mouse, in place of the one that it held; none to let go. The velocity is 0–1.
+    /// Plays the piano key under the mouse instead of the previous one; with none, only releases that. The velocity is
+    /// 0–1.
     pub(super) fn point(&mut self, channel: u8, key: Option<(u8, f32)>) {
         if self.down.iter().any(|down| down.holder == Holder::Mouse && Some(down.key) == key.map(|(key, _)| key)) {
             return;
@@ -101,7 +102,7 @@ impl Keyboard {
         self.let_go(|down| down.holder == Holder::Character(character));
     }
 
-    /// Releases the notes whose time is over.
+    /// Releases notes whose hold time is over.
     pub(super) fn tick(&mut self, now: Instant) {
         self.let_go(|down| down.until.is_some_and(|until| until <= now));
     }

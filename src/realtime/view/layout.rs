@@ -1,9 +1,8 @@
-//! Where the parts of the view are on a screen, for drawing and for the mouse.
+//! Places of the view's parts on the screen, for drawing and for the mouse.
 
 use ratatui::layout::{Constraint, Layout as Split, Margin, Position, Rect};
 
-/// White keys of the piano and the semitones from each to the next black key, if there is one, are drawn in columns of
-/// this width.
+/// Width of a white key of the piano, in columns. Black keys are drawn over the white ones.
 const KEY_WIDTH: u16 = 3;
 
 /// Semitones from the lowest key of the piano to the highest.
@@ -39,8 +38,8 @@ pub(super) fn is_black(key: u8) -> bool {
     matches!(key % 12, 1 | 3 | 6 | 8 | 10)
 }
 
-/// The keys of the piano from the lowest on, as many as there is room for, with their places: first the white ones, then
-/// the black ones, which lie over them.
+/// The keys of the piano with their places, from the lowest on, as many as fit: first the white ones, then the black
+/// ones, which lie over them.
 pub(super) fn keys(area: Rect, lowest: u8) -> impl Iterator<Item = (u8, Rect)> {
     let whites_before = move |key: u8| (lowest..key).filter(|key| !is_black(*key)).count() as u16;
     let place = move |key: u8| {
@@ -56,7 +55,7 @@ pub(super) fn keys(area: Rect, lowest: u8) -> impl Iterator<Item = (u8, Rect)> {
     ordered.map(place).filter(move |(_, rect)| rect.x >= area.x && rect.x + 2 <= area.right())
 }
 
-/// The key of the piano at a place, and its velocity 0–1: the lower, the louder.
+/// The key of the piano at a place, and its velocity 0–1, which is greater further down.
 pub(super) fn key_at(area: Rect, lowest: u8, at: Position) -> Option<(u8, f32)> {
     let (key, rect) = keys(area, lowest).filter(|(_, rect)| rect.contains(at)).last()?;
     Some((key, f32::from(at.y - rect.y + 1) / f32::from(rect.height)))

@@ -9,8 +9,8 @@ use ratatui::style::{Color, Style};
 /// Energy in dB at which a mass is drawn darkest.
 const DARKEST: f64 = -60.0;
 
-/// Draws a mass for each of the first modes: how far it swings to both sides, and its energy as brightness. Its place at one
-/// moment would mean nothing, since it swings many times between two pictures.
+/// Draws a mass for each of the first modes: its amplitude to both sides, and its energy as brightness. Its present
+/// position would mean nothing, since it swings many times between two frames of the screen.
 pub(super) fn draw(snapshot: &Snapshot, modes: usize, frame: &mut Frame, area: Rect) {
     if area.is_empty() || modes == 0 {
         return;

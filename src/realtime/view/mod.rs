@@ -1,4 +1,4 @@
-//! A terminal interface to play from: it shows what sounds, lists presets and parameters, and turns keys into notes.
+//! A terminal interface for playing: it shows the sounding masses, lists presets and parameters, and turns keys into notes.
 
 mod app;
 mod desk;
@@ -40,7 +40,7 @@ pub fn run(desk: Desk, mut stop: impl FnMut() -> bool, mut poll: impl FnMut() ->
         let flags = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES | KeyboardEnhancementFlags::REPORT_EVENT_TYPES;
         app.keyboard.releases = execute!(stdout(), PushKeyboardEnhancementFlags(flags)).is_ok();
     }
-    // Without a mouse the view is whole all the same.
+    // Without a mouse, everything can still be done by keys.
     let modes = Modes { releases, mouse: execute!(stdout(), EnableMouseCapture).is_ok() };
     let result = show(&mut app, &mut screen, &mut stop, &mut poll).map_err(failed);
     drop(modes);
@@ -48,7 +48,7 @@ pub fn run(desk: Desk, mut stop: impl FnMut() -> bool, mut poll: impl FnMut() ->
     result
 }
 
-/// What was asked of the terminal beside a screen. It is taken back when this is dropped, so also by a panic.
+/// Terminal modes that were switched on. Dropping this switches them off again, also after a panic.
 struct Modes {
     releases: bool,
     mouse: bool,

@@ -1,4 +1,4 @@
-//! The sound of a channel is saved under a name, among the user's own.
+//! Saves the sound of a channel under a name, among the user's own sounds.
 
 use super::app::{App, Playing};
 use crate::error::Error;
@@ -8,8 +8,8 @@ use crate::text::printable;
 use std::sync::Arc;
 
 impl App {
-    /// Saves the channel's sound with its present values under a name. A name that exists is written over if it is entered
-    /// again. Returns the name if it is still to be typed.
+    /// Saves the channel's sound with its present values under a name. If the name exists, entering it again replaces
+    /// the file. Returns the name if it must be typed again.
     pub(super) fn save(&mut self, name: &str) -> Option<String> {
         let name = name.trim();
         let replace = self.replace.take().is_some_and(|replace| replace == name);
@@ -45,7 +45,7 @@ impl App {
         let [sound] = kit.sounds() else { return None };
         let mut patch = sound.patch().clone();
         patch.values = *values;
-        // What was not chosen from the list may be in it all the same.
+        // A sound that was not chosen from the list may be in it too.
         let is_it = |known: &&Arc<Listed>| match &known.playable {
             Playable::Preset(preset) => preset.name == kit.name() && preset.patch.modes == patch.modes,
             Playable::Kit(_) => false,

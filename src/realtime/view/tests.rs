@@ -60,7 +60,7 @@ impl Stand {
         text.chars().for_each(|character| self.press(KeyCode::Char(character)));
     }
 
-    /// Plays a tenth of a second, so that every event that was sent is played.
+    /// Plays a tenth of a second, so that all events sent before are played.
     fn play(&mut self) {
         self.app.tick(Instant::now());
         for _ in 0..10 {
@@ -75,7 +75,7 @@ impl Stand {
         self.app.mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     }
 
-    /// Presses and lets go.
+    /// Presses and releases the left button.
     fn click(&mut self, column: u16, row: u16) {
         self.mouse(MouseEventKind::Down(MouseButton::Left), column, row);
         self.mouse(MouseEventKind::Up(MouseButton::Left), column, row);
@@ -178,7 +178,7 @@ fn a_parameter_is_turned_typed_and_reset() {
     stand.press(KeyCode::Enter);
     assert_eq!((value(&stand), &stand.app.typing), (0.02, &Typing::Nothing));
     assert!(stand.screen(80, 24).contains("release: 99 is out of range"));
-    // A note that is released together with it is silent at once.
+    // With this short release, a note that is released is silent at once.
     stand.type_text("z");
     stand.play();
     stand.app.tick(Instant::now() + Duration::from_secs(1));
@@ -242,7 +242,7 @@ fn a_sound_is_saved_and_found_again() {
     let kick = Preset::find("Kick").unwrap();
     assert_eq!((saved().name.as_str(), saved().patch.get(Param::Release)), ("My Kick", 0.02));
     assert_eq!((&saved().patch.modes, &saved().guide), (&kick.patch.modes, &kick.guide));
-    // What cannot be a name stays, to be mended.
+    // A text that cannot be a name stays in the field for correction.
     stand.type_text("W");
     (0..40).for_each(|_| stand.press(KeyCode::Backspace));
     stand.type_text("a/b");
@@ -250,7 +250,7 @@ fn a_sound_is_saved_and_found_again() {
     assert_eq!(stand.app.typing, Typing::Name("a/b".to_owned()));
     assert!(stand.screen(120, 24).contains("would be taken for a file"));
     stand.press(KeyCode::Esc);
-    // Another Enter writes over it, Esc does not.
+    // A second Enter replaces the file, Esc does not.
     stand.type_text("/release");
     stand.press(KeyCode::Enter);
     stand.press(KeyCode::Backspace);
@@ -283,7 +283,7 @@ fn the_mouse_plays_chooses_and_turns() {
     let mut stand = Stand::new();
     stand.screen(80, 24);
     let (piano, rows) = (stand.app.layout.piano, stand.app.layout.rows());
-    // Down on C, dragged to D, and let go.
+    // Pressed on C, dragged to D, and released.
     stand.mouse(MouseEventKind::Down(MouseButton::Left), piano.x, piano.y + 3);
     stand.play();
     assert_eq!(stand.app.status.telemetry().keys(0), 1 << 60);
@@ -293,7 +293,7 @@ fn the_mouse_plays_chooses_and_turns() {
     stand.mouse(MouseEventKind::Up(MouseButton::Left), piano.x + 4, piano.y + 3);
     stand.play();
     assert_eq!(stand.app.status.telemetry().keys(0), 0);
-    // The list stays where it is when one of its rows is chosen.
+    // Selecting a visible row does not scroll the list.
     (0..4).for_each(|_| stand.mouse(MouseEventKind::ScrollDown, rows.x, rows.y));
     stand.screen(80, 24);
     stand.click(rows.x, rows.y + 2);
@@ -302,7 +302,8 @@ fn the_mouse_plays_chooses_and_turns() {
     assert_eq!((chosen, stand.app.first()), (stand.app.selected(), chosen.unwrap() - 2));
     stand.click(rows.x, rows.y + 2);
     assert_eq!(stand.app.playing().name, stand.app.sounds()[chosen.unwrap()].name());
-    // The title turns to the other list, where a dragged row is turned by a step a column.
+    // A click on the title switches to the other list, in which dragging a row changes its value by one step per
+    // column.
     stand.click(rows.x, rows.y - 1);
     assert_eq!(stand.app.list, List::Parameters);
     stand.screen(80, 24);
@@ -314,12 +315,12 @@ fn the_mouse_plays_chooses_and_turns() {
     let two = info.stepped(info.stepped(before, true, 0.02), true, 0.02);
     assert_eq!(value(&stand), two);
     stand.mouse(MouseEventKind::Up(MouseButton::Left), rows.x + 2, rows.y + 1);
-    // And back, now that it is chosen.
+    // Dragging back also works on a row that is already selected.
     stand.mouse(MouseEventKind::Down(MouseButton::Left), rows.x + 2, rows.y + 1);
     stand.mouse(MouseEventKind::Drag(MouseButton::Left), rows.x + 1, rows.y + 1);
     stand.mouse(MouseEventKind::Up(MouseButton::Left), rows.x + 1, rows.y + 1);
     assert_eq!((value(&stand), &stand.app.typing), (info.stepped(two, false, 0.02), &Typing::Nothing));
-    // A click on the chosen row begins to type.
+    // A click on the selected row begins typing.
     stand.click(rows.x, rows.y + 1);
     assert_eq!(stand.app.typing, Typing::Value(String::new()));
 }
