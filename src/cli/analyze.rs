@@ -1,4 +1,4 @@
-//! `sprung analyze`: the recording of a strike taken apart into its modes.
+//! `sprung analyze`: splits the recording of a strike into its modes.
 
 use super::interrupt;
 use super::progress::Bar;
@@ -128,7 +128,7 @@ fn strike_json(strike: &Strike) -> serde_json::Value {
     })
 }
 
-/// The first strike's modes; with `hits` a list of strikes instead, and what they have in common.
+/// The first strike's modes; with `hits`, a list of all strikes and the modes that they share.
 fn to_json(found: &Analysis, shared: &[Common], hits: bool) -> serde_json::Value {
     if !hits {
         return found.strikes.first().map_or(serde_json::Value::Null, strike_json);
@@ -206,7 +206,7 @@ fn to_text(found: &Analysis, shared: &[Common]) -> String {
     text
 }
 
-/// A T60, and its standard deviation if it has one.
+/// A T60 with its standard deviation, if it has one.
 fn t60(value: f64, deviation: Option<f64>) -> String {
     let text = |value: f64| if value < 1e-3 { format!("{value:.0e}") } else { format!("{value:.3}") };
     match deviation {

@@ -1,4 +1,4 @@
-//! `sprung batch`: thousands of sounds from a file of jobs.
+//! `sprung batch`: renders thousands of sounds from a file of jobs.
 
 use super::interrupt::{self, INTERRUPTED};
 use super::progress::Count;

@@ -1,4 +1,4 @@
-//! `sprung completions`: completions for shells. The shell's script calls this program each time that Tab is pressed.
+//! `sprung completions`: completions for shells, whose script calls this program each time Tab is pressed.
 
 use super::terminal::print;
 use clap_complete::engine::{ValueCompleter, complete};
@@ -23,7 +23,7 @@ pub(super) struct Args {
     shell: Shell,
 }
 
-/// The environment variable by which a shell's script asks for completions. It contains the shell's name.
+/// The environment variable of a completion request. It contains the shell's name.
 const VARIABLE: &str = "SPRUNG_COMPLETE";
 
 const SHELLS: Shells<'_> = Shells(&[
@@ -50,7 +50,7 @@ pub(super) fn answer(command: fn() -> clap::Command) -> clap::error::Result<bool
     CompleteEnv::with_factory(command).var(VARIABLE).shells(SHELLS).try_complete(std::env::args_os(), folder.as_deref())
 }
 
-/// Completes sounds of the factory and the user, ignoring case, and preset files.
+/// Completes sounds of the factory and the user, ignoring case, and paths of preset files.
 pub(super) fn presets(typed: &OsStr) -> Vec<CompletionCandidate> {
     let start = typed.to_string_lossy().to_lowercase();
     let sounds = Catalogue::read(Library::of_user().as_ref()).sounds;
@@ -85,8 +85,8 @@ pub(super) fn among(values: &'static [&'static str]) -> clap_complete::ArgValueC
     clap_complete::ArgValueCandidates::new(|| values.iter().map(CompletionCandidate::new).collect())
 }
 
-/// Bash splits words at `=` before it asks, replaces only the text after the last `=`, and inserts candidates
-/// literally. clap's own adapter does not handle this: `--set mode=` and names with spaces are not completed.
+/// Bash splits words at `=` before the request, replaces only the text after the last `=`, and inserts candidates
+/// literally. clap's own adapter does not handle this: `--set mode=` and names with spaces would not be completed.
 struct Bash;
 
 const BASH_SCRIPT: &str = r#"_sprung() {
@@ -134,7 +134,8 @@ impl EnvCompleter for Bash {
     }
 }
 
-/// The words up to `index`, joined at `=` again and without quotes, and how many bytes of the last word bash keeps.
+/// The words up to `index`, joined again at `=` and without quotes, and the number of bytes of the last word that bash
+/// keeps.
 fn joined(words: &[String], index: usize) -> (Vec<String>, usize) {
     let (mut whole, mut kept, mut after_equals) = (vec![String::new()], 0, false);
     for (n, word) in words.iter().take(index + 1).enumerate() {

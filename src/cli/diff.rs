@@ -1,4 +1,4 @@
-//! `sprung diff`: whether two sound files are the same, and if not, where and by how much they differ.
+//! `sprung diff`: tells whether two sound files are the same, and if not, where and by how much they differ.
 
 use super::recording::{FigureArgs, read};
 use super::terminal::{complain, counted, print};
@@ -22,7 +22,7 @@ Examples:
 
 Exit codes: 0 the same, 1 different, 2 an error or wrong usage, 130 interrupted.";
 
-/// Exit code for files that cannot be compared, as `diff` and `cmp` have it.
+/// Exit code if the files cannot be compared, as in `diff` and `cmp`.
 const TROUBLE: u8 = 2;
 
 #[derive(clap::Args)]
@@ -43,7 +43,7 @@ pub(super) struct Args {
     figure: FigureArgs,
 }
 
-/// Compares, and gives the exit code.
+/// Compares the files and returns the exit code.
 pub(super) fn run(args: &Args) -> ExitCode {
     match compare(args) {
         Ok(true) => ExitCode::SUCCESS,
@@ -66,7 +66,7 @@ fn compare(args: &Args) -> Result<bool> {
     let (actual, _) = read(&args.actual, &mut inputs)?;
     interrupt::end_at_once()?;
     let figure = args.figure.open(&inputs)?;
-    // Samples can only be compared at one rate. Other rates are a difference all the same.
+    // Samples can be compared only at the same rate. Different rates still count as a difference.
     let converted = resampled(&actual, expected.sample_rate)?;
     let channels = expected.channels.len().max(actual.channels.len());
     let [before, after] = [&expected, &converted].map(|sound| on_channels(sound, channels));
@@ -89,7 +89,7 @@ fn compare(args: &Args) -> Result<bool> {
     Ok(same)
 }
 
-/// The channels of a sound that is compared with one of so many: a mono sound is the same on each of them.
+/// The channels of a sound for a comparison on `count` channels: a mono sound is repeated on each of them.
 fn on_channels(sound: &Recording, count: usize) -> Cow<'_, [Vec<f32>]> {
     match &sound.channels[..] {
         [mono] if count > 1 => Cow::Owned(vec![mono.clone(); count]),
@@ -97,7 +97,7 @@ fn on_channels(sound: &Recording, count: usize) -> Cow<'_, [Vec<f32>]> {
     }
 }
 
-/// The first two channels, as figures show them.
+/// The first two channels, for figures.
 fn sides(sound: &Recording) -> Render<'_> {
     let right = sound.channels.get(1).unwrap_or(&sound.channels[0]);
     Render { left: &sound.channels[0], right, sample_rate: f64::from(sound.sample_rate) }
@@ -172,7 +172,7 @@ impl Report<'_> {
         text
     }
 
-    /// Levels that are infinite, as where a sample is not a number, are null.
+    /// The report as JSON. Infinite levels are null; they occur where a sample is not a number.
     fn json(&self) -> serde_json::Value {
         let sound = |sound: &Recording| {
             json!({

@@ -1,16 +1,16 @@
-//! Figures of what a job renders.
+//! Figures of rendered jobs.
 
 use sprung::analysis::figure::Render;
 use sprung::analysis::figure::sound::{DrawnMode, SoundFigure};
 use sprung::render::Job;
 use sprung::{Error, Result};
 
-/// Longest rendering in seconds that is drawn.
+/// Longest sound that is drawn, in seconds.
 const LONGEST: f64 = 600.0;
-/// Pixels to a cell of a vector image's spectrogram.
+/// Pixels per cell of the spectrogram in a vector image.
 const VECTOR_CELL: usize = 5;
 
-/// Renders a job and draws it, in `format`.
+/// Renders a job and draws the sound in `format`.
 pub(super) fn drawn(job: &Job, title: &str, modes: &[DrawnMode], format: &str) -> Result<Vec<u8>> {
     let sample_rate = f64::from(job.options.sample_rate);
     let [mut left, mut right] = [Vec::new(), Vec::new()];

@@ -1,4 +1,4 @@
-//! `sprung fit`: recordings of a struck sound become a preset.
+//! `sprung fit`: makes a preset from recordings of a struck sound.
 
 use super::interrupt;
 use super::progress::Bar;
@@ -92,7 +92,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         page.commit()?;
     }
     output.commit()?;
-    // What goes to stdout is the preset.
+    // With `-`, stdout has the preset.
     if target == Target::Stdout { Ok(()) } else { print(&text(&takes, &fitted)) }
 }
 
@@ -100,7 +100,7 @@ fn write(output: &mut Output, bytes: &[u8]) -> Result<()> {
     output.stream().write_all(bytes).map_err(|source| Error::io(output.name(), source))
 }
 
-/// Reads a recording with what is known of its key and velocity.
+/// Reads a recording, with its key and velocity if they are given.
 fn take(args: &Args, index: usize, inputs: &mut Inputs) -> Result<Take> {
     let (path, key, velocity) = parts(&args.recordings[index])?;
     let wrong = |message: String| Error::value("recording", message);
@@ -115,7 +115,7 @@ fn take(args: &Args, index: usize, inputs: &mut Inputs) -> Result<Take> {
     Ok(Take { name, recording, key, velocity: velocity.map_or(VELOCITY, f64::from) })
 }
 
-/// `take.wav@C4@100` as a path, a key and a velocity. A file whose own name has an @ in it comes before that.
+/// Splits `take.wav@C4@100` into a path, a key and a velocity. If a file with the whole name exists, that is the path.
 fn parts(argument: &Path) -> Result<(PathBuf, Option<String>, Option<u8>)> {
     let whole = || (argument.to_owned(), None, None);
     let Some(text) = argument.to_str().filter(|text| text.contains('@') && !argument.exists()) else {
@@ -137,7 +137,7 @@ fn file_name(name: &str) -> String {
     Path::new(name).file_name().map_or(name.to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
-/// The preset's name: as asked for, or that of its file.
+/// The preset's name: the one in `--name`, or that of the output file.
 fn name(args: &Args) -> String {
     let stem = args.output.file_stem().and_then(OsStr::to_str).filter(|stem| *stem != "-");
     args.name.as_deref().or(stem).unwrap_or("Fitted").to_owned()

@@ -1,4 +1,4 @@
-//! `sprung manual`: the pages that explain the instrument.
+//! `sprung manual`: prints the pages of the manual.
 
 use super::terminal::print;
 use clap::builder::PossibleValuesParser;

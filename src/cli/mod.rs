@@ -115,9 +115,9 @@ pub(crate) fn run() -> ExitCode {
         Err(error) => return usage::refuse(error, &Cli::command()),
     }
     match Cli::try_parse() {
-        // That it is different is no error.
+        // A difference is a result with its own exit code, not an error.
         Ok(Cli { command: Command::Diff(args) }) => diff::run(&args),
-        // What is finished stays, whatever ends it.
+        // After an interrupt or an error, finished sounds are kept; the exit code and message are the command's own.
         Ok(Cli { command: Command::Batch(args) }) => batch::run(&args),
         Ok(cli) => finish(execute(&cli.command)),
         // `--help` and `--version` are no errors, and go to stdout.

@@ -6,7 +6,7 @@ use sprung::render::Progress;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-/// Steps of a bar that shows shares.
+/// Number of steps of a bar that shows a share.
 const STEPS: u64 = 1000;
 /// The bar appears only after this time.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -22,7 +22,7 @@ impl Bar {
         Self { started: Instant::now(), wanted: std::io::stderr().is_terminal(), bar: None }
     }
 
-    /// Shows which share of the work is done. Returns whether to go on: not after Ctrl-C.
+    /// Shows the completed share of the work. Returns whether to continue: false after Ctrl-C.
     pub(super) fn show_share(&mut self, share: f64) -> bool {
         self.show(Progress { frames: (share * STEPS as f64) as u64, expected: STEPS });
         interrupt::check().is_ok()
@@ -52,7 +52,8 @@ impl Count {
         Self { bar: std::io::stderr().is_terminal().then(ProgressBar::no_length) }
     }
 
-    /// Shows how many jobs are done, of how many. Those that were `found` done do not count for the rate.
+    /// Shows the number of completed jobs out of all. `found` of them were completed earlier, and do not
+    /// count for the rate.
     pub(super) fn show(&mut self, done: u64, found: u64, of: u64) {
         let Some(bar) = &self.bar else { return };
         if bar.length() != Some(of) {

@@ -1,4 +1,4 @@
-//! Recordings that commands are given, and figures that they write.
+//! Reading of recordings, and writing of figures.
 
 use super::interrupt;
 use super::terminal::warn;
@@ -8,12 +8,13 @@ use sprung::{Error, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Reads a sound file, or standard input for `-`, and warns of what is wrong with it. Gives what errors call it, too.
+/// Reads a sound file, or standard input for `-`, and prints warnings about it. Also returns its name for error
+/// messages.
 pub(super) fn read(path: &Path, inputs: &mut Inputs) -> Result<(Recording, String)> {
     sprung::request::recording(path, inputs, &mut warn)
 }
 
-/// The ending of a path in lower case, if it is one of those that are possible; `option` names it in the error.
+/// The extension of a path in lower case, if it is one of `possible`; `option` names the option in the error.
 pub(super) fn ending(option: &str, path: &Path, possible: &[&str]) -> Result<String> {
     let ending = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
     if possible.contains(&ending.as_str()) {
@@ -58,7 +59,7 @@ pub(super) fn open_figure(path: Option<&Path>, force: bool, inputs: &Inputs) -> 
 }
 
 impl FigureFile {
-    /// Writes what `draw` makes in the format that it is given.
+    /// Writes the picture that `draw` makes in the requested format.
     pub(super) fn write(mut self, draw: impl FnOnce(&str) -> Result<Vec<u8>>) -> Result<()> {
         let bytes = draw(&self.format)?;
         self.output.stream().write_all(&bytes).map_err(|source| Error::io(self.output.name(), source))?;

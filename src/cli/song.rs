@@ -1,4 +1,4 @@
-//! How a command reads the song that it plays.
+//! Options for reading the song that a command plays.
 
 use sprung::request::SongRequest;
 

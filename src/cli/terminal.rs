@@ -16,8 +16,8 @@ pub(super) fn warn(message: &str) {
     complain("warning", message);
 }
 
-/// Writes lines to stderr, without control characters. If stderr is closed, nothing can be reported, so errors are
-/// ignored.
+/// Writes lines to stderr, without control characters. Errors are ignored: if stderr is closed, nothing can be
+/// reported.
 pub(super) fn complain_lines(text: &str) {
     let _ = write!(std::io::stderr(), "{}", printable_lines(text));
 }
@@ -28,7 +28,8 @@ pub(super) fn print(text: &str) -> Result<()> {
     checked(stdout.write_all(printable_lines(text).as_bytes()).and_then(|()| stdout.flush()))
 }
 
-/// The result of writing to stdout. A reader such as `head` may close the pipe when it has enough: that is no error.
+/// Checks the result of writing to stdout. A reader such as `head` may close the pipe when it has enough: this is not
+/// an error.
 pub(super) fn checked(written: std::io::Result<()>) -> Result<()> {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io("stdout", error)),

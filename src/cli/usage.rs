@@ -1,4 +1,4 @@
-//! Prints clap's usage errors: safe for the terminal, and with a tip about what would be right.
+//! Prints clap's usage errors, safe for the terminal and with a tip that leads to valid usage.
 
 use super::terminal::complain_lines;
 use clap::builder::StyledStr;
@@ -33,7 +33,7 @@ fn subcommand<'a>(command: &'a Command, args: &[String]) -> &'a Command {
         .0
 }
 
-/// A tip about what would be right, for errors where clap gives none.
+/// A tip that leads to valid usage, for errors where clap gives none.
 fn tip(error: &Error, command: &Command) -> Option<String> {
     let Some(ContextValue::String(wrong)) = error.get(ContextKind::InvalidArg) else {
         let missing = matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::Strings(missing))

@@ -1,4 +1,4 @@
-//! `sprung lab`: ways to integrate a mass on a spring, compared by figure, number and ear.
+//! `sprung lab`: methods that integrate a mass on a spring, compared by figures, numbers and sounds.
 
 mod animate;
 mod compare;

@@ -1,4 +1,4 @@
-//! The options for the system that is integrated, and for the methods.
+//! The options of the integrated system, and the choice of methods.
 
 use super::super::quantity;
 use super::super::terminal::complain;

@@ -30,10 +30,10 @@ const RATE: u32 = 48_000;
 /// Seconds from one pad of a kit to the next.
 const PAD_SECONDS: f64 = 0.3;
 
-/// Seconds for which a sound may ring after its phrase.
+/// How long a sound may ring after its phrase, in seconds.
 const TAIL: f64 = 4.0;
 
-/// Notes that sound at once to find out how fast a sound is rendered, and for how many seconds.
+/// Number of notes for measuring how fast a sound is rendered, and the length of that rendering in seconds.
 const VOICES: u8 = 16;
 const TIMED_SECONDS: f64 = 1.0;
 
@@ -49,7 +49,7 @@ pub(super) struct Args {
     force: bool,
 }
 
-/// A sound that was auditioned.
+/// A sound that was rendered and measured.
 struct Auditioned {
     found: Arc<Listed>,
     file: String,
@@ -77,7 +77,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
             return Error::InterruptedAfter { left };
         }
         if is_new {
-            // What is in it after another error stays: then the folder is not removed.
+            // This fails if the folder already has files: then they and the folder stay.
             let _ = std::fs::remove_dir(&args.out);
         }
         error
@@ -88,7 +88,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
 fn page(found: &[Arc<Listed>], args: &Args, done: &AtomicUsize) -> Result<()> {
     let page = create(&args.out, "index.html", args.force)?;
     let mut all = in_parallel(found, args, done)?;
-    // Alone, since other work on the same cores would count as the sound's.
+    // One after another, since other work on the same cores would slow the measured rendering.
     for one in &mut all {
         interrupt::check()?;
         one.speed = speed(&one.found.playable.kit());
@@ -127,7 +127,7 @@ fn write(mut output: Output, bytes: &[u8]) -> Result<()> {
 /// Renders a sound to its files and measures it.
 fn audition(found: &Arc<Listed>, args: &Args, done: &AtomicUsize) -> Result<Auditioned> {
     interrupt::check()?;
-    // Names of the user's own sounds may be alike, their files are not.
+    // The user's own sounds may have equal names, but not equal file names.
     let own = found.path.as_ref().and_then(|path| path.file_stem());
     let file = own.map_or_else(|| slug(found.name()), |own| own.to_string_lossy().into_owned());
     let (song, modes) = match &found.playable {
@@ -203,7 +203,7 @@ fn speed(kit: &Arc<Kit>) -> f64 {
     TIMED_SECONDS / start.elapsed().as_secs_f64()
 }
 
-/// The page.
+/// Writes the page.
 fn written(all: &[Auditioned]) -> String {
     let off = all.iter().filter(|one| one.measures.iter().any(|measure| !measure.is_kept())).count();
     let heaviest = all.iter().min_by(|a, b| a.speed.total_cmp(&b.speed));

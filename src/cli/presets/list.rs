@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::sync::Arc;
 use terminal_size::{Width, terminal_size_of};
 
-/// Narrowest terminal for which lines are wrapped, in characters.
+/// Smallest width of a terminal, in characters, for which lines are wrapped.
 const NARROWEST: usize = 40;
 
 #[derive(clap::Args)]
@@ -24,7 +24,7 @@ pub(super) struct Args {
     json: bool,
 }
 
-/// What is printed.
+/// The output of the command.
 pub(super) fn list(args: &Args) -> String {
     let found = args.select.found();
     let width = terminal_size_of(std::io::stdout()).map(|(Width(width), _)| usize::from(width));
@@ -50,7 +50,7 @@ fn described(found: &Listed) -> Value {
         "tags": playable.tags(),
         "author": playable.author(),
         "comment": playable.comment(),
-        // A sound of the user's may have the name of one of the factory's.
+        // A sound of the user's may have the name of a factory sound.
         "programs": if found.path.is_none() { numbers(playable.name()) } else { Vec::new() },
         "file": found.path.as_ref().map(|path| path.display().to_string()),
     });
@@ -69,7 +69,7 @@ fn described(found: &Listed) -> Value {
     described
 }
 
-/// Lines with name, family, keys and description. The description goes on below itself in a terminal of a width.
+/// Lines with name, family, keys and description. With a terminal's width, long descriptions are wrapped and indented.
 fn lines(found: &[Arc<Listed>], width: Option<usize>) -> String {
     let longest = |text: fn(&Listed) -> &str| found.iter().map(|one| text(one).chars().count()).max().unwrap_or(0);
     let (names, families) = (longest(Listed::name), longest(Listed::family_name));
@@ -100,7 +100,7 @@ fn lines(found: &[Arc<Listed>], width: Option<usize>) -> String {
     out
 }
 
-/// Text in rows of at most so many characters, broken between words. A longer word has a row of its own.
+/// Wraps text to rows of at most `width` characters, broken between words. A longer word gets a row of its own.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut rows = vec![String::new()];
     for word in text.split_whitespace() {

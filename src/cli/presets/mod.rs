@@ -1,4 +1,4 @@
-//! `sprung presets`: lists, shows and auditions factory presets and kits, and checks files of them.
+//! `sprung presets`: lists, shows and auditions presets and kits, and checks preset and kit files.
 
 mod audition;
 mod list;
@@ -81,13 +81,13 @@ fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
     sprung::request::playable(name, inputs, &mut terminal::warn)
 }
 
-/// Key and velocity of the note that a preset is drawn with, and how many seconds it is held.
+/// Key and velocity of the note with which a preset is drawn, and its length in seconds.
 const DRAWN_KEY: f64 = 60.0;
 const DRAWN_VELOCITY: f32 = 100.0 / 127.0;
 const DRAWN_SECONDS: f64 = 2.0;
 const DRAWN_RATE: u32 = 48_000;
 
-/// A note of a preset and its modes, in place of its file.
+/// Draws a note of a preset and its modes.
 fn drawn(playable: &Playable, format: &str) -> Result<Vec<u8>> {
     let Playable::Preset(preset) = playable else {
         let message = format!(

@@ -1,4 +1,4 @@
-//! Which of the factory's sounds, or of the user's own, a command means.
+//! Selects sounds of the factory or of the user for a command.
 
 use crate::cli::terminal::warn;
 use clap::builder::PossibleValuesParser;
@@ -29,7 +29,7 @@ pub(super) struct Select {
 }
 
 impl Select {
-    /// The presets and kits that are meant, in the order of lists. Warns of files of the user that cannot be read.
+    /// The selected presets and kits, in the order of lists. Warns of files of the user that cannot be read.
     pub(super) fn found(&self) -> Vec<Arc<Listed>> {
         let catalogue = match (self.own, Library::of_user()) {
             (false, _) => Catalogue::of_factory(),

@@ -7,7 +7,7 @@ use sprung::params::Param;
 use sprung::render::Job;
 use sprung::units::{frequency_from_key, parse_key};
 
-/// Draws what a job renders, before its level is changed for the file, in `format`.
+/// Draws a job's sound in `format`, before the level is changed for the file.
 pub(super) fn draw(notes: &[String], title: &str, job: &Job, format: &str) -> Result<Vec<u8>> {
     let modes = match notes {
         [note] => modes(job, note),
@@ -16,7 +16,7 @@ pub(super) fn draw(notes: &[String], title: &str, job: &Job, format: &str) -> Re
     drawn(job, title, &modes, format)
 }
 
-/// The modes of the sound that plays a note; none if there is no such key or no sound on it.
+/// The modes of the sound that plays a note; none if the key is invalid or has no sound.
 fn modes(job: &Job, note: &str) -> Vec<DrawnMode> {
     let a4_hz = f64::from(job.kit.values().get(Param::Tuning));
     let Ok(key) = parse_key(note, a4_hz) else { return Vec::new() };

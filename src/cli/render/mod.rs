@@ -1,4 +1,4 @@
-//! `sprung render`: a MIDI file or some notes to a WAV file.
+//! `sprung render`: renders a MIDI file or some notes to a WAV file.
 
 mod figure;
 mod report;
