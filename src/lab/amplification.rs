@@ -1,4 +1,4 @@
-//! The amplification matrix of a method: what one step does to every state of a linear spring.
+//! The amplification matrix of a method: the effect of one step on every state of a linear spring.
 //!
 //! The 2 × 2 matrix is found by stepping two states. Growth, pitch and decay follow from it.
 
@@ -14,7 +14,7 @@ pub struct Amplification {
     rows: [[f64; 2]; 2],
 }
 
-/// The tone that belongs to a step's eigenvalues.
+/// The tone that follows from a step's eigenvalues.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tone {
     /// A pair of eigenvalues `e^(−decay ± i angle)`: decay in nepers per step (negative: growth), angle in rad per

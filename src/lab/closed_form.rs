@@ -1,15 +1,16 @@
 //! The exact motion of a linear spring, in every damping regime: the reference for all methods.
 //!
-//! Source: "Damped Harmonic Oscillator", its general form `(I τ₀ + M τ₁) e^(−λ̄t)` with `M = [[λ̄, 1], [−ω², −λ̄]]`,
-//! `σ² = λ̄² − ω²`, and `τ₀`, `τ₁` the even and odd parts of `e^(σt)`: `cos`, `1` or `cosh`, and `sin κt/κ`, `t` or
-//! `sinh αt/α`. The amplitude–phase form of the undamped case is that of the mass-spring notebook, `A cos(ωt + φ)`.
+//! Source: "Damped Harmonic Oscillator", its general form `(I τ₀ + M τ₁) e^(−λ̄t)` with `M = [[λ̄, 1], [−ω², −λ̄]]` and
+//! `σ² = λ̄² − ω²`. `τ₀` and `τ₁` are the even and the odd part of `e^(σt)`, the latter divided by `σ`: `cos κt`, `1`
+//! or `cosh αt`, and `sin κt/κ`, `t` or `sinh αt/α`. The amplitude–phase form of the undamped case is that of the
+//! mass-spring notebook, `A cos(ωt + φ)`.
 
 use super::system::{State, System};
 use crate::error::{Error, Result};
 use libm::{atan2, cos, exp, expm1, hypot, sin, sqrt};
 use std::f64::consts::TAU;
 
-/// The damping regimes: how spring and damper share the motion.
+/// The damping regimes of a linear system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Regime {
     /// `λ̄ = 0`: rings for ever.
@@ -20,7 +21,7 @@ pub enum Regime {
     CriticallyDamped,
     /// `λ̄ > ω`: returns slowly, without ringing.
     Overdamped,
-    /// `ω = 0`: slows down and stops anywhere.
+    /// `ω = 0`: slows down and stops, at any position.
     Unsprung,
     /// Neither spring nor damper: moves on at constant speed.
     Unimpeded,
@@ -41,12 +42,12 @@ impl Regime {
     }
 }
 
-/// `σ² = λ̄² − ω²`: negative where the system rings.
+/// `σ² = λ̄² − ω²`; negative if the system rings.
 fn sigma_squared(system: &System) -> f64 {
     system.decay_rate() * system.decay_rate() - system.stiffness / system.mass
 }
 
-/// The matrix that takes `(x − target, v)` from one time to another, without a force.
+/// The matrix that maps `(x − target, v)` at one time to a later time, without a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transition {
     rows: [[f64; 2]; 2],
@@ -61,7 +62,8 @@ impl Transition {
         let omega_squared = system.stiffness / system.mass;
         let squared = sigma_squared(system);
         let scale = sqrt(squared.abs());
-        // Both are multiplied by e^(−λ̄t), so that cosh and sinh cannot overflow where their product with it is small.
+        // Both are multiplied by e^(−λ̄t) analytically, so that a large cosh or sinh does not overflow before the
+        // product is taken.
         let (tau0, tau1) = if squared < 0.0 {
             let decay = exp(-lambda * t);
             (decay * cos(scale * t), decay * sin(scale * t) / scale)

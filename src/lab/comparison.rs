@@ -1,4 +1,4 @@
-//! Compares several methods with several steps on one system: the data of the lab's first figure, table and report.
+//! Compares several methods with several steps on one system, for the figure, the table and the report.
 
 use super::energy::Energy;
 use super::method::Method;
@@ -7,7 +7,7 @@ use super::trajectory::{MOST_STEPS, Trajectory, run_against, step_count, truth};
 use crate::error::{Error, Result};
 use std::io::{self, Write};
 
-/// What to compare.
+/// The settings of a comparison.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// The system.
@@ -25,7 +25,7 @@ pub struct Setup {
 /// All runs of a [`Setup`].
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// What was compared.
+    /// The settings.
     pub setup: Setup,
     /// The true motion, finely sampled from time 0 to the end.
     pub truth: Vec<State>,

@@ -1,12 +1,13 @@
-//! The spring lab: compares ways to integrate a mass on a spring, in figures, numbers and sound.
+//! The spring lab: compares methods that integrate a mass on a spring, in figures, numbers and sound.
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`system`], [`energy`] | the mass, spring, damper and force; energy and Lagrangian |
-//! | [`closed_form`], [`mod@reference`] | the exact motion, and the nearest to it where there is no closed form |
-//! | [`method`] | the methods, one file each |
-//! | [`trajectory`] | a method run over a stretch of time, and its error |
-//! | [`comparison`], [`convergence`], [`stability`], [`pitch`], [`sound`] | what follows: orders, limits, tuning, audio |
+//! | [`closed_form`], [`mod@reference`] | the exact motion; a fine integration for springs without a closed form |
+//! | [`method`], [`amplification`] | the methods, one file each; the matrix of one step |
+//! | [`trajectory`] | a method run over a period of time, and its error |
+//! | [`comparison`], [`convergence`], [`stability`], [`pitch`], [`sound`] | measured behaviour: errors, orders, limits, tuning, audio |
+//! | `figure`, `animation`, `report` | figures, animations and an HTML page (feature `figures`) |
 //!
 //! All arithmetic is in `f64`; nothing here is real-time safe, and the instrument does not depend on it.
 //!

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use libm::{log, log2};
 use std::f64::consts::TAU;
 
-/// How a note sounds when a method plays it.
+/// The sound of a note played by a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
     /// Rings and decays.
@@ -44,7 +44,7 @@ pub struct Note {
     pub frequency: f64,
     /// Requested −60 dB time in seconds.
     pub t60: f64,
-    /// How it sounds.
+    /// The sound of the note.
     pub outcome: Outcome,
 }
 

@@ -1,6 +1,6 @@
-//! The true motion, with which a trajectory is compared.
+//! The true motion to which trajectories are compared.
 //!
-//! It is the closed form. For a nonlinear spring it is an integration so fine that a finer one changes nothing.
+//! It is the closed form or, for a nonlinear spring, an integration so fine that a finer one gives the same result.
 
 use super::closed_form::ClosedForm;
 use super::energy::greatest_stiffness;

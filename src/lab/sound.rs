@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use libm::{floor, hypot, log10};
 use std::f64::consts::TAU;
 
-/// Peak of a strike, −6 dBFS: low enough for no distortion.
+/// Peak of a strike, −6 dBFS, so that it does not clip.
 pub const STRIKE: f64 = 0.5;
 /// Amplitude to which the limiter reduces a mass that explodes: −1 dBFS.
 pub const CEILING: f64 = 0.891_250_938_133_745_6;
@@ -36,7 +36,7 @@ pub struct Sound {
 /// # Errors
 /// [`Error::Value`] for a note that cannot be played, and for a sound of more than [`MOST_STEPS`] samples.
 pub fn listen(method: Method, frequency: f64, t60: f64, seconds: f64, sample_rate: f64) -> Result<Sound> {
-    // The same rules decide which notes cannot be played.
+    // `play` checks the note: the same notes cannot be played here.
     play(method, frequency, t60, sample_rate)?;
     let longest = floor(1000.0 * MOST_STEPS as f64 / sample_rate) / 1000.0;
     if !(seconds > 0.0 && seconds <= longest) {

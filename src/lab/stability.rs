@@ -1,7 +1,7 @@
 //! The longest step with which a method stays stable.
 //!
-//! Computes the region of `ω·h` and damping ratio `ζ` in which a method stays bounded, by running the method, and the
-//! limit according to theory.
+//! Runs each method to find the region of `ω·h` and damping ratio `ζ` in which it stays bounded, and computes the
+//! theoretical limit.
 
 use super::amplification::Amplification;
 use super::method::Method;
@@ -103,7 +103,8 @@ pub fn theory(method: Method, zeta: f64) -> f64 {
     }
 }
 
-/// Where `|R(z)|` of a stability polynomial `R` first exceeds 1, along the eigenvalues for `zeta`.
+/// The first `ω·h` at which a stability polynomial `R` exceeds `|R(z)| = 1`, for eigenvalues `z` with damping ratio
+/// `zeta`.
 fn polynomial_limit(zeta: f64, coefficients: &[f64]) -> f64 {
     let size = |re: f64, im: f64| {
         let (value_re, value_im) = coefficients
@@ -120,7 +121,7 @@ fn polynomial_limit(zeta: f64, coefficients: &[f64]) -> f64 {
             size(-(zeta + spread) * omega_h, 0.0).max(size(-omega_h / (zeta + spread), 0.0))
         }
     };
-    // The threshold is larger than rounding errors and smaller than Heun's (ωh)⁴/8.
+    // The threshold lies above rounding errors and below Heun's (ωh)⁴/8.
     first(|omega_h| largest(omega_h) > 1.0 + 1e-12, 1.02)
 }
 

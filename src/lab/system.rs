@@ -14,7 +14,7 @@ pub struct State {
 }
 
 impl State {
-    /// Whether both numbers are finite, so that a next step can be computed.
+    /// Whether both numbers are finite, so that the next step can be computed.
     pub fn is_finite(&self) -> bool {
         self.x.is_finite() && self.v.is_finite()
     }
@@ -92,7 +92,7 @@ impl System {
         Self::linear(1.0, ringing * ringing + lambda * lambda, 2.0 * lambda)
     }
 
-    /// Returns an error that names the first value that is impossible for a mass, spring, damper or force.
+    /// Returns an error that names the first invalid value of the mass, spring, damper or force.
     pub fn validate(&self) -> Result<()> {
         if !(self.mass > 0.0 && self.mass.is_finite()) {
             return Err(Error::value("mass", format!("must be greater than 0 kg, got {}", self.mass)));
@@ -121,7 +121,7 @@ impl System {
         Ok(())
     }
 
-    /// Whether the force is proportional to the stretch, so that there is a closed form.
+    /// Whether the force is proportional to the displacement, so that there is a closed form.
     pub fn is_linear(&self) -> bool {
         matches!(self.spring, Spring::Linear)
     }

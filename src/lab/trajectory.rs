@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 /// Maximum number of states of one run that are kept in memory: 160 MB together with the true states.
 pub const MOST_STEPS: usize = 5_000_000;
 
-/// The states of a run at `0, h, 2h, …`, and the true ones.
+/// The states of a run at `0, h, 2h, …`, and the true states.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     /// The method.
@@ -102,8 +102,8 @@ mod tests {
         (System::linear(1.0, 50.0, 0.0).unwrap(), State { x: 0.5, v: 0.0 })
     }
 
-    /// Energy after `steps` steps of `omega_h` rad relative to that before, and the smallest and largest value on the
-    /// way.
+    /// Energy after `steps` steps of `omega_h` rad relative to the initial energy, and the smallest and largest ratio
+    /// on the way.
     fn energies(method: Method, omega_h: f64, steps: usize) -> (f64, f64, f64) {
         let (system, start) = spring();
         let h = omega_h / sqrt(50.0);

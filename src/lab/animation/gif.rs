@@ -16,7 +16,7 @@ const WIDTH: u32 = 780;
 const WALL: i32 = 196;
 const TRACK: (f64, f64) = (236.0, 640.0);
 const PLANE: (i32, i32) = (700, 56);
-/// Number of shades from each colour to white, which draw soft edges.
+/// Number of shades from each colour to white, for smooth edges.
 const SHADES: usize = 24;
 
 /// One frame of the animation, as a figure.

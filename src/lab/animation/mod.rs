@@ -1,4 +1,4 @@
-//! Animates the masses side by side with their phase planes, frame by frame: as SVG, HTML or GIF.
+//! Animates the masses side by side with their phase planes, as SVG, HTML or GIF.
 
 pub mod gif;
 pub mod svg;

@@ -1,4 +1,4 @@
-//! The animation as a self-moving SVG (SMIL), and as a page around it with a pause button.
+//! The animation as an SVG that moves by itself (SMIL), and as a page around it with a pause button.
 
 use super::{Animation, Track, coils, share};
 use crate::text::number::short;
@@ -7,7 +7,7 @@ use std::fmt::Write;
 const ROW: f64 = 76.0;
 const HEAD: f64 = 44.0;
 const WIDTH: f64 = 960.0;
-/// Position of the wall from which the springs hang, and how far the masses can move.
+/// Position of the wall to which the springs are attached, and the range of the masses' positions.
 const WALL: f64 = 210.0;
 const TRACK: (f64, f64) = (260.0, 760.0);
 /// Left edge and size of the phase planes.
@@ -41,7 +41,8 @@ pub fn svg(animation: &Animation) -> String {
     svg + "</svg>\n"
 }
 
-/// A page with the SVG and a button. If the reader has requested reduced motion, it only starts by hand.
+/// A page with the SVG and a button. If the reader has requested reduced motion, the animation starts only by the
+/// button.
 pub fn html(animation: &Animation) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

@@ -40,7 +40,7 @@ impl Picture for ConvergenceFigure<'_> {
         };
         let mut chart = panel.draw(&plot)?;
         for power in [1.0, 2.0, 4.0] {
-            // The slope of this order, through the longest step.
+            // A guide with the slope of this order, which starts at the longest step.
             let top = panel.y.range.end - 0.5 * power;
             let guide: Vec<_> = [right, left].iter().map(|x| (*x, top + power * (x - right))).collect();
             line(&mut chart, &guide, GUIDE)?;

@@ -1,4 +1,4 @@
-//! Draws error of pitch and decay against frequency.
+//! Draws the errors of pitch and decay against frequency.
 
 use super::super::method::Method;
 use super::super::pitch::{Note, Outcome};

@@ -13,7 +13,7 @@ pub struct SoundFigure<'a> {
     pub sounds: &'a [Sound],
     /// Sample rate in Hz.
     pub sample_rate: f64,
-    /// Title of the figure, which says what was struck.
+    /// Title of the figure, which describes the note.
     pub title: &'a str,
 }
 

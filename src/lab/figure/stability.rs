@@ -1,4 +1,4 @@
-//! Draws the region in which each method stays bounded when it is run, with the limit according to theory.
+//! Draws the region in which each method stays bounded when it is run, with the theoretical limit.
 
 use super::super::method::Method;
 use super::super::stability::{Cell, theory};

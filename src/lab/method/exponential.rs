@@ -1,4 +1,4 @@
-//! The exact exponential map: applies the closed form's transition over one step again and again.
+//! The exact exponential map: applies the closed form's transition over one step repeatedly.
 //!
 //! Exact except for rounding. A force is evaluated at the middle of the step, which makes its part second order.
 

@@ -1,4 +1,4 @@
-//! Störmer–Verlet in kick–drift–kick form. Second order; best of its cost: one force per step, no drift of energy.
+//! Störmer–Verlet in kick–drift–kick form: second order, with one force per step and no drift of the energy.
 //!
 //! With damping this is the scheme of Brünger, Brooks & Karplus (1984): the first half kick uses the damper's force
 //! from the velocity before it, the second the force from the velocity after it. It equals central differences, and its
