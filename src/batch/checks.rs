@@ -8,7 +8,7 @@ use crate::request::Request;
 use std::path::{Path, PathBuf};
 
 impl Batch {
-    /// Returns an error for a job that the format of the files cannot have.
+    /// Returns an error for a job that the format of the files does not support.
     pub(super) fn check_format(&self, request: &Request) -> Result<(), Fault> {
         let fault = |key: &str, message: String| Err((key.to_owned(), message));
         match self.format {
@@ -24,8 +24,8 @@ impl Batch {
         }
     }
 
-    /// A message, if `input` is a file that a batch in this folder writes, now or later. Only its path counts, since the
-    /// files are renamed into their places: a hard link to one keeps what it has.
+    /// Returns a message if `input` is a file that a batch in this folder writes, now or later. Only the path matters:
+    /// files are written under another name and renamed, so a hard link to an old file keeps its contents.
     pub(super) fn own(&self, input: &Path) -> Option<String> {
         let (folder, path) = (resolved(&self.folder), resolved(input));
         let inside = path.strip_prefix(folder).ok()?;
@@ -41,12 +41,12 @@ impl Batch {
     }
 }
 
-/// The name of a file without the point and this ending.
+/// The name of a file without the dot and this extension.
 fn stem<'a>(file: &'a str, ending: &str) -> Option<&'a str> {
     file.strip_suffix(ending)?.strip_suffix('.')
 }
 
-/// A path without links and dots, as far as it is there.
+/// A path without symbolic links and dots, as far as it exists.
 fn resolved(path: &Path) -> PathBuf {
     if let Ok(whole) = path.canonicalize() {
         return whole;

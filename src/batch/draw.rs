@@ -1,32 +1,32 @@
-//! Values that are drawn by chance, as functions of a seed, the number of a job and the name of what is drawn.
+//! Random values as functions of a seed, the number of a job, and the name of the option or parameter.
 
 use crate::dsp::random;
 use libm::{cos, exp, floor, log, sqrt};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
-/// How a value is drawn. Bounds are in the unit of what is drawn.
+/// A random distribution. Bounds are in the unit of the option or parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Draw {
-    /// Evenly between two bounds.
+    /// Uniform between two bounds.
     Uniform(f64, f64),
-    /// Evenly on a scale of logarithms between two bounds above 0.
+    /// Uniform in the logarithm, between two bounds above 0.
     LogUniform(f64, f64),
-    /// A whole number, evenly from one to another, both included.
+    /// A whole number, uniform between two bounds, both included.
     Integer(f64, f64),
-    /// By a bell curve with this mean and deviation, clamped to what the name can take: `[least, most]`.
+    /// Normal with this mean and standard deviation, clamped to the range of the option or parameter, `[least, most]`.
     Normal(f64, f64, [f64; 2]),
-    /// Evenly one of these.
+    /// One of these values, all equally likely.
     Choice(Vec<Value>),
 }
 
-/// The numbers of one job. Frozen: the sounds of a batch depend on them.
+/// The random numbers of one job. Frozen: the sounds of a batch depend on them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chance {
     job: u64,
 }
 
-/// The stream of the seed that a job renders with, beside those of what it draws.
+/// The name of the stream for a job's own seed; the other streams are those of drawn values.
 const SEED: &str = "seed";
 
 impl Chance {
@@ -35,12 +35,13 @@ impl Chance {
         Self { job: random::key(seed, number) }
     }
 
-    /// The seed that the job renders with, unless it says one: 53 bits, which all readers of JSON keep exactly.
+    /// The seed with which the job is rendered, unless the job sets one: 53 bits, which every JSON reader keeps
+    /// exactly.
     pub(super) fn seed(self) -> u64 {
         random::key(self.job, hash(SEED)) >> 11
     }
 
-    /// The `n`-th number of what has a name: uniform in [0, 1). It does not depend on what else is drawn.
+    /// The `n`-th number for a name, uniform in [0, 1). It does not depend on the other drawn values.
     fn unit(self, name: &str, n: u64) -> f64 {
         random::unit(random::key(self.job, hash(name)), n)
     }
@@ -52,8 +53,8 @@ fn hash(name: &str) -> u64 {
 }
 
 impl Draw {
-    /// Draws a value for what has this name. Numbers have seven digits, so that a job as drawn can be written down and
-    /// rendered again.
+    /// Draws a value for the option or parameter of this name. Numbers have seven digits, so that a drawn job can be
+    /// written down and rendered again.
     pub(super) fn draw(&self, name: &str, chance: Chance) -> Value {
         let unit = |n| chance.unit(name, n);
         match self {
@@ -76,12 +77,12 @@ impl Draw {
     }
 }
 
-/// A number with seven digits.
+/// Rounds a number to seven digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
 }
 
-/// A number as JSON: whole ones without a point.
+/// A number as JSON; whole ones have no decimal point.
 fn number(value: f64) -> Value {
     if value == floor(value) && value.abs() < 9e15 { Value::from(value as i64) } else { Value::from(value) }
 }
@@ -96,8 +97,8 @@ mod tests {
         (0..COUNT).map(|number| draw.draw("decay", Chance::new(7, number)).as_f64().unwrap()).collect()
     }
 
-    /// The largest distance between the distribution of the values and the one that they should have
-    /// (Kolmogorov and Smirnov), which is above 1.63/√n by chance in one of a hundred seeds.
+    /// The largest distance between the distribution of the values and the expected one (Kolmogorov and Smirnov). By
+    /// chance, it exceeds 1.63/√n for one of a hundred seeds.
     fn distance(mut values: Vec<f64>, expected: impl Fn(f64) -> f64) -> f64 {
         values.sort_by(f64::total_cmp);
         let n = values.len() as f64;
@@ -134,7 +135,7 @@ mod tests {
             let expected = COUNT as f64 / 5.0;
             let deviation = |count: &i32| f64::from(*count) - expected;
             let chi_square: f64 = counts.iter().map(|count| deviation(count) * deviation(count) / expected).sum();
-            // Above this in one of a thousand seeds.
+            // By chance, one of a thousand seeds exceeds this.
             assert!(chi_square < 18.47, "{counts:?}");
         }
     }
@@ -143,7 +144,7 @@ mod tests {
     fn numbers_are_pinned_and_do_not_depend_on_each_other() {
         let draw = Draw::Uniform(0.0, 1.0);
         let first = |name: &str, seed, number| draw.draw(name, Chance::new(seed, number)).to_string();
-        // Computed by another program.
+        // Computed by an independent program.
         assert_eq!(first("decay", 0, 0), "0.01486228");
         let all = [first("decay", 0, 0), first("tune", 0, 0), first("decay", 1, 0), first("decay", 0, 1)];
         assert!((1..4).all(|n| !all[..n].contains(&all[n])), "{all:?}");

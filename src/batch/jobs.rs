@@ -1,4 +1,4 @@
-//! A file of jobs, read line by line: it may be longer than memory.
+//! Reads a file of jobs line by line, since it may be larger than memory.
 
 use super::Batch;
 use super::draw::Chance;
@@ -11,7 +11,7 @@ use std::io::{BufRead, BufReader, Read};
 /// Longest line in bytes.
 const LONGEST: u64 = 1 << 20;
 
-/// A job to do.
+/// A job to render.
 pub(super) struct Task {
     /// Its number in the whole batch, from 0.
     pub(super) number: u64,
@@ -26,19 +26,19 @@ pub(super) struct Jobs<'a> {
     reader: BufReader<File>,
     line: u64,
     template: Option<Template>,
-    /// Jobs that the present line still makes.
+    /// Number of jobs that the present line has left.
     left: u64,
     number: u64,
 }
 
 impl<'a> Jobs<'a> {
-    /// The jobs of the part of a batch that is to be made.
+    /// The jobs of the batch's shard.
     pub(super) fn open(batch: &'a Batch) -> Result<Self> {
         let file = File::open(&batch.jobs).map_err(|source| Error::io(batch.jobs.display().to_string(), source))?;
         Ok(Self { batch, reader: BufReader::new(file), line: 0, template: None, left: 0, number: 0 })
     }
 
-    /// Reads all lines, checks them, and gives the number of jobs of the shard.
+    /// Reads and checks all lines, and returns the number of jobs of the shard.
     pub(super) fn count(mut self) -> Result<u64> {
         let mut all = 0_u64;
         let mut read = BTreeSet::new();
@@ -72,7 +72,7 @@ impl<'a> Jobs<'a> {
         }
     }
 
-    /// Goes on to the next line that is not empty. Returns whether there is one.
+    /// Advances to the next line that is not empty. Returns whether there is one.
     fn next_template(&mut self) -> Result<bool> {
         let mut text = Vec::new();
         loop {

@@ -1,4 +1,4 @@
-//! Makes the sound of one job, and its line of the manifest.
+//! Renders the sound of one job, and makes its line of the manifest.
 
 use super::jobs::Task;
 use super::manifest::VERSION;
@@ -15,10 +15,10 @@ use std::fs::{self, File};
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// Files of a folder: few enough that every system and tool copes with them.
+/// Number of files in a folder: few enough for every system and tool.
 const FILES_OF_A_FOLDER: u64 = 1000;
 
-/// Frames of a block: too few to be shared between cores, since every core has jobs of its own.
+/// Frames per block: too few to be shared between cores, since every core has jobs of its own.
 const BLOCK: usize = 256;
 
 /// The file of a job, relative to the batch's folder.
@@ -26,8 +26,8 @@ pub(super) fn file_of(number: u64, format: FileFormat) -> String {
     format!("{:04}/{number:07}.{}", number / FILES_OF_A_FOLDER, format.ending())
 }
 
-/// Renders a job into its file, and gives its line of the manifest. `check` is called often, and can end the work by an
-/// error.
+/// Renders a job into its file, and returns its line of the manifest. `check` is called often, and can end the work by
+/// returning an error.
 pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<String> {
     let located = |error: Error| match error {
         Error::Value { name, message } => Error::format(&task.origin, format!("{}: {message}", key_of(&name))),
@@ -44,13 +44,13 @@ pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> +
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|source| Error::io(folder.display().to_string(), source))?;
     }
-    // Whoever goes on replaces what was broken off. Whoever starts replaces nothing.
+    // A resumed batch replaces files that an interrupted run left. A new batch replaces nothing.
     let create = || Output::create(&Target::Path(path.clone()), batch.resume, &inputs).map_err(is_there);
     let mut output = create()?;
     let made = to_labelled_wav(&job, &prepared.delivery, &mut output, |_: Progress| check());
     let (report, labels) = made.map_err(located)?;
     if batch.format == FileFormat::Flac {
-        // The WAV never gets a name: it is removed when it is dropped.
+        // The WAV never gets a name: its temporary file is removed when it is dropped.
         let (mut wav, name) = (std::mem::replace(&mut output, create()?), output.name().to_owned());
         flac::encode(wav.stream(), output.stream(), &name).map_err(located)?;
     }
@@ -59,7 +59,7 @@ pub(super) fn make(task: &Task, batch: &Batch, check: &(dyn Fn() -> Result<()> +
     Ok(line(task, &job, &file, &sha256, &report, &labels, &warnings))
 }
 
-/// Says what to do about a file that is there, since there is no --force.
+/// Replaces the error for an existing file, since this command has no --force.
 fn is_there(error: Error) -> Error {
     match error {
         Error::Exists { path } => {
@@ -81,12 +81,12 @@ fn sha256_of(file: &mut File) -> std::io::Result<String> {
     }
 }
 
-/// Whether a file is there and has a SHA-256.
+/// Whether a file exists and has this SHA-256.
 pub(super) fn has_sha256(path: &Path, sha256: &str) -> bool {
     File::open(path).and_then(|mut file| sha256_of(&mut file)).is_ok_and(|found| found == sha256)
 }
 
-/// A line of the manifest. The order of keys is that of this function, whatever features JSON is built with.
+/// A line of the manifest. The order of the keys is fixed here, whatever features the JSON library is built with.
 fn line(
     task: &Task,
     job: &Job,
@@ -140,7 +140,8 @@ fn note(label: &NoteLabel, job: &Job) -> String {
     format!("{{{},\"modes\":[{}]}}", fields.join(","), modes.join(","))
 }
 
-/// A level in thousandths of a decibel: meters use the system's mathematics, whose last digit can differ.
+/// A level rounded to thousandths of a decibel: meters use the system's mathematics functions, whose last digit can
+/// differ.
 fn decibels(level: Option<f64>) -> Value {
     level.map_or(Value::Null, |level| json!((level * 1000.0).round() / 1000.0))
 }

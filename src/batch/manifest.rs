@@ -6,14 +6,14 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// The version that writes the lines. Another one may make other sounds of the same jobs.
+/// The version that writes the lines. Another version may render other sounds for the same jobs.
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// How the names of manifests start and end.
+/// Beginning and end of the names of manifests.
 const STEM: &str = "manifest";
 const ENDING: &str = ".jsonl";
 
-/// The name of the manifest of a shard, counted from 0: one of so many.
+/// The name of the manifest of a shard; `index` counts from 0.
 pub(super) fn name([index, count]: [u64; 2]) -> String {
     if count == 1 { format!("{STEM}{ENDING}") } else { format!("{STEM}-{}-of-{count}{ENDING}", index + 1) }
 }
@@ -35,7 +35,7 @@ pub(super) fn is_name(file: &str) -> bool {
     }
 }
 
-/// A line of a manifest, as far as it is needed to go on with a batch.
+/// A line of a manifest, with the parts that are needed to resume a batch.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entry {
     pub(super) number: u64,
@@ -43,7 +43,7 @@ pub(super) struct Entry {
     /// The file, relative to the folder.
     pub(super) file: String,
     pub(super) sha256: String,
-    /// The job as drawn, and the seed that it was rendered with.
+    /// The job with its drawn values, and the seed with which it was rendered.
     pub(super) job: Map<String, Value>,
     pub(super) seed: u64,
     /// The whole line, without its end.
@@ -66,7 +66,7 @@ impl Entry {
     }
 }
 
-/// The finished lines of one manifest, read one after the other.
+/// Reads the finished lines of one manifest in order.
 struct Reader {
     path: PathBuf,
     reader: BufReader<File>,
@@ -81,9 +81,9 @@ impl Reader {
         Ok(reader)
     }
 
-    /// Reads the next line. A line without an end was cut off when its writer was killed, and does not count.
+    /// Reads the next line. A line without a line end was cut off when its writer was killed, and is ignored.
     fn advance(&mut self) -> Result<()> {
-        // As bytes, since a line may have been cut off within a character.
+        // Read as bytes, since a line may have been cut off within a character.
         let mut line = Vec::new();
         let read = self.reader.read_until(b'\n', &mut line);
         read.map_err(|source| Error::io(self.path.display().to_string(), source))?;
@@ -110,12 +110,12 @@ impl Reader {
     }
 }
 
-/// What the manifests in a folder say is finished. Manifests are in the order of numbers, so all are read side by side, and
-/// memory use does not grow with them.
+/// The finished jobs according to the manifests in a folder. Manifests are in the order of the jobs' numbers, so that
+/// all are read in parallel, and memory use does not grow with them.
 pub(super) struct Known(Vec<Reader>);
 
 impl Known {
-    /// Nothing.
+    /// No manifests.
     pub(super) const NONE: Self = Self(Vec::new());
 
     /// The manifests in a folder, of all shards.
@@ -152,13 +152,12 @@ impl Known {
 pub(super) struct Manifest {
     name: String,
     file: File,
-    /// Lines that are there already.
+    /// Number of lines that existed at the start.
     pub(super) lines: u64,
 }
 
 impl Manifest {
-    /// Opens or creates a manifest. One that is there is gone on with if `resume`; what follows its last whole line is cut
-    /// off.
+    /// Opens or creates a manifest. With `resume`, an existing one is continued; an incomplete last line is cut off.
     pub(super) fn open(path: &Path, resume: bool) -> Result<Self> {
         let name = path.display().to_string();
         let failed = |source| Error::io(&name, source);
@@ -195,7 +194,7 @@ impl Manifest {
 
     /// Appends a line.
     pub(super) fn write(&mut self, line: &str) -> Result<()> {
-        // In one piece, so that a process that is killed leaves a whole line or a part of one.
+        // In one write, so that a killed process leaves a whole line or the beginning of one.
         let written = self.file.write_all(format!("{line}\n").as_bytes());
         written.map_err(|source| Error::io(&self.name, source))
     }

@@ -1,8 +1,9 @@
-//! Sounds by the thousand, from a file of jobs, with exact labels.
+//! Renders thousands of sounds from a file of jobs, with exact labels.
 //!
-//! A file of jobs has an object of JSON a line, with the names of [`Request`](crate::request::Request) and of parameters.
-//! Values may be drawn by chance. Each job makes a file, and a line of the manifest, in the order of their numbers. A batch
-//! that was killed can be gone on with; its shards can be made anywhere. Files and manifest are the same bytes then.
+//! A file of jobs has one JSON object per line, with the names of [`Request`](crate::request::Request) and of
+//! parameters. Values may be drawn at random. Each job makes a file, and a line of the manifest; lines are in the order
+//! of the jobs' numbers. A killed batch can be resumed, and its shards can be rendered on different machines: files and
+//! manifest are the same bytes as without interruption.
 
 mod checks;
 mod draw;
@@ -21,12 +22,12 @@ use std::path::PathBuf;
 pub enum FileFormat {
     /// WAV.
     Wav,
-    /// FLAC, which has the samples of the WAV in less room. It has no floats, and rates up to 96 kHz.
+    /// FLAC, which stores the samples of the WAV in less space. It has no floats, and sample rates up to 96 kHz.
     Flac,
 }
 
 impl FileFormat {
-    /// How file names end.
+    /// The extension of file names.
     pub fn ending(self) -> &'static str {
         match self {
             Self::Wav => "wav",
@@ -66,32 +67,32 @@ impl Shard {
     }
 }
 
-/// A batch to make.
+/// The settings of a batch.
 #[derive(Clone, Debug)]
 pub struct Batch {
     /// The file of jobs.
     pub jobs: PathBuf,
-    /// The folder that everything goes to. It is made if it is not there.
+    /// The folder for all outputs. It is created if it does not exist.
     pub folder: PathBuf,
     /// The format of the files.
     pub format: FileFormat,
-    /// Seed of everything that is drawn.
+    /// Seed of all drawn values.
     pub seed: u64,
-    /// The part to make.
+    /// The shard to render.
     pub shard: Shard,
-    /// Whether to go on with a batch that is there.
+    /// Whether to resume an existing batch.
     pub resume: bool,
-    /// Jobs that are made at once; none for one a core.
+    /// Number of jobs at once; none for one per core.
     pub at_once: Option<u16>,
 }
 
-/// How far a batch is.
+/// Progress of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Done {
-    /// Jobs that are finished, those that were found finished included.
+    /// Finished jobs, including those that were finished before.
     pub jobs: u64,
-    /// Of these, jobs that were found finished.
+    /// Of these, the jobs that were finished before.
     pub found: u64,
-    /// All jobs of the part.
+    /// All jobs of the shard.
     pub of: u64,
 }

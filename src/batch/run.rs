@@ -1,4 +1,4 @@
-//! Makes the jobs of a batch on all cores, and writes their lines in order.
+//! Renders the jobs of a batch on all cores, and writes their manifest lines in order.
 
 use super::jobs::{Jobs, Task};
 use super::make::{file_of, has_sha256, make};
@@ -11,23 +11,23 @@ use std::fs;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// How many jobs may be finished while an earlier one is not: their lines wait in memory.
+/// How many jobs may be ahead of an unfinished one: their lines wait in memory.
 const WINDOW: u64 = if cfg!(test) { 4 } else { 1024 };
 
 impl Batch {
-    /// Makes all jobs of the part. Every line of the file of jobs is checked before the first is made. `progress` is called
-    /// after each job and within long ones, by several threads, and can end the work by returning an error.
+    /// Renders all jobs of the shard. Every line of the file of jobs is checked before the first job starts. `progress`
+    /// is called after each job and during long ones, by several threads, and can end the work by returning an error.
     ///
     /// Memory use does not grow with the number of jobs.
     ///
     /// # Errors
-    /// [`Error::Format`] with file, line and key for a job that is wrong; [`Error::Value`] if there is a batch already and it
-    /// is not to be gone on with, or if it is of other jobs; [`Error::Io`]; and the errors of `progress`. What is finished
-    /// stays, and can be gone on with.
+    /// [`Error::Format`] with file, line and key for an invalid job; [`Error::Value`] if a batch exists and is not to
+    /// be resumed, or if it has other jobs; [`Error::Io`]; and the errors of `progress`. Finished jobs are kept, and
+    /// the batch can be resumed.
     pub fn run(&self, progress: &(dyn Fn(Done) -> Result<()> + Sync)) -> Result<Done> {
         let name = manifest::name(self.shard.of());
         let path = self.folder.join(&name);
-        // Going on would cut its last line if that has no end.
+        // Resuming would cut off its last line if that has no line end.
         if self.own(&self.jobs).is_some() || same_file::is_same_file(&self.jobs, &path).unwrap_or(false) {
             let message = "this batch writes this file itself: expected another file of jobs, or another folder";
             return Err(Error::value(self.jobs.display().to_string(), message));
@@ -67,35 +67,35 @@ impl Batch {
     }
 }
 
-/// What is still to do.
+/// The jobs that are left.
 struct State<'a> {
     jobs: Jobs<'a>,
     known: Known,
-    /// Jobs that have been taken.
+    /// Number of jobs taken by the threads.
     taken: u64,
-    /// The first error, in order of time. Nothing is taken after it.
+    /// The first error that occurred. No job is taken after it.
     failed: Option<Error>,
 }
 
-/// What is finished.
+/// The finished jobs.
 struct Finished {
     manifest: Manifest,
-    /// Lines that the manifest had at the start.
+    /// Number of lines in the manifest at the start.
     written: u64,
-    /// The place of the next line, among the jobs of the part.
+    /// Index of the next line among the jobs of the shard.
     next: u64,
-    /// Finished lines that wait for earlier ones, by their places, and whether they were found.
+    /// Finished lines that wait for earlier ones, by their index, and whether each job was finished before.
     waiting: BTreeMap<u64, (String, bool)>,
-    /// Jobs before the next that were found finished.
+    /// How many of the jobs before `next` were finished before.
     found: u64,
 }
 
-/// The jobs that threads take, and the lines that they make of them.
+/// The queue from which the threads take jobs, and to which they return the lines.
 struct Queue<'a> {
     batch: &'a Batch,
     state: Mutex<State<'a>>,
     finished: Mutex<Finished>,
-    /// More lines are written, or something has failed.
+    /// Signalled when lines were written or a job has failed.
     advanced: Condvar,
     of: u64,
     progress: &'a (dyn Fn(Done) -> Result<()> + Sync),
@@ -106,7 +106,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Queue<'_> {
-    /// Makes one job after the other until there are none, or one has failed.
+    /// Takes and renders jobs until none are left, or one has failed.
     fn work(&self) {
         let work = || {
             while let Some((place, task, known)) = self.take()? {
@@ -118,7 +118,7 @@ impl Queue<'_> {
             Ok(Ok(())) => {}
             Ok(Err(error)) => self.fail(error),
             Err(panic) => {
-                // The others would wait for this job for ever.
+                // Otherwise the other threads would wait for this job forever.
                 self.fail(Error::Interrupted);
                 panic::resume_unwind(panic);
             }
@@ -128,12 +128,12 @@ impl Queue<'_> {
     /// Ends the work of all threads.
     fn fail(&self, error: Error) {
         lock(&self.state).failed.get_or_insert(error);
-        // Whoever has just seen that nothing has failed still holds the lock, and is woken up once it waits.
+        // A thread that has just checked `failed` holds this lock until it waits, and is then woken.
         drop(lock(&self.finished));
         self.advanced.notify_all();
     }
 
-    /// The next job, its place among those of the part, and its line if it was found finished.
+    /// The next job, its index in the shard, and its line if it was finished before.
     fn take(&self) -> Result<Option<(u64, Task, Option<Entry>)>> {
         let mut state = lock(&self.state);
         if state.failed.is_some() {
@@ -183,7 +183,7 @@ impl Queue<'_> {
         }
     }
 
-    /// Returns an error if a finished line is of another job.
+    /// Returns an error if a finished line belongs to another job.
     fn check_same(&self, task: &Task, entry: &Entry) -> Result<()> {
         let file = file_of(task.number, self.batch.format);
         let is_same = entry.job == task.drawn.line && entry.seed == task.drawn.request.seed && entry.file == file;
@@ -197,14 +197,14 @@ impl Queue<'_> {
         Err(Error::value(self.batch.folder.display().to_string(), message))
     }
 
-    /// Puts a finished line in its place, and writes all lines that wait for no other.
+    /// Stores a finished line, and writes all lines whose predecessors are written.
     fn put(&self, place: u64, line: String, was_found: bool) -> Result<()> {
         let mut finished = lock(&self.finished);
         finished.waiting.insert(place, (line, was_found));
         loop {
             let next = finished.next;
             let Some((line, was_found)) = finished.waiting.remove(&next) else { break };
-            // The first lines may be there already, from before.
+            // The first lines may exist from an earlier run.
             if next >= finished.written {
                 finished.manifest.write(&line)?;
             }
@@ -217,7 +217,7 @@ impl Queue<'_> {
 
     fn done(&self) -> Done {
         let finished = lock(&self.finished);
-        // Only what the manifest has: the rest is made again when the batch is gone on with.
+        // Counts only jobs in the manifest: others are rendered again when the batch is resumed.
         Done { jobs: finished.next, found: finished.found, of: self.of }
     }
 }
@@ -263,7 +263,7 @@ mod tests {
     fn jobs_that_become_fewer_are_an_error() {
         let folder = tempfile::tempdir().unwrap();
         let batch = Batch { at_once: Some(1), ..batch(folder.path()) };
-        // More than is read at once.
+        // Larger than the reader's buffer.
         fs::write(&batch.jobs, format!("{JOB}\n{}{JOB}\n", "\n".repeat(100_000))).unwrap();
         let shorten = |_: Done| -> Result<()> {
             fs::write(&batch.jobs, JOB).unwrap();

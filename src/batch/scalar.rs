@@ -1,4 +1,4 @@
-//! Values of a line: what can be drawn for which name, and values as text.
+//! Values in a line of jobs: the distributions that each name allows, and conversion to text.
 
 use super::draw::Draw;
 use crate::params::{Param, Unit};
@@ -6,18 +6,18 @@ use crate::request::quantity::decimal;
 use crate::request::{Name, Number};
 use serde_json::{Map, Value};
 
-/// What numbers a name takes.
+/// The numbers that an option or parameter accepts.
 pub(super) enum Scale {
-    /// A parameter's.
+    /// The numbers of a parameter.
     Parameter(Param),
-    /// An option's.
+    /// The numbers of an option.
     Option(Number),
-    /// None: it can only be chosen.
+    /// No numbers: values can only be chosen from a list.
     Words,
 }
 
 impl Scale {
-    /// That of what has these keys in a line.
+    /// The scale of the value with these keys in a line.
     pub(super) fn of(path: &[String]) -> Self {
         let param = match path {
             [set, name] if set == "set" => Param::from_id(name),
@@ -31,7 +31,7 @@ impl Scale {
         }
     }
 
-    /// Reads how a value is drawn: an object with one key.
+    /// Reads a distribution: an object with one key.
     pub(super) fn read(&self, object: Map<String, Value>) -> Result<Draw, String> {
         let mut keys = object.into_iter();
         let expected = "expected a value, or one of uniform, log_uniform, integer, normal, choice";
@@ -84,7 +84,7 @@ impl Scale {
         }
     }
 
-    /// The deviation of a bell curve, which need not be in the range of the parameter.
+    /// The standard deviation of a normal distribution, which may be outside the parameter's range.
     fn deviation(&self, value: &Value) -> Result<f64, String> {
         match (self, value) {
             (Self::Parameter(param), Value::String(text)) => {
@@ -118,7 +118,7 @@ impl Scale {
     }
 }
 
-/// A value as people write it.
+/// A value as the command line would take it.
 pub(super) fn text_of(value: &Value) -> Result<String, String> {
     match value {
         Value::String(text) => Ok(text.clone()),

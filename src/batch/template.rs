@@ -1,4 +1,4 @@
-//! A line of a file of jobs: the options of a request, some of them to be drawn.
+//! A line of a file of jobs: the options of a request, some of them with random values.
 
 use super::Batch;
 use super::draw::{Chance, Draw};
@@ -8,10 +8,10 @@ use crate::request::{Name, Request};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
-/// How many jobs a line makes.
+/// The key for the number of jobs that a line makes.
 const REPEAT: &str = "repeat";
 
-/// The options that hold others.
+/// The options that contain other keys.
 const SET: &str = "set";
 const CHANNEL: &str = "channel";
 
@@ -19,17 +19,19 @@ const CHANNEL: &str = "channel";
 const PRESET: &str = "preset";
 const PROGRAMS: &str = "programs";
 
-/// Options that can contradict each other, or the format of the files, whatever the others are.
+/// Groups of options that can contradict each other or the format of the files; the other options do not matter for
+/// this.
 const TOGETHER: [&[&str]; 4] =
     [&["song", "note", "scale", "keymap"], &["bits", "dither"], &["normalize", "gain_db"], &["rate"]];
 
-/// How many combinations of them are checked before the first job is made. Others are found when they are drawn.
+/// How many of their combinations are checked before the first job starts. Other contradictions are found when they are
+/// drawn.
 const MOST_COMBINATIONS: usize = 1 << 16;
 
-/// How many names of sounds are remembered as read, so that memory use does not grow with the number of lines.
+/// How many names of sounds are remembered as checked: the limit keeps memory use independent of the number of lines.
 const MOST_NAMES: usize = 1 << 12;
 
-/// What is wrong with a line: a key, and a message.
+/// An error in a line: a key and a message.
 pub(super) type Fault = (String, String);
 
 /// A value of a line.
@@ -42,29 +44,29 @@ enum Part {
 /// One of the options of a line.
 #[derive(Clone, Debug)]
 struct Entry {
-    /// Its keys in the line: an option, or an option and what it sets.
+    /// Its keys in the line: an option, or an option and a key inside it.
     path: Vec<String>,
     part: Part,
 }
 
-/// A line.
+/// A parsed line.
 #[derive(Clone, Debug)]
 pub(super) struct Template {
     entries: Vec<Entry>,
-    /// How many jobs it makes.
+    /// Number of jobs that the line makes.
     pub(super) repeat: u64,
 }
 
-/// A job as drawn.
+/// A job with its drawn values.
 #[derive(Clone, Debug)]
 pub(super) struct Drawn {
     pub(super) request: Request,
-    /// The line with what was drawn in its place.
+    /// The line, with drawn values in place of the distributions.
     pub(super) line: Map<String, Value>,
 }
 
 impl Template {
-    /// Reads a line, and checks every value that it can have.
+    /// Reads a line, and checks the possible values.
     pub(super) fn parse(line: &str, batch: &Batch) -> Result<Self, Fault> {
         let whole = |message: String| ("line".to_owned(), message);
         let value: Value = serde_json::from_str(line).map_err(|error| whole(format!("no JSON: {error}")))?;
@@ -86,14 +88,14 @@ impl Template {
                 (_, value) => entries.push(Entry::new(vec![key], value)?),
             }
         }
-        // In the order of names, whatever the order in the file: then the same job is written in the same way.
+        // Sorted by name: the same job is written in the same way, whatever the order in the file.
         entries.sort_by(|a, b| a.path.cmp(&b.path));
         let template = Self { entries, repeat };
         template.check(batch)?;
         Ok(template)
     }
 
-    /// Checks every end of what is drawn, every choice, and what these say together. Reads nothing.
+    /// Checks both ends of each distribution, every choice, and their combinations. Reads no files.
     fn check(&self, batch: &Batch) -> Result<(), Fault> {
         for entry in &self.entries {
             for candidate in entry.candidates() {
@@ -109,7 +111,7 @@ impl Template {
         TOGETHER.iter().try_for_each(|options| self.check_together(options, batch))
     }
 
-    /// Reads the kits and lists of programs that are not among those `read` before. Returns an error if one of them names a file
+    /// Reads the kits and lists of programs that are not in `read` yet. Returns an error if one of them names a file
     /// that the batch writes.
     pub(super) fn check_sounds(&self, batch: &Batch, read: &mut BTreeSet<(bool, String)>) -> Result<(), Fault> {
         for entry in self.entries.iter().filter(|entry| entry.is_sound()) {
@@ -131,7 +133,7 @@ impl Template {
         Ok(())
     }
 
-    /// Checks all combinations of some options, each with one value of the others.
+    /// Checks all combinations of some options, each with one value of the other options.
     fn check_together(&self, options: &[&str], batch: &Batch) -> Result<(), Fault> {
         let (mut others, mut varied) = (Request::default(), Vec::new());
         for entry in &self.entries {
@@ -160,7 +162,7 @@ impl Template {
         Ok(())
     }
 
-    /// Draws a job.
+    /// Draws the values of a job.
     pub(super) fn draw(&self, chance: Chance) -> Result<Drawn, Fault> {
         let mut request = Request { seed: chance.seed(), ..Request::default() };
         let mut line = Map::new();
@@ -201,12 +203,12 @@ impl Entry {
         Ok(Self { path, part })
     }
 
-    /// What is drawn: the parameter, or the option.
+    /// The name of the parameter or option.
     fn name(&self) -> &str {
         self.path.last().map_or("", String::as_str)
     }
 
-    /// Its values, of which a drawn number has its ends, or two of a bell curve.
+    /// Values to check: all choices, both ends of a range, or two values of a normal distribution.
     fn candidates(&self) -> Vec<Value> {
         match &self.part {
             Part::Fixed(value) => vec![value.clone()],
@@ -226,7 +228,7 @@ impl Entry {
         self.path.first().is_some_and(|option| FILES.contains(&option.as_str()))
     }
 
-    /// Whether it names a sound or a list of sounds, whose files may name others.
+    /// Whether it names a sound or a list of sounds, whose files may name more files.
     fn is_sound(&self) -> bool {
         self.path.first().is_some_and(|option| [PRESET, CHANNEL, PROGRAMS].contains(&option.as_str()))
     }
@@ -244,12 +246,12 @@ impl Entry {
             [name] if Name::find(name).is_none() => Err(unknown(name)),
             path => request.set(&path.join("."), &text),
         };
-        // The message of a parameter begins with its name, which the key says already.
+        // The message of a parameter begins with its name, which the key already shows.
         set.map_err(|message| fault(message.trim_start_matches(&format!("{}: ", self.name())).to_owned()))
     }
 }
 
-/// Whether a key is a parameter, which may stand beside the options.
+/// Whether a key is a parameter; parameters may appear beside the options.
 fn is_parameter(name: &str) -> bool {
     Param::from_id(name).is_some() && Name::find(name).is_none()
 }
@@ -260,7 +262,7 @@ fn unknown(name: &str) -> String {
     format!("there is no option or parameter ‘{name}’{near}")
 }
 
-/// The key of an option as the command calls it.
+/// The key of an option from its name on the command line.
 pub(super) fn key_of(option: &str) -> String {
     option.trim_start_matches("--").replace('-', "_")
 }

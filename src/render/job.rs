@@ -1,4 +1,4 @@
-//! What to render and how, and the result of a rendering.
+//! A rendering job with its options, and the result of a rendering.
 
 use crate::dsp::limiter::Work as LimiterWork;
 use crate::engine::synth::SAMPLE_RATES;
@@ -47,14 +47,14 @@ pub struct Job<'a> {
     pub channels: &'a [(u8, Arc<Kit>)],
     /// The kits that program changes select from.
     pub programs: &'a [Arc<Kit>],
-    /// How channels are mixed; none for their plain sum.
+    /// The mix of the channels; with none, they are only added.
     pub mix: Option<&'a Mix>,
     /// The pitches of the keys, on all channels.
     pub tuning: &'a Tuning,
-    /// Sound that comes in with the first frame, at the sample rate of the options: it drives the notes of sounds that have
-    /// a level for it. Empty for none.
+    /// Input sound from the first frame on, at the sample rate of the options. It drives the notes of sounds whose
+    /// input level is above the minimum. Empty for none.
     pub input: &'a [f32],
-    /// How.
+    /// The options.
     pub options: Options,
 }
 
@@ -68,7 +68,7 @@ pub struct Rendered {
     /// The maximum number of simultaneous voices of each channel, added up over all channels: an upper bound of the
     /// number of voices that sounded at the same time.
     pub voices_used: usize,
-    /// What the limiter has done.
+    /// Gain reduction by the limiter.
     pub limiter: LimiterWork,
 }
 

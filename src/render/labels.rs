@@ -9,12 +9,12 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A mode of a note.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModeLabel {
-    /// Hz, at rest: without what bends it for a while, as sweep, glide, vibrato, wheels and tension do.
+    /// Frequency in Hz without temporary changes of pitch by sweep, glide, vibrato, wheels or tension.
     pub frequency: f64,
-    /// T60 in seconds after the strike, before a release damps it.
+    /// T60 in seconds after the strike, without the damping by a release.
     pub t60: f64,
-    /// Amplitude in dB of full scale at [`NoteLabel::free`], with the gains of sound, note, channel and mix; before the pan
-    /// of single modes, the effects and the limiter. −∞ for a mode at rest.
+    /// Amplitude in dBFS at [`NoteLabel::free`], with the gains of sound, note, channel and mix, but without the pan of
+    /// single modes, the effects and the limiter. −∞ for a mode at rest.
     pub level_db: f64,
 }
 
@@ -31,36 +31,36 @@ pub struct NoteLabel {
     pub velocity: f32,
     /// Which of the note's unison voices it is, from 0.
     pub unison: usize,
-    /// The frame at which it is struck.
+    /// The frame of the strike.
     pub onset: u64,
-    /// The frame at which levels are taken: mallet, pluck and noise have let go, and the modes ring freely unless a bow or
-    /// input drives them.
+    /// The frame at which the levels are measured: mallet, pluck and noise have ended, and the modes ring freely unless
+    /// a bow or input drives them.
     pub free: u64,
     /// Its modes, in the order of the sound's table.
     pub modes: Vec<ModeLabel>,
 }
 
-/// Reads labels from the engine while it plays a job, so they are as exact as its state.
+/// Reads labels from the engine's state while it plays a job, so that they are exact.
 pub(super) struct Labels {
-    /// The frames of the song's events that are still to come, the next one last.
+    /// The frames of the song's remaining events; the next one is last.
     events: Vec<u64>,
     frame: u64,
-    /// By the number of the part, of the note and of the unison voice.
+    /// All labels, by the numbers of the part, of the note and of the unison voice.
     all: BTreeMap<(usize, u64, usize), NoteLabel>,
-    /// Of these, the ones whose strike is under way.
+    /// Of these, the ones whose strike has not ended.
     open: BTreeSet<(usize, u64, usize)>,
 }
 
 impl Labels {
-    /// Of a job that has not begun.
+    /// For a job that has not begun.
     pub(super) fn new(job: &Job) -> Self {
         let sample_rate = f64::from(job.options.sample_rate);
         let events = job.song.events.iter().rev().map(|event| event.frame(sample_rate)).collect();
         Self { events, frame: 0, all: BTreeMap::new(), open: BTreeSet::new() }
     }
 
-    /// The next piece to play, at most so many frames. It begins with an event or ends before the next, and is short if it
-    /// may begin with a strike, so that a label is read before anything changes the note.
+    /// Length of the next piece to play, at most `most` frames. It ends before the next event, and is short if a strike
+    /// may begin or is in progress, so that a label is read before the note changes.
     pub(super) fn piece(&mut self, most: usize) -> usize {
         let mut piece = most;
         if self.pass_events() || !self.open.is_empty() {
@@ -72,25 +72,25 @@ impl Labels {
         }
     }
 
-    /// Looks at the voices after the frames of a piece.
+    /// Reads the voices after a piece was played.
     pub(super) fn read(&mut self, ensemble: &mut Ensemble, frames: usize) {
         let piece = [self.frame, self.frame + frames as u64];
         self.frame = piece[1];
         let gain = ensemble.gain();
-        // What is not seen again was silenced during its strike.
+        // Voices that do not appear again were silenced during their strike.
         let open = std::mem::take(&mut self.open);
         ensemble.each_voice(&mut |part, voice| self.look(part, &voice, gain, piece, &open));
     }
 
-    /// Passes the events of the present frame. Returns whether there are any.
+    /// Drops the events up to the present frame. Returns whether there were any.
     fn pass_events(&mut self) -> bool {
         let before = self.events.len();
         while self.events.pop_if(|event| *event <= self.frame).is_some() {}
         self.events.len() < before
     }
 
-    /// Looks at a voice of a part after the frames of a piece. `gain` is that of the mix; `open` are the voices whose strike
-    /// was under way before.
+    /// Reads a voice of a part after a piece was played. `gain` is that of the mix; `open` has the voices whose strike
+    /// had not ended before.
     fn look(
         &mut self,
         part: usize,
@@ -126,8 +126,7 @@ impl Labels {
         }
     }
 
-    /// All labels, in order of their onsets. Voices that were silenced during their strike have the levels that they had
-    /// last.
+    /// All labels, in order of their onsets. Voices that were silenced during their strike have their last levels.
     pub(super) fn finish(self) -> Vec<NoteLabel> {
         let mut labels: Vec<NoteLabel> = self.all.into_values().collect();
         labels.sort_by_key(|label| (label.onset, label.channel));

@@ -14,7 +14,7 @@ pub struct Meter {
     loudness: EbuR128,
 }
 
-/// What a [`Meter`] has measured.
+/// The levels that a [`Meter`] has measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levels {
     /// Largest absolute sample that is finite; 1 is full scale.

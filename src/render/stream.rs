@@ -1,4 +1,4 @@
-//! Renders a job block by block, on as many cores as there are channels that sound.
+//! Renders a job block by block, with the sounding channels on several cores.
 
 use super::job::{Job, Rendered};
 use super::labels::Labels;
@@ -25,7 +25,7 @@ impl Job<'_> {
         self.render_labelled(None, sink)
     }
 
-    /// As [`Job::render`], and reads labels on the way.
+    /// Like [`Job::render`], and also reads labels.
     pub(super) fn render_labelled(
         &self,
         mut labels: Option<&mut Labels>,
@@ -58,11 +58,11 @@ impl Job<'_> {
 struct Stream<'a> {
     ensemble: Ensemble,
     song: SongCursor<&'a Song>,
-    /// Events of the frames that are being rendered now.
+    /// Events of the frames that are being rendered.
     events: Vec<Event>,
-    /// What comes in as sound.
+    /// The input sound.
     input: &'a [f32],
-    /// The frames of it that are being rendered now, with silence after its end.
+    /// The input frames that are being rendered, with silence after the end of the input.
     input_now: Vec<f32>,
     known_frames: Option<u64>,
 }
@@ -104,7 +104,7 @@ impl<'a> Stream<'a> {
         filled
     }
 
-    /// As [`Stream::fill`], from the start on, and reads labels. The samples are the same.
+    /// Like [`Stream::fill`], and also reads labels; to be used from the start on. The samples are the same.
     fn fill_labelled(&mut self, labels: &mut Labels, left: &mut [f32], right: &mut [f32]) -> usize {
         let mut filled = 0;
         while filled < left.len() {
@@ -144,15 +144,15 @@ impl<'a> Stream<'a> {
         if left.len() < SHARED_FRAMES {
             self.ensemble.process_with_input(&self.events, &self.input_now, left, right);
         } else {
-            // One part at a time: only few channels sound, and no two of them should wait for the same core.
+            // One part at a time: only few channels sound, and two of them should not wait for the same core.
             let each =
                 |parts: &mut [_], play: &(dyn Fn(&mut _) + Sync)| parts.par_iter_mut().with_max_len(1).for_each(play);
             self.ensemble.process_by(each, &self.events, &self.input_now, left, right);
         }
     }
 
-    /// Takes the next frames of the input. Silence comes in after its end, as in a host: a note that nothing drives moves in
-    /// other steps than one that silence drives, so their bits differ.
+    /// Takes the next frames of the input. After its end, the input is silence, as in a host: notes with a silent input
+    /// are computed in other steps than notes without an input, so that their bits would differ.
     fn follow_input(&mut self, frames: usize) {
         self.input_now.clear();
         if !self.input.is_empty() {

@@ -50,7 +50,7 @@ pub struct Report {
     pub frames: u64,
     /// Length in seconds.
     pub seconds: f64,
-    /// How much of it comes after the end of the song, in seconds.
+    /// Length of the part after the end of the song, in seconds.
     pub tail_seconds: f64,
     /// Largest finite sample in dBFS, before rounding to integers; `None` for silence.
     pub peak_dbfs: Option<f64>,
@@ -61,7 +61,7 @@ pub struct Report {
     /// Number of samples that are infinite or NaN. There should be none; an integer format contains silence or full
     /// scale in their place.
     pub non_finite: u64,
-    /// Gain in dB that [`Level`] resulted in.
+    /// Gain in dB that was applied to reach the [`Level`].
     pub gain_db: f64,
     /// Number of samples beyond full scale, which an integer format clips.
     pub clipped: u64,
@@ -92,7 +92,7 @@ pub fn to_wav(
     write(job, delivery, output, None, progress)
 }
 
-/// As [`to_wav`], and gives the labels of all notes in order of their onsets. Their levels are those of the file.
+/// Like [`to_wav`]; also returns the labels of all notes in order of their onsets. Their levels are those of the file.
 ///
 /// # Errors
 /// As [`to_wav`].

@@ -1,4 +1,4 @@
-//! What to render and how, by the names that the command, batches and Python share.
+//! Requests to render, with the option names that the command, batches and Python share.
 
 mod names;
 mod playable;

@@ -1,28 +1,28 @@
-//! The options of a request by name, with values as people write them.
+//! The options of a request by name, with values as text.
 
 use super::quantity;
 use super::render::Request;
 use crate::render::SAMPLE_RATES;
 
-/// A number that an option takes.
+/// The numbers that an option accepts.
 #[derive(Clone, Copy)]
 pub struct Number {
-    /// Reads it, with or without its unit.
+    /// Parses a number, with or without its unit.
     pub parse: fn(&str) -> Result<f64, String>,
     /// Smallest value.
     pub min: f64,
     /// Largest value.
     pub max: f64,
-    /// Whether it is whole.
+    /// Whether only whole numbers are accepted.
     pub is_whole: bool,
 }
 
 /// An option of a [`Request`].
 pub struct Name {
-    /// As in a batch and in Python. The command writes `-` for `_`.
+    /// Its name in batches and in Python. The command writes `-` for `_`.
     pub name: &'static str,
     set: fn(&mut Request, &str) -> Result<(), String>,
-    /// The number that it takes; none if it is not a number.
+    /// The numbers that it accepts; none if it takes no number.
     pub number: Option<Number>,
 }
 
@@ -37,7 +37,7 @@ impl Request {
     /// The options.
     pub const NAMES: &[Name] = NAMES;
 
-    /// Sets an option to a value as people write it. Options that the command can repeat are added to.
+    /// Sets an option from text. For options that the command can repeat, the value is added.
     ///
     /// # Errors
     /// A message that says what would be right.

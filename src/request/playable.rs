@@ -1,4 +1,4 @@
-//! Loads presets and kits by the names that people give.
+//! Loads presets and kits by name or path.
 
 use crate::error::Result;
 use crate::io::Inputs;
@@ -7,8 +7,9 @@ use crate::preset::{Playable, is_file_name};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// Loads the preset or kit with this name: a file if it looks like a file name, else a sound of the factory, else one of
-/// the user's own, whose file then counts as an input. `warn` is called with each retired parameter that was replaced.
+/// Loads the preset or kit with this name: a file if it looks like a file name, otherwise a factory sound, otherwise
+/// one of the user's own, whose file then counts as an input. `warn` is called for each retired parameter that was
+/// replaced.
 ///
 /// # Errors
 /// As [`Playable::read`], and [`Error::Value`](crate::Error::Value) for a name that no sound has.

@@ -1,4 +1,4 @@
-//! What the program changes of MIDI select, and warnings where that is not what was asked for.
+//! The sounds that MIDI program changes select, and warnings if they differ from the requested ones.
 
 use super::playable::playable;
 use crate::engine::EventKind;
@@ -48,7 +48,7 @@ pub(super) fn used(song: &Song) -> BTreeSet<u8> {
     programs.collect()
 }
 
-/// The kits of all programs of a list that are `wanted` and have a sound. `kit` makes one of what was loaded.
+/// The kits of all `wanted` programs of a list that have a sound. `kit` makes a kit from a loaded sound.
 pub(super) fn kits(
     programs: &Programs,
     wanted: impl Fn(u8) -> bool,
@@ -63,7 +63,7 @@ pub(super) fn kits(
     programs.kits(wanted, load)
 }
 
-/// The number of a program as musicians count: from 1.
+/// The number of a program as shown to the user: counted from 1.
 fn program(number: u8) -> String {
     match number.checked_sub(MELODIC) {
         None => format!("{}", number + 1),
@@ -79,7 +79,7 @@ pub(super) fn warn_of_missing(song: &Song, programs: &Programs, instead: &str, w
     }
 }
 
-/// Warns of notes that do not play with the kit that the user `asked` for, because of program changes.
+/// Warns of notes that program changes take away from the kit that the user `asked` for.
 pub(super) fn warn_of_changes(
     song: &Song,
     asked: [Option<&Arc<Kit>>; 16],

@@ -103,7 +103,7 @@ pub fn gain_db(text: &str) -> Result<f64, String> {
     number(text, &[("", 1.0), ("dB", 1.0)], -120.0..=120.0, " dB")
 }
 
-/// A level of error in dBFS.
+/// Parses a tolerance in dBFS, −300 to 0.
 ///
 /// # Errors
 /// A message that says what would be right.
@@ -184,7 +184,7 @@ pub fn setting(text: &str) -> Result<(Param, f32), String> {
 }
 
 fn no_parameter(id: &str) -> String {
-    // The user may have typed the name that windows show.
+    // The user may have typed the parameter's displayed name.
     let named = PARAMS.iter().find(|info| info.name.eq_ignore_ascii_case(id)).map(|info| format!("‘{}’", info.id));
     match named.or_else(|| crate::error::nearest(id, PARAMS.iter().map(|info| info.id))) {
         Some(near) => format!("there is no parameter ‘{id}’; the nearest is {near}"),
@@ -192,7 +192,8 @@ fn no_parameter(id: &str) -> String {
     }
 }
 
-/// The number as people write it: 0.3, not 0.30000001192092896, which is the `f32` converted directly. Allocates.
+/// The number with its shortest decimal digits: 0.3, not 0.30000001192092896, which is the `f32` converted directly.
+/// Allocates.
 pub fn decimal(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(value.into())
 }

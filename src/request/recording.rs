@@ -1,4 +1,4 @@
-//! Reads the sound files that are given by name.
+//! Reads sound files by path.
 
 use crate::error::{Error, Result};
 use crate::io::Inputs;
@@ -6,15 +6,15 @@ use crate::io::sound_file::{self, Recording};
 use std::io::{Seek, SeekFrom};
 use std::path::Path;
 
-/// Reads a sound file, or standard input for `-`. Also gives the name by which errors call it. `warn` is called with what
-/// is wrong with it.
+/// Reads a sound file, or standard input for `-`. Also returns its name for error messages. `warn` is called for each
+/// problem in the file.
 ///
 /// # Errors
 /// As [`sound_file::read`], and [`Error::Io`].
 pub fn recording(path: &Path, inputs: &mut Inputs, warn: &mut dyn FnMut(&str)) -> Result<(Recording, String)> {
     let (file, name) = if path == Path::new("-") {
         let failed = |source| Error::io("stdin", source);
-        // A sound file is not read from front to back.
+        // Reading a sound file needs seeking, which stdin does not support.
         let mut file = tempfile::tempfile().map_err(failed)?;
         std::io::copy(&mut inputs.stdin()?.lock(), &mut file).map_err(failed)?;
         file.seek(SeekFrom::Start(0)).map_err(failed)?;

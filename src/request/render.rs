@@ -1,4 +1,4 @@
-//! A request to render something, and what it takes to do so.
+//! A request to render, and the loaded data for it.
 
 use super::recording::recording;
 use super::song::SongRequest;
@@ -14,14 +14,14 @@ use std::path::{Path, PathBuf};
 /// Frames processed at once, unless [`Request::block`] says otherwise.
 const BLOCK: usize = 4096;
 
-/// What `sprung render` is asked for, apart from its output. The fields have the names of the options.
+/// The options of `sprung render`, except its output. The fields have the names of the options.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// MIDI file; `-` is stdin. Either it or notes must be there.
+    /// MIDI file; `-` is stdin. Either a song or notes must be given.
     pub song: Option<PathBuf>,
     /// Notes to strike together: names, keys or frequencies.
     pub note: Vec<String>,
-    /// Sound file that comes in.
+    /// Sound file for the input.
     pub input: Option<PathBuf>,
     /// Velocity of the notes, 1–127.
     pub velocity: u8,
@@ -41,9 +41,9 @@ pub struct Request {
     pub dither: bool,
     /// Whether to deliver one channel.
     pub mono: bool,
-    /// What follows the song or the notes.
+    /// The tail after the song or the notes.
     pub tail: Tail,
-    /// Level to bring the sound to, in place of the gain.
+    /// Level to normalise to, in place of the gain.
     pub normalize: Option<Level>,
     /// Gain in dB.
     pub gain_db: f64,
@@ -74,7 +74,7 @@ impl Default for Request {
     }
 }
 
-/// All that a rendering needs, loaded.
+/// All loaded data that a rendering needs.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// The song, or the notes as one.
@@ -106,8 +106,8 @@ impl Request {
         self.sound.tuning.check_notes(&self.note)
     }
 
-    /// The files that it may name: song, input, presets and kits, programs, scale and keymap. A preset's name is one, too,
-    /// since it may be a file.
+    /// The files that it may name: song, input, presets and kits, programs, scale and keymap. Names of presets are
+    /// included, since they may be files.
     pub(crate) fn files(&self) -> impl Iterator<Item = &Path> {
         let tuning = &self.sound.tuning;
         let paths = [&self.song, &self.input, &tuning.scale, &tuning.keymap];
@@ -116,7 +116,7 @@ impl Request {
         paths.into_iter().flatten().map(PathBuf::as_path).chain(presets).chain(channels)
     }
 
-    /// Reads the song, the sounds and the input. `warn` is called with what deserves a warning.
+    /// Reads the song, the sounds and the input. `warn` is called for each warning.
     ///
     /// # Errors
     /// As [`Request::check`] and [`SoundRequest::load`]; those of files that cannot be read.
@@ -149,7 +149,7 @@ impl Request {
     }
 
     fn chord(&self, kit: &Kit) -> Result<Song> {
-        // Frequencies are converted with the sound's own A4, so that 440 Hz is 440 Hz with every sound.
+        // Frequencies are converted to keys with the sound's own A4, so that 440 Hz is 440 Hz with every sound.
         let a4_hz = f64::from(kit.values().get(Param::Tuning));
         let keys: std::result::Result<Vec<f64>, String> = self.note.iter().map(|note| parse_key(note, a4_hz)).collect();
         let keys = keys.map_err(|message| Error::value("--note", message))?;

@@ -15,7 +15,7 @@ pub struct SongRequest {
 }
 
 impl SongRequest {
-    /// Reads the song; `-` is stdin. `warn` is called with each repair.
+    /// Reads the song; `-` is stdin. `warn` is called for each repair.
     ///
     /// # Errors
     /// As [`Song::read`].

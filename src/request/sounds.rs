@@ -16,15 +16,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::{OsStr, OsString};
 use std::sync::Arc;
 
-/// What sounds a song is played with, by their names.
+/// The names of the sounds that play a song.
 #[derive(Clone, Debug)]
 pub struct SoundRequest {
-    /// Factory preset or kit, or preset or kit file, that plays what nothing else says otherwise. Without one, songs play
-    /// the first of the programs, notes `init`.
+    /// Factory preset or kit, or preset or kit file, for channels without another choice. Without it, songs use the
+    /// first of the programs, and notes use `init`.
     pub preset: Option<OsString>,
     /// Presets, kits or files that single channels, from 0, start with.
     pub channels: Vec<(u8, String)>,
-    /// What program changes select: `gm`, `none` or a file.
+    /// The sounds that program changes select: `gm`, `none` or a file.
     pub programs: OsString,
     /// Parameters to set in every preset used.
     pub set: Vec<(Param, f32)>,
@@ -46,18 +46,18 @@ pub struct Sounds {
     pub kit: Arc<Kit>,
     /// Initial kits of single channels, from 0.
     pub channels: Vec<(u8, Arc<Kit>)>,
-    /// The kits that program changes select: melodic sounds, then drum kits. None if they select nothing.
+    /// The kits that program changes select: melodic sounds, then drum kits. Empty if they select nothing.
     pub programs: Vec<Arc<Kit>>,
-    /// The list that they come from.
+    /// The list that the programs come from.
     list: Option<Programs>,
-    /// How the channels of a song are mixed; none for their plain sum.
+    /// The mix of a song's channels; with none, they are only added.
     pub mix: Option<Mix>,
     /// The tuning of the keys.
     pub tuning: Tuning,
 }
 
 impl Sounds {
-    /// Whether any of the sounds can be driven by sound that comes in.
+    /// Whether an input can drive any of the sounds.
     pub(super) fn take_input(&self) -> bool {
         let kits = [&self.kit].into_iter().chain(self.channels.iter().map(|(_, kit)| kit)).chain(&self.programs);
         let level = Param::InputLevel.info();
@@ -69,12 +69,12 @@ impl Sounds {
 }
 
 impl SoundRequest {
-    /// Loads the presets and kits, sets the parameters of all sounds, and reads the tuning. Program changes of the `song`
-    /// then have the numbers of their kits; without a song, all programs are loaded if it `is_live`. `warn` is called
-    /// with what deserves a warning. Allocates, and reads files.
+    /// Loads the presets and kits, sets the parameters of all sounds, and reads the tuning. Program changes of the
+    /// `song` are changed to the numbers of their kits. Without a song, all programs are loaded if it `is_live`. `warn`
+    /// is called for each warning. Allocates, and reads files.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Format`] for files that cannot be read, [`Error::Value`] for names that nothing has.
+    /// [`Error::Io`] and [`Error::Format`] for files that cannot be read, [`Error::Value`] for unknown names.
     pub fn load(
         &self,
         song: Option<&mut Song>,
@@ -92,7 +92,7 @@ impl SoundRequest {
             }
             used(song)
         });
-        // What channels start with is made once, even if program changes select it, too.
+        // The initial kits are loaded only once, even if program changes select them too.
         let starts_with_first = is_free && has_song;
         let starts_with_drums = is_free && has_drums && self.channels.iter().all(|(taken, _)| *taken != DRUM_CHANNEL);
         if let Some(used) = &mut used {
@@ -119,7 +119,7 @@ impl SoundRequest {
         }
         channels.extend(program(MELODIC).filter(|_| starts_with_drums).map(|drums| (DRUM_CHANNEL, drums)));
         let programs = made.into_iter().map(|made| made.unwrap_or_else(|| kit.clone())).collect();
-        // Whoever sets a space gives each channel one of its own.
+        // If the user sets the space, every channel has its own, and the shared one is not used.
         let sets_space = self.set.iter().any(|(param, _)| *param == Param::Space);
         let mut mix = list.as_ref().filter(|_| has_song).map(|list| list.mix.clone());
         if let Some(mix) = mix.as_mut().filter(|_| sets_space) {
@@ -128,8 +128,8 @@ impl SoundRequest {
         Ok(Sounds { kit, channels, programs, mix, list, tuning: self.tuning.read(inputs)? })
     }
 
-    /// Opens every file that is read for these names: of a kit and a list of programs also the files that they name. What
-    /// cannot be read now is left out, and is an error when it is loaded.
+    /// Opens every file that loading these sounds would read, including the files that kits and lists of programs name.
+    /// Files that cannot be read are left out; they give an error when they are loaded.
     #[cfg(feature = "batch")]
     pub(crate) fn files(&self) -> Inputs {
         let mut inputs = Inputs::default();
@@ -147,8 +147,8 @@ impl SoundRequest {
         inputs
     }
 
-    /// Warns of program changes that have no sound or lead away from what the user asked for, of keys that the tuning does
-    /// not map, and of what stays silent.
+    /// Warns of program changes without a sound or away from the requested sound, of keys that the tuning does not map,
+    /// and of channels and notes that stay silent.
     pub fn warn(&self, song: &Song, sounds: &Sounds, warn: &mut dyn FnMut(&str)) {
         if let Some(list) = &sounds.list {
             programs::warn_of_missing(song, list, "what channels start with", warn);
@@ -158,8 +158,8 @@ impl SoundRequest {
         self.warn_of_silence(song, sounds, warn);
     }
 
-    /// The kit that was asked for for each channel; none if neither a preset for all channels nor one for this channel
-    /// was given.
+    /// The kit that the user asked for on each channel; none if neither a preset for all channels nor one for this
+    /// channel was given.
     fn asked_for<'a>(&self, sounds: &'a Sounds) -> [Option<&'a Arc<Kit>>; 16] {
         let mut asked = [self.preset.is_some().then_some(&sounds.kit); 16];
         sounds.channels[..self.channels.len()]
@@ -168,9 +168,8 @@ impl SoundRequest {
         asked
     }
 
-    /// Warns of channels that were given a sound but have no events, and of notes on keys without a pad in their kit.
-    /// Notes are not enough to tell that a channel is used: those of
-    /// an MPE zone are on other channels than their master's.
+    /// Warns of channels that were given a sound but have no events, and of notes on keys without a pad in their kit. A
+    /// channel without notes may still be used: the notes of an MPE zone are on other channels than its master channel.
     fn warn_of_silence(&self, song: &Song, sounds: &Sounds, warn: &mut dyn FnMut(&str)) {
         let programs = &sounds.programs;
         let mut playing = [&sounds.kit; 16];
@@ -207,7 +206,7 @@ impl SoundRequest {
         }
     }
 
-    /// The kit of a preset or kit, with the parameters that are to be set.
+    /// The kit of a preset or kit, with the request's parameters set.
     pub fn kit(&self, mut playable: Playable) -> Arc<Kit> {
         for preset in playable.presets_mut() {
             self.set.iter().for_each(|(param, value)| preset.patch.set(*param, *value));

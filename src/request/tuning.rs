@@ -1,4 +1,4 @@
-//! The tuning of a request: Scala's files.
+//! The tuning of a request, from Scala files.
 
 use crate::engine::EventKind;
 use crate::error::{Error, Result};
@@ -10,7 +10,7 @@ use crate::units::key_from_note_name;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// How the keys are tuned: by the files of Scala, or in twelve equal steps without a scale.
+/// The tuning of the keys: Scala files, or twelve equal steps without a scale.
 #[derive(Clone, Debug, Default)]
 pub struct TuningRequest {
     /// Scale (.scl).
@@ -41,7 +41,7 @@ impl TuningRequest {
     }
 
     /// Returns an error for notes that a scale cannot tune: those between two keys. A key that is given twice is an
-    /// error too, since the second note would sound on the key beside it.
+    /// error too, since the second note would sound on the neighbouring key.
     pub(super) fn check_notes(&self, notes: &[String]) -> Result<()> {
         let mut keys = BTreeSet::new();
         for note in notes.iter().filter(|_| self.scale.is_some()) {
