@@ -1,4 +1,4 @@
-//! The one error type: every message says what is wrong, where, and what would be right.
+//! The error type of the crate: every message says what is wrong, where, and what would be right.
 
 /// Everything that can fail outside the audio thread. The audio path itself cannot fail.
 #[derive(Debug, thiserror::Error)]

@@ -6,15 +6,17 @@
 //! | module | holds |
 //! |---|---|
 //! | [`dsp`] | pure numerics: the oscillator, the bank of modes, exciters, pitch envelopes, smoothing |
-//! | [`params`], [`patch`], [`preset`] | what can be set, a set of values, and its file |
-//! | [`sound`] | what the keys play: their tuning, also by Scala's files |
+//! | [`params`], [`patch`], [`preset`] | the parameters, a set of their values with modes and routes, and its file |
+//! | [`sound`] | kits, bodies, and the tuning of the keys, also by Scala's files |
 //! | [`engine`] | events, voices, the voice manager, the synth, the ensemble of sixteen channels |
 //! | [`io`] | songs, and files that are written whole or not at all; MIDI files in (feature `midi`) and WAV files out (feature `render`), sound files in (features `recordings` and `codecs`) |
 //! | `render` | the offline renderer (feature `render`) |
-//! | `request` | what to render and how, by the names that the command, batches and Python share (feature `batch`) |
-//! | `batch` | sounds by the thousand, from a file of jobs, with exact labels (feature `batch`) |
+//! | `request` | what to render and how, under the option names that the command, batches and Python share (feature
+//! `batch`) |
+//! | `batch` | thousands of sounds from a file of jobs, with exact labels (feature `batch`) |
 //! | `analysis` | what sound is measured with: the modes of a recorded strike, differences, spectra (feature `fit`), and figures of them (feature `analysis`) |
-//! | `lab` | ways to integrate a mass on a spring, side by side: what the oscillator is measured against (feature `lab`) |
+//! | `lab` | methods that integrate a mass on a spring, compared with the exact motion and with the oscillator (feature
+//! `lab`) |
 //! | `realtime` | sound devices and MIDI ports (feature `live`), and a terminal to play from (feature `realtime`) |
 //!
 //! A note, rendered:

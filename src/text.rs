@@ -1,4 +1,4 @@
-//! Makes text from outside (files, names, devices) safe to show in a terminal or to call a file by; [`number`]s as people read them.
+//! Makes text from outside (files, names, devices) safe for terminals and file names; formats [`number`]s.
 
 pub mod number;
 
@@ -17,7 +17,7 @@ pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escape(text, |character| matches!(character, '\n' | '\t') || is_printable(character))
 }
 
-/// A name as a file is called after it: in lower case, with dashes in place of anything but letters and digits.
+/// A file name made from a name: in lower case, with dashes in place of all characters but ASCII letters and digits.
 pub fn slug(name: &str) -> String {
     let words = name.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join("-").to_ascii_lowercase()
@@ -49,7 +49,7 @@ fn is_printable(character: char) -> bool {
     !(character.is_control() || reorders || matches!(character, '\u{2028}' | '\u{2029}'))
 }
 
-/// A number with its noun, which gets an s unless there is one of it.
+/// A number with its noun, which gets a plural s unless the number is 1.
 pub fn counted(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }

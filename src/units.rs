@@ -1,4 +1,4 @@
-//! Conversions between units, and quantities as people write them.
+//! Conversions between units, and parsing of quantities as text.
 
 use libm::{exp2, log2, log10, pow};
 
@@ -115,8 +115,9 @@ pub fn split_quantity(text: &str) -> Option<(f64, &str)> {
     value.is_finite().then(|| (value, text[end..].trim()))
 }
 
-/// The number of a text such as `"62 cm"` in the unit `own` (`"m"`, `"Hz"`; an empty one takes per cent, too); without a unit, it is
-/// in that unit already. `None` if the text has another one or does not begin with a finite number.
+/// The number of a text such as `"62 cm"`, converted to the unit `own`: `"m"`, `"Hz"`, or an empty one, which also
+/// accepts per cent. A number without a unit is taken to be in `own`. `None` if the unit is another one or the text
+/// does not begin with a finite number.
 pub fn number_in_unit(own: &str, text: &str) -> Option<f64> {
     let (value, unit) = split_quantity(text)?;
     // Divide: 1/100 and 1/1000 are not exact in binary, but 62 / 100 gives the number 0.62.

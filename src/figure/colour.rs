@@ -40,7 +40,8 @@ const VIRIDIS: [[f64; 3]; 9] = [
     [253.0, 231.0, 37.0],
 ];
 
-/// The colour at `position`, from 0 (dark) to 1 (bright). Lightness rises evenly, so it is also readable in grey.
+/// The colour at `position`, from 0 (dark) to 1 (bright). The lightness rises evenly, so that it can also be read in
+/// grey.
 pub fn viridis(position: f64) -> RGBColor {
     let position = if position.is_nan() { 0.0 } else { position.clamp(0.0, 1.0) };
     let scaled = position * (VIRIDIS.len() - 1) as f64;

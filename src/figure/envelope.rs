@@ -1,4 +1,4 @@
-//! Draws a signal as a line that shows its extremes, however many samples share a pixel.
+//! Reduces a signal to a line that keeps its extremes, however many samples share a pixel.
 
 /// The samples as points; if there are many, the minimum and the maximum of each of `columns` stretches instead.
 pub fn envelope(samples: &[f32], sample_rate: f64, columns: usize) -> Vec<(f64, f64)> {

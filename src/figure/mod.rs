@@ -1,4 +1,4 @@
-//! Figures as SVG text or PNG bytes, from the same drawing code; their only font is included in the crate. Pages as HTML.
+//! Figures as SVG text or PNG bytes from the same drawing code, with a font that is part of the crate, and HTML pages.
 
 pub mod colour;
 pub mod envelope;

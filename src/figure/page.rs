@@ -1,9 +1,9 @@
-//! Pages as one HTML file each that works offline: their style, and templates with places to fill in.
+//! HTML pages that work offline as one file each: their style, and templates with places to fill in.
 
 /// The style of all pages, light and dark.
 pub const STYLE: &str = include_str!("page.css");
 
-/// The template with what `insert` gives for each name in it, `{{name}}`. Inserted text is never searched for names.
+/// Fills a template: `insert` returns the text for each `{{name}}`. Inserted text is not searched for names.
 pub fn fill(template: &str, mut insert: impl FnMut(&str) -> String) -> String {
     let mut out = String::new();
     let mut rest = template;
@@ -16,7 +16,7 @@ pub fn fill(template: &str, mut insert: impl FnMut(&str) -> String) -> String {
     out + rest
 }
 
-/// Text that may contain anything, for HTML.
+/// Escapes any text for HTML.
 pub fn escaped(text: &str) -> String {
     let escape = |letter: char| match letter {
         '&' => "&amp;".to_owned(),
@@ -28,7 +28,7 @@ pub fn escaped(text: &str) -> String {
     text.chars().map(escape).collect()
 }
 
-/// A file as a link that contains it (RFC 2397, RFC 4648).
+/// A link that contains a file's bytes (RFC 2397, RFC 4648).
 pub fn data_link(kind: &str, bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut link = format!("data:{kind};base64,");

@@ -8,7 +8,7 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::*;
 use std::ops::Range;
 
-/// An axis: its range, what it measures and how.
+/// An axis: its range, quantity and scale.
 #[derive(Clone, Debug)]
 pub struct Axis<'a> {
     /// Smallest and largest value; for a logarithmic axis, their decimal logarithms.
@@ -66,7 +66,7 @@ pub struct Panel<'a> {
     pub title: &'a str,
 }
 
-/// A coordinate with our own choice of ticks.
+/// A coordinate with the ticks chosen here.
 pub struct Ticked {
     range: Range<f64>,
     ticks: Vec<f64>,

@@ -1,4 +1,4 @@
-//! Formats numbers for people.
+//! Formats numbers for users.
 
 use libm::{floor, log10};
 

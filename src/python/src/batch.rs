@@ -7,11 +7,11 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// How often it tells how far it is, and looks whether it is done or Ctrl-C was pressed.
+/// Time between two calls of the progress function, and between two checks for the end of the work or Ctrl-C.
 const PATIENCE: Duration = Duration::from_millis(100);
 const POLL: Duration = Duration::from_millis(10);
 
-/// Makes the jobs of a file. Gives the number of jobs, and how many of them were found finished.
+/// Renders the jobs of a file. Returns the number of jobs, and how many of them were finished before.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "they are the options of the command")]
 pub(crate) fn batch(
@@ -28,7 +28,7 @@ pub(crate) fn batch(
     let format = if flac { FileFormat::Flac } else { FileFormat::Wav };
     let shard = Shard::new(shard.0, shard.1).map_err(raised)?;
     let batch = Batch { jobs, folder: out, format, seed, shard, resume, at_once };
-    // What the caller's function or Ctrl-C raised, which ends the batch.
+    // The exception of the caller's function or of Ctrl-C, which ends the batch.
     let (raised_by_caller, looked) = (Mutex::new(None), Mutex::new(Instant::now()));
     let stop = |error: PyErr| {
         if let Ok(mut place) = raised_by_caller.lock() {
@@ -56,7 +56,7 @@ pub(crate) fn batch(
         }
         Ok(())
     };
-    // Python notices Ctrl-C on the thread that called, and nowhere else.
+    // Python handles Ctrl-C only on the thread that called.
     let done = py.detach(|| {
         std::thread::scope(|scope| {
             let work = scope.spawn(|| batch.run(&tell));

@@ -1,4 +1,4 @@
-//! Sprung for Python: what the package `sprung` calls.
+//! The native module of the Python package `sprung`.
 
 mod batch;
 mod failure;
@@ -8,7 +8,7 @@ mod render;
 
 use pyo3::prelude::*;
 
-/// What `sprung/__init__.py` is made of.
+/// The native functions and classes behind `sprung/__init__.py`.
 #[pymodule]
 mod _sprung {
     #[pymodule_export]

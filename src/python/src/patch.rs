@@ -28,7 +28,7 @@ fn param(id: &str) -> PyResult<Param> {
 
 #[pymethods]
 impl NativePatch {
-    /// The factory preset, the user's own, or the preset file, with this name.
+    /// Loads the factory preset, the user's own preset, or the preset file of this name.
     #[new]
     fn new(py: Python<'_>, name: &str) -> PyResult<Self> {
         let mut warnings = Vec::new();
@@ -89,7 +89,7 @@ impl NativePatch {
         Ok(param.info().format(self.0.patch.get(param)))
     }
 
-    /// Sets a parameter to a value as people write it.
+    /// Sets a parameter from text, with or without a unit.
     fn set(&mut self, id: &str, value: &str) -> PyResult<()> {
         let param = param(id)?;
         let value = param.info().parse(value).map_err(|message| told(format!("{id}: {message}")))?;

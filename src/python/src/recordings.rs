@@ -1,4 +1,4 @@
-//! Recordings: their modes, presets fitted to them, and what two of them differ in.
+//! Recordings: their modes, presets fitted to them, and the difference of two of them.
 
 use crate::failure::{check_signals, raised, told, warn};
 use pyo3::prelude::*;
@@ -20,7 +20,7 @@ pub(crate) enum Sound {
 }
 
 impl Sound {
-    /// The samples, and the name in errors.
+    /// The samples, and the name for error messages.
     fn read(self, warnings: &mut Vec<String>) -> sprung::Result<(Recording, String)> {
         match self {
             Self::File(path) => {
@@ -63,7 +63,7 @@ fn strike<'py>(py: Python<'py>, strike: &Strike) -> PyResult<Bound<'py, PyDict>>
     Ok(entry)
 }
 
-/// Takes a recording apart into the modes of its strikes.
+/// Splits a recording into the modes of its strikes.
 #[pyfunction]
 pub(crate) fn analyze(
     py: Python<'_>,
@@ -88,7 +88,7 @@ pub(crate) fn analyze(
     found.strikes.iter().map(|one| strike(py, one)).collect()
 }
 
-/// A preset, as the text of its file, that plays what was recorded, with its distance from each recording in dB.
+/// Fits a preset to recordings. Returns the text of its file, and its distance from each recording in dB.
 #[pyfunction]
 pub(crate) fn fit(
     py: Python<'_>,
@@ -106,7 +106,7 @@ pub(crate) fn fit(
     let fitted = py.detach(|| {
         let mut takes = Vec::new();
         for (sound, note, velocity) in sounds {
-            // As the command has it.
+            // The same range as on the command line.
             if !(1.0..=127.0).contains(&velocity) {
                 return Err(sprung::Error::value("velocity", format!("{velocity}: expected from 1 to 127")));
             }
@@ -127,7 +127,7 @@ pub(crate) fn fit(
     Ok((preset, distances))
 }
 
-/// In what two sounds of one rate differ; none if they are the same to the bit.
+/// The differences of two sounds with the same rate; none if they are equal to the bit.
 #[pyfunction]
 pub(crate) fn diff(py: Python<'_>, expected: Sound, actual: Sound) -> PyResult<Option<Bound<'_, PyDict>>> {
     let mut warnings = Vec::new();

@@ -10,10 +10,10 @@ use sprung::request::Request;
 use std::io::Seek;
 use std::time::{Duration, Instant};
 
-/// How often it looks for Ctrl-C.
+/// Time between two checks for Ctrl-C.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// A request with these options, each a name and a value as people write it.
+/// A request with these options, each a name and a value as text.
 pub(crate) fn request(options: &[(String, String)]) -> PyResult<Request> {
     let mut request = Request::default();
     for (name, value) in options {
@@ -22,14 +22,14 @@ pub(crate) fn request(options: &[(String, String)]) -> PyResult<Request> {
     Ok(request)
 }
 
-/// Renders what the options say. Gives an array of frames by channels, and the sample rate.
+/// Renders what the options describe. Returns an array of frames by channels, and the sample rate.
 #[pyfunction]
 pub(crate) fn render<'py>(
     py: Python<'py>,
     options: Vec<(String, String)>,
 ) -> PyResult<(Bound<'py, PyArray2<f32>>, u32)> {
     let mut request = request(&options)?;
-    // Samples as the engine makes them: an array needs no rounding.
+    // Floats, as the engine computes them: an array needs no rounding.
     request.bits = SampleFormat::Float32;
     let mut warnings = Vec::new();
     let rendered = py.detach(|| rendered(&request, &mut |warning| warnings.push(warning.to_owned())));
@@ -41,7 +41,7 @@ pub(crate) fn render<'py>(
     Ok((array.into_pyarray(py), sound.sample_rate))
 }
 
-/// Renders through the same file as the command, so that levels and mixing are the same in every bit.
+/// Renders through the same file format as the command, so that levels and mixing are equal to the bit.
 fn rendered(request: &Request, warn: &mut dyn FnMut(&str)) -> sprung::Result<sound_file::Recording> {
     let folder = tempfile::tempdir().map_err(|source| sprung::Error::io("the temporary folder", source))?;
     let mut inputs = Inputs::default();

@@ -1,8 +1,8 @@
-//! Sprung as a WebAssembly module without imports: a synth that JavaScript creates, plays and reads by plain functions.
+//! Sprung as a WebAssembly module without imports: JavaScript creates and plays a synth through plain functions.
 //!
-//! A page has no shared memory with its audio worklet, so each has an instance of the module of its own: the worklet's plays,
-//! the page's lists the presets and renders takes. Positions in memory are valid until the next call that allocates, which
-//! is every call but [`midi`], [`process`] and [`look`].
+//! A page shares no memory with its audio worklet, so each has an instance of the module of its own: the worklet's
+//! instance plays, the page's instance lists the presets and renders takes. Addresses are valid until the next call
+//! that allocates: [`create`], [`presets`] or [`load`].
 
 mod player;
 
@@ -24,8 +24,8 @@ pub extern "C" fn create(sample_rate: f64, seed: u32) -> *mut Player {
     Box::into_raw(Box::new(Player::new(sample_rate, u64::from(seed))))
 }
 
-/// Writes the list of presets: a line each of name, family, lowest, highest and home key, and comment, separated by tabs.
-/// Returns its length in bytes; [`text`] is its place.
+/// Writes the list of presets: for each a line with name, family, lowest, highest and home key, and comment, separated
+/// by tabs. Returns its length in bytes; [`text`] returns its address.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -35,7 +35,7 @@ pub unsafe extern "C" fn presets(player: *mut Player) -> usize {
     unsafe { at(player) }.list_presets()
 }
 
-/// Where the last text is.
+/// The address of the last text.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn text(player: *mut Player) -> *const u8 {
     unsafe { at(player) }.text().as_ptr()
 }
 
-/// Plays a preset from now on, by its place in the list. Allocates. A number beyond the list changes nothing.
+/// Plays a preset from now on, by its index in the list. Allocates. An index beyond the list changes nothing.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -55,7 +55,7 @@ pub unsafe extern "C" fn load(player: *mut Player, preset: usize) {
     unsafe { at(player) }.load(preset);
 }
 
-/// A MIDI message at a frame of the next block. Real-time safe.
+/// Adds a MIDI message at a frame of the next block. Real-time safe.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -75,7 +75,7 @@ pub unsafe extern "C" fn process(player: *mut Player, frames: usize) -> bool {
     unsafe { at(player) }.process(frames)
 }
 
-/// Where the samples of the last block are: `side` 0 is left, 1 right.
+/// The address of the samples of the last block: `side` 0 is left, 1 is right.
 ///
 /// # Safety
 /// `player` is from [`create`].
@@ -85,8 +85,8 @@ pub unsafe extern "C" fn samples(player: *mut Player, side: usize) -> *const f32
     unsafe { at(player) }.samples(side).as_ptr()
 }
 
-/// Looks at the masses: 1 + 64 + 64 numbers, which are the number of voices, the energies of the modes added up over the
-/// voices, and the ratios of the modes; 0 for modes that are not there. Real-time safe.
+/// Returns the address of 1 + 64 + 64 numbers: the number of voices, the energy of each mode as the sum over the
+/// voices, and the ratio of each mode; 0 for modes that do not exist. Real-time safe.
 ///
 /// # Safety
 /// `player` is from [`create`].

@@ -1,4 +1,4 @@
-//! A synth with the memory that JavaScript reads and writes.
+//! A synth with memory that JavaScript reads and writes.
 
 use sprung::engine::{Event, Snapshot, Synth, midi::parse_message};
 use sprung::preset::Preset;
@@ -6,10 +6,10 @@ use sprung::preset::Preset;
 /// Frames that can be rendered at once.
 pub const BLOCK: usize = 1024;
 
-/// Modes that are shown.
+/// Number of modes that are shown.
 const SHOWN: usize = 64;
 
-/// Messages that are kept for a block; more are dropped.
+/// Maximum number of messages for a block; further ones are dropped.
 const MESSAGES: usize = 256;
 
 /// A synth that plays factory presets.
@@ -55,7 +55,7 @@ impl Player {
     }
 
     pub(crate) fn midi(&mut self, frame: u32, message: [u8; 3]) {
-        // Program change and channel pressure have two bytes; what follows is ignored.
+        // Program change and channel pressure have two bytes; the third is ignored.
         let Some((channel, kind)) = parse_message(&message) else { return };
         if self.events.len() < MESSAGES {
             self.events.push(Event { frame, channel, kind });
