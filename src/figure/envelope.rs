@@ -1,20 +1,20 @@
 //! Reduces a signal to a line that keeps its extremes, however many samples share a pixel.
 
-/// The samples as points; if there are many, the minimum and the maximum of each of `columns` stretches instead.
+/// The samples as points; if there are many, the minimum and the maximum of each of twice as many intervals as `columns` instead.
 pub fn envelope(samples: &[f32], sample_rate: f64, columns: usize) -> Vec<(f64, f64)> {
     let seconds = |frame: usize| frame as f64 / sample_rate;
     let value = |sample: f32| if sample.is_finite() { f64::from(sample) } else { 0.0 };
     if samples.len() <= 3 * columns.max(1) {
         return samples.iter().enumerate().map(|(frame, sample)| (seconds(frame), value(*sample))).collect();
     }
-    // Two stretches per pixel: with one, rounding would leave some columns empty.
+    // Two intervals per pixel: with one, rounding would leave some columns empty.
     let stretches = 2 * columns.max(1);
     let start = |index: usize| index * samples.len() / stretches;
     let mut points = Vec::with_capacity(2 * stretches);
     for index in 0..stretches {
         let range = samples[start(index)..start(index + 1)].iter().map(|sample| value(*sample));
         let (low, high) = range.fold((f64::MAX, f64::MIN), |(low, high), y| (low.min(y), high.max(y)));
-        // The order alternates, so that the line does not cross the stretch twice.
+        // The order alternates, so that the line does not cross the interval twice.
         let pair = if index % 2 == 0 { [low, high] } else { [high, low] };
         points.extend(pair.map(|y| (seconds(start(index)), y)));
     }

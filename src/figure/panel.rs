@@ -13,7 +13,7 @@ use std::ops::Range;
 pub struct Axis<'a> {
     /// Smallest and largest value; for a logarithmic axis, their decimal logarithms.
     pub range: Range<f64>,
-    /// What it measures, with its unit. If empty, the axis has no labels.
+    /// Its quantity, with the unit. If empty, the axis has no labels.
     pub label: &'a str,
     /// Whether the coordinates of lines are decimal logarithms of the values.
     pub logarithmic: bool,
@@ -62,7 +62,7 @@ pub struct Panel<'a> {
     pub x: Axis<'a>,
     /// Vertical axis.
     pub y: Axis<'a>,
-    /// What the panel shows.
+    /// Title above the chart.
     pub title: &'a str,
 }
 

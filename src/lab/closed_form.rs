@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// The damping regimes of a linear system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Regime {
-    /// `λ̄ = 0`: rings for ever.
+    /// `λ̄ = 0`: rings forever.
     Undamped,
     /// `λ̄ < ω`: rings and decays.
     Underdamped,

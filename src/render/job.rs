@@ -32,7 +32,7 @@ pub struct Options {
     pub seed: u64,
     /// Frames per block, within [`BLOCKS`]. The samples do not depend on the block length.
     pub block: usize,
-    /// What follows after the song.
+    /// The tail after the song.
     pub tail: Tail,
 }
 

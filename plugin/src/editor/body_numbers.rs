@@ -23,7 +23,7 @@ pub(super) struct Number {
     pub(super) value: f64,
 }
 
-/// What each number does, by its name in files.
+/// Help texts of the numbers, by their names in files.
 const HELP: [(&str, &str); 41] = [
     ("frequency", "The frequency at which losses are computed; of a body that does not follow the keys, its pitch."),
     (
@@ -126,14 +126,14 @@ impl Part {
 }
 
 impl Number {
-    /// What it is called.
+    /// Its name as shown to the user.
     pub(super) fn title(&self) -> String {
         let mut name = self.name.replace('_', " ");
         name[..1].make_ascii_uppercase();
         name
     }
 
-    /// What it does.
+    /// Its help text.
     pub(super) fn help(&self) -> &'static str {
         // The damping of a joint differs from that of a body.
         if self.name == "damping" && self.range[0] == 0.0 {
@@ -154,7 +154,7 @@ impl Number {
         } else if max - min <= 200.0 {
             (max - min) / 200.0
         } else {
-            // Over decades, by a hundredth.
+            // A range of several decades: changes by 1 % of the value.
             (0.01 * self.value.abs()).max(1e-4)
         }
     }

@@ -44,7 +44,7 @@ pub(super) struct BodyView {
 }
 
 impl BodyView {
-    /// Gives up the drag, if there is one.
+    /// Drops the drag, if there is one.
     pub(super) fn cancel(&mut self, controls: &mut Controls) {
         if self.drag.take().is_some() {
             controls.release();

@@ -283,8 +283,8 @@ fn has_arrows(ui: &Ui, rows: usize) -> bool {
 /// A request made with the search field's keys.
 enum Ask {
     Nothing,
-    /// The sound so many places further.
+    /// Load the sound at this distance in the list.
     Step(isize),
-    /// The file whose path was typed.
+    /// Load the file whose path was typed.
     File,
 }

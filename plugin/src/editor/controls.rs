@@ -21,7 +21,7 @@ pub(super) struct Typing {
 /// A parameter that waits to be assigned to a controller.
 pub(super) struct Learning {
     pub(super) info: &'static ParamInfo,
-    /// The number of controller movements at the last look.
+    /// The number of controller movements at the last check.
     pub(super) seen: u64,
     /// Whether the user has been asked to move a controller.
     pub(super) is_told: bool,

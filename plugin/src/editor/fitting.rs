@@ -71,7 +71,7 @@ impl Fitting {
     }
 }
 
-/// What the panel shows.
+/// The contents of the panel.
 pub(super) struct Face<'a> {
     pub(super) name: &'a str,
     pub(super) share: f64,

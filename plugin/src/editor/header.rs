@@ -28,7 +28,7 @@ pub(super) enum Wish {
     Variation(Asked),
 }
 
-/// What the header shows.
+/// The contents of the header.
 pub(super) struct Header<'a> {
     pub(super) name: &'a str,
     pub(super) words: &'a str,

@@ -20,7 +20,7 @@ const NUMBER: f32 = 14.0;
 /// The key that is centred when the grid is opened.
 const MIDDLE: u8 = 54;
 
-/// What a cell shows.
+/// The contents of a cell.
 #[derive(Default)]
 pub(super) struct Cell {
     pub(super) text: String,

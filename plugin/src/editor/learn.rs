@@ -8,7 +8,7 @@ use sprung::patch::routes::{MAX_ROUTES, Route, Source};
 use sprung::preset::Playable;
 use std::time::Duration;
 
-/// Time between two looks for a movement.
+/// Time between two checks for a movement.
 const PAUSE: Duration = Duration::from_millis(50);
 /// If less than this share of the travel is left above a knob's position, a new route moves it downwards.
 const LEAST: f32 = 0.05;

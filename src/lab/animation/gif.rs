@@ -78,7 +78,7 @@ fn faded(RGBColor(r, g, b): RGBColor, white: f64) -> RGBColor {
     RGBColor(mix(r), mix(g), mix(b))
 }
 
-/// Makes the GIF file. It repeats for ever.
+/// Makes the GIF file. It repeats forever.
 pub fn gif(animation: &Animation) -> Result<Vec<u8>> {
     let failed = |error: ::gif::EncodingError| Error::format("animation", error.to_string());
     let (width, height) = Scene { animation, frame: 0 }.size();
