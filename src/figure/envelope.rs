@@ -1,6 +1,7 @@
 //! Reduces a signal to a line that keeps its extremes, however many samples share a pixel.
 
-/// The samples as points; if there are many, the minimum and the maximum of each of twice as many intervals as `columns` instead.
+/// The samples as points. If there are many, only the minimum and the maximum of each interval are kept; there are two
+/// intervals for each of the `columns`.
 pub fn envelope(samples: &[f32], sample_rate: f64, columns: usize) -> Vec<(f64, f64)> {
     let seconds = |frame: usize| frame as f64 / sample_rate;
     let value = |sample: f32| if sample.is_finite() { f64::from(sample) } else { 0.0 };

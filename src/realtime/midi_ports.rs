@@ -43,7 +43,7 @@ pub struct MidiPorts {
     sender: Arc<Mutex<LiveSender>>,
     connected: Vec<Connected>,
     scan_at: Instant,
-    /// Whether a problem has been reported. Only the first one is.
+    /// Whether a problem has been reported. Further problems are not reported.
     told: bool,
 }
 
