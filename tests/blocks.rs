@@ -58,7 +58,7 @@ fn any_patch() -> impl Strategy<Value = Patch> {
         routes,
     )
         .prop_map(|(modes, positions, routes)| {
-            // Few bodies have 4 modes, and those become a pair.
+            // The few cases with exactly 4 modes get a pair instead.
             let modes = if modes.len() == 4 { pair() } else { ModeTable::new(&modes) };
             let mut patch = Patch { modes, ..Patch::default() };
             for (info, position) in PARAMS.iter().zip(positions) {
@@ -74,7 +74,7 @@ fn any_patch() -> impl Strategy<Value = Patch> {
         })
 }
 
-/// A string that follows the keys on a plate that does not: a table for each key, with phases.
+/// A string that follows the keys, joined to a plate that does not: the pair has a mode table for each key, with phases.
 fn pair() -> ModeTable {
     static PAIR: LazyLock<ModeTable> = LazyLock::new(|| {
         let body = |model, modes| Body { modes, ..Body::new(Model::find(model).unwrap().clone()) };

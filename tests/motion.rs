@@ -128,7 +128,7 @@ impl Note {
         synth.set_patch(&motion.patch.clone().with(Param::Decay, self.t60 as f32));
         let mut events = vec![on(0, key_from_frequency(self.frequency, 440.0))];
         events.extend(motion.events.iter().map(|event| Event { frame: event.frame + rest as u32, ..*event }));
-        // A line of pitch ends at the second tick after its start.
+        // A linear pitch ramp ends at the second control tick after its start.
         let back = rest + motion.frames.next_multiple_of(TICK) + 2 * TICK;
         let (mut left, mut right) = (vec![0.0; back + rest], vec![0.0; back + rest]);
         synth.process(&events, &mut left, &mut right);
@@ -169,7 +169,7 @@ fn t60_and_tuning_are_the_same_however_the_pitch_moves() {
                     [1.0, 10.0, FASTEST].iter().map(|speed| bends(sample_rate, t60, *speed, TICK)).collect();
                 // Not synchronous with control ticks.
                 motions.push(bends(sample_rate, t60, 5.0, 100));
-                // Not synchronous with control ticks: most lines are interrupted.
+                // Not synchronous with control ticks, and most pitch ramps are interrupted.
                 motions.push(bends(sample_rate, t60, FASTEST, 23));
                 motions.push(vibrato(sample_rate, t60, 50.0, 5.5, rest));
                 motions.push(vibrato(sample_rate, t60, 400.0, 20.0, rest));
