@@ -39,13 +39,13 @@ use std::sync::LazyLock;
 #[derive(Clone, Copy)]
 enum Needs {
     Nothing,
-    /// A screen that nobody sees (Xvfb).
+    /// A virtual screen (Xvfb).
     Screen,
     /// A screen, the program and a JACK server.
     Program,
     /// The Python hosts.
     Python,
-    /// Both.
+    /// The Python hosts and a screen.
     PythonAndScreen,
 }
 

@@ -124,7 +124,7 @@ impl Onlooker {
         window
     }
 
-    /// Creates a window inside another one, beside the plugin's, that hears keys.
+    /// Creates a window inside another one, beside the plugin's, that receives key events.
     pub(crate) fn make_proxy(&self, parent: u32) -> u32 {
         let window = self.connection.generate_id().unwrap();
         let visual = self.connection.setup().roots[0].root_visual;
@@ -193,7 +193,7 @@ impl Onlooker {
         self.connection.flush().unwrap();
     }
 
-    /// Whether a window of the host has heard this key since the last call.
+    /// Whether a window of the host has received this key since the last call.
     pub(crate) fn heard_key(&self, key: u8) -> bool {
         let mut heard = false;
         while let Some(event) = self.connection.poll_for_event().unwrap() {
@@ -228,7 +228,7 @@ impl Onlooker {
         pictures
     }
 
-    /// Counts no more.
+    /// Stops counting.
     pub(crate) fn unwatch(&self, damage: u32) {
         self.connection.damage_destroy(damage).unwrap().check().unwrap();
     }

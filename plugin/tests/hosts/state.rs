@@ -130,8 +130,7 @@ pub(crate) fn a_state_loaded_while_processing_is_heard_exactly() {
     }
 }
 
-/// Setting a parameter to its present position keeps its exact value; a neighbouring position gives that position's
-/// value.
+/// Setting a parameter to its present position keeps its exact value.
 pub(crate) fn touching_a_knob_keeps_the_exact_value() {
     for (name, patch) in patches() {
         let mut instance = Instance::new();

@@ -28,7 +28,7 @@ fn environment() -> PathBuf {
 /// What is missing: hosts that cannot be loaded in the required versions.
 pub(crate) fn missing() -> Option<String> {
     let installed = std::fs::read_to_string(environment().join("requirements.txt"));
-    // The environment serves other tests too, whose requirements stand in the same file.
+    // The environment serves other tests too, whose requirements are in the same file.
     if !installed.is_ok_and(|installed| installed.contains(include_str!("requirements.txt"))) {
         return Some("pedalboard and dawdreamer in target/python".to_owned());
     }
@@ -56,7 +56,7 @@ fn script(name: &str) -> PathBuf {
 fn ask(host: &str, question: &Value) -> Value {
     let mut child = Command::new(python())
         .arg(script(&format!("{host}_host.py")))
-        // Without this they would use the first display, which may belong to another test.
+        // Without this the hosts would use the first display, which may belong to another test.
         .env("DISPLAY", ":none")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
