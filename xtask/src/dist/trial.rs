@@ -1,4 +1,4 @@
-//! Installs what `dist` has made where nothing else is, and compares what it renders with what the command renders here.
+//! Installs the files that `dist` made into empty places, and compares their renders with those of the command here.
 
 use crate::files::remove;
 use crate::sha256;

@@ -24,7 +24,8 @@ pub(super) const EDITS: &[Edit] = &[
         }
 ",
     ),
-    // An event loop forgets requests made before it starts. When a window is closed so early, also wait for its thread.
+    // An event loop loses requests made before it starts, so it also looks for a stop request when it is idle. Otherwise, closing
+    // a window so early would wait for its thread for ever.
     edit(
         EVENT_LOOP,
         "    fn handle_idle(&mut self) {

@@ -8,11 +8,11 @@ use std::path::Path;
 /// The accepted digests by the names of their cases.
 pub(crate) struct Accepted(BTreeMap<String, Digest>);
 
-/// Which cases a program was asked for.
+/// The cases that a program was to render.
 pub(crate) enum Asked<'a> {
-    /// Those whose names pass.
+    /// The cases whose names satisfy this condition.
     Named(&'a dyn Fn(&str) -> bool),
-    /// Some of them: those that it has printed.
+    /// Only the cases that the program has printed.
     Printed,
 }
 
