@@ -164,7 +164,7 @@ fn spaces_come_and_go_without_allocating() {
     kits.iter().for_each(|kit| shelf.keep(kit));
     let mut synth = Synth::new(48_000.0, 1);
     synth.reserve_space();
-    // The synth's first kit is on no shelf, so it is replaced, and freed, here. The shelf keeps all other kits.
+    // The synth's first kit is on no shelf, so it is replaced here, where freeing is allowed. The shelf keeps all other kits.
     synth.set_kit(&kits[7]);
     let (mut left, mut right) = ([0.0; 64], [0.0; 64]);
     let mut loudest = 0.0_f32;

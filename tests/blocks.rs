@@ -202,11 +202,11 @@ fn any_case() -> impl Strategy<Value = Case> {
 /// A synth or an ensemble.
 trait Plays {
     fn play(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]);
-    /// Records what is known after a block apart from its samples.
+    /// Records the reports after a block, such as ended notes and voices.
     fn note(&mut self, is_last: bool, about: &mut About);
 }
 
-/// What a render reports: ended notes, by their serial numbers, and the tail after the last block.
+/// The reports of a render: ended notes, by their serial numbers, the tail after the last block, silence and voices.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct About {
     ended: BTreeSet<(u64, Option<NoteId>, u8, u8)>,

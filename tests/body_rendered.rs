@@ -18,7 +18,7 @@ const KEYS: [u8; 2] = [48, 84];
 
 /// Modes whose ratios differ by a smaller share than this count as one mode.
 const SAME: f64 = 1e-6;
-/// Modes nearer to each other than this beat so slowly that a note is too short to tell them apart.
+/// Modes whose ratios differ by a smaller share than this beat too slowly to be separated within a note.
 const APART: f64 = 0.01;
 /// Modes below this share of the strongest mode's level are not compared.
 const AUDIBLE: f64 = 0.02;

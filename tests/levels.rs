@@ -47,7 +47,7 @@ fn factory() -> impl Iterator<Item = &'static Preset> {
     Preset::factory().iter().step_by(6)
 }
 
-/// Sounds and what they play, with a name for failure messages.
+/// A kit and the events that it plays, with a name for failure messages.
 struct Case {
     name: String,
     seed: u64,

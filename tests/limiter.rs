@@ -21,7 +21,7 @@ const TRANSPARENT: f64 = -1.0;
 /// Highest true peak in dBFS that the limiter guarantees.
 const HIGHEST: f64 = -0.3;
 
-/// The same of noise, which can have peaks between two samples that are both just below the threshold.
+/// Highest true peak in dBFS of noise, which can peak between two samples that are both just below the threshold.
 const HIGHEST_OF_NOISE: f64 = 0.5;
 
 const RATES: [u32; 6] = [22_050, 44_100, 48_000, 88_200, 96_000, 192_000];
@@ -119,8 +119,8 @@ fn a_true_peak_above_it_is_brought_down() {
     assert!(high.is_empty(), "\n{}", high.join("\n"));
 }
 
-/// Noise up to half the sample rate may have a peak between two samples that are both below the threshold: no limiter
-/// without latency can know it. After a sample has exceeded the threshold, noise is limited like everything else.
+/// Noise up to half the sample rate may have a peak between two samples that are both below the threshold: no limiter without
+/// latency can foresee it. After a sample has exceeded the threshold, noise is limited like everything else.
 #[test]
 fn white_noise_may_exceed_full_scale_once() {
     for seed in 0..40 {

@@ -263,7 +263,7 @@ fn a_decay_that_moves_only_in_the_first_tick_stays_there() {
 
 #[test]
 fn a_brightness_does_not_read_a_strike_again() {
-    // The envelope is 0 at the strike; its later movement does not affect what was read at the strike.
+    // The envelope is 0 at the strike; its later movement does not change values that were read at the strike.
     let routed = patch(&[(Source::Envelope1, Tilt, 50.0)]).with(Envelope1Attack, 0.1);
     let events = [on(0, 60, 1.0), control(12_000, 74, 0.2)];
     assert!(render(&routed, 0, &events, 24_000) == render(&patch(&[]), 0, &events, 24_000));

@@ -140,7 +140,7 @@ impl Note {
         let amplitude = before.amplitude * libm::exp(-fall(rest as f64 / self.sample_rate, before.t60));
         let t60 = LN_60_DB * seconds / libm::log(amplitude / after.amplitude);
 
-        // Cycles from the end of the first stretch to the start of the second. The whole cycles come from counting.
+        // Cycles from the end of the first stretch to the start of the second. Zero crossings give the number of whole cycles.
         let phase = |cycles: f64| cycles - libm::floor(cycles);
         let start = before.frequency * rest as f64 / self.sample_rate + before.phase / TAU;
         let crossings = left[rest - 1..=back].windows(2).skip(1).filter(|pair| pair[0] < 0.0 && pair[1] >= 0.0).count();

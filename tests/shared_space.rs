@@ -1,4 +1,4 @@
-//! The space that the channels of an ensemble share: what is sent, blocks and threads, and its tail.
+//! The space that the channels of an ensemble share: sends, blocks and threads, and its tail.
 
 mod events;
 mod in_blocks;

@@ -1,4 +1,4 @@
-//! What the command prints about itself: presets, parameters, manual, completion scripts.
+//! Listings of the command: presets, parameters, manual pages, completion scripts.
 
 use crate::Sandbox;
 use sprung::params::PARAMS;

@@ -1,7 +1,7 @@
 //! Recordings of real instruments that are installed: drum kits of Hydrogen's, and a sound font that FluidSynth plays.
 //!
-//! `SPRUNG_SOUNDS` names a folder that Debian's packages `hydrogen-drumkits` and `fluid-soundfont-gm` were unpacked to, if not `/`.
-//! What is not installed is skipped by name.
+//! `SPRUNG_SOUNDS` names a folder that Debian's packages `hydrogen-drumkits` and `fluid-soundfont-gm` were unpacked to, if not
+//! `/`. Sounds that are not installed are skipped by name.
 
 use crate::played::{Played, Stereo};
 use sprung::analysis::log_mel::RATE;

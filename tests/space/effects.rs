@@ -20,7 +20,7 @@ fn amplitude(samples: &[f32], frequency: f64) -> f64 {
     2.0 * (re * re + im * im).sqrt() / samples.len() as f64
 }
 
-/// All products of 5 kHz at 48 kHz fall on whole kilohertz. Only 5 and 15 kHz are its odd harmonics, all others are aliases.
+/// All products of 5 kHz at 48 kHz fall on whole kilohertz. Its odd harmonics are 5 and 15 kHz, all others are aliases.
 #[test]
 fn overdrive_has_no_false_tones() {
     for drive in [6.0, 12.0] {

@@ -1,7 +1,7 @@
 //! Upper bound of a case's loudness, from its patch and events alone: the sum over all strikes.
 //!
 //! A strike adds to a mode the amplitude of its force times the mode's gain, whatever the pitch is and however it
-//! moves; damping and movement can only reduce it. It is heard with at most the largest output gain of the case.
+//! moves; damping and movement can only reduce it. It is multiplied by at most the largest output gain of the case.
 //!
 //! How sharp the bound is: a single struck note reaches it. The bound is looser in these ways: strikes are counted as
 //! if none had decayed and all their modes were in phase; each moving gain counts at its highest value, independently
@@ -157,7 +157,7 @@ impl Part {
         blooms.then_some(sqrt(modes as f64))
     }
 
-    /// The events that this synth hears.
+    /// The events that this synth receives.
     fn events<'a>(&self, case: &'a Case) -> impl Iterator<Item = &'a Event> + use<'a> {
         let events = case.events.iter().zip(self.hears.clone());
         events.filter(|(_, is_heard)| *is_heard).map(|(event, _)| event)

@@ -16,7 +16,7 @@ pub(crate) const MAX_FRAMES: u32 = 1 << 16;
 /// Maximum number of events of a case.
 const MAX_EVENTS: usize = 2048;
 
-/// What is played.
+/// The sound, the settings and the events that are played.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
     /// Sample rate in Hz.

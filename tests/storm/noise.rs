@@ -14,7 +14,8 @@ pub(crate) struct Noise {
     is_exponential: bool,
     hits: f64,
     spacing: f64,
-    /// Noise less what a mass has of it: its sum of magnitudes is up to twice that of the noise, its power never more.
+    /// High-passed noise: the noise minus its low-passed part. The sum of its magnitudes is up to twice that of the noise, its
+    /// power never more.
     is_bright: bool,
 }
 
