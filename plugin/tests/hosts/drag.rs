@@ -80,7 +80,7 @@ impl Drag {
         self.connection.intern_atom(false, name.as_bytes()).unwrap().reply().unwrap().atom
     }
 
-    /// The window, or the first one inside it, that says that it takes what is dropped.
+    /// The window, or the first one inside it, that declares that it accepts drops (`XdndAware`).
     fn aware(&self, window: u32) -> Option<u32> {
         let aware = self.atom("XdndAware");
         let found = self.connection.get_property(false, window, aware, AtomEnum::ATOM, 0, 1).unwrap().reply().unwrap();

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// steps of 4.
 const TOLERANCE: u8 = 3 + 2;
 
-/// How many pixels may differ by more: those on the edges of shapes, where a sample lies on the line or beside it.
+/// How many pixels may differ by more: pixels on the edges of shapes, where a sample may lie just inside or just outside.
 const HANDFUL: usize = 24;
 
 /// Size of the corner by which the window is resized: the wrapper draws it, and the picture does not have it.

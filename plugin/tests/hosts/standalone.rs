@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// The program, if it was built with these tests.
 const PROGRAM: Option<&str> = option_env!("CARGO_BIN_EXE_sprung-standalone");
 
-/// What is missing for these tests besides a screen.
+/// The program or server that these tests need besides a screen and that is missing here.
 pub(crate) fn missing() -> Option<String> {
     if PROGRAM.is_none() {
         return Some("the program (‘cargo test --features standalone’ builds it)".to_owned());

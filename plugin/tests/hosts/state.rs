@@ -233,7 +233,7 @@ pub(crate) fn two_states_in_turn_while_audio_runs_are_never_mixed() {
         drop(stops);
         playing.join().unwrap()
     });
-    // The last state is the one that is heard in the end.
+    // The state that was loaded last is the one that sounds in the end.
     let mut player = Player { instance, audio };
     player.render(&[], 64, || 64);
     player.audio.reset();

@@ -17,7 +17,7 @@ const WINDOWS: usize = 200;
 /// Number of instances that are created and released.
 const INSTANCES: usize = 200;
 
-/// Windows opened before files and threads are counted: drivers keep what they load with the first windows.
+/// Windows opened before files and threads are counted: with the first windows, drivers load libraries that they keep.
 const WARM_UP: usize = 5;
 
 /// Name of the thread that the wrapper's instances share.
