@@ -20,7 +20,7 @@ pub(crate) fn patch(voices: usize) -> Patch {
     patch
 }
 
-/// Adds vibrato and a long sweep to every voice; the bend comes from [`Chord::process`].
+/// Adds vibrato and a long sweep to every voice; [`Chord::process`] adds the bend.
 pub(crate) fn moving(patch: Patch) -> Patch {
     patch.with(Param::Vibrato, 30.0).with(Param::Sweep, 12.0).with(Param::SweepTime, 10.0)
 }

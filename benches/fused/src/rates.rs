@@ -114,7 +114,7 @@ impl Bank {
         Self { alpha, beta, gain, x: [0.0; MODES], y: [1.0; MODES], out: [0.0; 4 * FRAMES] }
     }
 
-    /// Steps all modes by a block of frames, and adds up what they give: five fused operations a mode and frame.
+    /// Steps all modes by a block of frames, and adds up their outputs: five fused operations for each mode and frame.
     #[inline(never)]
     fn step<V: Fused>(&mut self) {
         self.out.fill(0.0);

@@ -1,4 +1,4 @@
-//! `cargo xtask dist`: what users download, in `target/dist`: an archive, a Debian package, a wheel for Python, and their checksums.
+//! `cargo xtask dist`: makes the downloads in `target/dist`: an archive, a Debian package, a wheel for Python, and checksums.
 
 mod licences;
 mod trial;
@@ -97,14 +97,14 @@ fn stage(folder: &Path, no_plugin: bool) -> Result<PathBuf, String> {
 fn archive(folder: &Path, stage: &Path) -> Result<PathBuf, String> {
     let name = stage.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let path = folder.join(format!("{name}.tar.gz"));
-    // The same files give the same archive, but for the compressor’s version.
+    // The same files give the same archive, as long as the compressor’s version is the same.
     let mut tar = Command::new("tar");
     tar.args(["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0", "-czf"]).arg(&path);
     run_to_end(tar.arg("-C").arg(folder).arg(&name), "tar")?;
     Ok(path)
 }
 
-/// A Debian package of the command, by cargo-deb and what `Cargo.toml` says under `package.metadata.deb`.
+/// A Debian package of the command, made by cargo-deb from `package.metadata.deb` in `Cargo.toml`.
 fn debian_package(folder: &Path) -> Result<Made, String> {
     let variable = |name: &str| std::env::var(name).ok().filter(|value| !value.trim().is_empty());
     let Some(address) = variable("DEBEMAIL") else {

@@ -6,7 +6,7 @@ use crate::shell::{root, run_to_end, succeeds};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is rendered, to standard output.
+/// Arguments of the command for the render that is compared, to standard output.
 const RENDER: [&str; 9] = ["render", "--preset", "Marimba", "--note", "C4", "--bits", "32f", "-o", "-"];
 
 /// The same from Python: the SHA-256 of the interleaved samples.

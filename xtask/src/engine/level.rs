@@ -1,4 +1,4 @@
-//! `cargo xtask level`: how loud the factory's presets are, and the gains that would bring them to one loudness.
+//! `cargo xtask level`: measures the loudness of the factory's presets, and proposes gains that make it equal.
 
 use crate::shell::root;
 use sprung::analysis::measures::preset::{chord_peaks, loudness, wanted_loudness};

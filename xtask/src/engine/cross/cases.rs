@@ -42,8 +42,8 @@ impl Accepted {
         Ok(Self(all))
     }
 
-    /// Compares lines of the form `name frames sha256 chunk,chunk,…`. The program may end a song after some chunks. A case
-    /// that was asked for and has no line differs.
+    /// Compares lines of the form `name frames sha256 chunk,chunk,…`. The program may end a song after some chunks. A requested
+    /// case without a line counts as differing.
     pub(crate) fn compare(&self, lines: &[String], asked: Asked) -> Result<Outcome, String> {
         let mut found = BTreeMap::new();
         for line in lines.iter().filter(|line| !line.starts_with("level ")) {

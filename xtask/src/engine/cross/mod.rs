@@ -110,7 +110,8 @@ fn program_of(command: &Command) -> String {
     command.get_program().to_string_lossy().into_owned()
 }
 
-/// Prints a table with a row for each CPU, and what is missing for the others. Differing bits and failed runs are an error.
+/// Prints a table with a row for each CPU, and a line for each CPU that could not run. Differing bits and failed runs are an
+/// error.
 pub(crate) fn run(options: &Options) -> Result<(), String> {
     let (mut ran, mut missing, mut failures) = (0, Vec::new(), Vec::new());
     // Each row appears when its CPU is done: QEMU takes long.

@@ -28,7 +28,7 @@ struct Player {
     bass: u8,
 }
 
-/// A player on the keys that General MIDI gives a kit.
+/// A player with the keys of General MIDI's drum map.
 const COMMON: Player = Player {
     number: 1,
     low: drum::KICK,
