@@ -1,4 +1,4 @@
-//! The rules for sources. Each is a function that returns a line for every violation.
+//! The rules for sources: each is a function that returns a line for every violation.
 
 use crate::tree::{Dependency, On, Tree};
 use std::collections::{BTreeMap, BTreeSet};
