@@ -57,7 +57,7 @@ fn plate_beside_bank(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The cost per frame, in stereo.
+/// The cost of the effects per frame, in stereo.
 fn effects(criterion: &mut Criterion) {
     let input = noise();
     let mut group = criterion.benchmark_group("effects");

@@ -147,7 +147,7 @@ fn kits_come_and_go_without_allocating_or_freeing() {
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
 }
 
-/// Bodies of the space and all that is behind the voices are exchanged and moved while they ring.
+/// Replaces the bodies of the space and changes the parameters of all effects behind the voices while they sound.
 #[test]
 fn spaces_come_and_go_without_allocating() {
     let shelf = Shelf::default();
@@ -164,7 +164,7 @@ fn spaces_come_and_go_without_allocating() {
     kits.iter().for_each(|kit| shelf.keep(kit));
     let mut synth = Synth::new(48_000.0, 1);
     synth.reserve_space();
-    // From here on somebody keeps each kit.
+    // The synth's first kit is on no shelf, so it is replaced here, where freeing is allowed. The shelf keeps all other kits.
     synth.set_kit(&kits[7]);
     let (mut left, mut right) = ([0.0; 64], [0.0; 64]);
     let mut loudest = 0.0_f32;
@@ -191,7 +191,7 @@ fn spaces_come_and_go_without_allocating() {
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
 }
 
-/// A string that follows the keys on a plate that does not: a table for each key.
+/// A string that follows the keys, joined to a plate that does not: the pair has a mode table for each key.
 fn pair() -> Patch {
     let body = |model, modes| Body { modes, ..Body::new(Model::find(model).unwrap().clone()) };
     let plate = Body { follows_key: false, ..body("plate", 9) };

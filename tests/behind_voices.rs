@@ -1,4 +1,4 @@
-//! What is behind the voices, played by the engine: blocks, sleep, tails, clicks, kits, and that what is off is not there.
+//! Effects behind the voices in the engine: blocks, idling, tails, clicks, kits, and that an effect that is off changes no bit.
 
 mod events;
 mod in_blocks;
@@ -17,10 +17,10 @@ const PLATE: f32 = 1.0;
 const SPRING: f32 = 2.0;
 const ROOM: f32 = 3.0;
 
-/// The sections, by how their parameters are grouped.
+/// The parameter sections of the effects behind the voices.
 const SECTIONS: [&str; 5] = ["Strings", "Tremolo", "Drive", "Tone", "Space"];
 
-/// Three short modes, well apart on either side.
+/// Three short modes, panned to both sides.
 fn dry() -> Patch {
     let modes = [(1.0, 0.6, 0.7), (2.7, 0.25, -0.9), (5.1, 0.1, 0.4)];
     let modes = modes.map(|(ratio, level, pan)| Mode { ratio, level, pan, ..Mode::UNIT });
@@ -50,7 +50,7 @@ fn set(frame: u32, param: Param, value: f32) -> Event {
     event(frame, EventKind::Param { param, value })
 }
 
-/// The bits of both sides, played in blocks of one size, with what the synth told at the end.
+/// The bits of both channels, rendered in blocks of one size, and the synth's `is_silent` and `tail_frames` at the end.
 fn synth_bits(patch: &Patch, events: &[Event], frames: usize, block: usize) -> (Vec<u32>, bool, u64) {
     let mut synth = Synth::new(RATE, 1);
     synth.set_patch(patch);
@@ -60,7 +60,8 @@ fn synth_bits(patch: &Patch, events: &[Event], frames: usize, block: usize) -> (
     (bits, synth.is_silent(), synth.tail_frames())
 }
 
-/// Notes with silence between, and every parameter of every section, moved while they ring, while tails do and in silence.
+/// Notes separated by silence, and two changes of every parameter of every section: while notes sound, during tails and in
+/// silence.
 fn busy() -> Vec<Event> {
     let rows = PARAMS.iter().filter(|info| SECTIONS.contains(&info.section));
     let mut events: Vec<Event> = rows
@@ -124,7 +125,7 @@ fn channels_of_an_ensemble_have_their_own() {
         backwards.process_by(|parts, play| parts.iter_mut().rev().for_each(play), events, &[], left, right);
     });
     assert!(whole == reversed, "the order in which parts are played");
-    // What one channel has is not heard on another.
+    // The effects of a channel do not change the other channels: the mix is the sum of the channels rendered alone.
     let alone = |channel: u8| {
         let mut ensemble = ensemble(1024);
         let own: Vec<Event> = events.iter().filter(|event| event.channel == channel).copied().collect();
@@ -142,7 +143,7 @@ fn what_is_off_changes_no_bit_and_what_is_on_changes_some() {
     let notes = [on(0, 60), off(4000, 60)];
     let plain = synth_bits(&dry(), &notes, 9000, 512).0;
     let mut settings = dry();
-    // Everything of sections but what turns them on.
+    // Changes every parameter of the sections except those that switch an effect on.
     for info in PARAMS.iter().filter(|info| SECTIONS.contains(&info.section)) {
         use Param::{Drive, Space, StereoWidth, StringsLevel, ToneHigh, ToneLow, TremoloDepth};
         if ![Drive, Space, StereoWidth, StringsLevel, ToneHigh, ToneLow, TremoloDepth].contains(&info.param) {
@@ -160,7 +161,7 @@ fn what_is_off_changes_no_bit_and_what_is_on_changes_some() {
         (Param::StereoWidth, 50.0),
     ] {
         assert!(plain != synth_bits(&dry().with(param, value), &notes, 9000, 512).0, "{param:?}");
-        // On and off again, it is as if it had not been.
+        // An effect that was switched on and off again changes no bit of later notes.
         let turned = [set(0, param, value), set(100, param, param.info().default)];
         let later = notes.map(|note| Event { frame: note.frame + 20_000, ..note });
         let events = [&turned[..], &later[..]].concat();
@@ -170,7 +171,7 @@ fn what_is_off_changes_no_bit_and_what_is_on_changes_some() {
     }
 }
 
-/// Frames until nothing sounds, in steps of a control tick, and the loudest sample of the last of them.
+/// Number of frames until silence, in steps of one control tick, and the peak of the last step.
 fn frames_to_silence(synth: &mut Synth) -> (u64, f32) {
     let (mut frames, mut last) = (0, 0.0);
     while !synth.is_silent() {
@@ -196,7 +197,7 @@ fn tails_are_never_longer_than_told() {
     ];
     for (name, patch) in patches {
         let turned = [on(0, 60), set(2990, Param::SpaceSize, 60.0), set(2995, Param::SpaceMix, 90.0)];
-        // As the strike comes, as notes ring, and as all but the tail is over; and while settings move.
+        // Just after the onset, while the note rings, when only the tail is left; and while parameters change.
         for (events, frames) in [(&turned[..1], 10), (&turned[..1], 3000), (&turned[..1], 20_000), (&turned, 3000)] {
             let mut synth = Synth::new(RATE, 1);
             synth.set_patch(&patch);
@@ -241,7 +242,7 @@ fn nothing_clicks() {
         (Param::Space, SPRING, ROOM),
         (Param::Space, SPRING, 0.0),
         (Param::Space, 0.0, SPRING),
-        // Larger, and so lower: what rings at a higher pitch than before has larger steps of itself.
+        // To a larger size and so a lower pitch: sound that is moved to a higher pitch has larger steps without any click.
         (Param::SpaceSize, 100.0, 140.0),
         (Param::SpaceMaterial, 0.0, 2.0),
         (Param::SpaceLowDecay, 0.2, 2.0),
@@ -257,7 +258,7 @@ fn nothing_clicks() {
     }
 }
 
-/// A knob that is turned while nothing sounds is where it is to be when the note comes.
+/// Parameters that change during silence are not smoothed: the next note starts with their new values.
 #[test]
 fn in_silence_settings_hold_at_once() {
     let mut turned = Synth::new(RATE, 1);
@@ -298,7 +299,7 @@ fn a_kit_of_several_has_the_space_that_all_of_its_sounds_have() {
     assert!(left[15_000..].iter().any(|sample| *sample != 0.0), "it rings on");
 }
 
-/// In an ensemble only channels that have bodies pay for them.
+/// In an ensemble, bodies take memory only on channels whose kits have them, unless `reserve_space` was called.
 #[test]
 fn without_room_bodies_stay_off() {
     let mut ensemble = Ensemble::new(RATE, 1, &dry(), &[]);

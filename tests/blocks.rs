@@ -58,7 +58,7 @@ fn any_patch() -> impl Strategy<Value = Patch> {
         routes,
     )
         .prop_map(|(modes, positions, routes)| {
-            // Few bodies have 4 modes, and those become a pair.
+            // The few cases with exactly 4 modes get a pair instead.
             let modes = if modes.len() == 4 { pair() } else { ModeTable::new(&modes) };
             let mut patch = Patch { modes, ..Patch::default() };
             for (info, position) in PARAMS.iter().zip(positions) {
@@ -74,7 +74,7 @@ fn any_patch() -> impl Strategy<Value = Patch> {
         })
 }
 
-/// A string that follows the keys on a plate that does not: a table for each key, with phases.
+/// A string that follows the keys, joined to a plate that does not: the pair has a mode table for each key, with phases.
 fn pair() -> ModeTable {
     static PAIR: LazyLock<ModeTable> = LazyLock::new(|| {
         let body = |model, modes| Body { modes, ..Body::new(Model::find(model).unwrap().clone()) };
@@ -202,11 +202,11 @@ fn any_case() -> impl Strategy<Value = Case> {
 /// A synth or an ensemble.
 trait Plays {
     fn play(&mut self, events: &[Event], left: &mut [f32], right: &mut [f32]);
-    /// Records what is known after a block apart from its samples.
+    /// Records the reports after a block, such as ended notes and voices.
     fn note(&mut self, is_last: bool, about: &mut About);
 }
 
-/// What a render reports: ended notes, by their serial numbers, and the tail after the last block.
+/// The reports of a render: ended notes, by their serial numbers, the tail after the last block, silence and voices.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct About {
     ended: BTreeSet<(u64, Option<NoteId>, u8, u8)>,

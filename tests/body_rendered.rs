@@ -16,24 +16,24 @@ const RATE: f64 = 48_000.0;
 const FRAMES: usize = 72_000;
 const KEYS: [u8; 2] = [48, 84];
 
-/// Modes whose ratios differ by less sound as one.
+/// Modes whose ratios differ by a smaller share than this count as one mode.
 const SAME: f64 = 1e-6;
-/// Modes nearer to each other than this beat so slowly that a note is too short to tell them apart.
+/// Modes whose ratios differ by a smaller share than this beat too slowly to be separated within a note.
 const APART: f64 = 0.01;
-/// Share of the strongest mode's level below which modes are not looked for.
+/// Modes below this share of the strongest mode's level are not compared.
 const AUDIBLE: f64 = 0.02;
-/// Partials that ring more shortly, in seconds, or that are higher, in Hz, are not looked for.
+/// Shortest T60 in seconds and highest frequency in Hz of the partials that are compared.
 const SHORTEST: f64 = 0.03;
 const HIGHEST: f64 = 0.45 * RATE;
 
-/// Heads, whose modes are so many and so short that [`modes`] does not tell them apart.
+/// Drum heads: their modes are so many and so short that [`modes`] cannot separate them.
 const DENSE: [&str; 2] = ["membrane", "timpani"];
 
 /// Energy in dB of the difference between a note and the sum of SciPy's modes. A cent would be −20 dB after 0.3 s at C3, 1 %
 /// of T60 −40 dB, and 0.1 dB of level −39 dB.
 const DIFFERENCE_DB: f64 = -60.0;
 
-/// A mode that SciPy says is heard, as a ratio to the key, with its level against the strongest.
+/// A mode that is audible by SciPy's numbers: its ratio to the key, its T60, and its level relative to the strongest mode.
 struct Expected {
     ratio: f64,
     t60: f64,
@@ -56,7 +56,7 @@ fn expected(group: &[Line]) -> Vec<Expected> {
     heard.into_iter().zip(places).filter_map(|(mode, is_clear)| is_clear.then_some(mode)).collect()
 }
 
-/// A note of a body with no modes above those that SciPy has numbers for, struck by an impulse.
+/// A note struck by an impulse, of a body without modes above those for which SciPy has numbers.
 fn render(group: &[Line], key: u8) -> Vec<f32> {
     let body = Body { modes: most(group), ..body(&group[0].model, &group[0].set) };
     let mut patch = Patch { modes: body.table(), routes: Routes::NONE, ..Patch::default() };
@@ -94,7 +94,7 @@ fn pitch(key: u8) -> f64 {
     frequency_from_key(key.into(), 440.0)
 }
 
-/// Energy in dB of what is left of a note without SciPy's modes, over the note's.
+/// Energy in dB, relative to the note's, that is left after SciPy's modes are subtracted from the note.
 fn difference_db(group: &[Line], pitch: f64, note: &[f32]) -> f64 {
     let mut sum = vec![0.0; note.len()];
     for line in group {
@@ -129,10 +129,10 @@ fn rendered_notes_are_sums_of_the_modes_of_scipy() {
     assert!(compared > 15, "{compared} notes");
 }
 
-/// How far a partial is from what SciPy has: in cents, as a share of the T60, and in dB.
+/// Deviation of a partial from SciPy's mode: in cents, as a share of the T60, and in dB.
 type Off = [f64; 3];
 
-/// The partials of a note of a body, each with its place.
+/// The compared partials of a note: the description and the deviation of each.
 fn partials(group: &[Line], key: u8) -> Vec<(String, Off)> {
     let found = modes(&[render(group, key)], RATE, &Settings::default(), &mut |_| true).expect("modes");
     let nearest = |frequency: f64| {

@@ -122,7 +122,7 @@ fn choking_does_not_click() {
 
 #[test]
 fn striking_a_sounding_note_does_not_click() {
-    // Undisturbed means two masses of the same pitch struck together: a sweep also moves what still rings.
+    // Undisturbed means two masses of the same pitch struck together: a second strike also sweeps the pitch of the sounding mass.
     let other = |frame, key| Event { channel: 1, ..on(frame, key) };
     check(|patch| patch, |key, _| vec![on(0, key), other(0, key)], |key, moment| vec![on(0, key), on(moment, key)]);
 }

@@ -61,7 +61,7 @@ fn pair(case: u64) -> ([Vec<BodyMode>; 2], Joint) {
     (bodies, if rigid { Joint::Rigid } else { Joint::Spring { stiffness, damping } })
 }
 
-/// Frequency, rate, cosine and sine of the velocity that is heard, and the number of poles.
+/// Angular frequency, decay rate, cosine and sine of the pickup's velocity; and the number of poles.
 type Line = ([f64; 4], usize);
 
 fn cases() -> BTreeMap<u64, Vec<Line>> {

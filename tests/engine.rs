@@ -225,8 +225,8 @@ fn a_sweep_from_beyond_the_spectrum_arrives() {
     }
 }
 
-/// After a change of patch, a held key that takes back the voice is played with the patch of the voice's start: its
-/// ratios, decay, tracking and tuning, not those of the new patch.
+/// After a change of patch, a held key that gets the voice back keeps the patch with which the voice started: its ratios, decay,
+/// tracking and tuning, not those of the new patch.
 #[test]
 fn a_voice_returns_to_a_held_key_in_its_own_patch() {
     let first = Patch::default().with(Param::Decay, 20.0).with(Param::Limiter, 0.0);

@@ -1,4 +1,4 @@
-//! The exciters of whole notes: that they add up, follow velocity, vary by chance, and what drives a held note.
+//! Exciters in whole notes: their sum, velocity, mallet contact, random variation, bow and audio input.
 
 #[path = "events/mod.rs"]
 mod events;
@@ -46,7 +46,7 @@ fn rms(sound: &[f32]) -> f64 {
     (sound.iter().map(|sample| f64::from(sample * sample)).sum::<f64>() / sound.len() as f64).sqrt()
 }
 
-/// The share of a sound's energy that lies above a frequency, by the differences of its samples.
+/// Brightness: RMS of the differences between successive samples, relative to the RMS of the samples.
 fn brightness(sound: &[f32]) -> f64 {
     let steps: Vec<f32> = sound.windows(2).map(|pair| pair[1] - pair[0]).collect();
     rms(&steps) / rms(sound)
@@ -156,7 +156,7 @@ fn pressure_can_be_what_bows() {
     assert!(rms(&sound[62_000..72_000]) > 0.05 && rms(&sound[134_000..]) < 0.01 * rms(&sound[62_000..72_000]));
 }
 
-/// A tone at the pitch of a note makes it ring, one beside it does not; nothing is heard of it by itself.
+/// Input at the pitch of a held note makes it ring, input beside that pitch does not. The input itself is not heard.
 #[test]
 fn what_comes_in_drives_held_notes() {
     let tone = |frequency: f64| -> Vec<f32> {
@@ -175,7 +175,7 @@ fn what_comes_in_drives_held_notes() {
     let without = bar(0.0, OFF, OFF);
     assert!(driven(&without, 1, &held, &tone(440.0), 9600) == render(&without, 1, &held, 9600), "off costs no bit");
 
-    // Input beyond the end of its samples, and nonsense, is nothing; blocks do not matter.
+    // The same input in blocks of other lengths gives the same bits. Non-finite and huge input never makes the output non-finite.
     let short = &tone(440.0)[..1000];
     let mut long = short.to_vec();
     long.resize(9600, 0.0);
@@ -219,14 +219,14 @@ fn contacts_tell_material_position_and_impulse() {
     let level = |impulse| rms(&hit(0.9, 0.0, impulse));
     assert!((level(1.0) / level(0.5) / 2.0 - 1.0).abs() < 0.05, "{}", level(1.0) / level(0.5));
     assert!(rms(&hit(0.9, 1.0, 1.0)) < 0.7 * level(1.0), "the end of a bar hardly moves its lowest mode");
-    // A hit of full velocity with the mallet's own hardness is its strike.
+    // A contact of full impulse with the mallet's own hardness equals a note of full velocity.
     let patch = bar(0.0, OFF, OFF).with(Param::MalletHardness, 60.0);
     let contact = Sound::new(patch.clone()).strike(0.6, 0.0, 1.0);
     let hit = render(&patch, 1, &[event(0, EventKind::Strike { key: 60, contact })], 9600);
     assert_eq!(hit, render(&patch, 1, &[on(0, 60)], 9600));
 }
 
-/// Every exciter at once, on a factory sound: in any blocks the same, and it ends.
+/// All exciters at once, on a factory sound, give the same bits in blocks of any length.
 #[test]
 fn all_exciters_at_once_do_not_depend_on_blocks() {
     let mut patch = Preset::find("Kalimba").unwrap().patch.clone();

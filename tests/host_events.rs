@@ -282,7 +282,8 @@ fn frames_to_silence(synth: &mut Synth) -> u64 {
     frames - 1
 }
 
-/// Whether oscillators or envelopes move a patch, or its keys drive it as long as they are held: then its end cannot be told.
+/// Whether oscillators or envelopes modulate a patch, or a bow or audio input drives it while a key is held: then its end is
+/// unknown.
 fn is_moving(patch: &Patch) -> bool {
     use Source::{Envelope1, Envelope2, Lfo1, Lfo2, Lfo3};
     let moves = |source| matches!(source, Lfo1 | Lfo2 | Lfo3 | Envelope1 | Envelope2);
@@ -311,7 +312,7 @@ fn tails_are_told_exactly() {
             }
             let found = if synth.is_silent() { 0 } else { frames_to_silence(&mut synth) };
             sounding += u32::from(found > 0);
-            // Effects behind the voices, energy that climbs and hits that are still to come are told an upper bound.
+            // With effects behind the voices, bloom or hits that are still to come, the tail is an upper bound.
             let is_set = |param: &Param| preset.patch.get(*param) != param.info().default;
             let is_bound = PARAMS.iter().any(|info| info.param.is_behind_voices() && is_set(&info.param))
                 || [Param::Bloom, Param::NoiseHits].iter().any(is_set);

@@ -37,7 +37,7 @@ fn set(frame: u32, param: Param, value: f32) -> Event {
     event(frame, EventKind::Param { param, value })
 }
 
-/// Cents above 220 Hz of each stretch of 25 ms from `start`, in seconds, and the amplitude there in the middle.
+/// Pitch in cents above 220 Hz and amplitude in the middle of each stretch of 25 ms, from `start` in seconds.
 fn pitches(sound: &[f32], start: f64, t60: f64, guess: f64) -> Vec<(f64, f64)> {
     let length = (0.025 * RATE) as usize;
     let mut guess = guess;
@@ -94,7 +94,8 @@ fn a_route_moves_tension() {
     assert!(sounds_high > 390.0, "{sounds_high}");
 }
 
-/// No step between two samples is larger than that of all that rings at the highest pitch that the law allows.
+/// No step between two samples is larger than the largest step of a sine with the amplitude of both strikes together, at the
+/// highest pitch that the law allows.
 #[test]
 fn a_second_strike_bends_the_pitch_without_a_click() {
     for moment in (9_600..9_600 + 64).step_by(7) {
@@ -164,7 +165,7 @@ fn a_blooming_voice_ends_within_its_tail() {
         frames += CONTROL_FRAMES as u64;
         assert!(frames < 10 * RATE as u64, "it never ends");
     }
-    // To a tick.
+    // Exact to one control tick.
     let tick = CONTROL_FRAMES as u64;
     assert!(ends.iter().all(|end| end + tick >= frames), "{frames}: {ends:?}");
     assert!(ends.len() > 10 && ends[ends.len() / 2] <= frames, "{frames}: {ends:?}");
@@ -207,7 +208,7 @@ fn a_touch_in_the_middle_kills_odd_partials_and_leaves_even_ones() {
     }
 }
 
-/// A touch only ever shortens, moves with its place, and ends when the finger goes.
+/// A touch only shortens the decay, follows its position, and ends when the pressure ends.
 #[test]
 fn a_touch_follows_its_place_and_pressure() {
     let fall = |patch: &Patch, events: &[Event], n: u8| {
@@ -225,13 +226,13 @@ fn a_touch_follows_its_place_and_pressure() {
     let press = |frame, pressure| event(frame, EventKind::ChannelPressure(pressure));
     assert!(fall(&pressed, &[press(8_000, 1.0)], 3) > 50.0);
     assert!((fall(&pressed, &[press(100, 1.0), press(400, 0.0)], 3) - free).abs() < 0.01);
-    // A release still damps, and a touch beside it only adds.
+    // A release still damps, and a touch at the same time adds to the damping.
     let released = |patch: &Patch| fall(&patch.clone().with(Param::Release, 0.5), &[events::off(5_000, 57)], 2);
     let beside = at(25.0).with(Param::Touch, 20.0);
     assert!(released(&beside) > released(&string()) + 3.0);
 }
 
-/// What a touch changes on the fly makes no click.
+/// Changes of touch and bloom while a note sounds do not click.
 #[test]
 fn touching_and_blooming_does_not_click() {
     let jump = |sound: &[f32]| sound.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
@@ -241,7 +242,7 @@ fn touching_and_blooming_does_not_click() {
         let touched = jump(&render(&string(), &events, 0.4)[4_800..]);
         assert!(touched <= free + 0.001, "{touched} instead of {free}");
     }
-    // As loud as the highest modes that bloom may be, and no louder at the moment when bloom is switched on.
+    // High modes that have bloomed have large steps; at the moment when bloom is switched on, no step is larger.
     let events = [strike(0, 45, 1.0), set(9_600, Param::Bloom, 100.0)];
     let sound = render(&gong().with(Param::Bloom, 0.0), &events, 1.0);
     let (start, later) = (jump(&sound[9_500..11_000]), jump(&sound[11_000..]));

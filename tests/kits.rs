@@ -48,7 +48,7 @@ fn kit(patches: &[Patch], pads: Vec<Option<Pad>>) -> Arc<Kit> {
     Arc::new(Kit::new("kit".to_owned(), sounds, pads))
 }
 
-/// A kit's pads with these pads on these keys.
+/// The pads of a kit that has these pads on these keys and no others.
 fn on_keys(pads: &[(usize, Pad)]) -> Vec<Option<Pad>> {
     (0..KEYS).map(|key| pads.iter().find(|(of, _)| *of == key).map(|(_, pad)| pad.clone())).collect()
 }
@@ -243,7 +243,7 @@ fn swapped_kits() -> [Arc<Kit>; 3] {
         &[factory("Vibraphone"), factory("Wine Glass").with(Param::Vibrato, 30.0)],
         (0..KEYS).map(|key| Some(Pad::of(key % 2))).collect(),
     );
-    // Effects behind the voices change for what rings, too.
+    // A change of the effects behind the voices would also change notes that still ring, so the drums have none here.
     let drums = KitPreset { params: vec![], ..drums().clone() }.kit();
     [first, drums, Preset::find("Church Bell").unwrap().kit()]
 }

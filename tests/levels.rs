@@ -47,7 +47,7 @@ fn factory() -> impl Iterator<Item = &'static Preset> {
     Preset::factory().iter().step_by(6)
 }
 
-/// Sounds and what they play, with a name for failure messages.
+/// A kit and the events that it plays, with a name for failure messages.
 struct Case {
     name: String,
     seed: u64,
@@ -119,18 +119,18 @@ fn patch(stream: &mut Stream, seed: u64) -> Patch {
             patch.set(info.param, info.denormalise(stream.next()));
         }
     }
-    // By one exciter, or by several at once.
+    // Struck by one exciter, or by several at once.
     let is_on = |exciter: u64| (seed % 4 == exciter || seed % 5 == 4) && seed % 9 != 3 + exciter;
     patch.set(Param::MalletPulse, (seed % 2) as f32);
     for (exciter, level) in [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].into_iter().enumerate() {
         patch.set(level, if is_on(exciter as u64) { 0.0 } else { -60.0 });
     }
     patch.set(Param::NoiseReach, if seed % 4 == 2 { 100.0 } else { 0.0 });
-    // A touch silences most sounds soon, so every third of these bodies is touched, and lightly; every other one blooms.
+    // A touch silences most sounds soon, so only every ninth patch has one, and a light one. Half of the patches bloom.
     patch.set(Param::Touch, if seed % 9 == 4 { 20.0 } else { 0.0 });
     patch.set(Param::Bloom, if seed % 4 >= 2 { 80.0 } else { 0.0 });
     patch.set(Param::BloomTime, 0.1);
-    // Without fused instructions a body of many masses is slow: every eighth has springs and strings.
+    // Without fused instructions, bodies of many masses are slow, so only every eighth patch has a spring space and strings.
     let has_bodies = seed % 8 == 3;
     patch.set(Param::Space, if has_bodies { 2.0 } else { 0.0 });
     patch.set(Param::StringsLevel, if has_bodies { 30.0 } else { 0.0 });
@@ -159,7 +159,7 @@ fn patch(stream: &mut Stream, seed: u64) -> Patch {
     patch
 }
 
-/// A random string that follows the keys on a plate that does not: a table for each key, with phases.
+/// A random string that follows the keys, joined to a plate that does not: a mode table for each key, with phases.
 fn pair(stream: &mut Stream) -> ModeTable {
     let body = |model, modes| Body { modes, ..Body::new(Model::find(model).unwrap().clone()) };
     let plate = Body { follows_key: false, ..body("plate", 2 + (stream.next() * 40.0) as usize) };

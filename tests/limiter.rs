@@ -21,7 +21,7 @@ const TRANSPARENT: f64 = -1.0;
 /// Highest true peak in dBFS that the limiter guarantees.
 const HIGHEST: f64 = -0.3;
 
-/// And of noise, which jumps between levels just below the threshold before the limiter can know.
+/// Highest true peak in dBFS of noise, which can peak between two samples that are both just below the threshold.
 const HIGHEST_OF_NOISE: f64 = 0.5;
 
 const RATES: [u32; 6] = [22_050, 44_100, 48_000, 88_200, 96_000, 192_000];
@@ -119,8 +119,8 @@ fn a_true_peak_above_it_is_brought_down() {
     assert!(high.is_empty(), "\n{}", high.join("\n"));
 }
 
-/// Noise up to half the sample rate may have a peak between two samples that are both below the threshold: no limiter
-/// without latency can know it. After a sample has exceeded the threshold, noise is limited like everything else.
+/// Noise up to half the sample rate may have a peak between two samples that are both below the threshold: no limiter without
+/// latency can foresee it. After a sample has exceeded the threshold, noise is limited like everything else.
 #[test]
 fn white_noise_may_exceed_full_scale_once() {
     for seed in 0..40 {
@@ -299,7 +299,7 @@ fn switching_is_heard_at_once_but_not_as_a_click() {
     let [with, without] = [events, chord(1.0)].map(|events| play(48_000, &patch, &events, 2.5));
     let off = play(48_000, &patch.with(Param::Limiter, 0.0), &chord(1.0), 2.5);
     assert!(with[0][..24_000] == without[0][..24_000] && with[0][24_000..] != without[0][24_000..]);
-    // The gain rises as it does after a last peak.
+    // After it is switched off, the gain rises as it does after the last peak.
     let gains: Vec<f64> = gains(&off[0], &with[0]).split_off(24_000).into_iter().flatten().collect();
     assert!(gains.windows(2).all(|pair| (-1e-4..1e-3).contains(&(pair[1] - pair[0]))));
     assert_eq!(gains.last(), Some(&1.0));
@@ -365,7 +365,7 @@ proptest! {
         while start < left.len() {
             let end = left.len().min(start + blocks.next().unwrap());
             let (left, right) = (&mut left[start..end], &mut right[start..end]);
-            // As an engine does that detects silence.
+            // Silent blocks are skipped while the limiter is idle, as in the engine.
             if !limiter.is_idle() || left.iter().chain(&*right).any(|sample| *sample != 0.0) {
                 limiter.process(true, left, right);
             }

@@ -99,7 +99,7 @@ fn sources_of_the_strike_and_the_hand_move_a_gain() {
         (Source::Macro3, vec![on(0, 60, 1.0), event(9600, EventKind::Param { param: Macro3, value: 25.0 })], 3.0),
         (Source::Envelope1, vec![on(0, 60, 1.0)], 6.0),
     ] {
-        // Vibrato from wheel and pressure would not change levels, but it would shift the zero crossings.
+        // The vibrato from wheel and pressure does not change levels.
         assert_moves_gain(source, &events, expected);
     }
 }
@@ -263,7 +263,7 @@ fn a_decay_that_moves_only_in_the_first_tick_stays_there() {
 
 #[test]
 fn a_brightness_does_not_read_a_strike_again() {
-    // The envelope is 0 at the strike; its later movement does not affect what was read at the strike.
+    // The envelope is 0 at the strike; its later movement does not change values that were read at the strike.
     let routed = patch(&[(Source::Envelope1, Tilt, 50.0)]).with(Envelope1Attack, 0.1);
     let events = [on(0, 60, 1.0), control(12_000, 74, 0.2)];
     assert!(render(&routed, 0, &events, 24_000) == render(&patch(&[]), 0, &events, 24_000));
@@ -291,8 +291,8 @@ fn what_a_host_moves_of_a_sounding_note_slides_all_the_way() {
     assert_near(pitch(&turned, later(Route1, 0.0625)), 2.0, 1e-4);
 }
 
-/// A sound for which every quantity matters in one of four forms: all sources are routed somewhere. The forms are moved by
-/// an impulse, by a mallet's contact, by a pluck, and by noise and a bow.
+/// A patch in four forms: every parameter is audible in at least one of them, and many sources are routed to the pitch. The forms
+/// are excited by an impulse, by a mallet's contact, by a pluck, and by noise and a bow.
 fn busy(form: usize) -> Patch {
     let pitch = [
         Source::Lfo1,
@@ -357,7 +357,7 @@ fn every_quantity_can_be_moved_and_is_heard() {
         event(4000, EventKind::PitchBend(0.5)),
         event(28_000, EventKind::NoteOff { key: 64, velocity: 0.9, id: None }),
     ];
-    // Without sound that comes in, its level is not heard.
+    // Without audio input, its level is not audible.
     let heard = PARAMS.iter().filter(|info| info.is_modulatable() && ![Route16, InputLevel].contains(&info.param));
     let deaf = heard.filter(|info| {
         (0..4).all(|form| {

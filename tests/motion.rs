@@ -128,7 +128,7 @@ impl Note {
         synth.set_patch(&motion.patch.clone().with(Param::Decay, self.t60 as f32));
         let mut events = vec![on(0, key_from_frequency(self.frequency, 440.0))];
         events.extend(motion.events.iter().map(|event| Event { frame: event.frame + rest as u32, ..*event }));
-        // A line of pitch ends at the second tick after its start.
+        // A linear pitch ramp ends at the second control tick after its start.
         let back = rest + motion.frames.next_multiple_of(TICK) + 2 * TICK;
         let (mut left, mut right) = (vec![0.0; back + rest], vec![0.0; back + rest]);
         synth.process(&events, &mut left, &mut right);
@@ -140,7 +140,7 @@ impl Note {
         let amplitude = before.amplitude * libm::exp(-fall(rest as f64 / self.sample_rate, before.t60));
         let t60 = LN_60_DB * seconds / libm::log(amplitude / after.amplitude);
 
-        // Cycles from the end of the first stretch to the start of the second. The whole cycles come from counting.
+        // Cycles from the end of the first stretch to the start of the second. Zero crossings give the number of whole cycles.
         let phase = |cycles: f64| cycles - libm::floor(cycles);
         let start = before.frequency * rest as f64 / self.sample_rate + before.phase / TAU;
         let crossings = left[rest - 1..=back].windows(2).skip(1).filter(|pair| pair[0] < 0.0 && pair[1] >= 0.0).count();
@@ -169,7 +169,7 @@ fn t60_and_tuning_are_the_same_however_the_pitch_moves() {
                     [1.0, 10.0, FASTEST].iter().map(|speed| bends(sample_rate, t60, *speed, TICK)).collect();
                 // Not synchronous with control ticks.
                 motions.push(bends(sample_rate, t60, 5.0, 100));
-                // Not synchronous with control ticks: most lines are interrupted.
+                // Not synchronous with control ticks, and most pitch ramps are interrupted.
                 motions.push(bends(sample_rate, t60, FASTEST, 23));
                 motions.push(vibrato(sample_rate, t60, 50.0, 5.5, rest));
                 motions.push(vibrato(sample_rate, t60, 400.0, 20.0, rest));

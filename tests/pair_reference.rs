@@ -14,7 +14,7 @@ const NUMBERS: &str = include_str!("pairs/scipy_reference.csv");
 const RATE: f64 = 48_000.0;
 const FRAMES: usize = 24_000;
 
-/// Frequency in Hz, T60 in seconds, and what is heard: cosine and sine on the string and on the plate.
+/// Frequency in Hz, T60 in seconds, and the cosine and sine of the pickup's signal: on the string and on the plate.
 struct Line {
     frequency: f64,
     t60: f64,
@@ -79,7 +79,7 @@ fn render(modes: ModeTable, decay: f64, key: u8) -> Vec<f32> {
 fn rendered_pairs_are_those_of_scipy() {
     for kind in ["apart", "series", "spring"] {
         for (body, heard) in [(0, 0.0), (1, 1.0)] {
-            // The plate apart from the string is not struck.
+            // A plate that is not joined to the string is not struck.
             if kind == "apart" && body == 1 {
                 continue;
             }

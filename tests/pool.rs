@@ -166,7 +166,7 @@ fn a_synth_steals_when_its_own_pool_is_exhausted() {
     let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
     let events: Vec<_> = (0..60).map(|n| on(u32::from(n), 0, 30 + n, 0.5)).collect();
     synth.process(&events, &mut left, &mut right);
-    // That is 192 cells.
+    // 24 voices of 512 modes take 192 cells.
     assert_eq!(synth.voices_used(), 24);
     let mut reported: Vec<u64> = synth.ended().iter().map(|note| note.serial).collect();
     reported.sort_unstable();

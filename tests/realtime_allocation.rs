@@ -1,4 +1,4 @@
-//! The audio callback never allocates, with song, live events, patches and recording: a forbidding allocator checks.
+//! The audio callback never allocates, with song, live events, patches and recording: checked by an allocator that forbids it.
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, violation_count};
 use sprung::engine::EventKind;

@@ -1,4 +1,4 @@
-//! The space that the channels of an ensemble share: what is sent, blocks and threads, and its tail.
+//! The space that the channels of an ensemble share: sends, blocks and threads, and its tail.
 
 mod events;
 mod in_blocks;
@@ -32,7 +32,7 @@ fn samples(mut ensemble: Ensemble, events: &[Event], frames: usize, block: usize
     in_blocks(events, frames, block, process).into_iter().map(f32::from_bits).collect()
 }
 
-/// What the space adds to a note, sent as much as `value` says.
+/// The sound that the space adds to a note at the reverb send `value`.
 fn added(value: Option<u8>) -> Vec<f32> {
     let events: Vec<Event> = value.map(|value| send(0, 0, value)).into_iter().chain([on(2000, 60)]).collect();
     let (with, without) = (dry().with_mix(&room()), dry());

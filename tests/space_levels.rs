@@ -1,4 +1,4 @@
-//! Reverbs give the bits of scalar code on every level of vector instructions. A process of its own: the level is global.
+//! Reverbs give the bits of scalar code on every level of vector instructions (in a process of its own: the level is global).
 
 use sprung::dsp::Level;
 use sprung::dsp::random::{key, uniform};

@@ -104,7 +104,7 @@ fn a_unison_note_ends_once_and_counts_as_one() {
     assert!(synth.is_silent());
 }
 
-/// Length in frames of the period around a frame: the distance of two zero crossings there.
+/// Length in frames of the period after a frame: the distance between the next two upward zero crossings.
 fn period(samples: &[f32], at: usize) -> f64 {
     let crosses = |i: &usize| samples[*i] < 0.0 && samples[i + 1] >= 0.0;
     let exact = |i: usize| i as f64 + f64::from(samples[i] / (samples[i] - samples[i + 1]));

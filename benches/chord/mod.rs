@@ -9,7 +9,7 @@ use sprung::patch::{Mode, ModeTable, Patch};
 /// Frames of a block, typical of a host with low latency.
 pub(crate) const FRAMES: usize = 64;
 
-/// After this many frames a chord is struck again, long before its modes have died away and become cheaper.
+/// A chord is struck again after this many frames, long before its modes have decayed and become cheaper.
 const LASTS: usize = 8 * 48_000;
 
 /// A patch of 64 modes, for up to `voices` notes.
@@ -20,7 +20,7 @@ pub(crate) fn patch(voices: usize) -> Patch {
     patch
 }
 
-/// Adds vibrato and a long sweep to every voice; the bend comes from [`Chord::process`].
+/// Adds vibrato and a long sweep to every voice; [`Chord::process`] adds the bend.
 pub(crate) fn moving(patch: Patch) -> Patch {
     patch.with(Param::Vibrato, 30.0).with(Param::Sweep, 12.0).with(Param::SweepTime, 10.0)
 }

@@ -50,7 +50,7 @@ impl StruckBank {
         bank.render(Some(&strike), CONTROL_FRAMES);
 
         let (mut burst, mut noise) = (Exciter::REST, Drive::NONE);
-        // So faint that the masses do not run away, however long it lasts.
+        // So weak that the masses' amplitudes stay small, however long it lasts.
         let noise_setup = BurstSetup { force: 1e-6, frames: u32::MAX, key: 7, ..BurstSetup::NONE };
         burst.strike(&Stroke { noise: noise_setup, ..Stroke::NONE }, 48_000.0);
         burst.fill(CONTROL_FRAMES, &mut noise);

@@ -54,7 +54,7 @@ const OUTSIDE: &[Row] = &[
     ("std::thread", &["realtime", "cli"]),
 ];
 
-/// What the plugin must not use, because it has no signal processing of its own.
+/// Libraries that the plugin must not use, because it has no signal processing of its own.
 const NOT_OF_THE_PLUGIN: &[Row] = &[("sprung::dsp", &[]), ("libm", &[])];
 
 /// Crates that the library needs without any features, which is how the plugin builds it.
@@ -151,7 +151,7 @@ fn the_plugin_builds_nothing_that_only_the_command_needs() {
     assert_eq!(always.map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ALWAYS_BUILT);
     let used = &manifest("plugin/Cargo.toml")["dependencies"]["sprung"];
     assert_eq!(used.get("default-features").and_then(toml::Value::as_bool), Some(false));
-    // What fits recordings that are dropped on the window.
+    // The plugin reads and fits recordings that are dropped on its window.
     let features = used["features"].as_array().unwrap().iter().filter_map(toml::Value::as_str);
     assert_eq!(features.collect::<Vec<_>>(), ["codecs", "fit"]);
 }

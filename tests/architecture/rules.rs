@@ -1,4 +1,4 @@
-//! The rules for sources. Each is a function that returns a line for every violation.
+//! The rules for sources: each is a function that returns a line for every violation.
 
 use crate::tree::{Dependency, On, Tree};
 use std::collections::{BTreeMap, BTreeSet};
@@ -80,7 +80,7 @@ pub(crate) fn circles(tree: &Tree) -> BTreeMap<(PathBuf, PathBuf), [usize; 2]> {
         .collect()
 }
 
-/// What is wrong with the first line of a file, which must state its purpose; `None` if nothing is.
+/// Describes the fault of a file's first line, which must state the file's purpose; `None` if there is no fault.
 pub(crate) fn purpose(file: &Path, text: &str) -> Option<String> {
     let mut lines = text.lines();
     let first = lines.next().unwrap_or_default();

@@ -126,7 +126,7 @@ impl Tree {
         all
     }
 
-    /// Where a path in a module ends.
+    /// Resolves a path in a module.
     fn resolve(&self, from: &[String], path: &[String], exports: Exports, depth: usize) -> End {
         let outside = || End::Outside(path.to_vec());
         let (Some(first), Some((_, module))) = (path.first(), self.modules.get(from)) else { return outside() };
@@ -148,7 +148,7 @@ impl Tree {
         self.resolve(from, &meant, exports, depth + 1)
     }
 
-    /// Where a path ends that continues from a module.
+    /// Resolves a path that continues from a module.
     fn walk(&self, at: &[String], path: &[String], exports: Exports, depth: usize) -> End {
         let here = || End::Module(at.to_vec());
         let (Some((first, rest)), Some((_, module))) = (path.split_first(), self.modules.get(at)) else {

@@ -9,7 +9,7 @@ use sprung::params::Param;
 use sprung::preset::{Family, Guide, Preset};
 use sprung::units::note_name;
 
-/// The measures of a preset that are not as they are to be.
+/// The measures of a preset that are outside their wanted range.
 fn off(preset: &Preset) -> Vec<String> {
     let measures = measure(preset).expect("the meters work");
     let text = |measure: &Measure| {
@@ -19,7 +19,7 @@ fn off(preset: &Preset) -> Vec<String> {
     measures.iter().filter(|measure| !measure.is_kept()).map(text).collect()
 }
 
-/// Presets that promise anything: `init` is where one's own sounds start.
+/// All factory presets but `init`, which is only a starting point for one's own sounds.
 fn whole_bank() -> Vec<&'static Preset> {
     Preset::factory().iter().filter(|preset| preset.name != "init").collect()
 }

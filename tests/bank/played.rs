@@ -1,4 +1,4 @@
-//! Notes of presets, and what is heard in them.
+//! Renders notes of presets and measures them.
 
 use sprung::analysis::spectrum::{Spectrum, peaks, spectrum};
 use sprung::engine::{Event, EventKind, Synth};
@@ -7,7 +7,7 @@ use sprung::units::mono_from_stereo;
 
 pub(crate) const RATE: f64 = 48_000.0;
 
-/// A key that goes down, or comes up.
+/// A note-on with this velocity, from 1 to 127, or a note-off if there is none.
 pub(crate) fn event(seconds: f64, key: u8, velocity: Option<f32>) -> Event {
     let kind = match velocity {
         Some(velocity) => EventKind::NoteOn { key, detune: 0.0, velocity: velocity / 127.0, id: None },
@@ -16,7 +16,7 @@ pub(crate) fn event(seconds: f64, key: u8, velocity: Option<f32>) -> Event {
     Event { frame: (seconds * RATE) as u32, channel: 0, kind }
 }
 
-/// The mean of both sides of a note at velocity 100 that is held for some seconds.
+/// The mean of both channels of a note that is held for some seconds.
 pub(crate) fn note(preset: &Preset, key: u8, velocity: f32, held: f64, seconds: f64) -> Vec<f32> {
     let mut synth = Synth::new(RATE, 1);
     synth.set_kit(&preset.kit());
@@ -42,7 +42,7 @@ pub(crate) fn partial_near(spectrum: &Spectrum, frequency: f64, ratio: f64) -> O
     found.iter().map(|peak| peak.frequency).find(|found| *found < frequency * ratio && *found > frequency / ratio)
 }
 
-/// Seconds until the energy that is still to come has fallen by some decibels (Schroeder 1965), and the T60 in between −5 and
+/// Seconds until the remaining energy (backward integration, Schroeder 1965) has fallen by `db`, and the T60 measured from −5 to
 /// −25 dB.
 pub(crate) fn decay(sound: &[f32], db: f64) -> (f64, f64) {
     let mut left: Vec<f64> = sound.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).collect();

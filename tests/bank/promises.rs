@@ -1,4 +1,4 @@
-//! What the names of presets promise: pitches, partials, decays.
+//! Checks that presets have the pitches, partials and decays that their names promise.
 
 use crate::bank;
 use crate::played::{RATE, decay, energy, event, note, partial_near, spectrum_from};
@@ -7,7 +7,7 @@ use sprung::engine::Synth;
 use sprung::preset::{Family, KitPreset, Preset};
 use sprung::units::frequency_from_key;
 
-/// Furthest a partial may be from its place, in cents.
+/// Largest deviation of a partial in cents.
 const CENTS: f64 = 18.0;
 
 fn preset(name: &str) -> &'static Preset {
@@ -46,7 +46,7 @@ fn bars_bells_and_strings_have_the_partials_of_their_kind() {
         let sound = note(preset, preset.guide.home, 100.0, 2.0, 2.0);
         let spectrum = spectrum_from(&sound, 0.25);
         let expected = frequency_from_key(preset.guide.home.into(), 440.0);
-        // The name says nothing of the octave.
+        // The name says nothing about the octave, so all three are tried.
         let first =
             [1.0, 0.5, 2.0].iter().find_map(|octave| partial_near(&spectrum, expected * octave * ratios[0], 1.03));
         let first = first.unwrap_or_else(|| panic!("{name}: nothing near {expected:.1} Hz")) / ratios[0];
@@ -117,7 +117,7 @@ fn soft_notes_are_softer() {
     for preset in bank() {
         let level = |velocity| energy(&note(preset, preset.guide.home, velocity, 0.5, 1.5), 0.0, 1.5);
         let db = decibels(level(100.0) / level(40.0));
-        // Organs, bagpipes and harpsichords know no velocity.
+        // Organs, bagpipes and harpsichords do not respond to velocity.
         let least = if matches!(preset.guide.family, Some(Family::Keys | Family::Wind | Family::StruckString)) {
             -1.0
         } else {

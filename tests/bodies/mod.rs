@@ -1,4 +1,4 @@
-//! Bodies and their modes as SciPy has them: the numbers of `scipy_reference.csv`.
+//! Bodies and their modes as computed by SciPy: the numbers in `scipy_reference.csv`.
 
 use sprung::sound::bodies::{Body, FIELDS, Model};
 
@@ -30,7 +30,7 @@ fn read(line: &str) -> Line {
     }
 }
 
-/// The lines, those of one body after each other.
+/// All lines; the lines of one body are adjacent.
 pub(crate) fn lines() -> Vec<Line> {
     NUMBERS.lines().filter(|line| !line.starts_with('#')).skip(1).map(read).collect()
 }

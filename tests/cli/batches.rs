@@ -1,4 +1,4 @@
-//! `sprung batch`: files, manifest, going on after a kill, shards, and what is wrong with jobs.
+//! `sprung batch`: files, manifest, resuming after a kill, shards, and errors in jobs.
 
 use crate::{Sandbox, Wav};
 use serde_json::Value;
@@ -102,7 +102,7 @@ fn what_is_there_is_neither_replaced_nor_read_while_it_is_written() {
     let message = "0000000.wav: the file exists: add --resume if it is of this batch, or choose another folder";
     sandbox.fails("batch jobs.jsonl --out sounds", 1, message);
     assert_eq!(sandbox.read("sounds/0000/0000000.wav"), b"mine");
-    // A job's input that another job writes, whether it is there already or not.
+    // A job's input may not be a file that another job writes, whether or not that file exists already.
     for (out, input) in [
         ("sounds", "sounds/0000/0000000.wav"),
         ("sounds", "./sounds/../sounds/0000/0000007.wav"),
@@ -135,7 +135,7 @@ fn what_only_a_kit_names_is_not_replaced() {
         sandbox.fails("batch jobs.jsonl --out . --resume", 1, &message);
         assert_eq!(sandbox.read("0000/0000000.wav"), preset.as_bytes());
     }
-    // Another file in the same folder is not in the way.
+    // A kit may read another file in the same folder.
     sandbox.write("kit.toml", kit("0000/mine.wav"));
     sandbox.write("jobs.jsonl", format!(r#"{{"preset": "kit.toml", {plain}"#));
     fs::remove_file(sandbox.path("0000/0000000.wav")).unwrap();
@@ -147,12 +147,12 @@ fn what_only_a_kit_names_is_not_replaced() {
 fn only_manifests_are_taken_for_manifests() {
     let sandbox = Sandbox::new();
     let job = r#"{"note": "C2", "length": 0.01, "tail": "none"}"#;
-    // Files of jobs may have names that begin alike.
+    // A file of jobs may have a name that begins like a manifest's.
     for name in ["manifest-of-jobs.jsonl", "manifesto.jsonl", "manifest-1-of-.jsonl"] {
         sandbox.write(name, job);
         sandbox.succeeds(&format!("batch {name} --out . --resume"));
     }
-    // Its last line has no end, which going on with a manifest would cut off.
+    // The last line has no line feed, so resuming the file as a manifest would cut that line off.
     fs::create_dir(sandbox.path("out")).unwrap();
     for name in ["out/manifest.jsonl", "out/manifest-2-of-3.jsonl"] {
         sandbox.write(name, job);
@@ -177,7 +177,7 @@ fn killed_anywhere_and_gone_on_with_it_is_the_same() {
         let lines = fs::read(sandbox.path("parts/manifest.jsonl")).unwrap_or_default();
         lines.iter().filter(|byte| **byte == b'\n').count()
     };
-    // Each is killed when it has gone on by some lines.
+    // Each run is killed when the manifest has this many lines.
     for lines in [1, 3, 8, 16] {
         let mut child = start(&sandbox, "batch jobs.jsonl --out parts --resume");
         while made() < lines && child.try_wait().unwrap().is_none() {
@@ -188,7 +188,7 @@ fn killed_anywhere_and_gone_on_with_it_is_the_same() {
         broken_off += usize::from((1..COUNT).contains(&made()));
     }
     assert!(broken_off > 0, "it was never killed in the middle");
-    // A line that was cut off, a file that is not whole, and one that is gone.
+    // The manifest ends within a line, one sound file is incomplete, and one is missing.
     sandbox.succeeds("batch jobs.jsonl --out parts --resume");
     let manifest = sandbox.read("parts/manifest.jsonl");
     sandbox.write("parts/manifest.jsonl", &manifest[..manifest.len() / 2]);
@@ -216,7 +216,7 @@ fn four_shards_are_the_whole() {
             .collect()
     };
     assert!(!kinds("parts").contains(&"manifest.jsonl".to_owned()));
-    // What the shards have made is taken over: nothing is rendered again, since a changed file would be noticed.
+    // The shards' sounds are used as they are: none is rendered again.
     let output = sandbox.sprung("batch jobs.jsonl --out parts --resume").assert().success().get_output().clone();
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(told.contains("0 sounds") && told.contains("25 found finished"), "{told}");
@@ -306,7 +306,7 @@ fn wrong_jobs_are_named_by_line_and_key() {
         (r#"{"note": "C2", "repeat": 0}"#, "jobs.jsonl:2: repeat: expected a whole number from 1"),
         (r#"{"song": "-"}"#, "jobs.jsonl:2: song: expected a file"),
         (r#"{"note": "C2", "dither": true, "bits": "32f"}"#, "jobs.jsonl:2: dither: floats are not rounded"),
-        // Whatever is drawn is checked, not the last choice only.
+        // Every possible choice is checked, not only the last one.
         (r#"{"song": {"choice": ["-", "a.mid"]}}"#, "jobs.jsonl:2: song: expected a file"),
         (
             r#"{"note": "C2", "dither": {"choice": [true, false]}, "bits": {"choice": ["32f", 16]}}"#,
@@ -365,7 +365,7 @@ fn what_cannot_be_loaded_ends_the_batch_and_leaves_what_is_finished() {
     sandbox.write("jobs.jsonl", format!("{first}\n{first}\n"));
     sandbox.succeeds("batch jobs.jsonl --out sounds --resume");
     assert_eq!(lines(&sandbox, "sounds/manifest.jsonl").len(), 2);
-    // Other jobs are not mixed with these.
+    // Other jobs do not resume this batch.
     sandbox.write("jobs.jsonl", first.replace("C2", "C3"));
     sandbox.fails("batch jobs.jsonl --out sounds --resume", 1, "2 jobs are finished there, of 1");
     sandbox.write("jobs.jsonl", format!("{0}\n{0}\n", first.replace("C2", "C3")));

@@ -1,4 +1,4 @@
-//! Two thousand sounds, killed at ten random moments, and made by four shards at once: the same bytes.
+//! Two thousand sounds of a batch have the same bytes after ten kills at random moments, and when four shards make them.
 
 use crate::Sandbox;
 use crate::batches::{files, start};
@@ -56,16 +56,16 @@ fn killed_ten_times_or_in_four_shards_it_is_the_same() {
     assert_eq!(sharded, whole);
 }
 
-/// Starts a batch and kills it, ten times, each at a later moment, and goes on with it each time.
+/// Starts a batch ten times and kills it each time at a later moment; each start resumes the batch.
 fn kill_ten_times(sandbox: &Sandbox) {
-    // Other moments each time: what is printed repeats them.
+    // The moments differ in each run; the printed seed repeats them.
     let seed = match std::env::var("SPRUNG_BATCH_SEED") {
         Ok(seed) => seed.parse().expect("SPRUNG_BATCH_SEED is a whole number"),
         Err(_) => SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap().subsec_nanos().into(),
     };
     println!("SPRUNG_BATCH_SEED={seed}");
     let chance = |n| unit(key(seed, 0), n);
-    // Not so late that it is done before it is killed.
+    // Early enough that the batch is not finished before it is killed.
     let mut moments: Vec<usize> = (0..KILLS).map(|n| (chance(n) * 0.95 * COUNT as f64) as usize).collect();
     moments.sort_unstable();
     let made = || {

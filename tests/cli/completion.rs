@@ -58,7 +58,7 @@ fn tab_completes_presets_parameters_and_choices() {
     }
 }
 
-/// The program's answer to bash's script, where the last word is being typed.
+/// The completions that the program gives to bash's script for the last of these words.
 fn offered(words: &[&str]) -> Vec<String> {
     let output = Command::new(assert_cmd::cargo::cargo_bin!("sprung"))
         .env("SPRUNG_COMPLETE", "bash")

@@ -45,7 +45,7 @@ fn takes_make_a_preset_follow_velocity_and_key() {
     sandbox.write("hard.wav", wav(&bar(440.0, 1.0)));
     sandbox.succeeds("fit soft.wav@A4@50 hard.wav@A4@100 -o bar.toml --modes 6");
     let preset = String::from_utf8(sandbox.read("bar.toml")).unwrap();
-    // Four times as loud at twice the velocity: its square, which is what a new patch has.
+    // Four times the level at twice the velocity is a square law, which is the default of a patch.
     assert!(!preset.contains("\nvelocity = "), "{preset}");
     let said = String::from_utf8(sandbox.succeeds("fit hard.wav -o body.toml --body bar --note A4 --modes 6")).unwrap();
     assert!(said.contains("As a free bar: 3 of 3 modes are its own"), "{said}");

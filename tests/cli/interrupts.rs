@@ -1,4 +1,4 @@
-//! What remains when a command is interrupted or killed.
+//! Files and messages that remain when a command is interrupted or killed.
 
 use crate::{DEFAULT_SIGNALS, Sandbox, Wav, signals};
 use sprung::preset::{KitPreset, Preset};
@@ -29,7 +29,7 @@ fn start(sandbox: &Sandbox, below: &[&str], args: &str, mut ready: impl FnMut(&m
     child
 }
 
-/// Whether the first 64 KiB are on disk: by then, signal handlers have been installed for long.
+/// Whether the first 64 KiB are on disk. Signal handlers are installed long before.
 fn has_begun(sandbox: &Sandbox) -> bool {
     sandbox.files().iter().any(|name| std::fs::metadata(sandbox.path(name)).is_ok_and(|file| file.len() > 0))
 }
@@ -57,7 +57,7 @@ fn interrupts_leave_nothing_behind() {
     assert_eq!(end(child, "-INT").code(), Some(130), "also while nobody reads the pipe");
 }
 
-/// Interrupts a child. Its exit code, and what it says.
+/// Interrupts a child and returns its exit code and its stderr.
 fn interrupted(child: Child) -> (Option<i32>, String) {
     send(&child, "-INT");
     let output = child.wait_with_output().unwrap();
@@ -66,7 +66,7 @@ fn interrupted(child: Child) -> (Option<i32>, String) {
 
 #[test]
 fn an_interrupted_analysis_writes_nothing() {
-    // Noise is no sum of modes: both look for them for long.
+    // Noise is not a sum of modes, so both commands search for modes for a long time.
     let noise = signals::wav(&signals::noise(8 * 44_100), 44_100, 1);
     for args in [
         "analyze noise.wav --figure modes.png",

@@ -138,7 +138,7 @@ fn start(sandbox: &Sandbox, args: &str) -> Child {
 
 #[test]
 fn a_reader_that_has_seen_enough_is_no_error() {
-    // Far more than a pipe holds.
+    // The output is far larger than a pipe's buffer.
     let mut child = start(&Sandbox::new(), "lab compare --csv -");
     child.stdout.take().unwrap().read_exact(&mut [0; 100]).unwrap();
     let output = child.wait_with_output().unwrap();
@@ -152,7 +152,7 @@ fn an_interrupt_ends_long_work_at_once_and_leaves_nothing_behind() {
     let sandbox = Sandbox::new();
     let mut child = start(&sandbox, "lab stability --grid 400 -o figure.png --csv numbers.csv");
     let limit = Instant::now() + Duration::from_secs(60);
-    // Both files are open: the signal handler has been installed before, and seconds of work remain.
+    // The files are opened after the signal handler is installed. Seconds of work remain.
     while sandbox.files().len() < 2 {
         assert!(Instant::now() < limit && child.try_wait().unwrap().is_none(), "it never got going");
         std::thread::sleep(Duration::from_millis(5));

@@ -1,4 +1,4 @@
-//! What the command prints about itself: presets, parameters, manual, completion scripts.
+//! Listings of the command: presets, parameters, manual pages, completion scripts.
 
 use crate::Sandbox;
 use sprung::params::PARAMS;
@@ -56,7 +56,7 @@ fn sounds_of_the_user_have_names_too() {
     sandbox.succeeds("render --note C4 --preset MyKick -o a.wav");
     sandbox.succeeds("render --note C4 --preset Kick -o b.wav");
     assert_eq!(sandbox.read("a.wav"), sandbox.read("b.wav"));
-    // Its file is an input, which no output replaces.
+    // The preset's file is an input, so no output may replace it.
     sandbox.fails("presets show MyKick --figure data/sprung/presets/mykick.toml --force", 1, "mykick.toml");
 }
 

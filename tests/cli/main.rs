@@ -31,7 +31,7 @@ use tempfile::TempDir;
 /// `nohup` ignores some signals, and its children inherit this.
 pub(crate) const DEFAULT_SIGNALS: [&str; 2] = ["env", "--default-signal=HUP,INT,TERM"];
 
-/// A directory of its own in which the command runs.
+/// A temporary folder in which the command runs.
 pub(crate) struct Sandbox(TempDir);
 
 impl Sandbox {
@@ -62,7 +62,7 @@ impl Sandbox {
     /// `sprung` with these arguments, which are split at spaces.
     pub(crate) fn sprung(&self, args: &str) -> Command {
         let mut command = Command::cargo_bin("sprung").unwrap();
-        // The user's own sounds are none of the tests' business.
+        // Tests must not see the user's own sounds.
         command.env("XDG_DATA_HOME", self.path("data"));
         command.current_dir(self.0.path()).args(args.split_whitespace());
         command

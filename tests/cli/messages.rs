@@ -1,4 +1,4 @@
-//! Messages about common mistakes: what is wrong, and what would be right.
+//! Messages about common mistakes say what is wrong, and what would be right.
 
 use crate::Sandbox;
 

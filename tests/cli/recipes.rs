@@ -4,7 +4,7 @@ use crate::Sandbox;
 use std::ffi::OsString;
 use std::process::Command;
 
-/// The blocks of a page of Markdown: what stands after the opening fence, and the lines of the block.
+/// The blocks of a page of Markdown: the text after the opening fence, and the lines of the block.
 fn blocks(page: &str) -> Vec<(&str, String)> {
     let mut blocks: Vec<(&str, String)> = Vec::new();
     let mut is_inside = false;

@@ -37,7 +37,7 @@ fn a_strike_is_taken_apart_into_its_modes() {
     sandbox.fails("analyze a.wav --figure modes.png", 1, "modes.png: the file exists; add --force to overwrite it");
 }
 
-/// Every number of a JSON text, which has no others than finite ones; NaN and infinities are no JSON.
+/// Whether a text is JSON. All numbers in it are then finite, because JSON has no NaN and no infinity.
 fn is_json(text: &[u8]) -> bool {
     serde_json::from_slice::<serde_json::Value>(text).is_ok()
 }

@@ -1,4 +1,4 @@
-//! Bodies fitted to the sounds of bodies: each mode is as loud as it was.
+//! Bodies fitted to the sounds of bodies: each mode of the fit has the level of the original.
 
 use crate::played::{Stereo, fitted_by, mean, preset_at};
 use libtest_mimic::Failed;
@@ -9,13 +9,13 @@ use sprung::params::{Choice, MalletPulse, Param};
 use sprung::preset::{Preset, modes_of_body};
 use sprung::sound::bodies::{Body, Model, Point};
 
-/// Models, keys, places of striking, hardnesses of the mallet, and by how many dB a mode may be louder or softer. The third mode of the
+/// Model, key, strike position, hardness of the mallet, and largest difference of a mode's level in dB. The third mode of the
 /// free bar is struck near a node.
 const STRUCK: [(&str, u8, f64, f32, f64); 3] =
     [("marimba", 60, 0.55, 45.0, 3.0), ("xylophone", 72, 0.6, 65.0, 3.0), ("free_bar", 60, 0.75, 55.0, 4.0)];
-/// In a debug build, as many of these.
+/// Number of these bodies that a debug build fits.
 const FEW: usize = 1;
-/// Modes that are heard, in dB below the loudest.
+/// Level in dB, relative to the loudest mode, above which modes are compared.
 const HEARD_DB: f64 = -40.0;
 /// Seconds that are fitted.
 const SECONDS: f64 = 1.0;

@@ -1,8 +1,8 @@
-//! How long this thread has been at work.
+//! CPU time of the current thread.
 
 use std::time::Instant;
 
-/// Seconds for which this thread has been at work: on a busy machine, far fewer than have passed.
+/// Measures the CPU seconds of this thread, which are far fewer than the elapsed seconds on a busy machine.
 pub(crate) struct Clock {
     started: Instant,
     worked: Option<f64>,
@@ -13,7 +13,7 @@ impl Clock {
         Self { started: Instant::now(), worked: Self::worked() }
     }
 
-    /// Where Linux tells it: nanoseconds.
+    /// CPU seconds so far, from Linux's nanoseconds; `None` on other systems.
     fn worked() -> Option<f64> {
         let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
         text.split(' ').next()?.parse().ok().map(|nanoseconds: f64| 1e-9 * nanoseconds)

@@ -1,7 +1,7 @@
 //! Recordings of real instruments that are installed: drum kits of Hydrogen's, and a sound font that FluidSynth plays.
 //!
-//! `SPRUNG_SOUNDS` names a folder that Debian's packages `hydrogen-drumkits` and `fluid-soundfont-gm` were unpacked to, if not `/`.
-//! What is not installed is skipped by name.
+//! `SPRUNG_SOUNDS` names a folder that Debian's packages `hydrogen-drumkits` and `fluid-soundfont-gm` were unpacked to, if not
+//! `/`. Sounds that are not installed are skipped by name.
 
 use crate::played::{Played, Stereo};
 use sprung::analysis::log_mel::RATE;
@@ -15,9 +15,9 @@ pub(crate) struct Pair {
     pub(crate) name: String,
     pub(crate) source: &'static str,
     pub(crate) sound: Stereo,
-    /// Of another key or velocity.
+    /// Recordings of another key, stroke or velocity.
     pub(crate) others: Vec<Stereo>,
-    /// The key that it is fitted on.
+    /// The key to which it is fitted.
     pub(crate) key: f64,
     pub(crate) is_drum: bool,
 }
@@ -51,7 +51,7 @@ const DRUMS: [(&str, &str, &str); 14] = [
     ("Gimme A Hand 1.0", "CajonSlaps-Hard.wav", "CajonSlaps-Soft.wav"),
 ];
 
-/// A drum of a kit; the name of one that is not installed.
+/// A drum of a kit; the error is the name of one that is not installed.
 fn drum((kit, file, other): &(&'static str, &str, &str)) -> Result<Pair, String> {
     let folder = installed("usr/share/hydrogen/data/drumkits").join(kit);
     let pair = stereo(&folder.join(file)).zip(stereo(&folder.join(other)));
@@ -93,7 +93,7 @@ const VELOCITIES: [u8; 2] = [100, 60];
 
 const FONT: &str = "usr/share/sounds/sf2/FluidR3_GM.sf2";
 
-/// A note of the sound font's; its name if it is not installed.
+/// A note of the sound font; the error is its name if it is not installed.
 fn instrument((name, channel, program, key, other): &(&str, u8, u8, u8, u8)) -> Result<Pair, String> {
     let note = |key, velocity| note(*channel, *program, key, velocity).ok_or_else(|| (*name).to_owned());
     let others = vec![note(*other, VELOCITIES[0])?, note(*key, VELOCITIES[1])?];
@@ -102,7 +102,7 @@ fn instrument((name, channel, program, key, other): &(&str, u8, u8, u8, u8)) -> 
     Ok(Pair { name: (*name).to_owned(), source: "FluidR3", sound, others, key: f64::from(*key), is_drum })
 }
 
-/// Instruments of the sound font that have layers of velocity and key, and what plays them: key and velocity to a note.
+/// Instruments of the sound font that have layers of velocity and key, each with a function that plays a key at a velocity.
 pub(crate) fn layered() -> impl Iterator<Item = (&'static str, impl Fn((u8, u8)) -> Option<Played> + Copy)> {
     const LAYERED: [(&str, u8); 3] = [("marimba", 12), ("vibraphone", 11), ("nylon guitar", 24)];
     LAYERED.into_iter().map(|(name, program)| {
@@ -119,7 +119,7 @@ fn note(channel: u8, program: u8, key: u8, velocity: u8) -> Option<Stereo> {
     let folder = tempfile::tempdir().ok()?;
     let (song, sound) = (folder.path().join("note.mid"), folder.path().join("note.wav"));
     let mut track = vec![0, 0xc0 | channel, program, 0, 0x90 | channel, key, velocity];
-    // 3840 and 480 ticks of 480 a quarter note of half a second.
+    // 3840 ticks, and 480 ticks until the end of the track; a quarter note has 480 ticks and lasts half a second.
     track.extend([0x9e, 0x00, 0x80 | channel, key, 0, 0x83, 0x60, 0xff, 0x2f, 0]);
     let mut file = b"MThd\0\0\0\x06\0\0\0\x01\x01\xe0MTrk".to_vec();
     file.extend((track.len() as u32).to_be_bytes());

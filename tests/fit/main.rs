@@ -1,7 +1,7 @@
-//! Presets rendered and fitted again, and recordings of real instruments: how near the fit comes, as measured.
+//! Measures how near fits come to presets that are rendered and fitted again, and to recordings of real instruments.
 //!
 //! Recordings are those of Debian's packages `fluid-soundfont-gm` (with `fluidsynth`) and `hydrogen-drumkits`; those that are not
-//! installed are skipped by name. What takes minutes is ignored unless `--include-ignored` or `--ignored` asks for it.
+//! installed are skipped by name. Tests that take minutes run only with `--include-ignored` or `--ignored`.
 
 mod bodies;
 mod clock;
@@ -38,16 +38,16 @@ fn main() -> ExitCode {
     libtest_mimic::run(&arguments, trials).exit_code()
 }
 
-/// Calls of the progress, after one of which the work is cancelled, and how often it may be told again.
+/// Numbers of progress calls after which the fit is cancelled, and the number of calls that may follow.
 const CALLS: [usize; 6] = [1, 2, 6, 20, 60, 150];
 const AGAIN: usize = 8;
 const KEY: u8 = 60;
-/// Samples in which noise swells.
+/// Samples over which the noise fades in.
 const SWELL: usize = RATE as usize / 5;
-/// Least number of shares that a progress is told in.
+/// Least number of different shares that the progress reports.
 const STEPS: usize = 8;
 
-/// Cancelled at any time, a fit ends with the next word of its progress.
+/// A fit that is cancelled at any time ends after at most [`AGAIN`] more calls of its progress.
 fn cancelled() -> Result<(), Failed> {
     let preset = Preset::find("init")?;
     let sound = preset_at(preset, KEY).map(|channel| channel[..RATE as usize / 4].to_vec());
@@ -64,8 +64,8 @@ fn cancelled() -> Result<(), Failed> {
     Ok(())
 }
 
-/// What is told of the progress never falls, and ends with 1: of a stroke, of noise that swells, which is drafted in every way that
-/// there is, and of a body.
+/// The reported progress never falls, and ends with 1: for a stroke, for noise that fades in, of which every kind of draft is
+/// made, and for a body.
 fn progress() -> Result<(), Failed> {
     let swell = |n: usize, noise: f32| (n as f32 / SWELL as f32).min(1.0) * noise;
     let mut chance = 1_u32;
@@ -143,7 +143,7 @@ fn recordings() -> Result<(), Failed> {
 const FITTED: [(u8, u8); 5] = [(60, 40), (60, 80), (60, 120), (48, 80), (72, 80)];
 const LEFT_OUT: [(u8, u8); 4] = [(60, 60), (60, 100), (54, 80), (66, 80)];
 
-/// How far a preset fitted to several takes is from takes that it was not fitted to, beside one that was fitted to a single take.
+/// Compares a preset fitted to several takes with one fitted to a single take, by their distances from other takes.
 fn layers() -> Result<(), Failed> {
     let (mut all, mut single) = (0.0, 0.0);
     let mut count = 0;

@@ -1,9 +1,9 @@
-//! What real instruments measure, of a recording and of its fit.
+//! Measures by which real instruments are judged, of a recording and of its fit.
 
 use crate::played::{Stereo, mean};
 use sprung::analysis::measures::{Least, attack_flatness, from_onset, high_share, motion, partials};
 
-/// Measures of the mean of both channels of a sound; the library says what each is.
+/// Measures of the mean of both channels of a sound; the library documents each.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Measures {
     pub(crate) flatness_db: f64,
@@ -24,7 +24,7 @@ impl Measures {
         }
     }
 
-    /// Names of the measures that a recording reaches, and this does not.
+    /// Names of the measures that reach `least` in a recording, but not in this sound.
     pub(crate) fn short_of(&self, recording: &Self, least: &Least) -> Vec<&'static str> {
         let of = |measures: &Self| {
             let Self { flatness_db, high_db, motion_db, partials } = measures;

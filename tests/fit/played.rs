@@ -14,7 +14,7 @@ pub(crate) type Stereo = [Vec<f32>; 2];
 /// Seconds of a preset's note, which is held.
 const SECONDS: usize = 4;
 
-/// A note of a preset at the velocity of takes that nothing is known of.
+/// A note of a preset at the velocity that takes have by default.
 pub(crate) fn preset_at(preset: &Preset, key: u8) -> Stereo {
     preset_struck(preset, key, VELOCITY as u8)
 }
@@ -95,7 +95,7 @@ pub(crate) fn log_mel_distance(first: &Stereo, second: &Stereo) -> f64 {
     distance(&mean(first), &mean(second))
 }
 
-/// What a function makes of each item, in their order, on all processors.
+/// Applies a function to each item, on all processors, and returns the results in the order of the items.
 pub(crate) fn in_parallel<'a, T: Sync, R: Send>(items: &'a [T], make: impl Fn(&'a T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let work = || {

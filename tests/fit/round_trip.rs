@@ -7,9 +7,9 @@ use sprung::Error;
 use sprung::preset::Preset;
 
 const KEYS: [u8; 3] = [48, 60, 72];
-/// Presets of the suite's part: every so many of the bank, each at one of [`KEYS`].
+/// Number of notes of the test of some presets: presets at equal distances in the bank, each at one of [`KEYS`].
 const SOME: usize = 24;
-/// Seconds that a note may take; one that takes longer has failed.
+/// CPU seconds that a fit may take; one that takes longer has failed.
 const LONGEST: f64 = 120.0;
 /// Another seed than that of the sounds which are fitted.
 const OTHER_SEED: u64 = 1;
@@ -27,15 +27,16 @@ pub(crate) fn some() -> Vec<Note> {
     notes.filter(|(preset, _)| is_struck(preset)).collect()
 }
 
-/// Whether a preset is struck or plucked and rings freely: what lasts as long as its key is held is not what a fit explains.
+/// Whether a preset is struck or plucked and rings freely. A fit does not explain sounds that last as long as their key is held.
 fn is_struck(preset: &Preset) -> bool {
     use sprung::preset::Family::{Bowed, Drone, Lead, Pad, Wind};
     !matches!(preset.guide.family, Some(Bowed | Drone | Lead | Pad | Wind))
         && preset.tags.iter().all(|tag| !["organ", "voice", "bow"].contains(&tag.as_str()))
 }
 
-/// Every preset at its home key and an octave below and above, where its range has them. `SPRUNG_KEYS=home` leaves the home keys,
-/// `SPRUNG_PRESETS=NAME,…` presets whose names begin so, and `SPRUNG_EVERY=N` every Nth of these notes, from `SPRUNG_FROM=N` on.
+/// Every preset at its home key and an octave below and above, where its range has them. `SPRUNG_KEYS=home` keeps the home keys
+/// only, `SPRUNG_PRESETS=NAME,…` the presets whose names begin with one of these, and `SPRUNG_EVERY=N` every Nth of these notes,
+/// from `SPRUNG_FROM=N` on.
 pub(crate) fn every() -> Vec<Note> {
     let number = |name: &str| std::env::var(name).ok().and_then(|number| number.parse::<usize>().ok());
     let (step, from) = (number("SPRUNG_EVERY").unwrap_or(1), number("SPRUNG_FROM").unwrap_or(0));
@@ -51,28 +52,29 @@ pub(crate) fn every() -> Vec<Note> {
     Preset::factory().iter().filter(is_named).flat_map(notes).skip(from).step_by(step.max(1)).collect()
 }
 
-/// Median distance in dB of a fit from its preset, and that from which on it is far; and the share of notes that may be.
+/// Bound of the median distance in dB of a fit from its preset; distance beyond which a fit is far; and largest share of such
+/// fits.
 const MEDIAN: f64 = 1.0;
 const FAR: f64 = 3.0;
 const FEW: f64 = 0.15;
 /// Greatest distance in dB.
 const WORST: f64 = 4.0;
 
-/// The distance of a note's fit from it.
+/// The distance in dB between a note and its fit.
 fn round_trip(sound: &Stereo, (_, key): &Note, clock: &Clock) -> Result<f64, Error> {
     let fit = fitted_while(sound, (*key).into(), &mut |_| clock.seconds() < LONGEST)?;
-    // From the text of the preset, which is what users get.
+    // The preset is read from its text, which is what users get.
     let written = Preset::parse(&fit.preset("again", "").to_toml(), "again")?;
     Ok(log_mel_distance(sound, &preset_at(&written, *key)))
 }
 
-/// A line of the table as soon as it is known, and the distance: infinite where there is no fit.
+/// Prints the table's line of a note and returns the distance: infinite if there is no fit.
 fn told(note: &Note) -> f64 {
     let (preset, key) = note;
     let (sound, clock) = (preset_at(preset, *key), Clock::start());
     let distance = round_trip(&sound, note, &clock);
     let seconds = clock.seconds();
-    // What noise moves sounds different each time: by as much, a fit may be off by chance.
+    // Noise differs with each seed, so a fit may differ from the sound by as much as another seed does.
     let again = log_mel_distance(&sound, &preset_of_seed(preset, *key, OTHER_SEED));
     let text = match &distance {
         Ok(distance) => format!("{distance:.2} dB"),
@@ -83,7 +85,7 @@ fn told(note: &Note) -> f64 {
     distance.unwrap_or(f64::INFINITY)
 }
 
-/// Fits all of some notes, and says how far they are.
+/// Fits all notes and checks their distances.
 pub(crate) fn round_trips(notes: &[Note]) -> Result<(), Failed> {
     println!("| preset | key | distance | of other noise | seconds |\n|---|---|---|---|---|");
     let mut distances = in_parallel(notes, told);

@@ -1,4 +1,4 @@
-//! How long it takes to take a strike apart.
+//! The time that the analysis of a strike into its modes takes.
 
 use crate::clock::Clock;
 use libm::{cos, exp, log, pow, sin, sqrt};
@@ -10,10 +10,10 @@ const RATE: f64 = 44_100.0;
 /// Modes of a strike, and its length in seconds.
 const MODES: usize = 60;
 const SECONDS: f64 = 2.0;
-/// Strikes, each with noise so many dB below its strongest mode.
+/// Number of strikes, and the levels of their noise in dB, relative to the strongest mode.
 const SEEDS: u32 = 10;
 const NOISE_DB: [f64; 2] = [-400.0, -60.0];
-/// Seconds of work that a strike may need.
+/// CPU seconds that a strike may take.
 const LONGEST: f64 = 3.0;
 
 /// Uniform numbers from 0 to 1 (Marsaglia's xorshift, 2003).
@@ -59,7 +59,7 @@ fn strike(seed: u32, noise_db: f64) -> Vec<f32> {
     samples.into_iter().map(|sample| (0.5 * sample / peak) as f32).collect()
 }
 
-/// Seconds of work for each of some strikes; none takes longer than what the manual says.
+/// Prints the CPU seconds for each strike; none may take longer than the manual says.
 pub(crate) fn sixty_modes() -> Result<(), Failed> {
     println!("| seed | noise | modes found | seconds |\n|---|---|---|---|");
     let mut slowest: f64 = 0.0;

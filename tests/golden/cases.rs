@@ -15,7 +15,7 @@ pub(crate) const INIT: &str = "preset-init";
 pub(crate) fn all() -> Vec<Score> {
     // The longest come first, so that no core waits for them at the end.
     let mut cases = crate::songs::all();
-    // The bank is large: each preset is played in one block size more, and all sizes take turns.
+    // The bank is large, so each preset is played in only one other block size; the sizes take turns.
     let turns = (0..BLOCKS.len()).cycle().map(|turn| &BLOCKS[turn..=turn]);
     cases.extend(Preset::factory().iter().zip(turns).map(|(one, blocks)| preset(one).in_blocks(blocks)));
     cases.extend(engine());
@@ -196,7 +196,7 @@ fn programs(patch: Patch) -> Score {
         .on(0.6, 64, 100)
 }
 
-/// All that is behind the voices, with its parameters moved, and another body by a program change.
+/// All effects behind the voices, with changes of their parameters, and another body by a program change.
 fn space(patch: Patch) -> Score {
     let with_space = |space: f32| {
         patch

@@ -98,7 +98,7 @@ pub(crate) fn check_audio(store: &Store, case: &Score, audio: &Stereo) -> Result
     let accepted = Digest::parse(&text, &path.display().to_string()).map_err(|error| format!("{name}: {error}"))?;
     let kept = if case.keeps_audio { Some(read_wav(&store.audio_path(name))?) } else { None };
     let difference = kept.as_ref().and_then(|kept| {
-        // Blessing keeps the beginning alone.
+        // Only the beginning of accepted audio is kept.
         diff::compare(&kept[..], &beginning(audio))
     });
     let drift = accepted.compare(&Digest::of(&audio[0], &audio[1], case.sample_rate));

@@ -11,7 +11,7 @@ pub(crate) const WHOLE: usize = usize::MAX;
 /// Block sizes that must all give the same bits as one block of the whole length.
 pub(crate) const BLOCKS: &[usize] = &[1, 7, 64, 480, 4096];
 
-/// What a golden case plays.
+/// The patch, events and settings of a golden case.
 #[derive(Clone)]
 pub(crate) struct Score {
     /// Name of the case and of its files.

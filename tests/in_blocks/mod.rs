@@ -2,7 +2,7 @@
 
 use sprung::engine::Event;
 
-/// The bits of the left side and then of the right. Events keep their frames.
+/// The bits of the left channel, then those of the right. The frames of events count from the first block.
 pub(crate) fn in_blocks(
     events: &[Event],
     frames: usize,

@@ -1,4 +1,4 @@
-//! `sprung play` on ALSA's file plugin: what reaches the device, what is recorded, and which errors occur.
+//! `sprung play` on ALSA's file plugin: the samples of the device and of the recording, and errors.
 
 use super::sandbox::{Running, Sandbox, song, sprung, text, wait_until};
 use std::fs::File;
@@ -44,7 +44,7 @@ impl Device {
         Self { sandbox, reader }
     }
 
-    /// Starts `sprung` with limits on file size and running time; stderr goes to a file of that name.
+    /// Starts `sprung` with limits on file size and running time; stderr goes to the file `stderr`.
     fn start(&self, arguments: &str) -> Running {
         self.start_in("ulimit -f 200000", arguments)
     }

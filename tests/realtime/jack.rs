@@ -36,15 +36,15 @@ fn client(name: &str) -> Option<Client> {
     Client::new(name, ClientOptions::NO_START_SERVER).ok().map(|(client, _)| client)
 }
 
-/// Runs a test in a process of its own that only knows the server with this name, because JACK's library selects the
-/// server by an environment variable.
+/// Runs a test in a process of its own that uses only the server with this name, because JACK's library selects the server by an
+/// environment variable.
 fn with_own_server(test: &str, body: impl FnOnce(&str)) {
     let variable = "JACK_DEFAULT_SERVER";
     match std::env::var(variable) {
         Ok(name) if name.starts_with("sprung-") => body(&name),
         _ => {
-            // Without a sound card, the server's clock is a sleep. On a busy machine it may miss periods, which is no
-            // fault of Sprung.
+            // Without a sound card, the server's clock is a sleep, which may miss periods on a busy machine. Sprung does not
+            // cause this, so the test may be repeated.
             let passed = (1..=3).any(|attempt| {
                 let name = format!("sprung-{test}-{}-{attempt}", std::process::id());
                 let mut again = Command::new(std::env::current_exe().unwrap());
@@ -66,8 +66,7 @@ fn start(sandbox: &Sandbox, arguments: &str) -> Running {
     Running(sprung(arguments).current_dir(sandbox.folder()).stderr(stderr).spawn().unwrap())
 }
 
-/// Sends messages at frames counted from its start, and passes on the samples that it hears in each period, left and
-/// right.
+/// Sends messages at frames counted from its start, and passes on the samples that it receives in each period, left and right.
 struct Peer {
     midi: jack::Port<MidiOut>,
     audio: [jack::Port<AudioIn>; 2],
@@ -96,7 +95,7 @@ fn outputs(client: &Client) -> Vec<String> {
     client.ports(Some("_out:out_[01]$"), None, jack::PortFlags::IS_OUTPUT)
 }
 
-/// Connects a peer to the instrument, sends messages, listens for this many frames, and returns the samples heard.
+/// Connects a peer to the instrument, sends messages, and returns this many frames of the instrument's sound.
 fn listen(messages: Vec<(usize, [u8; 3])>, frames: usize) -> [Vec<f32>; 2] {
     let client = client("peer").unwrap();
     let midi = client.register_port("midi", MidiOut::default()).unwrap();

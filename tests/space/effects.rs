@@ -1,4 +1,4 @@
-//! Tremolo, overdrive, tone and width: what they are asked for, and that they leave alone what they are not.
+//! Tremolo, overdrive, tone and width have the effect that is set, and change no bit while they are off.
 
 use crate::signal::{RATE, blocks_are_equal, decibels, noise, rms};
 use assert_no_alloc::{assert_no_alloc, violation_count};
@@ -20,7 +20,7 @@ fn amplitude(samples: &[f32], frequency: f64) -> f64 {
     2.0 * (re * re + im * im).sqrt() / samples.len() as f64
 }
 
-/// All that 5 kHz gives at 48 kHz falls on whole kilohertz: 5, 15 and 25 kHz belong there, all others are aliases.
+/// All products of 5 kHz at 48 kHz fall on whole kilohertz. Its odd harmonics are 5 and 15 kHz, all others are aliases.
 #[test]
 fn overdrive_has_no_false_tones() {
     for drive in [6.0, 12.0] {
@@ -104,7 +104,7 @@ fn width_goes_from_mono_to_wide() {
     }
 }
 
-/// All four, as they might be chained.
+/// All four effects in a chain.
 #[derive(Clone)]
 struct Chain(Tremolo, Overdrive, Tone, Width);
 
@@ -138,7 +138,7 @@ fn at_rest_nothing_is_touched() {
         let [mut left, mut right] = signal.clone();
         chain.process(&mut left, &mut right);
         assert_eq!([left, right], signal);
-        // There and back again: once at rest, no trace is left.
+        // Switched on and off again: once the chain is at rest, it changes no bit.
         for amount in [0.8, 0.0] {
             chain.turn(amount);
             let [mut left, mut right] = signal.clone();
@@ -164,7 +164,7 @@ fn settings_move_without_a_jump() {
         chain.turn([0.0, 1.0, 0.3][block % 3]);
         chain.process(left, right);
     }
-    // A sine of 100 Hz moves by 0.0065 a sample at this level; with 12 dB of drive and a boost, by ten times that.
+    // A sine of 100 Hz changes by up to 0.0065 per sample at this level; with 12 dB of drive and a boost, by ten times as much.
     let most = left.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
     assert!(most < 0.08, "{most}");
 }
@@ -185,7 +185,7 @@ fn tails_end_when_told() {
     assert!(chain.2.is_silent() && left[5999] == 0.0);
 }
 
-/// While all is idle, to be told of frames is as good as to play them: the motor goes on.
+/// While all effects are idle, skipped frames leave the same state as played silence: the tremolo's oscillator runs on.
 #[test]
 fn skipped_frames_are_silence() {
     let is_idle = |chain: &Chain| chain.0.is_idle() && chain.1.is_idle() && chain.2.is_idle() && chain.3.is_idle();
@@ -210,7 +210,7 @@ fn skipped_frames_are_silence() {
     }
 }
 
-/// Also between the end of a movement and the control tick at which the tremolo is off: its clock stops there.
+/// The same holds between the end of a smoothed change and the control tick at which the tremolo is off and its clock stops.
 #[test]
 fn skipped_frames_are_silence_just_before_the_tremolo_is_off() {
     let is_idle = |chain: &Chain| chain.0.is_idle() && chain.1.is_idle() && chain.2.is_idle() && chain.3.is_idle();

@@ -1,4 +1,4 @@
-//! The space behind the voices: reverbs measured against what was asked of them, and what every processor promises.
+//! Measures the space behind the voices: decay, level and correlation of reverbs, and properties that all processors share.
 
 mod effects;
 mod promises;
@@ -62,7 +62,7 @@ fn noise_stays_as_loud_as_it_was() {
     ] {
         for decay in [Decay { low: 1.0, high: 1.0 }, Decay { low: 2.0, high: 0.5 }] {
             let [mut left, mut right] = noise(0.1, 96_000, 96_000);
-            // Both sides alike: their sum is what drives the body.
+            // Both channels are equal, because their sum drives the body.
             right.copy_from_slice(&left);
             let before = rms(&left);
             reverb(&modes, decay, 1.0).process(&mut left, &mut right);
@@ -74,7 +74,7 @@ fn noise_stays_as_loud_as_it_was() {
     }
 }
 
-/// Echoes along a spring: low frequencies come back sooner than those near the transition.
+/// Echoes along a spring: low frequencies arrive sooner than those near the transition.
 #[test]
 fn springs_chirp() {
     // Without the short waves above the transition.

@@ -1,4 +1,4 @@
-//! What a reverb promises, whatever its body: passive, asleep in silence, smooth, and nothing allocated.
+//! Properties of a reverb with any body: it is passive, idle in silence, smooth, and allocates nothing.
 
 use crate::signal::{RATE, blocks_are_equal, decibels, impulse, noise, octave, peak, rms};
 use crate::{AllocDisabler, reverb};
@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 const DECAY: Decay = Decay { low: 0.4, high: 0.2 };
 
-/// A few hundred modes, quickly played.
+/// A plate with a few hundred modes, which takes little time to play.
 fn small() -> ModeSet {
     Plate { length: 0.6, width: 0.35, thickness: 0.001, ..Plate::default() }.modes()
 }
@@ -18,13 +18,13 @@ static SMALL: LazyLock<ModeSet> = LazyLock::new(small);
 static SPRINGS: LazyLock<ModeSet> = LazyLock::new(|| Spring::default().modes());
 static PAIR: LazyLock<ModeSet> = LazyLock::new(|| Strings::new([220.0, 330.0]).modes());
 
-/// A reverb that any of these bodies finds room in.
+/// A reverb with room for the largest of these bodies.
 fn with_room(sets: &[&ModeSet]) -> ModalReverb {
     let most = sets.iter().map(|modes| modes.len()).max().unwrap();
     ModalReverb::new(Resonator::with_room(most, DECAY, RATE))
 }
 
-/// Numbers from −1 to 1, one after the other.
+/// A sequence of random numbers from −1 to 1.
 fn numbers(seed: u64) -> impl FnMut() -> f64 {
     let (stream, mut n) = (key(17, seed), 0);
     move || {
@@ -93,10 +93,10 @@ fn it_sleeps_when_the_tail_is_over_and_says_when() {
             assert!(frames < told + 32, "{name}: longer than {told} frames");
         }
         println!("{name}: {told} frames told, {frames} were");
-        // What goes with the sleep is below −120 dBFS; and the bound is no wild one.
+        // The last samples before it is silent are below −120 dBFS, and the tail that was told is not far too long.
         assert!(loudest < 1e-6, "{name}: {loudest} at the end");
         assert!(told <= frames + frames / 5 + 4096, "{name}: {told} frames told, {frames} were");
-        // Asleep, silence is left as it is; and what comes wakes it, as new.
+        // While it is idle, silence passes unchanged, and input wakes it.
         let [mut left, mut right] = [[-0.0; 100]; 2];
         reverb.process(&mut left, &mut right);
         assert!(left.iter().chain(&right).all(|sample| sample.to_bits() == (-0.0_f32).to_bits()));
@@ -106,7 +106,7 @@ fn it_sleeps_when_the_tail_is_over_and_says_when() {
     }
 }
 
-/// After noise, where the bound is far above what there is until the energy has been measured.
+/// After noise, the first tail is a bound, which is far too long until the energy has been measured.
 #[test]
 fn what_is_measured_makes_tails_shorter() {
     let mut reverb = reverb(&small(), DECAY, 1.0);
@@ -130,7 +130,7 @@ fn off_it_touches_nothing() {
     reverb.process(&mut left, &mut right);
     assert_eq!([left, right], signal);
     assert!(reverb.is_silent() && reverb.tail_frames() == 0);
-    // On and off again: it comes to rest while input goes on.
+    // Switched on and off again, it becomes silent although input continues.
     reverb.set_mix(0.5);
     let [mut left, mut right] = signal.clone();
     reverb.process(&mut left, &mut right);
@@ -149,7 +149,7 @@ fn blocks_do_not_matter() {
     let mut one = reverb(&small(), DECAY, 0.4);
     one.set_pre_delay(0.013);
     let mut signal = noise(0.3, 3000, 80_000);
-    // Asleep in between, and woken within a tick.
+    // The reverb is idle in between, and input wakes it within a control tick.
     signal[0][70_007..70_100].fill(0.25);
     let turn = |reverb: &mut ModalReverb, frame: usize| match frame {
         1001 => reverb.set_decay(Decay { low: 0.3, high: 0.15 }),
@@ -194,7 +194,7 @@ fn nothing_clicks() {
         turn(&mut turned);
         let [mut left, mut right] = silence();
         turned.process(&mut left, &mut right);
-        // What is taken away comes gradually.
+        // The change fades in gradually.
         let steps = left.iter().zip(&plain).map(|(a, b)| f64::from(a - b)).collect::<Vec<_>>();
         let first = steps[..4].iter().fold(0.0_f64, |most, step| most.max(step.abs()));
         let most = steps.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
@@ -202,7 +202,7 @@ fn nothing_clicks() {
         let undisturbed = f64::from(plain.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max));
         assert!(first < 0.02 * level && most < undisturbed * 1.01, "{name}");
     }
-    // All that changes its pitch moves on from where it is, and by smaller steps.
+    // At a lower pitch, modes continue from their present state, by smaller steps.
     let step = |samples: &[f32]| samples.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
     let mut lower = rings.clone();
     lower.set_pitch(0.6);
@@ -213,7 +213,7 @@ fn nothing_clicks() {
     assert!(turned < 1.05 * own && left != plain, "{turned}, {own}");
 }
 
-/// A body that is switched on, or comes in place of another, while something sounds is not struck by it.
+/// A body that is switched on while input sounds is not excited by a sudden onset.
 #[test]
 fn what_sounds_already_comes_in_gently() {
     let tone = |n: usize| 0.3 * libm::sin(0.01 * n as f64) as f32;
@@ -225,7 +225,7 @@ fn what_sounds_already_comes_in_gently() {
         rings.process(&mut left[..5150], &mut right[..5150]);
         turn(&mut rings);
         rings.process(&mut left[5150..], &mut right[5150..]);
-        // Above 2 kHz there is nothing but what a sudden beginning brings.
+        // Above 2 kHz there is only the effect of a sudden onset.
         let high = octave(&left, 4000.0)[5000..].iter().fold(0.0_f64, |most, sample| most.max(sample.abs()));
         assert!(rings.body().energy() > 0.0);
         high
@@ -243,7 +243,7 @@ fn what_sounds_already_comes_in_gently() {
 fn a_body_goes_over_into_another() {
     let sets = [&*SMALL, &*SPRINGS];
     let mut rings = with_room(&sets);
-    // At rest, at once.
+    // At rest, the body is replaced at once.
     rings.set_body(&SPRINGS);
     assert_eq!(rings.body().len(), SPRINGS.len());
     rings.set_mix(1.0);
@@ -268,7 +268,7 @@ fn a_body_goes_over_into_another() {
     assert!(left == expected && right == expected_right, "nothing is left of the one before");
 }
 
-/// A plate of another size is the plate with another pitch.
+/// A plate of another size sounds like this plate at another pitch.
 #[test]
 fn pitch_is_that_of_a_body_made_so() {
     let decay = Decay { low: 0.8, high: 0.3 };
@@ -291,7 +291,7 @@ fn pitch_is_that_of_a_body_made_so() {
     }
 }
 
-/// While it sleeps, to be told of frames is as good as to play them.
+/// While it is idle, skipped frames leave the same state as played silence.
 #[test]
 fn skipped_frames_are_silence() {
     let mut played = reverb(&small(), DECAY, 0.5);

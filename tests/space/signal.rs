@@ -1,4 +1,4 @@
-//! What the tests of space play and measure with.
+//! Signals and measurements for the tests of the space.
 
 use sprung::dsp::random::{key, uniform};
 use std::f64::consts::{LN_10, PI};
@@ -52,8 +52,8 @@ pub(crate) fn octave(samples: &[f32], centre: f64) -> Vec<f64> {
     band
 }
 
-/// T60 in seconds by Schroeder's backward integration of what both pick-ups hear, from a straight line through −5 to −35 dB
-/// (ISO 3382: T30, over several positions).
+/// T60 in seconds by Schroeder's backward integration of both pick-ups' energy, from a straight line through −5 to −35 dB (ISO
+/// 3382: T30, over several positions).
 pub(crate) fn t60(bands: &[Vec<f64>; 2]) -> f64 {
     let energies = bands[0].iter().zip(&bands[1]).map(|(left, right)| left * left + right * right);
     let mut sum = 0.0;
@@ -86,8 +86,8 @@ pub(crate) fn correlation(a: &[f64], b: &[f64]) -> f64 {
     product(a, b) / (product(a, a) * product(b, b)).sqrt()
 }
 
-/// Runs a processor over a signal in blocks of one size. `at` is told the first frame of each block, and is what turns
-/// knobs; blocks end where `stops` say.
+/// Runs a processor over a signal in blocks of one size. `at` is called with the first frame of each block and can change
+/// parameters; blocks also end at the frames in `stops`.
 pub(crate) fn run<P>(
     processor: &mut P,
     signal: &Stereo,
@@ -108,7 +108,7 @@ pub(crate) fn run<P>(
     [left, right]
 }
 
-/// The same bits in blocks of any size, with the same knobs turned at the stops.
+/// Checks that blocks of any size give the same bits, with the same changes of parameters at `stops`.
 #[track_caller]
 pub(crate) fn blocks_are_equal<P: Clone>(
     processor: &P,

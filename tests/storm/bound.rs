@@ -1,7 +1,7 @@
 //! Upper bound of a case's loudness, from its patch and events alone: the sum over all strikes.
 //!
 //! A strike adds to a mode the amplitude of its force times the mode's gain, whatever the pitch is and however it
-//! moves; damping and movement can only reduce it. It is heard with at most the largest output gain of the case.
+//! moves; damping and movement can only reduce it. It is multiplied by at most the largest output gain of the case.
 //!
 //! How sharp the bound is: a single struck note reaches it. The bound is looser in these ways: strikes are counted as
 //! if none had decayed and all their modes were in phase; each moving gain counts at its highest value, independently
@@ -25,7 +25,7 @@ use std::f64::consts::{LOG2_10, PI, SQRT_2};
 /// tick. Until the next tick, a sweep that rises to the end of its range can increase this 7.1 times, as it can for a
 /// strike.
 const CLASSIC: f64 = 8.0 * 7.1;
-/// What the soft pedal leaves of the force.
+/// Factor by which the soft pedal multiplies the force.
 const SOFT: f64 = 0.6;
 
 /// The bound from a certain frame on.
@@ -65,12 +65,12 @@ struct Part {
     unison: f64,
     /// Whether brightness changes or a route moves the tilt; if so, the strike's tilt is unknown.
     moves_tilt: bool,
-    /// The amplitude of all modes together that a bow of speed 1 gives until the end of the case at most, times the highest
-    /// level of the bow.
+    /// Bound of the sum of all modes' amplitudes that a bow of speed 1 gives until the end of the case, times the highest level
+    /// of the bow.
     bow: f64,
-    /// How much louder what strikes bring may become when its energy climbs to other modes; none if nothing blooms.
+    /// Factor by which bloom may raise the sum of the amplitudes that strikes give; `None` if nothing blooms.
     bloom: Option<f64>,
-    /// What a strike reaches, until the patch changes.
+    /// The reach of a strike; `None` after the patch has changed.
     reach: Option<Reach>,
 }
 
@@ -78,9 +78,9 @@ struct Part {
 #[derive(Clone, Copy)]
 struct Strike {
     end: u64,
-    /// Of mallet, pluck and noise, which counts at what it brings at most.
+    /// Forces of mallet, pluck and noise; that of noise is its upper bound.
     forces: [f64; 3],
-    /// What a bow gives all modes together at most.
+    /// Bound of the sum of all modes' amplitudes that a bow gives.
     bow: f64,
     law: f64,
     reach: Reach,
@@ -110,7 +110,7 @@ impl Part {
             bloom: None,
             reach: None,
         };
-        // A voice that is struck again keeps the number of its note’s start, so any of them may be in force.
+        // A voice that is struck again keeps the number of unison voices of its note’s start, so the highest number counts.
         part.unison = part.most(case, Param::Unison).max(1.0);
         part.bow = part.most_bow(case);
         part.bloom = part.most_bloom(case);
@@ -144,8 +144,8 @@ impl Part {
         if level > -60.0 { gain_from_db(level) * sqrt(2.0 * case.frames as f64 * 64.0) } else { 0.0 }
     }
 
-    /// The amplitudes of `n` modes add up to at most `√n` times the root of their energy, and the root of the energy that
-    /// several strikes bring is at most the sum of all amplitudes that they bring. Bloom leaves the energy as it is.
+    /// The amplitudes of `n` modes add up to at most `√n` times the root of their energy. After several strikes, that root is at
+    /// most the sum of the amplitudes of all strikes. Bloom does not change the energy.
     fn most_bloom(&self, case: &Case) -> Option<f64> {
         let patches = || case.programs.iter().filter(|_| self.ensemble).chain([&self.patch]);
         let is_moved = |event: &Event| match event.kind {
@@ -157,7 +157,7 @@ impl Part {
         blooms.then_some(sqrt(modes as f64))
     }
 
-    /// The events that this synth hears.
+    /// The events that this synth receives.
     fn events<'a>(&self, case: &'a Case) -> impl Iterator<Item = &'a Event> + use<'a> {
         let events = case.events.iter().zip(self.hears.clone());
         events.filter(|(_, is_heard)| *is_heard).map(|(event, _)| event)
@@ -178,8 +178,8 @@ impl Part {
             let mut rise = strike.map_or([0.0; 3], |strike| strike.amplitudes());
             let bowed = strike.map_or(0.0, |strike| strike.bow);
             rise = add(rise, [SQRT_2, SQRT_2, 1.0].map(|gain| gain * bowed));
-            // What is still to come of earlier forces goes through the gains of this strike, or of a brightness that
-            // comes before the first frame.
+            // The rest of earlier forces passes through the gains of this strike, or of a brightness that comes before the first
+            // frame.
             let running = |earlier: &&mut Strike| earlier.end > u64::from(event.frame) && earlier.reach != reach;
             for earlier in strikes.iter_mut().filter(running) {
                 let before = earlier.amplitudes();
@@ -238,7 +238,7 @@ impl Part {
     fn strike(&mut self, event: &Event, sample_rate: f64) -> Option<Strike> {
         let EventKind::NoteOn { velocity, .. } = event.kind else { return None };
         let soft = if self.soft[usize::from(event.channel & 15)] { SOFT } else { 1.0 };
-        // Of n unison voices each has the force divided by √n, and they may meet in phase.
+        // Each of n unison voices has the force divided by √n, and all of them may be in phase.
         let force = |own| {
             let power = (self.value(Param::Velocity) + self.value(own)).max(0.0);
             pow(unit(velocity).into(), 0.02 * power) * soft * sqrt(self.unison)
@@ -263,7 +263,7 @@ impl Part {
         if let Some(reach) = self.reach {
             return reach;
         }
-        // A note may be played by the table of any key.
+        // A note may use the mode table of any key.
         self.patch.modes.make_tables();
         let tables: Vec<Reach> = self.patch.modes.tables().iter().map(|table| self.reach_of(table)).collect();
         let reach = tables.into_iter().fold(Reach::default(), Reach::max);

@@ -16,7 +16,7 @@ pub(crate) const MAX_FRAMES: u32 = 1 << 16;
 /// Maximum number of events of a case.
 const MAX_EVENTS: usize = 2048;
 
-/// What is played.
+/// The sound, the settings and the events that are played.
 #[derive(Clone, Debug)]
 pub(crate) struct Case {
     /// Sample rate in Hz.
@@ -88,9 +88,8 @@ impl Kind {
     ];
 }
 
-/// The parameters by the numbers that kept cases have for them: new ones come last, and a retired one
-/// has become the one that a route moves in its place. The limiter is not among them,
-/// because it would hide what the bound is to find.
+/// The parameters in the order of their numbers in kept cases. New ones are added at the end; a retired one is replaced by the
+/// parameter that a route now moves. The limiter is missing, because it would hide sounds above the bound.
 pub(crate) const PARAM_IDS: &str = "mallet_pulse mallet_hardness mallet_hardness pluck_position noise_level noise_time velocity decay \
     release note_off decay decay_tilt tilt stretch width coefficients tune fine tuning key_track sweep sweep_time \
     sweep_curve sweep vibrato vibrato_rate vibrato_delay vibrato_sync glide bend_range vibrato \

@@ -1,4 +1,4 @@
-//! Gains from parameters, modulation and controllers, and the largest of a case.
+//! Gains from parameters, modulation and controllers, and the largest output gain of a case.
 
 use crate::case::Case;
 use libm::sqrt;

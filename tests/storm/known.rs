@@ -74,7 +74,7 @@ fn vibrato_of_an_octave_on_the_highest_key_of_a_piano() {
     stays_bounded("C8", &storm, 0.9);
 }
 
-/// With some presets of every family.
+/// With every fifth factory preset.
 #[test]
 fn quick_strikes_in_mono_that_are_never_let_go() {
     for preset in Preset::factory().iter().step_by(5) {
@@ -86,7 +86,7 @@ fn quick_strikes_in_mono_that_are_never_let_go() {
     }
 }
 
-/// A string on a plate, whose notes change the table of modes while they ring.
+/// A string joined to a plate, whose notes change the mode table while they ring.
 #[test]
 fn joined_bodies_slide_from_key_to_key() {
     let body = |model, modes| Body { modes, ..Body::new(Model::find(model).unwrap().clone()) };

@@ -114,7 +114,7 @@ fn kept_cases_stay_within_what_their_strikes_bring() {
 
 #[test]
 fn every_parameter_can_move() {
-    // The bound is that of voices: `tests/behind_voices.rs` and `tests/space/` have what comes after them.
+    // The bound covers voices only; `tests/behind_voices.rs` and `tests/space/` test the effects behind them.
     let known: Vec<&str> = PARAM_IDS.split_whitespace().chain(["limiter"]).collect();
     let voices = PARAMS.iter().filter(|info| !info.param.is_behind_voices());
     let missing: Vec<&str> = voices.map(|info| info.id).filter(|id| !known.contains(id)).collect();

@@ -1,10 +1,10 @@
-//! How much a burst of noise can bring at most, from the parameters alone.
+//! Upper bound of the amplitude that a burst of noise gives, from the parameters alone.
 
 use libm::{exp, floor, log, pow, sqrt};
 use sprung::params::Param;
 
-/// A burst of noise adds up at random. By Hoeffding's inequality it is above so many of its standard deviations in one
-/// of 10¹⁷ cases, whatever the pitch does (which cannot follow the noise).
+/// Standard deviations in the bound of a burst of noise, which is a random sum. By Hoeffding's inequality, the sum exceeds this
+/// bound in one of 10¹⁷ cases, whatever the pitch does, since the pitch cannot follow the noise.
 const DEVIATIONS: f64 = 9.0;
 
 /// A burst of force 1: its times in frames, and its form.
@@ -14,7 +14,8 @@ pub(crate) struct Noise {
     is_exponential: bool,
     hits: f64,
     spacing: f64,
-    /// Noise less what a mass has of it: its sum of magnitudes is up to twice that of the noise, its power never more.
+    /// High-passed noise: the noise minus its low-passed part. The sum of its magnitudes is up to twice that of the noise, its
+    /// power never more.
     is_bright: bool,
 }
 
@@ -31,13 +32,12 @@ impl Noise {
         }
     }
 
-    /// Frames until it is over.
+    /// Number of frames of the whole burst.
     pub(crate) fn frames(&self) -> f64 {
         self.attack + self.fall + (self.hits - 1.0) * self.spacing
     }
 
-    /// The squares of the envelope of a hit, added up over some frames as if these were infinitely short: what the burst
-    /// is scaled by.
+    /// The squared envelope of a hit, integrated over some frames. The burst is scaled by it.
     fn integral(&self, frames: f64) -> f64 {
         if frames < self.attack {
             return pow(frames, 3.0) / (3.0 * self.attack * self.attack);
@@ -52,8 +52,8 @@ impl Noise {
             }
     }
 
-    /// The amplitude that the burst brings at most. Where amplitudes are not exact, they are only held to what they are if
-    /// all frames push the same way. Hits that cut each other off count as if they did not.
+    /// Bound of the burst's amplitude. If amplitudes are not exact, the bound is the sum of all frames, as if all pushed in the
+    /// same direction. Hits that cut each other off count in full.
     pub(crate) fn most(&self, is_exact: bool) -> f64 {
         let energy = (self.integral(f64::INFINITY) + (self.hits - 1.0) * self.integral(self.spacing)) / 3.0;
         let n = self.fall;

@@ -1,6 +1,6 @@
-//! How far forces of 1 move all modes together.
+//! The sum of all modes' amplitudes that forces of 1 give.
 
-/// What mallet, pluck and noise of force 1 give all modes together, as heard and as displacement.
+/// The sums of all modes' amplitudes that mallet, pluck and noise of force 1 give: left, right, and as displacement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Reach {
     pub(crate) struck: [f64; 3],
@@ -9,7 +9,7 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// With another reach, times a level.
+    /// Adds another reach, multiplied by a level.
     pub(crate) fn plus(self, other: Self, level: f64) -> Self {
         let sum = |a: [f64; 3], b: [f64; 3]| add(a, b.map(|b| level * b));
         Self {
@@ -19,7 +19,7 @@ impl Reach {
         }
     }
 
-    /// Whichever reaches further, for each force and side.
+    /// The larger value for each force and side.
     pub(crate) fn max(self, other: Self) -> Self {
         let further = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i].max(b[i]));
         Self {

@@ -109,7 +109,7 @@ pub(crate) fn run(chore: &Chore) -> Result<(), String> {
     }
 }
 
-/// Has the optimised program with the engine do what this one was asked to do. Ends with its exit code.
+/// Runs the same chore in the optimised program with the engine, and ends with its exit code.
 #[cfg(not(feature = "engine"))]
 pub(crate) fn run(_: &Chore) -> Result<(), String> {
     let mut command = crate::shell::cargo(WITH_ENGINE);
@@ -121,6 +121,6 @@ pub(crate) fn run(_: &Chore) -> Result<(), String> {
     std::process::exit(status.code().unwrap_or(1));
 }
 
-/// What cargo is told to run the program with the engine; the manifest’s path follows.
+/// Arguments with which cargo runs the program with the engine; the manifest’s path follows.
 #[cfg(not(feature = "engine"))]
 const WITH_ENGINE: &str = "run --release --quiet --package xtask --features engine --manifest-path";

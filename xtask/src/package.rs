@@ -11,7 +11,7 @@ fn python() -> Option<PathBuf> {
     succeeds(&python.to_string_lossy(), &["-c", modules]).then_some(python)
 }
 
-/// What the package's tests have come to.
+/// The result of the package's tests.
 pub(crate) enum Tested {
     /// They cannot run here.
     Skipped,
@@ -19,7 +19,7 @@ pub(crate) enum Tested {
     Ran { passed: usize, failed: usize },
 }
 
-/// Builds the package into its folder and runs its tests, beside a command of the same sources.
+/// Builds the package into its folder and runs its tests, with a command that is built from the same sources.
 pub(crate) fn test() -> Result<Tested, String> {
     let Some(python) = python() else { return Ok(Tested::Skipped) };
     let built = |arguments: &str| match run_and_read(cargo(arguments))? {

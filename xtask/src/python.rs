@@ -1,4 +1,4 @@
-//! Installs the plugin hosts that are driven from Python, and what tests the Python package, in a virtual environment.
+//! Installs the plugin hosts driven from Python, and the modules for the Python package's tests, in a virtual environment.
 
 use crate::shell::{root, succeeds};
 use std::path::Path;

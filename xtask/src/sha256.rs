@@ -1,4 +1,4 @@
-//! SHA-256 sums in the letters in which they are written and compared.
+//! SHA-256 sums as hexadecimal text.
 
 use sha2::{Digest as _, Sha256};
 

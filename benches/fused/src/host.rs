@@ -1,4 +1,4 @@
-//! A clock, and where lines go: the system's, or JavaScript's around WebAssembly.
+//! A clock and the output of lines: the system's, or JavaScript's around WebAssembly.
 
 /// Seconds since some moment.
 #[cfg(not(target_family = "wasm"))]
@@ -28,9 +28,9 @@ pub(crate) fn now() -> f64 {
     host_now() / 1000.0
 }
 
-/// Hands a line over.
+/// Passes a line to the page or script.
 #[cfg(target_family = "wasm")]
 pub(crate) fn print(line: &str) {
-    // SAFETY: the line lies in memory while it is read, and is not kept.
+    // SAFETY: the line stays in memory while the host reads it, and the host does not keep it.
     unsafe { host_print(line.as_ptr(), line.len()) }
 }

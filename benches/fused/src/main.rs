@@ -1,8 +1,8 @@
-//! Measures fused multiplication for CPUs without the instruction, beside the emulation that it has replaced.
+//! Measures the emulation of fused multiplication for CPUs without the instruction, beside the emulation that it has replaced.
 
 mod host;
 
-/// The engine's own files, and what measures them in the same place: their items are visible nowhere else.
+/// The engine's own files, and their measurement in the same module, because their items are not visible elsewhere.
 #[path = "../../../src/dsp"]
 #[allow(dead_code, reason = "the engine uses more of it")]
 mod dsp {

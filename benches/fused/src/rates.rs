@@ -14,7 +14,7 @@ const SIDE_BY_SIDE: usize = 4;
 const ROUNDS: usize = 2000;
 const BLOCKS: usize = 16;
 
-/// What the bank needs of a vector of four numbers.
+/// The operations of the bank on a vector of four numbers.
 trait Fused: Copy {
     fn load(from: &[f32]) -> Self;
     fn store(self, to: &mut [f32]);
@@ -114,7 +114,7 @@ impl Bank {
         Self { alpha, beta, gain, x: [0.0; MODES], y: [1.0; MODES], out: [0.0; 4 * FRAMES] }
     }
 
-    /// Steps all modes by a block of frames, and adds up what they give: five fused operations a mode and frame.
+    /// Steps all modes by a block of frames, and adds up their outputs: five fused operations for each mode and frame.
     #[inline(never)]
     fn step<V: Fused>(&mut self) {
         self.out.fill(0.0);
@@ -140,7 +140,7 @@ impl Bank {
     }
 }
 
-/// Seconds that some blocks take from the start, and what they end with.
+/// Seconds that [`BLOCKS`] blocks take from the bank's initial state, and the bank afterwards.
 fn seconds<V: Fused>() -> (f64, Bank) {
     let mut bank = black_box(Bank::new());
     let start = host::now();

@@ -1,4 +1,4 @@
-//! The former emulation: every sum is rounded to odd in double precision, and that to single precision.
+//! The former emulation: every sum is rounded to odd in double precision, and then to single precision.
 
 /// Four numbers, as the former scalar code had them.
 #[derive(Clone, Copy)]

@@ -56,7 +56,7 @@ pub(crate) fn a_parameter_changes_at_its_frame() {
             // Between two values of the table, the host's position decides which of them is meant.
             let host = host_value(info, value);
             let value = if host.fract() == 0.0 { value } else { info.denormalise(f64::from(host as f32)) };
-            // The plugin drops changes to the same value, since the engine would start a new line at their frame.
+            // The plugin drops changes to the same value, since the engine would start a new ramp at their frame.
             if std::mem::replace(&mut now, value) != value {
                 let event = EventKind::Param { param: info.param, value };
                 song.push((Sent::Value(id, host).at(frame), At(frame, 0, event)));

@@ -1,6 +1,6 @@
-//! What the open window costs: CPU time of its threads, while nothing moves and while all of it does.
+//! CPU time of the open window's threads, while nothing moves and while everything moves.
 //!
-//! Only that no picture is drawn for nothing is asserted: times depend on the machine, and are for those who read them.
+//! The test asserts only whether pictures are drawn. Times depend on the machine, so they are only printed.
 
 use crate::host::{Address, Instance, Player, Sent};
 use crate::patches::enclosed;
@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How long each is measured.
+/// Duration of each measurement.
 const MEASURED: Duration = Duration::from_secs(10);
 
 pub(crate) fn a_silent_window_draws_nothing() {
@@ -69,7 +69,7 @@ pub(crate) fn work() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Waits until nothing has been drawn for a second: a slow machine is long at the first pictures.
+/// Waits until nothing has been drawn for a second: a slow machine takes long for the first pictures.
 fn wait_for_rest(instance: &mut Instance, parent: &Parent) {
     let pictures = parent.onlooker.watch(parent.window);
     let mut last = Instant::now();
@@ -83,7 +83,7 @@ fn wait_for_rest(instance: &mut Instance, parent: &Parent) {
     parent.onlooker.unwatch(pictures);
 }
 
-/// Measures the threads that were not there `before` and prints what they took. Returns how many pictures were drawn.
+/// Measures the threads that did not exist `before` and prints their CPU time. Returns the number of pictures drawn.
 fn measure(name: &str, before: &BTreeMap<u32, f64>, instance: &mut Instance, parent: &Parent) -> u32 {
     let (start, began) = (tasks(), Instant::now());
     let pictures = parent.onlooker.watch(parent.window);

@@ -1,10 +1,10 @@
-//! The program's page of devices: another one is chosen while it plays, and one that cannot be opened changes nothing.
+//! The program's tab *Devices*: another device is chosen while it plays, and one that cannot be opened changes nothing.
 
 use crate::standalone::Stand;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Devices that take anything, and one that is not there.
+/// A device that accepts everything, and one that does not exist.
 const ALSA: &str = "pcm.!default { type null
  hint { show on
  description \"Nothing\" } }
@@ -13,15 +13,15 @@ pcm.broken { type hw
  hint { show on
  description \"Broken\" } }
 ";
-/// Where the tab *Devices* and the field *Output* are.
+/// Positions of the tab *Devices* and of the field *Output*.
 const TAB: [i16; 2] = [612, 344];
 const FIELD: [i16; 2] = [280, 377];
-/// Where the lines of its list may be: to the right, and down from the first to the last.
+/// Possible positions of the lines of the field's list: the column, and the rows from the first line to the last.
 const LIST: i16 = 150;
 const LINES: std::ops::Range<i16> = 415..570;
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The devices that the program has said that it plays on, and whether one was refused.
+/// The devices on which the program has said that it plays, and whether one was refused.
 fn heard(said: &Path) -> (Vec<String>, bool) {
     let text = std::fs::read_to_string(said).unwrap();
     let playing = text.lines().filter_map(|line| line.split_once("playing on ")).map(|(_, name)| name.to_owned());
@@ -50,7 +50,7 @@ pub(crate) fn another_device_is_chosen_while_it_plays() {
     }
     running.interrupt();
     assert_eq!(running.ends().code(), Some(0));
-    // Now, since the last click may have been followed only after the look above.
+    // Read again, because the program may have followed the last click only after the loop looked.
     let (playing, _) = heard(&said);
     assert!(playing[0].contains("JACK") && playing[1..].iter().any(is_alsa), "{playing:?}");
     let kept = std::fs::read_to_string(stand.state().with_file_name("devices.json")).unwrap();

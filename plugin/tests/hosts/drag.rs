@@ -25,9 +25,9 @@ pub(crate) struct Drag {
     /// The window that it is dragged over.
     target: u32,
     list: String,
-    /// Whether the target takes it, once it has said so.
+    /// Whether the target accepts the files; `None` before it has answered.
     status: Option<bool>,
-    /// Whether the target took what was dropped, once it has said so.
+    /// Whether the target took the dropped files; `None` before it has answered.
     finished: Option<bool>,
 }
 
@@ -52,7 +52,7 @@ impl Drag {
     pub(crate) fn drop_at(mut self, [x, y]: [u32; 2]) -> bool {
         let [list, copy] = ["text/uri-list", "XdndActionCopy"].map(|name| self.atom(name));
         self.send("XdndEnter", [self.window, VERSION << 24, list, 0, 0]);
-        // As a hand does: more than one place on the way.
+        // Like a hand, the drag passes several places.
         for step in 0..4 {
             let place = (x - 3 + step) << 16 | y;
             self.status = None;
@@ -80,7 +80,7 @@ impl Drag {
         self.connection.intern_atom(false, name.as_bytes()).unwrap().reply().unwrap().atom
     }
 
-    /// The window, or the first one inside it, that says that it takes what is dropped.
+    /// The window, or the first one inside it, that declares that it accepts drops (`XdndAware`).
     fn aware(&self, window: u32) -> Option<u32> {
         let aware = self.atom("XdndAware");
         let found = self.connection.get_property(false, window, aware, AtomEnum::ATOM, 0, 1).unwrap().reply().unwrap();
@@ -96,7 +96,7 @@ impl Drag {
         self.connection.send_event(false, self.target, EventMask::NO_EVENT, message).unwrap().check().unwrap();
     }
 
-    /// Answers what the target asks, and notes what it says.
+    /// Answers the target's requests and records its messages.
     fn answer(&mut self) {
         let [status, finished] = ["XdndStatus", "XdndFinished"].map(|name| self.atom(name));
         while let Some(event) = self.connection.poll_for_event().unwrap() {
@@ -115,7 +115,7 @@ impl Drag {
         }
     }
 
-    /// Gives the list of files to a window that asks for it; anything else there is not.
+    /// Gives the list of files to a window that requests it, and refuses every other format.
     fn hand_over(&self, request: &SelectionRequestEvent) {
         let is_list = request.target == self.atom("text/uri-list");
         let SelectionRequestEvent { requestor, property, target, .. } = *request;
@@ -136,7 +136,7 @@ impl Drag {
     }
 }
 
-/// The URI of a file. What is no letter, digit or one of a few marks is written as its bytes.
+/// The URI of a file. Bytes other than letters, digits and a few marks are percent-encoded.
 fn uri(file: &Path) -> String {
     use std::os::unix::ffi::OsStrExt as _;
     let written = |byte: &u8| match byte {

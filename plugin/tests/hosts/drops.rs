@@ -1,4 +1,4 @@
-//! Files that another program's user drops on the real window.
+//! Files that are dropped from another program on the real window.
 
 use crate::drag::Drag;
 use crate::standalone::{Stand, preset};
@@ -31,7 +31,7 @@ fn recording() -> Vec<u8> {
 
 pub(crate) fn a_recording_that_is_dropped_on_the_real_window_becomes_the_sound() {
     let stand = Stand::new("drop");
-    // Letters that a URI writes as bytes.
+    // Characters that a URI percent-encodes.
     let file = stand.folder.path().join("Stab 100% für Übung.wav");
     std::fs::write(&file, recording()).unwrap();
     let (running, _) = stand.start(&["Marimba"]);

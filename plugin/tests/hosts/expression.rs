@@ -1,4 +1,4 @@
-//! What a host can change for single notes: modulation per voice, note expressions, MPE per channel; and the tempo.
+//! Changes of single notes by a host: modulation per voice, note expressions, MPE per channel; and the tempo.
 
 use crate::automation::{compare, on, patch};
 use crate::host::reference::At;

@@ -39,18 +39,18 @@ use std::sync::LazyLock;
 #[derive(Clone, Copy)]
 enum Needs {
     Nothing,
-    /// A screen that nobody sees (Xvfb).
+    /// A virtual screen (Xvfb).
     Screen,
     /// A screen, the program and a JACK server.
     Program,
     /// The Python hosts.
     Python,
-    /// Both.
+    /// The Python hosts and a screen.
     PythonAndScreen,
 }
 
 impl Needs {
-    /// What is missing on this machine.
+    /// The first need that is missing on this machine; `None` if all are met.
     fn missing(self) -> Option<String> {
         static SCREEN: LazyLock<Option<String>> = LazyLock::new(screen::missing);
         static PYTHON: LazyLock<Option<String>> = LazyLock::new(vst3::missing);
@@ -64,7 +64,7 @@ impl Needs {
     }
 }
 
-/// Makes the list of tests from their modules and names, with what the tests of each module need.
+/// Makes the list of tests from their modules and names, with the needs of each module.
 macro_rules! trials {
     ($($needs:ident: $module:ident { $($test:ident)* })*) => {
         vec![$($((concat!(stringify!($module), "::", stringify!($test)), Needs::$needs, $module::$test as fn()),)*)*]

@@ -1,4 +1,4 @@
-//! The real window's pixels, drawn by OpenGL, compared with an accepted picture, which is drawn without.
+//! The real window's pixels, drawn by OpenGL, compared with an accepted picture that was drawn without OpenGL.
 
 use crate::host::Instance;
 use crate::patches::enclosed;
@@ -15,10 +15,10 @@ use std::time::{Duration, Instant};
 /// steps of 4.
 const TOLERANCE: u8 = 3 + 2;
 
-/// How many pixels may differ by more: those on the edges of shapes, where a sample lies on the line or beside it.
+/// How many pixels may differ by more: pixels on the edges of shapes, where a sample may lie just inside or just outside.
 const HANDFUL: usize = 24;
 
-/// The corner by which the window is resized is the wrapper's, and not in the picture.
+/// Size of the corner by which the window is resized: the wrapper draws it, and the picture does not have it.
 const CORNER: u32 = 20;
 
 pub(crate) fn the_real_window_has_the_pixels_of_the_accepted_picture() {

@@ -38,7 +38,7 @@ pub(crate) fn scratch(name: &str) -> PathBuf {
     path.join(name)
 }
 
-/// Tells another thread to stop when dropped, so that after a failure nobody waits for that thread.
+/// Tells another thread to stop when dropped, so that a test that failed does not wait for that thread.
 pub(crate) struct Stops<'a>(pub(crate) &'a AtomicBool);
 
 impl Drop for Stops<'_> {

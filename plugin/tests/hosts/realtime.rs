@@ -90,7 +90,7 @@ fn play_under_watch(parent: Option<Parent>) -> ExitCode {
     let watch = probe(c"sprung_watch");
     std::thread::scope(|scope| {
         scope.spawn(|| {
-            // One block without the watch: what a thread needs when it first runs is not caused by `process`.
+            // One block without the watch, because a thread's first block may do work that `process` does not cause.
             audio.process(&EventBuffer::new(), 64);
             assert_eq!(watch(), 0, "the kernel cannot refuse system calls");
             while !stop.load(Ordering::Relaxed) {

@@ -18,7 +18,7 @@ use x11rb::rust_connection::RustConnection;
 /// Libraries that the plugin's window loads when it opens.
 const LIBRARIES: [&CStr; 3] = [c"libEGL.so.1", c"libX11-xcb.so.1", c"libxkbcommon-x11.so.0"];
 
-/// What is missing on this machine for a window on a screen.
+/// The program or library that is missing on this machine for a window on a virtual screen.
 pub(crate) fn missing() -> Option<String> {
     let paths = std::env::var_os("PATH").unwrap_or_default();
     if !std::env::split_paths(&paths).any(|folder| folder.join("Xvfb").is_file()) {
@@ -124,7 +124,7 @@ impl Onlooker {
         window
     }
 
-    /// Creates a window inside another one, beside the plugin's, that hears keys.
+    /// Creates a window inside another one, beside the plugin's, that receives key events.
     pub(crate) fn make_proxy(&self, parent: u32) -> u32 {
         let window = self.connection.generate_id().unwrap();
         let visual = self.connection.setup().roots[0].root_visual;
@@ -157,8 +157,7 @@ impl Onlooker {
 
     /// Drags the mouse slowly, as a hand does, so that a window sees each step separately.
     pub(crate) fn drag_slowly(&self, from: [i16; 2], to: [i16; 2]) {
-        // A knob follows what moves after the press: on a busy machine, too, press and movement must come in different
-        // frames.
+        // A knob follows movement after the press, so press and movement must come in different frames, also on a busy machine.
         self.drag_with_pauses(from, to, Duration::from_millis(80));
     }
 
@@ -193,7 +192,7 @@ impl Onlooker {
         self.connection.flush().unwrap();
     }
 
-    /// Whether a window of the host has heard this key since the last call.
+    /// Whether a window of the host has received this key since the last call.
     pub(crate) fn heard_key(&self, key: u8) -> bool {
         let mut heard = false;
         while let Some(event) = self.connection.poll_for_event().unwrap() {
@@ -209,7 +208,7 @@ impl Onlooker {
         self.connection.flush().unwrap();
     }
 
-    /// From now on, [`Onlooker::pictures_since`] counts what is drawn in a window and those inside it.
+    /// From now on, [`Onlooker::pictures_since`] counts the pictures drawn in a window and in those inside it.
     pub(crate) fn watch(&self, window: u32) -> u32 {
         self.connection.damage_query_version(1, 1).unwrap().reply().expect("the screen tells what is drawn");
         let damage = self.connection.generate_id().unwrap();
@@ -228,7 +227,7 @@ impl Onlooker {
         pictures
     }
 
-    /// Counts no more.
+    /// Stops counting.
     pub(crate) fn unwatch(&self, damage: u32) {
         self.connection.damage_destroy(damage).unwrap().check().unwrap();
     }

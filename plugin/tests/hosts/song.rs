@@ -109,7 +109,7 @@ pub(crate) fn a_kit_has_the_bits_of_the_command() {
     }
 }
 
-/// Sound that comes in on the plugin's input and, as a file, in the command.
+/// Audio input of the plugin, and the same input as a file in the command.
 pub(crate) fn sound_that_comes_in_has_the_bits_of_the_command() {
     let midi = phrase::midi_file();
     let song = phrase::song(&midi);
@@ -152,7 +152,7 @@ pub(crate) fn sixteen_channels_have_the_bits_of_one_synth() {
     }
 }
 
-/// Plays messages on the engine's synth, in blocks of one second.
+/// Plays messages on the engine's synth, in one block.
 fn played_by_one_synth(messages: &[(u64, [u8; 3])], patch: &Patch, frames: usize) -> Vec<Vec<f32>> {
     let mut synth = Synth::new(SAMPLE_RATE.into(), 0);
     synth.reserve_space();

@@ -1,4 +1,4 @@
-//! The window as a program, on a screen that nobody sees and a JACK server without a sound card.
+//! The window as a program, on a virtual screen and a JACK server without a sound card.
 
 use crate::process::{scratch, wait_until};
 use crate::screen::{Onlooker, Screen};
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// The program, if it was built with these tests.
 const PROGRAM: Option<&str> = option_env!("CARGO_BIN_EXE_sprung-standalone");
 
-/// What is missing for these tests besides a screen.
+/// The program or server that these tests need besides a screen and that is missing here.
 pub(crate) fn missing() -> Option<String> {
     if PROGRAM.is_none() {
         return Some("the program (‘cargo test --features standalone’ builds it)".to_owned());
@@ -32,7 +32,7 @@ impl Running {
         assert_eq!(sent, 0);
     }
 
-    /// As Ctrl-C.
+    /// Interrupts it, as Ctrl-C does.
     pub(crate) fn interrupt(&self) {
         self.signal(libc::SIGINT);
     }
@@ -59,7 +59,7 @@ impl Drop for Running {
             #[allow(unsafe_code)]
             let _ = unsafe { libc::kill(id, libc::SIGTERM) };
         }
-        // What does not end in order is ended: a test that failed must not wait for it.
+        // A process that does not end by itself is killed, so that a test that failed does not wait for it.
         let start = Instant::now();
         while start.elapsed() < Duration::from_secs(5) && !is_over(&mut self.0) {
             std::thread::sleep(Duration::from_millis(20));
@@ -76,7 +76,7 @@ pub(crate) struct Stand {
     server: String,
     _jack: Running,
     pub(crate) folder: tempfile::TempDir,
-    /// ALSA's configuration; none for the system's.
+    /// ALSA's configuration; `None` for the system's.
     pub(crate) alsa: Option<PathBuf>,
 }
 
@@ -110,7 +110,7 @@ impl Stand {
         self.folder.path().join("sprung/standalone.json")
     }
 
-    /// Starts the program on the server, and waits for its window. Returns it and the file with what it says.
+    /// Starts the program on the server, and waits for its window. Returns it and the file with its stderr.
     #[track_caller]
     pub(crate) fn start(&self, arguments: &[&str]) -> (Running, PathBuf) {
         self.start_with(&["--host", "jack", "--midi-in", "none"], arguments)
@@ -144,7 +144,7 @@ pub(crate) fn it_keeps_its_state_whatever_ends_it() {
     let first = preset(&stand.state());
     assert!(first.contains("Church Bell"), "{first}");
 
-    // The sound of the last time comes back; what is changed in the window is kept when a signal ends the program.
+    // The sound of the last run comes back; a change in the window is kept when a signal ends the program.
     let (mut running, _) = stand.start(&[]);
     stand.onlooker.drag_slowly([200, 500], [200, 440]);
     let mut changed = first.clone();

@@ -130,8 +130,7 @@ pub(crate) fn a_state_loaded_while_processing_is_heard_exactly() {
     }
 }
 
-/// Setting a parameter to its present position keeps its exact value; a neighbouring position gives that position's
-/// value.
+/// Setting a parameter to its present position keeps its exact value.
 pub(crate) fn touching_a_knob_keeps_the_exact_value() {
     for (name, patch) in patches() {
         let mut instance = Instance::new();
@@ -234,7 +233,7 @@ pub(crate) fn two_states_in_turn_while_audio_runs_are_never_mixed() {
         drop(stops);
         playing.join().unwrap()
     });
-    // The last state is the one that is heard in the end.
+    // The state that was loaded last is the one that sounds in the end.
     let mut player = Player { instance, audio };
     player.render(&[], 64, || 64);
     player.audio.reset();

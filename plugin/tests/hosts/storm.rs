@@ -17,7 +17,7 @@ const WINDOWS: usize = 200;
 /// Number of instances that are created and released.
 const INSTANCES: usize = 200;
 
-/// Windows opened before files and threads are counted: drivers keep what they load with the first windows.
+/// Windows opened before files and threads are counted: with the first windows, drivers load libraries that they keep.
 const WARM_UP: usize = 5;
 
 /// Name of the thread that the wrapper's instances share.
@@ -87,7 +87,7 @@ fn windows() {
             if time == WARM_UP {
                 held = Some(held_now());
             }
-            // Hosts without a run loop are rare; while the window is open, the worker is then told of every change.
+            // Hosts without a run loop are rare. Without one, the worker receives every change while the window is open.
             let has_loop = time % 4 != 3;
             let (before, _) = frame.registered();
             let view = plugin.open_window(if has_loop { &with_loop } else { &without_loop }, parent);

@@ -25,10 +25,10 @@ fn environment() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("python")
 }
 
-/// What is missing: hosts that cannot be loaded in the required versions.
+/// The hosts that cannot be loaded in the required versions, and why.
 pub(crate) fn missing() -> Option<String> {
     let installed = std::fs::read_to_string(environment().join("requirements.txt"));
-    // The environment serves other tests too, whose requirements stand in the same file.
+    // The environment serves other tests too, whose requirements are in the same file.
     if !installed.is_ok_and(|installed| installed.contains(include_str!("requirements.txt"))) {
         return Some("pedalboard and dawdreamer in target/python".to_owned());
     }
@@ -56,7 +56,7 @@ fn script(name: &str) -> PathBuf {
 fn ask(host: &str, question: &Value) -> Value {
     let mut child = Command::new(python())
         .arg(script(&format!("{host}_host.py")))
-        // Without this they would use the first display, which may belong to another test.
+        // Without this the hosts would use the first display, which may belong to another test.
         .env("DISPLAY", ":none")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -215,7 +215,7 @@ pub(crate) fn automation_has_the_bits_of_the_engine() {
             json!(["automate", bundle::vst3(), "", param as usize, values, path, SAMPLE_RATE, FRAMES, audio]);
         ask("dawdreamer", &question);
         let mut song = vec![At(3, 0, EventKind::NoteOn { key: 57, detune: 0.0, velocity: 100.0 / 127.0, id: None })];
-        // What is set while nothing sounds takes effect at once.
+        // A value that is set while nothing sounds takes effect at once.
         let first = info.denormalise(positions[0].into());
         let mut last = Some(first);
         for frame in (0..FRAMES).step_by(block) {

@@ -99,7 +99,8 @@ fn open_and_close(instance: &mut Instance, parent: &Parent) {
     }
 }
 
-/// Presses Space after a click on an empty place, while a name is typed, and after that.
+/// Checks that Space reaches the host before any click, after a click on an empty place and after the browser was closed, but not
+/// while words are typed.
 fn host_hears_keys(instance: &mut Instance, parent: &Parent) {
     const SPACE: u8 = 65;
     const ESCAPE: u8 = 9;
@@ -120,7 +121,7 @@ fn host_hears_keys(instance: &mut Instance, parent: &Parent) {
     onlooker.hover(empty);
     onlooker.drag_slowly(empty, empty);
     hears("Space after a click on an empty place", true);
-    // ‘Browse’, whose field for words is open at once.
+    // Clicks on ‘Browse’: its search field takes the keys at once.
     let browse = [510, 22];
     onlooker.drag_slowly(browse, browse);
     hears("no Space while words are typed", false);

@@ -1,6 +1,6 @@
-//! What the program is asked for, and where its lines go: the command line and stdout, or JavaScript around WebAssembly.
+//! The program's arguments and output: the command line and stdout, or JavaScript around WebAssembly.
 
-/// Which cases are asked for.
+/// The requested cases.
 pub(crate) struct Asked {
     /// The first case, by number.
     pub(crate) first: usize,
@@ -10,7 +10,7 @@ pub(crate) struct Asked {
     pub(crate) song_seconds: usize,
 }
 
-/// What the command line says: `FIRST STEP SONG_SECONDS`.
+/// Reads the command line: `FIRST STEP SONG_SECONDS`.
 #[cfg(not(target_family = "wasm"))]
 pub(crate) fn asked() -> Asked {
     let mut numbers = std::env::args().skip(1).map(|text| text.parse().expect("arguments are whole numbers"));
@@ -35,16 +35,16 @@ unsafe extern "C" {
     fn host_print(line: *const u8, length: usize);
 }
 
-/// What the page or script around the module says.
+/// Reads the arguments from the page or script that runs the module.
 #[cfg(target_family = "wasm")]
 pub(crate) fn asked() -> Asked {
     let number = |place| host_argument(place) as usize;
     Asked { first: number(0), step: number(1), song_seconds: number(2) }
 }
 
-/// Hands a line over.
+/// Passes a line to the page or script.
 #[cfg(target_family = "wasm")]
 pub(crate) fn print(line: &str) {
-    // SAFETY: the line lies in memory while it is read, and is not kept.
+    // SAFETY: the line stays in memory while the host reads it, and the host does not keep it.
     unsafe { host_print(line.as_ptr(), line.len()) }
 }

@@ -1,7 +1,7 @@
 //! Prints the digests of the golden cases: run by `cargo xtask cross` for each CPU, and compared with the accepted ones.
 //!
-//! A line is the case's name, the number of rendered frames, the SHA-256 of the samples, and the first eight digits of that
-//! of each 4096 frames: the same numbers as in `tests/golden`. Songs end after the given number of seconds.
+//! A line has the case's name, the number of rendered frames, the SHA-256 of all samples, and the first eight digits of the
+//! SHA-256 of each 4096 frames: the same numbers as in `tests/golden`. Songs end after the given number of seconds.
 
 #[path = "../../golden/cases.rs"]
 #[allow(dead_code, reason = "the golden tests use more of it")]

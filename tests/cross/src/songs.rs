@@ -1,11 +1,11 @@
-//! Every song in `assets/midi`, within the program: WebAssembly has no files.
+//! Every song in `assets/midi`, compiled into the program because WebAssembly has no files.
 
 use crate::score::Score;
 use sprung::io::Song;
 use sprung::patch::Patch;
 use sprung::preset::Programs;
 
-/// The songs by name. One that is left out is missed by `cargo xtask cross`.
+/// The songs by name. `cargo xtask cross` reports a song that is missing here.
 const SONGS: [(&str, &[u8]); 3] = [
     ("groove", include_bytes!("../../../assets/midi/groove.mid")),
     ("kits", include_bytes!("../../../assets/midi/kits.mid")),

@@ -43,7 +43,7 @@ fn read(metadata: &Value, crates: &mut Crates) {
         }
     }
     for package in list(&metadata["packages"]) {
-        // A missing source does not tell our own: crates that are patched by path have none either.
+        // A missing source does not identify our own crates: crates that are patched by path have none either.
         let name = text(&package["name"]);
         let is_own = name.starts_with("sprung") || name == "xtask";
         if used.contains(&text(&package["id"])) && !is_own {

@@ -1,4 +1,4 @@
-//! `cargo xtask dist`: what users download, in `target/dist`: an archive, a Debian package, a wheel for Python, and their checksums.
+//! `cargo xtask dist`: makes the downloads in `target/dist`: an archive, a Debian package, a wheel for Python, and checksums.
 
 mod licences;
 mod trial;
@@ -20,17 +20,17 @@ pub(crate) struct Options {
     pub(crate) trial: bool,
 }
 
-/// What came of a file that needs a tool. That the tool fails is an error.
+/// The result for a file that needs a tool. If the tool is there but fails, that is an error.
 enum Made {
     File(PathBuf),
-    /// Something is missing: what, and how to get it.
+    /// Not made, because something is missing: what, and how to get it.
     Nothing(String),
 }
 
 /// Completions by shell, with the names of their files.
 const COMPLETIONS: [(&str, &str); 3] = [("bash", "sprung.bash"), ("zsh", "_sprung"), ("fish", "sprung.fish")];
 
-/// Makes everything, as far as the tools are there; says what was left out, and tries what was made.
+/// Makes all files for which the tools are installed, reports those left out, and tries the files if that is requested.
 pub(crate) fn run(options: &Options) -> Result<(), String> {
     let folder = root().join("target/dist");
     remove(&folder)?;
@@ -62,7 +62,7 @@ pub(crate) fn run(options: &Options) -> Result<(), String> {
 fn stage(folder: &Path, no_plugin: bool) -> Result<PathBuf, String> {
     let name = format!("sprung-{}-{}-{}", env!("CARGO_PKG_VERSION"), std::env::consts::ARCH, std::env::consts::OS);
     let stage = folder.join(name);
-    // Debug symbols are most of its size.
+    // Debug symbols are most of the command's size.
     let build = "rustc --release --package sprung --bin sprung -- -C strip=symbols";
     run_to_end(&mut cargo(build), "the command does not build")?;
     let command = root().join("target/release").join(format!("sprung{}", std::env::consts::EXE_SUFFIX));
@@ -97,14 +97,14 @@ fn stage(folder: &Path, no_plugin: bool) -> Result<PathBuf, String> {
 fn archive(folder: &Path, stage: &Path) -> Result<PathBuf, String> {
     let name = stage.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let path = folder.join(format!("{name}.tar.gz"));
-    // The same files give the same archive, but for the compressor’s version.
+    // The same files give the same archive, as long as the compressor’s version is the same.
     let mut tar = Command::new("tar");
     tar.args(["--sort=name", "--owner=0", "--group=0", "--numeric-owner", "--mtime=@0", "-czf"]).arg(&path);
     run_to_end(tar.arg("-C").arg(folder).arg(&name), "tar")?;
     Ok(path)
 }
 
-/// A Debian package of the command, by cargo-deb and what `Cargo.toml` says under `package.metadata.deb`.
+/// A Debian package of the command, made by cargo-deb from `package.metadata.deb` in `Cargo.toml`.
 fn debian_package(folder: &Path) -> Result<Made, String> {
     let variable = |name: &str| std::env::var(name).ok().filter(|value| !value.trim().is_empty());
     let Some(address) = variable("DEBEMAIL") else {
@@ -164,7 +164,7 @@ fn wheel(folder: &Path) -> Result<Made, String> {
     made_by("maturin", folder, "whl")
 }
 
-/// The file that a tool has made in a folder, whose name it chose itself but for the ending.
+/// The file with this ending that a tool has made in a folder, under a name that the tool chose.
 fn made_by(tool: &str, folder: &Path, ending: &str) -> Result<Made, String> {
     let files = std::fs::read_dir(folder).map_err(|error| error.to_string())?;
     let mut paths = files.flatten().map(|file| file.path());
@@ -172,7 +172,7 @@ fn made_by(tool: &str, folder: &Path, ending: &str) -> Result<Made, String> {
     made.map(Made::File).ok_or_else(|| format!("{tool} made no .{ending} file"))
 }
 
-/// Packs the crate as crates.io would get it, and builds that; nothing is sent.
+/// Packs the crate as for crates.io and builds it from the package, without publishing anything.
 fn package_for_crates_io() -> Result<(), String> {
     run_to_end(&mut cargo("publish --dry-run --allow-dirty --package sprung"), "cargo publish --dry-run")?;
     // docs.rs builds with these features, as the metadata in Cargo.toml say.

@@ -1,4 +1,4 @@
-//! Installs what `dist` has made where nothing else is, and compares what it renders with what the command renders here.
+//! Installs the files that `dist` made into empty places, and compares their renders with those of the command here.
 
 use crate::files::remove;
 use crate::sha256;
@@ -6,7 +6,7 @@ use crate::shell::{root, run_to_end, succeeds};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What is rendered, to standard output.
+/// Arguments of the command for the render that is compared, to standard output.
 const RENDER: [&str; 9] = ["render", "--preset", "Marimba", "--note", "C4", "--bits", "32f", "-o", "-"];
 
 /// The same from Python: the SHA-256 of the interleaved samples.

@@ -18,8 +18,8 @@ use struck::{StruckBank, Work};
 /// The last accepted counts: instructions per mode and frame for each level and kind of work, and per silent block.
 const KEPT: &str = "benches/instructions.txt";
 
-/// The share by which a count may grow. With every change anywhere in the library the compiler divides it anew, inlines other
-/// functions, and counts of work that did not change move by up to 13 %.
+/// The share by which a count may grow. After any change in the library, the compiler divides it into units in another way and
+/// inlines other functions, so counts of work that did not change move by up to 13 %.
 const ALLOWANCE: f64 = 0.15;
 
 const LEVELS: [Level; 3] = [Level::Scalar, Level::Sse2, Level::Avx2];

@@ -1,4 +1,4 @@
-//! `cargo xtask level`: how loud the factory's presets are, and the gains that would bring them to one loudness.
+//! `cargo xtask level`: measures the loudness of the factory's presets, and proposes gains that make it equal.
 
 use crate::shell::root;
 use sprung::analysis::measures::preset::{chord_peaks, loudness, wanted_loudness};
@@ -7,7 +7,7 @@ use sprung::preset::Preset;
 use sprung::text::slug;
 use std::fs;
 
-/// Most that the limiter is to lower a loud chord, in dB: half a decibel less than the bank's test allows.
+/// The most by which the limiter should lower a loud chord, in dB: half a decibel less than the bank's test allows.
 const MOST_LIMITED: f64 = 5.5;
 
 /// Smaller changes are not proposed, in dB.

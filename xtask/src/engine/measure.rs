@@ -1,4 +1,4 @@
-//! `cargo xtask measure`: the page that says how every factory preset measures.
+//! `cargo xtask measure`: measures every factory preset, and writes the page with the results.
 
 use crate::shell::root;
 use sprung::analysis::measures::preset::{Measure, SYNTHESIS, measure};

@@ -7,10 +7,9 @@ const EVENT_LOOP: &str = "src/platform/x11/event_loop.rs";
 const WINDOW_THREAD: &str = "src/platform/x11/window_thread.rs";
 
 pub(super) const EDITS: &[Edit] = &[
-    // Closing first asks the window's thread to end and then asks it to show the window; it waits for the thread only
-    // if the thread has answered. If the thread has already ended, it is not waited for: it then closes OpenGL while
-    // the next window opens, or while the host unloads the plugin. A panic of that thread must not be passed on either,
-    // because in a CLAP call it ends the host.
+    // Closing asks the event loop to stop and then sends it `Show`; it waits for the thread only if the loop answers. If the loop
+    // has already stopped, the thread is not waited for, and it closes OpenGL while the next window opens, or while the host
+    // unloads the plugin. A panic of that thread must not be passed on either, because in a CLAP call it ends the host.
     edit(
         WINDOW_THREAD,
         "        if let Err(e) = self.run_until_closed() {
@@ -24,7 +23,8 @@ pub(super) const EDITS: &[Edit] = &[
         }
 ",
     ),
-    // An event loop forgets requests made before it starts. When a window is closed so early, also wait for its thread.
+    // An event loop loses requests made before it starts, so it also looks for a stop request when it is idle. Otherwise, closing
+    // a window so early would wait for its thread for ever.
     edit(
         EVENT_LOOP,
         "    fn handle_idle(&mut self) {

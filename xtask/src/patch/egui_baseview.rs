@@ -1,11 +1,11 @@
-//! Edits of what carries the window's events to egui: files that are dropped on the window arrive.
+//! Edits of the library between the window and egui: it passes on files that are dropped on the window.
 
 use super::edit::{Edit, edit};
 
 const WINDOW: &str = "src/window.rs";
 
 pub(super) const EDITS: &[Edit] = &[
-    // The window's library tells of files that are dragged and dropped. They were ignored here.
+    // The window's library reports files that are dragged and dropped. This library ignored them.
     edit(
         WINDOW,
         "                    egui_input.events.push(egui::Event::PointerGone);
@@ -22,7 +22,7 @@ pub(super) const EDITS: &[Edit] = &[
                 _ => do_repaint = false,
 ",
     ),
-    // Whoever drags files is told that they can be dropped.
+    // The source of a drag is told that the window accepts files.
     edit(
         WINDOW,
         "        match &event {

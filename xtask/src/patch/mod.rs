@@ -50,8 +50,8 @@ const PACKAGES: [Package; 3] = [
     },
 ];
 
-/// The folder in which plugin/Cargo.toml expects the packages. If it is missing, its name in cargo's error message
-/// tells what to run.
+/// The folder in which plugin/Cargo.toml expects the packages. If it is missing, its name in cargo's error message says which
+/// command to run.
 const PLACE: &str = "target/run-cargo-xtask-patch";
 
 /// A file next to the patched source that contains the digest of everything it was made from.

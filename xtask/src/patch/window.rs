@@ -107,7 +107,7 @@ pub(super) const EDITS: &[Edit] = &[
                         .host_main_thread_callback(&editor_window.window)
 "#,
     ),
-    // The same for the window.
+    // The same in the view's calls.
     edit(
         VIEW,
         "            && let Some(editor_window) = inner.editor_window.borrow().as_ref()

@@ -33,7 +33,7 @@ pub(crate) struct Audio {
     outputs: Vec<Vec<f32>>,
     input_ports: AudioPorts,
     output_ports: AudioPorts,
-    /// What comes in on all channels from the first frame on, then silence. Empty: the input stays as it is.
+    /// Samples for all input channels from the first frame on, followed by silence. If empty, the input buffers stay as they are.
     incoming: Vec<f32>,
     /// Whether the input is passed in the memory of the output.
     in_place: bool,
@@ -137,13 +137,13 @@ impl Audio {
         }
     }
 
-    /// From now on, the input is noise in the memory of the output.
+    /// From now on, the input has the memory of the output, which is filled with 0.9 before each block.
     pub(crate) fn work_in_place(&mut self) {
         assert_eq!(self.inputs.len(), self.outputs.len(), "in place, there are as many inputs as outputs");
         self.in_place = true;
     }
 
-    /// Lets sound come in on all channels of the input.
+    /// Sets the samples for all channels of the input.
     pub(crate) fn feed(&mut self, incoming: Vec<f32>) {
         assert!(!self.inputs.is_empty(), "the layout has an input");
         self.incoming = incoming;

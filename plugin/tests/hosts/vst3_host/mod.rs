@@ -1,4 +1,4 @@
-//! A VST3 host of our own that calls the plugin's C interfaces directly, for what other hosts cannot be made to do.
+//! A VST3 host of our own that calls the plugin's C interfaces directly, for calls that other hosts do not make on demand.
 
 #![allow(unsafe_code, non_snake_case, reason = "the format is a C interface, and its names are the format's")]
 

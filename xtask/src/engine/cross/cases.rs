@@ -8,11 +8,11 @@ use std::path::Path;
 /// The accepted digests by the names of their cases.
 pub(crate) struct Accepted(BTreeMap<String, Digest>);
 
-/// Which cases a program was asked for.
+/// The cases that a program was to render.
 pub(crate) enum Asked<'a> {
-    /// Those whose names pass.
+    /// The cases whose names satisfy this condition.
     Named(&'a dyn Fn(&str) -> bool),
-    /// Some of them: those that it has printed.
+    /// Only the cases that the program has printed.
     Printed,
 }
 
@@ -42,8 +42,8 @@ impl Accepted {
         Ok(Self(all))
     }
 
-    /// Compares lines of the form `name frames sha256 chunk,chunk,…`. The program may end a song after some chunks. A case
-    /// that was asked for and has no line differs.
+    /// Compares lines of the form `name frames sha256 chunk,chunk,…`. The program may end a song after some chunks. A requested
+    /// case without a line counts as differing.
     pub(crate) fn compare(&self, lines: &[String], asked: Asked) -> Result<Outcome, String> {
         let mut found = BTreeMap::new();
         for line in lines.iter().filter(|line| !line.starts_with("level ")) {

@@ -20,18 +20,18 @@ pub(crate) struct Options<'a> {
     pub(crate) rustc: Option<&'a Path>,
     /// Seconds of each song; 0 leaves the songs out.
     pub(crate) song_seconds: usize,
-    /// Only the first of each so many cases; 1 for all.
+    /// Only one case of this many; 1 for all.
     pub(crate) every: usize,
     /// Only rows whose name contains this.
     pub(crate) only: Option<&'a str>,
 }
 
-/// A row of the table: a CPU, and what its instructions are called there.
+/// A row of the table: a CPU, and the name of its instructions there.
 struct Row {
     cpu: &'static str,
     level: String,
     target: Target,
-    /// The value of `SPRUNG_SIMD`; WebAssembly has what it was compiled for.
+    /// The value of `SPRUNG_SIMD`; for WebAssembly, the level for which the program was compiled.
     forced: Level,
 }
 
@@ -74,8 +74,8 @@ impl Row {
         }
         let program = self.target.build(options.rustc)?;
         let start = Instant::now();
-        // A process for each core, since WebAssembly has no threads: of n, process k plays the cases k, k + n, k + 2n and so on,
-        // of those that are asked for.
+        // One process for each core, since WebAssembly has no threads. Of n processes, process k plays the cases k, k + n, k + 2n
+        // and so on of those that are requested.
         let processes = std::thread::available_parallelism().map_or(1, usize::from);
         let mut running = Vec::new();
         for first in 0..processes {
@@ -110,7 +110,8 @@ fn program_of(command: &Command) -> String {
     command.get_program().to_string_lossy().into_owned()
 }
 
-/// Prints a table with a row for each CPU, and what is missing for the others. Differing bits and failed runs are an error.
+/// Prints a table with a row for each CPU, and a line for each CPU that could not run. Differing bits and failed runs are an
+/// error.
 pub(crate) fn run(options: &Options) -> Result<(), String> {
     let (mut ran, mut missing, mut failures) = (0, Vec::new(), Vec::new());
     // Each row appears when its CPU is done: QEMU takes long.

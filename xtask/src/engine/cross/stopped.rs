@@ -1,10 +1,10 @@
 //! Why a row of the table has no result.
 
-/// What kept the program from being built or from ending well.
+/// Why the program was not built or did not succeed.
 #[derive(Debug, PartialEq)]
 pub(super) enum Stopped {
-    /// This machine has not the CPU or a tool for it: the row is left out.
+    /// This machine lacks the CPU or a tool for it: the row is left out.
     Missing(String),
-    /// It ran and failed, or does not build: the chore fails.
+    /// The program failed or does not build: the chore fails.
     Failed(String),
 }

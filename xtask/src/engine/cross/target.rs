@@ -1,4 +1,4 @@
-//! What the program is built for, with what it is run, and what has to be installed for both.
+//! The targets of the program: how it is built and run for each, and what must be installed for that.
 
 use super::stopped::Stopped::{self, Failed, Missing};
 use crate::shell::{cargo, root, run_to_end, succeeds};

@@ -1,6 +1,6 @@
 //! "Groove": eighteen bars in E dorian for a drum kit, hands, a bass and keys.
 //!
-//! Hands begin, the kit takes over, a quiet middle leaves room, and everybody ends it.
+//! Hand drums begin, the kit follows, the middle is quiet, and all parts play the end.
 
 use super::drum;
 use super::score::{Part, file};
@@ -119,7 +119,7 @@ fn turn(bars: Range<u32>) -> impl Iterator<Item = (f64, [&'static str; 2])> {
     bars.map(|bar| (f64::from(bar) * 4.0, TURN[bar as usize % 4]))
 }
 
-/// The line of the turn, a sung one in the middle that slides into its notes, and the last E.
+/// The turn's line, a slow line in the middle with bends into its notes, and the last E.
 fn bass() -> Result<Part, String> {
     let mut part = Part::new("Bass", 0, "Fingered Bass", 127, 64)?.send(10);
     for (at, [line, _]) in turn(2..MIDDLE).chain(turn(ALL..LAST)) {
@@ -137,7 +137,7 @@ fn bass() -> Result<Part, String> {
     Ok(part)
 }
 
-/// The riff, from nothing to the front and back behind the kit.
+/// The riff, which grows until the kit comes in, and is loudest at the end.
 fn marimba() -> Result<Part, String> {
     let mut part = Part::new("Marimba", 1, "Marimba", 124, 14)?.send(45).loosen(0.008, 7.0);
     for bar in (0..MIDDLE).chain(ALL..LAST) {
@@ -150,7 +150,7 @@ fn marimba() -> Result<Part, String> {
     Ok(part)
 }
 
-/// Chords off the beat, held in the middle.
+/// Chords, most of them off the beat, in the kit's section and at the end.
 fn electric_piano() -> Result<Part, String> {
     let mut part = Part::new("Electric Piano", 2, "Electric Piano 1", 123, 108)?.send(48).loosen(0.01, 8.0);
     for (at, [_, chord]) in turn(KIT..MIDDLE).chain(turn(ALL..LAST)) {
@@ -163,7 +163,7 @@ fn electric_piano() -> Result<Part, String> {
     Ok(part)
 }
 
-/// The chords of the middle, with the pedal, each begun again softly on its off-beat.
+/// The chords of the middle, with the pedal, each struck again softly after two and a half beats.
 fn vibraphone() -> Result<Part, String> {
     let mut part = Part::new("Vibraphone", 3, "Vibraphone", 120, 114)?.send(85).loosen(0.012, 8.0);
     for (bar, [_, chord]) in (MIDDLE..).zip(SLOW) {

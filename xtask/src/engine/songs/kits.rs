@@ -1,4 +1,4 @@
-//! "Kits": one rhythm, handed through the seven kits of channel 10 over the pulse of a marimba.
+//! "Kits": one rhythm, played in turn by the seven kits of channel 10 over the pulse of a marimba.
 
 use super::drum::{self, metal, orchestra};
 use super::score::{Part, file};
@@ -7,28 +7,28 @@ use sprung::engine::midi::controller;
 /// Beats that each kit has: three bars.
 const TURN: f64 = 12.0;
 
-/// A kit's turn: its number in Roland's GS, what it plays the rhythm's roles on, and how loud.
+/// A kit's turn: its number in Roland's GS, the keys that play the rhythm's roles, and its loudness.
 struct Player {
     number: u8,
     /// The deep voice, the bright voice on the back beat, and its ghost notes.
     low: u8,
     high: u8,
     ghost: u8,
-    /// The steady sixteenths, and what stands open at the end of the second bar.
+    /// The steady sixteenths, and the open sound at the end of the second bar.
     pulse: u8,
     open: u8,
     /// The fill, from high to low.
     fill: [u8; 4],
     /// The first stroke, if there is one.
     crash: Option<u8>,
-    /// Channel 11 while it plays.
+    /// Controller 11 (expression) while it plays.
     loudness: u8,
-    /// The chord that the marimba has meanwhile, and its bass.
+    /// The marimba's chord during this turn, and its bass note.
     chord: [u8; 5],
     bass: u8,
 }
 
-/// A player on the keys that General MIDI gives a kit.
+/// A player with the keys of General MIDI's drum map.
 const COMMON: Player = Player {
     number: 1,
     low: drum::KICK,
@@ -94,7 +94,7 @@ const PULSE: [&str; 3] = ["7354 7353 7354 7353", "7354 7353 7354 73..", "7354 73
 const OPEN: [&str; 3] = ["", ".... .... .... ..6.", ""];
 const FILL: [&str; 4] = [".... .... 8.67 ....", ".... .... ...7 8...", ".... .... .... .68.", ".... .... .... ..79"];
 
-/// Beats by which a kit is there before its first stroke.
+/// Beats by which a kit is selected before its first stroke.
 const EARLY: f64 = 0.02;
 
 /// First beat of the last bars, in which the orchestra ends.

@@ -13,7 +13,7 @@ const TICKS: u16 = 480;
 /// The order in which the eighths of a bar turn through a chord of five notes, in groups of three, three and two.
 pub(super) const BROKEN_CHORD: [usize; 8] = [0, 2, 4, 1, 3, 4, 2, 3];
 
-/// One player, with a track and a channel of its own.
+/// The events of one instrument, on a track and a channel of its own.
 pub(super) struct Part {
     name: &'static str,
     channel: u8,

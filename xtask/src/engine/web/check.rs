@@ -1,4 +1,4 @@
-//! Plays the page in headless Chromium: its samples are those of the renderer; keys, mouse and masses sound; how fast it is.
+//! Tests the page in headless Chromium: samples as of the renderer, notes by keys, mouse, masses and MIDI, and speed.
 
 use super::midi;
 use super::page::{Page, installed, until};
@@ -95,7 +95,7 @@ pub(super) fn run(address: &str, check: bool, picture: Option<&Path>) -> Result<
     if page.errors.is_empty() { Ok(()) } else { Err(page.errors.join("\n")) }
 }
 
-/// An expression with its constants.
+/// A script with the values of its constants in place of their names.
 fn with_constants(script: &str) -> String {
     let constants = [("SECONDS", f64::from(SECONDS)), ("RATE", f64::from(RATE)), ("VOICES", VOICES)];
     constants.iter().fold(script.to_owned(), |script, (name, value)| script.replace(name, &value.to_string()))
@@ -200,7 +200,7 @@ fn is_measured(found: &Value) -> bool {
     found["voices"].as_f64() == Some(VOICES) && ["times", "started", "behind"].into_iter().all(is_finite)
 }
 
-/// Plays a chord and takes the picture of its ringing.
+/// Plays a chord and takes a picture of the page while it rings.
 fn take_picture(page: &mut Page, path: &Path) -> Result<(), String> {
     page.call(
         "Emulation.setDeviceMetricsOverride",

@@ -1,4 +1,4 @@
-//! Plays the page by MIDI ports that stand in for the browser's.
+//! Plays the page by simulated MIDI ports in place of the browser's.
 
 use super::page::{Page, until};
 
@@ -29,7 +29,7 @@ pub(super) fn plays(
     page.value("midi.send('first', 0x90, 64, 80)");
     heard(page, "a MIDI keyboard")?;
     page.value("midi.plug()");
-    // A clock is no message for the synth.
+    // A clock message is not sent to the synth.
     page.value("(midi.send('second', 0xf8), midi.send('second', 0x91, 67, 80))");
     heard(page, "a MIDI port that is plugged in later")?;
     page.value("(midi.send('first', 0x80, 64, 0), midi.send('second', 0x91, 67, 0))");

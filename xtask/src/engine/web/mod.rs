@@ -68,7 +68,7 @@ fn megabytes(bytes: u64) -> f64 {
     bytes as f64 / 1e6
 }
 
-/// How many bytes a web server sends that compresses each file; none without gzip.
+/// Number of bytes that a web server sends if it compresses each file; `None` without gzip.
 fn compressed(paths: &[PathBuf]) -> Option<u64> {
     let sent = |path: &PathBuf| {
         let output = Command::new("gzip").args(["-9", "--stdout"]).arg(path).output().ok()?;

@@ -1,4 +1,4 @@
-//! Serves the files of a folder to this machine: browsers load no audio worklet from a file.
+//! Serves the files of a folder to this machine only: browsers load no audio worklet from a file.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::net::{TcpListener, TcpStream};
@@ -18,7 +18,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Answers requests one after another, for ever.
 pub(super) fn run(listener: &TcpListener, folder: &Path) {
     for stream in listener.incoming().flatten() {
-        // A browser that goes away is no error.
+        // A browser that closes the connection is not an error.
         let _ = answer(stream, folder);
     }
 }
@@ -46,7 +46,7 @@ fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
     stream.write_all(&body)
 }
 
-/// The name of the file that a request line asks for; none if it is no plain name, such as a path out of the folder.
+/// The name of the file that a request line names; `None` if it is not a plain name, such as a path out of the folder.
 fn name(request: &str) -> Option<&str> {
     let path = request.strip_prefix("GET /")?.split([' ', '?']).next()?;
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "._-".contains(letter);

@@ -69,7 +69,7 @@ fn bass(part: &mut Part) {
     }
 }
 
-/// The melody, which swells and falls with its phrases. Its left hand pulls some notes up from below; vibrato on the longest.
+/// The melody, which swells and falls with its phrases. Some notes are bent up from below; the longest have vibrato.
 fn koto(part: &mut Part) -> Result<(), String> {
     part.bend_to(DANCE, 0.0);
     for (line, text) in MELODY.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Beats 92–104, in C: what is left in the hall, and the opening's bowls again.
+//! Beats 92–104, in C: the tutti dies away, and the opening's bowls return.
 
 use super::form::{ECHO, END};
 use super::opening::{Pluck, pluck};
@@ -6,7 +6,7 @@ use super::orchestra::Orchestra;
 use crate::engine::songs::drum::orchestra as drum;
 use sprung::engine::midi::controller;
 
-/// The sitar's last words fall to C.
+/// The sitar's last phrases.
 const SITAR: [Pluck; 4] = [
     (2.0, 1.9, 64, 86, &[(0.4, 0.0), (0.7, 3.0), (1.2, 3.0), (1.6, 0.0)]), // E, G, E
     (4.0, 0.6, 62, 72, &[]),

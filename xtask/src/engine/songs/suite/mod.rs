@@ -1,4 +1,4 @@
-//! "Suite": what bends, rings and swells. A slow opening in C, a dance in A minor, a tutti in C, and its echo.
+//! "Suite": a slow opening in C, a dance in A minor, a tutti in C and its echo, with many bends, long tails and swells.
 
 mod dance;
 mod echo;

@@ -79,7 +79,7 @@ pub(super) fn pluck(part: &mut Part, start: f64, plucks: &[Pluck]) {
     }
 }
 
-/// A fifth far away, that comes closer, then a chord on the fifth degree of A minor.
+/// A quiet fifth that grows louder, then a chord on the fifth degree of A minor.
 fn swell(strings: &mut Part) {
     strings.ramp(controller::EXPRESSION, (6.0, 24), (13.0, 66));
     strings.ramp(controller::EXPRESSION, (13.0, 66), (DANCE, 108));
@@ -87,7 +87,7 @@ fn swell(strings: &mut Part) {
     strings.chord(13.0, 2.9, &[52, 59, 62, 67], 80);
 }
 
-/// The harp's glissando and the drum whose head is tightened while it is rolled.
+/// The harp's glissando, and a roll of the timpani whose pitch rises.
 fn rise(harp: &mut Part, timpani: &mut Part) {
     const SCALE: [u8; 7] = [0, 2, 4, 6, 7, 9, 11];
     let keys = (3..7u8).flat_map(|octave| SCALE.map(|step| 12 * octave + step)).filter(|key| (40..=81).contains(key));

@@ -1,4 +1,4 @@
-//! Who plays the suite: where each part sits, how loud it is, and how much of it the hall hears.
+//! The parts of the suite: the sound, volume, pan position and reverb send of each.
 
 use crate::engine::songs::score::Part;
 use sprung::engine::midi::controller;
@@ -53,7 +53,7 @@ impl Orchestra {
         for part in [&mut orchestra.sitar, &mut orchestra.koto] {
             part.bend_range(5);
         }
-        // The brightest strings stand back a little.
+        // The brightest strings are made a little darker.
         for part in [&mut orchestra.sitar, &mut orchestra.koto, &mut orchestra.strings] {
             part.control(0.0, controller::BRIGHTNESS, 44);
         }

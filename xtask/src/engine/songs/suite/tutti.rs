@@ -1,4 +1,4 @@
-//! Beats 64–92, in C: everybody, as loud as they can, and a step aside to A flat.
+//! Beats 64–92, in C with a turn to A flat: all parts play, at full volume.
 
 use super::form::{Chord, ECHO, TUTTI, bars};
 use super::orchestra::Orchestra;
@@ -31,7 +31,7 @@ const BELLS: [&[(f64, u8)]; 7] = [
     &[(0.0, 76), (0.0, 60), (1.0, 72), (2.0, 67), (3.0, 60)],
 ];
 
-/// The kettledrums' notes of the bars.
+/// The timpani's note in each bar.
 const TIMPANI: [u8; 7] = [48, 47, 45, 41, 44, 46, 48];
 
 pub(super) fn play(orchestra: &mut Orchestra) -> Result<(), String> {
@@ -112,7 +112,7 @@ fn vibraphone(part: &mut Part) {
     }
 }
 
-/// Two strokes a bar, a roll into each of the last three, and the last bar's roll that fades.
+/// Three strokes a bar, rolls into the fifth and the last bar, and the last bar's roll that fades.
 fn timpani(part: &mut Part) {
     part.bend_to(TUTTI, 0.0);
     for ((at, _), key) in bars(TUTTI, &CHORDS).zip(TIMPANI) {
