@@ -94,7 +94,7 @@ fn fill(
         // The main lobe of a Hann window has 3/2 of a sine's power, of which a triangular band has 2/3 on average.
         let amplitude = sqrt(pow(10.0, 0.1 * at_onset) * power / all);
         let pan = 0.4 * f64::from(uniform(key(seed, band as u64), n as u64));
-        Partial { frequency: *frequency, t60, amplitude, pan, struck: false }
+        Partial { frequency: *frequency, t60, amplitude, phase: 0.0, pan, struck: false }
     };
     let partials: Vec<Partial> = places.iter().enumerate().map(partial).collect();
     Some((pow(10.0, 0.1 * at_onset) * t60, partials))

@@ -147,7 +147,8 @@ mod tests {
     use super::*;
 
     fn draft(amplitudes: [f64; 2]) -> Draft {
-        let partial = |(frequency, t60, amplitude)| Partial { frequency, t60, amplitude, pan: 0.0, struck: true };
+        let partial =
+            |(frequency, t60, amplitude)| Partial { frequency, t60, amplitude, phase: 0.0, pan: 0.0, struck: true };
         let [first, second] = amplitudes;
         Draft {
             note: 440.0,

@@ -27,6 +27,8 @@ pub(super) struct Partial {
     pub(super) t60: f64,
     /// In the mean of the channels, at the onset; negative for an inverted phase.
     pub(super) amplitude: f64,
+    /// Radians by which a struck mode starts ahead of a sine, −π/2 to π/2.
+    pub(super) phase: f64,
     /// −1 to 1.
     pub(super) pan: f64,
     /// Whether the strike moves it, and not the noise.
@@ -212,7 +214,10 @@ impl Draft {
             mode.clamped()
         };
         let modes: Vec<Mode> = self.partials.iter().zip(&demands).map(mode).collect();
-        let mut patch = Patch { modes: ModeTable::new(&modes), ..Patch::default() };
+        let phases: Vec<f32> = self.partials.iter().map(|partial| digits(partial.phase, 3) as f32).collect();
+        let table = ModeTable::new(&modes);
+        let table = if phases.iter().any(|phase| *phase != 0.0) { table.with_phases(&phases) } else { table };
+        let mut patch = Patch { modes: table, ..Patch::default() };
         let mut set = |param: Param, value: f64| {
             let info = param.info();
             patch.set(param, info.clamp(digits(value, 5) as f32));

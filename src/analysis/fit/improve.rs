@@ -11,8 +11,6 @@ use crate::error::{Error, Result};
 
 /// Share of the work until the first drafts are made.
 const ANALYSED: f64 = 0.45;
-/// Drafts with modes that are improved.
-const MOST_DRAFTS: usize = 2;
 /// Residual of the modes in dB above which noise alone may explain the sound better.
 const NOISE_DB: f64 = -10.0;
 /// Share of a sound after which what noise has moved rings by itself.
@@ -66,13 +64,15 @@ fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
     let still = residual_db(&found[0]);
     if still > EXPLAINED_DB {
         let sweeps = sweep::find(&take.mean, &mut || tell(of_search[0]))?;
+        let mut swept = Vec::new();
         for (sweep, part) in sweeps.into_iter().zip([first, second]) {
-            let swept = analysed(Source { swept: sweep, ..all }, part, tell)?;
-            found.extend(Some(swept).filter(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB));
+            swept.push(analysed(Source { swept: sweep, ..all }, part, tell)?);
         }
+        swept.retain(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB);
+        // Beside the draft without a sweep, not in its place: a wrong sweep can leave a smaller residual and sound worse.
+        found.extend(swept.into_iter().min_by(|a, b| residual_db(a).total_cmp(&residual_db(b))));
+        found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     }
-    found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
-    found.truncate(MOST_DRAFTS);
     let strike = found[0].1.clone();
     if residual_db(&found[0]) > NOISE_DB {
         let late = Source { late: LATE * take.seconds(), struck: false, ..all };

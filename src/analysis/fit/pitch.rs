@@ -46,6 +46,7 @@ mod tests {
             frequency: *frequency,
             t60: *t60,
             amplitude: *amplitude,
+            phase: 0.0,
             pan: 0.0,
             struck: true,
         };

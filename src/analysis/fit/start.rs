@@ -6,7 +6,7 @@ use super::{pitch, sweep};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::{self, Mode, Strike};
 use crate::error::{Error, Result};
-use libm::{cos, fabs, pow};
+use libm::{asin, cos, fabs, pow, sin};
 use std::f64::consts::PI;
 
 /// Highest frequency in Hz.
@@ -25,6 +25,9 @@ const LONGEST: f64 = 5.0;
 const MOST_FALLEN_DB: f64 = 30.0;
 /// Seconds by which a strike may be felt after the onset, for the phases of modes.
 const LATEST: f64 = 0.006;
+
+/// Standard deviation in radians up to which a phase is known.
+const SURE_PHASE: f64 = 0.5;
 
 /// What a draft is made of.
 #[derive(Clone, Copy, Debug)]
@@ -119,7 +122,10 @@ fn delay(modes: &[&Mode], amplitudes: &[f64]) -> f64 {
 }
 
 fn partial(mode: &Mode, amplitude: f64, delay: f64) -> Partial {
-    let sign = if cos(mode.phase + 2.0 * PI * mode.frequency * delay) < 0.0 { -1.0 } else { 1.0 };
+    let turned = mode.phase + 2.0 * PI * mode.frequency * delay;
+    let sign = if cos(turned) < 0.0 { -1.0 } else { 1.0 };
+    // What is uncertain starts as a sine.
+    let phase = if mode.uncertainty.phase < SURE_PHASE { asin(sin(turned) * sign) } else { 0.0 };
     let pan = match mode.channels[..] {
         [(left, _), (right, _)] => {
             let [left, right] = [left, right].map(|level| pow(10.0, level / 10.0));
@@ -128,5 +134,12 @@ fn partial(mode: &Mode, amplitude: f64, delay: f64) -> Partial {
         _ => 0.0,
     };
     let pan = if fabs(pan) < 0.02 || pan.is_nan() { 0.0 } else { pan };
-    Partial { frequency: mode.frequency, t60: mode.t60.min(T60.1), amplitude: sign * amplitude, pan, struck: true }
+    Partial {
+        frequency: mode.frequency,
+        t60: mode.t60.min(T60.1),
+        amplitude: sign * amplitude,
+        phase,
+        pan,
+        struck: true,
+    }
 }
