@@ -103,7 +103,7 @@ pub fn is_file_name(name: &Path) -> bool {
     name.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) || name.components().count() > 1
 }
 
-/// The preset with this name for a kit in `folder`: a file there, or else a factory preset.
+/// The preset with this name for a kit in `folder`: a file there if the name is a file name, otherwise a factory preset.
 fn preset_of_kit(
     name: &str,
     folder: &Path,
