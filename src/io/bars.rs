@@ -3,7 +3,7 @@
 use super::tempo::TempoMap;
 use midly::Timing;
 
-/// Maximum number of time signatures. Beyond it, places in messages are wrong, but nothing else is.
+/// Maximum number of time signatures. The others are ignored, which only makes places in messages wrong.
 const MOST_SIGNATURES: usize = 4096;
 
 /// The bars of a song, as far as it has been read. Used for messages only.
