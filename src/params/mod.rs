@@ -180,7 +180,7 @@ impl ParamInfo {
         if matches!(self.unit, Unit::Count | Unit::Choice) { libm::roundf(value) } else { value }
     }
 
-    /// The value itself if the parameter can take it, else a message that says the range.
+    /// The value itself if the parameter can take it, otherwise a message with the range.
     pub fn check(&self, value: f32) -> Result<f32, String> {
         if value == self.clamp(value) {
             return Ok(value);

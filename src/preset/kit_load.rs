@@ -31,7 +31,7 @@ impl Playable {
         complaints.into_first(&path.display().to_string()).map(|()| playable)
     }
 
-    /// As [`Playable::read`], but reads as much as possible. What cannot be read gets its default value, and is
+    /// As [`Playable::read`], but reads as much as possible. Unreadable parts get their default values; each is
     /// described in one line of the returned list.
     ///
     /// # Errors

@@ -39,7 +39,7 @@ pub struct Programs {
     drums: Vec<Option<Program>>,
 }
 
-/// What a program plays.
+/// The sound of a program.
 #[derive(Clone, Debug, PartialEq)]
 struct Program {
     /// Name of a preset or kit; never empty.
@@ -183,7 +183,7 @@ fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result
     Ok(programs)
 }
 
-/// Reads what a program plays: a name, or a name and a gain. None for an empty name, or if it cannot be read.
+/// Reads the sound of a program: a name, or a name and a gain. None for an empty name, or if it cannot be read.
 fn read_program(place: &str, value: &Value, complaints: &mut Complaints) -> Option<Program> {
     let name = |place: &str, value: &Value| match value {
         Value::String(name) => check_label(place, name.clone()),

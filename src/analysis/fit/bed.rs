@@ -1,4 +1,4 @@
-//! Fills up what the modes do not explain with a bed: modes that noise excites.
+//! Fills the residual of the modes with a bed: modes that noise excites.
 //!
 //! In each mel band, a decay is fitted to the level by which the recording exceeds the draft, and a few modes get that
 //! level and that decay. Their frequencies are where the band's spectrum is highest, since the noise may excite a body

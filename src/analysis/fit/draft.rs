@@ -132,9 +132,9 @@ pub(super) struct Draft {
     pub(super) is_held: bool,
 }
 
-/// Share of a strike's force that reaches a mode of a frequency in Hz, if the contact lasts so many seconds: the
-/// spectrum of the engine's pulse `u² (1 − u)²`, in whole frames at [`RATE`], relative to its middle. The share is
-/// negative where the pulse acts more against the wave than with it.
+/// Share of a strike's force that reaches a mode of a frequency in Hz, by a contact of this many seconds: the spectrum
+/// of the engine's pulse `u² (1 − u)²`, in whole frames at [`RATE`], relative to its middle. The share is negative
+/// where the pulse acts more against the wave than with it.
 pub(super) fn contact_share(frequency: f64, seconds: f64) -> f64 {
     let frames = ((seconds * f64::from(RATE) + 0.5) as usize).max(1);
     let turn = 2.0 * PI * frequency * frames as f64 / f64::from(RATE);

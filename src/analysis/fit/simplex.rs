@@ -5,7 +5,7 @@ use crate::error::Result;
 /// Side of the first simplex.
 const SIDE: f64 = 0.2;
 
-/// The place where a function is least, searched from the origin in so many steps, and its value there.
+/// The place where a function is least, searched from the origin in `steps` steps, and its value there.
 ///
 /// # Errors
 /// Those of the function.

@@ -81,8 +81,8 @@ pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
     work.map_or(0, |index| (index + 2) * block)
 }
 
-/// Errors of the prediction with the least sum of squares, weighted by `weight` of each sample, for all samples that
-/// enough others follow.
+/// Errors of the prediction with the least sum of squares, weighted by `weight` of each sample. There is an error for
+/// each sample that is followed by enough others.
 fn errors(samples: &[f64], weight: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
     let count = samples.len() - ORDER;
     // Lag 0 is the sample that is predicted.
@@ -106,7 +106,7 @@ fn errors(samples: &[f64], weight: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
 
-    /// Two modes that noise drives for so many samples.
+    /// Two modes that noise drives for `len` samples.
     fn driven(len: usize) -> Vec<f64> {
         let mut state = 1_u32;
         let (mut sound, mut before) = (vec![0.0; 12_000], [[0.0; 2]; 2]);

@@ -94,7 +94,7 @@ impl Band {
     }
 
     /// The poles within the band, as many as the minimum description length gives (MDL; Wax & Kailath 1985), and
-    /// whether this is more than so many samples can resolve.
+    /// whether this is more than the band's samples can resolve.
     pub(super) fn poles(&self, samples: &[f64]) -> (Vec<Pole>, bool) {
         let band = self.decimate(samples);
         let rows = ((ROWS * self.count as f64) as usize).min(band.len() / 2);
@@ -148,7 +148,7 @@ fn covariance(band: &[Complex<f64>], rows: usize, columns: usize) -> DMatrix<Com
     covariance
 }
 
-/// How many of the falling eigenvalues of a covariance over so many snapshots belong to signals and not to noise.
+/// How many of the falling eigenvalues of a covariance over `snapshots` snapshots belong to signals and not to noise.
 fn description_length(eigenvalues: &[f64], snapshots: usize) -> usize {
     let (count, floor) = (eigenvalues.len(), 1e-15 * eigenvalues[0].max(f64::MIN_POSITIVE));
     let cost = |order: usize| {

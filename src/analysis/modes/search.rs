@@ -1,7 +1,7 @@
 //! Searches for modes, round by round.
 //!
-//! What stands out of the residual is resolved into poles, which are fitted together with all others and kept if they
-//! explain more than noise would.
+//! Peaks that stand out of the residual are resolved into poles. These are fitted together with all others, and kept if
+//! they explain more than noise would.
 
 use super::detect::{Planner, Spectra};
 use super::fit::{Certainty, Fit};

@@ -54,7 +54,7 @@ fn samples_of_every_kind_are_exact() {
 #[test]
 fn extensible_files_long_files_and_strange_chunks_are_read() {
     let mut extensible = format(0xfffe, 1, 16);
-    // Size of what follows, valid bits, speakers, and the GUID of PCM.
+    // Size of the extension, valid bits, speakers, and the GUID of PCM.
     extensible.extend([22, 0, 16, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71]);
     let data = [0, 0x40, 0, 0xc0];
     let odd = chunk(b"LIST", &[1, 2, 3]);
