@@ -1,22 +1,23 @@
-//! Whether one sound is another one that was merely shifted or scaled.
+//! Finds whether one sound is a shifted or scaled copy of another.
 
 use super::level::{SILENCE_DB, dbfs};
 use libm::{log10, sqrt};
 use realfft::RealFftPlanner;
 
-/// Frames of the first sound that are looked for in the second, from its first audible one; a power of two.
+/// Length in frames of the stretch of the first sound that is searched for in the second. It starts at the first
+/// audible frame. A power of two.
 const STRETCH: usize = 1 << 18;
-/// Frames by which the second sound may be earlier or later.
+/// Largest shift in frames, earlier or later.
 const MOST_SHIFT: usize = 1 << 18;
 
-/// How the second of two sounds is best made of the first.
+/// The shift and the gain that best turn the first of two sounds into the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alignment {
     /// Frames by which the second is later.
     pub shift: isize,
     /// Factor by which the second is louder; negative if its polarity is inverted.
     pub gain: f64,
-    /// What is left of the second when the first, shifted and scaled, is taken away: in dB relative to the second.
+    /// Level of the residual (the second sound minus the shifted and scaled first) in dB relative to the second.
     pub residual_db: f64,
 }
 
@@ -27,8 +28,8 @@ impl Alignment {
     }
 }
 
-/// Finds the shift of at most some seconds, and the gain, by the largest cross-correlation summed over the channels that
-/// both have. `None` if one of them is silent or not finite.
+/// Finds the shift, of at most some seconds, and the gain by the largest cross-correlation, summed over the channels
+/// that both sounds have. `None` if one of them is silent or not finite.
 pub fn align(first: &[Vec<f32>], second: &[Vec<f32>]) -> Option<Alignment> {
     let loudest = |sound: &[Vec<f32>]| sound.iter().flatten().fold(0.0_f32, |most, sample| most.max(sample.abs()));
     let finite = |sound: &[Vec<f32>]| sound.iter().flatten().all(|sample| sample.is_finite());
@@ -55,8 +56,8 @@ pub fn align(first: &[Vec<f32>], second: &[Vec<f32>]) -> Option<Alignment> {
     Some(Alignment { shift, gain, residual_db: (10.0 * log10(left / power)).max(SILENCE_DB) })
 }
 
-/// The shift at which `second` correlates best with a stretch of `first` that begins at frame `start`. Correlations are
-/// taken relative to the energy that they are made of, so that a loud passage elsewhere does not win.
+/// The shift at which `second` correlates best with a stretch of `first` that begins at frame `start`. Each correlation
+/// is divided by the square root of the energy of its passage, so that louder passages are not preferred.
 fn best_shift(first: &[Vec<f32>], second: &[Vec<f32>], start: usize) -> isize {
     let len = (STRETCH + 2 * MOST_SHIFT).next_power_of_two();
     let mut planner = RealFftPlanner::<f64>::new();
@@ -81,7 +82,7 @@ fn best_shift(first: &[Vec<f32>], second: &[Vec<f32>], start: usize) -> isize {
         (0..len).for_each(|n| energies[n + 1] += searched(n) * searched(n));
     }
     let mut correlation = inverse.make_output_vec();
-    // What must be real by symmetry is so but for rounding.
+    // These bins are real by symmetry, but not exactly so after rounding.
     sums[0].im = 0.0;
     sums[len / 2].im = 0.0;
     inverse.process(&mut sums, &mut correlation).expect("the buffers are the transform's own");
@@ -89,7 +90,7 @@ fn best_shift(first: &[Vec<f32>], second: &[Vec<f32>], start: usize) -> isize {
         energies[n + 1] += energies[n];
     }
     let stretch = first.iter().map(|channel| channel.len().saturating_sub(start)).max().unwrap_or(0).min(STRETCH);
-    // A stretch with hardly any energy correlates with anything.
+    // Passages with almost no energy are skipped, since their relative correlation is large by chance.
     let least = 1e-6 * energies[len];
     let likeness = |n: usize| {
         let energy = energies[n + stretch] - energies[n];

@@ -1,11 +1,11 @@
-//! Two sounds side by side: whether they are the same, and if not, in what they differ.
+//! Compares two sounds: whether they are the same, and if not, how they differ.
 
 use super::alignment::{Alignment, align};
 use super::diff::{Difference, compare};
 use super::spectrum::{BAND_CENTRES, band_levels};
 use libm::{log10, pow};
 
-/// What an alignment may leave, in dB, for one sound to count as the other one merely shifted or scaled.
+/// Largest residual of an alignment, in dB, for which one sound counts as a shifted or scaled copy of the other.
 const SAME_BUT_MOVED_DB: f64 = -60.0;
 
 /// An octave's levels, RMS in dBFS as mean power of the channels.
@@ -17,18 +17,18 @@ pub struct Octave {
     pub expected_db: f64,
     /// Of the actual sound.
     pub actual_db: f64,
-    /// Of the actual sound less the expected one.
+    /// Of the difference, actual minus expected.
     pub difference_db: f64,
 }
 
-/// In what two sounds of one rate differ.
+/// The differences between two sounds of the same sample rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// Where and by how much.
     pub difference: Difference,
-    /// Octave by octave, where both sounds are finite.
+    /// The levels of each octave; empty if a sample of either sound is not finite.
     pub octaves: Vec<Octave>,
-    /// How the actual sound is best made of the expected one.
+    /// The shift and the gain that best turn the expected sound into the actual one.
     pub alignment: Option<Alignment>,
 }
 
@@ -50,7 +50,7 @@ impl Comparison {
         Some(Self { difference, octaves, alignment: align(expected, actual) })
     }
 
-    /// The alignment, if the actual sound is the expected one merely shifted or scaled by it.
+    /// The alignment, if the actual sound is a shifted or scaled copy of the expected one.
     pub fn moved(&self) -> Option<Alignment> {
         self.alignment.filter(|found| found.residual_db < SAME_BUT_MOVED_DB && (found.shift != 0 || found.gain != 1.0))
     }

@@ -1,4 +1,4 @@
-//! Least-squares fit of one damped sinusoid: the frequency and T60 that a recording really has.
+//! Least-squares fit of one damped sinusoid, which gives the frequency and the T60 of a recording.
 //!
 //! The model is `A·rⁿ·sin(nθ + φ)`. It is linear in `A sin φ` and `A cos φ`, which are eliminated at each step
 //! (variable projection, Golub & Pereyra 1973), and nonlinear in `θ` and `ln r`, which Gauss–Newton improves.
@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 pub(super) const LN_60_DB: f64 = 6.907_755_278_982_137;
 /// Samples after which the recurrence for `zⁿ` starts from an exact power again.
 const ANCHOR: usize = 1024;
-/// Samples that a blind start looks at: seven cycles of 20 Hz at 192 kHz.
+/// Samples from which a start is found without a guess: seven cycles of 20 Hz at 192 kHz.
 const START_LENGTH: usize = 65_536;
 
 /// `amplitude · 0.001^(t / t60) · sin(2π · frequency · t + phase)`, with `t` in seconds from the first sample.
@@ -24,16 +24,15 @@ pub struct DampedSine {
     pub amplitude: f64,
     /// Radians at the first sample, −π to π.
     pub phase: f64,
-    /// What the model leaves unexplained, in dB relative to the signal's RMS.
+    /// Level of the residual, in dB relative to the signal's RMS.
     pub residual_db: f64,
 }
 
 /// Fits a damped sinusoid to all of `samples`, from a start within a few per cent of the truth.
 ///
-/// The fit begins with some twenty cycles and doubles the stretch until it covers everything, so that the guess
-/// need not hold its phase over the whole recording. Clean data of at least one cycle resolves frequency to 10⁻⁶
-/// cents and T60 to 10⁻⁸. `None` for fewer than eight samples, silence, samples that are not finite and fits that
-/// do not converge.
+/// The fit begins with some twenty cycles and doubles the stretch until it covers everything, since the phase of the
+/// guess would be wrong after more cycles. Clean data of at least one cycle resolves frequency to 10⁻⁶ cents and T60 to
+/// 10⁻⁸. `None` for fewer than eight samples, silence, samples that are not finite and fits that do not converge.
 pub fn fit<T: Copy + Into<f64>>(
     samples: &[T],
     sample_rate: f64,
@@ -79,8 +78,8 @@ impl Pole {
     }
 }
 
-/// Everything that a Gauss–Newton step needs to know of the data at one pole, gathered in one pass. With `u`, `w`
-/// the real and imaginary part of `zⁿ` and `τ = n / len`: sums of `τᵏ(u², uw, w²)` and of `τᵏ(yu, yw)`.
+/// The sums over the data that a Gauss–Newton step needs at one pole, gathered in one pass. With `u`, `w` the real and
+/// imaginary part of `zⁿ` and `τ = n / len`: sums of `τᵏ(u², uw, w²)` and of `τᵏ(yu, yw)`.
 #[derive(Default)]
 struct Moments {
     basis: [[f64; 3]; 3],
@@ -203,14 +202,14 @@ fn gauss_newton<T: Copy + Into<f64>>(samples: &[T], mut pole: Pole, tolerance: f
         let before = moments.unexplained(amplitudes);
         loop {
             let turned = Pole {
-                // Growth beyond e³⁰ over the stretch is no oscillator of ours and would overflow.
+                // No oscillator here grows by more than e³⁰ over the stretch, and more would overflow.
                 log_radius: (pole.log_radius + step[0] / len).min(30.0 / len),
                 theta: (pole.theta + step[1] / len).clamp(1e-9, PI),
             };
             let small = step[0].abs() < tolerance && step[1].abs() < tolerance;
             let gathered = Moments::gather(samples, turned);
             let fitted = gathered.amplitudes();
-            // Close to the optimum `unexplained` is all rounding and cannot judge a step: take it.
+            // Close to the optimum, `unexplained` consists of rounding errors and cannot judge a small step: accept it.
             match fitted.filter(|fitted| small || gathered.unexplained(*fitted) <= before + 1e-13) {
                 Some(fitted) => (pole, moments, amplitudes) = (turned, gathered, fitted),
                 None if small => return Some(pole),
@@ -248,8 +247,8 @@ fn finish<T: Copy + Into<f64>>(samples: &[T], sample_rate: f64, pole: Pole) -> O
     })
 }
 
-/// A start from nothing: the two-term linear prediction `y[n+k] = 2 rᵏ cos(kθ) y[n] − r²ᵏ y[n−k]` (Prony 1795) by
-/// least squares, for strides `k` of 1, 2, 4, …; the one that explains most of the data wins. A stride of about a
+/// A start without a guess: the two-term linear prediction `y[n+k] = 2 rᵏ cos(kθ) y[n] − r²ᵏ y[n−k]` (Prony 1795) by
+/// least squares, for strides `k` of 1, 2, 4, …; the stride that explains most of the data is used. A stride of about a
 /// quarter cycle is well conditioned at any frequency; longer ones alias and explain nothing.
 fn linear_prediction<T: Copy + Into<f64>>(samples: &[T]) -> Option<Pole> {
     let mut best: Option<(f64, Pole)> = None;

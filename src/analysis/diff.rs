@@ -1,4 +1,4 @@
-//! How two renders differ: where first, and by how much.
+//! Finds where two renders first differ, and by how much.
 
 use super::level::dbfs;
 use libm::sqrt;
@@ -10,7 +10,7 @@ pub struct Difference {
     pub first_frame: usize,
     /// Frame of the largest difference.
     pub worst_frame: usize,
-    /// Largest difference, in dBFS; what lies beyond the shorter render is compared with silence.
+    /// Largest difference, in dBFS; the shorter render is continued with silence.
     pub worst_dbfs: f64,
     /// Root of the mean square of the difference over the longer render and all channels, in dBFS.
     pub rms_dbfs: f64,
@@ -41,7 +41,7 @@ pub fn compare<E: AsRef<[f32]>, A: AsRef<[f32]>>(expected: &[E], actual: &[A]) -
             first_frame.get_or_insert(frame);
             let value = |sample: Option<&f32>| f64::from(sample.copied().unwrap_or(0.0));
             let error = (value(pair.1) - value(pair.0)).abs();
-            // A NaN is worse than anything.
+            // A difference to NaN counts as infinite.
             let error = if error.is_nan() { f64::INFINITY } else { error };
             energy += error * error;
             if error > worst.0 {

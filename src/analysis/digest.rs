@@ -1,4 +1,4 @@
-//! A render in a few lines of text: enough to prove that two are the same bits, and to say what changed if not.
+//! A digest of a render: a few lines of text that show whether two renders have the same bits, and what changed if not.
 
 use super::{
     level,
@@ -33,10 +33,10 @@ pub struct Digest {
     pub chunks: Vec<String>,
 }
 
-/// What changed from one digest to another, the most telling first.
+/// The changes from one digest to another, the most important first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drift {
-    /// First frame of the first chunk that differs, unless only the rate does.
+    /// First frame of the first chunk that differs; none if only the sample rate differs.
     pub first_frame: Option<usize>,
     /// One phrase per change.
     pub changes: Vec<String>,
@@ -119,8 +119,8 @@ impl Digest {
         })
     }
 
-    /// Whether `actual` is the same sound, bit for bit: the hash, length and rate decide. The rest only explains,
-    /// being rounded and, in its last digit, dependent on the machine that measured it.
+    /// Whether `actual` is the same sound, bit for bit: hash, length and rate decide. The other values only describe
+    /// the change, since they are rounded and their last digit depends on the machine that measured them.
     pub fn compare(&self, actual: &Digest) -> std::result::Result<(), Drift> {
         let same_rate = self.sample_rate == actual.sample_rate;
         if self.sha256 == actual.sha256 && self.frames == actual.frames && same_rate {
@@ -146,7 +146,7 @@ impl Digest {
         Err(Drift { first_frame, changes })
     }
 
-    /// Phrases for the levels that differ as written, the largest change first.
+    /// Phrases for the levels that differ after rounding, the largest change first.
     fn level_changes(&self, actual: &Digest) -> Vec<String> {
         let mut changes = Vec::new();
         let mut decibels = |name: String, was: f64, is: f64| {

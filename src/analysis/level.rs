@@ -3,7 +3,7 @@
 use crate::units::db_from_gain;
 use libm::sqrt;
 
-/// What stands for silence where a level in decibels must be a number.
+/// The level of silence, where a level in decibels must be a finite number.
 pub const SILENCE_DB: f64 = -300.0;
 
 /// Largest magnitude; NaN if a sample is NaN.
@@ -17,7 +17,7 @@ pub fn rms(samples: &[f32]) -> f64 {
     sqrt(energy / samples.len().max(1) as f64)
 }
 
-/// The mean of some channels, as long as the shortest.
+/// The mean of some channels. It is as long as the shortest of them.
 pub fn mean_of<C: AsRef<[f32]>>(channels: &[C]) -> Vec<f64> {
     let len = channels.iter().map(|channel| channel.as_ref().len()).min().unwrap_or(0);
     let count = channels.len() as f64;
@@ -34,7 +34,7 @@ pub fn dbfs(amplitude: f64) -> f64 {
     if amplitude.is_nan() { f64::NAN } else { db_from_gain(amplitude).max(SILENCE_DB) }
 }
 
-/// The larger, and NaN once there is one: a NaN that vanished in a peak would hide a broken render.
+/// The larger number, or NaN if one of them is NaN: a peak must not hide the NaN of a broken render.
 fn maximum(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

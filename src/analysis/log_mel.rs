@@ -1,4 +1,4 @@
-//! Spectra as the ear groups them, in 48 mel bands over time, and the distance of two sounds in them.
+//! Measures spectra over time in 48 mel bands, which follow human hearing, and the distance between two sounds.
 
 use super::level::SILENCE_DB;
 use libm::{cos, log10, pow};
@@ -10,11 +10,11 @@ use std::sync::Arc;
 pub const RATE: u32 = 44_100;
 /// Number of bands.
 pub const BANDS: usize = 48;
-/// Samples of a window, and from one window to the next.
+/// Samples per window.
 pub const WINDOW: usize = 2048;
-/// See [`WINDOW`].
+/// Samples from one window to the next.
 pub const HOP: usize = 256;
-/// Range of levels in dB below the loudest band that counts.
+/// Range in dB below the loudest band in which differences count.
 pub const SPAN_DB: f64 = 60.0;
 /// Highest frequency in Hz.
 const HIGHEST: f64 = 20_000.0;
@@ -49,7 +49,7 @@ pub(super) fn hertz(mel: f64) -> f64 {
     700.0 * (pow(10.0, mel / 2595.0) - 1.0)
 }
 
-/// The frequency in Hz of the edge before band `edge`; a band reaches from its edge to the next but one.
+/// The lower edge of band `edge` in Hz. A band ends where the next but one begins.
 fn edge(edge: usize) -> f64 {
     hertz(mel(HIGHEST) * edge as f64 / (BANDS + 1) as f64)
 }
@@ -125,8 +125,9 @@ impl LogMel {
         self.columns.iter().flatten().copied().fold(SILENCE_DB, f64::max)
     }
 
-    /// Mean difference from another sound in dB, over all bands and windows in which one of both is within [`SPAN_DB`] of the
-    /// loudest of both; what is below counts as being there. 0 for two silences.
+    /// Mean difference from another sound in dB, over all bands and windows in which at least one sound is within
+    /// [`SPAN_DB`] of the loudest band of both. Lower levels are raised to the lower end of that range. 0 if both are
+    /// silent.
     pub fn distance(&self, other: &LogMel) -> f64 {
         let floor = self.loudest().max(other.loudest()) - SPAN_DB;
         let silence = [SILENCE_DB; BANDS];
@@ -142,7 +143,7 @@ impl LogMel {
     }
 }
 
-/// The samples from the first one on that is above 1 % of the peak.
+/// The samples from the onset on, which is the first sample above 1 % of the peak.
 pub fn from_onset(samples: &[f32]) -> &[f32] {
     let peak = samples.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
     let onset = samples.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0);

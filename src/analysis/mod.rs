@@ -1,7 +1,7 @@
-//! What sound is measured with: fits, spectra, levels, digests, differences and figures. All arithmetic is in `f64`.
+//! Measures sound, in `f64`: fits, spectra, levels, digests, differences and figures.
 //!
-//! For tests, documentation and people; nothing here is real-time safe, and no sample that the engine makes depends
-//! on it. With the feature `fit` alone there are no digests, figures and measures.
+//! It serves tests, documentation and people. Nothing here is real-time safe, and no sample of the engine depends on
+//! it. With the feature `fit` alone there are no digests, figures and measures.
 
 pub mod alignment;
 pub mod comparison;

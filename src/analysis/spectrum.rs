@@ -20,9 +20,9 @@ pub struct Spectrum {
 /// A local maximum of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peak {
-    /// Hz, between bins by the parabola through three levels.
+    /// Hz, interpolated by the parabola through the levels of three bins.
     pub frequency: f64,
-    /// dB, of that parabola's vertex.
+    /// dB, at the vertex of that parabola.
     pub level: f64,
 }
 
@@ -51,7 +51,7 @@ impl Transform {
         Self { input: fft.make_input_vec(), output: fft.make_output_vec(), fft, window }
     }
 
-    /// Transforms the window's length of samples that begins at `start`, with zeros wherever there are none.
+    /// Transforms a window of samples that begins at `start`. Samples outside the signal count as 0.
     fn run(&mut self, samples: &[f32], start: isize) -> &[Complex<f64>] {
         self.input.fill(0.0);
         for (n, (input, window)) in self.input.iter_mut().zip(&self.window).enumerate() {
@@ -107,13 +107,13 @@ pub fn peaks(spectrum: &Spectrum, floor: f64) -> Vec<Peak> {
     found
 }
 
-/// RMS level in dBFS of each octave of [`BAND_CENTRES`] (from centre/√2 to centre·√2) over all of `samples`; what
-/// lies above Nyquist is [`SILENCE_DB`].
+/// RMS level in dBFS of each octave of [`BAND_CENTRES`] (from centre/√2 to centre·√2) over all of `samples`; octaves
+/// above Nyquist have [`SILENCE_DB`].
 pub fn band_levels(samples: &[f32], sample_rate: f64) -> [f64; 8] {
-    // At most 6 Hz a bin, so that the lowest octave has seven.
+    // At most 6 Hz per bin, so that the lowest octave has at least seven bins.
     let length = ((sample_rate / 6.0) as usize).clamp(64, 1 << 20).next_power_of_two();
-    // Hann windows a quarter of a length apart, the first of them ending a quarter into the samples: the squares of
-    // the four over each sample add up to 3/2, so that no stretch counts for more than another.
+    // Hann windows a quarter of a length apart, the first of which ends a quarter of a length into the samples: the
+    // squares of the four windows over each sample add up to 3/2, so that all samples have the same weight.
     let hann = (0..length).map(|n| 0.5 - 0.5 * cos(2.0 * PI * n as f64 / length as f64)).collect();
     let mut transform = Transform::new(hann, length);
     let mut energies = [0.0; 8];
@@ -129,7 +129,7 @@ pub fn band_levels(samples: &[f32], sample_rate: f64) -> [f64; 8] {
             }
         }
     }
-    // Parseval; each bin but the first and last stands for two of the full transform.
+    // Parseval's theorem; each bin but the first and last stands for two of the full transform.
     let scale = 2.0 / (1.5 * length as f64 * samples.len().max(1) as f64);
     energies.map(|energy| (10.0 * log10(energy * scale)).max(SILENCE_DB))
 }

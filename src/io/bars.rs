@@ -3,7 +3,7 @@
 use super::tempo::TempoMap;
 use midly::Timing;
 
-/// Maximum number of time signatures. Beyond it, places in messages are wrong, but nothing else is.
+/// Maximum number of time signatures. The others are ignored, which only makes places in messages wrong.
 const MOST_SIGNATURES: usize = 4096;
 
 /// The bars of a song, as far as it has been read. Used for messages only.
@@ -64,8 +64,8 @@ mod tests {
         {
             assert_eq!(bars.place(tick), place);
         }
-        // 6/8 from bar 3 on is added after 3/4 from bar 5 on; both come from another track than 5/4 in the middle of a
-        // bar.
+        // The order of the signatures is not that of their ticks, as with several tracks: 3/4 from bar 5, 6/8 from bar
+        // 3, and 5/4 in the middle of a bar.
         bars.change(768 + 2 * 288, 3, 2);
         bars.change(768, 6, 3);
         bars.change(768 + 2 * 288 + 100, 5, 2);

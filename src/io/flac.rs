@@ -9,14 +9,14 @@ use flacenc::source::{Context, Fill, FrameBuf};
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Seek, SeekFrom, Write};
 
-/// Frames of a block.
+/// Frames per block.
 const BLOCK: usize = 4096;
 
-/// Highest sample rate of a FLAC file in Hz, by the encoder.
+/// Highest sample rate in Hz that the encoder accepts.
 pub const HIGHEST_RATE: u32 = 96_000;
 
-/// Encodes the WAV file `wav`, of 16- or 24-bit integers and less than 4 GiB, into the empty file `out`. `name` is used in
-/// errors. Decoded, it has the samples of the WAV. The same WAV gives the same bytes on every machine: predictors are fixed
+/// Encodes the WAV file `wav`, of 16- or 24-bit integers and less than 4 GiB, into the empty file `out`. `name` is used
+/// in errors. The samples decode unchanged. The same WAV gives the same bytes on every machine: predictors are fixed
 /// and chosen by counting bits, so no floating point takes part. Memory use does not grow with the length.
 ///
 /// # Errors
@@ -69,7 +69,7 @@ pub fn encode(wav: &mut File, out: &mut File, name: &str) -> Result<()> {
         stream.stream_info_mut().update_frame_info(&frame);
     }
     let info = stream.stream_info_mut();
-    // The last block may be shorter, which does not count: all blocks before it have this length.
+    // All blocks but the last have this length. A shorter last block does not count.
     info.set_block_sizes(BLOCK, BLOCK).map_err(|error| wrong(name, error))?;
     info.set_md5_digest(&context.md5_digest());
     info.set_total_samples(context.total_samples());

@@ -1,4 +1,4 @@
-//! The files that a command reads, so that none of them can become its output.
+//! Records the files that a command reads, so that none of them can become its output.
 
 use crate::error::{Error, Result};
 use same_file::Handle;
@@ -63,7 +63,7 @@ impl Inputs {
     /// # Errors
     /// [`Error::Value`] that names the input.
     pub fn check_stdout(&self) -> Result<()> {
-        // If standard output cannot be examined, it is none of the inputs.
+        // If standard output cannot be examined, it is not one of the inputs.
         Handle::stdout().map_or(Ok(()), |stdout| self.check("stdout", &stdout))
     }
 }

@@ -118,7 +118,7 @@ fn check_replaceable(path: &Path, metadata: &Metadata, name: &str, force: bool, 
     if !force {
         return Err(Error::Exists { path: name.to_owned() });
     }
-    // Renaming could replace it nevertheless, and the superuser could open it.
+    // Refuse explicitly: renaming would replace a read-only file, and the superuser could open it for writing.
     if metadata.permissions().readonly() {
         let message = "the file is read-only: make it writable, or choose another name";
         return Err(failed(io::Error::new(ErrorKind::PermissionDenied, message)));

@@ -42,8 +42,9 @@ pub struct Song {
 
 impl Song {
     /// Notes that start together and are released together at the end. `keys` are fractional MIDI keys, and may be
-    /// outside the keyboard. Each note takes the nearest key from 0 to 127 that no earlier note has, so that none
-    /// strikes another one's voice again; the rest becomes its detune. With more than 128 notes, keys are shared.
+    /// outside the keyboard. Each note takes the nearest key from 0 to 127 that no earlier note has, so that no note
+    /// strikes the voice of another; the remaining distance becomes its detune. With more than 128 notes, keys are
+    /// shared.
     pub fn chord(keys: &[f64], velocity: f32, seconds: f64) -> Self {
         let mut taken = [false; 128];
         let mut nearest_free = |key: f64| {
@@ -66,7 +67,7 @@ impl Song {
         Self { events: on, seconds }
     }
 
-    /// Lets program changes select from a list of melodic sounds and drum kits, by bank: see [`Banks`].
+    /// Converts program changes, by bank, to places in a list of melodic sounds and drum kits: see [`Banks`].
     pub fn select_by_bank(&mut self) {
         let mut banks = Banks::default();
         self.events.iter_mut().for_each(|event| event.kind = banks.resolve(event.channel, event.kind));
@@ -85,7 +86,7 @@ mod tests {
     #[test]
     fn a_chord_is_struck_and_released_at_once() {
         let song = Song::chord(&[60.0, 69.25, 140.5, 60.25], 0.5, 2.0);
-        // The last note finds its nearest key taken.
+        // The nearest key of the last note is taken.
         let expected = [(60, 0.0, 0), (69, 0.25, 1), (127, 13.5, 2), (61, -0.75, 3)];
         assert_eq!(song.events.len(), 2 * expected.len());
         for ((on, off), (key, detune, id)) in song.events[..4].iter().zip(&song.events[4..]).zip(expected) {

@@ -30,7 +30,7 @@ impl<S: Borrow<Song>> SongCursor<S> {
         self.frame
     }
 
-    /// Length of the song in frames. If it was halted, up to that point.
+    /// Length of the song in frames; after [`SongCursor::halt`], the length up to that point.
     pub fn song_frames(&self) -> u64 {
         self.song_frames
     }
@@ -70,7 +70,7 @@ impl<S: Borrow<Song>> SongCursor<S> {
         self.song_frames = self.song_frames.min(self.frame);
     }
 
-    /// Whether the end was reached and all events were given.
+    /// Whether the end was reached and all events were returned.
     pub fn is_over(&self) -> bool {
         self.frame >= self.song_frames && self.next == self.song.borrow().events.len()
     }

@@ -92,7 +92,7 @@ impl<W: Write + Seek> WavWriter<W> {
             let uniform = |n| f64::from(random::uniform(keys[channel], n));
             0.5 * (uniform(2 * n) + uniform(2 * n + 1))
         });
-        // Exactly full scale is one step above the largest integer. That step is not worth a warning.
+        // A sample of 1.0 is one step above the largest integer. Clipping by that one step is not counted.
         if sample.abs() > 1.0 {
             self.clipped += 1;
         }

@@ -1,4 +1,4 @@
-//! Rows of the modes, and how they ring.
+//! Parameter rows of the body: tuning, levels and decay of its modes.
 
 macro_rules! body {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

@@ -1,13 +1,13 @@
-//! The choices of the parameters that have them, each list an enum.
+//! Enums of the parameters whose value is one of a list of choices.
 
-/// One of the choices of a parameter; its value is its place among them.
+/// A choice of a parameter. The parameter's value is the index of the choice in the list.
 pub trait Choice: Copy + Eq + Sized + 'static {
     /// All of them, in order.
     const ALL: &'static [Self];
     /// Their names, in the same order.
     const NAMES: &'static [&'static str];
 
-    /// The choice that a parameter's value is: the nearest. Real-time safe.
+    /// The choice nearest to a parameter's value. Real-time safe.
     fn from_value(value: f32) -> Self {
         // A negative number and NaN become 0.
         Self::ALL[(libm::roundf(value) as usize).min(Self::ALL.len() - 1)]
@@ -52,27 +52,27 @@ choices! {
         Contact "contact",
     }
 
-    /// How a burst of noise falls.
+    /// How a noise burst decays.
     NoiseDecay {
-        /// By the square of what is left of its time.
+        /// With the square of the remaining noise time.
         Quadratic "quadratic",
-        /// By 60 dB in its time.
+        /// By 60 dB in the noise time.
         Exponential "exponential",
     }
 
-    /// What a release does.
+    /// What happens when a note is released.
     NoteOff {
-        /// The damper comes down.
+        /// The modes are damped.
         Damp "damp",
-        /// Nothing.
+        /// The note rings on undamped.
         Ring "ring",
     }
 
-    /// The formulas behind pitch and decay.
+    /// The formulas that turn pitch and decay into the coefficients of a mode.
     Coefficients {
         /// Exact tuning and decay.
         Exact "exact",
-        /// The original ones.
+        /// The original formulas, with their drift.
         Classic "classic",
     }
 
@@ -86,29 +86,29 @@ choices! {
         Legato "legato",
     }
 
-    /// Which of the held keys sounds where notes share one voice.
+    /// Which of the held keys sounds when notes share one voice.
     Priority {
-        /// The one that went down last.
+        /// The key pressed last.
         Last "last",
-        /// The lowest.
+        /// The lowest key.
         Low "low",
-        /// The highest.
+        /// The highest key.
         High "high",
     }
 
-    /// Which notes slide from the one before.
+    /// Which notes glide from the pitch of the previous note.
     GlideWhen {
-        /// All.
+        /// All notes.
         Always "always",
-        /// Those that start while another key is down.
+        /// Notes that start while another key is held.
         Legato "legato",
     }
 
-    /// What the time of a glide counts for.
+    /// Whether the glide time is the time of the whole glide or of one octave.
     GlideBy {
-        /// Every slide.
+        /// The time of the whole glide, whatever its interval.
         Time "time",
-        /// Each octave of it.
+        /// The time of each octave of the glide.
         Rate "rate",
     }
 
@@ -120,13 +120,13 @@ choices! {
         Major "major",
         /// A minor chord over three octaves.
         Minor "minor",
-        /// Fifths, one upon the other.
+        /// Stacked fifths.
         Fifths "fifths",
     }
 
-    /// The body that reverberates.
+    /// Kind of the reverberating body.
     Space {
-        /// Nothing.
+        /// No reverberation.
         None "none",
         /// A sheet of metal.
         Plate "plate",
@@ -138,53 +138,53 @@ choices! {
 
     /// What plates and springs are made of.
     SpaceMaterial {
-        /// Cold-rolled.
+        /// Cold-rolled steel.
         Steel "steel",
         /// Aluminium.
         Aluminium "aluminium",
         /// Gold foil.
         Gold "gold",
-        /// With a fifth of tin.
+        /// Bronze with one fifth of tin.
         Bronze "bronze",
         /// Window glass.
         Glass "glass",
     }
 
-    /// Whether the limiter works.
+    /// Whether the limiter is on.
     Limiter {
-        /// What is loud stays loud.
+        /// Peaks pass unchanged.
         Off "off",
-        /// Peaks are brought down.
+        /// Peaks are reduced.
         On "on",
     }
 
-    /// How a slow oscillator moves.
+    /// Waveform of a low-frequency oscillator.
     Shape {
         /// A sine.
         Sine "sine",
-        /// Straight up and straight down.
+        /// Rises and falls in straight lines.
         Triangle "triangle",
-        /// Straight up, then from the bottom again.
+        /// Rises in a straight line, then jumps back to the bottom.
         Ramp "ramp",
-        /// Up for half of the round, down for the other.
+        /// High for half of the cycle, low for the other half.
         Square "square",
-        /// A new random number each round.
+        /// A new random number each cycle.
         Steps "steps",
-        /// From one random number to the next.
+        /// Moves smoothly from one random number to the next.
         Drift "drift",
     }
 
-    /// Whose a slow oscillator is.
+    /// Whether each note has its own low-frequency oscillator.
     Scope {
-        /// Each note has one.
+        /// Each note has its own.
         Voice "voice",
-        /// All notes follow the same.
+        /// All notes share one.
         Shared "shared",
     }
 
-    /// The note value that one round of an oscillator lasts.
+    /// The note value that one cycle of an oscillator lasts.
     NoteValue {
-        /// None: it has its own rate.
+        /// None: the oscillator has its own rate.
         Off "off",
         /// A whole note.
         Whole "1/1",

@@ -1,4 +1,4 @@
-//! Rows of what wheels do.
+//! Parameter rows of the pitch wheel.
 
 macro_rules! control {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

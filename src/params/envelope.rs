@@ -1,4 +1,4 @@
-//! Rows of the envelopes, twice.
+//! Parameter rows of the two envelopes.
 
 macro_rules! envelope {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

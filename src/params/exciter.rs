@@ -1,4 +1,4 @@
-//! Rows of what moves the masses: exciters that act all at once, and how strikes differ.
+//! Parameter rows of the exciters, which all act together, and of the variation between strikes.
 
 macro_rules! exciter {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

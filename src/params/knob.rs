@@ -1,4 +1,4 @@
-//! Knobs: a parameter's value as a position of its travel, and back.
+//! Converts a parameter's value to a knob position and back.
 
 use super::{Curve, ParamInfo, Unit};
 use libm::{exp10, floor, log, log10, pow, round};
@@ -13,9 +13,9 @@ impl ParamInfo {
         }
     }
 
-    /// Value of a knob position 0–1, out of a grid of short decimal numbers: five significant digits of the value where
-    /// steps are of equal ratio, of the range where they are equal. So a number that a person has set comes back as
-    /// that very number from a position in single precision, which is what plugin hosts keep.
+    /// Value at a knob position 0–1, rounded to a short decimal number: to five significant digits of the value on a
+    /// logarithmic knob, of the range on a linear one. Plugin hosts store positions in single precision; because of the
+    /// rounding, a number that a person has set comes back exactly.
     pub fn denormalise(&self, position: f64) -> f32 {
         let (min, max) = (f64::from(self.min), f64::from(self.max));
         let position = position.clamp(0.0, 1.0);
@@ -31,8 +31,9 @@ impl ParamInfo {
         self.clamp((round(value * steps_per_unit) / steps_per_unit) as f32)
     }
 
-    /// The next round number above or below a value: a multiple of the 1, 2 or 5 of a power of ten that is nearest to this
-    /// share of the knob's travel. Choices and counts go by one.
+    /// The next round number above or below a value: a multiple of a step, which is 1, 2 or 5 times a power of ten. Of
+    /// these, the step is the one nearest to the fraction `travel` of the knob's travel. Choices and counts change by
+    /// one.
     pub fn stepped(&self, value: f32, up: bool, travel: f64) -> f32 {
         let direction = if up { 1.0 } else { -1.0 };
         if matches!(self.unit, Unit::Choice | Unit::Count) {
@@ -43,14 +44,15 @@ impl ParamInfo {
             Curve::Linear => f64::from(self.max - self.min) * travel,
             Curve::Logarithmic => value * (pow(f64::from(self.max) / f64::from(self.min), travel) - 1.0),
         };
-        // Exponents in thirds of a decade: 1, 2 and 5 are about as far apart as that.
+        // The step in thirds of a decade: 1, 2, 5 and 10 are about a third of a decade apart.
         let thirds = round(log10(distance) * 3.0);
         let decade = floor(thirds / 3.0);
-        // Steps per unit below 1, so that the multiples are quotients of whole numbers, exact but for one rounding.
+        // `scale` is a whole number for steps below 1 too: a multiple is then a quotient of whole numbers, rounded only
+        // once.
         let mantissa = [1.0, 2.0, 5.0][(thirds - 3.0 * decade) as usize];
         let scale = exp10(decade.abs());
         let place = if decade < 0.0 { value * scale / mantissa } else { value / (scale * mantissa) };
-        // A number that single precision keeps a little beside a multiple counts as that multiple.
+        // A value that single precision has moved slightly off a multiple counts as that multiple.
         let next = if up { floor(place + 1e-4) + 1.0 } else { -floor(-place + 1e-4) - 1.0 };
         let next = next * mantissa;
         self.clamp(if decade < 0.0 { next / scale } else { next * scale } as f32)

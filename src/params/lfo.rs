@@ -1,4 +1,4 @@
-//! Rows of the slow oscillators, three times.
+//! Parameter rows of the three low-frequency oscillators.
 
 macro_rules! lfo {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

@@ -1,4 +1,4 @@
-//! Rows of the macros: knobs that mean what routes make of them.
+//! Parameter rows of the macros: knobs that act only through routes.
 
 macro_rules! macros {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

@@ -1,10 +1,10 @@
 //! The parameter table: every parameter's id, name, unit, range, curve, default and smoothing, defined once.
 //!
 //! The engine, the command, preset files, the documentation and any plugin shell derive from [`PARAMS`].
-//! Ids are part of every saved preset and song: a test pins them, and an id that goes is kept in [`retired`] and never
-//! used again.
+//! Ids are part of every saved preset and song: a test pins them. The id of a removed parameter is kept in [`retired`]
+//! and never used again.
 
-/// What a parameter's number counts.
+/// The unit of a parameter's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// A plain number.
@@ -38,14 +38,14 @@ pub enum Curve {
     Logarithmic,
 }
 
-/// When a change is heard.
+/// When a change of a parameter takes effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// By the notes that start after it.
+    /// In the notes that start after the change.
     NextNote,
-    /// At once, reaching its new value over this many milliseconds.
+    /// At once, smoothed over this many milliseconds.
     Smoothed(u16),
-    /// At once, by the output as a whole: it can be modulated neither for single notes nor for all.
+    /// At once, on the output as a whole. Such a parameter cannot be modulated.
     AtOnce,
 }
 
@@ -60,7 +60,7 @@ pub struct ParamInfo {
     pub name: &'static str,
     /// Group that it is shown in.
     pub section: &'static str,
-    /// What the number counts.
+    /// Unit of the value.
     pub unit: Unit,
     /// Smallest value.
     pub min: f32,
@@ -70,9 +70,9 @@ pub struct ParamInfo {
     pub default: f32,
     /// Knob mapping.
     pub curve: Curve,
-    /// When a change is heard.
+    /// When a change takes effect.
     pub change: Change,
-    /// Whether nothing can modulate it although it is a quantity.
+    /// Whether it cannot be modulated, although it is a quantity.
     is_fixed: bool,
     /// Names of the values when `unit` is [`Unit::Choice`].
     pub choices: &'static [&'static str],
@@ -146,7 +146,7 @@ use {
     pitch::pitch, routes::routes, space::space, voices::voices,
 };
 
-// Each adds its rows to those before it and hands them on.
+// Each macro appends its rows to those before it and passes all of them to the next macro.
 exciter! { {} body pitch control lfo envelope macros routes voices space output table }
 
 impl Param {
@@ -155,13 +155,13 @@ impl Param {
         &PARAMS[self as usize]
     }
 
-    /// Whether it is one of what is behind the voices, which a kit has once for all of its sounds: strings, tremolo, drive,
-    /// tone, space, width. Real-time safe.
+    /// Whether it belongs to the effects behind the voices, which all sounds of a kit share: strings, tremolo, drive,
+    /// tone, space, stereo width. Real-time safe.
     pub const fn is_behind_voices(self) -> bool {
         Self::StringsLevel as usize <= self as usize && self as usize <= Self::StereoWidth as usize
     }
 
-    /// Whether it is one of the space, the body that reverberates behind the voices. Real-time safe.
+    /// Whether it belongs to the space, the reverberating body behind the voices. Real-time safe.
     pub const fn is_of_space(self) -> bool {
         Self::Space as usize <= self as usize && self as usize <= Self::SpaceMix as usize
     }
@@ -173,14 +173,14 @@ impl Param {
 }
 
 impl ParamInfo {
-    /// The nearest value that the parameter can take: in range, whole where it must be; the default for NaN.
-    /// Real-time safe.
+    /// The nearest value that the parameter can take: in range, and whole for counts and choices. NaN becomes the
+    /// default. Real-time safe.
     pub fn clamp(&self, value: f32) -> f32 {
         let value = if value.is_nan() { self.default } else { value.clamp(self.min, self.max) };
         if matches!(self.unit, Unit::Count | Unit::Choice) { libm::roundf(value) } else { value }
     }
 
-    /// The value itself if the parameter can take it, else a message that says the range.
+    /// The value itself if the parameter can take it, otherwise a message with the range.
     pub fn check(&self, value: f32) -> Result<f32, String> {
         if value == self.clamp(value) {
             return Ok(value);
@@ -191,18 +191,18 @@ impl ParamInfo {
         Err(format!("{value} is out of range: expected {}", self.range()))
     }
 
-    /// `from -60 dB to 12 dB`.
+    /// The range as text, such as `from -60 dB to 12 dB`.
     fn range(&self) -> String {
         let whole = if self.unit == Unit::Count { "a whole number " } else { "" };
         format!("{whole}from {} to {}", self.format(self.min), self.format(self.max))
     }
 
-    /// Whether routes can move it: it is a quantity, and belongs to the notes and not to the output as a whole.
+    /// Whether routes can modulate it: it is a quantity, is not fixed, and does not act on the output as a whole.
     pub const fn is_modulatable(&self) -> bool {
         !matches!(self.unit, Unit::Count | Unit::Choice) && !matches!(self.change, Change::AtOnce) && !self.is_fixed
     }
 
-    /// Frames that a sounding note takes to follow a change; none if it does not follow at all.
+    /// Smoothing time in frames of a change during a note; none if a sounding note does not follow the parameter.
     pub(crate) fn smoothing_frames(&self, sample_rate: f64) -> Option<u32> {
         match self.change {
             Change::NextNote | Change::AtOnce => None,

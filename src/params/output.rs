@@ -1,4 +1,4 @@
-//! Rows of what leaves the instrument.
+//! Parameter rows of the output.
 
 macro_rules! output {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

@@ -1,4 +1,4 @@
-//! Rows of where the notes lie and how they move.
+//! Parameter rows of pitch: tuning, sweep, vibrato and glide.
 
 macro_rules! pitch {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

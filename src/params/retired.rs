@@ -1,29 +1,29 @@
-//! Parameters that there were: their ids are in old presets, and are never used again.
+//! Retired parameters: their ids occur in old presets and are never used again.
 
 use super::{Change, Curve, Param, ParamInfo, Unit};
 
-/// A parameter that a route or others do the work of now.
+/// A former parameter, which a route or other parameters have replaced.
 #[derive(Debug)]
 pub struct Retired {
     id: &'static str,
-    /// The row that it had, if a route replaces it; `param` is the one that the route moves.
+    /// Its former row, if a route replaces it; `param` is the destination of that route.
     pub(crate) row: Option<ParamInfo>,
     /// What replaces it, for messages.
     pub replacement: &'static str,
 }
 
 impl Retired {
-    /// The one with this id.
+    /// The retired parameter with this id.
     pub fn from_id(id: &str) -> Option<&'static Retired> {
         RETIRED.iter().find(|retired| retired.id == id)
     }
 
-    /// The id that it had.
+    /// Its id.
     pub fn id(&self) -> &'static str {
         self.id
     }
 
-    /// That it is retired, and what replaces it.
+    /// A message that it is retired, and what replaces it.
     pub fn message(&self) -> String {
         format!("‘{}’ is retired: {} replaces it", self.id, self.replacement)
     }
@@ -62,7 +62,7 @@ retired! {
 mod tests {
     use super::*;
 
-    /// This list only grows.
+    /// Ids may be added to this list, but never removed.
     #[test]
     fn retired_ids_are_pinned_and_no_parameter_has_one() {
         let ids: Vec<_> = RETIRED.iter().map(Retired::id).collect();

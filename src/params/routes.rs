@@ -1,4 +1,4 @@
-//! Rows of the amounts of the modulation routes: the last three are those of the routes that a new patch has.
+//! Parameter rows of the modulation routes' amounts; the last three belong to the routes of a new patch.
 
 macro_rules! routes {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

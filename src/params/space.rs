@@ -1,4 +1,4 @@
-//! Rows of what is behind the voices, in the order in which their sum goes through it.
+//! Parameter rows of the effects behind the voices, in the order of the signal path.
 
 macro_rules! space {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

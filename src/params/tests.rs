@@ -1,9 +1,9 @@
-//! The table as a whole: its ids, its rows, and values through texts and knobs.
+//! Tests of the parameter table: ids, rows, and the conversion of values to texts and knob positions and back.
 
 use super::*;
 use proptest::prelude::*;
 
-/// Ids are in people's presets: this list only grows.
+/// Saved presets contain these ids: they may be added to this list, but never removed.
 #[test]
 fn ids_are_pinned() {
     let ids: Vec<_> = PARAMS.iter().map(|info| info.id).collect();

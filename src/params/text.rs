@@ -18,7 +18,7 @@ impl Unit {
         }
     }
 
-    /// What one of the given unit suffix is in this unit, or `None` if the suffix does not belong to it.
+    /// How much one of the unit `suffix` is in this unit; `None` if that unit cannot be converted to this one.
     fn scale_of(self, suffix: &str) -> Option<f64> {
         let suffix = suffix.to_lowercase();
         match (self, suffix.as_str()) {
@@ -41,7 +41,7 @@ impl Unit {
 }
 
 impl ParamInfo {
-    /// Reads a value with or without its unit: `"-12 dB"`, `"440 Hz"`, `"250 ms"`, `"50 %"`, `"strike"`.
+    /// Reads a value with or without its unit: `"-12 dB"`, `"440 Hz"`, `"250 ms"`, `"50 %"`, `"contact"`.
     /// [`Unit::Hertz`] also takes note names (`"A4"`). The error says what was expected.
     pub fn parse(&self, text: &str) -> Result<f32, String> {
         let text = text.trim();
@@ -71,7 +71,8 @@ impl ParamInfo {
         }
     }
 
-    /// Reads a number with or without its unit, in or out of the range, as a distance between two values may be.
+    /// Reads a number with or without its unit. The range is not checked, since the number may be a distance between
+    /// two values.
     pub(crate) fn quantity(&self, text: &str) -> Option<f64> {
         split_quantity(text.trim()).and_then(|(value, suffix)| Some(value * self.unit.scale_of(suffix)?))
     }
@@ -84,7 +85,7 @@ impl ParamInfo {
             Unit::Choice => self.choices[value as usize].to_owned(),
             Unit::Count => format!("{value:.0}"),
             Unit::Number => trim_zeros(format!("{value:.3}")),
-            // At 999.95 ms and above, three decimals of a second carry more than one of a millisecond.
+            // From 0.9995 s on, three decimals of a second round to 1 s or more.
             Unit::Seconds if value < 0.9995 => format!("{} ms", trim_zeros(format!("{:.2}", f64::from(value) * 1e3))),
             Unit::Seconds => format!("{} s", trim_zeros(format!("{value:.3}"))),
             Unit::Decibels | Unit::DecibelsPerOctave | Unit::Percent | Unit::Cents => {

@@ -2,8 +2,8 @@
 
 use super::{Choice, PARAM_COUNT, PARAMS, Param};
 
-/// One value per parameter, each one that its parameter can take. Plain data of fixed size, so that the audio thread
-/// can copy it.
+/// One value per parameter, always in the parameter's range. Plain data of fixed size, so that the audio thread can
+/// copy it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Values([f32; PARAM_COUNT]);
 
@@ -26,8 +26,8 @@ impl Values {
         T::from_value(self.get(param))
     }
 
-    /// Sets a parameter to the nearest value that it can take. Real-time safe. Callers with a person behind them
-    /// use [`super::ParamInfo::check`] or `parse` first, to tell of a value out of range.
+    /// Sets a parameter to the nearest value that it can take. Real-time safe. For input from a person, first call
+    /// [`super::ParamInfo::check`] or `parse`, which report a value out of range.
     pub fn set(&mut self, param: Param, value: f32) {
         self.0[param as usize] = param.info().clamp(value);
     }

@@ -1,4 +1,4 @@
-//! Rows of how notes share voices.
+//! Parameter rows of the voices: polyphony, play mode, unison and choke groups.
 
 macro_rules! voices {
     ({ $($before:tt)* } $next:ident $($rest:ident)*) => {

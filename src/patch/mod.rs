@@ -1,4 +1,4 @@
-//! A patch: a value for each parameter, the table of modes, and the routes. It is what users edit and save.
+//! A patch, which users edit and save: a value for each parameter, the table of modes, and the routes.
 
 mod modes;
 pub mod routes;

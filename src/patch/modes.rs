@@ -1,4 +1,4 @@
-//! The modes of a body: one table, or one for each key, where a part of the body follows the keys and another does not.
+//! The modes of a body: one table for all keys, or one for each key if only a part of the body follows the key.
 
 use crate::dsp::cells::MAX_CELLS;
 use crate::dsp::mode_bank;
@@ -61,9 +61,9 @@ impl Mode {
 
 /// A body: one to [`MAX_MODES`] modes, each with a phase. Clones share the same table.
 ///
-/// A body can have a table for each of some keys. These tables are made once, off the audio thread
-/// ([`ModeTable::make_tables`], which [`Sound::new`](crate::sound::Sound::new) calls), and all clones share them. All have
-/// the same number of modes.
+/// A body can have a table of its own for each key of a range. These tables are made once, off the audio thread
+/// ([`ModeTable::make_tables`], which [`Sound::new`](crate::sound::Sound::new) calls), and all clones share them. All
+/// have the same number of modes.
 #[derive(Clone, Debug)]
 pub struct ModeTable {
     modes: Arc<[Mode]>,
@@ -73,7 +73,7 @@ pub struct ModeTable {
     by_key: Option<Arc<ByKey>>,
 }
 
-/// The tables of the keys.
+/// One table for each key from `lowest` on.
 struct ByKey {
     lowest: u8,
     make: Box<dyn Fn() -> Vec<ModeTable> + Send + Sync>,
@@ -86,7 +86,7 @@ impl fmt::Debug for ByKey {
     }
 }
 
-/// Tables by key are equal if they were made from the same text, or if they are the same.
+/// Tables by key are equal if they were made from the same text, or if they are clones of one table.
 impl PartialEq for ModeTable {
     fn eq(&self, other: &Self) -> bool {
         let is_same = match (&self.by_key, &other.by_key) {
@@ -107,7 +107,7 @@ impl ModeTable {
         Self { modes, phases: Arc::new([]), origin: None, by_key: None }
     }
 
-    /// The modes. If there is a table for each key, those of a key in the middle.
+    /// The modes. If there is a table for each key, these are the modes of a middle key.
     pub fn as_slice(&self) -> &[Mode] {
         &self.modes
     }
@@ -141,9 +141,9 @@ impl ModeTable {
         self.origin.as_deref()
     }
 
-    /// The table with another one for each key from the MIDI key `lowest` on, at A4 = 440 Hz. `make` makes them in the order
-    /// of the keys, when [`ModeTable::make_tables`] is called: at least one, each with as many modes as this table.
-    /// Allocates.
+    /// The table, with another one for each key from the MIDI key `lowest` on, at A4 = 440 Hz. `make` runs when
+    /// [`ModeTable::make_tables`] is called. It must return at least one table, in the order of the keys, each with as
+    /// many modes as this one. Allocates.
     #[must_use]
     pub fn with_keys(self, lowest: u8, make: impl Fn() -> Vec<ModeTable> + Send + Sync + 'static) -> Self {
         let by_key = ByKey { lowest, make: Box::new(make), made: OnceLock::new() };
@@ -171,12 +171,12 @@ impl ModeTable {
         if self.made().is_empty() { std::slice::from_ref(self) } else { self.made() }
     }
 
-    /// Which of [`ModeTable::tables`] is for a note of this frequency in Hz: that of the nearest key. Real-time safe.
+    /// Index in [`ModeTable::tables`] for a note of this frequency in Hz: the table of the nearest key. Real-time safe.
     pub fn place(&self, frequency: f64) -> usize {
         match self.by_key.as_deref() {
             Some(ByKey { lowest, .. }) if self.made().len() > 1 => {
                 let key = round(69.0 + 12.0 * log2(frequency / 440.0)) - f64::from(*lowest);
-                // A float becomes an integer within the integer's range.
+                // The cast saturates: negative numbers and NaN become 0.
                 (key as usize).min(self.made().len() - 1)
             }
             _ => 0,

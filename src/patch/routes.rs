@@ -90,7 +90,7 @@ named! {
 }
 
 impl Source {
-    /// Whether its values are from −1 to 1; the others' are from 0 to 1.
+    /// Whether its values range from −1 to 1; otherwise they range from 0 to 1.
     pub fn is_bipolar(self) -> bool {
         use Source::{Alternation, Bend, Key, Lfo1, Lfo2, Lfo3, Random, Timbre};
         matches!(self, Key | Random | Alternation | Timbre | Bend | Lfo1 | Lfo2 | Lfo3)
@@ -187,7 +187,7 @@ pub fn amount_param(place: usize) -> Param {
     PARAMS[Param::Route1 as usize + place.min(MAX_ROUTES - 1)].param
 }
 
-/// The place of the route whose amount this parameter is; none if it is no amount.
+/// The place of the route whose amount this parameter is; none if the parameter is not the amount of a route.
 pub fn place_of_amount(param: Param) -> Option<usize> {
     (param as usize).checked_sub(Param::Route1 as usize).filter(|place| *place < MAX_ROUTES)
 }

@@ -74,7 +74,7 @@ fn read_model(table: &Table, place: &str, complaints: &mut Complaints) -> Option
     Some(model.clone())
 }
 
-/// Finds what the text at a key names; none if the key is missing.
+/// Looks up the text at `key` with `find`; none if the key is missing.
 pub(super) fn named<T: 'static, N: Iterator<Item = &'static str>>(
     table: &Table,
     place: &str,

@@ -1,4 +1,4 @@
-//! The sounds that one can choose from: the factory's and the user's own.
+//! The catalogue of sounds: those of the factory and the user's own.
 
 use super::library::Library;
 use super::{Family, KitPreset, Playable, Preset};
@@ -13,11 +13,12 @@ pub struct Listed {
     pub playable: Playable,
     /// Its file, if it is one of the user's own.
     pub path: Option<PathBuf>,
-    /// What words are looked for in, in lower case.
+    /// The text in which words are searched, in lower case.
     text: String,
 }
 
-/// Sounds in the order of lists. They are shared, since what shows them asks for some of them many times a second.
+/// Sounds in the order in which lists show them. They are shared, since user interfaces fetch some of them many times a
+/// second.
 #[derive(Debug, Default)]
 pub struct Catalogue {
     /// The sounds.
@@ -55,7 +56,7 @@ impl Listed {
         }
     }
 
-    /// What kits have in place of a family.
+    /// The family name of kits.
     pub const KIT: &str = "kit";
 
     /// Whether all of these words are in its name, tags, family or description. Case does not matter.
@@ -93,8 +94,8 @@ impl Catalogue {
         Self { broken: own.broken, ..all }
     }
 
-    /// The sounds with all of these words, by [`Listed::has_words`]: first the one of just this name, then those with all
-    /// words in their name.
+    /// The sounds with all of these words, by [`Listed::has_words`]: first the sound with exactly this name, then those
+    /// with all words in their name, then the others.
     pub fn find(&self, words: &str) -> Vec<Arc<Listed>> {
         let mut found: Vec<_> = self.sounds.iter().filter(|listed| listed.has_words(words)).cloned().collect();
         let lower = words.to_lowercase();

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::sync::Arc;
 use toml::Value;
 
-/// The numbers of a mode by name, with their ranges and, unless a file must give them, their default.
+/// The numbers of a mode: name, range and default. A number without a default is required.
 const FIELDS: [(&str, (f64, f64), Option<f64>); 3] =
     [("ratio", RATIO_RANGE, None), ("level", (-1.0, 1.0), Some(1.0)), ("decay", (0.001, 1000.0), Some(1.0))];
 
@@ -32,7 +32,7 @@ pub(super) fn read(found: Option<&Value>, place: &str, complaints: &mut Complain
         return None;
     }
     let mut read = |(index, mode): (usize, &Value)| read_mode(&format!("{place}.modes[{index}]"), mode, complaints);
-    // Every mode is read, so that the mistakes of all are told.
+    // Read every mode, so that the errors of all of them are reported.
     let modes: Vec<Option<CustomMode>> = modes.iter().enumerate().map(&mut read).collect();
     modes.into_iter().collect()
 }

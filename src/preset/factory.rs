@@ -6,10 +6,11 @@ use crate::error::{Error, Result, nearest};
 use crate::text::slug;
 use std::sync::OnceLock;
 
-/// The presets that have been asked for, in the order of [`PRESETS`]: reading all of them takes a third of a second.
+/// The presets read so far, in the order of [`PRESETS`]. Each is read on its first use, since reading all takes a third
+/// of a second.
 static FOUND: [OnceLock<Preset>; PRESETS.len()] = [const { OnceLock::new() }; PRESETS.len()];
 
-/// A preset, which is read when it is first asked for.
+/// The preset at this index of [`PRESETS`]. It is read on its first use.
 fn preset(place: usize) -> &'static Preset {
     let (name, text) = PRESETS[place];
     FOUND[place].get_or_init(|| Preset::parse(text, name).expect("the embedded presets are checked by a test"))
@@ -23,7 +24,7 @@ fn kit((origin, text): &(&str, &str)) -> Result<KitPreset> {
     }
 }
 
-/// The places of the files that are called after a name: others need not be read to find what has this name.
+/// Indices of the files that are named like the preset or kit `name`. No other file can contain it, so no other is read.
 fn called<'a>(name: &str, files: &'a [(&str, &str)]) -> impl Iterator<Item = usize> + 'a {
     let slug = slug(name);
     let is_called = move |(file, _): &(&str, &str)| file.rsplit('/').next() == Some(slug.as_str());
@@ -37,7 +38,7 @@ impl Preset {
         FACTORY.get_or_init(|| (0..PRESETS.len()).map(|place| preset(place).clone()).collect())
     }
 
-    /// The preset at a place of [`Preset::factory`]; none beyond the last. Reads this one alone, when it is first asked for.
+    /// The preset at a place of [`Preset::factory`]; none beyond the last. Reads only this preset, on its first use.
     pub fn factory_at(place: usize) -> Option<&'static Preset> {
         (place < PRESETS.len()).then(|| preset(place))
     }

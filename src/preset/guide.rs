@@ -1,4 +1,4 @@
-//! What a listener needs of a preset beside its sound: its family, its keys, the names of its macros, and a phrase to try it.
+//! Facts about a preset that do not change its sound: family, range of keys, names of the macros, and a phrase to try it.
 
 use super::about::{check_label, toml_string};
 use super::complaints::Complaints;
@@ -44,20 +44,20 @@ impl fmt::Display for Family {
     }
 }
 
-/// What a listener needs of a preset beside its sound. Nothing of it changes the sound.
+/// Facts about a preset for the person who plays it. They do not change the sound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide {
     /// The family; none if the file names none.
     pub family: Option<Family>,
-    /// MIDI keys between which the sound is meant to be played.
+    /// Lowest MIDI key for which the sound is meant.
     pub lowest: u8,
-    /// The last of these keys.
+    /// Highest MIDI key for which the sound is meant.
     pub highest: u8,
-    /// The key on which it sounds most like itself.
+    /// The key that is most typical of the sound.
     pub home: u8,
-    /// Names of the macros, from the first on; at most eight. An empty name is that of an unused macro.
+    /// Names of the macros, from the first on; at most eight. The name of an unused macro is empty.
     pub macros: Vec<String>,
-    /// Notes to try the sound with; none for the home key.
+    /// Notes to try the sound with; if there are none, the home key is played.
     pub phrase: Option<Phrase>,
 }
 
@@ -68,7 +68,8 @@ impl Default for Guide {
 }
 
 impl Guide {
-    /// The name of a macro, given the id of its parameter or source (`macro1` …); none for what is no macro, or has no name.
+    /// The name of a macro, given the id of its parameter or source (`macro1` …); none if the id is not a macro's or
+    /// the macro has no name.
     pub fn macro_name(&self, id: &str) -> Option<&str> {
         let number: usize = id.strip_prefix("macro")?.parse().ok()?;
         self.macros.get(number.checked_sub(1)?).map(String::as_str).filter(|name| !name.is_empty())
@@ -125,7 +126,7 @@ impl Guide {
         }
     }
 
-    /// Lines of TOML for what is not as in a new preset.
+    /// TOML lines for the fields that differ from those of a new preset.
     pub(super) fn to_toml(&self) -> String {
         let (mut out, new) = (String::new(), Self::default());
         if let Some(family) = self.family {

@@ -22,7 +22,7 @@ pub struct KitPreset {
     pub comment: String,
     /// Maximum number of notes that sound at once.
     pub voices: u8,
-    /// Values of effects behind the voices, in place of those that the sounds have in common.
+    /// Values of effects behind the voices. They replace the values that the sounds have in common.
     pub params: Vec<(Param, f32)>,
     /// The presets of the pads, each with the name by which the file refers to it.
     pub sounds: Vec<(String, Preset)>,
@@ -80,7 +80,7 @@ impl Playable {
         }
     }
 
-    /// What it is.
+    /// Its description.
     pub fn comment(&self) -> &str {
         match self {
             Self::Preset(preset) => &preset.comment,

@@ -31,7 +31,7 @@ impl Playable {
         complaints.into_first(&path.display().to_string()).map(|()| playable)
     }
 
-    /// As [`Playable::read`], but reads as much as possible. What cannot be read gets its default value, and is
+    /// As [`Playable::read`], but reads as much as possible. Unreadable parts get their default values; each is
     /// described in one line of the returned list.
     ///
     /// # Errors
@@ -103,7 +103,7 @@ pub fn is_file_name(name: &Path) -> bool {
     name.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) || name.components().count() > 1
 }
 
-/// The preset with this name for a kit in `folder`: a file there, or else a factory preset.
+/// The preset with this name for a kit in `folder`: a file there if the name is a file name, otherwise a factory preset.
 fn preset_of_kit(
     name: &str,
     folder: &Path,

@@ -1,4 +1,4 @@
-//! The user's own presets and kits, as files in a folder of the user's data, and which sounds are favourites.
+//! The user's own presets and kits, as files in a folder of the user's data, and the list of favourites.
 
 use super::about::MAX_LABEL;
 use super::{Playable, Preset, Replaced, is_file_name};
@@ -10,8 +10,8 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// A folder with the user's sounds: `presets/` has their files, `bin/` those that were thrown away, `favourites.txt` the
-/// names of favourites, one a line.
+/// A folder with the user's sounds: `presets/` has their files, `bin/` the discarded files, `favourites.txt` the names
+/// of favourites, one per line.
 #[derive(Clone, Debug)]
 pub struct Library {
     folder: PathBuf,
@@ -20,16 +20,16 @@ pub struct Library {
 /// A file of the library.
 #[derive(Debug)]
 pub struct Entry {
-    /// Where it is.
+    /// Path of the file.
     pub path: PathBuf,
-    /// What is in it, or why it could not be read.
+    /// The sound in it, or the reason why it could not be read.
     pub playable: Result<Playable>,
 }
 
 impl Library {
     /// The library of this user: `sprung` in `$XDG_DATA_HOME` or `~/.local/share`; on macOS `Sprung` in
-    /// `~/Library/Application Support`; on Windows `Sprung` in `%APPDATA%`. `None` if the system does not say where that is.
-    /// Makes no folder.
+    /// `~/Library/Application Support`; on Windows `Sprung` in `%APPDATA%`. `None` if the system does not say where
+    /// that is. Does not create the folder.
     pub fn of_user() -> Option<Self> {
         data_folder(&|name| std::env::var_os(name)).map(Self::at)
     }
@@ -44,8 +44,8 @@ impl Library {
         self.folder.join("presets")
     }
 
-    /// The files in the library, in the order of their names. Those that cannot be read say why. Empty if there is no
-    /// folder.
+    /// The files in the library, in the order of their names. A file that cannot be read is listed with its error.
+    /// Empty if there is no folder.
     pub fn entries(&self) -> Vec<Entry> {
         self.paths().into_iter().map(|path| Entry { playable: read(&path), path }).collect()
     }
@@ -58,8 +58,8 @@ impl Library {
         paths
     }
 
-    /// Saves a preset under its name, in a file that is named after it; with a number if the file of a sound with another
-    /// name is there. Appears whole or not at all. Returns where it is.
+    /// Saves a preset in a file named after it; a number is added if a sound of another name has that file. The file is
+    /// written under a temporary name and renamed, so that it is never half-written. Returns its path.
     ///
     /// # Errors
     /// [`Error::Value`] for the name of a factory sound or of a file, by which it would not be found again, [`Error::Exists`] if a
@@ -75,7 +75,7 @@ impl Library {
             number => folder.join(format!("{slug}-{number}.toml")),
         };
         let is_it = |path: &PathBuf| matches!(read(path), Ok(Playable::Preset(found)) if found.name.eq_ignore_ascii_case(&preset.name));
-        // A number may be free before that of the preset, if another one was thrown away.
+        // Look at all numbers: if a file was discarded, a free number may come before the preset's own.
         let numbers = 1..=self.paths().len() as u32 + 1;
         if let Some(path) = numbers.clone().map(place).find(is_it) {
             write_whole(&path, text.as_bytes(), replace)?;
@@ -86,7 +86,7 @@ impl Library {
         Ok(path)
     }
 
-    /// Gives a preset of the library another name, and its file the name that belongs to it. Returns where it is now.
+    /// Renames a preset of the library, and its file accordingly. Returns the file's new path.
     ///
     /// # Errors
     /// As [`Library::save`]; [`Error::Value`] if the file is not in the library or has no single preset.
@@ -98,7 +98,7 @@ impl Library {
         let is_same = preset.name.eq_ignore_ascii_case(name);
         let renamed = Preset { name: name.to_owned(), ..preset };
         if is_same {
-            // In its own file: another file may have a preset of the same name, which is to stay.
+            // Keep its file: another file may have a preset of the same name, which must not be replaced.
             write_whole(path, text_of(&renamed)?.as_bytes(), true)?;
             return Ok(path.to_owned());
         }
@@ -107,8 +107,8 @@ impl Library {
         Ok(saved)
     }
 
-    /// Takes a preset file from elsewhere into the library, under its own name, with a number behind it if that is taken.
-    /// Returns the preset as it is there, and where.
+    /// Copies a preset file into the library. If its name is taken, a number is added to the name. Returns the preset
+    /// as saved, and the path of its new file.
     ///
     /// # Errors
     /// As [`Playable::read`] and [`Library::save`]; [`Error::Value`] for a kit, which needs the files of its presets.
@@ -120,7 +120,7 @@ impl Library {
         let own = preset.name.clone();
         let names: Vec<String> =
             self.paths().iter().filter_map(|path| read(path).ok()).map(|found| found.name().to_owned()).collect();
-        // A sound of the factory, or one of the library, may have this name.
+        // Both factory sounds and sounds of the library may have this name.
         let is_taken =
             |name: &str| Playable::find(name).is_ok() || names.iter().any(|other| other.eq_ignore_ascii_case(name));
         let mut number = 2;
@@ -142,7 +142,7 @@ impl Library {
         Err(Error::value(path.display().to_string(), "expected a file of the library"))
     }
 
-    /// Moves a file of the library to its bin. Returns where it is now.
+    /// Moves a file of the library to its bin. Returns the file's new path.
     ///
     /// # Errors
     /// [`Error::Value`] if the file is not in the library, [`Error::Io`] if it cannot be moved.
@@ -151,7 +151,7 @@ impl Library {
         let name = path.file_name().unwrap_or_default();
         let bin = self.folder.join("bin");
         make_folder(&bin)?;
-        // Nothing in the bin is replaced.
+        // No file in the bin is replaced.
         let place = |number: u32| match number {
             0 => bin.join(name),
             number => bin.join(format!("{number}-{}", name.to_string_lossy())),
@@ -195,7 +195,7 @@ impl Library {
     }
 }
 
-/// The folder for this program's data of the user.
+/// The folder for the user's data of this program.
 fn data_folder(variable: &dyn Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     let folder = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
     if cfg!(windows) {
@@ -215,7 +215,7 @@ fn read(path: &Path) -> Result<Playable> {
     Playable::read(path, &mut open, &mut |_: &str, _: Replaced| {})
 }
 
-/// A preset's file, if its name can be one of the user's: not that of a factory sound nor of a file.
+/// The text of a preset's file. The preset's name must be neither that of a factory sound nor a file name.
 fn text_of(preset: &Preset) -> Result<String> {
     if Playable::find(&preset.name).is_ok() {
         let message = format!("‘{}’ is a sound of the factory: expected another name", preset.name);
@@ -230,7 +230,7 @@ fn text_of(preset: &Preset) -> Result<String> {
     Ok(text)
 }
 
-/// The first of these places in a folder where nothing is.
+/// The first of these paths at which nothing exists. `folder` is their folder, for the error.
 fn free(mut places: impl Iterator<Item = PathBuf>, folder: &Path) -> Result<PathBuf> {
     let free = places.find(|place| !place.exists());
     free.ok_or_else(|| Error::value(folder.display().to_string(), "expected a folder with room for another file"))
@@ -240,7 +240,7 @@ fn make_folder(folder: &Path) -> Result<()> {
     fs::create_dir_all(folder).map_err(|source| Error::io(folder.display().to_string(), source))
 }
 
-/// Writes a file beside its place and renames it, so that it appears whole or not at all. Makes its folder.
+/// Writes a temporary file beside `path` and renames it, so that `path` is never half-written. Makes its folder.
 fn write_whole(path: &Path, bytes: &[u8], replace: bool) -> Result<()> {
     let failed = |source: io::Error| Error::io(path.display().to_string(), source);
     let folder = path.parent().unwrap_or(Path::new("."));
@@ -250,7 +250,7 @@ fn write_whole(path: &Path, bytes: &[u8], replace: bool) -> Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As any other file of the user: what the umask leaves.
+        // The permissions of an ordinary new file, from which the umask is subtracted.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(folder).map_err(failed)?;

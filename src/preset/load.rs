@@ -29,7 +29,7 @@ impl Preset {
         complaints.into_first(origin).map(|()| preset)
     }
 
-    /// As [`Preset::parse_old`], but reads as much as possible. What cannot be read gets its default value, and is
+    /// As [`Preset::parse_old`], but reads as much as possible. Unreadable parts get their default values; each is
     /// described in one line of the returned list.
     ///
     /// # Errors

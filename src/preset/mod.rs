@@ -41,7 +41,7 @@ pub use programs::Programs;
 pub use tuning::OwnTuning;
 
 /// The preset format that is written. Older formats are read too: format 1 had no routes, formats 1 and 2 had
-/// parameters that routes replace ([`crate::params::retired`]), and up to format 3 a sound had one exciter by choice.
+/// parameters that routes replace ([`crate::params::retired`]), and in formats 1 to 3 a sound had only one exciter.
 pub const FORMAT_VERSION: i64 = 4;
 
 /// A patch with name, author, tags and comment.
@@ -55,16 +55,16 @@ pub struct Preset {
     pub tags: Vec<String>,
     /// Description, and how to play it.
     pub comment: String,
-    /// What it is and how it is played, beside its sound.
+    /// Family, keys, macro names and phrase, which do not change the sound.
     pub guide: Guide,
     /// The sound.
     pub patch: Patch,
-    /// Its own tuning; none for the instrument's.
+    /// Its own tuning; if there is none, the instrument's applies.
     pub tuning: Option<OwnTuning>,
 }
 
 impl Preset {
-    /// A preset of a name and a sound alone. Allocates.
+    /// A preset with nothing but a name and a sound. Allocates.
     pub fn new(name: impl Into<String>, patch: Patch) -> Self {
         let (author, tags, comment, guide) = (String::new(), Vec::new(), String::new(), Guide::default());
         Self { name: name.into(), author, tags, comment, guide, patch, tuning: None }

@@ -7,7 +7,7 @@ use std::f32::consts::PI;
 use std::fmt::Write;
 use toml::{Table, Value};
 
-/// A mode's phase in radians, with its range. Only tables that have phases have it in their files.
+/// A mode's phase in radians, with its range. It is written only for tables that have phases.
 const PHASE: (&str, f32, f32) = ("phase", -PI, PI);
 
 /// Reads the modes of a preset; a single one if the file has none.
@@ -69,7 +69,7 @@ pub(super) fn table_of<'a>(
     Some(mode)
 }
 
-/// The list of modes as TOML; empty if there is only the single mode of a new preset, or if `[body]` stands for them.
+/// The list of modes as TOML; empty if there is only the single mode of a new preset, or if the file has `[body]` instead.
 pub(super) fn to_toml(table: &ModeTable) -> String {
     let modes = table.as_slice();
     if table.origin().is_some() || (modes == [Mode::UNIT] && !table.has_phases()) {

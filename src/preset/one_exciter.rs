@@ -1,4 +1,4 @@
-//! Presets of formats 1 to 3: they chose one exciter, where each has a level now.
+//! Converts presets of formats 1 to 3, which chose one exciter, to the present ones, in which each exciter has a level.
 
 use super::complaints::Complaints;
 use toml::{Table, Value};
@@ -6,7 +6,7 @@ use toml::{Table, Value};
 /// The first format in which every exciter has a level.
 pub(super) const FIRST_WITH_LEVELS: i64 = 4;
 
-/// What each choice of exciter is now: parameters and their values.
+/// The parameters and values that replace each choice of exciter.
 const CHOICES: [(&str, &[(&str, Setting)]); 4] = [
     ("impulse", &[]),
     ("strike", &[("mallet_pulse", Setting::Text("contact"))]),
@@ -29,7 +29,7 @@ impl From<Setting> for Value {
     }
 }
 
-/// The same file with the parameters of today: it gives the same sound.
+/// The file with present parameters in place of retired ones; the sound is the same.
 pub(super) fn with_levels(file: &Table, complaints: &mut Complaints) -> Table {
     let mut file = file.clone();
     let exciter = match file.get_mut("params") {
@@ -56,7 +56,7 @@ pub(super) fn with_levels(file: &Table, complaints: &mut Complaints) -> Table {
     file
 }
 
-/// Puts the levels in the place of the choice. Returns what was chosen.
+/// Replaces the choice of exciter by levels. Returns the choice.
 fn choose(params: &mut Table, complaints: &mut Complaints) -> &'static str {
     let Some(chosen) = params.remove("exciter") else { return "impulse" };
     let name = chosen.as_str().map_or_else(|| chosen.to_string(), str::to_owned);

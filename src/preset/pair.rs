@@ -30,7 +30,7 @@ pub fn modes_of_pair(pair: &Pair) -> crate::Result<ModeTable> {
 /// The pair from which modes were made; none if they were not made from one. Allocates.
 pub fn pair_of_modes(modes: &ModeTable) -> Option<Pair> {
     let mut complaints = Complaints::default();
-    // A body may have a number `joint`, beside the table of that name.
+    // The first body gets a table of its own, since its number `joint` would clash with the table `[joint]`.
     let mut file: Table = toml::from_str(&format!("[body]\n{}", modes.origin()?)).ok()?;
     let Some(Value::Table(first)) = file.remove("body").filter(|_| is_in(&file)) else { return None };
     let first = read_body(&first, "body", &mut complaints)?;
@@ -38,7 +38,7 @@ pub fn pair_of_modes(modes: &ModeTable) -> Option<Pair> {
     pair.filter(|_| complaints.into_lines().is_empty())
 }
 
-/// Whether the file has a second body, or a part of one.
+/// Whether the file has `[second]` or `[joint]`.
 pub(super) fn is_in(file: &Table) -> bool {
     file.contains_key("second") || file.contains_key("joint")
 }
@@ -96,7 +96,7 @@ fn read_joint(table: &Table, first: Body, second: Body, complaints: &mut Complai
     Some(pair)
 }
 
-/// The lines of `[joint]`: the kind, and the values that differ from its own.
+/// The lines of `[joint]`: the kind, and the values that differ from the starting values of the kind.
 fn link_text(pair: &Pair) -> String {
     let same = |link: &Link| std::mem::discriminant(link) == std::mem::discriminant(&pair.link);
     let (kind, link) = LINK_KINDS.iter().find(|(_, link)| same(link)).unwrap_or(&LINK_KINDS[0]);

@@ -4,10 +4,10 @@ use crate::units::{key_from_note_name, note_name};
 use std::fmt;
 use std::str::FromStr;
 
-/// Velocity of notes that name none, 1–127.
+/// Velocity of notes without `@`, 1–127.
 const VELOCITY: u8 = 100;
 
-/// Most steps of a phrase, and of one of its notes.
+/// Maximum number of steps of a phrase, and of each of its notes.
 const MOST_STEPS: f64 = 64.0;
 
 /// Notes in steps of a third of a second: `C4@40 - E4+G4@110*2` is a soft note, a rest, and a loud chord of two steps. `+`

@@ -1,4 +1,4 @@
-//! The sounds that MIDI's program changes select, melodic ones and drum kits, and how songs with them are mixed.
+//! The sounds that MIDI program changes select, melodic sounds and drum kits, and the mix of songs that use them.
 
 use super::about::{check_label, label};
 use super::complaints::Complaints;
@@ -20,7 +20,7 @@ const VERSION: i64 = 1;
 /// Number of programs of each kind.
 const PROGRAMS: usize = 128;
 
-/// Drum kits whose program numbers differ by less are variations of one, as in Roland's GS.
+/// Each group of this many drum program numbers holds variations of the group's first kit, as in Roland's GS.
 const VARIATIONS: usize = 8;
 
 const KEYS: [&str; 6] = ["programs", "name", "sounds", "drums", "gain", "space"];
@@ -28,7 +28,7 @@ const KEYS: [&str; 6] = ["programs", "name", "sounds", "drums", "gain", "space"]
 /// Gains of a mix in dB.
 const GAINS: RangeInclusive<f64> = -60.0..=24.0;
 
-/// Names of the sounds that program changes select: factory presets and kits, or files; and how they are mixed.
+/// Names of the sounds that program changes select (factory presets and kits, or files), and the mix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Programs {
     /// Name of the list; never empty.
@@ -39,7 +39,7 @@ pub struct Programs {
     drums: Vec<Option<Program>>,
 }
 
-/// What a program plays.
+/// The sound of a program.
 #[derive(Clone, Debug, PartialEq)]
 struct Program {
     /// Name of a preset or kit; never empty.
@@ -76,8 +76,8 @@ impl Programs {
         self.sounds.get(usize::from(number))?.as_ref()
     }
 
-    /// The name of the kit of a drum program, counted from 0: that of the number, or else of the kit that it is a variation
-    /// of, or else the first one.
+    /// The name of the kit of a drum program, counted from 0: the kit of this number, else the kit of which this number
+    /// is a variation, else the first kit.
     pub fn drums(&self, number: u8) -> Option<&str> {
         self.drum_program(number).map(|program| &*program.sound)
     }
@@ -102,8 +102,9 @@ impl Programs {
         }
     }
 
-    /// The kits of all programs, as [`Programs::name_of`] counts them, with their gains. `load` makes them by name; it is
-    /// called once for each name and gain. Programs that are not `wanted` have none, nor have those without a sound. Allocates.
+    /// The kits of all programs, numbered as in [`Programs::name_of`], with their gains. `load` makes a kit from its
+    /// name, and is called once for each name and gain. Programs that are not `wanted` or have no sound get no kit.
+    /// Allocates.
     ///
     /// # Errors
     /// Those of `load`.
@@ -126,7 +127,7 @@ impl Programs {
         (0..=u8::MAX).map(&mut kit).collect()
     }
 
-    /// The kits of all programs of General MIDI, as the factory has them. Reads most of the bank, and allocates.
+    /// The factory's kits for all programs of General MIDI. Reads most of the factory's sounds, and allocates.
     pub fn factory_kits() -> Vec<Arc<Kit>> {
         let load = |name: &str| Playable::find(name).map(|playable| playable.kit());
         let kits = Self::general_midi().kits(|_| true, load).expect("a test finds all of them");
@@ -182,7 +183,7 @@ fn read(table: &toml::Table, complaints: &mut Complaints) -> std::result::Result
     Ok(programs)
 }
 
-/// Reads what a program plays: a name, or a name and a gain. None for an empty name, or if it cannot be read.
+/// Reads the sound of a program: a name, or a name and a gain. None for an empty name, or if it cannot be read.
 fn read_program(place: &str, value: &Value, complaints: &mut Complaints) -> Option<Program> {
     let name = |place: &str, value: &Value| match value {
         Value::String(name) => check_label(place, name.clone()),

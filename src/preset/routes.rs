@@ -66,7 +66,7 @@ fn read_amount(file: &Table, route: &Table, at: &str, place: usize, patch: &mut 
     }
 }
 
-/// Reads the place that a route asks for; returned from 0.
+/// Reads the `place` of a route. Files count places from 1, the result counts from 0.
 fn read_place(route: &Table, at: &str) -> Result<Option<usize>, String> {
     let most = MAX_ROUTES as i64;
     match route.get("place") {
@@ -93,7 +93,7 @@ fn read_route(route: &Table, at: &str) -> Result<Route, String> {
     })
 }
 
-/// Finds what the text at a key of a route names; none if the key is missing.
+/// Looks up the text at `key` of a route with `find`; none if the key is missing.
 fn named<T>(
     route: &Table,
     at: &str,

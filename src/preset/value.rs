@@ -22,7 +22,8 @@ pub(super) fn unexpected(key: &str, expected: &str, found: &Value) -> String {
     format!("{key}: expected {expected}, found {} ‘{}’", found.type_str(), found.to_string().trim())
 }
 
-/// The number of this name in the table at `place`, within a range, if the table has it. `of` gives it its precision.
+/// The number of this name in the table at `place`, if the table has it. It must be in the range. `of` converts it to
+/// its type.
 pub(super) fn number_in<N: Copy + PartialOrd + Display>(
     table: &Table,
     place: &str,
@@ -51,8 +52,7 @@ pub(super) fn param_value(info: &ParamInfo, value: &Value) -> Result<f32, String
     }
 }
 
-/// The parameters of the table `name` by their ids, in the order of [`PARAMS`]; of those that are `wanted`. Empty if the
-/// table is missing.
+/// Reads the `wanted` parameters in the table `name`, in the order of [`PARAMS`]. Empty if the table is missing.
 pub(super) fn read_params(
     name: &str,
     found: Option<&Value>,

@@ -23,15 +23,14 @@ pub struct Render<'a> {
     pub sample_rate: f64,
 }
 
-/// Draws the waveform of each channel (or of both at once where they are the same) over the spectrogram of their
-/// mean, to a `.png` of 1600 × 900 pixels or an `.svg`.
+/// Draws the waveform of each channel (or one waveform if both are the same) above the spectrogram of their mean, to a
+/// `.png` of 1600 × 900 pixels or an `.svg`.
 pub fn waveform_and_spectrogram(render: Render, title: &str, path: &Path) -> Result<()> {
     let Render { left, right, sample_rate } = render;
     save(path, Sheet { title, cell: 1, sample_rate, render, against: None, middle: mean(left, right) })
 }
 
-/// Draws what was expected and what came instead, their difference (at its own scale), and the spectrogram of the
-/// difference.
+/// Draws the expected and the actual render, their difference (at its own scale), and the spectrogram of the difference.
 pub fn comparison(expected: Render, actual: Render, title: &str, path: &Path) -> Result<()> {
     save(path, Sheet::comparison(expected, actual, title))
 }
@@ -41,14 +40,14 @@ pub fn comparison_bytes(expected: Render, actual: Render, title: &str, format: &
     bytes(Sheet::comparison(expected, actual, title), format)
 }
 
-/// What a figure shows.
+/// The contents of a figure.
 struct Sheet<'a> {
     title: &'a str,
-    /// Pixels to a cell of the spectrogram.
+    /// Pixels per cell of the spectrogram.
     cell: usize,
     sample_rate: f64,
     render: Render<'a>,
-    /// What `render` is compared with.
+    /// The expected render, if `render` is compared with one.
     against: Option<Render<'a>>,
     /// The signal of the spectrogram: mean of the channels, or of their differences.
     middle: Vec<f32>,
@@ -106,7 +105,7 @@ impl Picture for Sheet<'_> {
     }
 }
 
-/// Draws to the format that the file's extension names.
+/// Draws to a file in the format that its extension names.
 fn save(path: &Path, sheet: Sheet) -> Result<()> {
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
     if !["png", "svg"].contains(&extension.as_str()) {
@@ -139,7 +138,7 @@ mod tests {
             .collect()
     }
 
-    /// Whether a file is there and of its format, and how long it is.
+    /// Checks that the file exists in its format, and returns its length.
     fn check(path: &Path, starts: &[u8]) -> usize {
         let bytes = std::fs::read(path).unwrap();
         assert!(bytes.starts_with(starts), "{}", path.display());

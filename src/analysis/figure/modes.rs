@@ -1,4 +1,4 @@
-//! A strike's modes over its spectrum, what they leave of it, and their decay over frequency.
+//! Draws a strike: its spectrum with the modes, the spectrum of the residual, and the decay of the modes over frequency.
 
 use crate::analysis::modes::{Mode, Strike};
 use crate::analysis::spectrum::{Spectrum, spectrum};
@@ -8,7 +8,7 @@ use crate::figure::{Area, Drawn, Picture, text};
 use libm::{ceil, floor, log10, pow};
 use plotters::prelude::*;
 
-/// Columns that a spectrum's bins are gathered in.
+/// Number of columns into which the bins of a spectrum are gathered.
 const COLUMNS: usize = 900;
 /// Lowest frequency in Hz.
 const LOWEST: f64 = 20.0;
@@ -17,7 +17,7 @@ const SPAN_DB: f64 = 120.0;
 
 /// The figure of a strike.
 pub struct ModesFigure<'a> {
-    /// What it shows.
+    /// Its title.
     pub title: &'a str,
     /// The strike.
     pub strike: &'a Strike,
@@ -40,7 +40,7 @@ impl Picture for ModesFigure<'_> {
         let sound = spectrum(&self.strike.samples, self.sample_rate);
         let residual = spectrum(&self.strike.residual, self.sample_rate);
         let loudest = sound.levels.iter().copied().fold(-300.0, f64::max);
-        // A mode that decays has a higher level at the onset than its peak in the spectrum, which is that of its mean.
+        // A decaying mode has a higher level at the onset than in the spectrum, which shows its mean over time.
         let strongest = self.strike.modes.iter().map(|mode| mode.level_db).fold(-300.0, f64::max);
         let top = 10.0 * ceil(loudest.max(strongest) / 10.0);
         let levels = Panel {

@@ -18,7 +18,7 @@ pub(super) const RIGHT_MARGIN: u32 = 110;
 
 /// A signal in a waveform panel.
 pub(super) struct Trace<'a> {
-    /// What the right margin calls it; nothing if empty.
+    /// Its name in the right margin; may be empty.
     pub(super) name: &'a str,
     pub(super) samples: &'a [f32],
     pub(super) colour: RGBColor,
@@ -162,7 +162,7 @@ fn scale_of_colours<B: DrawingBackend>(area: &Area<B>, height: usize, top_level:
     Ok(())
 }
 
-/// A tick's number. Ticks are sums of steps: what should be zero is a rounding error.
+/// The text of a tick. Ticks are sums of steps, so that the tick at zero may be a small rounding error.
 fn trimmed(tick: f64) -> String {
     short(if tick.abs() < 1e-12 { 0.0 } else { tick })
 }

@@ -1,4 +1,4 @@
-//! A sound: its waveform, its spectrogram, and the modes that it is made of, if they are known.
+//! Draws a sound: its waveform, its spectrogram, and its modes, if they are known.
 
 use super::panel::{Trace, spectrogram_panel, waveform};
 use super::{Render, mean};
@@ -25,11 +25,11 @@ const REMARKS: u32 = 230;
 pub struct DrawnMode {
     /// Hz.
     pub frequency: f64,
-    /// dB, against any level that is the same for all.
+    /// dB, relative to any level that is the same for all modes.
     pub level_db: f64,
     /// Seconds.
     pub t60: f64,
-    /// Whether noise moves it, and not the strike.
+    /// Whether noise excites it, and not the strike.
     pub is_noisy: bool,
 }
 
@@ -52,15 +52,15 @@ pub fn modes_of(patch: &Patch, frequency: f64) -> Vec<DrawnMode> {
     patch.modes.as_slice().iter().map(mode).collect()
 }
 
-/// The figure.
+/// The figure of a sound.
 pub struct SoundFigure<'a> {
-    /// What it shows.
+    /// Its title.
     pub title: &'a str,
     /// The sound.
     pub render: Render<'a>,
     /// Its modes; without any there is no panel for them.
     pub modes: &'a [DrawnMode],
-    /// Pixels to a cell of the spectrogram: 1 for an image of pixels, more for a vector image.
+    /// Pixels per cell of the spectrogram: 1 for an image of pixels, more for a vector image.
     pub cell: usize,
 }
 

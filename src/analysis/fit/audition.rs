@@ -1,11 +1,11 @@
-//! Plays a patch, as it will be heard.
+//! Renders notes of a patch with the engine.
 
 use crate::analysis::level::mean_of;
 use crate::analysis::log_mel::RATE;
 use crate::engine::{Event, EventKind, Synth};
 use crate::patch::Patch;
 
-/// Frames that are rendered at a time.
+/// Frames per block.
 const BLOCK: usize = 512;
 
 /// A synth that plays one note after another, each as if it were the first. Not real-time safe.
@@ -20,7 +20,7 @@ impl Audition {
 
     /// The first `frames` frames of a held note, left and right. `key` is a fractional MIDI key, `velocity` 0–1.
     pub(super) fn play(&mut self, patch: &Patch, key: f64, velocity: f64, frames: usize) -> [Vec<f32>; 2] {
-        // A patch that is set while notes could sound moves there smoothly; a reset makes it the present one.
+        // `set_patch` moves parameters smoothly to their new values; the reset makes the patch the present one at once.
         self.synth.set_patch(patch);
         self.synth.reset();
         let nearest = key.round().clamp(0.0, 127.0);

@@ -1,7 +1,8 @@
-//! What the modes do not explain, as a bed of modes that noise moves.
+//! Fills the residual of the modes with a bed: modes that noise excites.
 //!
-//! In each mel band, what the recording has more than the draft decays by a law of its own; a few modes get that level and that
-//! decay. They lie where the band's spectrum is highest: what noise moves may be a body with modes of its own.
+//! In each mel band, a decay is fitted to the level by which the recording exceeds the draft, and a few modes get that
+//! level and that decay. Their frequencies are where the band's spectrum is highest, since the noise may excite a body
+//! with modes of its own.
 
 use super::draft::{Partial, Sweep, speed};
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, centre};
@@ -9,25 +10,25 @@ use crate::dsp::random::{key, uniform};
 use libm::{log10, pow, sqrt};
 use realfft::RealFftPlanner;
 
-/// Excess in dB of the recording over the draft that is filled up.
+/// Smallest excess of the recording over the draft, in dB, that is filled up.
 const EXCESS_DB: f64 = 1.5;
 /// Shortest and longest T60 of the bed in seconds.
 const T60: (f64, f64) = (0.01, 20.0);
-/// dB by which a band is followed down from where it is loudest.
+/// Range in dB, down from its loudest window, in which the decay of a band is measured.
 const FOLLOWED_DB: f64 = 45.0;
-/// Windows in which a band can come to its loudest: 1.2 s.
+/// Number of windows among which the loudest of a band is searched for: 1.2 s.
 const RISE: usize = 207;
-/// RMS deviation of a band's level from a line up to which it falls smoothly.
+/// Largest RMS deviation of a band's level from a line at which its decay counts as smooth.
 const SMOOTH_DB: f64 = 2.0;
-/// Modes of a band that does not.
+/// Fewest and most modes of a band whose decay is not smooth.
 const FEWEST: f64 = 2.0;
 const MOST: f64 = 6.0;
-/// Power of a line in relation to the highest of its band that is left out: −13 dB.
+/// Power, relative to the strongest line of its band, below which a line is left out: −13 dB.
 const FAINT: f64 = 0.05;
 /// Bandwidth in Hz of a mode with a T60 of 1 s.
 const BANDWIDTH: f64 = 2.2;
 
-/// The bed that fills `draft` up to `target`, of at most `most` modes, where `lines` are high. `seed` sets their pans.
+/// The bed that fills `draft` up to `target`: at most `most` modes, where `lines` are strong. `seed` sets their pans.
 pub(super) fn bed([target, draft]: [&LogMel; 2], lines: &Lines, sweep: &Sweep, most: usize, seed: u64) -> Vec<Partial> {
     let floor = target.loudest() - SPAN_DB - 6.0;
     let mut bands: Vec<(f64, Vec<Partial>)> =
@@ -36,7 +37,7 @@ pub(super) fn bed([target, draft]: [&LogMel; 2], lines: &Lines, sweep: &Sweep, m
     let mut bed = Vec::new();
     for (_, partials) in bands {
         if bed.len() + partials.len() <= most {
-            // The sweep moves them to where they are wanted.
+            // The sweep changes the frequencies by this factor, so divide by it.
             let lower =
                 |partial: Partial| Partial { frequency: partial.frequency / speed(sweep, partial.t60), ..partial };
             bed.extend(partials.into_iter().map(lower));
@@ -67,7 +68,7 @@ fn fill(
     // A line through the levels in dB, from the loudest on.
     let points: Vec<(f64, f64)> = (start..levels.len())
         .map_while(|n| {
-            // A gap of some windows, where the draft is louder by chance, is no end.
+            // A gap of less than twelve windows, where the draft is louder by chance, does not end the decay.
             let near = &levels[n..(n + 12).min(levels.len())];
             near.iter().any(Option::is_some).then_some((n, levels[n]))
         })
@@ -82,7 +83,7 @@ fn fill(
     let slope = if count >= 4.0 { (product / square).min(-60.0 / T60.1) } else { -60.0 / 0.03 };
     let t60 = (-60.0 / slope).clamp(T60.0, T60.1);
     let at_onset = if count >= 4.0 { (y - slope * t).min(top + 6.0) } else { top };
-    // What falls smoothly is one mode: several would beat. Of noise, there are as many as it takes that their resonances meet.
+    // A smooth decay gets one mode, since several would beat. Noise gets enough modes for their resonances to overlap.
     let off = points.iter().map(|point| point.1 - y - slope * (point.0 - t)).map(|off| off * off).sum::<f64>();
     let is_smooth = count >= 4.0 && off < SMOOTH_DB * SMOOTH_DB * count;
     let width = 0.5 * (centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1)));
@@ -100,11 +101,11 @@ fn fill(
     Some((pow(10.0, 0.1 * at_onset) * t60, partials))
 }
 
-/// The spectrum of a sound as a whole.
+/// The power spectrum of a whole sound.
 pub(super) struct Lines {
     /// Hz from one value to the next.
     step: f64,
-    /// The power up to each frequency: what a stretch has is a difference.
+    /// The power up to each frequency. The power of a range is the difference of two values.
     sums: Vec<f64>,
 }
 
@@ -130,7 +131,8 @@ impl Lines {
         at(frequency + 0.5 * width) - at(frequency - 0.5 * width - self.step)
     }
 
-    /// The frequencies with the most power around them, at most so many of a range, no two within a width; with that power.
+    /// The frequencies with the most power within `width` around them, with that power: at most `most` in the range,
+    /// and no two closer than `width`.
     fn highest(&self, range: (f64, f64), width: f64, most: usize) -> Vec<(f64, f64)> {
         let step = (0.25 * width).max(self.step);
         let count = ((range.1 - range.0) / step) as usize + 1;

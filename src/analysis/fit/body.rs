@@ -1,4 +1,4 @@
-//! The physical body that explains the modes of a sound best, with its numbers, and what remains.
+//! Finds the physical body, with its numbers, that explains the modes of a sound best.
 
 use super::draft::{Draft, Partial, digits};
 use super::levels::{Levels, weight};
@@ -16,24 +16,24 @@ const BARS: &[&str] = &["free_bar", "marimba", "vibraphone", "xylophone", "tine"
 const MEMBRANES: &[&str] = &["membrane", "timpani"];
 const PLATES: &[&str] = &["plate", "free_plate", "disc", "free_disc"];
 const BELLS: &[&str] = &["church_bell", "hand_bell", "tubular_bell", "glass", "bowl"];
-/// Stiffnesses of strings, sides of plates and slendernesses of glasses that are tried.
+/// Values that are tried: stiffnesses of strings, aspect ratios of plates, and slendernesses of glasses.
 const STIFFNESSES: [f64; 12] = [0.0, 1e-5, 3e-5, 6e-5, 1e-4, 2e-4, 4e-4, 8e-4, 1.5e-3, 3e-3, 6e-3, 1.2e-2];
 const ASPECTS: [f64; 13] = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 2.0, 2.25, 2.5, 3.0];
 const SLENDERNESSES: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 3.0, 5.0];
-/// Cents by which a mode may be off the model's to be that one.
+/// Distance in cents below which a partial counts as a mode of the model.
 const NEAR: f64 = 60.0;
-/// Cents by which a mode that was found twice may differ.
+/// Distance in cents below which a mode that was found twice counts as the same.
 const SAME: f64 = 5.0;
-/// Partials that the body's own modes are laid on in turn, and how many of these.
+/// Number of partials, and number of the body's lowest modes, that are put on each other in turn.
 const PLACED: usize = 5;
 const LOWEST: usize = 6;
-/// Modes of a body.
+/// Number of modes of a body.
 const MODES: usize = 48;
 
-/// What a sound is to be explained by.
+/// The kind of body that is to explain a sound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Family {
-    /// A table of the modes as they are: explains everything, says nothing.
+    /// No body, but a table of the modes as they were found.
     #[default]
     Table,
     /// A string.
@@ -49,7 +49,7 @@ pub enum Family {
 }
 
 impl Family {
-    /// All, with the names that commands call them.
+    /// All families, with their names in commands.
     pub const ALL: [(&'static str, Family); 6] = [
         ("table", Family::Table),
         ("string", Family::String),
@@ -78,21 +78,21 @@ pub struct Explained {
     pub model: &'static str,
     /// Mean distance in cents of the modes from the model's, weighted by their energy.
     pub cents: f64,
-    /// Modes of the sound that are the model's, and all of them.
+    /// Number of modes of the sound that are modes of the model, and number of all modes of the sound.
     pub modes: (usize, usize),
-    /// Energy in dB, relative to all modes, of those that are none of the model's.
+    /// Energy of the modes that are no modes of the model, in dB relative to all modes.
     pub unexplained_db: f64,
 }
 
-/// A model laid on the partials.
+/// A model compared with the partials.
 struct Match {
     body: Body,
-    /// For each partial its mode of the model, and by how many cents it is off.
+    /// For each partial the mode of the model that it is, and its distance from that in cents.
     pairs: Vec<Option<(BodyMode, f64)>>,
     score: f64,
 }
 
-/// The bodies of a model with the numbers that set their ratios.
+/// The bodies of a model, one for each tried value of the number that sets its ratios.
 fn variants(model: &Model) -> Vec<Body> {
     let with = |name: &str, values: &[f64]| {
         let field = FIELDS.iter().find(|field| field.name == name);
@@ -127,8 +127,8 @@ fn lay(body: &Body, frequency: f64, partials: &[Partial]) -> Match {
         })
     };
     let pairs: Vec<_> = partials.iter().map(pair).collect();
-    // Dense models meet everything by chance: a mode of theirs that should sound below the loudest partial, and is not
-    // there, counts against them.
+    // A model with many modes has one near any partial. So a mode of the model that should sound below the highest
+    // partial, but is no partial, lowers the score.
     let highest = partials.iter().map(|partial| partial.frequency).fold(0.0, f64::max);
     let missing = modes
         .iter()
@@ -139,16 +139,17 @@ fn lay(body: &Body, frequency: f64, partials: &[Partial]) -> Match {
     Match { body, pairs, score }
 }
 
-/// The mode that a partial of a frequency in Hz is: not the same number, where the partial was found later in the sound.
+/// The mode that is a partial of this frequency in Hz. The frequencies differ if the partial was found later in the sound.
 fn nearest(modes: &[Mode], frequency: f64) -> Option<&Mode> {
     let off = |mode: &&Mode| fabs(1200.0 * log2(mode.frequency / frequency));
     modes.iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|mode| off(mode) < SAME)
 }
 
-/// Finds the body of a family that explains a draft best, given the strike that its modes were found in. None if it has no modes.
+/// Finds the body of a family that explains a draft best, given the strike in which its modes were found. None without
+/// modes.
 pub(super) fn find(draft: &Draft, strike: Option<&Strike>, family: Family) -> Option<(Body, Levels, Explained)> {
     let mut partials: Vec<Partial> = draft.partials.iter().copied().filter(|partial| partial.struck).collect();
-    // What was corrected by bands is what those have; a body is asked for the levels of modes.
+    // The draft's amplitudes were corrected by bands. Levels of single modes are needed here: those that were found.
     for partial in &mut partials {
         let own = strike.and_then(|strike| Some((nearest(&strike.modes, partial.frequency)?, strike)));
         partial.amplitude =
@@ -180,7 +181,7 @@ pub(super) fn find(draft: &Draft, strike: Option<&Strike>, family: Family) -> Op
     let levels = Levels(pairs(&found, &partials).map(|(partial, mode, _)| (*partial, mode.ratio)).collect());
     let placed = levels.placed(&found.body, &[draft.hardness]).pop();
     found.body = placed.map_or(found.body, |(_, body)| body);
-    // What the model has above the highest mode of the sound is only guessed.
+    // The model's modes above the highest mode of the sound are only guessed, so leave them out.
     let highest = pairs(&found, &partials).map(|(_, mode, _)| mode.frequency).fold(0.0, f64::max);
     found.body.modes = found.body.modes().iter().filter(|mode| mode.frequency <= 1.001 * highest).count().max(1);
     let explained = explained(model, &found, &partials);
@@ -193,7 +194,7 @@ fn pairs<'a>(found: &'a Match, partials: &'a [Partial]) -> impl Iterator<Item = 
     pairs.filter_map(|(partial, pair)| pair.as_ref().map(|(mode, cents)| (partial, mode, *cents)))
 }
 
-/// The law of loss that the T60s follow best: `b0 + b1 f` by least squares, each rate as certain as it is large.
+/// The law of loss that fits the T60s best: rates of `b0 + b1 f` by least squares of their relative errors.
 fn loss(found: &Match, partials: &[Partial]) -> Loss {
     let (mut s, mut sx, mut sy, mut sxx, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (partial, _, _) in pairs(found, partials) {
@@ -217,7 +218,7 @@ fn loss(found: &Match, partials: &[Partial]) -> Loss {
     Loss { b0: digits(b0, 4), b1: digits(b1, 4), power: 1.0 }
 }
 
-/// The patch of a body that plays a draft's note, of any gain.
+/// The patch of a body that plays a draft's note. Its gain is still to be set.
 pub(super) fn patch(draft: &Draft, body: &Body) -> Patch {
     let mut patch = Patch { modes: modes_of_body(body), ..draft.patch() };
     patch.set(Param::Decay, Param::Decay.info().clamp(body.t60() as f32));

@@ -1,23 +1,23 @@
-//! Levels and decays of a draft's modes, corrected by what its bands have too much or too little.
+//! Corrects levels and decays of a draft's modes by the errors of its mel bands.
 
 use super::draft::{Draft, Partial, T60};
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, weights};
 use libm::{exp, pow};
 
-/// Largest correction of a level in dB and of a decay in dB/s at a time, as a share of its own.
+/// Largest correction at a time: of a level in dB, and of a decay rate as a share of that rate.
 const MOST_DB: f64 = 12.0;
 const MOST_SHARE: f64 = 0.6;
-/// Largest error in dB that counts.
+/// Limit of errors in dB.
 const MOST_ERROR_DB: f64 = 20.0;
-/// Windows in which a mode has to be heard, if its decay is to be corrected.
+/// Least number of windows in which a mode must be audible for its decay to be corrected.
 const FEWEST: f64 = 8.0;
-/// ln 10⁶: by e to that the energy falls in a T60.
+/// ln 10⁶: in a T60, the energy falls by e to the power of this.
 const LN_120_DB: f64 = 13.815_510_557_964_274;
 
-/// By how many dB something is too soft at the onset, and by how many more in each second.
+/// The level in dB that is missing at the onset, and its change in dB/s.
 type Correction = (f64, f64);
 
-/// Corrects all modes of a band alike.
+/// Corrects all modes of a band by the same amount.
 pub(super) fn by_bands(draft: &Draft, target: &LogMel, heard: &LogMel, share: f64) -> Draft {
     let errors = Errors::new(target, heard);
     let corrections: [Correction; BANDS] = std::array::from_fn(|band| {
@@ -34,8 +34,8 @@ pub(super) fn by_bands(draft: &Draft, target: &LogMel, heard: &LogMel, share: f6
     })
 }
 
-/// Corrects each mode by those moments of its bands at which it is what is heard: of two modes in a band, one that is soon over
-/// is told by the beginning, and one that rings by what comes after.
+/// Corrects each mode by the errors of its bands, each weighted by the mode's share of the band's power at that moment.
+/// Of two modes in a band, the shorter one is corrected by the beginning of the sound, and the longer one by the rest.
 pub(super) fn by_moments(draft: &Draft, target: &LogMel, heard: &LogMel, share: f64) -> Draft {
     let errors = Errors::new(target, heard);
     let columns = errors.columns.len();
@@ -73,7 +73,7 @@ fn time(n: usize) -> f64 {
     n as f64 * HOP as f64 / f64::from(RATE)
 }
 
-/// By how many dB each band of each window is too soft; none where neither is heard.
+/// The level in dB that is missing in each band of each window; none where neither sound is audible.
 struct Errors {
     columns: Vec<[Option<f64>; BANDS]>,
 }
@@ -97,7 +97,7 @@ impl Errors {
     }
 }
 
-/// The line through some points, each of some weight, by least squares.
+/// A line through weighted points, by least squares.
 #[derive(Default)]
 struct Line {
     points: Vec<[f64; 3]>,
@@ -117,7 +117,7 @@ impl Line {
         }
         let (t, y) = (sum(&|point| point[0]) / count, sum(&|point| point[1]) / count);
         let square = sum(&|point| (point[0] - t) * (point[0] - t));
-        // Of less than one window little is known.
+        // With a weight of less than one window, the error is uncertain: correct only a part of it.
         let known = count.min(1.0);
         if count < FEWEST || square == 0.0 {
             return (known * y, 0.0);
@@ -127,13 +127,13 @@ impl Line {
     }
 }
 
-/// A draft with a share of each mode's correction.
+/// The draft with a share of each mode's correction.
 fn corrected(draft: &Draft, share: f64, mut correction: impl FnMut(&Partial) -> Correction) -> Draft {
     let mut draft = draft.clone();
     for partial in &mut draft.partials {
         let (level, slope) = correction(partial);
         partial.amplitude *= pow(10.0, (share * level).clamp(-MOST_DB, MOST_DB) / 20.0);
-        // A T60 of 1 s falls by 60 dB in a second.
+        // Decay rate in dB/s.
         let falls = 60.0 / partial.t60;
         let change = (share * slope).clamp(-MOST_SHARE * falls, MOST_SHARE * falls);
         partial.t60 = (60.0 / (falls - change)).clamp(T60.0, T60.1);
@@ -185,7 +185,7 @@ mod tests {
             found = by_moments(&found, &target, &bands(&found), 0.8);
         }
         assert!(off(&found, 0, 0.4) < 2.0 && off(&found, 1, 0.1) < 0.5, "{:?}", found.partials);
-        // All modes of the band alike do not get there.
+        // Correcting all modes of the band alike does not get there.
         let mut alike = draft([0.1, 0.1]);
         for _ in 0..12 {
             alike = by_bands(&alike, &target, &bands(&alike), 0.8);

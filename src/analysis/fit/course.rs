@@ -1,8 +1,8 @@
-//! The pitch of a sound over time, and the sweep and vibrato that explain it.
+//! Follows the pitch of a sound over time, and finds the sweep and vibrato that explain it.
 //!
-//! The strongest partial is followed from moment to moment through spectra whose windows have the same number of cycles at all
-//! frequencies. Its frequency there is that at which the phase turns (reassignment: Auger & Flandrin 1995), which is far more
-//! exact than the window is narrow.
+//! The strongest partial is followed from moment to moment through spectra whose windows have the same number of cycles
+//! at all frequencies. Its frequency is the rate at which its phase turns (reassignment: Auger & Flandrin 1995), which
+//! is far more exact than the bandwidth of the window.
 
 use super::draft::{Sweep, Vibrato};
 use crate::analysis::log_mel::RATE;
@@ -11,41 +11,41 @@ use libm::{cos, exp, fabs, log2, pow, sin, sqrt};
 use nalgebra::{Cholesky, SMatrix, SVector};
 use std::f64::consts::TAU;
 
-/// Seconds that are followed, and samples from one moment to the next.
+/// Seconds of the sound that are followed, and samples from one moment to the next.
 const LONGEST: f64 = 2.0;
 const HOP: usize = 110;
-/// Lowest frequency in Hz, frequencies in an octave, and how many there are: eight octaves.
+/// Lowest frequency in Hz, number of bins per octave, and number of bins: eight octaves.
 const LOWEST: f64 = 40.0;
 const OCTAVE: usize = 24;
 const BINS: usize = 8 * OCTAVE;
 /// Standard deviation of the window in cycles, and where it is cut off in standard deviations.
 const CYCLES: f64 = 1.2;
 const CUT: f64 = 3.0;
-/// Bins that a partial can move from one moment to the next: 130 octaves a second. A move that far costs this share of the
-/// amplitude.
+/// Largest move of a partial from one moment to the next, in bins (130 octaves per second), and the cost of that move
+/// as a share of the amplitude.
 const FARTHEST: usize = 8;
 const COST: f64 = 0.3;
-/// Amplitude below the greatest at which the partial is no longer listened to: −46 dB.
+/// Amplitude, relative to the greatest, below which the partial is ignored: −46 dB.
 const FAINT: f64 = 5e-3;
-/// Least number of moments that a pitch is followed through.
+/// Least number of moments in which the pitch must be known.
 const FEWEST: usize = 12;
-/// Sweeps that are tried: seconds, each so much longer than the one before, and curves.
+/// Sweeps that are tried: shortest time in seconds, factor from each time to the next, and longest time; number of curves.
 const SECONDS: (f64, f64, f64) = (0.015, 1.2, 1.6);
 const CURVES: usize = 17;
-/// Vibratos that are tried: rates in Hz and their step, and delays in seconds.
+/// Vibratos that are tried: lowest rate in Hz, step, and highest rate; delays in seconds.
 const RATES: (f64, f64, f64) = (2.5, 0.25, 20.0);
 const DELAYS: [f64; 6] = [0.0, 0.3, 0.6, 0.9, 1.3, 2.0];
 /// Rounds of the fine search.
 const ROUNDS: usize = 12;
-/// What is added to the diagonal of equations, so that they can be solved.
+/// Added to the diagonal of the equations, so that they can be solved.
 const RIDGE: f64 = 1e-9;
-/// Share of the squared error that a sweep, and a vibrato, has to take away.
+/// Share of the squared error that a sweep, and also a vibrato, must remove to be kept.
 const WORTH: f64 = 0.4;
 /// Least depths in semitones.
 const LEAST_SWEEP: f64 = 0.15;
 const LEAST_VIBRATO: f64 = 0.02;
 
-/// Where the pitch is at a moment.
+/// The pitch at a moment.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     /// Seconds.
@@ -74,7 +74,7 @@ impl Window {
         Self { frequency, values: (-half..=half).map(value).collect() }
     }
 
-    /// Amplitude, frequency in Hz and middle in samples of what the window sees around a sample.
+    /// Amplitude, frequency in Hz and centre in samples of the sound under the window, which is centred on sample `middle`.
     fn see(&self, samples: &[f32], middle: usize) -> [f64; 3] {
         let half = self.values.len() / 2;
         let first = half.saturating_sub(middle);
@@ -92,7 +92,7 @@ impl Window {
         let power = (sum[0] * sum[0] + sum[1] * sum[1]).max(1e-30);
         let along = (moment[0] * sum[0] + moment[1] * sum[1]) / power;
         let across = (moment[1] * sum[0] - moment[0] * sum[1]) / power;
-        // A Gaussian's derivative is itself times the time over the variance.
+        // The derivative of a Gaussian is, but for the sign, the Gaussian times the time over the variance.
         let deviation = CYCLES / self.frequency * f64::from(RATE);
         let turn = across / (deviation * deviation) * f64::from(RATE) / TAU;
         [sqrt(power), self.frequency + turn, middle as f64 + along]
@@ -107,7 +107,7 @@ fn follow(samples: &[f32]) -> Vec<Point> {
         .step_by(HOP)
         .map(|middle| windows.iter().map(|window| window.see(samples, middle)).collect())
         .collect();
-    // The way through all moments with the most amplitude (Viterbi 1967).
+    // The path through all moments with the largest sum of amplitudes (Viterbi 1967).
     let mut sums = vec![0.0; BINS];
     let mut ways: Vec<[usize; BINS]> = Vec::with_capacity(seen.len());
     for column in &seen {
@@ -144,8 +144,8 @@ fn follow(samples: &[f32]) -> Vec<Point> {
         .collect()
 }
 
-/// A weighted least-squares fit of the pitch by functions of time: their factors and the squared error. A function that is 0 gets
-/// no factor.
+/// A weighted least-squares fit of the pitch by functions of time: their factors and the squared error. A function that
+/// is always 0 gets the factor 0.
 fn solve<const N: usize>(points: &[Point], functions: impl Fn(f64) -> [f64; N]) -> ([f64; N], f64) {
     let mut matrix = SMatrix::<f64, N, N>::identity() * RIDGE;
     let (mut right, mut square) = (SVector::<f64, N>::zeros(), 0.0);
@@ -159,7 +159,7 @@ fn solve<const N: usize>(points: &[Point], functions: impl Fn(f64) -> [f64; N]) 
     (factors.into(), (square - factors.dot(&right)).max(0.0))
 }
 
-/// What moves the pitch, without its depths.
+/// The times and shapes of a sweep and a vibrato, without their depths.
 #[derive(Clone, Copy, Debug)]
 struct Movement {
     seconds: f64,
@@ -186,7 +186,7 @@ impl Movement {
             curve: self.curve,
             vibrato: Vibrato { semitones: depth, ..vibrato },
         };
-        // The engine's vibrato begins upwards, and its sweep reaches five octaves.
+        // The engine's vibrato begins upwards, and its sweep reaches five octaves: reject all others.
         (sweep, if depth < 0.0 || fabs(semitones) > 60.0 { f64::INFINITY } else { error })
     }
 
@@ -203,7 +203,7 @@ impl Movement {
     }
 }
 
-/// The movement of the pitch of samples at [`RATE`], from their onset on; [`Sweep::NONE`] if it stands still.
+/// The movement of the pitch of samples at [`RATE`], from their onset on; [`Sweep::NONE`] if the pitch is constant.
 pub(super) fn find(samples: &[f32]) -> Sweep {
     let points = follow(samples);
     if points.len() < FEWEST {

@@ -1,4 +1,4 @@
-//! A sound as the fit thinks of it, in Hz and amplitudes, and the patch that plays it.
+//! The fit's description of a sound, in Hz and amplitudes, and the patch that plays it.
 
 use crate::analysis::log_mel::RATE;
 use crate::dsp::pitch::SweepEnvelope;
@@ -9,13 +9,13 @@ use crate::sound::contact_time;
 use libm::{cos, exp, fabs, log10, pow, sin};
 use std::f64::consts::PI;
 
-/// Most modes of a fit.
+/// Maximum number of modes of a fit.
 pub(super) const MOST_MODES: usize = 256;
 /// Shortest and longest T60 in seconds of a mode that is struck.
 pub(super) const T60: (f64, f64) = (0.004, 60.0);
-/// Where the spectrum of a contact has less than this left, its modes are struck no harder: −40 dB.
+/// Lower bound of the spectrum of a contact, so that modes near its zeros are not struck ever harder: −40 dB.
 const LEAST_OF_CONTACT: f64 = 0.01;
-/// Place of the route of a swell; those of several takes are before it, those of a new patch behind.
+/// Place of the route of a swell. The routes made from several takes are before it, those of a new patch after it.
 const SWELL_ROUTE: usize = 3;
 
 /// A mode of the sound.
@@ -25,17 +25,17 @@ pub(super) struct Partial {
     pub(super) frequency: f64,
     /// Seconds.
     pub(super) t60: f64,
-    /// In the mean of the channels, at the onset; negative for an inverted phase.
+    /// Amplitude in the mean of the channels, at the onset; negative for an inverted phase.
     pub(super) amplitude: f64,
-    /// Radians by which a struck mode starts ahead of a sine, −π/2 to π/2.
+    /// Start phase in radians of a struck mode, −π/2 to π/2; 0 for a sine.
     pub(super) phase: f64,
     /// −1 to 1.
     pub(super) pan: f64,
-    /// Whether the strike moves it, and not the noise.
+    /// Whether the strike excites it, and not the noise.
     pub(super) struck: bool,
 }
 
-/// How the pitch moves after the strike: it falls (or rises), and trembles.
+/// The movement of the pitch after the strike: a sweep and a vibrato.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sweep {
     pub(super) semitones: f64,
@@ -45,10 +45,10 @@ pub(super) struct Sweep {
     pub(super) vibrato: Vibrato,
 }
 
-/// A pitch that goes up and down, up first.
+/// A vibrato, which begins upwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Vibrato {
-    /// Each way.
+    /// Depth each way.
     pub(super) semitones: f64,
     /// Hz.
     pub(super) rate: f64,
@@ -64,7 +64,7 @@ impl Sweep {
         SweepEnvelope::new(self.semitones, self.seconds, self.curve)
     }
 
-    /// The sweep with other numbers: the first is a share of the semitones, the second an exponent of the time.
+    /// The sweep with changed numbers: the semitones by a share of them, the time by a power of e, the curve by a sum.
     pub(super) fn moved(&self, [semitones, seconds, curve]: [f64; 3]) -> Self {
         Self {
             semitones: (self.semitones * (1.0 + semitones)).clamp(-60.0, 60.0),
@@ -74,7 +74,7 @@ impl Sweep {
         }
     }
 
-    /// Whether the pitch stands still.
+    /// Whether the pitch is constant.
     pub(super) fn is_none(&self) -> bool {
         self.semitones == 0.0 && self.vibrato.semitones == 0.0
     }
@@ -105,17 +105,17 @@ impl Noise {
         Self { seconds: 0.004, decay: NoiseDecay::Quadratic, attack: 0.0, hits: 1, spacing: 0.012 };
 }
 
-/// How a sound that is no stroke comes to its level.
+/// The rise of a sound that is not struck.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Swell {
     pub(super) seconds: f64,
-    /// dB from where it begins.
+    /// Rise in dB.
     pub(super) depth: f64,
-    /// −1 to 1: above 0 it is fast at first.
+    /// −1 to 1: above 0 the rise is fast at first.
     pub(super) curve: f64,
 }
 
-/// All of a sound.
+/// The description of a sound.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Draft {
     /// Frequency in Hz of the note that it was recorded on.
@@ -130,13 +130,13 @@ pub(super) struct Draft {
     pub(super) sweep: Sweep,
     pub(super) noise: Noise,
     pub(super) swell: Option<Swell>,
-    /// Whether it ends with its key, and not by itself.
+    /// Whether it ends when its key is released, and not by itself.
     pub(super) is_held: bool,
 }
 
-/// Share of a strike's force that a mode of a frequency in Hz is given by a contact of so many seconds: the spectrum of the
-/// engine's pulse `u² (1 − u)²`, of whole frames at [`RATE`], about its middle. It is negative where the pulse pushes more against the
-/// wave than with it.
+/// Share of a strike's force that reaches a mode of a frequency in Hz, by a contact of this many seconds: the spectrum
+/// of the engine's pulse `u² (1 − u)²`, in whole frames at [`RATE`], relative to its middle. The share is negative
+/// where the pulse acts more against the wave than with it.
 pub(super) fn contact_share(frequency: f64, seconds: f64) -> f64 {
     let frames = ((seconds * f64::from(RATE) + 0.5) as usize).max(1);
     let turn = 2.0 * PI * frequency * frames as f64 / f64::from(RATE);
@@ -149,26 +149,27 @@ pub(super) fn contact_share(frequency: f64, seconds: f64) -> f64 {
     sum / all
 }
 
-/// What a pan does to the mean of both channels: the engine's pan law has constant power.
+/// Gain of a pan in the mean of both channels: the engine's pan law has constant power.
 pub(super) fn share_of_mean(pan: f64) -> f64 {
     0.5 * (libm::sqrt(1.0 - pan) + libm::sqrt(1.0 + pan))
 }
 
 impl Partial {
-    /// The frequency in Hz at which it has the middle of its energy, since a sweep moves it.
+    /// The frequency in Hz at the mean time of its energy, since a sweep moves it.
     pub(super) fn heard_at(&self, sweep: &Sweep) -> f64 {
         self.frequency * speed(sweep, self.t60)
     }
 }
 
-/// How much higher than at its end a sweep has the middle of the energy of a mode, by its T60 in seconds.
+/// Factor by which a sweep raises a mode at the mean time of the mode's energy, relative to its final pitch. `t60` in
+/// seconds.
 pub(super) fn speed(sweep: &Sweep, t60: f64) -> f64 {
     // The squared amplitude falls by 120 dB in a T60: its mean time is T60 / ln 10⁶.
     if sweep.semitones == 0.0 { 1.0 } else { pow(2.0, sweep.envelope().at(t60 / 13.8) / 12.0) }
 }
 
 impl Draft {
-    /// The partial that the ear takes the most of: energy over all of its decay.
+    /// The partial with the most energy over its whole decay.
     pub(super) fn main(&self) -> Option<&Partial> {
         let energy = |partial: &&Partial| partial.amplitude * partial.amplitude * partial.t60;
         self.partials.iter().max_by(|a, b| energy(a).total_cmp(&energy(b)))
@@ -179,7 +180,7 @@ impl Draft {
         pow(self.velocity, 2.0 * self.follow)
     }
 
-    /// Amplitude over the force of a strike of amplitude 1, before pan.
+    /// The level that its mode needs for the partial's amplitude, if the force is 1.
     fn demand(&self, partial: &Partial) -> f64 {
         let share = match self.hardness {
             Some(hardness) if partial.struck => {
@@ -254,7 +255,7 @@ impl Draft {
             set(Param::Envelope1Attack, swell.seconds);
             set(Param::Envelope1Curve, 100.0 * swell.curve);
             set(Param::Envelope1Sustain, 100.0);
-            // It is the damper that ends the note.
+            // The damper ends the note, and not the envelope.
             set(Param::Envelope1Release, Param::Envelope1Release.info().max.into());
             let amount = 100.0 * depth / f64::from(gain_info.max - gain_info.min);
             patch = patch.with_route(SWELL_ROUTE, Source::Envelope1, Param::Gain, digits(amount, 5) as f32);
@@ -263,7 +264,7 @@ impl Draft {
     }
 }
 
-/// A number rounded to so many significant digits.
+/// A number rounded to `digits` significant digits.
 pub(super) fn digits(value: f64, digits: i32) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;

@@ -1,4 +1,4 @@
-//! One take becomes a draft: its modes, then a bed, then corrections.
+//! Fits a draft to one take: first its modes, then a bed, then corrections.
 
 use super::bed::Lines;
 use super::draft::{Draft, Sweep};
@@ -13,12 +13,13 @@ use crate::error::{Error, Result};
 const ANALYSED: f64 = 0.45;
 /// Residual of the modes in dB above which noise alone may explain the sound better.
 const NOISE_DB: f64 = -10.0;
-/// Share of a sound after which what noise has moved rings by itself.
+/// Share of a sound after which modes that noise has excited ring freely.
 const LATE: f64 = 0.2;
-/// Residual of the modes in dB below which the pitch stands still, and by how much less a sweep has to leave.
+/// Residual of the modes in dB below which the pitch counts as constant, and by how many dB a sweep must lower the
+/// residual.
 const EXPLAINED_DB: f64 = -50.0;
 const WORTH_A_SWEEP_DB: f64 = 2.0;
-/// What a bed has to gain in dB to be kept.
+/// Reduction of the distance in dB for which a bed is kept.
 const WORTH_A_BED: f64 = 0.02;
 /// Rounds of corrections at a time.
 const ROUNDS: usize = 8;
@@ -50,10 +51,11 @@ pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) ->
     best.ok_or(Error::Interrupted)
 }
 
-/// What a take may be: its modes, with the movements of the pitch that explain it best, and, if these explain little, modes
-/// that noise alone has moved: those that are left when it is over.
+/// The possible drafts of a take: its modes, without a sweep and with those sweeps that explain it best. If these
+/// explain little, also modes that only noise excites, found after the noise is over. If the sound rises slowly, also
+/// modes found after the rise.
 fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
-    // One after the other: what is not asked for is passed over.
+    // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
     let [of_still, of_search, first, second, of_noise, of_held] =
         [[0.0, 0.35], [0.35, 0.45], [0.45, 0.6], [0.6, 0.75], [0.75, 0.9], [0.9, 1.0]];
     let analysed = |source: Source, [from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>| {
@@ -69,7 +71,7 @@ fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
             swept.push(analysed(Source { swept: sweep, ..all }, part, tell)?);
         }
         swept.retain(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB);
-        // Beside the draft without a sweep, not in its place: a wrong sweep can leave a smaller residual and sound worse.
+        // The draft without a sweep is kept too: a wrong sweep can leave a smaller residual and still sound worse.
         found.extend(swept.into_iter().min_by(|a, b| residual_db(a).total_cmp(&residual_db(b))));
         found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     }
@@ -87,7 +89,7 @@ fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
     Ok(found)
 }
 
-/// What the modes leave of a strike, in dB.
+/// The residual of a strike in dB.
 fn residual_db((_, strike): &Found) -> f64 {
     strike.as_ref().map_or(0.0, |strike| strike.residual_db)
 }
@@ -106,7 +108,7 @@ fn improved(
     }
     listener.choose_hardness(&mut draft)?;
     listener.tell(part(0.3))?;
-    // Twice: what decays in two stages gets two beds.
+    // Two passes, so that a sound that decays in two stages gets two beds.
     for (pass, seed) in [(1.0, 11), (2.0, 12)] {
         let heard = listener.hear(&draft)?;
         let room = most.saturating_sub(draft.partials.len());

@@ -1,4 +1,4 @@
-//! Several takes of one instrument: how its sound follows velocity and key.
+//! Finds how an instrument's sound follows velocity and key, from several takes.
 
 use super::draft::Draft;
 use crate::params::Param;
@@ -7,14 +7,14 @@ use crate::patch::routes::Source;
 use crate::units::key_from_frequency;
 use libm::{log, log10};
 
-/// Semitones within which two takes are of one key.
+/// Distance in semitones below which two takes have the same key.
 const SAME_KEY: f64 = 0.5;
-/// Places of the routes: those of a new patch are behind them.
+/// Places of the routes. Those of a new patch are in the last places.
 const HARDNESS_ROUTE: usize = 0;
 const DECAY_ROUTE: usize = 1;
 const GAIN_ROUTE: usize = 2;
 
-/// A take's draft and what was measured of it.
+/// A take's draft and its level.
 pub(super) struct Layer {
     pub(super) draft: Draft,
     /// RMS of its first 50 ms.
@@ -32,7 +32,7 @@ impl Layer {
     }
 }
 
-/// The take that the others are compared with: nearest to the middle of the keys, and the loudest of these.
+/// The take with which the others are compared: the one nearest to the middle of the keys, and the hardest struck of these.
 pub(super) fn base(layers: &[Layer]) -> usize {
     let middle = layers.iter().map(Layer::key).sum::<f64>() / layers.len().max(1) as f64;
     let distance = |layer: &Layer| (layer.key() - middle).abs();
@@ -48,7 +48,8 @@ pub(super) fn base(layers: &[Layer]) -> usize {
     (0..layers.len()).min_by(order).unwrap_or(0)
 }
 
-/// How much velocity sets the force, 0–1: amplitude goes with velocity to the power of twice that. 1 without layers of a key.
+/// How much velocity sets the force, 0–1: the amplitude is proportional to velocity to the power of twice this number.
+/// 1 if no two takes of the key differ in velocity.
 pub(super) fn follow(layers: &[Layer], base: usize) -> f64 {
     let points = of_the_key(layers, base).map(|layer| (log(layer.draft.velocity), log(layer.level.max(1e-9))));
     slope(points).map_or(1.0, |slope| (0.5 * slope).clamp(0.0, 1.0))

@@ -1,4 +1,4 @@
-//! Where a body is struck and heard, by the levels of the modes that a sound has of it.
+//! Finds where a body is struck and picked up, from the levels of its modes in a sound.
 
 use super::draft::{Partial, contact_share, digits};
 use crate::analysis::log_mel::RATE;
@@ -7,25 +7,25 @@ use crate::sound::contact_time;
 use libm::{cos, exp, fabs, log2, log10, sin, sqrt};
 use std::f64::consts::PI;
 
-/// Places of striking and of listening that are tried: so many steps of the body's length.
+/// Number of steps along the body's length in which strike positions and pickup positions are tried.
 const STRIKES: u32 = 50;
 const PICKUPS: u32 = 20;
-/// Steps of the search around the best place, each smaller than the one before.
+/// Rounds of the search around the best place, each with smaller steps.
 const FINER: usize = 8;
 /// Greatest tilt in dB per octave.
 const STEEPEST: f64 = 24.0;
-/// Least weight of a mode in relation to that which weighs most.
+/// Least weight of a mode relative to the greatest weight.
 const LEAST_WEIGHT: f64 = 0.15;
-/// A mode is listened to until this is left of it, as a power of e.
+/// A mode is measured until its amplitude has fallen by e to the power of this.
 const HEARD: f64 = 5.0;
-/// Least level of a mode of a body, and least share of a contact: nothing is told by nodes.
+/// Lower bounds of the level of a body's mode and of the share of a contact, since modes near a node give no information.
 const LEAST_LEVEL: f64 = 1e-3;
 const LEAST_SHARE: f64 = 0.01;
 
-/// Partials of a sound, each with the ratio of the mode of a body that it is.
+/// Partials of a sound, each with the ratio of the body's mode that it is.
 pub(super) struct Levels(pub(super) Vec<(Partial, f64)>);
 
-/// What a partial has more than the mode that it is.
+/// The level of a partial above that of its mode.
 #[derive(Clone, Copy, Debug)]
 struct Excess {
     octaves: f64,
@@ -33,19 +33,19 @@ struct Excess {
     weight: f64,
 }
 
-/// How much a mode says of a body.
+/// The weight of a partial in the search for a body.
 pub(super) fn weight(partial: &Partial) -> f64 {
-    // Energy alone would leave all to the loudest mode.
+    // With energy as the weight, only the loudest mode would count.
     sqrt(fabs(partial.amplitude) * sqrt(partial.t60))
 }
 
-/// The mode of a body that has a ratio.
+/// The mode of a body with this ratio.
 fn mode_at(modes: &[BodyMode], ratio: f64) -> Option<&BodyMode> {
     modes.iter().find(|mode| fabs(mode.ratio - ratio) < 1e-9 * ratio)
 }
 
 impl Levels {
-    /// What each partial has more than its mode, if all modes are struck alike.
+    /// The excess of each partial over its mode, if all modes are struck alike.
     fn points(&self, body: &Body) -> Vec<Excess> {
         let modes = body.modes();
         let point = |((partial, ratio), weight): (&(Partial, f64), f64)| {
@@ -55,28 +55,28 @@ impl Levels {
         self.0.iter().zip(self.weights()).map(point).collect()
     }
 
-    /// How much each partial says of the body; none is without a say.
+    /// The weight of each partial, which has a lower bound.
     fn weights(&self) -> impl Iterator<Item = f64> {
         let weights = self.0.iter().map(|(partial, _)| weight(partial));
         let most = weights.clone().fold(0.0, f64::max);
         weights.map(move |weight| weight.max(LEAST_WEIGHT * most))
     }
 
-    /// The same once a contact has taken from each what it does.
+    /// The excesses over modes that a contact has struck, with these shares in dB.
     fn struck(&self, mut points: Vec<Excess>, shares: &[f64]) -> Vec<Excess> {
         points.iter_mut().zip(shares).for_each(|(point, share)| point.db -= share);
         points
     }
 
-    /// What a contact leaves of each mode in dB; none is a strike in a single sample.
+    /// The share in dB of a contact's force that reaches each mode; without a hardness, the strike is a single sample.
     fn shares(&self, hardness: Option<f64>) -> Vec<f64> {
         let share = |frequency: f64, hardness: f64| fabs(contact_share(frequency, contact_time(hardness)));
         let of = |(partial, _): &(Partial, f64)| hardness.map_or(1.0, |hardness| share(partial.frequency, hardness));
         self.0.iter().map(|pair| 20.0 * log10(of(pair).max(LEAST_SHARE))).collect()
     }
 
-    /// Deviation in dB of the modes of a recording from what is heard of them when the body is played, both at [`RATE`] and from
-    /// their onsets on: the fourth root of the mean fourth power, since it is the worst that are heard.
+    /// Deviation in dB of the played body's modes from those of a recording, both at [`RATE`] and from their onsets on:
+    /// the fourth root of the mean fourth power, since the largest deviations are heard most.
     pub(super) fn off_db(&self, body: &Body, [recording, played]: [&[f32]; 2]) -> f64 {
         let modes = body.modes();
         let (mut powers, mut weights) = (0.0, 1e-12);
@@ -89,8 +89,8 @@ impl Levels {
         sqrt(sqrt(powers / weights))
     }
 
-    /// For each of some hardnesses, the body that is struck and heard where it has the levels, and tilted as they are, and the RMS
-    /// deviation in dB that is left.
+    /// For each hardness, the body with the strike position, pickup position and tilt that fit the levels best, and the
+    /// remaining RMS deviation in dB.
     pub(super) fn placed(&self, body: &Body, hardnesses: &[Option<f64>]) -> Vec<(f64, Body)> {
         let shares: Vec<Vec<f64>> = hardnesses.iter().map(|hardness| self.shares(*hardness)).collect();
         let mut best = vec![(f64::INFINITY, body.clone()); hardnesses.len()];
@@ -106,7 +106,7 @@ impl Levels {
             Body { strike, pickup, tilt: 0.0, ..body.clone() }
         };
         for pickup in 0..=PICKUPS {
-            // The body's own place of listening first.
+            // Try the body's own pickup position first.
             let pickup = if pickup == 0 { body.pickup.x } else { f64::from(pickup) / f64::from(PICKUPS) };
             for strike in 1..STRIKES {
                 let other = moved(f64::from(strike) / f64::from(STRIKES), pickup);
@@ -128,8 +128,8 @@ impl Levels {
     }
 }
 
-/// The amplitude of a mode of some frequency in Hz and T60 in seconds in samples at [`RATE`] that begin with it, by the filter that is
-/// matched to it.
+/// The amplitude of a mode of this frequency in Hz and T60 in seconds, in samples at [`RATE`] that begin at its onset,
+/// by a matched filter.
 fn amplitude(samples: &[f32], frequency: f64, t60: f64) -> f64 {
     let (decay, theta) = (LN_1000 / (t60 * f64::from(RATE)), 2.0 * PI * frequency / f64::from(RATE));
     let len = samples.len().min((HEARD / decay) as usize);

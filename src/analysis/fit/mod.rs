@@ -1,8 +1,8 @@
-//! A recording of a struck sound becomes a preset that plays it over the keyboard.
+//! Fits a preset to recordings of a struck sound, which it then plays over the keyboard.
 //!
-//! The sweep of the pitch is found and taken out; what then stands still is taken apart into modes; what they leave becomes a
-//! bed of modes that noise moves; hardness of the mallet, length of the noise, levels and decays are corrected by playing the
-//! draft and comparing it with the recording, band by band ([`super::log_mel`]).
+//! The sweep of the pitch is found and removed. The sound, whose pitch is now constant, is analysed into modes. Their
+//! residual becomes a bed: modes that noise excites. Then the draft is played and compared with the recording, band by
+//! band ([`super::log_mel`]), to correct the mallet's hardness, the length of the noise, levels and decays.
 
 mod audition;
 mod bed;
@@ -42,15 +42,15 @@ use take::Prepared;
 /// Frequency in Hz of A4 in a new patch.
 const A4: f64 = 440.0;
 
-/// Distance in dB from which on a table of modes hardly sounds like its recording.
+/// Distance in dB above which a table of modes hardly sounds like its recording.
 const FAR_DB: f64 = 6.0;
 
-/// How to fit.
+/// Settings of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Most modes of the sound, 1–256; those of the bed that noise moves are among them.
+    /// Maximum number of modes, 1–256, including the bed of modes that noise excites.
     pub most_modes: usize,
-    /// What the modes are to be explained by.
+    /// The kind of body that is to explain the modes.
     pub family: Family,
 }
 
@@ -60,12 +60,12 @@ impl Default for Settings {
     }
 }
 
-/// What recordings became.
+/// The result of a fit.
 #[derive(Clone, Debug)]
 pub struct Fitted {
     /// The patch.
     pub patch: Patch,
-    /// The place of the take whose sound the patch has; velocity and key tracking are those of all.
+    /// Index of the take whose sound the patch has. Velocity and key tracking come from all takes.
     pub base: usize,
     /// The key that this take was recorded on, as a fractional MIDI key: its own, or the estimated one.
     pub key: f64,
@@ -75,23 +75,23 @@ pub struct Fitted {
     pub distances: Vec<f64>,
     /// The base take from its onset on, at [`super::log_mel::RATE`], a list per channel.
     pub recording: Vec<Vec<f32>>,
-    /// The same of the patch, left and right.
+    /// The same note played by the patch, left and right.
     pub played: [Vec<f32>; 2],
-    /// The strike that the modes were found in, if any were: its frequencies are those after the sweep.
+    /// The strike in which the modes were found, if there are any. Its frequencies are those after the sweep.
     pub strike: Option<Strike>,
     /// How well a body explains the modes, if one was asked for.
     pub explained: Option<Explained>,
-    /// What is doubtful.
+    /// Doubts about the recordings and the result.
     pub warnings: Vec<String>,
 }
 
-/// Fits recordings of one instrument: several takes of a key give its response to velocity, several keys that of the decay to the
-/// key. `progress` is told the share of the work that is done, and ends it by `false`. Not real-time safe: a take needs some
-/// seconds.
+/// Fits recordings of one instrument. Several takes of a key give the response to velocity; several keys give the
+/// response of decay and loudness to the key. `progress` is called with the share of the work that is done, and cancels
+/// the fit by returning `false`. Not real-time safe: a take needs some seconds.
 ///
 /// # Errors
-/// [`Error::Value`] without takes, [`Error::Format`] for one that is silent, too short or not finite, or has no modes where a body
-/// is asked for; [`Error::Interrupted`].
+/// [`Error::Value`] without takes, [`Error::Format`] for one that is silent, too short or not finite, or has no modes
+/// although a body is to explain them; [`Error::Interrupted`].
 ///
 /// ```no_run
 /// use sprung::analysis::fit::{Settings, Take, VELOCITY, fit};
@@ -113,7 +113,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         return Err(Error::value("recordings", "there are none: expected at least one"));
     }
     let prepared: Vec<Prepared> = takes.iter().map(Prepared::new).collect::<Result<_>>()?;
-    // What is listened to again for a body takes about as long as a take.
+    // Tuning a body takes about as long as a take.
     let count = takes.len() as f64 + if settings.family == Family::Table { 0.0 } else { 1.0 };
     let mut fits = Vec::new();
     for (n, take) in prepared.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The pitch of a sound by its modes.
+//! Estimates the pitch of a sound from its modes.
 
 use super::draft::Partial;
 use crate::sound::bodies::DEFAULT_FREQUENCY;
@@ -6,21 +6,21 @@ use libm::{fabs, log2, sqrt};
 
 /// Lowest and highest pitch in Hz.
 const RANGE: (f64, f64) = (25.0, 6000.0);
-/// Cents by which a partial may be off its harmonic.
+/// Distance in cents below which a partial counts as a harmonic.
 const NEAR: f64 = 35.0;
-/// Harmonics that are looked at.
+/// Highest harmonic that counts.
 const HARMONICS: f64 = 12.0;
-/// Weight of harmonics against the mode itself.
+/// Weight of harmonics relative to the mode itself.
 const SERIES: f64 = 0.7;
 
-/// How much the ear takes of a mode: the longer it rings the more, up to half a second or so.
+/// The weight of a mode in hearing. It grows with the T60 up to 0.6 s.
 fn weight(partial: &Partial) -> f64 {
     fabs(partial.amplitude) * sqrt(partial.t60.min(0.6))
 }
 
-/// The frequency in Hz that is heard as the pitch: of the mode that, with those that are its harmonics, is the strongest. A bar
-/// or a bell has the pitch of one mode, and a string that of its lowest. Without modes,
-/// as of noise, it is [`DEFAULT_FREQUENCY`].
+/// The frequency in Hz that is heard as the pitch: that of the mode that is strongest together with its harmonics. A
+/// bar or a bell has the pitch of one mode, and a string that of its lowest. Without modes, as in noise, it is
+/// [`DEFAULT_FREQUENCY`].
 pub(super) fn estimate(partials: &[Partial]) -> f64 {
     let score = |candidate: &Partial| {
         let mut sum = weight(candidate);

@@ -1,4 +1,4 @@
-//! Brings a draft nearer to its recording by listening: it is played, compared band by band, and corrected.
+//! Brings a draft nearer to its recording: plays it, compares both band by band, and corrects the draft.
 
 use super::audition::Audition;
 use super::correct::{by_bands, by_moments};
@@ -14,16 +14,16 @@ use crate::units::key_from_frequency;
 const HARDNESSES: [f64; 10] = [0.95, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25, 0.15, 0.05];
 /// Lengths and rises in seconds of the noise that are tried.
 const LENGTHS: [f64; 8] = [0.002, 0.006, 0.015, 0.04, 0.1, 0.23, 0.5, 1.0];
-/// A longer burst takes part in the decay.
+/// A burst longer than this many seconds affects the decay.
 const SHORT: f64 = 0.02;
 const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
-/// Time in which an exponential burst falls by 60 dB over that of a parabola with the same energy: these are the sixth part of
-/// the one over ln 10, and the fifth of the other.
+/// Ratio of the T60 of an exponential burst to the length of a quadratic burst of the same energy: the energies are T60
+/// / (6 ln 10) and length / 5.
 const EXPONENTIAL: f64 = 2.76;
 /// Bursts that follow each other, and seconds between them, that are tried.
 const HITS: [u8; 3] = [2, 3, 4];
 const SPACINGS: [f64; 4] = [0.008, 0.0105, 0.0135, 0.018];
-/// What several bursts have to gain in dB over the attack.
+/// Reduction of the attack's distance in dB for which several bursts are kept.
 const WORTH_HITS: f64 = 0.3;
 /// Swells that are tried: seconds and curves, and dB.
 const SWELLS: [f64; 8] = [0.02, 0.04, 0.08, 0.15, 0.3, 0.6, 1.2, 2.4];
@@ -34,7 +34,7 @@ const ATTACK: usize = 26;
 /// Steps of the search for a sweep.
 const SIMPLEX_STEPS: usize = 36;
 
-/// Plays drafts and measures how far they are from a recording. Each time, it tells the progress.
+/// Plays drafts and measures how far they are from a recording. Reports the progress each time.
 pub(super) struct Listener<'a> {
     audition: Audition,
     bands: MelBands,
@@ -52,10 +52,10 @@ impl<'a> Listener<'a> {
         Self { audition: Audition::new(), bands, take, target, progress, share: 0.0 }
     }
 
-    /// Tells that a share of the work is done.
+    /// Reports the share of the work that is done.
     ///
     /// # Errors
-    /// [`Error::Interrupted`] if it is to end.
+    /// [`Error::Interrupted`] if the caller cancels the work.
     pub(super) fn tell(&mut self, share: f64) -> Result<()> {
         self.share = share;
         if (self.progress)(share) { Ok(()) } else { Err(Error::Interrupted) }
@@ -86,7 +86,7 @@ impl<'a> Listener<'a> {
         Ok(heard.distance(&start))
     }
 
-    /// The best of some drafts over the first windows, and the present one.
+    /// Replaces the draft by the best of `others` over the first windows, if that is better.
     fn best(&mut self, draft: &mut Draft, windows: usize, others: impl IntoIterator<Item = Draft>) -> Result<()> {
         let mut least = self.distance(draft, windows)?;
         for other in others {
@@ -112,7 +112,7 @@ impl<'a> Listener<'a> {
         Ok(())
     }
 
-    /// Chooses how the sound comes to its level.
+    /// Chooses the rise of a sound that is not struck.
     pub(super) fn choose_swell(&mut self, draft: &mut Draft) -> Result<()> {
         let with = |draft: &Draft, swell| Draft { swell, ..draft.clone() };
         let swell = |seconds| CURVES.map(|curve| Swell { seconds, depth: SWELL_DB, curve });
@@ -137,7 +137,7 @@ impl<'a> Listener<'a> {
         }
         let with = |draft: &Draft, noise| Draft { noise, ..draft.clone() };
         let noise = draft.noise;
-        // Decays of the modes were measured on the whole: what the burst takes is to be left out of them.
+        // The decays of the modes were measured together with the burst, so they are corrected for each burst.
         let bursts = LENGTHS.map(|seconds| Noise { seconds, ..noise });
         self.best_corrected(draft, bursts)?;
         let noise = draft.noise;
@@ -158,7 +158,7 @@ impl<'a> Listener<'a> {
         Ok(())
     }
 
-    /// The best of some bursts of noise, each with the levels and decays that it asks for, and the present one.
+    /// Replaces the noise of the draft by the best of `bursts`, with levels and decays corrected for it, if that is better.
     fn best_corrected(&mut self, draft: &mut Draft, bursts: impl IntoIterator<Item = Noise>) -> Result<()> {
         let mut least = self.distance(draft, usize::MAX)?;
         let before = draft.clone();
@@ -193,7 +193,7 @@ impl<'a> Listener<'a> {
         let mut heard = self.hear(draft)?;
         let (mut least, mut share, mut idle) = (heard.distance(&self.target), 0.8, 0);
         for round in 0..rounds {
-            // What one way of looking at the errors cannot mend, the other one may.
+            // Alternate between the two corrections: each can remove errors that the other cannot.
             let other = match round % 2 {
                 0 => by_bands(draft, &self.target, &heard, share),
                 _ => by_moments(draft, &self.target, &heard, share),

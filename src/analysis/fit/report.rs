@@ -12,16 +12,16 @@ use libm::{fabs, log2};
 
 const PAGE: &str = include_str!("report.html");
 
-/// Cents within which a mode of the preset is one of the recording.
+/// Distance in cents below which a mode of the preset counts as one of the recording.
 const NEAR: f64 = 50.0;
 
-/// Makes the page. `title` is what it is called.
+/// Makes the page with this title.
 ///
 /// # Errors
 /// [`Error::Format`](crate::Error::Format) if a figure cannot be drawn.
 pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
     let modes = modes_of(&fitted.patch, frequency_from_key(fitted.key, super::A4));
-    // One channel stands for both.
+    // A recording with one channel has it on both sides.
     let first = fitted.recording.first().map_or(&[][..], Vec::as_slice);
     let last = fitted.recording.last().map_or(&[][..], Vec::as_slice);
     let [left, right] = &fitted.played;

@@ -1,11 +1,11 @@
-//! The least value of a function of a few numbers (downhill simplex, Nelder & Mead 1965).
+//! Finds the minimum of a function of a few numbers (downhill simplex, Nelder & Mead 1965).
 
 use crate::error::Result;
 
 /// Side of the first simplex.
 const SIDE: f64 = 0.2;
 
-/// Where a function is least, looked for from the origin on in so many steps, and its value there.
+/// The place where a function is least, searched from the origin in `steps` steps, and its value there.
 ///
 /// # Errors
 /// Those of the function.
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn the_bottom_of_a_bent_valley_is_found() {
-        // Rosenbrock's, moved.
+        // Rosenbrock's function, shifted.
         let (place, value) = least(200, |[x, y]: [f64; 2]| {
             let (x, y) = (x + 0.5, y + 0.5);
             Ok((1.0 - x) * (1.0 - x) + 100.0 * (y - x * x) * (y - x * x))

@@ -1,4 +1,4 @@
-//! The first draft of a sound: the modes that it was taken apart into.
+//! Makes the first draft of a sound from its modes.
 
 use super::draft::{Draft, MOST_MODES, Noise, Partial, Sweep, T60};
 use super::take::Prepared;
@@ -11,36 +11,35 @@ use std::f64::consts::PI;
 
 /// Highest frequency in Hz.
 const HIGHEST: f64 = 20_000.0;
-/// A mode that is louder than the whole sound by this much in dB was not found, but made up.
+/// A mode this many dB louder than the sound's peak is an error of the analysis.
 const TOO_LOUD_DB: f64 = 12.0;
-/// Modes below the loudest by this much in dB are left to the noise.
+/// Modes this many dB below the loudest are left to the bed.
 const FAINT_DB: f64 = 75.0;
-/// dB by which a mode can have been louder at the onset than where it was found.
+/// Largest level in dB that a mode excited by noise gains by going back to the onset from where it was found.
 const MOST_BEFORE_DB: f64 = 40.0;
-/// The same if it was not moved by noise before.
+/// The same for a mode that is not excited by noise.
 const MOST_OF_A_SWELL_DB: f64 = 6.0;
-/// Seconds that are taken apart, at most.
+/// Seconds of the sound that are analysed, at most.
 const LONGEST: f64 = 5.0;
-/// dB by which a mode is followed back to the onset, at most.
+/// Largest decay in dB over which a mode's level is extrapolated back to the onset.
 const MOST_FALLEN_DB: f64 = 30.0;
-/// Seconds by which a strike may be felt after the onset, for the phases of modes.
+/// Range in seconds of the delays of the strike that are tried, a fifth of it before the onset.
 const LATEST: f64 = 0.006;
-
-/// Standard deviation in radians up to which a phase is known.
+/// Largest standard deviation in radians of a phase that is kept.
 const SURE_PHASE: f64 = 0.5;
 
-/// What a draft is made of.
+/// How the modes of a draft are found.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source {
-    /// What moves the pitch, which is taken out.
+    /// The movement of the pitch, which is removed first.
     pub(super) swept: Sweep,
-    /// Seconds after the onset from which on modes are looked for.
+    /// Seconds after the onset at which the search for modes begins.
     pub(super) late: f64,
-    /// Whether the modes that are found then are moved by a strike, and not by noise.
+    /// Whether the modes are excited by a strike, and not by noise.
     pub(super) struck: bool,
 }
 
-/// A draft of a sound's modes alone, and the strike that they were found in. No modes are no error: noise has none.
+/// A draft of a sound's modes alone, and the strike in which they were found. Finding no modes is no error: noise has none.
 pub(super) fn draft(
     take: &Prepared,
     Source { swept, late, struck }: Source,
@@ -59,7 +58,7 @@ pub(super) fn draft(
     let strike = match modes::modes(&still, RATE.into(), &settings, progress) {
         Ok(found) => found.strikes.into_iter().next(),
         Err(Error::Interrupted) => return Err(Error::Interrupted),
-        // What does not ring at all is left to the noise.
+        // A sound that does not ring at all is left to the bed.
         Err(_) => None,
     };
     let peak = 20.0 * libm::log10(take.peak());
@@ -69,7 +68,7 @@ pub(super) fn draft(
             let is_sure = mode.uncertainty.level_db < 9.0 && mode.uncertainty.t60 < mode.t60.min(T60.1);
             is_sure && mode.frequency < HIGHEST && mode.t60 > T60.0 && mode.level_db < peak + TOO_LOUD_DB
         };
-        // What does not decay is heard all the same.
+        // Tones that do not decay are heard too, so keep them.
         let steady = strike.steady.iter().filter(|tone| tone.frequency < HIGHEST && tone.level_db < peak + TOO_LOUD_DB);
         let kept: Vec<&Mode> = strike.modes.iter().filter(known).chain(steady).collect();
         let loudest = kept.iter().map(|mode| mode.level_db).fold(f64::NEG_INFINITY, f64::max);
@@ -101,14 +100,15 @@ pub(super) fn draft(
     Ok((draft, strike))
 }
 
-/// The amplitude at the onset of a mode that was found so many seconds after it. Where the exciter is at work for long, a short mode
-/// is only seen when little is left of it, and would have been loud before if nothing had moved it meanwhile.
+/// The amplitude at the onset of a mode that was found `after` seconds later. If the exciter acts for long, a short
+/// mode is only found when little of it is left. Its level, extrapolated back to the onset, would be too high, so the
+/// extrapolation is limited.
 pub(super) fn at_onset(mode: &Mode, after: f64) -> f64 {
     let fallen = 60.0 * after / mode.t60;
     pow(10.0, (mode.level_db - (fallen - MOST_FALLEN_DB).max(0.0)) / 20.0)
 }
 
-/// The time in seconds between the onset and the moment from which modes of such amplitudes start as sines.
+/// The time in seconds from the onset to the moment at which modes of these amplitudes start as sines.
 fn delay(modes: &[&Mode], amplitudes: &[f64]) -> f64 {
     let aligned = |delay: f64| {
         let cosine = |(mode, amplitude): (&&Mode, &f64)| {
@@ -124,7 +124,7 @@ fn delay(modes: &[&Mode], amplitudes: &[f64]) -> f64 {
 fn partial(mode: &Mode, amplitude: f64, delay: f64) -> Partial {
     let turned = mode.phase + 2.0 * PI * mode.frequency * delay;
     let sign = if cos(turned) < 0.0 { -1.0 } else { 1.0 };
-    // What is uncertain starts as a sine.
+    // A mode of uncertain phase starts as a sine.
     let phase = if mode.uncertainty.phase < SURE_PHASE { asin(sin(turned) * sign) } else { 0.0 };
     let pan = match mode.channels[..] {
         [(left, _), (right, _)] => {

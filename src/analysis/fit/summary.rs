@@ -1,4 +1,4 @@
-//! What came of a fit, in words: for the preset's comment, and to tell users.
+//! Describes the result of a fit in words, for the preset's comment and for users.
 
 use super::{A4, Fitted, Take};
 use crate::preset::Preset;
@@ -6,12 +6,12 @@ use crate::text::number::measured;
 use crate::units::{frequency_from_key, note_name};
 use std::path::Path;
 
-/// Most characters of a preset's name.
+/// Maximum number of characters of a preset's name.
 const LONGEST_NAME: usize = 60;
 
 impl Fitted {
-    /// The preset that was fitted to these takes. Its name is cut off where it is too long, and its comment calls the takes by
-    /// their file names alone. Allocates.
+    /// The preset that was fitted to these takes. Its name is cut off if it is too long. Its comment names the takes by
+    /// their file names, without folders. Allocates.
     pub fn named(&self, name: &str, takes: &[Take]) -> Preset {
         let name: String =
             name.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).take(LONGEST_NAME).collect();
@@ -19,7 +19,7 @@ impl Fitted {
         self.preset(&name, &format!("Fitted to {}.\n{}", files.join(", "), self.summary()))
     }
 
-    /// What came of the fit, in a few sentences.
+    /// The result of the fit, in a few sentences.
     pub fn summary(&self) -> String {
         let noisy = self.patch.modes.as_slice().iter().filter(|mode| mode.strike < 0.5).count();
         let struck = self.patch.modes.as_slice().len() - noisy;
@@ -43,7 +43,7 @@ impl Fitted {
         text
     }
 
-    /// The key as musicians write it: `C4`, or `C4 +13 ct` where it lies between two.
+    /// The key as musicians write it: `C4`, or `C4 +13 ct` between two keys.
     pub fn key_name(&self) -> String {
         let nearest = self.key.round().clamp(0.0, 127.0);
         let cents = (100.0 * (self.key - nearest)).round();

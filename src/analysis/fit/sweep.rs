@@ -1,7 +1,7 @@
-//! The sweep of a recording's pitch: found as the change of time that makes its partials stand still.
+//! Finds the sweep of a recording's pitch: the change of reading speed that makes its partials constant in frequency.
 //!
-//! A sweep moves all modes alike. Played against a clock that runs as their pitch does, their frequencies are constant, and the
-//! spectrum has the tallest peaks.
+//! A sweep changes the frequencies of all modes by the same factor. If the recording is read at a speed that follows
+//! its pitch, the frequencies are constant, and the spectrum has the highest peaks.
 
 use super::course;
 use super::draft::{Sweep, Vibrato};
@@ -15,13 +15,14 @@ use realfft::{RealFftPlanner, RealToComplex};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Seconds of the sound that are looked at, by the coarse and by the fine search.
+/// Seconds of the sound that the coarse and the fine search use.
 const STRETCHES: (f64, f64) = (0.45, 1.2);
 /// Points of the transform.
 const POINTS: usize = 1 << 17;
-/// How much taller the peaks must be than without a sweep.
+/// Factor by which a sweep must raise the peaks.
 const CLEARLY: f64 = 1.08;
-/// The same for the course of the strongest partial, which is more certain: what dies before its pitch has arrived has broad peaks.
+/// The same for the movement of the strongest partial, which is more certain. It may be below 1, since a sound that
+/// decays before its pitch settles has broad peaks.
 const HARDLY: f64 = 0.5;
 /// Steps of the coarse search.
 const SEMITONES: [f64; 17] =
@@ -30,26 +31,26 @@ const SECONDS: [f64; 9] = [0.02, 0.04, 0.07, 0.11, 0.16, 0.25, 0.4, 0.7, 1.4];
 const CURVES: [f64; 3] = [-0.3, 0.2, 0.6];
 /// Coarse sweeps that are refined.
 const REFINED: usize = 4;
-/// Blocks in a second whose levels show the decay, and how far down: 40 dB.
+/// Blocks per second whose levels show the decay, and their range below the loudest, as a logarithm: 40 dB.
 const BLOCKS: usize = 100;
 const HEARD: f64 = 4.6;
 /// Steps of the fine search.
 const STEPS: usize = 40;
 
-/// Measures how tall the peaks of a sound are.
+/// Measures how high the peaks of a sound's spectrum are.
 struct Peaks<'a> {
     samples: &'a [f32],
-    /// Seconds that are looked at.
+    /// Seconds of the sound that are used.
     stretch: f64,
     fft: Arc<dyn RealToComplex<f64>>,
     input: Vec<f64>,
-    /// Says that the search goes on.
+    /// Reports that the search goes on; an error ends it.
     tell: &'a mut dyn FnMut() -> Result<()>,
 }
 
 impl Peaks<'_> {
-    /// Integral of the squared density of power over the logarithm of frequency. How narrow a peak is against its frequency
-    /// depends on the number of its cycles, and so not on how fast the clock runs.
+    /// Integral of the squared density of power over the logarithm of frequency. The width of a peak relative to its
+    /// frequency depends on its number of cycles, and so not on the reading speed.
     fn height(&mut self, sweep: &Sweep) -> Result<f64> {
         (self.tell)()?;
         let len = ((self.stretch * f64::from(RATE)) as usize).min(self.samples.len());
@@ -59,11 +60,11 @@ impl Peaks<'_> {
             if end == POINTS {
                 break;
             }
-            // The root of the speed keeps the energy.
+            // Division by the root of the speed keeps the energy.
             self.input[end] = f64::from(sample) / sqrt(speed);
             end += 1;
         }
-        // The window ends where the stretch does.
+        // A falling window, which ends with the sound.
         for (n, sample) in self.input[..end].iter_mut().enumerate() {
             *sample *= 0.5 + 0.5 * cos(PI * n as f64 / end as f64);
         }
@@ -79,12 +80,12 @@ impl Peaks<'_> {
     }
 }
 
-/// Reads a sound at the speed of its pitch.
+/// Reads a sound at a speed that follows its pitch.
 struct Clock<'a> {
     samples: &'a [f32],
     sweep: &'a Sweep,
     envelope: crate::dsp::pitch::SweepEnvelope,
-    /// In samples.
+    /// Place in the sound, in samples.
     time: f64,
 }
 
@@ -95,7 +96,7 @@ impl<'a> Clock<'a> {
 }
 
 impl Iterator for Clock<'_> {
-    /// The sample, and how fast the pitch is there against where it ends.
+    /// The sample, and the pitch there relative to the final pitch.
     type Item = (f32, f64);
 
     fn next(&mut self) -> Option<(f32, f64)> {
@@ -122,8 +123,8 @@ impl Iterator for Clock<'_> {
     }
 }
 
-/// The sound as if its pitch had stood still. Its clock stretches the decay, which does not follow the pitch: `decay`, that of
-/// the whole in 1/s ([`decay`]), is brought back.
+/// The sound with a constant pitch. Reading at the speed of the pitch also stretches the decay, which does not follow
+/// the pitch. This is undone with `decay`, the decay of the whole sound in 1/s ([`decay`]).
 pub(super) fn stilled(samples: &[f32], sweep: &Sweep, decay: f64) -> Vec<f32> {
     if sweep.is_none() {
         return samples.to_vec();
@@ -146,8 +147,8 @@ pub(super) fn decay(samples: &[f32]) -> f64 {
     slope(points).map_or(0.0, |slope| (-slope).max(0.0))
 }
 
-/// The movements of the pitch that samples at [`RATE`] may have, from their onset on; none if it stands still. `tell` is called often,
-/// and ends the search by an error.
+/// The possible movements of the pitch of samples at [`RATE`], from their onset on; empty if the pitch is constant.
+/// `tell` is called often, and ends the search by an error.
 pub(super) fn find(samples: &[f32], tell: &mut dyn FnMut() -> Result<()>) -> Result<Vec<Sweep>> {
     let fft = RealFftPlanner::new().plan_fft_forward(POINTS);
     let mut peaks = Peaks { samples, stretch: STRETCHES.0, input: fft.make_input_vec(), fft, tell };
@@ -174,7 +175,7 @@ pub(super) fn find(samples: &[f32], tell: &mut dyn FnMut() -> Result<()>) -> Res
         .map(|(_, sweep)| sweep)
         .into_iter()
         .collect();
-    // What the strongest partial does is a sweep of all if it makes the others stand still, too.
+    // Keep the movement of the strongest partial if it makes the other partials constant, too.
     let followed = course::find(samples);
     if !followed.is_none() && peaks.height(&followed)? > HARDLY * still {
         found.push(refine(&mut peaks, followed)?.1);
@@ -182,7 +183,7 @@ pub(super) fn find(samples: &[f32], tell: &mut dyn FnMut() -> Result<()>) -> Res
     Ok(found)
 }
 
-/// Moves a sweep to where the peaks are tallest. Gives their height, too.
+/// Changes a sweep until the peaks are highest. Returns their height and the sweep.
 fn refine(peaks: &mut Peaks, start: Sweep) -> Result<(f64, Sweep)> {
     let (place, _) = simplex::least(STEPS, |place| Ok(-peaks.height(&start.moved(place))?))?;
     let swept = start.moved(place);
@@ -221,12 +222,12 @@ mod tests {
     fn a_sweep_is_found_and_a_still_sound_has_hardly_any() {
         let sweep = Sweep { semitones: 15.0, seconds: 0.09, curve: 0.6, ..Sweep::NONE };
         let found = *find(&swept(&sweep), &mut || Ok(())).unwrap().last().unwrap();
-        // The same fall can be had from slightly different numbers: what counts is where the pitch is.
+        // Slightly different numbers give the same fall, so compare the pitches.
         for t in [0.0, 0.02, 0.05] {
             let off = (found.envelope().at(t) - sweep.envelope().at(t)).abs();
             assert!(off < 1.5, "{found:?} at {t} s: {off} semitones off");
         }
-        // What is proposed is tried against no sweep at all.
+        // A sweep may be proposed here: the caller compares it with no sweep.
         let still = find(&swept(&Sweep::NONE), &mut || Ok(())).unwrap();
         assert!(still.iter().all(|sweep| sweep.semitones.abs() < 2.0));
     }

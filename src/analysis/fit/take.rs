@@ -1,4 +1,4 @@
-//! A recording that is fitted: what is known of it, and its samples made ready.
+//! A recording to fit, with its key and velocity, and the preparation of its samples.
 
 use crate::analysis::level::{mean_of, rms};
 use crate::analysis::log_mel::RATE;
@@ -9,7 +9,7 @@ use crate::units::frequency_from_key;
 /// A recording of one struck note.
 #[derive(Clone, Debug)]
 pub struct Take {
-    /// What errors and the preset's comment call it.
+    /// Its name in errors and in the preset's comment.
     pub name: String,
     /// The sound, with one channel or two, at any rate.
     pub recording: Recording,
@@ -19,33 +19,33 @@ pub struct Take {
     pub velocity: f64,
 }
 
-/// Velocity of a take that nothing is known of, the same as that of `render`.
+/// Velocity of a take of unknown velocity, the same as that of `render`.
 pub const VELOCITY: f64 = 100.0;
 /// Longest stretch in seconds that is fitted.
 const LONGEST: f64 = 12.0;
-/// Seconds before the onset and beyond the longest stretch that are kept, since resampling looks at both sides of a sample.
+/// Seconds before the onset and after the longest stretch that are kept, since resampling needs both sides of a sample.
 const BEFORE: f64 = 0.05;
 const AFTER: f64 = 0.1;
-/// Shortest.
+/// Shortest stretch in seconds that is fitted.
 const SHORTEST: f64 = 0.03;
-/// Quietest peak of what is no silence: −80 dBFS.
+/// Lowest peak of a sound that is not silent: −80 dBFS.
 const SILENCE: f64 = 1e-4;
 /// The onset is the first sample above this share of the peak.
 const AUDIBLE: f32 = 0.01;
-/// Seconds of a block whose level tells whether the sound is over, and that level in relation to the loudest: −64 dB.
+/// Seconds per block of levels, and the level relative to the loudest below which the sound is over: −64 dB.
 const BLOCK: f64 = 0.03;
 const OVER: f64 = 6e-4;
-/// Level in relation to the loudest at which a sound has risen: −3 dB.
+/// Level relative to the loudest at which a sound has risen: −3 dB.
 const RISEN: f64 = 0.7;
-/// Seconds of a rise from which on a sound is no stroke.
+/// Rise in seconds above which a sound is not a stroke.
 pub(super) const SLOW: f64 = 0.05;
-/// Level in relation to the loudest at which a sound has fallen silent, for as many blocks: −26 dB. Beats fall as low, but not for
-/// as long.
+/// Level relative to the loudest below which a sound is silent (−26 dB), and the number of blocks for which it must be
+/// so. Beats fall as low, but not for as long.
 const SILENT: f64 = 0.05;
 const SILENT_BLOCKS: usize = 2;
-/// Level in relation to the loudest of what sounds again: −14 dB, since vowels differ as much.
+/// Level relative to the loudest at which a sound begins again: −14 dB, since vowels differ by as much.
 const AS_LOUD: f64 = 0.2;
-/// Energy of the last third of a sound over that of the first, from which on it does not decay: −3 dB.
+/// Energy of the last third of a sound relative to the first, above which the sound does not decay: −3 dB.
 const STEADY: f64 = 0.5;
 
 /// Frames whose RMS is the level of a take: 50 ms.
@@ -59,11 +59,11 @@ pub(super) struct Prepared {
     pub(super) key: Option<f64>,
     /// 0–1.
     pub(super) velocity: f64,
-    /// Seconds in which it comes to its level: next to none for what is struck.
+    /// Rise time in seconds: about 0 for a struck sound.
     pub(super) rise: f64,
-    /// Whether it sounds on as long as it is played.
+    /// Whether it sounds for as long as it is played.
     pub(super) is_held: bool,
-    /// What is doubtful about it.
+    /// Doubts about it.
     pub(super) warnings: Vec<String>,
 }
 
@@ -73,7 +73,7 @@ impl Prepared {
     pub(super) fn new(take: &Take) -> Result<Self> {
         let wrong = |message: &str| Err(Error::format(&take.name, message));
         take.recording.check_finite(&take.name)?;
-        // What comes later is never looked at: of a long recording, little is kept.
+        // The rest is never used, so that little of a long recording is kept.
         let channels = resampled(&first_seconds(&take.recording), RATE)?.channels;
         let middle = mean(&channels);
         let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
@@ -139,7 +139,7 @@ impl Prepared {
     }
 }
 
-/// Seconds from the first of some levels to where there is sound again after it has fallen silent.
+/// Seconds from the first level to where the sound begins again after a silence.
 fn again(levels: &[f64], loudest: f64) -> Option<f64> {
     let first = levels.iter().position(|level| *level > AS_LOUD * loudest)?;
     let silent = |levels: &[f64]| levels.iter().all(|level| *level < SILENT * loudest);
@@ -148,7 +148,7 @@ fn again(levels: &[f64], loudest: f64) -> Option<f64> {
     Some(next as f64 * BLOCK)
 }
 
-/// A recording from shortly before its onset on, as long as is needed, without a constant; one channel or two.
+/// A recording from shortly before its onset on, as long as is needed, without its DC; one channel or two.
 fn first_seconds(recording: &Recording) -> Recording {
     let mut channels = match recording.channels.len() {
         0..=2 => recording.channels.clone(),
@@ -195,7 +195,7 @@ mod tests {
         let long = prepared(samples(600.0, RATE_OF_FILE, ringing(100.0)), RATE_OF_FILE);
         assert_eq!(long.channels[0].len(), 12 * RATE as usize);
         assert_eq!(long.warnings, ["a.wav: it sounds for longer: the first 12 s from its onset are fitted"]);
-        // Of a short strike and silence, the strike.
+        // Of a short strike followed by silence, only the strike is kept.
         let short = prepared(samples(600.0, RATE_OF_FILE, ringing(0.5)), RATE_OF_FILE);
         assert!((0.4..0.7).contains(&short.seconds()) && short.warnings.is_empty(), "{:?}", short.warnings);
         let kept = first_seconds(&Recording {

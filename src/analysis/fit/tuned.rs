@@ -1,7 +1,7 @@
-//! A body's levels and decays, moved to where it sounds most like the recording.
+//! Tunes a body's strike, pickup, tilt, losses and mallet until it sounds most like the recording.
 //!
-//! The modes of a recording say where a body is struck and how it loses energy, but only as far as they were found, and one after
-//! the other. What is heard is all of it together.
+//! The modes of a recording show where a body is struck and how it loses energy, but only those modes that were found,
+//! and one by one. Here the whole sound is compared.
 
 use super::audition::Audition;
 use super::body;
@@ -18,28 +18,28 @@ use crate::sound::bodies::{Body, Loss, Point};
 use crate::units::gain_from_db;
 use libm::exp;
 
-/// Hardnesses of the mallet that are tried, in as many steps, and how many of them the search begins from: it would not leave the
-/// slope of a wrong one.
+/// Number of steps in which hardnesses of the mallet are tried, and how many of the best the search starts from. From a
+/// wrong hardness, the search does not reach the right one.
 const HARDNESSES: u32 = 20;
 const STARTS: usize = 3;
-/// Steps of the search from each.
+/// Steps of the search from each start.
 const STEPS: usize = 60;
-/// Rounds of a finer search from where each of these ends, and its first step, each round's being smaller than the one before.
+/// Rounds of a finer search after each of these, and the step of the first round; each round has a smaller step.
 const ROUNDS: usize = 7;
 const FINEST_FROM: f64 = 0.06;
-/// What a deviation of the levels of modes of 1 dB is worth in dB of the distance.
+/// dB of distance that are as bad as a deviation of the modes' levels by 1 dB.
 const WORTH_OF_LEVELS: f64 = 2.0;
-/// By how much the first step moves the tilt in dB per octave; the others are shares.
+/// Tilt in dB per octave per unit of the search.
 const TILT: f64 = 15.0;
 /// Least and greatest tilt.
 const TILTS: (f64, f64) = (-24.0, 24.0);
 
-/// The patch of a body, played on a fractional MIDI key, struck so, with such losses and such a mallet, that it is nearest to a take.
-/// Nor are its modes far from the levels that they have there.
-/// `progress` is told the share of the work that is done.
+/// The patch of a body with the strike, pickup, tilt, losses and mallet that bring it nearest to a take, played on a
+/// fractional MIDI key. The deviation of its modes from their levels in the recording counts too. `progress` is called
+/// with the share of the work that is done.
 ///
 /// # Errors
-/// [`Error::Interrupted`] if `progress` ends it.
+/// [`Error::Interrupted`] if `progress` returns `false`.
 pub(super) fn patch(
     draft: &Draft,
     body: &Body,
@@ -53,7 +53,7 @@ pub(super) fn patch(
     let target = bands.measure(recording);
     let mut heard = |body: &Body, patch: &mut Patch| {
         let mut played = audition.mean(patch, key, draft.velocity, take.mean.len());
-        // As loud as the recording.
+        // Make it as loud as the recording.
         let before = f64::from(patch.get(Param::Gain));
         let more = dbfs(rms(&take.mean)) - dbfs(rms(&played));
         let gain = Param::Gain.info().clamp((before + (100.0 * more).round() / 100.0) as f32);
@@ -71,7 +71,7 @@ pub(super) fn patch(
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     starts.truncate(STARTS);
     let mut best = (f64::INFINITY, draft.patch());
-    // A step of the simplex tries a place or two, a round two for each number.
+    // A step of the simplex tries one or two places, a round two for each number.
     let most = (starts.len() * (2 * STEPS + ROUNDS * 12)) as f64;
     let mut tried = 0.0;
     for (_, hardness, body) in starts {
@@ -107,7 +107,7 @@ pub(super) fn patch(
     Ok(best.1)
 }
 
-/// A body with its places of striking and of listening, tilt and losses moved, and a hardness.
+/// A body with changed strike and pickup positions, tilt and losses, and a changed hardness.
 fn moved(body: &Body, hardness: f64, [strike, pickup, tilt, b0, b1, harder]: [f64; 6]) -> (Body, f64) {
     let mut body = body.clone();
     let at = |point: Point, by: f64| Point { x: digits((point.x + by).clamp(0.02, 0.98), 3), ..point };

@@ -1,7 +1,7 @@
-//! Measures by which a sound stands beside recordings of real instruments: attack, brightness, motion, partials, loudness.
+//! Measures that compare a sound with recordings of real instruments: attack, brightness, motion, partials, loudness.
 //!
-//! Their thresholds come from 249 recordings (the FluidR3 soundfont and the drum kits of Hydrogen): nine of ten pass each.
-//! All take one channel at [`RATE`], from its onset on.
+//! Their thresholds come from 249 recordings (the FluidR3 soundfont and the drum kits of Hydrogen): nine of ten
+//! recordings pass each. All measures take one channel at [`RATE`], from its onset on.
 
 pub mod octaves;
 pub mod preset;
@@ -13,7 +13,7 @@ use libm::{cos, log, log10, sqrt};
 use realfft::RealFftPlanner;
 use std::f64::consts::PI;
 
-/// The least of some measures: the 10th percentile of the recordings.
+/// Least values of some measures: the 10th percentiles of the recordings.
 #[derive(Clone, Copy, Debug)]
 pub struct Least {
     /// [`attack_flatness`] in dB.
@@ -26,15 +26,15 @@ pub struct Least {
     pub partials: usize,
 }
 
-/// Of mallets, plucks and bells.
+/// For mallets, plucks and bells.
 pub const TUNED: Least = Least { attack_flatness: -48.0, high_share: -42.0, motion: 0.48, partials: 6 };
-/// Of drums and percussion.
+/// For drums and percussion.
 pub const DRUMS: Least = Least { attack_flatness: -29.0, high_share: -39.0, motion: 1.2, partials: 9 };
 
 /// A sound begins at its first sample above this share of its peak.
 const AUDIBLE: f64 = 0.03;
 
-/// Energies below this count as this, so that silence has a level.
+/// Lower bound of energies, so that silence has a level.
 const LEAST: f64 = 1e-30;
 
 /// Samples of a duration in seconds.
@@ -186,7 +186,7 @@ pub fn partials(sound: &[f32]) -> usize {
     let below = (18_000.0 * LENGTH as f64 / f64::from(RATE)) as usize;
     let levels: Vec<f64> = bins[..below].iter().map(|energy| decibels(*energy)).collect();
     let strongest = levels.iter().fold(f64::NEG_INFINITY, |most: f64, level| most.max(*level));
-    // How far one must go down from a peak, on each side, before something higher comes.
+    // How far the level falls on one side of a peak before it rises above the peak.
     let depth = |level: f64, side: &mut dyn Iterator<Item = &f64>| {
         let mut lowest = level;
         for next in side {
@@ -230,7 +230,7 @@ pub fn difference(first: &[f32], second: &[f32]) -> f64 {
     let product = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum::<f64>();
     let own = product(first, first).max(LEAST);
     let shared = product(first, second);
-    // The gain that brings the second nearest to the first leaves this of it.
+    // This share of the first remains when the second is subtracted with the best gain.
     decibels((1.0 - shared * shared / (own * product(second, second).max(LEAST))).max(1e-12))
 }
 

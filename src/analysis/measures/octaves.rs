@@ -1,4 +1,4 @@
-//! Decay and level of each octave of a sound.
+//! Measures decay and level of each octave of a sound.
 
 use super::super::log_mel::RATE;
 use libm::{pow, sqrt};
@@ -7,7 +7,7 @@ use realfft::RealFftPlanner;
 /// Centres of the octaves in Hz.
 pub const CENTRES: [f64; 9] = [63.0, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0, 16_000.0];
 
-/// Order of the filters of the octaves (Butterworth, without phase).
+/// Order of the octave filters (Butterworth, zero phase).
 const ORDER: f64 = 6.0;
 
 /// An octave of a sound.
@@ -15,14 +15,13 @@ const ORDER: f64 = 6.0;
 pub struct Octave {
     /// Energy over that of the whole sound in dB.
     pub level: f64,
-    /// T60 in seconds, from −5 to −25 dB of the energy that is still to come (Schroeder 1965); none if it does not fall so
-    /// far.
+    /// T60 in seconds, from −5 to −25 dB of the remaining energy (Schroeder 1965); none if it does not fall so far.
     pub t60: Option<f64>,
 }
 
 /// The octaves of a sound at [`RATE`].
 pub fn octaves(sound: &[f32]) -> [Octave; CENTRES.len()] {
-    // Zeros behind the sound keep filters from reaching round.
+    // Zeros after the sound, so that the filters do not wrap around.
     let length = (2 * sound.len()).next_power_of_two().max(1024);
     let mut planner = RealFftPlanner::<f64>::new();
     let (forward, backward) = (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
@@ -34,7 +33,7 @@ pub fn octaves(sound: &[f32]) -> [Octave; CENTRES.len()] {
         let mut band = spectrum.clone();
         for (bin, value) in band.iter_mut().enumerate() {
             let frequency = bin as f64 * f64::from(RATE) / length as f64;
-            // A band-pass: the distance from the centre, in units of half the band, as a low-pass sees it.
+            // A low-pass transformed to a band-pass: ±1 at the edges of the octave.
             let off = (frequency * frequency - centre * centre) / (frequency.max(1e-9) * centre / sqrt(2.0));
             *value *= 1.0 / (1.0 + pow(off.abs(), ORDER));
         }

@@ -1,4 +1,4 @@
-//! The measures of a preset, from notes that it plays, and what they are to be.
+//! Measures a preset, from notes that it plays, and compares the values with wanted ranges.
 
 use super::octaves::{CENTRES, octaves};
 use super::recordings::{self, Recording};
@@ -18,18 +18,18 @@ use libm::{fabs, log};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-/// Tag of sounds that are no instrument of wood, skin or metal: they need no noise, no motion and no partials.
+/// Tag of sounds that are no acoustic instrument: noise, motion and several partials are not required of them.
 pub const SYNTHESIS: &str = "synthesis";
 
-/// Tags of keyboards and voices that sound as long as their key is held, as all bowed and blown sounds, leads, pads and
-/// drones do.
+/// Tags of sounds that last as long as their key is held. All bowed and blown sounds, leads, pads and drones do so
+/// without a tag.
 const SUSTAINED: [&str; 4] = ["organ", "reed", "voice", "bow"];
 
-/// How far a T60 may be from those of recordings, as a factor, and the high share, in dB.
+/// Largest distance from the values of recordings: of a T60, as a factor, and of the high share, in dB.
 const T60_FACTOR: f64 = 1.6;
 const HIGH_SHARE_DB: f64 = 10.0;
 
-/// Octaves fainter than this, in dB, are not compared: in recordings they are what room and hum are.
+/// Octaves fainter than this, in dB, are not compared, since in recordings they contain room and hum.
 const FAINT_DB: f64 = -30.0;
 
 /// A sound in stereo at [`RATE`].
@@ -44,27 +44,27 @@ pub struct Measure {
     pub unit: &'static str,
     /// The value; none if the sound is too short for it.
     pub value: Option<f64>,
-    /// What it is to be; none if anything will do.
+    /// The wanted range; none if any value is right.
     pub wanted: Option<RangeInclusive<f64>>,
     /// Where it was measured, or with what it was compared; may be empty.
     pub note: String,
 }
 
 impl Measure {
-    /// Whether it is as it is to be.
+    /// Whether the value is in the wanted range.
     pub fn is_kept(&self) -> bool {
         self.value.zip(self.wanted.as_ref()).is_none_or(|(value, wanted)| wanted.contains(&value))
     }
 }
 
-/// What a preset plays to be measured.
+/// Plays the notes of a preset that are measured.
 struct Player {
     kit: Arc<Kit>,
 }
 
 impl Player {
-    /// Notes of keys that begin after `start` seconds and are held for `held` seconds; `seconds` in all. `before`, another
-    /// note has come and gone, so that these have other random numbers.
+    /// Plays notes that begin after `start` seconds and are held for `held` seconds; the sound lasts `seconds` in all.
+    /// With `before`, another note is played and silenced first, so that the notes get other random numbers.
     fn play(&self, keys: &[u8], velocity: u8, [start, held, seconds]: [f64; 3], before: bool) -> Stereo {
         let mut synth = Synth::new(RATE.into(), 0);
         synth.set_kit(&self.kit);
@@ -110,7 +110,7 @@ pub fn loudest(sound: &Stereo) -> Result<Option<f64>> {
         meter.add_frames_planar_f32(&[left, right]).map_err(failed)?;
         loudest = loudest.max(meter.loudness_momentary().map_err(failed)?);
     }
-    // A sound of less than 400 ms is heard whole only once silence follows.
+    // The meter covers a sound of less than 400 ms only once silence follows.
     if sound[0].len() < silence.len() {
         meter.add_frames_planar_f32(&[&silence[sound[0].len()..]; 2]).map_err(failed)?;
         loudest = loudest.max(meter.loudness_momentary().map_err(failed)?);
@@ -137,24 +137,24 @@ fn is_drum(preset: &Preset) -> bool {
         && preset.tags.iter().all(|tag| tag != IN_TUNE)
 }
 
-/// How loud a preset is to be, in LUFS.
+/// The wanted loudness of a preset in LUFS.
 pub fn wanted_loudness(preset: &Preset) -> RangeInclusive<f64> {
     match preset.guide.family {
         Some(Family::Hat) => -30.5..=-26.5,
-        // A click is over before it is loud.
+        // A click is shorter than the 400 ms over which loudness is measured.
         Some(Family::Percussion | Family::Effect) => -29.0..=-19.0,
         _ => -25.0..=-19.0,
     }
 }
 
-/// Whether a sound lasts as long as its key is held: then it has no contact and no decay that could be measured.
+/// Whether a sound lasts as long as its key is held. Then it has neither contact nor decay that could be measured.
 fn is_sustained(preset: &Preset) -> bool {
     use Family::{Bowed, Drone, Lead, Pad, Wind};
     matches!(preset.guide.family, Some(Bowed | Drone | Lead | Pad | Wind))
         || preset.tags.iter().any(|tag| SUSTAINED.contains(&tag.as_str()))
 }
 
-/// Seconds for which a sound is held to find out how loud it is: some swell.
+/// Seconds for which a sound is held to measure its loudness: some sounds swell.
 fn seconds_held(preset: &Preset) -> f64 {
     use Family::{Drone, Effect, Pad};
     if matches!(preset.guide.family, Some(Drone | Effect | Pad)) { 4.0 } else { 1.0 }
@@ -203,7 +203,7 @@ pub fn measure(preset: &Preset) -> Result<Vec<Measure>> {
     let [soft, hard] = [40, 120].map(|velocity| note(velocity, 0.25));
     let change = timbre_change(from_onset(&soft), from_onset(&hard));
     all.push(new("timbre by velocity", "dB", Some(change), acoustic(1.8..=f64::INFINITY)));
-    // Strikes of noise are as different as can be, and only tuned sounds can be too different.
+    // Two strikes of noise differ completely, which is right for drums. Only tuned sounds can differ too much.
     let strikes = [false, true].map(|before| mono(&player.play(&[home], 100, [1.0, 0.5, 1.5], before)));
     let [first, second] = strikes.each_ref().map(|strike| &strike[samples(1.0)..]);
     let other = difference(first, second);
@@ -219,7 +219,7 @@ pub fn measure(preset: &Preset) -> Result<Vec<Measure>> {
     Ok(all)
 }
 
-/// The true peaks in dBFS of C4, E4, G4 and C5 struck together as hard as can be: with the limiter, and without it.
+/// The true peaks in dBFS of C4, E4, G4 and C5 struck together at full velocity: with the limiter, and without it.
 ///
 /// # Errors
 /// [`Error::Value`] if the meter fails.
@@ -256,7 +256,7 @@ fn range(player: &Player, preset: &Preset, home: Option<f64>) -> Result<Measure>
     })
 }
 
-/// The T60 of the octave that is furthest from those of a recording, as a factor. `key` is that of a tuned sound, whose
+/// The T60 of the octave that differs most from a recording's, as a factor. `key` is the key of a tuned sound, whose
 /// octaves below its pitch do not count.
 fn decay(sound: &[f32], recording: &Recording, key: Option<u8>) -> Measure {
     let mut furthest = (1.0, 0);

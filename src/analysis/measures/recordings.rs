@@ -1,11 +1,11 @@
-//! What recordings of real instruments measure, as figures that presets of the same instrument are held against.
+//! Measured values of recordings of real instruments, with which presets of the same instruments are compared.
 
 use super::octaves::CENTRES;
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 use toml::{Table, Value};
 
-/// The figures of one instrument, over its recordings at middle and high velocity.
+/// The values of one instrument, over its recordings at middle and high velocity.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// The instrument, with its source.
@@ -14,18 +14,18 @@ pub struct Recording {
     pub presets: Vec<String>,
     /// [`super::high_share`] in dB.
     pub high_share: RangeInclusive<f64>,
-    /// T60 in seconds of each octave; none where there is nothing to hear.
+    /// T60 in seconds of each octave; none for octaves without sound.
     pub t60: [Option<RangeInclusive<f64>>; CENTRES.len()],
 }
 
-/// All that is known.
+/// The values of all instruments.
 pub fn all() -> &'static [Recording] {
     const TEXT: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/measures/recordings.toml"));
     static ALL: OnceLock<Vec<Recording>> = OnceLock::new();
     ALL.get_or_init(|| read(TEXT).expect("the embedded figures are checked by a test"))
 }
 
-/// The figures that a preset is held against; none if there is no such recording.
+/// The values with which a preset is compared; none if there is no such recording.
 pub fn of(preset: &str) -> Option<&'static Recording> {
     all().iter().find(|recording| recording.presets.iter().any(|name| name == preset))
 }

@@ -1,4 +1,4 @@
-//! Modes that several strikes have in common: what is struck, told apart from how.
+//! Finds the modes that several strikes have in common, which belong to the struck body.
 
 use super::mode::{Mode, Strike};
 
@@ -13,9 +13,9 @@ pub struct Common {
     pub levels_db: Vec<Option<f64>>,
 }
 
-/// Standard deviations within which two frequencies are one.
+/// Distance in standard deviations below which two frequencies are the same.
 const DEVIATIONS: f64 = 4.0;
-/// The same in bandwidths of the mode: strikes pull on what is struck.
+/// The same in bandwidths of the mode, since a strike may shift the frequencies of the body.
 const BANDWIDTHS: f64 = 0.3;
 
 /// The modes that at least two strikes have in common, by rising frequency.

@@ -1,40 +1,41 @@
-//! When the exciter of a strike has let go.
+//! Finds when the exciter of a strike has let go.
 //!
-//! Each sample of modes that ring freely is a weighted sum of those that come after it (backward linear prediction; Makhoul
-//! 1975): for `M` modes, of `2M` samples. While a mallet or a burst of noise drives them, it is not. So the exciter is at
-//! work wherever the error of the best weights is much larger than soon after.
+//! Each sample of freely ringing modes is a weighted sum of those that come after it (backward linear prediction;
+//! Makhoul 1975): for `M` modes, of `2M` samples. This is not so while a mallet or a burst of noise drives the modes.
+//! So the exciter still acts wherever the error of the best prediction is much larger than shortly after.
 
 use nalgebra::{Cholesky, DMatrix};
 
-/// Samples that the one before them is predicted from.
+/// Number of samples from which the one before them is predicted.
 const ORDER: usize = 160;
-/// Seconds of the strike that predictions are fitted to.
+/// Seconds of the strike to which the predictions are fitted.
 const FITTED: f64 = 0.2;
 /// Seconds within which exciters let go.
 const LONGEST: f64 = 0.06;
-/// Seconds of a block whose error is looked at.
+/// Seconds per block of errors.
 const BLOCK: f64 = 0.0005;
-/// Blocks around a block over which the level of the sound is measured.
+/// Blocks before and after a block over which the level of the sound is measured.
 const AROUND: usize = 5;
-/// Blocks after which, and over which, an error is compared with what follows.
+/// An error is compared with the mean of later errors: blocks between, and blocks of the mean.
 const PAUSE: usize = 2;
 const FOLLOWING: usize = 6;
-/// Error in energy over that of later, relative to the sound: 15 dB.
+/// Least energy of an error, relative to the sound, as a multiple of that of later errors: 15 dB.
 const STANDS_OUT: f64 = 30.0;
-/// The same, below which errors are those of rounding.
+/// The same relative to the sound itself: smaller errors come from rounding.
 const LEAST: f64 = 1e-9;
-/// Error in energy over what follows: 6 dB. Modes that are not predicted fall more slowly.
+/// Least energy of an error as a multiple of those that follow: 6 dB. Errors of modes that are not predicted fall more
+/// slowly.
 const FALLS: f64 = 4.0;
-/// Predictions that are fitted one after the other.
+/// Number of predictions that are fitted one after the other.
 const ROUNDS: usize = 4;
-/// Energy of a block relative to the loudest one, below which there is silence.
+/// Energy of a block, relative to the loudest one, below which it is silent.
 const FAINTEST: f64 = 1e-9;
 /// Samples whose products are added up at a time.
 const ROWS: usize = 1024;
 /// Ridge of the normal equations, relative to their diagonal.
 const RIDGE: f64 = 1e-12;
 
-/// Samples after the first one at which the modes ring by themselves; 0 if they do from the beginning.
+/// Number of samples after which the modes ring freely; 0 if they do from the beginning.
 pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
     let block = ((BLOCK * sample_rate) as usize).max(8);
     let samples = &samples[..samples.len().min((FITTED * sample_rate) as usize)];
@@ -46,7 +47,7 @@ pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
         values.chunks_exact(block).map(|block| block.iter().map(|x| x * x).sum::<f64>().max(1e-300)).collect()
     };
     let sound = energies(&samples[..blocks * block]);
-    // Where the sound is over, rounding alone is left.
+    // After the end of the sound, only rounding errors are left.
     let least = FAINTEST * sound.iter().copied().fold(0.0, f64::max);
     let levels: Vec<f64> = (0..blocks)
         .map(|index| {
@@ -72,16 +73,16 @@ pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
             break;
         }
         work = last;
-        // What is not predicted well is no part of what the prediction is fitted to.
+        // Blocks that are predicted badly get little weight in the next prediction.
         let weight = |(error, level): (&f64, &f64)| 1.0 / error.max(1e-12 * level);
         weights = errors.iter().zip(&levels).map(weight).collect();
     }
-    // It may end within the block after.
+    // The exciter may let go within the next block.
     work.map_or(0, |index| (index + 2) * block)
 }
 
-/// Errors of the prediction whose squares, weighted by `weight` of each sample, have the least sum; of all samples that are
-/// followed by as many as it takes.
+/// Errors of the prediction with the least sum of squares, weighted by `weight` of each sample. There is an error for
+/// each sample that is followed by enough others.
 fn errors(samples: &[f64], weight: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
     let count = samples.len() - ORDER;
     // Lag 0 is the sample that is predicted.
@@ -105,7 +106,7 @@ fn errors(samples: &[f64], weight: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
 
-    /// Two modes that noise drives for so many samples.
+    /// Two modes that noise drives for `len` samples.
     fn driven(len: usize) -> Vec<f64> {
         let mut state = 1_u32;
         let (mut sound, mut before) = (vec![0.0; 12_000], [[0.0; 2]; 2]);

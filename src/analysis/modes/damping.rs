@@ -1,40 +1,42 @@
-//! Where a strike is damped by something that comes in while it rings: a key that comes up, a hand, a gate.
+//! Finds where a strike is damped while it rings, as by a key that is released, a hand or a gate.
 //!
-//! The energy of modes that ring freely falls along a curve that is convex on a scale of decibels, if beats are left aside:
-//! what decays fast is over first. Where the curve turns down for good, something else takes energy. Beats turn down as
-//! well, so a place that was found is confirmed by modes that were fitted to what comes before it: those of a beat go on to
-//! explain the sound, those of a strike that is damped do not.
+//! The energy of freely ringing modes, apart from beats, falls along a curve that is convex in decibels, since fast
+//! decays end first. Where the curve turns down and stays down, something else takes energy. Beats turn down as well.
+//! So a place is confirmed by modes that were fitted to the sound before it: after a beat they still explain the sound,
+//! but not after damping.
 
 use super::fit::Fit;
 use super::pole::add;
 use libm::log10;
 
-/// Seconds from one level to the next, and steps that a level is measured over.
+/// Seconds from one level to the next, and number of steps over which a level is measured.
 const STEP: f64 = 0.005;
 const SMOOTH: usize = 4;
 /// Steps before and after a place over which slopes are measured.
 const REACHES: [usize; 4] = [16, 32, 64, 128];
-/// By how many dB the level after a reach lies below the line through the levels before, at least.
+/// Least drop in dB of the level at the end of a reach below the line through the levels before.
 const LEAST_DROP_DB: f64 = 4.0;
 /// The same in mean deviations of the levels from their lines.
 const LEAST_DEVIATIONS: f64 = 4.0;
-/// By how many dB all later levels lie below that line, at least.
+/// Least distance in dB of all later levels from that line.
 const NO_RETURN_DB: f64 = 2.0;
-/// Slope in dB per step above which a sound is driven, and does not ring freely.
+/// Slope in dB per step above which a sound is driven and does not ring freely.
 const RISING: f64 = 0.02;
-/// dB below the loudest level beyond which levels count as that: a sound that ends in digital silence is not damped there.
+/// Range of levels in dB below the loudest. Lower levels are raised to its end, so that a sound that ends in digital
+/// silence does not count as damped there.
 const RANGE_DB: f64 = 90.0;
-/// dB above the quietest level at which levels tell nothing.
+/// Levels less than this many dB above the quietest give no information.
 const FLOOR_DB: f64 = 6.0;
-/// Seconds before the place that are left out, since the place is not known better, and at most which share of all.
+/// Seconds before the place that are left out, since the place is only roughly known, and their largest share of the
+/// time before it.
 const GUARD: f64 = 0.05;
 const GUARD_SHARE: f64 = 0.2;
 /// Seconds after the place in which modes are compared with the sound.
 const COMPARED: f64 = 0.15;
-/// Energy that modes which explain the sound leave of it at most.
+/// Largest share of the energy that modes leave unexplained if they explain the sound.
 const UNEXPLAINED: f64 = 0.2;
 
-/// A line through levels: at their first step, per step, and the mean deviation.
+/// A line through levels: its value at their first step, its slope per step, and the mean deviation from it.
 struct Line {
     first: f64,
     slope: f64,
@@ -85,7 +87,7 @@ pub(super) fn damped_from(samples: &[f64], sample_rate: f64) -> Option<usize> {
 /// How clearly the levels turn down for good at a place, in mean deviations from the lines before and after. `None` if they
 /// do not.
 fn significance(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Option<f64> {
-    // Levels reach over steps, so those right before the place look beyond it.
+    // A level covers several steps, so the levels right before the place include later sound.
     let before = Line::through(&levels[place - reach..place + 1 - SMOOTH]);
     let until = (place + reach).min(levels.len());
     let after = Line::through(&levels[place..until]);
@@ -96,7 +98,7 @@ fn significance(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Op
     if before.slope > RISING || drop < LEAST_DROP_DB || significance < LEAST_DEVIATIONS {
         return None;
     }
-    // The line through what was before says nothing once it comes near the floor.
+    // Once the line through the levels before comes near the floor, it gives no information.
     let back = |(later, level): (usize, &f64)| {
         let expected = expected(later as f64);
         expected > quietest + FLOOR_DB && *level > expected - NO_RETURN_DB
@@ -105,7 +107,7 @@ fn significance(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Op
     (!comes_back).then_some(significance)
 }
 
-/// Whether the sound after the samples that a fit was made of is not what its modes would have become.
+/// Whether the sound after the fitted samples differs from the continuation of the modes.
 pub(super) fn confirmed(fit: &Fit, len: usize, after: &[f64], sample_rate: f64) -> bool {
     let skipped = (1.5 * GUARD * sample_rate) as usize;
     let compared = (COMPARED * sample_rate) as usize;

@@ -1,7 +1,7 @@
-//! Where a sound has more energy than the noise around it: spectra matched to decays of all lengths.
+//! Finds where a sound has more energy than the noise around it, by spectra matched to decays of all lengths.
 //!
-//! For a mode of known decay and frequency, the sum of the samples times `e^(−decay·n)` at that frequency is the test that
-//! finds it best in white noise (matched filter). One transform does it for all frequencies.
+//! For a mode of known decay and frequency, the sum of the samples times `e^(−decay·n)` at that frequency is the best
+//! detector in white noise (matched filter). One transform does this for all frequencies.
 
 use super::pole::{LN_60_DB, Pole};
 use libm::exp;
@@ -9,22 +9,22 @@ use realfft::RealFftPlanner;
 use std::cell::RefCell;
 use std::f64::consts::PI;
 
-/// Shortest and longest T60 that spectra are matched to, in seconds; each is twice the one before.
+/// Shortest and longest T60 in seconds to which spectra are matched; each is twice the one before.
 const SHORTEST: f64 = 0.012;
 const LONGEST: f64 = 30.0;
-/// Bins of a running median, in widths of the resonance that the spectrum is matched to.
+/// Half-width of the neighbourhood of a running median, in widths of the resonance to which the spectrum is matched.
 const NEIGHBOURHOOD: f64 = 30.0;
 /// Least half-width of a neighbourhood in Hz.
 const LEAST_NEIGHBOURHOOD: f64 = 60.0;
-/// Medians that are taken in each neighbourhood; between them the floor is interpolated.
+/// Medians per half-width of a neighbourhood; between them the floor is interpolated.
 const MEDIANS: usize = 4;
-/// Bins that a median is taken of, at most, evenly spread.
+/// Maximum number of bins of a median, evenly spread.
 const MEDIAN_BINS: usize = 500;
 
 /// Samples after which the recurrence of a decay starts from an exact power again.
 const BLOCK: usize = 256;
 
-/// A peak that noise does not explain.
+/// A peak that is too high for noise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) pole: Pole,
@@ -73,7 +73,7 @@ impl Spectrum {
     }
 }
 
-/// The mean of exponentially distributed energies by their median, over so many bins to either side.
+/// The mean of exponentially distributed energies, from their median over `half` bins on either side.
 fn running_median(energies: &[f64], half: usize) -> Vec<f64> {
     let hop = (half / MEDIANS).max(1);
     let mut sorted = Vec::new();
@@ -82,7 +82,7 @@ fn running_median(energies: &[f64], half: usize) -> Vec<f64> {
         .map(|centre| {
             sorted.clear();
             let (from, to) = (centre.saturating_sub(half), (centre + half).min(energies.len()));
-            // Near the ends the neighbourhood is moved, not cut.
+            // Near the ends the neighbourhood is shifted, not shortened.
             let (from, to) =
                 (from.min(energies.len().saturating_sub(2 * half)), to.max((2 * half).min(energies.len())));
             sorted.extend(energies[from..to].iter().step_by((2 * half).div_ceil(MEDIAN_BINS)));
@@ -97,7 +97,7 @@ fn running_median(energies: &[f64], half: usize) -> Vec<f64> {
     (0..energies.len()).map(between).collect()
 }
 
-/// Plans transforms, each of them once.
+/// Plans each transform only once.
 #[derive(Default)]
 pub(super) struct Planner(RefCell<RealFftPlanner<f64>>);
 
@@ -140,7 +140,7 @@ impl Spectra {
         })
     }
 
-    /// [`Self::peaks`], the strongest first, each the only one within its surroundings that `reach` gives.
+    /// [`Self::peaks`], the strongest first, each without weaker ones within the distance `reach` of it.
     pub(super) fn candidates(
         &self,
         ratio: f64,

@@ -1,9 +1,9 @@
-//! The poles of a narrow band by ESPRIT (Roy & Kailath 1989).
+//! Finds the poles of a narrow band by ESPRIT (Roy & Kailath 1989).
 //!
-//! The band is shifted to zero, filtered and decimated, so that a few dozen samples hold few modes; its signal subspace turns
-//! by the poles from one sample to the next.
+//! The band is shifted to zero, filtered and decimated, so that a few dozen samples contain few modes. From one sample
+//! to the next, its signal subspace is multiplied by the poles.
 //!
-//! The filter looks at what comes after the first sample only, where a sum of damped sinusoids stays just that.
+//! The filter only uses samples after the first one, where a sum of damped sinusoids stays such a sum.
 
 use super::pole::Pole;
 use libm::{atan2, log, log2, sqrt};
@@ -11,20 +11,20 @@ use nalgebra::{DMatrix, Schur, SymmetricEigen};
 use realfft::num_complex::Complex;
 use std::f64::consts::PI;
 
-/// Samples that a band is decimated to, and one that is long.
+/// Number of samples after decimation, of a band and of a long band.
 const SAMPLES: usize = 104;
 const SAMPLES_OF_LONG: usize = 416;
 /// Rows of the data matrix, as a share of the samples.
 const ROWS: f64 = 0.425;
-/// Most poles of a band, as a share of the rows.
+/// Maximum number of poles of a band, as a share of the rows.
 const MOST_POLES: f64 = 0.42;
-/// Half-width of a band, and of where its filter ends, as shares of the decimated rate.
+/// Half-width of a band, and frequency at which its filter's stop band begins, as shares of the decimated rate.
 const PASS: f64 = 0.3;
 const STOP: f64 = 0.7;
 /// Attenuation beyond the band in dB.
 const ATTENUATION: f64 = 110.0;
 
-/// A narrow band of a sound: its middle, the samples from one output to the next, and how many there are.
+/// A narrow band of a sound: its centre, the number of samples from one output to the next, and the number of outputs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Band {
     pub(super) theta: f64,
@@ -38,8 +38,8 @@ impl Band {
         Self { theta, hop: (len / (SAMPLES + Self::taps(1))).max(1), count: SAMPLES }
     }
 
-    /// A band about as wide, but of `len` samples that are several times as long: each mode has several times as many samples, so
-    /// that modes can be resolved which are denser than their bandwidths.
+    /// A band about as wide, but of `len` samples, which are several times as many. Each mode then has several times as
+    /// many samples, so that modes denser than their bandwidths can be resolved.
     pub(super) fn long(theta: f64, len: usize) -> Self {
         Self { theta, hop: (len / (SAMPLES_OF_LONG + Self::taps(1))).max(1), count: SAMPLES_OF_LONG }
     }
@@ -88,13 +88,13 @@ impl Band {
         filter
     }
 
-    /// Samples from the first on that [`Self::poles`] looks at.
+    /// Number of samples, from the first one on, that [`Self::poles`] uses.
     pub(super) fn reach(&self) -> usize {
         self.count * self.hop + Self::taps(self.hop)
     }
 
-    /// The poles within the band, as many as the description length asks for (MDL; Wax & Kailath 1985), and whether it asks for
-    /// more than so many samples can tell apart.
+    /// The poles within the band, as many as the minimum description length gives (MDL; Wax & Kailath 1985), and
+    /// whether this is more than the band's samples can resolve.
     pub(super) fn poles(&self, samples: &[f64]) -> (Vec<Pole>, bool) {
         let band = self.decimate(samples);
         let rows = ((ROWS * self.count as f64) as usize).min(band.len() / 2);
@@ -123,7 +123,7 @@ impl Band {
         ((0..count).filter_map(|index| self.pole(triangle[(index, index)])).collect(), crowded)
     }
 
-    /// The pole of a turn from one of the band's samples to the next; none outside the band, or that grows.
+    /// The pole of a factor from one of the band's samples to the next; none if it lies outside the band or grows.
     fn pole(&self, turn: Complex<f64>) -> Option<Pole> {
         let (radius, angle) = (turn.norm(), atan2(turn.im, turn.re));
         let inside = angle.abs() < 2.0 * PI * PASS * 1.05 && radius > 1e-6;
@@ -148,7 +148,7 @@ fn covariance(band: &[Complex<f64>], rows: usize, columns: usize) -> DMatrix<Com
     covariance
 }
 
-/// How many of the falling eigenvalues of a covariance over so many snapshots are no noise.
+/// How many of the falling eigenvalues of a covariance over `snapshots` snapshots belong to signals and not to noise.
 fn description_length(eigenvalues: &[f64], snapshots: usize) -> usize {
     let (count, floor) = (eigenvalues.len(), 1e-15 * eigenvalues[0].max(f64::MIN_POSITIVE));
     let cost = |order: usize| {

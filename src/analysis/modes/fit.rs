@@ -1,8 +1,8 @@
-//! All modes of a sound at once, by least squares: amplitudes exactly, poles by Gauss–Newton.
+//! Fits all modes of a sound at once, by least squares: amplitudes exactly, poles by Gauss–Newton.
 //!
-//! The model is `c + Σ Re aₖ·zₖⁿ`. It is linear in the amplitudes, which are solved for at each step (variable projection,
-//! Golub & Pereyra 1973). What a step needs to know of the samples are two sums for each pole; products of two modes are
-//! sums of powers, which have a closed form.
+//! The model is `c + Σ Re aₖ·zₖⁿ`. It is linear in the amplitudes, which are solved for at each step (variable
+//! projection, Golub & Pereyra 1973). A step needs only two sums over the samples for each pole. Products of two modes
+//! are sums of powers, which have a closed form.
 
 use super::pole::{Ladder, Pole, add, correlations};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -10,11 +10,11 @@ use realfft::num_complex::Complex;
 
 /// Largest step of a pole, in its own widths.
 const LONGEST_STEP: f64 = 0.7;
-/// What is added to the unit diagonal of normal equations, the least that does, so that poles which all but coincide can be
-/// solved for.
+/// Values that are added to the unit diagonal of normal equations, so that poles which almost coincide can be solved
+/// for; the least that works is used.
 const RIDGES: [f64; 6] = [1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4];
 
-/// Share of a quadrature's norm that rounding leaves of it.
+/// Smallest share of a quadrature's norm that is more than rounding errors.
 const CANCELLED: f64 = 1e-10;
 
 /// Modes with the amplitudes that fit best.
@@ -25,7 +25,7 @@ pub(super) struct Fit {
     pub(super) amplitudes: Vec<Complex<f64>>,
     /// The constant.
     pub(super) constant: f64,
-    /// Energy of what the modes do not explain.
+    /// Energy of the residual.
     pub(super) unexplained: f64,
     correlations: Vec<[Complex<f64>; 2]>,
     gram: Gram,
@@ -70,7 +70,7 @@ impl Gram {
         0.5 * sum.re
     }
 
-    /// Mean square norm of a direction and the one a quarter turn from it.
+    /// Mean square norm of a direction and its quadrature, a quarter turn from it.
     fn whole(&self, direction: Direction) -> f64 {
         let at = direction.pole * self.count + direction.pole;
         0.5 * direction.factor.norm_sqr() * self.conjugated[at][2 * direction.power].re
@@ -84,7 +84,8 @@ impl Gram {
                 let product = self.product(directions[row], directions[column]);
                 (matrix[(row, column)], matrix[(column, row)]) = (product, product);
             }
-            // A quadrature of what hardly vibrates is the difference of two sums: rounding, if they are all but equal.
+            // For a pole that hardly oscillates, a quadrature is the difference of two sums. If they are almost equal,
+            // only rounding errors are left.
             let least = CANCELLED * self.whole(directions[column]);
             matrix[(column, column)] = matrix[(column, column)].max(least);
         }
@@ -148,9 +149,9 @@ pub(super) struct Inverses {
     pub(super) all: DMatrix<f64>,
 }
 
-/// How well a fit knows its modes.
+/// The certainty of a fit's modes.
 pub(super) struct Certainty {
-    /// Energy that each mode explains which the others could not.
+    /// Energy that each mode explains and the others could not.
     pub(super) explained: Vec<f64>,
     /// Variances of decay, theta, relative amplitude and phase, for noise of variance 1.
     pub(super) variances: Vec<[f64; 4]>,
@@ -175,7 +176,7 @@ impl Fit {
         unexplained.is_finite().then_some(Self { poles, amplitudes, constant, unexplained, correlations, gram })
     }
 
-    /// What the model leaves of the samples.
+    /// The samples minus the model.
     pub(super) fn residual(&self, samples: &[f64]) -> Vec<f64> {
         let mut residual: Vec<f64> = samples.iter().map(|sample| sample - self.constant).collect();
         for (pole, amplitude) in self.poles.iter().zip(&self.amplitudes) {
@@ -184,7 +185,7 @@ impl Fit {
         residual
     }
 
-    /// Amplitude and pole of every mode, and the constant last.
+    /// The directions of all amplitudes, then of the constant, then of all poles.
     fn directions(&self) -> Vec<Direction> {
         let mut directions = linear_directions(self.poles.len());
         for (pole, amplitude) in self.amplitudes.iter().enumerate() {
@@ -201,7 +202,7 @@ impl Fit {
         amplitudes.push(Complex::new(self.constant, 0.0));
         let gradient = |direction: &Direction| {
             if direction.power == 0 {
-                // The amplitudes are the best ones already.
+                // The amplitudes are optimal already.
                 return 0.0;
             }
             let data = (direction.factor.conj() * self.correlations[direction.pole][1]).re;
@@ -216,8 +217,8 @@ impl Fit {
         Some((0..count).map(|k| Complex::new(solved[start + 2 * k], solved[start + 2 * k + 1])).collect())
     }
 
-    /// Moves the poles to where the least is left unexplained: until a step moves none by more than `tolerance` of its
-    /// width, or `rounds` are over.
+    /// Moves the poles until the unexplained energy is least: until a step moves no pole by more than `tolerance` of
+    /// its width, or `rounds` are over.
     pub(super) fn refine(
         mut self,
         samples: &[f64],
@@ -275,7 +276,7 @@ impl Fit {
         Some(Inverses { alone, all })
     }
 
-    /// How well the modes are known. `None` if the equations cannot be solved.
+    /// The certainty of the modes. `None` if the equations cannot be solved.
     pub(super) fn certainty(&self, len: usize) -> Option<Certainty> {
         let (count, Inverses { alone, all }) = (self.poles.len(), self.inverses()?);
         let variances = |k: usize| {
@@ -293,8 +294,8 @@ impl Fit {
     }
 }
 
-/// Square of a mode's amplitude over its variance, by an inverse of the normal equations: the energy that the mode explains
-/// and nothing else in the equations could.
+/// Square of a mode's amplitude over its variance, from an inverse of the normal equations: the energy that only this
+/// mode can explain.
 pub(super) fn energy(inverse: &DMatrix<f64>, k: usize, amplitude: Complex<f64>) -> f64 {
     let (a, b, c) = (inverse[(2 * k, 2 * k)], inverse[(2 * k, 2 * k + 1)], inverse[(2 * k + 1, 2 * k + 1)]);
     let (x, y) = (amplitude.re, amplitude.im);

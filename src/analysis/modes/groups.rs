@@ -1,20 +1,20 @@
-//! Modes that are heard as one partial: split pairs, and decays in two stages.
+//! Finds modes that are heard as one partial: split pairs, and decays in two stages.
 
 use super::mode::{Group, Kind, Mode};
 
 /// Bandwidth in Hz of a mode with a T60 of 1 s, at half its power: ln 1000 / π.
 const BANDWIDTH: f64 = 2.199;
-/// Ratio of T60s from which on a decay has two stages.
+/// Ratio of T60s above which a decay has two stages.
 const STAGES: f64 = 2.0;
-/// Distance of a pair, in bandwidths of the wider mode and in Hz at most.
+/// Largest distance of a pair, in bandwidths of the wider mode (at least 2 Hz) and in Hz.
 const NEAR: f64 = 6.0;
 const NEAR_HZ: f64 = 12.0;
-/// Levels of a pair differ by less.
+/// Largest difference of the levels of a pair.
 const PAIR_DB: f64 = 40.0;
-/// By how many dB the fast stage of a decay is louder than the slow one at first.
+/// Range in dB by which the fast stage of a decay is louder than the slow one at the onset.
 const LEAST_LEAD: f64 = -6.0;
 const MOST_LEAD: f64 = 50.0;
-/// Standard deviations by which values differ that are not the same.
+/// Standard deviations above which two values differ.
 const DEVIATIONS: f64 = 4.0;
 
 /// Finds the groups in modes of rising frequency.
@@ -35,7 +35,7 @@ pub(super) fn groups(modes: &[Mode]) -> Vec<Group> {
     found
 }
 
-/// What two neighbours are to each other, if anything.
+/// The kind of group that two neighbours form, if any.
 fn kind(a: &Mode, b: &Mode) -> Option<Kind> {
     let (fast, slow) = if a.t60 < b.t60 { (a, b) } else { (b, a) };
     let (wide, narrow) = (BANDWIDTH / fast.t60, BANDWIDTH / slow.t60);
@@ -44,7 +44,7 @@ fn kind(a: &Mode, b: &Mode) -> Option<Kind> {
     let ratio = slow.t60 / fast.t60;
     let differs = ratio - 1.0 > DEVIATIONS * ratio * (deviation(fast) + deviation(slow));
     let decibels = fast.level_db - slow.level_db;
-    // A short mode beside a long one is a stage of its decay only if it has the frequency and is heard first.
+    // A short mode beside a long one is a stage of its decay only if it has the same frequency and is heard first.
     let stages =
         distance < 0.5 * wide && distance < narrow + deviated(a, b) && (LEAST_LEAD..MOST_LEAD).contains(&decibels);
     if ratio >= STAGES {
@@ -54,7 +54,7 @@ fn kind(a: &Mode, b: &Mode) -> Option<Kind> {
     }
 }
 
-/// Hz by which two frequencies may differ that are one.
+/// Distance in Hz below which two frequencies are the same.
 fn deviated(a: &Mode, b: &Mode) -> f64 {
     DEVIATIONS * (a.uncertainty.frequency + b.uncertainty.frequency)
 }

@@ -1,10 +1,10 @@
-//! A recording of strikes taken apart into its modes.
+//! Analyses a recording of strikes into its modes.
 //!
-//! Modes are damped sinusoids, each with frequency, T60, level, phase and how certain these are.
+//! Modes are damped sinusoids, each with frequency, T60, level, phase and their uncertainties.
 //!
-//! Peaks of spectra that are matched to decays of all lengths say where there is more than noise; ESPRIT resolves the bands
-//! around them into poles; all poles are refined together by least squares on the whole sound; what explains no more than
-//! noise would is dropped; and so on with what is left over, until nothing stands out of it.
+//! Spectra matched to decays of all lengths have peaks where there is more than noise. ESPRIT resolves the bands around
+//! these peaks into poles. All poles are refined together by least squares on the whole sound, and those that explain
+//! no more than noise would are dropped. This is repeated with the residual, until it has no more peaks.
 
 mod common;
 mod contact;
@@ -34,14 +34,14 @@ use pole::{LN_60_DB, add};
 use std::f64::consts::{LN_10, PI};
 use strikes::{SHORTEST, Stretch, strikes};
 
-/// What to look for.
+/// Settings of an analysis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Most modes of a strike; the strongest are found first.
+    /// Maximum number of modes of a strike; the strongest are found first.
     pub most_modes: usize,
-    /// Seconds of a strike that are looked at, at most.
+    /// Longest part of a strike, in seconds, that is analysed.
     pub longest: f64,
-    /// Whether every strike is taken apart, or the first alone.
+    /// Whether every strike is analysed, or only the first.
     pub all_strikes: bool,
 }
 
@@ -51,27 +51,27 @@ impl Default for Settings {
     }
 }
 
-/// A recording taken apart.
+/// The analysis of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
-    /// The strikes that were taken apart.
+    /// The strikes that were analysed.
     pub strikes: Vec<Strike>,
-    /// Strikes that were found, taken apart or not.
+    /// Number of strikes that were found, analysed or not.
     pub strikes_found: usize,
-    /// What makes the figures doubtful.
+    /// Doubts about the results.
     pub warnings: Vec<String>,
 }
 
-/// Quietest peak of a recording that is not silent: −100 dBFS.
+/// Lowest peak of a recording that is not silent: −100 dBFS.
 const SILENCE: f64 = 1e-5;
-/// T60 in seconds beyond which a tone does not decay, and standard deviations by which its decay must differ from none.
+/// T60 in seconds above which a tone does not decay, and standard deviations by which its decay must differ from 0.
 const ENDLESS: f64 = 2000.0;
 const DEVIATIONS: f64 = 2.0;
 /// Residual in dB above which the sound is hardly made of modes.
 const HARDLY_MODES_DB: f64 = -6.0;
 
-/// Takes a recording apart: a list of samples for each channel, at `sample_rate` Hz. `progress` is told the share of the
-/// work that is done, and ends it by `false`.
+/// Analyses a recording: a list of samples for each channel, at `sample_rate` Hz. `progress` is called with the share
+/// of the work that is done, and cancels the analysis by returning `false`.
 ///
 /// # Errors
 /// [`Error::Value`] for silence, samples that are not finite, sounds too short and fits that have no solution;
@@ -103,7 +103,7 @@ pub fn modes(
         let mut told = |share: f64| progress((index as f64 + share) / count as f64);
         let (stretch, damped, modes) = search(&rest, stretch, sample_rate, settings.most_modes, &mut told)?;
         if damped.is_none() {
-            // What rings on is no part of the next strike.
+            // Remove the modes that still ring from the next strike.
             for (pole, amplitude) in modes.fit.poles.iter().zip(&modes.fit.amplitudes) {
                 add(&mut rest[stretch.end..], *pole, *amplitude * pole.power(stretch.end - stretch.start), -1.0);
             }
@@ -129,7 +129,7 @@ pub fn modes(
     Ok(Analysis { strikes: found, strikes_found: stretches.len(), warnings })
 }
 
-/// The modes of a stretch: of all of it, or of what comes before the frame at which it is damped.
+/// The modes of a stretch: of all of it, or of the part before the frame at which it is damped.
 fn search(
     sound: &[f64],
     stretch: Stretch,
@@ -155,7 +155,7 @@ fn search(
     Ok((stretch, None, search::find(samples, sample_rate, most_modes, &limits, &mut told)?))
 }
 
-/// The mean of the channels, or the loudest where they all but cancel.
+/// The mean of the channels, or the loudest channel if they almost cancel.
 fn mono(channels: &[Vec<f32>], warnings: &mut Vec<String>) -> Vec<f64> {
     let mean = mean_of(channels);
     let energy = |channel: &Vec<f32>| channel.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
@@ -170,7 +170,7 @@ fn mono(channels: &[Vec<f32>], warnings: &mut Vec<String>) -> Vec<f64> {
     }
 }
 
-/// A warning of samples that stand still at the loudest level.
+/// A warning of successive samples that all have the peak value.
 fn clipping(channels: &[Vec<f32>]) -> Option<String> {
     let mut count = 0;
     for channel in channels {
@@ -207,9 +207,9 @@ fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: 
             })
             .collect(),
     };
-    // Where the exciter has let go the modes have been ringing for a while.
+    // The modes have been ringing since the onset, but the fit begins where the exciter has let go.
     let late = (stretch.start - stretch.onset) as f64;
-    // Both quadratures of noise are in the floor.
+    // The floor contains both quadratures of the noise.
     let variance = |k: usize| found.floors[k] / 2.0;
     let deviation = |k: usize, index: usize| sqrt(found.certainty.variances[k][index] * variance(k));
     let frequency = |k: usize| found.fit.poles[k].theta * sample_rate / (2.0 * PI);

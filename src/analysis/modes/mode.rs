@@ -1,9 +1,9 @@
-//! A mode of a strike, and the strike that it is of.
+//! A mode of a strike, and the strike with all its modes.
 
-/// What a group of modes is.
+/// The kinds of groups of modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Modes a little apart, which beat: what is one mode of a perfect body, split by its imperfections.
+    /// Modes of nearly the same frequency, which beat: one mode of a perfect body, split by imperfections.
     SplitPair,
     /// A mode that decays fast at first and slowly later: modes of one frequency and different T60, as of a string's two
     /// directions (Weinreich 1977).
@@ -13,13 +13,13 @@ pub enum Kind {
 /// Modes of a strike that belong together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// What they are.
+    /// The kind.
     pub kind: Kind,
     /// Their places in the list of modes.
     pub modes: Vec<usize>,
 }
 
-/// Standard deviations, if what is not explained is noise.
+/// Standard deviations, if the residual is noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Hz.
@@ -43,9 +43,9 @@ pub struct Mode {
     pub level_db: f64,
     /// Radians, −π to π.
     pub phase: f64,
-    /// How well these are known.
+    /// The uncertainties of these values.
     pub uncertainty: Uncertainty,
-    /// Energy of the mode over the power density of the noise at its frequency, in dB: what a detector goes by.
+    /// Energy of the mode over the power density of the noise at its frequency, in dB. Detection depends on it.
     pub snr_db: f64,
     /// Level in dBFS and phase in each channel, where there are several.
     pub channels: Vec<(f64, f64)>,
@@ -66,24 +66,24 @@ impl Mode {
 pub struct Strike {
     /// Seconds from the recording's beginning to the strike's.
     pub onset: f64,
-    /// Seconds from there to the end of what was looked at.
+    /// Seconds from there to the end of the part that was analysed.
     pub seconds: f64,
-    /// Seconds from the recording's beginning to where the strike is damped from outside, and no longer looked at; none if
+    /// Seconds from the recording's beginning to where the strike is damped from outside and the analysis ends; none if
     /// it rings to its end.
     pub damped: Option<f64>,
     /// By rising frequency.
     pub modes: Vec<Mode>,
-    /// Tones that do not decay, or not by what could be told, such as hum and what is played on, by rising frequency. They are no
-    /// modes; their T60 is a guess, of 2000 s at most.
+    /// Tones that do not decay measurably, such as hum and sustained notes, by rising frequency. They are no modes;
+    /// their T60 is a guess, of 2000 s at most.
     pub steady: Vec<Mode>,
-    /// Modes that are heard as one: by their places in `modes`.
+    /// Modes that are heard as one partial, by their indices in `modes`.
     pub groups: Vec<Group>,
-    /// Energy that the modes leave unexplained, in dB relative to the whole.
+    /// Energy of the residual, in dB relative to the whole.
     pub residual_db: f64,
-    /// The sound itself from `fitted_from` on, and what the modes leave of it.
+    /// The sound from `fitted_from` on.
     pub samples: Vec<f32>,
-    /// See `samples`.
+    /// The sound minus its modes, from `fitted_from` on.
     pub residual: Vec<f32>,
-    /// Seconds from the recording's beginning to the first of `samples`: the exciter has let go.
+    /// Seconds from the recording's beginning to the first of `samples`, where the exciter has let go.
     pub fitted_from: f64,
 }

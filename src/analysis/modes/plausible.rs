@@ -1,30 +1,30 @@
-//! Which modes of a fit the sound cannot have had: louder than its peak allows, not known at all, or lost beside a neighbour.
+//! Finds modes of a fit that the sound cannot have: too loud for its peak, too uncertain, or masked by a neighbour.
 //!
-//! Sounds that are no sums of damped sinusoids, such as glides, are explained best by modes that all but cancel. Such modes
-//! explain much, so they stand out of noise, but they say nothing of the sound.
+//! Sounds that are no sums of damped sinusoids, such as glides, are explained best by modes that almost cancel each
+//! other. Such modes explain much, so they stand out of noise, but they have no meaning for the sound.
 
 use super::fit::Fit;
 use super::pole::{LN_60_DB, Pole};
 use libm::{exp, sqrt};
 use std::f64::consts::PI;
 
-/// Amplitude over the sound's peak that modes can have. Two as loud as each other, a bandwidth apart, cancel at the onset
-/// and have one and a half times the peak that is heard.
+/// Largest amplitude of a mode, relative to the sound's peak. Two equally loud modes, a bandwidth apart, may cancel at
+/// the onset, and each have one and a half times the peak that is heard.
 const LOUDEST: f64 = 2.0;
 /// Shortest T60 in seconds.
 const SHORTEST: f64 = 0.005;
-/// Least frequency in bandwidths at half power: what decays faster does not vibrate.
+/// Least frequency in bandwidths at half power: a mode that decays faster does not oscillate.
 const LEAST_QUALITY: f64 = 1.0;
 /// Largest standard deviations of a pole in its widths, and of an amplitude as a share of it.
 const DEVIATION: f64 = 0.5;
-/// A mode 100 dB below a neighbour, and within so many times the sum of their widths, cannot be heard: it only corrects the
-/// neighbour's shape.
+/// A mode 100 dB below a neighbour, and within so many times the sum of their widths, is inaudible: it only corrects
+/// the shape of the neighbour.
 const SKIRT: f64 = 1e-5;
 const BESIDE: f64 = 8.0;
-/// Lowest frequency that is heard, in Hz.
+/// Lowest audible frequency in Hz.
 pub(super) const AUDIBLE: f64 = 20.0;
 
-/// What the modes of a sound are bound by.
+/// The limits of a sound's modes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
     /// Largest magnitude of a sample from the onset on.
@@ -36,12 +36,12 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// Whether a mode is heard: those below explain drifts, and are no result.
+    /// Whether a mode is audible. Lower modes only explain drifts, and are no result.
     fn audible(&self, pole: Pole) -> bool {
         pole.theta * self.sample_rate >= 2.0 * PI * AUDIBLE
     }
 
-    /// The level of a mode at the onset over the most that the peak allows.
+    /// The amplitude of a mode at the onset, relative to the largest that the peak allows.
     fn excess(&self, pole: Pole, amplitude: f64) -> f64 {
         amplitude * exp((pole.decay * self.late).min(500.0)) / (LOUDEST * self.peak)
     }
@@ -53,8 +53,8 @@ impl Limits {
     }
 }
 
-/// Places of modes that the sound cannot have had, given the floors of noise at each mode; of neighbours that are too loud
-/// the loudest alone, since the others may be plausible without it.
+/// Indices of modes that the sound cannot have, given the noise floor of each mode. Of neighbours that are too loud,
+/// only the loudest is given, since the others may be plausible without it.
 pub(super) fn implausible(fit: &Fit, floors: &[f64], len: usize, limits: &Limits) -> Vec<usize> {
     let certainty = fit.certainty(len);
     let unknown = |k: usize| {

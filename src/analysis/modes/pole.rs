@@ -1,17 +1,17 @@
-//! A mode's place in the plane of frequency and decay, and sums over its powers.
+//! The pole of a mode, which is its frequency and decay, and sums over powers of poles.
 
 use libm::{exp, log, sincos};
 use realfft::num_complex::Complex;
 
 pub(super) use crate::analysis::damped_sine::LN_60_DB;
 
-/// Samples of a block: within it powers come from a table, from block to block from a recurrence.
+/// Samples per block: within it powers come from a table, from block to block from a recurrence.
 const BLOCK: usize = 16;
 /// Blocks after which the recurrence starts from an exact power again.
 const ANCHOR: usize = 32;
-/// Modes whose powers are stepped side by side.
+/// Number of modes that are computed side by side.
 const LANES: usize = 4;
-/// Distance of two poles that all but coincide, as a share of their width.
+/// Distance below which two poles coincide, as a share of their width.
 const COINCIDING: f64 = 0.05;
 /// `|zⁿ|` below which a mode is over: −280 dB.
 const OVER: f64 = 1e-14;
@@ -24,7 +24,7 @@ pub(super) struct Pole {
 }
 
 impl Pole {
-    /// A constant: the pole of what is no vibration.
+    /// The pole of a constant.
     pub(super) const CONSTANT: Self = Self { decay: 0.0, theta: 0.0 };
 
     /// `zⁿ`.
@@ -34,19 +34,19 @@ impl Pole {
         Complex::new(radius * cos, radius * sin)
     }
 
-    /// The first of `len` samples at which nothing is left of it.
+    /// The first of `len` samples at which the mode is over.
     pub(super) fn end(self, len: usize) -> usize {
         let end = if self.decay > 0.0 { -log(OVER) / self.decay } else { f64::INFINITY };
         if end < len as f64 { end as usize + 1 } else { len }
     }
 
-    /// Whether it all but coincides with another one over `len` samples. Pairs that are really there beat.
+    /// Whether it almost coincides with another one over `len` samples. Real pairs of modes beat.
     pub(super) fn coincides(self, other: Self, len: usize) -> bool {
         let distance = libm::hypot(self.theta - other.theta, self.decay - other.decay);
         distance <= COINCIDING * self.width(len).min(other.width(len))
     }
 
-    /// Half the width of its resonance in radians per sample, no narrower than `len` samples can tell.
+    /// Half the width of its resonance in radians per sample, but not less than `len` samples can resolve.
     pub(super) fn width(self, len: usize) -> f64 {
         self.decay.max(1.0 / len as f64)
     }
@@ -54,7 +54,7 @@ impl Pole {
 
 /// `Σ y·z̄ⁿ` and `Σ τ·y·z̄ⁿ` with `τ = n/len`, for each pole.
 pub(super) fn correlations(samples: &[f64], poles: &[Pole]) -> Vec<[Complex<f64>; 2]> {
-    // Those that ring about as long go side by side, since all of them take as long as the longest.
+    // Poles that ring about as long go side by side, since a group takes as long as its longest.
     let mut order: Vec<usize> = (0..poles.len()).collect();
     order.sort_unstable_by(|a, b| poles[*a].decay.total_cmp(&poles[*b].decay));
     let mut found = vec![[Complex::ZERO; 2]; poles.len()];
@@ -123,7 +123,7 @@ pub(super) fn add(samples: &mut [f64], pole: Pole, amplitude: Complex<f64>, fact
     }
 }
 
-/// Lengths whose sums [`Ladder::sums`] goes through: each the double of the one before, or one more than it.
+/// The lengths through which [`Ladder::sums`] goes: each is twice the one before, or one more.
 pub(super) struct Ladder {
     /// From 1 to the whole length.
     lengths: Vec<usize>,
@@ -145,7 +145,7 @@ impl Ladder {
     }
 
     /// `Σ τᵐ·wⁿ` with `τ = n/len` for `m` of 0, 1 and 2, where `w` is the product of two poles, the first of them
-    /// conjugated if so wanted. By doubling, which loses no digits wherever `w` lies in the unit disk.
+    /// conjugated if `conjugated`. The doubling loses no precision if `w` lies in the unit disk.
     pub(super) fn sums(&self, first: usize, second: usize, conjugated: bool) -> [Complex<f64>; 3] {
         let power = |at: usize| {
             let z = self.powers[first][at];

@@ -1,24 +1,24 @@
-//! Which modes of a fit are dropped: those that explain no more than noise would, the weakest first.
+//! Drops modes of a fit that explain no more than noise would, the weakest first.
 
 use super::detect::{Planner, Spectra};
 use super::fit::{Fit, Inverses, energy};
 use nalgebra::DMatrix;
 use realfft::num_complex::Complex;
 
-/// What a mode has to explain, in multiples of what noise explains near it on average. Noise alone exceeds it once in
-/// e¹⁵ bins, 3 million.
+/// Energy that a mode must explain, as a multiple of the average energy of noise near it. Noise alone exceeds it once
+/// in e¹⁵ bins, 3 million.
 pub(super) const DETECTION: f64 = 15.0;
-/// The same for its amplitude once all poles are unknown: lower, since a pole of its own costs a mode half of it.
+/// The same if all poles are unknown, too. It is lower, since its own unknown pole costs a mode half of that energy.
 const SIGNIFICANCE: f64 = 5.0;
-/// Times that a floor is measured anew, since what is dropped comes back in the residual.
+/// Maximum number of times that the floor is measured, since dropped modes raise the residual.
 const MOST_FLOORS: usize = 8;
-/// What may be left without modes that were dropped, over what was left with them.
+/// Largest unexplained energy after modes are dropped, relative to that before.
 const MOST_LEFT: f64 = 1.2;
-/// Most refinement steps of the modes that stay.
+/// Maximum number of refinement steps of the modes that stay.
 const REFINED: usize = 8;
 
-/// Drops modes until each one that is left explains more than noise would, and more than the energy `least`. `None` if
-/// the equations cannot be solved.
+/// Drops modes until each remaining one explains more than noise would, and more than the energy `least`. `None` if the
+/// equations cannot be solved.
 pub(super) fn prune(
     mut fit: Fit,
     samples: &[f64],
@@ -51,9 +51,9 @@ pub(super) fn prune(
     Some(fit)
 }
 
-/// A fit without modes that explain no more than noise, the weakest first. Of modes that are denser than their bandwidths each one
-/// seems to be of no worth, since its neighbours could explain what it does; without all of them, much would be left. Then
-/// only as many are dropped as the others can replace once they are refined.
+/// A fit without modes that explain no more than noise, the weakest first. If modes are denser than their bandwidths,
+/// each one seems useless, since its neighbours could explain its part; but without all of them, much would stay
+/// unexplained. Then only as many are dropped as the others, once refined, can replace.
 fn without(
     fit: &Fit,
     weakest: &[usize],
@@ -78,8 +78,8 @@ fn without(
     Some(fit.clone())
 }
 
-/// A fit in which two modes that all but coincide have become one, if one explains the sound as well: the two were found from
-/// different sides and share the amplitude of a single mode. `least` is the energy that need not be explained.
+/// A fit in which two modes that almost coincide become one, if one explains the sound as well. Such modes were found
+/// separately and share the amplitude of a single mode. `least` is the energy that need not be explained.
 pub(super) fn join(mut fit: Fit, samples: &[f64], least: f64, go_on: &mut dyn FnMut() -> bool) -> Fit {
     let mut tried = 0;
     while let Some((_, weaker)) = coinciding(&fit, samples.len()).into_iter().nth(tried) {
@@ -93,7 +93,7 @@ pub(super) fn join(mut fit: Fit, samples: &[f64], least: f64, go_on: &mut dyn Fn
     fit
 }
 
-/// Pairs of modes that all but coincide, in the order of their poles: the stronger one and the weaker one.
+/// Pairs of modes that almost coincide, in the order of their poles: the stronger one and the weaker one.
 fn coinciding(fit: &Fit, len: usize) -> Vec<(usize, usize)> {
     let mut order: Vec<usize> = (0..fit.poles.len()).collect();
     order.sort_by(|a, b| fit.poles[*a].theta.total_cmp(&fit.poles[*b].theta));
@@ -106,13 +106,13 @@ fn coinciding(fit: &Fit, len: usize) -> Vec<(usize, usize)> {
     order.windows(2).filter(near).map(ordered).collect()
 }
 
-/// Modes that are taken out of the normal equations one after the other. What is left is the solution without them, at
-/// the cost of one outer product for each unknown.
+/// Removes modes from the normal equations one after the other. The result is the solution without them, at the cost of
+/// one outer product for each unknown.
 struct Elimination {
     inverses: Inverses,
     amplitudes: Vec<Complex<f64>>,
     left: Vec<usize>,
-    /// In the order in which they were taken out.
+    /// In the order of removal.
     removed: Vec<usize>,
 }
 
@@ -121,7 +121,7 @@ impl Elimination {
         Self { inverses, left: (0..amplitudes.len()).collect(), removed: Vec::new(), amplitudes }
     }
 
-    /// The mode that explains the least of those left, and its energy as a multiple of what it has to explain.
+    /// The remaining mode that explains the least, and its energy as a multiple of the energy that it must explain.
     fn weakest(&self, floors: &[f64], least: f64) -> Option<(f64, usize)> {
         let worth = |k: usize| {
             let explained = energy(&self.inverses.alone, k, self.amplitudes[k]);
@@ -134,7 +134,7 @@ impl Elimination {
 
     fn remove(&mut self, k: usize) {
         for part in 0..2 {
-            // The amplitudes are the solution with all modes; without this unknown they take over what it explained.
+            // The amplitudes solve the equations with all modes. Without this unknown, they take over its part.
             let at = 2 * k + part;
             let own = if part == 0 { self.amplitudes[k].re } else { self.amplitudes[k].im };
             let column = self.inverses.alone.column(at);
@@ -153,7 +153,7 @@ impl Elimination {
     }
 }
 
-/// Makes of an inverse that of the equations without one unknown.
+/// Changes an inverse into that of the equations without one unknown.
 fn take_out(inverse: &mut DMatrix<f64>, at: usize) {
     let column = inverse.column(at).into_owned();
     if column[at] > 0.0 {

@@ -1,4 +1,4 @@
-//! Where something stands out of what the modes of a fit leave, bands are resolved into poles.
+//! Resolves bands into poles where something stands out of the residual of a fit.
 
 use super::detect::{Planner, Spectra};
 use super::esprit::Band;
@@ -9,26 +9,26 @@ use libm::fabs;
 use realfft::num_complex::Complex;
 use std::f64::consts::PI;
 
-/// Energies that are looked at in one round, relative to the strongest: the skirts of the strong hide the weak.
+/// Least energy that is used in one round, relative to the strongest: the skirts of strong modes hide weak ones.
 const ROUND_SPAN: f64 = 1e-4;
 /// Lowest and highest frequency of a mode, in Hz and as a share of half the sample rate.
 const LOWEST: f64 = 10.0;
 const HIGHEST: f64 = 0.99;
-/// Share of the energy that is left when a sound is over.
+/// Share of the energy that remains when a sound is over.
 const OVER: f64 = 1e-6;
-/// Long bands to either side of one, and how far they lie apart, in halves of their widths.
+/// Maximum number of long bands on either side of one, and their distance in half-widths.
 const MOST_LONG_BANDS: usize = 1;
 const LONG_BANDS_APART: f64 = 2.0;
 
 /// Which bands are resolved into poles anew.
 pub(super) enum Where {
-    /// Those in which more than so much energy stands out of what the modes leave.
+    /// Bands in which more than this energy stands out of the residual.
     StandsOut(f64),
-    /// That of every mode, which may be two that are hard to tell apart.
+    /// The band of every mode, since the mode may be two that are hard to separate.
     Modes,
 }
 
-/// The poles of a fit together with those of bands that are resolved anew; none if nothing stands out.
+/// The poles of a fit together with those of bands that are newly resolved; empty if nothing stands out.
 pub(super) fn resolve(
     fit: &Fit,
     samples: &[f64],
@@ -60,7 +60,7 @@ pub(super) fn resolve(
         if resolution.known.len() >= most_modes {
             break;
         }
-        // A band that was resolved anew already has this mode, too.
+        // Another band may have resolved this mode already.
         if split && !resolution.known.iter().any(|known| known.before && known.pole == candidate) {
             continue;
         }
@@ -78,7 +78,7 @@ pub(super) fn resolve(
                 resolution.resolve(&narrow, true, &mut found);
             }
         }
-        // The order of a band may be too low for a faint mode beside strong ones, or a short one beside long ones.
+        // A band may have found too few poles to include a faint mode beside strong ones, or a short one beside long ones.
         let width = candidate.width(samples.len());
         let met = |pole: &Pole| fabs(pole.theta - candidate.theta) < width;
         if !split && !found.iter().any(met) {
@@ -93,7 +93,7 @@ pub(super) fn resolve(
     apart(known.into_iter().map(|known| known.pole), samples.len())
 }
 
-/// A pole, and whether it was there before the bands were resolved, with its amplitude.
+/// A pole, its amplitude, and whether it is older than the newly resolved bands.
 #[derive(Clone, Copy)]
 struct Known {
     pole: Pole,
@@ -101,7 +101,7 @@ struct Known {
     before: bool,
 }
 
-/// Poles of which those of some bands take the place of those that were there.
+/// Poles, in which those of resolved bands replace the old ones.
 struct Resolution<'a> {
     known: Vec<Known>,
     residual: &'a [f64],
@@ -110,8 +110,8 @@ struct Resolution<'a> {
 }
 
 impl Resolution<'_> {
-    /// Resolves a band, and adds its poles to `found` if these are more than there were. False, and nothing is done, if it has more
-    /// than can be told apart, unless as many as can be are wanted `anyway`.
+    /// Resolves a band and adds its poles to `found` if they are more than the old ones. If the band has more poles
+    /// than can be resolved, it does nothing and returns false, unless `anyway` accepts as many as can be.
     fn resolve(&mut self, band: &Band, anyway: bool, found: &mut Vec<Pole>) -> bool {
         let is_member = |known: &Known| known.before && fabs(known.pole.theta - band.theta) < band.half_width();
         let mut mixed = self.residual[..band.reach().min(self.residual.len())].to_vec();
@@ -139,7 +139,7 @@ fn band(pole: Pole, len: usize) -> Band {
     Band::new(pole.theta, ((1.2 * LN_60_DB / pole.decay) as usize).min(len))
 }
 
-/// Samples after which next to nothing is left of a residual.
+/// Number of samples after which almost nothing is left of a residual.
 fn heard(residual: &[f64]) -> usize {
     let energy: f64 = residual.iter().map(|sample| sample * sample).sum();
     let mut rest = 0.0;
@@ -150,7 +150,7 @@ fn heard(residual: &[f64]) -> usize {
     over.map_or(residual.len(), |last| last + 1)
 }
 
-/// Bands that cover one which has too many poles, each of `len` samples; that in its middle first.
+/// Bands that cover one with too many poles, each of `len` samples; the middle one first.
 fn long_bands_of(crowded: &Band, len: usize) -> Vec<Band> {
     let long = |theta: f64| Band::long(theta, len);
     let middle = long(crowded.theta);

@@ -1,7 +1,7 @@
-//! The search for modes, round by round.
+//! Searches for modes, round by round.
 //!
-//! What stands out of the residual is resolved into poles, fitted together with all others, and kept if it explains more
-//! than noise would.
+//! Peaks that stand out of the residual are resolved into poles. These are fitted together with all others, and kept if
+//! they explain more than noise would.
 
 use super::detect::{Planner, Spectra};
 use super::fit::{Certainty, Fit};
@@ -10,23 +10,23 @@ use super::prune::{join, prune};
 use super::resolve::{Where, resolve};
 use crate::error::{Error, Result};
 
-/// Least share of the sound's energy: what rounding to single precision leaves.
+/// Least share of the sound's energy that counts: rounding to single precision leaves as much.
 const LEAST_SHARE: f64 = 1e-13;
 
-/// Share of what is unexplained that a round has to explain, at least.
+/// Least share of the unexplained energy that a round must explain.
 const LEAST_GAIN: f64 = 1e-4;
-/// That share for a sound of which nothing is explained yet by all the modes that are allowed. With fewer modes, or less left, it is
-/// lower in proportion. More modes always explain a little more of noise, which means nothing.
+/// That share for a sound of which the maximum number of modes explains nothing yet. With fewer modes, or less
+/// unexplained, it is lower in proportion. More modes always explain a little more of noise, which means nothing.
 const GAIN_OF_NOISE: f64 = 0.05;
 
 const MOST_ROUNDS: usize = 24;
-/// Rounds without progress after which a sound is taken for no sum of modes. Modes that are resolved anew with their
-/// neighbours can cost a round or two.
+/// Rounds without progress after which a sound counts as no sum of modes. When modes are resolved again with their
+/// neighbours, a round or two may bring no progress.
 const PATIENCE: usize = 3;
-/// Times that modes which the sound cannot have had are dropped. What is left may be implausible then.
+/// How many times modes that the sound cannot have are dropped. The remaining modes may become implausible by this.
 const MOST_REMOVALS: usize = 12;
 
-/// Modes that were found, with what is known of them.
+/// The modes that were found, and their certainty.
 pub(super) struct Found {
     pub(super) fit: Fit,
     pub(super) certainty: Certainty,
@@ -34,8 +34,8 @@ pub(super) struct Found {
     pub(super) floors: Vec<f64>,
 }
 
-/// Finds the modes of a sound that begins with its first sample. `progress` is told a share of the work and says whether
-/// to go on.
+/// Finds the modes of a sound that begins with its first sample. `progress` is called with the share of the work that
+/// is done, and cancels the search by returning `false`.
 ///
 /// # Errors
 /// [`Error::Interrupted`] if it was stopped; [`Error::Value`] if the equations of the fit have no solution.
@@ -71,23 +71,23 @@ pub(super) fn find(
         let place = if split { Where::Modes } else { Where::StandsOut(least) };
         let poles = resolve(&fit, samples, sample_rate, most_modes, place, &planner);
         let next = if split {
-            // What hides beneath another mode explains nothing before it has found its place.
+            // A mode that is hidden by another explains nothing before it is refined.
             Fit::new(samples, poles).map(|fit| fit.refine(samples, 1e-2, 8, &mut go_on))
         } else if poles.is_empty() || idle == PATIENCE {
-            // Modes that are a little off leave more than what is hidden beneath.
+            // Inaccurate modes leave more energy than hidden ones, so refine first.
             (best, idle, split) = (best.refine(samples, 1e-7, 40, &mut go_on), 0, true);
             let Some(refined) = pruned(best.clone(), &mut go_on) else { break };
             (fit, best) = (refined.clone(), refined);
             continue;
         } else {
-            // Before they have found their places, modes that are denser than their bandwidths seem to be of no worth.
+            // Before they are refined, modes that are denser than their bandwidths seem useless.
             let next = Fit::new(samples, poles).map(|fit| fit.refine(samples, 1e-2, 8, &mut go_on));
             let next = next.and_then(|fit| pruned(fit, &mut go_on));
             next.map(|fit| fit.refine(samples, 1e-2, 5, &mut go_on))
         };
-        // Poles that all but coincide can make equations without a solution: then the best so far is what is found.
+        // Poles that almost coincide can make the equations unsolvable: then keep the best fit so far.
         let Some(next) = next.and_then(|fit| pruned(fit, &mut go_on)) else { break };
-        // Where a round ends where it began, so would those that follow.
+        // If a round changes nothing, later rounds would change nothing either.
         let stands =
             next.poles.len() == fit.poles.len() && (next.unexplained - fit.unexplained).abs() < least_gain(&fit);
         fit = next;
@@ -125,7 +125,7 @@ pub(super) fn find(
         fit = Fit::new(samples, left).ok_or_else(unsolvable)?.refine(samples, 1e-7, 20, &mut go_on);
     }
     fit = fit.refine(samples, 1e-8, 20, &mut go_on);
-    // Dropping a mode changes the others, which may then be implausible: this is repeated until none is.
+    // Dropping a mode changes the others, which may then be implausible. So repeat this until no mode is.
     let floors = loop {
         let floors = floors(&fit);
         let dropped = implausible(&fit, &floors, samples.len(), limits);

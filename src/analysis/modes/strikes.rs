@@ -1,56 +1,56 @@
-//! When a recording is struck, and how long each strike can be listened to.
+//! Finds the strikes of a recording, and how long each can be analysed.
 
 use super::contact::let_go;
 use libm::sqrt;
 
-/// Seconds over which energy is compared on either side of an onset.
+/// Seconds of the steps whose energies are compared before and after an onset.
 const STEP: f64 = 0.005;
-/// Rise of the energy from one step to the next that makes an onset: 8 dB.
+/// Rise of the energy from one step to the next at an onset: 8 dB.
 const RISE: f64 = 6.3;
-/// Seconds before an onset in which nothing may have been as loud: what beats comes back, but never above where it was.
+/// Seconds before an onset in which nothing may have been as loud: beats return, but never above their earlier level.
 const MEMORY: f64 = 0.08;
-/// Rise of the mean energy over so many seconds after an onset: 2 dB.
+/// Rise of the mean energy at an onset (2 dB), and the seconds before and after it over which the mean is taken.
 const LOUDER: f64 = 1.6;
 const LOUDER_OVER: f64 = 0.05;
-/// Seconds by which an onset may come before its first sample that stands out.
+/// Seconds by which an onset may precede its first clearly audible sample.
 const SWELL: f64 = 0.001;
 /// Least distance of onsets in seconds.
 const APART: f64 = 0.05;
-/// Amplitude below the loudest of the recording that is no strike: −50 dB.
+/// Amplitude relative to the loudest of the recording below which there is no strike: −50 dB.
 const FAINT: f64 = 3e-3;
 /// Seconds within which an exciter lets go.
 const CONTACT: f64 = 0.015;
-/// Seconds of a block whose level tells whether there is more than noise.
+/// Seconds per block whose level shows whether there is more than noise.
 const BLOCK: f64 = 0.05;
-/// Level above the noise at which there is.
+/// Level relative to the noise above which there is more than noise.
 const ABOVE_NOISE: f64 = 1.03;
-/// Noise keeps its level within 1 dB for so many blocks: in as long, a T60 of 30 s loses more.
+/// Noise keeps its level within 1 dB for this many blocks, in which even a T60 of 30 s falls by more.
 const STEADY: f64 = 1.122;
 const STEADY_BLOCKS: usize = 12;
-/// Shortest stretch in seconds that modes are looked for in.
+/// Shortest stretch in seconds in which modes are searched for.
 pub(super) const SHORTEST: f64 = 0.03;
 
-/// A strike: frames of the recording.
+/// A strike, in frames of the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stretch {
     /// Where the sound begins.
     pub(super) onset: usize,
-    /// Where the exciter has let go, and the modes ring by themselves.
+    /// Where the exciter has let go, and the modes ring freely.
     pub(super) start: usize,
-    /// Where nothing but noise is left, or the next strike comes.
+    /// Where only noise is left, or the next strike comes.
     pub(super) end: usize,
 }
 
 /// Finds strikes in samples that are not silent; none longer than `longest` seconds.
 pub(super) fn strikes(samples: &[f64], sample_rate: f64, longest: f64) -> Vec<Stretch> {
     let frames = |seconds: f64| ((seconds * sample_rate) as usize).max(1);
-    // A constant is no sound.
+    // Remove DC.
     let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
     let samples: Vec<f64> = samples.iter().map(|sample| sample - mean).collect();
     let samples = &samples[..];
     let mut onsets = onsets(samples, sample_rate);
     if onsets.is_empty() {
-        // It sounds all the time.
+        // The sound has no onset: it begins before the recording.
         onsets.push(0);
     }
     let floor = noise(samples, frames(BLOCK));
@@ -77,7 +77,7 @@ fn onsets(samples: &[f64], sample_rate: f64) -> Vec<usize> {
     let energies: Vec<f64> = samples.chunks(step).map(|block| block.iter().map(|x| x * x).sum()).collect();
     let (memory, apart) = ((MEMORY / STEP) as usize, (APART * sample_rate) as usize);
     let least = FAINT * FAINT * peak * peak * step as f64 * 0.1;
-    // Nothing is known of what came before the recording.
+    // The level before the recording is unknown.
     let quietest = energies.iter().copied().fold(f64::INFINITY, f64::min);
     let mut found: Vec<usize> = Vec::new();
     for (block, energy) in energies.iter().enumerate() {
@@ -87,7 +87,7 @@ fn onsets(samples: &[f64], sample_rate: f64) -> Vec<usize> {
         if *energy < least || *energy < RISE * before || *energy < 1.5 * loudest {
             continue;
         }
-        // Modes of low pitch that meet again and again come back in each step, but not louder than before.
+        // Low modes that beat quickly rise again in each step, but not above their earlier level.
         let around = (LOUDER_OVER / STEP) as usize;
         let mean = |range: &[f64]| range.iter().sum::<f64>() / range.len().max(1) as f64;
         let after = mean(&energies[block..(block + around).min(energies.len())]);
@@ -102,8 +102,8 @@ fn onsets(samples: &[f64], sample_rate: f64) -> Vec<usize> {
     found
 }
 
-/// The first sample, from a step before frame `from`, that what came before does not explain; `swell` frames before one that
-/// stands out clearly, fainter ones count.
+/// The first sample, from a step before frame `from` on, that is louder than the sound before it. In the `swell` frames
+/// before a clearly louder sample, fainter samples count too.
 fn first_above(samples: &[f64], from: usize, step: usize, swell: usize) -> usize {
     let most = |range: &[f64]| range.iter().fold(0.0_f64, |most, sample| most.max(sample.abs()));
     let begin = from.saturating_sub(step);
@@ -112,13 +112,13 @@ fn first_above(samples: &[f64], from: usize, step: usize, swell: usize) -> usize
     });
     let threshold = (1.5 * before).max(0.03 * after).min(after);
     let place = begin + samples[begin..].iter().position(|sample| sample.abs() >= threshold).unwrap_or(0);
-    // It swells from there, and what came before is quieter than that, too.
+    // In these frames the sound may rise slowly, but it must still exceed the sound before it.
     let faint = (1.5 * before).max(0.001 * after).min(after);
     let earliest = place.saturating_sub(swell);
     earliest + samples[earliest..].iter().position(|sample| sample.abs() >= faint).unwrap_or(0)
 }
 
-/// Where the energy first comes to half of its maximum within the time of contact: what is struck rings by itself soon after.
+/// Where the energy first reaches half of its maximum within the time of contact: soon after, the modes ring freely.
 fn released(samples: &[f64], onset: usize, block: usize, contact: usize) -> usize {
     let end = (onset + contact).min(samples.len());
     let energies: Vec<f64> = samples[onset..end].chunks(block).map(|block| block.iter().map(|x| x * x).sum()).collect();
@@ -131,12 +131,12 @@ fn rms(samples: &[f64]) -> f64 {
     sqrt(samples.iter().map(|sample| sample * sample).sum::<f64>() / samples.len().max(1) as f64)
 }
 
-/// Level of the noise that is left where nothing sounds; 0 where there is none, as in a strike that decays to the end.
+/// Level of the background noise; 0 if there is none, as in a strike that decays to the end.
 fn noise(samples: &[f64], block: usize) -> f64 {
     let mut levels: Vec<f64> = samples.chunks_exact(block).map(rms).collect();
     levels.sort_by(f64::total_cmp);
     let (Some(quietest), Some(loudest)) = (levels.first(), levels.last()) else { return 0.0 };
-    // Noise stands still, and what decays does not.
+    // The level of noise is constant, that of a decay is not.
     let still = levels.iter().take_while(|level| **level <= STEADY * quietest).count();
     if still >= STEADY_BLOCKS && *quietest < 0.1 * loudest { levels[still / 2] } else { 0.0 }
 }
@@ -171,7 +171,7 @@ mod tests {
         let silence = std::iter::repeat_n(0.0, 72_000);
         let samples: Vec<f64> = decay(24_000).chain(silence).map(|sample| sample + noise()).collect();
         let [strike] = strikes(&samples, 48_000.0, 10.0)[..] else { panic!("one strike") };
-        // By then, 26 and 31 dB of the level in noise are left.
+        // The decay stops at frame 24,000, and only noise follows.
         assert!((21_600..60_000).contains(&strike.end), "{strike:?}");
     }
 

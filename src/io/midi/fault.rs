@@ -48,7 +48,7 @@ impl Fault {
                 }
                 _ => found(Self::CutOff),
             },
-            // Their data are not checked, so only their length can be wrong.
+            // The data of SysEx events are not checked, so only their length can be wrong.
             0xf0 | 0xf7 => found(Self::CutOff),
             _ => found(Self::Status(status)),
         }

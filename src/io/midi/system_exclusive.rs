@@ -1,22 +1,22 @@
-//! System exclusive messages that say which channels play drums: resets of General MIDI, GS and XG, and GS drum parts.
+//! Converts system exclusive messages to events: resets of General MIDI, GS and XG, and GS drum parts.
 
 use crate::engine::EventKind;
 use crate::engine::banks::{BANK_SELECT, DRUM_BANK, DRUM_CHANNEL, MELODIC_BANK};
 use crate::engine::midi::DEFAULT_REVERB_SEND;
 use crate::engine::midi::controller::REVERB_SEND;
 
-/// Resets, without the first byte F0 and without numbers of devices: General MIDI 1 and 2 on, and off (Universal
-/// Non-Real Time messages), Yamaha's XG System On.
+/// Bytes of reset messages, without the first byte F0 and without device numbers: General MIDI 1 and 2 on, and off
+/// (Universal Non-Real Time messages), and Yamaha's XG System On.
 const GENERAL_MIDI: [u8; 2] = [0x7E, 0x09];
 const XG_RESET: [u8; 6] = [0x4C, 0x00, 0x00, 0x7E, 0x00, 0xF7];
 
-/// Roland's GS: the start of a message that sets data, GS reset, and the address of “use for rhythm part” (40 1x 15), in
-/// which part 0 is channel 10 and parts 1 to 9 are channels 1 to 9 (Roland SC-55 manual, 1991).
+/// Roland's GS: the start of a message that sets data, GS reset, and the address of “use for rhythm part” (40 1x 15),
+/// where `x` is 0 for channel 10 and 1 to 9 for channels 1 to 9 (Roland SC-55 manual, 1991).
 const GS_SET: [u8; 2] = [0x42, 0x12];
 const GS_RESET: [u8; 3] = [0x40, 0x00, 0x7F];
 
-/// The channels and events that a message stands for: bank selects and program changes. `message` is what follows the byte
-/// F0. Messages that say nothing of drums stand for nothing.
+/// The events that a message is converted to, with their channels: bank selects, reverb sends and program changes.
+/// `message` is the message after its byte F0. All other messages give no events.
 pub(super) fn system_exclusive(message: &[u8]) -> Vec<(u8, EventKind)> {
     match message {
         [universal, _, id, 0x01..=0x03, ..] if [*universal, *id] == GENERAL_MIDI => reset(),
@@ -34,14 +34,14 @@ fn bank(value: u8) -> EventKind {
     EventKind::Control { controller: BANK_SELECT, value: f32::from(value) / 127.0 }
 }
 
-/// All channels return to their first bank, and what they send to the shared space to its default (General MIDI 2). What they
-/// play changes with their next program change.
+/// Sets every channel to bank 0 and its reverb send to the default (General MIDI 2). The sound of a channel changes
+/// only with its next program change.
 fn reset() -> Vec<(u8, EventKind)> {
     let send = EventKind::Control { controller: REVERB_SEND, value: DEFAULT_REVERB_SEND };
     (0..16).flat_map(|channel| [(channel, bank(0)), (channel, send)]).collect()
 }
 
-/// A part of a GS device becomes one for drums or for melodies, at once.
+/// Makes a part of a GS device a drum part or a melodic part, at once.
 fn drum_part(part: u8, has_drums: bool) -> Vec<(u8, EventKind)> {
     let channel = match part {
         0 => DRUM_CHANNEL,
@@ -63,7 +63,7 @@ mod tests {
             let events = system_exclusive(message);
             events.into_iter().map(|(channel, kind)| (channel, banks.resolve(channel, kind))).collect::<Vec<_>>()
         };
-        // Part 10 of sixteen, counted from 0 as 1A, is channel 11; part 1 is channel 1.
+        // An address of 40 1A is channel 11, and one of 40 11 is channel 1.
         let drums = send(&[0x41, 0x10, 0x42, 0x12, 0x40, 0x1A, 0x15, 0x02, 0x0F, 0xF7]);
         assert_eq!(drums[1], (10, EventKind::Program(MELODIC)));
         assert_eq!(send(&[0x41, 0x10, 0x42, 0x12, 0x40, 0x11, 0x15, 0x01, 0x19, 0xF7])[1].0, 0);

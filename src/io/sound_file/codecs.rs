@@ -1,4 +1,4 @@
-//! AIFF, FLAC, Ogg Vorbis and MP3, decoded by Symphonia.
+//! Reads AIFF, FLAC, Ogg Vorbis and MP3, which Symphonia decodes.
 
 use super::recording::Recording;
 use crate::error::{Error, Result};
@@ -11,10 +11,10 @@ use symphonia::core::formats::{FormatOptions, TrackType};
 use symphonia::core::io::{MediaSource, MediaSourceStream};
 use symphonia::core::meta::MetadataOptions;
 
-/// Bytes of the longest frame of MPEG audio, 320 kbit/s at 8 kHz.
+/// Length in bytes of the longest frame of MPEG audio, 320 kbit/s at 8 kHz.
 const MOST_FRAME: usize = 2881;
 
-/// Reads a file that begins as one of `format` does.
+/// Reads a file whose first bytes are those of `format`.
 pub(super) fn read(file: File, name: &str, format: &str) -> Result<Recording> {
     let wrong = |fault: Fault| match fault {
         Fault::IoError(source) if source.kind() != ErrorKind::UnexpectedEof => Error::io(name, source),
@@ -97,7 +97,8 @@ pub(super) fn read(file: File, name: &str, format: &str) -> Result<Recording> {
     Ok(found)
 }
 
-/// Whether another frame of MPEG audio begins after the last whole one: an MP3 does not tell its length.
+/// Whether another frame of MPEG audio begins after the last complete one. An MP3 file does not declare its length, so
+/// this shows whether it is cut off.
 fn goes_on(mut file: &File, last: &[u8]) -> std::io::Result<bool> {
     let len = file.metadata()?.len();
     file.seek(SeekFrom::Start(len.saturating_sub((last.len() + MOST_FRAME) as u64)))?;
@@ -107,13 +108,13 @@ fn goes_on(mut file: &File, last: &[u8]) -> std::io::Result<bool> {
     Ok(end.is_some_and(|end| matches!(tail[end..], [0xff]) || matches!(tail[end..], [0xff, sync, ..] if sync >= 0xe0)))
 }
 
-/// Frames that the container says the track has.
+/// Number of frames that the container declares for the track.
 fn track_frames(container: &dyn symphonia::core::formats::FormatReader, track: u32) -> Option<u64> {
     container.tracks().iter().find(|other| other.id == track)?.num_frames
 }
 
-/// The contents of an AIFF whose samples break off, with the sizes of what is there: the decoder refuses it otherwise.
-/// `None` for a whole one, and one that breaks off before its samples.
+/// The contents of an AIFF file that is cut off within its samples, with its sizes corrected, since the decoder would
+/// refuse it otherwise. `None` for a complete file, and for one that is cut off before its samples.
 fn mended_aiff(mut file: &File) -> std::io::Result<Option<Vec<u8>>> {
     let len = file.metadata()?.len();
     let (mut at, mut common) = (12, None);

@@ -1,4 +1,4 @@
-//! Sound files as they are read: WAV of every kind, and with the feature `codecs` AIFF, FLAC, Ogg Vorbis and MP3.
+//! Reads sound files: WAV of every kind, and with the feature `codecs` AIFF, FLAC, Ogg Vorbis and MP3.
 
 #[cfg(feature = "codecs")]
 mod codecs;
@@ -13,11 +13,11 @@ use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 
-/// Bytes at the start of a file that tell its format.
+/// Number of bytes at the start of a file that identify its format.
 const MAGIC_LEN: usize = 12;
 
-/// Reads a sound file to its end; `name` is what errors call it. A file that breaks off is read as far as it goes, with
-/// a line in [`Recording::warnings`].
+/// Reads a sound file to its end; `name` is its name in errors. A file that is cut off is read up to its end, with a
+/// line in [`Recording::warnings`].
 ///
 /// # Errors
 /// [`Error::Io`] if it cannot be read; [`Error::Format`], with what would be right, if it is no sound file, of a format
@@ -53,11 +53,11 @@ fn coded(_: File, name: &str, format: &str) -> Result<Recording> {
     Err(Error::format(name, message))
 }
 
-/// What the first bytes of a file promise.
+/// The format that the first bytes of a file indicate.
 #[derive(Debug, PartialEq)]
 enum Format {
     Wav,
-    /// One that needs a decoder, by its name.
+    /// A format that needs a decoder, by its name.
     Coded(&'static str),
 }
 
@@ -65,7 +65,7 @@ impl Format {
     fn of(magic: &[u8]) -> Option<Self> {
         let at = |start: usize, bytes: &[u8]| magic.get(start..start + bytes.len()) == Some(bytes);
         let form = |container: &[u8], kind: &[u8]| at(0, container) && at(8, kind);
-        // An MPEG audio frame begins with eleven ones; layer 0 does not exist.
+        // An MPEG audio frame begins with eleven one bits, and its layer is not 0.
         let mpeg = || magic.len() > 1 && magic[0] == 0xff && magic[1] & 0xe0 == 0xe0 && magic[1] & 0x06 != 0;
         if [&b"RIFF"[..], b"RF64", b"BW64"].iter().any(|container| form(container, b"WAVE")) {
             Some(Self::Wav)

@@ -1,4 +1,4 @@
-//! A sound as it was read: samples, rate, and what was wrong with the file.
+//! A sound read from a file: samples, rate, and warnings about faults of the file.
 
 use crate::error::{Error, Result};
 
@@ -12,7 +12,7 @@ pub struct Recording {
     pub channels: Vec<Vec<f32>>,
     /// How the file stored them: `24-bit PCM`, `FLAC`.
     pub encoding: String,
-    /// What was wrong with the file and did not keep it from being read.
+    /// Faults of the file that did not prevent reading it.
     pub warnings: Vec<String>,
 }
 
@@ -27,8 +27,8 @@ impl Recording {
         self.frames() as f64 / f64::from(self.sample_rate)
     }
 
-    /// The mean of the channels, if the sound has this sample rate: nothing is resampled here. `name` is what errors call
-    /// the file.
+    /// The mean of the channels. The sound must have this sample rate, since nothing is resampled here. `name` is the
+    /// file's name in errors.
     ///
     /// # Errors
     /// [`Error::Format`] for another rate, and for samples that are not finite.
@@ -42,7 +42,7 @@ impl Recording {
         Ok((0..self.frames()).map(mean).collect())
     }
 
-    /// Refuses samples that are infinite or not a number; `name` is what the error calls the file.
+    /// Returns an error if a sample is infinite or not a number; `name` is the file's name in the error.
     ///
     /// # Errors
     /// [`Error::Format`] that names the first of them.

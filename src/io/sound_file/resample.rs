@@ -1,4 +1,4 @@
-//! A recording at another sample rate.
+//! Converts a recording to another sample rate.
 
 use super::recording::Recording;
 use crate::error::{Error, Result};
@@ -6,13 +6,13 @@ use rubato::audioadapter::Adapter;
 use rubato::audioadapter_buffers::direct::SequentialSliceOfVecs;
 use rubato::{Fft, FixedSync, Resampler};
 
-/// Frames that are converted at a time; a power of two above the longest filter.
+/// Frames per conversion step; a power of two above the length of the longest filter.
 const CHUNK: usize = 4096;
 
-/// The recording at `sample_rate`, band-limited to the lower of both rates; as it is if that is its own.
+/// The recording at `sample_rate`, band-limited to the lower of both rates; unchanged if it has this rate already.
 ///
 /// # Errors
-/// [`Error::Value`] for a rate of 0 or a ratio that cannot be made.
+/// [`Error::Value`] for a rate of 0 or a ratio that cannot be converted.
 pub fn resampled(recording: &Recording, sample_rate: u32) -> Result<Recording> {
     if sample_rate == recording.sample_rate {
         return Ok(recording.clone());
@@ -22,7 +22,7 @@ pub fn resampled(recording: &Recording, sample_rate: u32) -> Result<Recording> {
         Error::value("sample rate", format!("{rates} cannot be converted: {error}"))
     };
     let (from, to, count) = (recording.sample_rate as usize, sample_rate as usize, recording.channels.len());
-    // In double precision like the analysis: the program then contains one kind of Fourier transform, not two.
+    // Double precision as in the analysis, so that the program contains only one kind of Fourier transform.
     let mut resampler = Fft::<f64>::new(from, to, CHUNK, count, FixedSync::Both).map_err(|error| failed(&error))?;
     let frames = recording.frames();
     let precise: Vec<Vec<f64>> =
@@ -30,7 +30,7 @@ pub fn resampled(recording: &Recording, sample_rate: u32) -> Result<Recording> {
     let input = SequentialSliceOfVecs::new(&precise, count, frames).map_err(|error| failed(&error))?;
     let output = resampler.process_all(&input, frames, None).map_err(|error| failed(&error))?;
     let sample = |channel, frame| output.read_sample(channel, frame).unwrap_or(0.0) as f32;
-    // The last block may bring a frame more than the sound is long.
+    // The last block may contain a frame beyond the end of the sound.
     let len = (frames as f64 * to as f64 / from as f64).round() as usize;
     let channels = (0..count).map(|channel| (0..len).map(|frame| sample(channel, frame)).collect());
     Ok(Recording { sample_rate, channels: channels.collect(), ..recording.clone() })

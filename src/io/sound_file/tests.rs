@@ -1,4 +1,4 @@
-//! Every kind of file, whole, broken and wrong.
+//! Tests with every kind of sound file: complete, cut off and invalid.
 
 use super::*;
 use std::io::Write;
@@ -54,7 +54,7 @@ fn samples_of_every_kind_are_exact() {
 #[test]
 fn extensible_files_long_files_and_strange_chunks_are_read() {
     let mut extensible = format(0xfffe, 1, 16);
-    // Size of what follows, valid bits, speakers, and the GUID of PCM.
+    // Size of the extension, valid bits, speakers, and the GUID of PCM.
     extensible.extend([22, 0, 16, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71]);
     let data = [0, 0x40, 0, 0xc0];
     let odd = chunk(b"LIST", &[1, 2, 3]);
@@ -67,7 +67,7 @@ fn extensible_files_long_files_and_strange_chunks_are_read() {
     long[..4].copy_from_slice(b"RF64");
     let len = long.len();
     long[len - 8..len - 4].copy_from_slice(&u32::MAX.to_le_bytes());
-    // What follows the samples is none of them.
+    // The chunk after the samples must not be read as samples.
     long.extend(chunk(b"LIST", &[1, 2]));
     let found = parsed(&long).unwrap();
     assert_eq!((found.channels, found.warnings.len()), (vec![vec![0.5, -0.5]], 0));
@@ -86,7 +86,7 @@ fn a_file_that_breaks_off_is_read_as_far_as_it_goes() {
     open[at..at + 4].copy_from_slice(&[0; 4]);
     let found = parsed(&open).unwrap();
     assert_eq!((found.frames(), found.warnings.len()), (2, 1));
-    // A length that was not known beforehand is no fault.
+    // A declared length of “unknown” is not a fault.
     open[at..at + 4].copy_from_slice(&[0xff; 4]);
     assert_eq!((parsed(&open).unwrap().frames(), parsed(&open).unwrap().warnings.len()), (2, 0));
 }
@@ -125,8 +125,8 @@ fn samples_that_are_not_numbers_are_named() {
     assert_eq!(found.check_finite("x").unwrap_err().to_string(), message);
 }
 
-/// Largest difference from a sine of 440 Hz at half of `gain` to the left, and 880 Hz at a quarter to the right,
-/// beginning at frame `start`; the ends, where a lossy coder has nothing to go by, are left out.
+/// Largest difference from a sine of 440 Hz at half of `gain` on the left, and of 880 Hz at a quarter on the right,
+/// beginning at frame `start`. The ends are left out, since lossy coders are inaccurate there.
 #[cfg(feature = "codecs")]
 fn error(found: &Recording, start: usize, gain: f64) -> f64 {
     let sine = |frequency: f64, n: usize| libm::sin(std::f64::consts::TAU * frequency * n as f64 / 22_050.0);
@@ -141,7 +141,7 @@ fn error(found: &Recording, start: usize, gain: f64) -> f64 {
 #[cfg(feature = "codecs")]
 #[test]
 fn coded_files_hold_the_same_sound() {
-    // The MP3's coder (LAME) lowers what it codes to 95 %, as a guard against clipping.
+    // LAME, which coded the MP3, scales the signal to 95 % as a guard against clipping.
     for (bytes, frames, gain, tolerance) in [
         (&include_bytes!("../../../tests/sounds/tone.aiff")[..], Some(6000), 1.0, 2e-5),
         (&include_bytes!("../../../tests/sounds/tone.flac")[..], Some(6000), 1.0, 2e-5),
@@ -165,7 +165,7 @@ fn coded_files_hold_the_same_sound() {
                 assert!(part.frames() > 200 && part.frames() < found.frames(), "{name}: {}", part.frames());
                 assert!(!part.warnings.is_empty(), "{name}");
             }
-            // So short an Ogg has its sound in a single page.
+            // The sound of so short an Ogg file is in a single page.
             Err(error) => assert!(name == "Ogg" && error.to_string().contains("expected"), "{name}: {error}"),
         }
         for len in [12, 40] {

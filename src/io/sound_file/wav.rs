@@ -1,12 +1,12 @@
-//! WAV files as they are read: RIFF, RF64 and BW64, integers of 8 to 32 bits and floats, whole or broken off.
+//! Reads WAV files: RIFF, RF64 and BW64, integers of 8 to 32 bits and floats, complete or cut off.
 
 use super::recording::Recording;
 use crate::error::{Error, Result};
 use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
 
-/// What a `data` chunk of unknown length is said to have, by programs that write to pipes: this or more.
+/// Smallest length in bytes that programs write into a `data` chunk of unknown length, when they write to a pipe.
 const UNKNOWN_LEN: u64 = 0x7fff_0000;
-/// What the 32-bit sizes of an RF64 file hold, where the `ds64` chunk has the real ones (EBU Tech 3306).
+/// Value of the 32-bit sizes in an RF64 file, whose real sizes are in the `ds64` chunk (EBU Tech 3306).
 const IN_DS64: u64 = 0xffff_ffff;
 
 /// Codes of the `fmt ` chunk (Multimedia Programming Interface and Data Specifications 1.0, 1991, and mmreg.h).
@@ -24,7 +24,7 @@ struct Layout {
     width: usize,
 }
 
-/// Reads a file that begins as a WAV does.
+/// Reads a file whose first bytes are those of a WAV file.
 pub(super) fn read(file: impl Read + Seek, name: &str) -> Result<Recording> {
     let mut input = BufReader::with_capacity(1 << 16, file);
     let wrong = |message: String| Error::format(name, message);
@@ -65,7 +65,7 @@ fn skip(input: &mut impl Seek, len: u64) -> std::io::Result<()> {
     input.seek_relative(i64::try_from(len).unwrap_or(i64::MAX))
 }
 
-/// Whether the buffer could be filled before the end of the file.
+/// Fills the buffer. Returns false if the file ends before that.
 fn fill(input: &mut impl Read, buffer: &mut [u8]) -> std::io::Result<bool> {
     match input.read_exact(buffer) {
         Ok(()) => Ok(true),
@@ -82,7 +82,7 @@ impl Layout {
             return Err("the ‘fmt ’ chunk is shorter than 16 bytes".to_owned());
         };
         let sample_rate = u32::from_le_bytes([body[4], body[5], body[6], body[7]]);
-        // The first two bytes of the sub-format's GUID are the code that it stands for.
+        // The first two bytes of the sub-format's GUID are its code.
         let code = if code == EXTENSIBLE { word(24).unwrap_or(code) } else { code };
         if channels == 0 || sample_rate == 0 {
             return Err(format!("{channels} channels at {sample_rate} Hz: expected at least 1 of each"));
@@ -103,11 +103,12 @@ impl Layout {
         Ok(Self { float: code == FLOAT, channels: channels.into(), sample_rate, width })
     }
 
-    /// Reads a `data` chunk of so many bytes, or as much of it as there is.
+    /// Reads a `data` chunk of `len` bytes, or as much of it as the file has.
     fn samples(self, input: &mut BufReader<impl Read + Seek>, len: u64) -> std::io::Result<Recording> {
         let mut warnings = Vec::new();
         let frame_len = self.width * self.channels;
-        // A program that was stopped has left a length of 0. What follows is a chunk's name only if nothing is missing.
+        // A program that was interrupted leaves a length of 0, and samples follow. After a really empty chunk, the name
+        // of the next chunk or the end of the file follows.
         let left_open = len == 0 && {
             let mut next = [0; 4];
             let here = input.stream_position()?;
@@ -151,7 +152,7 @@ impl Layout {
     }
 }
 
-/// The name of a coding that is not read.
+/// The name of an encoding that cannot be read.
 fn coding(code: u16) -> String {
     let name = match code {
         2 => "MS ADPCM",

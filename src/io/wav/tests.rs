@@ -1,4 +1,4 @@
-//! Files that were written are read back with hound and by hand.
+//! Tests of the WAV writer, whose files are read back with hound and by hand.
 
 use super::*;
 use std::io::{Cursor, Read};

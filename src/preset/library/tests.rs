@@ -1,4 +1,4 @@
-//! The library in folders of its own.
+//! Tests of the library, each in a temporary folder.
 
 use super::*;
 
@@ -124,7 +124,7 @@ fn favourites_are_kept() {
     assert_eq!(favourites(), ["Church Bell", "Kick"]);
     library.set_favourite("Kick", false).unwrap();
     assert_eq!(favourites(), ["Church Bell"]);
-    // No UTF-8.
+    // Not UTF-8.
     fs::write(library.favourites_file(), b"Kick\n\xff\n").unwrap();
     assert!(library.favourites().is_err() && library.set_favourite("Church Bell", true).is_err());
     assert_eq!(fs::read(library.favourites_file()).unwrap(), b"Kick\n\xff\n", "not written over");

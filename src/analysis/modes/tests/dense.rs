@@ -1,8 +1,8 @@
-//! Modes denser than their bandwidths, as of a drum head.
+//! Tests with modes denser than their bandwidths, as in a drum head.
 
 use super::*;
 
-/// So many modes of a head from 130 Hz on: 2 to 30 Hz apart, with bandwidths of 4 to 38 Hz.
+/// Modes of a drum head from 130 Hz on: 2 to 30 Hz apart, with bandwidths of 4 to 38 Hz.
 fn head(count: usize, chance: &mut Chance) -> Vec<Known> {
     let mode = |place: usize| {
         let frequency = 130.0 + 16.0 * (place as f64 + 0.9 * chance.uniform());

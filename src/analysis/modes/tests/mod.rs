@@ -1,4 +1,4 @@
-//! Synthetic strikes whose modes are known, clean and in noise, and sounds that are no strikes.
+//! Tests with synthetic strikes of known modes, clean and in noise, and with sounds that are no strikes.
 
 mod dense;
 #[cfg(feature = "analysis")]
@@ -11,7 +11,7 @@ use libm::{cos, exp, log2, pow};
 use realfft::num_complex::Complex;
 
 const RATE: f64 = 48_000.0;
-/// Modes of a strike, and strikes: as many as a build can bear.
+/// Number of modes of a strike, and of strikes; fewer in a build that is not optimised.
 const MODES: usize = if cfg!(debug_assertions) { 24 } else { 60 };
 const SEEDS: u64 = if cfg!(debug_assertions) { 1 } else { 20 };
 
@@ -37,8 +37,8 @@ impl Chance {
     }
 }
 
-/// So many modes from 60 Hz to 14 kHz, T60 0.03 to 10 s, levels over 60 dB, no two nearer than the wider one's bandwidth and
-/// 1 Hz; a quarter of them with a neighbour that is just as near as that.
+/// Random modes from 60 Hz to 14 kHz, T60 0.03 to 10 s, levels over 60 dB, no two nearer than the wider one's bandwidth
+/// and 1 Hz; a quarter of them with a neighbour at about that distance.
 fn body(count: usize, chance: &mut Chance) -> Vec<Known> {
     let mut modes: Vec<Known> = Vec::new();
     let clear = |modes: &[Known], frequency: f64, t60: f64| {
@@ -63,8 +63,8 @@ fn body(count: usize, chance: &mut Chance) -> Vec<Known> {
     modes
 }
 
-/// The sound of modes struck at sample 0, its peak at half of full scale, with noise so many dB below the strongest mode. Gives
-/// the factor that amplitudes were scaled by and the noise's standard deviation, too.
+/// The sound of modes struck at sample 0, its peak at half of full scale, with noise `noise_db` relative to the
+/// strongest mode. Also returns the factor by which amplitudes were scaled and the noise's standard deviation.
 fn sound(modes: &[Known], seconds: f64, noise_db: f64, chance: &mut Chance) -> (Vec<f32>, f64, f64) {
     let mut samples = vec![0.0; (seconds * RATE) as usize];
     for Known(frequency, t60, amplitude, phase) in modes.iter().copied() {
@@ -88,7 +88,7 @@ fn cents(a: f64, b: f64) -> f64 {
     (1200.0 * log2(a / b)).abs()
 }
 
-/// For each known mode the nearest found one, if it lies within a bandwidth, and those found that are left over.
+/// For each known mode the nearest found one, if it lies within a bandwidth, and the remaining found modes.
 fn matched<'a>(known: &[Known], found: &'a [Mode]) -> (Vec<Option<&'a Mode>>, Vec<&'a Mode>) {
     let mut free: Vec<&Mode> = found.iter().collect();
     let take = |known: &Known| {
@@ -125,13 +125,14 @@ fn the_modes_of_clean_strikes_are_exact() {
     clean_strikes(MODES, 1..=SEEDS);
 }
 
-/// Energy over the power density of noise, in dB, that the tallest of its peaks has in two seconds: `2 ln n` of `n` bins.
+/// Height of the highest noise peak in two seconds, as energy over the power density of the noise, in dB: `2 ln n` for
+/// `n` bins.
 const FLOOR_DB: f64 = 13.3;
 
-/// What noise lets anyone know of a mode (Cramér & Rao), if all modes are unknown.
+/// The best accuracy that any method can have for a mode in noise (Cramér & Rao), if all modes are unknown.
 struct Bound {
-    /// Energy that no change of the other modes could explain, over the power density of the noise, in dB. A mode alone
-    /// has all of its energy.
+    /// Energy that no change of the other modes could explain, over the power density of the noise, in dB. For a single
+    /// mode, this is all of its energy.
     energy_db: f64,
     /// Standard deviation in Hz.
     frequency: f64,
@@ -150,7 +151,7 @@ fn bounds(known: &[Known], scale: f64, deviation: f64) -> Vec<Bound> {
     let fit = Fit::new(&samples, poles).unwrap();
     let (all, certainty) = (fit.inverses().unwrap().all, fit.certainty(samples.len()).unwrap());
     let bound = |k: usize| {
-        // A mode alone loses half of it to its own pole.
+        // A single mode loses half of its energy to its own pole.
         let own = 2.0 * energy(&all, k, fit.amplitudes[k]);
         let [decay, theta, ..] = certainty.variances[k].map(|variance| deviation * sqrt(variance));
         Bound {
@@ -162,8 +163,8 @@ fn bounds(known: &[Known], scale: f64, deviation: f64) -> Vec<Bound> {
     (0..known.len()).map(bound).collect()
 }
 
-/// Gives the errors in cents and in shares of T60 of the modes that stand 6 dB above the floor, and how many of them were
-/// not found, or not as exactly as 0.5 cents, 5 % and the bound ask for.
+/// Returns the errors in cents and in shares of T60 of the modes at least 6 dB above the floor, and descriptions of
+/// those that were not found, or not as exactly as 0.5 cents, 5 % and the bound require.
 fn noisy_strike(count: usize, seed: u64) -> (Vec<f64>, Vec<f64>, Vec<String>) {
     let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let known = body(count, &mut chance);
@@ -180,7 +181,7 @@ fn noisy_strike(count: usize, seed: u64) -> (Vec<f64>, Vec<f64>, Vec<String>) {
             continue;
         };
         let (cents, share) = (cents(found.frequency, known.0), (found.t60 / known.1 - 1.0).abs());
-        // No method can know a mode that is short and weak better than the bound, nor one beside what looks like a mode.
+        // No method can measure a short and weak mode better than the bound, nor a mode beside what looks like another.
         let deviation = bound.frequency.max(found.uncertainty.frequency);
         let share_deviation = bound.t60.max(found.uncertainty.t60 / known.1);
         let tuned = cents < 0.5 || (found.frequency - known.0).abs() < 5.0 * deviation;
@@ -287,7 +288,7 @@ fn what_cannot_be_taken_apart_is_refused_or_warned_of() {
 
     let (loud, ..) = sound(&[Known(300.0, 1.0, 1.0, 0.0)], 0.5, -300.0, &mut chance);
     let clipped: Vec<f32> = loud.iter().take(9600).map(|sample| (4.0 * sample).clamp(-1.0, 1.0)).collect();
-    // What is no sum of modes asks for more of them than there may be.
+    // A sound that is no sum of modes would get more modes than are allowed.
     let few = Settings { most_modes: 24, ..Settings::default() };
     let found = modes(&[clipped], RATE, &few, &mut |_| true).unwrap();
     assert!(

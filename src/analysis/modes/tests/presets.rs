@@ -1,4 +1,4 @@
-//! Factory presets as they are rendered, with a release in the sound: what is struck, swept, bowed and noise alike.
+//! Tests with rendered factory presets of all kinds, with a release in the sound: struck, swept, bowed and noisy ones.
 
 use super::*;
 use crate::engine::{Ensemble, Event, EventKind};
@@ -6,13 +6,13 @@ use crate::params::Param;
 use crate::preset::Preset;
 use rayon::prelude::*;
 
-/// Seconds until the key is released, and of all.
+/// Seconds until the key is released, and length of the sound in seconds.
 const HELD: f64 = 0.6;
 const SECONDS: f64 = 1.5;
 /// Keys of which each preset plays one.
 const KEYS: [u8; 3] = [36, 60, 84];
 
-/// What is struck once and rings freely, and whether the release damps it.
+/// Presets that are struck once and ring freely, and whether the release damps them.
 const STRUCK: [(&str, bool); 6] = [
     ("init", true),
     ("Blip", false),
@@ -23,7 +23,7 @@ const STRUCK: [(&str, bool); 6] = [
 ];
 
 fn played(preset: &Preset, key: u8) -> Vec<Vec<f32>> {
-    // Noise is nothing that modes could explain.
+    // Modes cannot explain noise, so leave it out.
     let is_struck = STRUCK.iter().any(|(name, _)| *name == preset.name);
     let noise = if is_struck { -60.0 } else { preset.patch.get(Param::NoiseLevel) };
     let mut ensemble = Ensemble::new(RATE, 1, &preset.patch.clone().with(Param::NoiseLevel, noise), &[]);
@@ -37,7 +37,7 @@ fn played(preset: &Preset, key: u8) -> Vec<Vec<f32>> {
     vec![left, right]
 }
 
-/// What is wrong with the modes of a preset.
+/// The faults of the modes of a preset.
 fn faults(preset: &Preset, key: u8) -> Vec<String> {
     let channels = played(preset, key);
     let peak = channels.iter().flatten().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
@@ -55,7 +55,7 @@ fn faults(preset: &Preset, key: u8) -> Vec<String> {
         if strike.residual_db > -70.0 || strike.modes.is_empty() {
             faults.push(format!("{} modes leave {:.1} dB", strike.modes.len(), strike.residual_db));
         }
-        // The key may come up when all is over.
+        // The sound may be over before the key is released.
         let damped = strike.damped.is_some_and(|seconds| (HELD - 0.15..HELD).contains(&seconds));
         if damped != *released && strike.seconds > HELD {
             faults.push(format!("damped at {:?}", strike.damped));
