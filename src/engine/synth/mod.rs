@@ -40,7 +40,7 @@ pub struct Synth {
     own_pool: Option<Footprint>,
     instruments: Instruments,
     channels: Channels,
-    /// What is behind the voices.
+    /// The effects after the voices.
     space: Space,
     limiter: Limiter,
     /// Number of notes started so far.
@@ -238,13 +238,13 @@ impl Synth {
         &mut self.manager
     }
 
-    /// Passes the parameters of the effects on: they apply at once while nothing sounds.
+    /// Applies the parameters of the effects: at once if nothing sounds.
     fn follow_space(&mut self) {
         let at_once = self.is_silent();
         self.space.set_all(self.instruments.values(), at_once);
     }
 
-    /// Passes the parameters on that belong to the voice manager.
+    /// Applies the parameters that belong to the voice manager.
     fn configure_manager(&mut self) {
         let value = |param| self.instruments.modulated(param);
         let mode = match self.instruments.kit().is_single() {

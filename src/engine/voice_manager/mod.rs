@@ -92,7 +92,7 @@ impl<V: Voice> VoiceManager<V> {
         self.ended.clear();
     }
 
-    /// Reports a note as ended that gets no voice at all.
+    /// Reports a note as ended that gets no voice.
     pub fn turn_away(&mut self, note: Note) {
         self.retire(note);
     }
@@ -167,7 +167,7 @@ impl<V: Voice> VoiceManager<V> {
         }
     }
 
-    /// Removes from the held keys those that `which` selects. Their notes end unless they sound.
+    /// Removes the held keys that `which` selects. Their notes end unless they sound.
     fn forget(&mut self, which: impl Fn(&Note) -> bool) {
         while let Some(note) = self.held.take(&which) {
             self.retire(note);

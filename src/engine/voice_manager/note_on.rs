@@ -17,7 +17,7 @@ impl<V: Voice> VoiceManager<V> {
         if taken_over { Footprint::NONE } else { V::footprint(context) }
     }
 
-    /// Plays a note. Returns false if another key has priority in a monophonic mode: the note then waits.
+    /// Plays a note. Returns false if another key has priority in a monophonic mode: the note then waits for the other's release.
     pub fn note_on(&mut self, context: &V::Context, note: Note) -> bool {
         let is_poly = self.mode == PlayMode::Poly;
         if !is_poly && !self.takes_priority(note) {

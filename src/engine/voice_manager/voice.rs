@@ -5,7 +5,7 @@ use crate::engine::note::Note;
 
 /// Something that sounds one note at a time. All methods are called on the audio thread.
 pub trait Voice {
-    /// What a voice needs to know of the instrument when a note starts.
+    /// The state of the instrument that a voice reads when a note starts.
     type Context;
     /// A block of modes. A voice takes as many cells as its note needs, and gives them back.
     type Cell;
@@ -15,7 +15,7 @@ pub trait Voice {
     fn add_cell(&mut self, cell: Box<Self::Cell>);
     /// Takes a cell from the voice, after it has become silent.
     fn take_cell(&mut self) -> Option<Box<Self::Cell>>;
-    /// Starts a note from rest. Nothing of what the voice and its cells played before may affect it.
+    /// Starts a note from rest. Earlier notes of the voice and its cells must not affect it.
     fn start(&mut self, context: &Self::Context, note: &Note, unison: Unison);
     /// Strikes the sounding voice again, perhaps at another pitch.
     fn restrike(&mut self, context: &Self::Context, note: &Note);
