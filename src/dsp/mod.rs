@@ -29,6 +29,6 @@ pub use oscillator::HarmonicOscillator;
 pub use power::power_of_two;
 pub use simd::Level;
 
-/// Frames between two control ticks. Frozen: pitch and gain move in straight lines between ticks, so all samples depend
-/// on it.
+/// Frames between two control ticks. Must not change: pitch and gain move linearly between ticks, so all samples depend on
+/// it.
 pub const CONTROL_FRAMES: usize = 32;

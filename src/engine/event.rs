@@ -31,9 +31,9 @@ pub enum EventKind {
         /// The identifier that the host gives this note.
         id: Option<NoteId>,
     },
-    /// Another body hits the object that a key stands for: a note on made by
-    /// [`Sound::strike`](crate::sound::Sound::strike), with that body as the mallet. If the sound has noise or a pluck, they
-    /// use the velocity whose square is the impulse. The key counts as down.
+    /// Another body hits the object that a key stands for: a note on with that body as the mallet, as
+    /// [`Sound::strike`](crate::sound::Sound::strike) describes it. If the sound has noise or a pluck, they use the velocity
+    /// whose square is the impulse. The key counts as down.
     Strike {
         /// MIDI key, 0–127.
         key: u8,
