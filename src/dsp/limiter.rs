@@ -1,6 +1,6 @@
 //! A stereo true-peak limiter without latency: it lowers peaks above full scale and changes nothing else.
 //!
-//! The gain falls at once, is held until the next peak even for the lowest tones, and then rises slowly. A
+//! The gain falls at once, is held until the next peak of tones down to 17 Hz, and then rises slowly. A
 //! peak between two samples is only known after half of [`TAPS`] further samples have been output. Until the gain
 //! follows, single samples are lowered so that no partial sum of an interpolated point exceeds [`GUARD`]; the partial
 //! sum is the value of the point if only silence follows. This is always possible, because a sample of 0 adds nothing

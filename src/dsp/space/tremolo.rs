@@ -103,7 +103,7 @@ impl Tremolo {
         self.depth.frames_left().max(self.stereo_phase.frames_left()).into()
     }
 
-    /// Advances by frames of silence while it is idle: the motor turns on.
+    /// Advances by frames of silence while it is idle. The motor keeps turning.
     pub fn skip(&mut self, frames: usize) {
         if self.is_off() {
             return;
