@@ -1,4 +1,4 @@
-//! A stereo true-peak limiter without latency: it lowers peaks above full scale and changes nothing else.
+//! A stereo true-peak limiter without latency: it lowers peaks above −0.92 dBFS and changes nothing else.
 //!
 //! The gain falls at once, is held until the next peak of tones down to 17 Hz, and then rises slowly. A
 //! peak between two samples is only known after half of [`TAPS`] further samples have been output. Until the gain

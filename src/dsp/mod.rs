@@ -1,4 +1,6 @@
-//! Pure numerics: no events, no files, no threads. Everything here is real-time safe.
+//! Pure numerics: no events, no files, no threads.
+//!
+//! Real-time safe, except where noted.
 
 pub mod bank;
 pub mod cells;

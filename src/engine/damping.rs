@@ -1,4 +1,4 @@
-//! T60 of a note's modes: their own decay, the effect of the damper, and that of a finger that touches the body.
+//! T60 of a note's modes: from their own decay, the damper, and a touch of the body.
 
 use libm::pow;
 

@@ -11,7 +11,7 @@ pub struct Event {
     pub frame: u32,
     /// MIDI channel, 0–15. A greater number counts as 15.
     pub channel: u8,
-    /// What happens.
+    /// The kind of the event, with its data.
     pub kind: EventKind,
 }
 

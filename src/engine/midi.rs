@@ -44,7 +44,7 @@ pub mod controller {
     pub const ALL_NOTES_OFF: u8 = 123;
 }
 
-/// The value of [`controller::REVERB_SEND`] at the start and after a reset (General MIDI 2, 1999).
+/// The value of [`controller::REVERB_SEND`] at the start and after a system reset (General MIDI 2, 1999).
 pub const DEFAULT_REVERB_SEND: f32 = 40.0 / 127.0;
 
 /// Parses one complete MIDI message, as a port delivers it. Returns its channel and event; none if it is not a channel

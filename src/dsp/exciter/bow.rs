@@ -24,7 +24,7 @@ pub struct Bow {
     pub force: [f32; 2],
     /// Frames of the ramp that have passed.
     pub passed: u32,
-    /// Slip at which friction has lost half of what it can lose, as a fraction of the speed.
+    /// Slip at which friction is half way between its values without slip and at high slip, as a fraction of the speed.
     pub width: f32,
 }
 

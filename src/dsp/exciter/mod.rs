@@ -51,7 +51,7 @@ const OVERLAPPING: usize = 4;
 pub struct Exciter {
     blows: [Blow; OVERLAPPING],
     next: usize,
-    /// Frames until no force is left to come.
+    /// Frames until no force is left.
     frames_left: u32,
 }
 

@@ -88,7 +88,7 @@ impl Kernel for Tune<'_> {
 
 /// Starts linear ramps of the coefficients, from their present values to those of a pitch ratio.
 ///
-/// A straight line between two points of the unit disk stays inside it, so no mass gains energy, whatever its pitch does.
+/// A straight line between two points of the unit disk stays inside it, so no mass gains energy from changes of its pitch.
 /// But the chord is shorter than the arc: at the fraction `t` of a ramp that turns by `Δθ` in total, the amplitude after a
 /// frame is `√(1 − 4 t (1−t) sin²(Δθ/2))` times that on the arc. The loss of the previous ramp is compensated here, by the
 /// first terms of a series whose terms are all positive: always slightly less than the loss.
@@ -103,7 +103,7 @@ pub(super) struct Aim<'a> {
     /// Frames of the previous ramp that have been rendered, and frames that remain of it.
     pub(super) passed: usize,
     pub(super) left: usize,
-    /// The loss in the rendered frames, if it is to be compensated.
+    /// The loss in the rendered frames, if it must be compensated.
     pub(super) lost: Option<ChordLoss>,
     /// Whether damping has changed.
     pub(super) damped: bool,

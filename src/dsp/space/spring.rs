@@ -22,7 +22,7 @@ pub struct Spring {
     pub wire_radius: f64,
     /// Radius of the coil in m.
     pub coil_radius: f64,
-    /// What the wire is made of.
+    /// The material of the wire.
     pub material: Material,
     /// Modes up to this frequency in Hz are kept.
     pub top: f64,

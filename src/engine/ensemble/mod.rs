@@ -33,8 +33,8 @@ const CHUNK: usize = 1024;
 /// play on the instrument of their master channel. A note of a choke group silences that group on every
 /// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a kit that
 /// switches it on. Each channel has its own effects, and only those that are on take time; beside them the channels can
-/// share one space ([`Mix::space`]). Gives the same bits however the frames are divided into blocks. Real-time
-/// safe once built.
+/// share one space ([`Mix::space`]). The output is bit for bit the same for all block
+/// sizes. Real-time safe once built.
 pub struct Ensemble {
     parts: Vec<Part>,
     programs: Vec<Arc<Kit>>,

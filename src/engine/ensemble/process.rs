@@ -90,7 +90,7 @@ impl Ensemble {
             let (left, right) = (&mut left[start..cut.end], &mut right[start..cut.end]);
             left.fill(0.0);
             right.fill(0.0);
-            // In channel order: the sum's bits depend on the order of the additions.
+            // In channel order, since the rounding of the sum depends on the order of the additions.
             self.parts.iter().for_each(|part| part.add_to(left, right));
             let mix = [&mut *left, &mut *right];
             let rings = self.shared_space.as_mut().is_some_and(|space| space.process(&chunk, &self.parts, mix));
@@ -157,7 +157,7 @@ impl Ensemble {
                 self.parts[to].synth.set_channel(channel, held);
             }
         }
-        // Every part needs to know the zones.
+        // Every part needs the zones.
         self.parts.iter_mut().for_each(|part| part.synth.configure_zone(master, members));
         self.parts[usize::from(before.of(master))].synth.handle(event);
     }

@@ -95,7 +95,7 @@ impl SharedSpace {
         true
     }
 
-    /// Adds up what the channels send between two frames of a chunk, in channel order.
+    /// Sums the sends of the channels between two frames of a chunk, in channel order.
     fn gather(&mut self, parts: &[Part], from: usize, to: usize) {
         let Self { sends, left, right, .. } = self;
         for (send, part) in sends.iter_mut().zip(parts) {

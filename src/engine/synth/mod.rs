@@ -31,7 +31,7 @@ const POOL: Footprint = Footprint { voices: 256, cells: 256 };
 
 /// A synthesizer that plays one kit on sixteen MIDI channels, which can form MPE zones.
 ///
-/// The same seed, kit, events and sample rate give the same bits, however the frames are divided into blocks.
+/// The same seed, kit, events and sample rate give the same output, bit for bit, for all block sizes.
 /// [`Synth::new`], [`Synth::prepare`], [`Synth::reserve`], [`Synth::reserve_space`] and [`Synth::set_patch`] allocate.
 /// [`Synth::set_kit`] is real-time safe under the conditions in its documentation. All other methods always are.
 pub struct Synth {
@@ -215,7 +215,7 @@ impl Synth {
         self.limiter.work()
     }
 
-    /// What a note of this key on a channel would take from the pool if it started now.
+    /// The voices and cells that a note of this key on a channel would take from the pool if it started now.
     pub(super) fn need(&self, channel: u8, key: u8) -> Footprint {
         let (channel, key) = (nearest_channel(channel), nearest_key(key));
         let Some(instrument) = self.instruments.of_key(key) else { return Footprint::NONE };

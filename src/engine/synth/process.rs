@@ -130,7 +130,7 @@ pub(in crate::engine) fn flush(left: &mut [f32], right: &mut [f32]) {
     left.iter_mut().chain(right).for_each(|sample| *sample = without_subnormals(*sample));
 }
 
-/// Replaces subnormal numbers by zero, since CPUs may take a hundred times as long for them. They come from a very low
+/// Replaces subnormal numbers by zero, since CPUs may take a hundred times as long for them. They result from a very low
 /// gain, or from the far side of a pan law, while the sound itself has nearly decayed.
 fn without_subnormals(sample: f32) -> f32 {
     if sample.abs() < f32::MIN_POSITIVE { 0.0 } else { sample }

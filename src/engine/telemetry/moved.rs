@@ -49,7 +49,8 @@ impl Moved {
         }
     }
 
-    /// The control that an event moves. MPE keyboards send wheel, pressure and brightness at rest with each note: no movement.
+    /// The control that an event moves. None for the pitch wheel, pressure or brightness at rest, which MPE keyboards send
+    /// with each note.
     fn by(kind: &EventKind) -> Option<Self> {
         match *kind {
             EventKind::Control { controller: BRIGHTNESS, value } if value == BRIGHTNESS_AT_REST => None,

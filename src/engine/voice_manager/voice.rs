@@ -20,7 +20,7 @@ pub trait Voice {
     /// Strikes the sounding voice again, perhaps at another pitch.
     fn restrike(&mut self, context: &Self::Context, note: &Note);
     /// Moves the sounding voice to another pitch without striking it. `context` is none if the instrument now has
-    /// another patch than the one that the voice was started with: the voice then uses what it has stored of its own
+    /// another patch than the one that the voice was started with: the voice then uses its stored values of its own
     /// patch.
     fn retune(&mut self, context: Option<&Self::Context>, note: &Note);
     /// Releases the note, with a release velocity 0–1.

@@ -121,7 +121,7 @@ fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
     }
 }
 
-/// Modes that were loaded before do not sound, whatever the number of lanes of a vector.
+/// Modes that were loaded before do not sound, for any number of lanes of a vector.
 #[test]
 fn a_bank_that_is_loaded_again_has_forgotten_its_modes() {
     let many: Vec<_> = (0..64).map(|m| (200.0 + 50.0 * f64::from(m), 10.0)).collect();
