@@ -1,4 +1,4 @@
-//! Voice allocation: polyphony, stealing, re-striking, pedals, choke groups, and finished notes. Contains no DSP.
+//! Voice allocation, without DSP: polyphony, stealing, re-striking, pedals, choke groups, and finished notes.
 
 mod footprint;
 mod held_keys;

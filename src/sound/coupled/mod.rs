@@ -1,4 +1,4 @@
-//! Two bodies joined at a point by a spring and a damper, solved exactly. The result is one set of modes again.
+//! The modes of two bodies joined at a point by a spring and a damper, computed exactly.
 //!
 //! Examples: a string on a soundboard, a bar over a tube, a head on a shell. Each body is given by its modes when it is
 //! free. The joint pulls both bodies towards each other with a force of `K` times the distance of the two points plus
