@@ -15,7 +15,7 @@ pub enum Law {
     Classic,
 }
 
-/// A bank of modes with either law. Every method does what the method of [`ModeBank`] does. Real-time safe.
+/// A bank of modes with either law. Each method does the same as the method of [`ModeBank`] with its name. Real-time safe.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant, reason = "both are large, and a voice has one of them without allocating")]
 pub enum Bank {
@@ -77,7 +77,7 @@ impl Bank {
         either!(self, bank => bank.set_excitation_gains(m, gains));
     }
 
-    /// See [`ModeBank::set_bow_weight`]. The original formulas know no bow.
+    /// See [`ModeBank::set_bow_weight`]. Does nothing with the original formulas, which have no bow.
     pub fn set_bow_weight(&mut self, m: usize, weight: f32) {
         if let Self::Exact(bank) = self {
             bank.set_bow_weight(m, weight);
@@ -109,7 +109,7 @@ impl Bank {
         either!(self, bank => bank.render(drive, frames))
     }
 
-    /// See [`ModeBank::render_bowed`]. The original formulas know no bow.
+    /// See [`ModeBank::render_bowed`]. With the original formulas, the bow is ignored.
     pub fn render_bowed(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
         match self {
             Self::Exact(bank) => bank.render_bowed(drive, bow, frames),
@@ -127,7 +127,7 @@ impl Bank {
         either!(self, bank => bank.settle())
     }
 
-    /// See [`ModeBank::add_energies`]. Modes of the original formulas pass no energy to each other, and are not counted.
+    /// See [`ModeBank::add_energies`]. Modes of the original formulas do not exchange energy, so they are not counted.
     pub(super) fn add_energies(&self, bands: &[u8; MAX_MODES], sums: &mut [Band; BANDS]) {
         if let Self::Exact(bank) = self {
             bank.add_energies(bands, sums);

@@ -19,7 +19,7 @@ pub struct Cell {
     /// Frequency of each mode as a multiple of the note's frequency, and its T60 as a multiple of the note's decay.
     ratios: [f64; MAX_MODES],
     t60_scales: [f64; MAX_MODES],
-    /// How far each mode moves where the body is touched: the square of its shape there, 0–1.
+    /// Square of each mode's shape at the point of touch, 0–1.
     touched: [f32; MAX_MODES],
     /// The band of each mode, for [`Cells::climb`].
     bands: [u8; MAX_MODES],
@@ -49,10 +49,10 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// Without any cell.
+    /// No cells.
     pub const EMPTY: Self = Self { cells: [const { None }; MAX_CELLS], len: 0, sum: [[0.0; CONTROL_FRAMES]; 2] };
 
-    /// How many cells this number of modes needs.
+    /// Number of cells that this number of modes needs.
     pub fn count_for(modes: usize) -> usize {
         modes.div_ceil(MAX_MODES).clamp(1, MAX_CELLS)
     }
@@ -94,14 +94,14 @@ impl Cells {
         self.iter_mut().flat_map(|cell| &mut cell.t60_scales)
     }
 
-    /// How far each mode moves where the body is touched: the square of its shape there, 0–1. Nothing but the arguments
-    /// of [`Cells::load`], [`Cells::retune`] and [`Cells::damp`] reads it.
+    /// Square of each mode's shape at the point of touch, 0–1. Only the functions that are passed to
+    /// [`Cells::load`], [`Cells::retune`] and [`Cells::damp`] receive it.
     pub fn touched_mut(&mut self) -> impl Iterator<Item = &mut f32> {
         self.iter_mut().flat_map(|cell| &mut cell.touched)
     }
 
-    /// Fills the cells with modes at rest: `setup` makes each of them from an item of `modes`, the mode's ratio, its
-    /// T60 scale, and how far it moves where the body is touched. Nothing remains of what a cell played before.
+    /// Fills the cells with modes at rest. `setup` computes each from an item of `modes`, the mode's ratio, its T60 scale, and
+    /// its squared shape at the point of touch. Nothing remains of earlier modes.
     pub fn load<T>(
         &mut self,
         law: Law,
@@ -118,7 +118,7 @@ impl Cells {
     }
 
     /// Like [`super::ModeBank::retune`]: `tuning` computes a mode's frequency in Hz and its T60 in seconds from its
-    /// ratio, its T60 scale, and how far it moves where the body is touched.
+    /// ratio, its T60 scale, and its squared shape at the point of touch.
     pub fn retune(&mut self, tuning: impl Fn(f64, f64, f64) -> (f64, f64) + Copy) {
         for Cell { bank, ratios, t60_scales, touched, .. } in self.iter_mut() {
             let rows = ratios.iter().zip(t60_scales).zip(touched);
@@ -126,8 +126,8 @@ impl Cells {
         }
     }
 
-    /// Like [`super::ModeBank::set_t60`], for all modes: `t60` computes the T60 in seconds from a mode's T60 scale and how
-    /// far it moves where the body is touched.
+    /// Like [`super::ModeBank::set_t60`], for all modes: `t60` computes the T60 in seconds from a mode's T60 scale and its
+    /// squared shape at the point of touch.
     pub fn damp(&mut self, t60: impl Fn(f64, f64) -> f64) {
         for Cell { bank, t60_scales, touched, .. } in self.iter_mut() {
             (0..bank.len()).for_each(|m| bank.set_t60(m, t60(t60_scales[m], f64::from(touched[m]))));
@@ -161,8 +161,8 @@ impl Cells {
         self.iter_mut().for_each(|cell| cell.bank.jump_to(ratio));
     }
 
-    /// Sets the weights of the first [`MAX_MODES`] modes under a bow, scaled so that their squares add up to 1: further
-    /// modes are not bowed. `weight` makes one of the number of a mode.
+    /// Sets the weights of the first [`MAX_MODES`] modes under a bow, scaled so that their squares add up to 1. Modes after
+    /// these are not bowed. `weight` gives the weight of a mode by its number, before scaling.
     pub fn set_bow_weights(&mut self, weight: impl Fn(usize) -> f64) {
         let Some(Cell { bank, .. }) = self.iter_mut().next() else { return };
         let mut weights = [0.0; MAX_MODES];
@@ -173,7 +173,7 @@ impl Cells {
         weights.iter().enumerate().for_each(|(m, weight)| bank.set_bow_weight(m, (weight * scale) as f32));
     }
 
-    /// As [`super::ModeBank::render_bowed`]; all cells are driven alike, and the first is bowed.
+    /// As [`super::ModeBank::render_bowed`]. The drive acts on all cells, the bow only on the first.
     pub fn render(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
         let Self { cells, sum, .. } = self;
         let frames = frames.min(CONTROL_FRAMES);
@@ -199,8 +199,8 @@ impl Cells {
         bank.into_iter().flat_map(|bank| (0..bank.len()).map(|m| bank.mass(m)))
     }
 
-    /// Each mode: its frequency as a multiple of the note's, its T60 as a multiple of the note's decay, how far it moves
-    /// where the body is touched, and its squared amplitude.
+    /// Each mode: its frequency as a multiple of the note's, its T60 as a multiple of the note's decay, its squared shape at the
+    /// point of touch, and its squared amplitude.
     pub fn modes(&self) -> impl Iterator<Item = (f64, f64, f64, f64)> {
         self.iter().flat_map(|cell| {
             let energy = |m| f64::from(cell.bank.mass(m).1);

@@ -1,4 +1,4 @@
-//! Up to 64 masses with the original formulas, stepped one by one as in the original: kept for their sound.
+//! Up to 64 masses with the original formulas, stepped one by one as in the original, for the sake of its sound.
 
 use super::coefficients::Coefficients;
 use super::exciter::Drive;
@@ -14,17 +14,16 @@ const MARGIN: f64 = 0.99;
 /// A mode with less energy than this (an amplitude of 1e−20) is set to rest before it can become denormal.
 const REST_ENERGY: f64 = 1e-40;
 
-/// With the original formulas, a strike at the highest pitch gives seven times the requested amplitude. A mode that
-/// rings louder than this many times the amplitude that strikes have requested is scaled back to that at the next
-/// control tick.
+/// With the original formulas, a strike at the highest pitch gives seven times the requested amplitude. If the amplitude of
+/// a mode exceeds this many times the amplitude that strikes have requested, it is reduced to that at the next control tick.
 const MOST_GAIN: f64 = 8.0;
 
 /// A bank of [`HarmonicOscillator`]s with [`Coefficients::seed`]; the sweep sets the pitch ratio. Real-time safe.
 ///
 /// Each operation is one of the original listing, in its order. Two protections are added; they change no bit of a
-/// sound that stays stable. First, the sweep is kept below the value at which the step becomes unstable, whenever
-/// damping or pitch changes. Second, a moving sweep can add energy to a mode: what exceeds 8 times the amplitude that
-/// strikes have requested is removed.
+/// sound that stays stable. First, whenever damping or pitch changes, the sweep is kept below the value at which the step
+/// becomes unstable. Second, since a moving sweep can add energy to a mode, its amplitude is limited to 8 times the
+/// amplitude that strikes have requested.
 #[derive(Clone, Debug)]
 pub struct ClassicBank {
     sample_rate: f64,
@@ -32,10 +31,9 @@ pub struct ClassicBank {
     modes: [Mode; MAX_MODES],
     /// Pitch ratio of the sweeps, or their target while they move.
     ratio: f64,
-    /// Frequencies or T60s have changed since the last [`ClassicBank::sweep_to`].
+    /// Whether frequencies or T60s have changed since the last [`ClassicBank::sweep_to`].
     retuned: bool,
-    /// Frames until the next control tick, and the length in frames of the straight line of the sweeps that ends there;
-    /// 0 if they do not move.
+    /// Frames until the next control tick, and the length in frames of the sweeps' ramp that ends there; 0 if they do not move.
     until_tick: usize,
     line_frames: usize,
     output: [[f32; CONTROL_FRAMES]; 2],
@@ -51,7 +49,7 @@ struct Mode {
     t60: f64,
     left: f32,
     right: f32,
-    /// Velocity and displacement per unit of push and per unit of pull, velocity per unit of noise.
+    /// Velocity and displacement for each unit of push and each unit of pull, and velocity for each unit of noise.
     push: [f32; 2],
     pull: [f32; 2],
     noise: f32,
@@ -105,7 +103,7 @@ impl Mode {
         Coefficients { omega2: c.omega2 * sweep * sweep, v0: c.v0 * sweep, ..c }
     }
 
-    /// The squared amplitude at which the mass rings at the present sweep value.
+    /// The squared amplitude of the mass at the present sweep value.
     fn energy(&self) -> f64 {
         let swept = self.swept();
         let Coefficients { zeta, omega2, x0: x, v0: v } = swept;
@@ -116,7 +114,7 @@ impl Mode {
         if discriminant > 1e-12 && keep > 0.0 {
             form * keep / discriminant
         } else {
-            // Over-damped: the mass does not ring, but it still moves.
+            // Over-damped: the mass does not oscillate, but it still moves.
             x * x + v * v / omega2.max(1e-12)
         }
     }

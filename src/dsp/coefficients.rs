@@ -43,7 +43,7 @@ pub fn omega2_from_angle(radius: f64, theta: f64) -> f64 {
 impl Coefficients {
     /// A damped sinusoid `amplitude · rⁿ · sin(n θ)`, exactly, for every frequency below half the sample rate.
     ///
-    /// `frequency` in Hz, `t60` in seconds (infinite is undamped), `sample_rate` in Hz. Real-time safe.
+    /// `frequency` in Hz, `t60` in seconds (infinite: undamped), `sample_rate` in Hz. Real-time safe.
     pub fn exact(frequency: f64, t60: f64, amplitude: f64, sample_rate: f64) -> Self {
         Self::from_polar(
             LN_MINUS_60_DB / (t60 * sample_rate),
@@ -77,8 +77,8 @@ impl Coefficients {
     }
 
     /// A mass `m` on a spring of stiffness `k` with a damper `c`, sampled every `dt`, starting from displacement `x0`
-    /// and velocity `velocity0` (per second): the step follows the continuous motion exactly, in every regime:
-    /// under-, critically and over-damped, undamped (`c = 0`), unsprung (`k = 0`) and unimpeded (both).
+    /// and velocity `velocity0` (per second). The step follows the continuous motion exactly in all cases: under-damped,
+    /// critically damped, over-damped, undamped (`c = 0`), without a spring (`k = 0`), and without both.
     ///
     /// If the damper stops any velocity within one sample (`ζ` rounds to 1), no `v0` can move the mass, so `v0` is 0.
     /// The displacement is then wrong by at most `(|velocity0| + |x0| k/c)·m/c`, and this error shrinks as the mass
@@ -92,8 +92,8 @@ impl Coefficients {
         let sigma_squared = lambda * lambda - omega0_squared;
         let scale = sqrt(sigma_squared.abs());
         let decay = exp(-lambda);
-        // τ₀ and τ₁ over one sample are both multiplied by e^(−λ̄), so that cosh and sinh cannot overflow where their
-        // product with it is small. ω² = 1 + g² − 2 g τ₀ is written so that no digits cancel.
+        // τ₀ and τ₁ over one sample are both multiplied by e^(−λ̄), because cosh and sinh alone could overflow although the
+        // product is small. ω² = 1 + g² − 2 g τ₀ is written so that no digits cancel.
         let (tau0, tau1, omega2) = if sigma_squared < 0.0 {
             (decay * cos(scale), decay * sin(scale) / scale, omega2_from_angle(decay, scale))
         } else if sigma_squared > 0.0 {
@@ -115,7 +115,7 @@ impl Coefficients {
         sqrt(1.0 - self.zeta)
     }
 
-    /// Angle per sample `θ`, for coefficients that ring. NaN for those that do not (over-damped or unstable).
+    /// Angle per sample `θ`, for coefficients that oscillate. NaN for others (over-damped or unstable).
     pub fn angle(&self) -> f64 {
         let radius = self.radius();
         let loss = 1.0 - radius;
@@ -131,8 +131,8 @@ impl Coefficients {
     /// Amplitude of the damped sinusoid that passes through the state `(x, v)`: the envelope of the output at this
     /// sample.
     ///
-    /// From `A² sin²θ = ω² x² + (ζ−ω²) x v + (1−ζ) v²`; each step multiplies this quadratic form by `r²`. Only
-    /// meaningful for coefficients that ring. Real-time safe.
+    /// From `A² sin²θ = ω² x² + (ζ−ω²) x v + (1−ζ) v²`; each step multiplies this quadratic form by `r²`. Only meaningful
+    /// for coefficients that oscillate. Real-time safe.
     pub fn amplitude(&self, x: f64, v: f64) -> f64 {
         sqrt(self.quadratic_form(x, v).max(0.0) / self.sin_squared_angle())
     }
@@ -162,7 +162,7 @@ mod tests {
     use crate::dsp::HarmonicOscillator;
     use proptest::prelude::*;
 
-    /// "Damped Harmonic Oscillator", its sample implementation: position and velocity at time `t`.
+    /// The sample implementation of "Damped Harmonic Oscillator": position and velocity at time `t`.
     fn sprung_response(t: f64, d: f64, v: f64, k: f64, c: f64, m: f64) -> (f64, f64) {
         let decay = c / 2.0 / m;
         let omega = sqrt(k / m);
@@ -231,7 +231,7 @@ mod tests {
         }
     }
 
-    /// The original formulas' pitch error in cents must match the published figures for 48 kHz.
+    /// The pitch error in cents of the original formulas must match the published figures for 48 kHz.
     #[test]
     fn the_seed_is_as_far_out_as_published() {
         let cents = |frequency: f64, t60: f64| {

@@ -3,7 +3,7 @@
 use super::simd::vector::Vector;
 use super::simd::{Instructions, Kernel};
 
-/// Left and right gain. It depends on the elapsed frames only, not on how they are divided into calls. Real-time safe.
+/// Left and right gain. It depends only on the number of elapsed frames, not on the block size. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fader {
     instructions: Instructions,
@@ -11,7 +11,7 @@ pub(crate) struct Fader {
     step: [f32; 2],
     /// Frames since the start of the ramp.
     elapsed: u32,
-    /// Length of the fade-out in frames, 0 if there is none, and, in the next field, how much of it has passed.
+    /// Length of the fade-out in frames, 0 if there is none, and, in the next field, its frames so far.
     fade_frames: u32,
     faded: u32,
 }
@@ -61,7 +61,7 @@ impl Fader {
         self.fade_frames > 0 && self.faded >= self.fade_frames
     }
 
-    /// The fraction of the energy that a fade-out leaves.
+    /// The fraction of the energy that remains after the fade-out so far.
     pub(crate) fn remaining(&self) -> f64 {
         if self.fade_frames == 0 {
             return 1.0;
@@ -76,7 +76,7 @@ impl Fader {
         left.max(right)
     }
 
-    /// Adds the next frames of a voice to a mix: as many as the slices have, which are equally long.
+    /// Adds the next frames of a voice to a mix. All slices have the same length.
     pub(crate) fn mix(&mut self, voice: [&[f32]; 2], into: [&mut [f32]; 2]) {
         let frames = into[0].len() as u32;
         self.instructions.run(Mix { fader: *self, voice, into });
@@ -87,7 +87,7 @@ impl Fader {
     }
 }
 
-/// The work of [`Fader::mix`]: plain loops, from which the compiler makes vector instructions of each level.
+/// The work of [`Fader::mix`]: plain loops, which the compiler vectorises for each instruction level.
 struct Mix<'a> {
     fader: Fader,
     voice: [&'a [f32]; 2],

@@ -1,6 +1,6 @@
-//! A stereo true-peak limiter without latency: it lowers peaks above full scale and changes nothing else.
+//! A stereo true-peak limiter without latency: it lowers peaks above −0.92 dBFS and changes nothing else.
 //!
-//! The gain falls at once, is held as long as the lowest tones need from one peak to the next, and then rises slowly. A
+//! The gain falls at once, is held until the next peak of tones down to 17 Hz, and then rises slowly. A
 //! peak between two samples is only known after half of [`TAPS`] further samples have been output. Until the gain
 //! follows, single samples are lowered so that no partial sum of an interpolated point exceeds [`GUARD`]; the partial
 //! sum is the value of the point if only silence follows. This is always possible, because a sample of 0 adds nothing
@@ -16,7 +16,7 @@ use libm::exp;
 pub const THRESHOLD: f32 = 0.9;
 
 /// Level to which higher peaks are lowered, −1.9 dBFS. An incomplete point of a sine can exceed the sine's peak by a
-/// factor of 1.17, and that is [`GUARD`] at this level. So a steady tone is changed by the gain only.
+/// factor of 1.17, which gives [`GUARD`] at this level. So for a steady tone, only the gain acts.
 pub const CEILING: f32 = 0.805;
 
 /// Upper bound of the waveform between samples, −0.45 dBFS; −0.3 dBFS on meters that interpolate differently.
@@ -26,7 +26,7 @@ pub const GUARD: f32 = 0.95;
 /// 1.865.
 const QUIET: f32 = 0.48;
 
-/// How long the gain is held: half a period of a 17 Hz tone. During lower tones the gain rises between two peaks, which
+/// Hold time of the gain: half a period of a 17 Hz tone. With lower tones the gain rises between two peaks, which
 /// distorts them.
 const HOLD_SECONDS: f64 = 0.03;
 
@@ -39,18 +39,18 @@ const SETTLED: f64 = 0.999_99;
 /// A gain below this value (−0.1 dB) is counted in [`Work::frames`].
 const WORK: f64 = 0.988_6;
 
-/// Number of frames that are tested together for being quiet.
+/// Number of frames that are tested for quietness together.
 const SCAN: usize = 64;
 
 /// Holds a stereo signal's true peak to about −0.3 dBFS, with the same gain on both sides and no latency.
 ///
 /// A signal whose true peak stays below −1 dBFS passes bit for bit. From the first peak above [`THRESHOLD`] on, the
 /// points between samples stay below [`GUARD`], as this module interpolates them. Samples that were output before that
-/// peak cannot be changed any more: where samples below the threshold stop or change sign within [`TAPS`] samples, as
-/// in white noise, the point between them may be higher before the gain has fallen. Measured: +0.5 dBFS in noise, and
-/// +0.9 dBFS for two single samples of 0.89. Only a limiter with latency could avoid this.
+/// peak cannot be changed any more. Where samples below the threshold stop or change sign within [`TAPS`] samples, as
+/// in white noise, the point between them may exceed the guard before the gain has fallen. Measured: +0.5 dBFS in noise,
+/// and +0.9 dBFS for two single samples of 0.89. Only a limiter with latency could avoid this.
 ///
-/// The bits do not depend on how frames are divided into blocks. Real-time safe.
+/// The output is the same for all block sizes, bit for bit. Real-time safe.
 #[derive(Clone, Debug)]
 pub struct Limiter {
     instructions: Instructions,
@@ -61,22 +61,22 @@ pub struct Limiter {
     limits: ByAge,
     ceiling: f32,
     gain: f64,
-    /// A rising gain moves by this share of its distance from the target in each frame.
+    /// A rising gain moves by this fraction of its distance from the target in each frame.
     release: f64,
     recent_peaks: RecentPeaks,
     /// The last samples that were output, oldest first.
     last: [[f32; TAPS]; 2],
-    /// The input's interpolators have not received the last samples.
+    /// Whether the input's interpolators have not received the last samples yet.
     is_stale: bool,
     /// Frames since the last frame that was lowered, at most [`TAPS`]. At [`TAPS`], the points of input and output are
     /// the same, and only those of the input are computed.
     unchanged_frames: usize,
-    /// Silence would pass unchanged, so it need not be processed.
+    /// Whether silence would pass unchanged, so that it need not be processed.
     is_idle: bool,
     work: Work,
 }
 
-/// What a limiter has done so far.
+/// Statistics of a limiter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Work {
     /// Lowest gain applied to a sample, an amplitude ratio; 1 if no sample was lowered.
@@ -127,14 +127,13 @@ impl Limiter {
         self.is_idle
     }
 
-    /// What the limiter has done since it was created or reset.
+    /// The statistics since the limiter was created or reset.
     pub fn work(&self) -> Work {
         self.work
     }
 
-    /// Limits the next frames in place. Both slices have the same length. With `is_on` false, all frames pass, but a
-    /// lowered gain first rises to 1 as it does after a last peak. With `is_on` true, samples that are not finite
-    /// become 0.
+    /// Limits the next frames in place. Both slices have the same length. If `is_on` is false, all frames pass, but a gain below
+    /// 1 first rises to 1, as it does after the last peak. If `is_on` is true, samples that are not finite become 0.
     pub fn process(&mut self, is_on: bool, left: &mut [f32], right: &mut [f32]) {
         for (left, right) in left.chunks_mut(SCAN).zip(right.chunks_mut(SCAN)) {
             let [last_left, last_right] = &self.last;
@@ -194,8 +193,8 @@ impl Limiter {
         out
     }
 
-    /// Accepts a frame that needs no limiting and returns true; does nothing with any other frame. Called while the
-    /// output's points are the same as the input's. This test is most of the work for loud frames.
+    /// If a frame needs no limiting, accepts it and returns true; otherwise does nothing. Called while the output's points are
+    /// the same as the input's. For loud frames, this test is most of the work.
     #[inline(always)]
     fn passes(&mut self, frame: [f32; 2]) -> bool {
         let passes = self.input.iter().zip(frame).all(|(points, sample)| {
@@ -234,7 +233,7 @@ impl Limiter {
         }
     }
 
-    /// Gives the input's interpolators the samples that passed while they were not used.
+    /// Passes the samples that were skipped to the input's interpolators.
     fn catch_up(&mut self) {
         if self.is_stale {
             for (channel, last) in self.last.iter().enumerate() {
@@ -252,8 +251,7 @@ impl Limiter {
     }
 }
 
-/// Limits some frames, one after the other. A kernel, so that the compiler can compute the points of a frame with
-/// vectors.
+/// Limits frames one after the other. A kernel, so that the compiler can vectorise the points of a frame.
 struct Steps<'a> {
     limiter: &'a mut Limiter,
     is_on: bool,
@@ -272,8 +270,8 @@ impl Kernel for Steps<'_> {
     }
 }
 
-/// Limits of incomplete points: [`GUARD`] at the lowest ceiling. At the threshold, they are raised as far as a signal
-/// can reach that must not be changed.
+/// Limits of incomplete points: [`GUARD`] at the lowest ceiling. At the threshold they are higher, so that a signal that
+/// must pass unchanged cannot reach them.
 fn limits(weights: &Weights, ceiling: f32) -> ByAge {
     let share = (ceiling - CEILING) / (THRESHOLD - CEILING);
     weights.partial_bounds(THRESHOLD).map(|bound| GUARD + share * (bound - GUARD).max(0.0))
@@ -296,7 +294,7 @@ fn keep_last(last: &mut [f32; TAPS], samples: &[f32]) {
 struct RecentPeaks {
     /// The highest peak of each part, newest first.
     parts: [f32; 8],
-    /// The highest of all parts but the newest.
+    /// The highest of all parts except the newest.
     highest_before: f32,
     part_frames: u32,
     elapsed: u32,

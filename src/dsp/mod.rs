@@ -1,4 +1,6 @@
-//! Pure numerics: no events, no files, no threads. Everything here is real-time safe.
+//! Pure numerics: no events, no files, no threads.
+//!
+//! Real-time safe, except where noted.
 
 pub mod bank;
 pub mod cells;
@@ -29,6 +31,6 @@ pub use oscillator::HarmonicOscillator;
 pub use power::power_of_two;
 pub use simd::Level;
 
-/// Frames between two control ticks. Frozen: pitch and gain move in straight lines between ticks, so all samples depend
-/// on it.
+/// Frames between two control ticks. Must not change: pitch and gain move linearly between ticks, so all samples depend on
+/// it.
 pub const CONTROL_FRAMES: usize = 32;

@@ -3,11 +3,11 @@
 use super::coefficients::Coefficients;
 use super::real::Real;
 
-/// A mass on a spring, stepped once per sample: the definition of a mode.
+/// A mass on a spring, stepped once per sample. It is the definition of a mode.
 ///
 /// The coefficients of [`super::ModeBank`] are derived from it, and the bank's tests compare the bank with it. The bank
-/// stores the same mass in other coordinates, `(x, y)`, where `y` is the displacement a quarter period later. There the
-/// pitch may move in any way. With constant coefficients both give the same samples.
+/// stores the same mass in other coordinates, `(x, y)`, where `y` is the displacement a quarter period later. In these
+/// coordinates the pitch may move in any way. With constant coefficients both give the same samples.
 ///
 /// `x` is the displacement (the audio sample), `v` the velocity in displacement per sample. Source: `Step` and
 /// `StepWithSweep` of "Harmonic oscillator, I turned jiggle physics code into a synthesizer", operation for operation.
@@ -46,15 +46,14 @@ impl<T: Real> HarmonicOscillator<T> {
         self.x
     }
 
-    /// The next sample at a swept pitch: about `sweep` times the frequency. ([`Coefficients::sweep_for_ratio`] is
-    /// exact.)
+    /// The next sample at a swept pitch: the frequency is multiplied by about `sweep`. ([`Coefficients::sweep_for_ratio`]
+    /// gives the sweep for an exact ratio.)
     ///
     /// At any constant sweep below the limit of [`Coefficients::sweep_for_ratio`] this is as exact as [`Self::step`].
-    /// The sweep may be modulated if it moves slowly compared with the oscillation and stays well below half the sample
-    /// rate: a bend, a vibrato of a few hertz, the falling pitch of a kick drum. Movement at a rate near twice the
-    /// mass's frequency, or at a pitch near half the sample rate, adds energy without bound (+108 dB in two seconds at
-    /// 23 kHz with a vibrato of ±800 cents at 20 Hz, at 48 kHz). So does damping that changes while the sweep moves.
-    /// The bank has no such limits.
+    /// The sweep may change if it moves slowly compared with the oscillation and stays well below half the sample rate: a
+    /// bend, a vibrato of a few hertz, the falling pitch of a kick drum. Changes at a rate near twice the mass's frequency, or
+    /// at a pitch near half the sample rate, add energy without bound (+108 dB in two seconds at 23 kHz with a vibrato of ±800
+    /// cents at 20 Hz, at 48 kHz). So does damping that changes while the sweep moves. The bank does not have these limits.
     #[inline]
     pub fn step_with_sweep(&mut self, sweep: T) -> T {
         self.v -= self.v * self.zeta + self.x * self.omega2 * sweep;
@@ -62,7 +61,7 @@ impl<T: Real> HarmonicOscillator<T> {
         self.x
     }
 
-    /// Strikes the mass: adds velocity, so that a moving mass gains (or loses) energy and there is no click.
+    /// Strikes the mass: adds velocity, without a click. A moving mass gains or loses energy.
     pub fn strike(&mut self, velocity: T) {
         self.v += velocity;
     }
@@ -83,7 +82,7 @@ impl<T: Real> HarmonicOscillator<T> {
         }
     }
 
-    /// Amplitude of the ringing at this sample, in closed form.
+    /// Amplitude of the oscillation at this sample, in closed form.
     pub fn amplitude(&self) -> f64 {
         self.coefficients().amplitude(self.x.to_f64(), self.v.to_f64())
     }

@@ -1,8 +1,8 @@
-//! A straight line from one value to another, as a function of elapsed frames.
+//! A linear ramp from one value to another, as a function of elapsed frames.
 
 /// A value that moves to a target. Real-time safe.
 ///
-/// The value depends only on the number of frames elapsed, never on how they were divided into blocks.
+/// The value depends only on the number of elapsed frames, not on the block size.
 #[derive(Clone, Copy, Debug)]
 pub struct Ramp {
     from: f32,
@@ -17,7 +17,7 @@ impl Ramp {
         Self { from: value, to: value, frames: 0, elapsed: 0 }
     }
 
-    /// Starts a line from the present value to `target`, which is reached after `frames`.
+    /// Starts a ramp from the present value to `target`, which is reached after `frames`.
     pub fn set(&mut self, target: f32, frames: u32) {
         *self = Self { from: self.after(0), to: target, frames, elapsed: 0 };
     }
@@ -32,7 +32,7 @@ impl Ramp {
         }
     }
 
-    /// Moves `frames` frames ahead.
+    /// Advances by `frames` frames.
     pub fn advance(&mut self, frames: u32) {
         self.elapsed = self.elapsed.saturating_add(frames);
     }

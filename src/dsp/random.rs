@@ -20,7 +20,7 @@ pub fn uniform(key: u64, n: u64) -> f32 {
     bits as f32 * (1.0 / 8_388_608.0) - 1.0
 }
 
-/// The `n`-th number of a stream for what needs more digits: uniform in [0, 1), a multiple of 2⁻⁵³.
+/// The `n`-th number of a stream with more digits: uniform in [0, 1), a multiple of 2⁻⁵³.
 pub fn unit(key: u64, n: u64) -> f64 {
     (mix(key.wrapping_add(n.wrapping_mul(GOLDEN_RATIO))) >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
 }

@@ -11,8 +11,8 @@ const POINTS: usize = 4;
 
 const WEIGHTS: usize = TAPS * POINTS;
 
-/// One number for each incomplete point, ordered by age: first those that the newest sample completes. Stored twice in
-/// a row, so that it can be read starting at any age.
+/// One number for each incomplete point, ordered by age: the first are those of the points that the newest sample completes.
+/// Stored twice in a row, so that it can be read starting at any age.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct ByAge([f32; 2 * WEIGHTS]);
@@ -27,7 +27,7 @@ impl ByAge {
         Self(self.0.map(change))
     }
 
-    /// The numbers in the order in which an [`Interpolator`] stores its points, if its oldest are at place `next`.
+    /// The numbers in the order in which an [`Interpolator`] stores its points, if its oldest points are at place `next`.
     #[inline(always)]
     fn from(&self, next: usize) -> &[f32; WEIGHTS] {
         let start = (TAPS - next) * POINTS;
@@ -41,8 +41,8 @@ impl ByAge {
 pub struct Weights {
     /// Weight of the newest sample in each point to which it contributes.
     of_newest: ByAge,
-    /// A mask: no bits for points that the sample before completed, whose places the newest points take, and all bits
-    /// for the others. Unlike multiplication by 0, a mask also removes infinity.
+    /// A mask: zero bits for points that the previous sample completed, since the newest points replace them, and one bits for
+    /// the others. Unlike multiplication by 0, a mask also removes infinity.
     kept: ByAge,
     /// Upper bound of each point's partial sum, if no point ever exceeds 1 when complete.
     partial_bounds: ByAge,
@@ -81,7 +81,7 @@ impl Default for Weights {
     }
 }
 
-/// The interpolated points of one channel. They depend only on the last [`TAPS`] samples, to the bit. Real-time safe.
+/// The interpolated points of one channel. They depend on the last [`TAPS`] samples only, bit for bit. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct Interpolator {
@@ -106,7 +106,7 @@ impl Interpolator {
         kept.zip(weights.of_newest.from(self.next).iter().copied())
     }
 
-    /// The largest magnitude of the points that `sample` would complete. They lie half of [`TAPS`] samples back.
+    /// The largest magnitude of the points that `sample` would complete. They lie half of [`TAPS`] samples in the past.
     #[inline(always)]
     pub fn peak_with(&self, weights: &Weights, sample: f32) -> f32 {
         let (sums, weights) = (self.sums.as_chunks::<POINTS>().0, weights.of_newest.0.as_chunks::<POINTS>().0);
@@ -135,8 +135,8 @@ impl Interpolator {
         points.fold(true, |within, ((sum, weight), limit)| within & ((sum + weight * sample).abs() <= *limit))
     }
 
-    /// The largest share of `sample`, 0–1, with which no partial sum exceeds its limit. A partial sum that exceeds it
-    /// already does not grow.
+    /// The largest factor for `sample`, 0–1, with which no partial sum exceeds its limit. A partial sum that already exceeds it
+    /// does not grow.
     #[inline(always)]
     pub fn share_within(&self, weights: &Weights, limits: &ByAge, sample: f32) -> f32 {
         if self.is_within(weights, limits, sample) {

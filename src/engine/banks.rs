@@ -1,8 +1,8 @@
-//! Bank selects and program changes as General MIDI and its relatives have them: melodic sounds and drum kits.
+//! Bank selects and program changes as General MIDI, General MIDI 2 and XG define them: melodic sounds and drum kits.
 //!
 //! General MIDI has 128 melodic programs, and drums on channel 10 (MIDI Manufacturers Association, General MIDI System
 //! Level 1, 1991). Level 2 (1999) selects drums on any channel by bank 120 and melodic sounds by 121, and Yamaha's XG drums
-//! by banks 126 and 127. Other banks hold variations of the same programs, which are played as these.
+//! by banks 126 and 127. Other banks hold variations of the same programs; here they play the plain program.
 
 use super::event::EventKind;
 use super::note::nearest_channel;
@@ -28,7 +28,7 @@ pub const MELODIC_BANK: u8 = 121;
 pub struct Banks([u8; 16]);
 
 impl Banks {
-    /// The event with the number of its program in a list of melodic sounds and drum kits, if it is a program change.
+    /// Returns the event. A program change gets the number of its program in a list of melodic sounds and drum kits.
     pub fn resolve(&mut self, channel: u8, kind: EventKind) -> EventKind {
         let channel = nearest_channel(channel);
         let bank = &mut self.0[usize::from(channel)];

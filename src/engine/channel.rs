@@ -20,7 +20,7 @@ pub(crate) struct Channel {
     pub(crate) brightness: f32,
     /// 0–1.
     pub(crate) breath: f32,
-    /// The soft pedal.
+    /// Whether the soft pedal is down.
     pub(crate) soft: bool,
     volume: f32,
     /// 0–1.

@@ -112,7 +112,7 @@ pub(crate) struct Controls {
     coarse: f32,
     /// Cents.
     fine: f32,
-    /// Vibrato depth in semitones: of the patch, and, in the next field, what routes add to it.
+    /// Vibrato depth in semitones: that of the patch, and, in the next field, the depth that routes add.
     pub(crate) vibrato: f64,
     pub(crate) added_vibrato: f64,
     /// Hz.
@@ -125,18 +125,18 @@ pub(crate) struct Controls {
     pub(crate) decay_tilt: f64,
     /// Semitones by which a full strike raises the pitch.
     pub(crate) tension: f64,
-    /// Share of its energy that a band passes on, 0–1, and time of its climb in seconds.
+    /// Share of its energy that a band passes on to higher modes, 0–1, and the time of this rise in seconds.
     pub(crate) bloom: f64,
     pub(crate) bloom_time: f64,
-    /// How firmly the body is touched, 0–1, and where, as a share of its length.
+    /// How firmly the body is touched, 0–1, and where, as a fraction of its length.
     pub(crate) touch: f64,
     pub(crate) touch_position: f64,
     /// Semitones.
     pub(crate) bend_range: f32,
-    /// Speed of the bow, from 0, and how hard it is pressed on, 0–1.
+    /// Speed of the bow, at least 0, and the pressure of the bow, 0–1.
     pub(crate) bow_speed: f32,
     pub(crate) bow_force: f32,
-    /// Amplitude ratio of what comes in as sound.
+    /// Amplitude ratio of the incoming sound.
     pub(crate) input_gain: f32,
     /// Amplitude ratio.
     pub(crate) gain_left: f32,
@@ -211,8 +211,8 @@ impl Controls {
         }
     }
 
-    /// Computes the gains if level or pan differ from those `before`. If `base` has the same level and pan, its gains
-    /// are copied: they are more exact.
+    /// Computes the gains if level or pan differ from those `before`. If `base` has the same level and pan, its gains are
+    /// copied, since they are more exact.
     pub(crate) fn find_gains(&mut self, before: [f32; 2], base: Option<&Self>) {
         let now = self.level_and_pan();
         if now == before {

@@ -1,4 +1,4 @@
-//! T60 of a note's modes: their own decay, the effect of the damper, and that of a finger that touches the body.
+//! T60 of a note's modes: from their own decay, the damper, and a touch of the body.
 
 use libm::pow;
 
@@ -14,15 +14,14 @@ pub(crate) struct Damping {
     pub(crate) release: f64,
     /// Degree of damping, 0–1.
     pub(crate) amount: f64,
-    /// The reciprocal of the T60 in seconds that a touch gives a mode that moves most where the body is touched, if it had
-    /// no other damping; 0 if nothing touches it.
+    /// Reciprocal of a T60 in seconds: the T60 that a touch alone gives to a mode whose motion is largest at the point of
+    /// touch. 0 if nothing touches the body.
     pub(crate) touch: f64,
 }
 
 impl Damping {
-    /// T60 in seconds of a mode whose own T60 is `scale` times the decay: interpolated geometrically towards the
-    /// damper's. A touch adds to its rate of decay, in proportion to `touched`, which says how far the mode moves there: the
-    /// square of its shape, 0–1.
+    /// T60 in seconds of a mode whose own T60 is `scale` times the decay: interpolated geometrically towards the damper's.
+    /// A touch adds a rate of decay in proportion to `touched`, the square of the mode shape at the point of touch, 0–1.
     pub(crate) fn t60(self, scale: f64, touched: f64) -> f64 {
         let untouched = self.untouched(scale);
         let share = untouched * self.touch * touched;

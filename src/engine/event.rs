@@ -11,7 +11,7 @@ pub struct Event {
     pub frame: u32,
     /// MIDI channel, 0–15. A greater number counts as 15.
     pub channel: u8,
-    /// What happens.
+    /// The kind of the event, with its data.
     pub kind: EventKind,
 }
 
@@ -19,7 +19,7 @@ pub struct Event {
 /// zero. A controller, program or choke group that does not exist changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EventKind {
-    /// Starts a note. A key that the tuning does not map starts none. Velocity 0 is a strike without force: whoever
+    /// Starts a note. A key that the tuning does not map starts none. Velocity 0 is a strike without force: code that
     /// reads MIDI must translate "note on with velocity 0" to a note off.
     NoteOn {
         /// MIDI key, 0–127.
@@ -31,9 +31,9 @@ pub enum EventKind {
         /// The identifier that the host gives this note.
         id: Option<NoteId>,
     },
-    /// Another body hits the object that a key stands for: a note-on by [`Sound::strike`](crate::sound::Sound::strike), whose
-    /// mallet is that body. Noise and pluck, if the sound has them, follow a velocity whose square is the impulse. The key
-    /// counts as down.
+    /// Another body hits the object that a key stands for: a note on with that body as the mallet, as
+    /// [`Sound::strike`](crate::sound::Sound::strike) describes it. If the sound has noise or a pluck, they use the velocity
+    /// whose square is the impulse. The key counts as down.
     Strike {
         /// MIDI key, 0–127.
         key: u8,
@@ -46,7 +46,7 @@ pub enum EventKind {
         key: u8,
         /// 0–1; 0.5 if the controller does not send one.
         velocity: f32,
-        /// Ends only the note with this identifier; if none, all notes on the key.
+        /// Ends only the note with this identifier, or notes without one; if none, all notes on the key.
         id: Option<NoteId>,
     },
     /// Pressure on one key, 0–1.
@@ -68,8 +68,8 @@ pub enum EventKind {
         /// The notes to fade out.
         notes: Notes,
     },
-    /// Sets a note expression. It lasts until the next one, and ends when the note leaves its voice: if a monophonic
-    /// voice returns to a held key, that note starts with neutral expressions.
+    /// Sets a note expression. It lasts until the next one, or until the voice plays another note: if a monophonic voice
+    /// returns to a held key, that note starts with neutral expressions.
     Express {
         /// The notes that it applies to.
         notes: Notes,
@@ -99,8 +99,8 @@ pub enum EventKind {
     /// Modulates a parameter: an offset from its value in knob travel (−1 to 1, see
     /// [`crate::params::ParamInfo::normalise`]).
     Modulate {
-        /// The sounding note to modulate; none for the whole instrument. A note with an offset of its own ignores the
-        /// instrument's. Notes can be modulated in parameters that they follow while they sound
+        /// The sounding note to modulate; none for the whole instrument. If a note has its own offset, the instrument's offset
+        /// does not apply to it. Notes accept offsets only for parameters that they follow while they sound
         /// ([`crate::params::Change::Smoothed`]).
         id: Option<NoteId>,
         /// The parameter.
@@ -130,8 +130,8 @@ pub enum Expression {
     Pan,
     /// 0–1. The greater of it and the channel's pressure counts.
     Pressure,
-    /// 0–1, neutral at 0.5: the source `timbre` of routes. The routes of a new patch tilt the strike's spectrum by up
-    /// to 12 dB per octave in either direction, and below 0.5 damp the higher modes while they sound.
+    /// 0–1, neutral at 0.5: the source `timbre` of routes. In a new patch, routes tilt the strike's spectrum by up to 12 dB
+    /// per octave in either direction, and values below 0.5 also damp the higher modes while they sound.
     Brightness,
     /// 0–1. The greater of it and the modulation wheel counts.
     Vibrato,

@@ -1,4 +1,4 @@
-//! One sound of the kit that a synth plays: its present parameters, and the modulation that all its notes share.
+//! One sound of the kit that a synth plays: its current parameters, and the modulation that all its notes share.
 
 use super::controls::{Controls, Smoother};
 use super::modulation::{Bus, Positions, Settings, SharedLfos, modulated};
@@ -8,14 +8,14 @@ use crate::params::{PARAM_COUNT, PARAMS, Param, Values};
 use crate::sound::Sound;
 use std::sync::Arc;
 
-/// What voices read of their sound, when a note starts and while it plays. Real-time safe once built, as long as the
-/// sounds are also held elsewhere, so that none is freed here.
+/// The values of their sound that voices read when a note starts and while it plays. Real-time safe once built, as long
+/// as the sounds are also held elsewhere, so that none is freed here.
 pub(crate) struct Instrument {
     /// The sound whose modes and routes are played.
     pub(crate) sound: Arc<Sound>,
     /// Its parameters as they were set.
     pub(crate) values: Values,
-    /// The parameters with the host's modulation: these are played.
+    /// The parameters with the host's modulation. Voices use these.
     pub(crate) modulated: Values,
     /// Serial number of the sound. A voice that was started with another number must not read this instrument.
     pub(crate) patch_serial: u32,
@@ -26,7 +26,7 @@ pub(crate) struct Instrument {
     pub(crate) smoother: Smoother,
     /// Smoothed parameters at the frame at which a note starts.
     pub(crate) controls: Controls,
-    /// Smoothed parameters at the next control tick, and, in the next field, how often they have changed.
+    /// Smoothed parameters at the next control tick, and, in the next field, a count of their changes.
     pub(crate) next_controls: Controls,
     pub(crate) controls_serial: u32,
     /// Pitch of the previous note in semitones, for the glide.

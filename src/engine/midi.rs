@@ -44,11 +44,11 @@ pub mod controller {
     pub const ALL_NOTES_OFF: u8 = 123;
 }
 
-/// The value of [`controller::REVERB_SEND`] at the start and after a reset (General MIDI 2, 1999).
+/// The value of [`controller::REVERB_SEND`] at the start and after a system reset (General MIDI 2, 1999).
 pub const DEFAULT_REVERB_SEND: f32 = 40.0 / 127.0;
 
-/// The channel and event of one complete MIDI message, as a port delivers it; none if it is not a channel message.
-/// Real-time safe.
+/// Parses one complete MIDI message, as a port delivers it. Returns its channel and event; none if it is not a channel
+/// message. Real-time safe.
 pub fn parse_message(bytes: &[u8]) -> Option<(u8, EventKind)> {
     let (&status, data) = bytes.split_first()?;
     let data = |index: usize| data.get(index).copied().filter(|byte| *byte < 128);

@@ -3,7 +3,7 @@
 use crate::sound::Contact;
 use crate::sound::tuning::Pitch;
 
-/// An identifier that a host gives a note, to distinguish it from others on the same key.
+/// An identifier that a host gives to a note, to distinguish it from other notes on the same key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct NoteId(u32);
 
@@ -53,7 +53,7 @@ pub struct Note {
     pub pan: f32,
     /// Whether another key was down when the note began.
     pub is_legato: bool,
-    /// The hit of an outer body that it is, if it is one.
+    /// The hit of another body, if the note is one ([`EventKind::Strike`](super::EventKind::Strike)).
     pub contact: Option<Contact>,
 }
 

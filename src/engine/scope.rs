@@ -8,11 +8,11 @@ use std::sync::atomic::Ordering::Relaxed;
 /// How many frames are kept: 43 ms at 48 kHz.
 pub const SCOPE_FRAMES: usize = 2048;
 
-/// The last frames of the sound, mixed to mono. One thread writes, any thread reads; neither waits. A reader may see
-/// frames that are being written among older ones, which a picture can do with.
+/// The last frames of the sound, mixed to mono. One thread writes, any thread reads; neither waits. A reader may get
+/// some frames that are newer than the rest, which does not matter for a picture.
 pub struct Scope {
     frames: [AtomicF32; SCOPE_FRAMES],
-    /// Where the next frame goes.
+    /// Index of the next frame to write.
     next: AtomicU32,
 }
 

@@ -1,4 +1,4 @@
-//! What a display shows of a sounding instrument: the motion of its masses, and its newest notes with what modulates them.
+//! State of a sounding instrument for a display: the motion of its masses, and its newest notes with their modulation.
 
 use super::note::Note;
 use super::voice::SynthVoice;
@@ -6,7 +6,7 @@ use crate::dsp::mode_bank::MAX_MODES;
 use crate::params::Param;
 use crate::patch::routes::MAX_ROUTES;
 
-/// Most notes that a snapshot tells of.
+/// Maximum number of notes in a snapshot.
 pub const SHOWN_NOTES: usize = 16;
 
 /// A note that sounds.
@@ -22,12 +22,12 @@ pub struct SoundingNote {
     pub pitch: f32,
     /// Seconds since its last strike.
     pub age: f32,
-    /// Parameters that its routes and its own offsets modulate, with their values now. What only strikes read has the value
-    /// of the last strike.
+    /// Parameters that its routes and its own offsets modulate, with their current values. A parameter that only strikes
+    /// read has the value of the last strike.
     pub moved: [Option<(Param, f32)>; MAX_ROUTES],
 }
 
-/// One mass, or the sum over the voices that have the same mode.
+/// The state of one mass, or the sum over the voices that have the same mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mass {
     /// Displacement. A strike of full force has an amplitude of 1.
@@ -36,7 +36,7 @@ pub struct Mass {
     pub energy: f32,
 }
 
-/// What sounds at one moment. Plain data of fixed size; making one is real-time safe.
+/// The sounding masses and notes at one moment. Plain data of fixed size; making one is real-time safe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snapshot {
     /// Number of voices that play or fade.
@@ -55,7 +55,7 @@ impl Default for Snapshot {
 }
 
 impl Snapshot {
-    /// Adds a voice of a note.
+    /// Adds a voice that plays `note`.
     pub(super) fn add(&mut self, note: &Note, voice: &SynthVoice) {
         // The unison voices of a note have the same routes.
         if voice.unison_index() == 0 {
@@ -68,7 +68,7 @@ impl Snapshot {
         }
     }
 
-    /// Puts a note before the older ones. If there is no place left, the oldest is left out.
+    /// Inserts a note before the older ones. If all places are taken, the oldest is left out.
     fn add_note(&mut self, note: &Note, voice: &SynthVoice) {
         let (age, pitch) = (voice.age() as f32, voice.sounding_pitch() as f32);
         let Some(place) = self.notes.iter().position(|other| other.is_none_or(|other| age < other.age)) else { return };
@@ -124,7 +124,7 @@ mod tests {
     fn notes_tell_what_moves_their_parameters() {
         let mut patch =
             Patch::default().with(Param::Pan, 10.0).with(Param::MalletHardness, 20.0).with(Param::Macro1, 40.0);
-        // The default patch has a vibrato by the wheel.
+        // The default patch has a route from the modulation wheel to vibrato.
         patch.routes = Routes::NONE;
         let routes = [
             (Source::Velocity, Param::MalletHardness),

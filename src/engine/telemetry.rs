@@ -20,12 +20,12 @@ use std::time::Duration;
 /// How often per second the masses are published.
 const SNAPSHOT_RATE: f64 = 40.0;
 
-/// How many snapshots are published after somebody has looked, if nobody looks again: those of a second.
+/// Number of snapshots that are published after the last call of [`Telemetry::snapshot`]: those of one second.
 const SNAPSHOTS_PER_LOOK: u32 = 40;
 
 /// State that the audio thread publishes through a [`TelemetryWriter`]. Any thread may read it at any time without
-/// waiting. Each number is consistent, but two numbers may come from different blocks; those of the sounding notes come from
-/// the same.
+/// waiting. Each number is consistent, but two numbers may come from different blocks. All values of the sounding notes
+/// come from the same block.
 #[derive(Default)]
 pub struct Telemetry {
     frames: AtomicU64,
@@ -45,7 +45,7 @@ pub struct Telemetry {
     sounding: AtomicBool,
     moved: LastMoved,
     scope: Scope,
-    /// How many snapshots to publish before somebody looks again.
+    /// Number of snapshots still to publish before the next call of [`Telemetry::snapshot`].
     wanted: AtomicU32,
 }
 
@@ -90,8 +90,8 @@ impl Telemetry {
         self.peaks.each_ref().map(AtomicF32::take)
     }
 
-    /// The voices and masses that sound. The audio thread publishes them, and the [`Telemetry::scope`], only for a second
-    /// after each call.
+    /// The voices and masses that sound. The audio thread publishes them, and the [`Telemetry::scope`], only for one second
+    /// after each call of this function.
     pub fn snapshot(&self) -> Snapshot {
         self.wanted.store(SNAPSHOTS_PER_LOOK, Relaxed);
         let (voices, notes) = (self.voices.load(Relaxed), self.sounding_notes.read());
@@ -114,7 +114,7 @@ impl Telemetry {
         stored.checked_sub(1).map(|program| program as u8)
     }
 
-    /// How many movements of controllers, pitch wheel and pressure there were so far, and what was moved last.
+    /// Number of movements of controllers, pitch wheel and pressure so far, and the last of them.
     pub fn moved(&self) -> (u64, Option<Moved>) {
         self.moved.read()
     }
@@ -130,12 +130,12 @@ impl Telemetry {
     }
 }
 
-/// The audio thread's side of a [`Telemetry`]: there should be one. All but [`TelemetryWriter::new`] is real-time safe.
+/// The audio thread's side of a [`Telemetry`], which should have only one. All but [`TelemetryWriter::new`] is real-time safe.
 pub struct TelemetryWriter {
     telemetry: Arc<Telemetry>,
     sample_rate: f64,
     frames_to_snapshot: f64,
-    /// By channel and key, the identifier of the note that began there last.
+    /// For each channel and key, the identifier of the note that last began there.
     ids: Box<[[Option<NoteId>; 128]; 16]>,
 }
 
@@ -175,7 +175,7 @@ impl TelemetryWriter {
         self.lift(Notes::default());
     }
 
-    /// The keys of these notes are up. A key stays down for an identifier that another note on it has taken over.
+    /// Marks the keys of these notes as up. With an identifier, a key stays down if another note has begun on it since.
     fn lift(&self, Notes { id, channel, key }: Notes) {
         let all = self.telemetry.keys.iter().zip(&*self.ids).enumerate();
         for (_, (keys, ids)) in all.filter(|(number, _)| channel.is_none_or(|channel| usize::from(channel) == *number))
@@ -196,13 +196,13 @@ impl TelemetryWriter {
         }
     }
 
-    /// Whether somebody has looked during the last second. If not, [`TelemetryWriter::note_sound`] need not be called.
+    /// Whether a snapshot was read during the last second. If not, [`TelemetryWriter::note_sound`] need not be called.
     pub fn is_watched(&self) -> bool {
         self.telemetry.wanted.load(Relaxed) > 0
     }
 
-    /// Records the peaks of rendered frames, and whether the engine is silent after them. While somebody looks, it records
-    /// the frames for the scope too, and calls `snapshot` 40 times a second.
+    /// Records the peaks of rendered frames, and whether the engine is silent after them. While snapshots are being read, it
+    /// also records the frames for the scope, and calls `snapshot` 40 times a second.
     pub fn note_sound(&mut self, left: &[f32], right: &[f32], is_silent: bool, snapshot: impl FnOnce() -> Snapshot) {
         let telemetry = &*self.telemetry;
         for (kept, samples) in telemetry.peaks.iter().zip([left, right]) {
@@ -247,7 +247,7 @@ impl TelemetryWriter {
 /// Displacement and energy of each mass.
 struct Masses([[AtomicF32; 2]; MAX_MODES]);
 
-/// A key of a channel is up.
+/// Marks a key of a channel as up.
 fn lift_key(keys: &[AtomicU64; 2], key: u8) {
     let key = nearest_key(key);
     keys[usize::from(key >> 6)].fetch_and(!(1 << (key & 63)), Relaxed);

@@ -1,10 +1,10 @@
-//! A voice that sounds, and its modes as they are: what exact labels are made of.
+//! The current state of a sounding voice and of its modes, from which exact labels are made.
 
 use super::note::Note;
 use super::voice::SynthVoice;
 pub use super::voice::mode_state::ModeState;
 
-/// A voice that sounds, to be looked at between two blocks. A display needs a [`Snapshot`](super::Snapshot).
+/// The state of a sounding voice between two blocks. A display needs a [`Snapshot`](super::Snapshot).
 pub struct VoiceState<'a> {
     note: &'a Note,
     voice: &'a SynthVoice,
@@ -15,7 +15,7 @@ impl<'a> VoiceState<'a> {
         Self { note, voice }
     }
 
-    /// Its note. Notes of one part are told apart by their serial numbers. Real-time safe.
+    /// Its note. The notes of one part have different serial numbers. Real-time safe.
     pub fn note(&self) -> &Note {
         self.note
     }

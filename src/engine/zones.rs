@@ -60,8 +60,8 @@ impl Zones {
     }
 }
 
-/// Which channel's instrument plays each channel of an ensemble: the master's for members of a zone, else its own.
-/// Real-time safe.
+/// Maps each channel of an ensemble to the channel whose instrument plays it: the master's for members of a zone, else
+/// its own. Real-time safe.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Owners {
     zones: Zones,

@@ -1,4 +1,4 @@
-//! What something hard or soft does to a sound where it hits it: three numbers, as a physics engine has them.
+//! The effect of a hit by another body on a sound, from three numbers that a physics engine provides.
 
 use super::Sound;
 use crate::params::Param;
@@ -8,37 +8,37 @@ use libm::{pow, sqrt};
 const SOFTEST_CONTACT: f64 = 0.01;
 const HARDEST_CONTACT: f64 = 0.000_05;
 
-/// Contact lasts as the mass of the mallet to the first of these powers and as its speed to the second: Hertz's law, as
-/// in Chaigne and Doutaut, "Numerical simulations of xylophones", J. Acoust. Soc. Am. 101 (1997).
+/// The contact time is proportional to the mallet's mass to the first of these powers and to its speed to the second:
+/// Hertz's law, as in Chaigne and Doutaut, "Numerical simulations of xylophones", J. Acoust. Soc. Am. 101 (1997).
 const MASS_POWER: f64 = 0.4;
 const SPEED_POWER: f64 = -0.2;
-/// The slowest mallet: contact is at most four times that of full speed.
+/// The lowest speed in Hertz's law: contact is at most four times as long as at full speed.
 const LEAST_SPEED: f64 = 1e-3;
 
-/// A hit by a body of the outer world, for [`EventKind::Strike`](crate::engine::EventKind::Strike). Made by
+/// A hit by another body, for [`EventKind::Strike`](crate::engine::EventKind::Strike). Made by
 /// [`Sound::strike`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// 0–1: the area of the force, 1 being a strike of full velocity.
+    /// 0–1: the area of the force; 1 is a strike at full velocity.
     pub(crate) impulse: f32,
-    /// How long it touches, in seconds.
+    /// Contact time in seconds.
     pub(crate) seconds: f32,
-    /// How far from its place the sound is hit, as a share of the body's length.
+    /// Distance of the hit from the sound's own point of strike, as a fraction of the body's length.
     pub(crate) place: f32,
 }
 
 impl Sound {
-    /// The hit of another body on an object that makes this sound. Allocates nothing, so that it can be called wherever
-    /// collisions are told of. Numbers out of range count as the nearest in it, NaN as 0.
+    /// The hit of another body on an object that makes this sound. Allocates nothing, so it can be called in the collision
+    /// callback of a physics engine. Numbers out of range are clamped; NaN counts as 0.
     ///
-    /// - `material`: how hard the other body is, from 0 (felt, flesh: in touch for 10 ms) to 1 (steel: 0.05 ms), at full
-    ///   force and a [`Param::MalletMass`] of 1. Contact is shorter the harder the hit (Hertz).
-    /// - `position`: where, from 0 (where the sound was made to be struck) to 1 (where a string or bar ends): modes are
-    ///   weaker there as those of a string are off their crest, `cos(π/2 · position · ratio)`.
-    /// - `impulse`: its impulse as a share of the hardest hit that the object is to sound like: what a physics engine says in
-    ///   N s, divided by that of the hardest. Amplitude is proportional to it.
+    /// - `material`: hardness of the other body, from 0 (felt, flesh: a contact of 10 ms) to 1 (steel: 0.05 ms), at full
+    ///   force and a [`Param::MalletMass`] of 1. The harder the hit, the shorter the contact (Hertz).
+    /// - `position`: point of the hit, from 0 (the point of strike for which the sound was made) to 1 (the end of a string or
+    ///   bar). Modes are weaker away from 0, like those of a string around their maximum: `cos(π/2 · position · ratio)`.
+    /// - `impulse`: impulse as a fraction of the hardest hit for this object: the impulse that a physics engine reports in N s,
+    ///   divided by that of the hardest hit. The amplitude is proportional to it.
     ///
-    /// An object keeps its key: hits while it rings add to what rings, in the phase that it has.
+    /// An object keeps its key: a hit while it rings adds to the sound, with the present phase of each mode.
     ///
     /// ```
     /// use sprung::engine::{Event, EventKind, Synth};
@@ -70,13 +70,12 @@ impl Sound {
     }
 }
 
-/// How long a mallet of a hardness from 0 to 1 touches what it strikes, in seconds, at full speed and a mass of 1. Real-time
-/// safe.
+/// Contact time in seconds of a mallet with a hardness from 0 to 1, at full speed and a mass of 1. Real-time safe.
 pub fn contact_time(hardness: f64) -> f64 {
     SOFTEST_CONTACT * pow(HARDEST_CONTACT / SOFTEST_CONTACT, hardness)
 }
 
-/// How much longer a mallet of a mass and a speed from 0 to 1 touches; `law` is how far the speed counts.
+/// Factor of the contact time for a mallet's mass and its speed from 0 to 1. `law` is the influence of the speed, 0–1.
 pub(crate) fn hertz(mass: f64, speed: f64, law: f64) -> f64 {
     let by_mass = if mass == 1.0 { 1.0 } else { pow(mass, MASS_POWER) };
     let by_speed = if law == 0.0 { 1.0 } else { pow(speed.max(LEAST_SPEED), SPEED_POWER * law) };

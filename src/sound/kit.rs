@@ -19,7 +19,7 @@ pub const PITCHES: RangeInclusive<f64> = -60.0..=200.0;
 /// Number of the last choke group.
 pub const CHOKE_GROUPS: u8 = 16;
 
-/// What a key of a kit plays.
+/// The pad of a key: the sound that the key plays, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pad {
     /// Name of the pad, such as “Snare”; may be empty.
@@ -57,8 +57,8 @@ impl Pad {
 ///
 /// A kit of one sound has that sound's number of voices, play mode, choke group and limiter. A kit of several is always
 /// polyphonic, with its own number of voices, and its limiter is on if it is on for any of the sounds.
-/// The effects after the voices are shared: a parameter of theirs has the value that all sounds have in common, or else
-/// its default, which is off.
+/// The sounds share the effects after the voices: each parameter of an effect has the value that all sounds have in common,
+/// or, if they differ, its default, which is off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kit {
     name: String,
@@ -135,7 +135,8 @@ impl Kit {
         kit
     }
 
-    /// The kit with a value of an effect behind the voices, whatever its sounds have. Other parameters stay as they are.
+    /// The kit with a value for a parameter of the effects after the voices, in place of its sounds' values. Does nothing for
+    /// other parameters.
     #[must_use]
     pub fn with_effect(mut self, param: Param, value: f32) -> Self {
         if param.is_behind_voices() {
@@ -149,7 +150,7 @@ impl Kit {
         &self.name
     }
 
-    /// The sounds that its pads play, at least one. Real-time safe.
+    /// The sounds of the pads, at least one. Real-time safe.
     pub fn sounds(&self) -> &[Arc<Sound>] {
         &self.sounds
     }
@@ -175,7 +176,7 @@ impl Kit {
         Some((pad, tuning.pitch(key)?, offset))
     }
 
-    /// Whether it has one sound only. Real-time safe.
+    /// Whether the kit has only one sound. Real-time safe.
     pub fn is_single(&self) -> bool {
         self.sounds.len() == 1
     }

@@ -17,10 +17,10 @@ pub use tuning::Tuning;
 
 use crate::patch::Patch;
 
-/// A patch made ready to play. It never changes afterwards, and is shared as `Arc<Sound>`.
+/// A patch that is ready to play. It never changes afterwards, and is shared as `Arc<Sound>`.
 ///
 /// An engine plays sounds as parts of a [`Kit`]. Other modes, routes, tunings or pads need another sound or kit:
-/// sounding notes keep the one that they were struck with. Only parameter values change inside the engine, by events.
+/// sounding notes keep the sound that they were started with. Only parameter values change inside the engine, by events.
 /// Sounds are made and freed outside the audio thread: see [`Shelf`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sound {

@@ -28,7 +28,7 @@ impl<T> Clone for Shelf<T> {
 }
 
 impl<T> Shelf<T> {
-    /// Keeps a value as long as anyone else refers to it, and frees those to which nobody else does. Allocates, frees
+    /// Keeps a value while others refer to it, and frees the values to which only the shelf refers. Allocates, frees
     /// and locks.
     pub fn keep(&self, handle: &Arc<T>) {
         self.collect();
@@ -38,7 +38,7 @@ impl<T> Shelf<T> {
         }
     }
 
-    /// Frees the values to which nobody else refers. Returns how many are left. Frees and locks.
+    /// Frees the values to which only the shelf refers. Returns the number of those that remain. Frees and locks.
     pub fn collect(&self) -> usize {
         let mut handles = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         // If only the shelf refers to a value, no one can make another reference, so a count of 1 cannot grow

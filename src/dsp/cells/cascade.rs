@@ -1,4 +1,4 @@
-//! The cascade of energy: what low modes of a body that swings far lose, higher ones receive.
+//! The cascade of energy: higher modes receive the energy that low modes of a strongly struck body lose.
 //!
 //! In a gong or a cymbal that is struck hard, the modes are not independent: they pass energy on to higher ones, so that
 //! the sound brightens for some tenths of a second (Legge and Fletcher 1989, Nonlinearity, chaos, and the sound of shallow
@@ -7,8 +7,8 @@
 //! each band passes a part of its energy to the next band that has modes. The part grows with the energy of all modes
 //! together, so a soft sound keeps its spectrum.
 //!
-//! What a band receives is what the one below has lost, and a mode's state is multiplied by a factor that is rounded down.
-//! So the energy of all modes together never rises.
+//! A band receives exactly the energy that the band below has lost, and the factor for a mode's state is rounded down. So
+//! the energy of all modes together never rises.
 
 use super::Cells;
 use crate::dsp::mode_bank::MAX_MODES;
@@ -17,32 +17,32 @@ use crate::dsp::random;
 use libm::log2;
 use std::f64::consts::SQRT_2;
 
-/// How strongly energy climbs.
+/// Strength and speed of the cascade.
 #[derive(Clone, Copy, Debug)]
 pub struct Climb {
-    /// The part of a band's energy that the next band half an octave above comes to at most, 0–1.
+    /// Upper limit of a band's energy, as a fraction of the energy of the band half an octave below, 0–1.
     pub share: f64,
-    /// The part of what is missing there that the lowest band passes on in a control tick, at full energy. Each band
-    /// passes it on faster than the one below, by the ratio of their frequencies.
+    /// Fraction of the missing energy that the lowest band passes on in a control tick, at full energy. Each band is faster
+    /// than the one below by the ratio of their frequencies.
     pub speed: f64,
     /// Full energy: the sum of the squared amplitudes of all modes after a full strike.
     pub full: f64,
-    /// Stream of random numbers for the signs of modes that are woken.
+    /// Stream of random numbers for the signs of modes that receive their first energy.
     pub key: u64,
 }
 
-/// The largest part that goes up in a control tick.
+/// The largest fraction of the missing energy that a band passes on in a control tick.
 const MOST: f64 = 0.25;
 
-/// More full energies than this count as this many.
+/// Upper limit of the energy, in full energies.
 const MOST_ENERGY: f64 = 4.0;
 
 impl Climb {
-    /// Below this part of full energy, nothing climbs.
+    /// Below this fraction of full energy, no energy is passed on.
     pub const LEAST_ENERGY: f64 = 1e-4;
 }
 
-/// In a control tick a band at most doubles its energy, apart from this part of the total for each mode: so no mode starts
+/// In a control tick, a band at most doubles its energy, plus this fraction of the total for each mode. So no mode starts
 /// with a click.
 const SEED: f64 = 1e-8;
 
@@ -61,9 +61,9 @@ impl Cells {
         }
     }
 
-    /// Lets energy climb to higher modes for one control tick. Must be called at control ticks only. The modes' phases
-    /// stay; a mode at rest starts without displacement, up or down by a random sign. Does nothing with the original
-    /// formulas. Real-time safe.
+    /// Passes energy on to higher modes for one control tick. Must be called at control ticks only. The modes keep their phases;
+    /// a mode at rest starts without displacement, up or down by a random sign. Does nothing with the original formulas.
+    /// Real-time safe.
     pub fn climb(&mut self, climb: &Climb) {
         let mut bands = [Band::EMPTY; BANDS];
         self.iter().for_each(|cell| cell.bank.add_energies(&cell.bands, &mut bands));
@@ -80,7 +80,7 @@ impl Cells {
     }
 }
 
-/// What each band keeps, and what each of its modes receives.
+/// Computes the fraction that each band keeps, and the energy that each of its modes receives.
 fn exchange(bands: &[Band; BANDS], total: f64, climb: Climb) -> [Exchange; BANDS] {
     let mut exchange = [Exchange::NONE; BANDS];
     let (mut speed, mut share) = (climb.speed, 1.0);

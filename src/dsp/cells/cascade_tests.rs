@@ -1,4 +1,4 @@
-//! Energy climbs and never rises, for random bodies, pitches and dampings.
+//! Tests that energy moves to higher modes and never rises, for random bodies, pitches and dampings.
 
 use super::*;
 use crate::dsp::CONTROL_FRAMES;
@@ -47,7 +47,7 @@ fn energy_never_rises() {
         let unit = |n: u64| f64::from(uniform(stream, n)) * 0.5 + 0.5;
         let modes = 1 + (unit(0) * unit(1) * 150.0) as usize;
         let ratios: Vec<f64> = (0..modes).map(|m| libm::exp2(9.0 * unit(100 + m as u64))).collect();
-        // Some are at rest, some nearly.
+        // Some modes are at rest, some nearly.
         let amplitude = |m: usize| [0.0, 1e-18, 1e-6, 1.0][m % 4] * uniform(stream, 500 + m as u64);
         let amplitudes: Vec<f32> = (0..modes).map(amplitude).collect();
         let mut cells = struck(&ratios, &amplitudes, 0.01 + 20.0 * unit(2), Law::Exact);
@@ -65,7 +65,7 @@ fn energy_never_rises() {
                 sum(&before)
             );
             climbed += u32::from(before != after);
-            // In the forms of the bank: still for some ticks, then swept.
+            // Both ways to render: constant pitch for some ticks, then sweeps.
             cells.sweep_to(if tick < 6 { 1.0 } else { 0.5 + unit(600 + tick) }, CONTROL_FRAMES);
             cells.render(None, None, CONTROL_FRAMES);
             cells.settle();
@@ -96,7 +96,7 @@ fn modes_at_rest_are_woken_with_the_phases_of_the_key_and_keep_ringing() {
     assert!(energies[0] < 0.8 && sum(&energies) > 0.9 && sum(&energies) <= 1.0, "{}", sum(&energies));
     assert_eq!(run(1).1, heard);
     assert_ne!(run(2).1, heard);
-    // No click: no sample differs from the one before by more than modes of this energy can make.
+    // No click: the difference of two samples is at most what modes of this energy can make.
     let steepest = heard.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
     assert!(steepest < 0.5, "{steepest}");
 }
@@ -112,7 +112,7 @@ fn a_soft_sound_keeps_its_spectrum_to_the_bit() {
     }
 }
 
-/// A band that is empty counts for what climbs past it, and the limits hold.
+/// An empty band counts for energy that passes over it, and the limits hold.
 #[test]
 fn each_band_comes_to_its_share_of_the_one_below() {
     let ratios = [1.0, 1.5, 3.2, 3.3, 6.0];

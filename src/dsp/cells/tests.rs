@@ -31,8 +31,8 @@ fn cells(count: usize) -> Cells {
     cells
 }
 
-/// A strike, a sweep, a change of damping, then ringing until tables are used. Returns all samples, the energy left and
-/// the frames left.
+/// Plays a strike, a sweep and a change of damping, then free ringing until tables are used. Returns all samples, the
+/// remaining energy and the remaining frames.
 fn play(cells: &mut Cells, ticks: usize) -> (Vec<u32>, f64, u64) {
     let mut drive = Drive::NONE;
     drive.push[3] = 0.7;

@@ -1,35 +1,35 @@
-//! A bow: friction between what moves along and the point of the body that it lies on.
+//! A bow: friction between the moving bow and the point of the body under it.
 
-/// Friction at high slip, as a share of that at none.
+/// Friction at high slip, as a fraction of the friction without slip.
 const SLIDING: f32 = 0.3;
 
-/// What makes the point move as the bow does: twice the difference of their speeds, less a little, so that rounding never
-/// makes it overtake the bow.
+/// Force per slip that makes the point move with the bow: the exact factor would be 2. It is a little less, so that rounding
+/// never makes the point faster than the bow.
 const STICKING: f32 = 1.999;
 
-/// A bow through some frames: speed and force move in straight lines. Real-time safe.
+/// A bow for some frames: speed and force change linearly. Real-time safe.
 ///
-/// The modes' weights at the point have squares that add up to 1. Then a force `F` in one frame gives the modes the energy
-/// `2 F (v + F/2)` in squared amplitude, where `v` is the speed of the point before. Friction pulls the point towards the
-/// bow's speed and never past it, so that this is at most `2 · force · speed`: what friction does at the bow's speed. The
-/// rest becomes heat.
+/// The squares of the modes' weights at the point add up to 1. Then a force `F` in one frame adds the energy `2 F (v + F/2)`
+/// to the modes, in squared amplitude, where `v` is the speed of the point before. Friction moves the point towards the bow's
+/// speed and never past it. So the added energy is at most `2 · force · speed`, the work of the friction at the bow's speed.
+/// The rest becomes heat.
 ///
 /// The friction falls with slip as `1/(1 + slip/width)` (as in Smith and Woodhouse, "The tribology of rosin", J. Mech.
 /// Phys. Solids 48, 2000, the classical curve).
 #[derive(Clone, Copy, Debug)]
 pub struct Bow {
-    /// Speed at the start of the line, in amplitudes of the modes, and its change a frame.
+    /// Speed at the start of the ramp, in amplitudes of the modes, and its change per frame.
     pub speed: [f32; 2],
-    /// Most friction in a frame, and its change a frame.
+    /// Maximum friction in a frame, and its change per frame.
     pub force: [f32; 2],
-    /// Frames of the line that have passed.
+    /// Frames of the ramp that have passed.
     pub passed: u32,
-    /// Slip at which half of what friction can lose is lost, as a share of the speed.
+    /// Slip at which friction is half way between its values without slip and at high slip, as a fraction of the speed.
     pub width: f32,
 }
 
 impl Bow {
-    /// Speed and most friction in the frame that comes after `frame` frames more.
+    /// Speed and maximum friction in the frame that is `frame` frames after the next one.
     pub fn at(&self, frame: usize) -> [f32; 2] {
         let passed = self.passed as f32 + (frame + 1) as f32;
         [self.speed, self.force].map(|[start, step]| (start + passed * step).max(0.0))

@@ -5,37 +5,37 @@ use crate::dsp::random::uniform;
 use libm::{exp, pow, sqrt};
 use std::f64::consts::TAU;
 
-/// The darkest colour lets pass what is below the first of these frequencies in Hz, the least dark what is below the
-/// second; the brightest what is above the second, the least bright what is above the first.
+/// Range of the filter's corner frequency in Hz. The darkest colour is a low-pass at the lowest corner, and the brightest a
+/// high-pass at the highest corner. Towards white, the corner moves to the other end.
 const LOWEST_CORNER: f64 = 100.0;
 const HIGHEST_CORNER: f64 = 16_000.0;
 
-/// How a burst falls.
+/// The form of a burst's decay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decay {
-    /// As `(1−u)²`, to nothing at its end.
+    /// As `(1−u)²`, to 0 at its end.
     Quadratic,
-    /// Exponentially, by 60 dB until its end.
+    /// Exponential, by 60 dB until its end.
     Exponential,
 }
 
-/// A burst of noise as it is asked for.
+/// The parameters of a burst of noise.
 #[derive(Clone, Copy, Debug)]
 pub struct BurstSetup {
-    /// Its expected energy in a mode is that of a strike of this force, if it is white; 0 is none.
+    /// Force of the strike that would give a mode the burst's expected energy, if the noise is white; 0 for no burst.
     pub force: f32,
-    /// Frames in which a hit falls.
+    /// Decay time of a hit in frames.
     pub frames: u32,
-    /// Frames in which it rises before, in a straight line.
+    /// Attack time of a hit in frames, before the decay. The attack is linear.
     pub attack: u32,
-    /// How it falls.
+    /// The form of the decay.
     pub decay: Decay,
-    /// How many hits there are, at least one. Each cuts off the one before; all of them together have the energy of one.
+    /// Number of hits, at least one. Each ends the previous one. All hits together have the energy of one.
     pub hits: u32,
     /// Frames between two hits.
     pub spacing: u32,
-    /// From −1 (dark: noise is low-passed by a mass whose damper all but stops it) to 1 (bright: what that mass leaves
-    /// out). 0 is white.
+    /// From −1 (dark: the noise is low-passed by an over-damped mass) to 1 (bright: the noise minus the low-passed noise). 0 is
+    /// white.
     pub colour: f64,
     /// The stream of random numbers.
     pub key: u64,
@@ -54,7 +54,7 @@ impl BurstSetup {
         key: 0,
     };
 
-    /// Per frame of a hit, the logarithm of what is left.
+    /// Exponent of the exponential decay per frame, positive.
     fn rate(&self) -> f64 {
         -LN_MINUS_60_DB / f64::from(self.frames.max(1))
     }
@@ -83,16 +83,17 @@ impl BurstSetup {
     }
 }
 
-/// A burst under way. Real-time safe.
+/// A burst in progress. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Burst {
     setup: BurstSetup,
     frames: u32,
     scale: f32,
-    /// What the exponential envelope keeps from frame to frame, and where it is.
+    /// Factor of the exponential envelope per frame, and its present value.
     keep: f32,
     level: f32,
-    /// How far the over-damped mass follows the noise in a frame, and where it is; it is not there if the noise is white.
+    /// Fraction of its distance from the noise that the over-damped mass moves in a frame, and its position. Not used if the
+    /// noise is white.
     follow: f32,
     mass: f32,
 }
@@ -123,7 +124,7 @@ impl Burst {
         self.frames
     }
 
-    /// Adds the frames from `frame` on; they are asked for in their order.
+    /// Adds the frames from `frame` on. Must be called with consecutive frames.
     pub(super) fn add_to(&mut self, frame: u32, force: &mut [f32]) {
         let left = self.frames.saturating_sub(frame) as usize;
         for (frame, force) in (frame..).zip(force.iter_mut().take(left)) {
@@ -140,7 +141,7 @@ impl Burst {
         if self.setup.colour < 0.0 { self.mass } else { noise - self.mass }
     }
 
-    /// The envelope at a frame, scaled.
+    /// The envelope at a frame, including the scale.
     fn envelope(&mut self, frame: u32) -> f32 {
         let BurstSetup { frames, attack, decay, hits, spacing, .. } = self.setup;
         let hit = if hits > 1 { frame.checked_div(spacing).unwrap_or(hits).min(hits - 1) } else { 0 };

@@ -1,4 +1,4 @@
-//! What moves the masses: a mallet's force pulse, a pluck, bursts of noise and a bow, any of them at once.
+//! The excitation of the masses: a mallet's force pulse, a pluck, bursts of noise and a bow, in any combination.
 
 mod bow;
 mod burst;
@@ -10,14 +10,14 @@ use burst::Burst;
 pub use burst::{BurstSetup, Decay};
 use pulse::Pulse;
 
-/// The forces of one stretch of frames, of at most [`CONTROL_FRAMES`].
+/// The forces of up to [`CONTROL_FRAMES`] frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Drive {
-    /// What pushes: a mallet's pulses sum to the force of the strike.
+    /// Forces that change the velocity: the samples of a mallet's pulse sum to the force of the strike.
     pub push: [f32; CONTROL_FRAMES],
-    /// What displaces: a pluck's pulses sum to its force.
+    /// Forces that change the displacement: the samples of a pluck's pulse sum to its force.
     pub pull: [f32; CONTROL_FRAMES],
-    /// The noise burst: its expected energy in a mode is that of a strike of the same force.
+    /// The noise burst: its expected energy in a mode is the same as that of a strike with its force.
     pub noise: [f32; CONTROL_FRAMES],
 }
 
@@ -27,23 +27,23 @@ impl Drive {
         Drive { push: [0.0; CONTROL_FRAMES], pull: [0.0; CONTROL_FRAMES], noise: [0.0; CONTROL_FRAMES] };
 }
 
-/// A strike as it is asked for.
+/// The parameters of a strike.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
-    /// Area of the mallet's pulse, and its frames, at least one; 0 is none.
+    /// Area of the mallet's pulse, 0 for none, and its length in frames, at least 1.
     pub push: (f32, u32),
-    /// The same of the pluck.
+    /// Area and length of the pluck's pulse.
     pub pull: (f32, u32),
     /// The noise.
     pub noise: BurstSetup,
 }
 
 impl Stroke {
-    /// Nothing.
+    /// No strike.
     pub const NONE: Stroke = Stroke { push: (0.0, 1), pull: (0.0, 1), noise: BurstSetup::NONE };
 }
 
-/// Strikes that are told apart while they overlap; one more takes the place of the oldest.
+/// Number of overlapping strikes; one more replaces the oldest.
 const OVERLAPPING: usize = 4;
 
 /// The strikes in progress on one voice. Real-time safe.
@@ -51,7 +51,7 @@ const OVERLAPPING: usize = 4;
 pub struct Exciter {
     blows: [Blow; OVERLAPPING],
     next: usize,
-    /// Frames until no force is left to come.
+    /// Frames until no force is left.
     frames_left: u32,
 }
 
@@ -59,7 +59,7 @@ impl Exciter {
     /// An exciter at rest.
     pub const REST: Exciter = Exciter { blows: [Blow::REST; OVERLAPPING], next: 0, frames_left: 0 };
 
-    /// Starts a strike, beside what may be left of those before.
+    /// Starts a strike. Earlier strikes continue.
     pub fn strike(&mut self, stroke: &Stroke, sample_rate: f64) {
         self.blows[self.next] = Blow::new(stroke, sample_rate);
         self.next = (self.next + 1) % OVERLAPPING;
@@ -71,12 +71,12 @@ impl Exciter {
         self.frames_left > 0
     }
 
-    /// Frames until it is not.
+    /// Frames until no force is left.
     pub fn frames_left(&self) -> u32 {
         self.frames_left
     }
 
-    /// Writes the forces of the next `frames` frames, at most [`CONTROL_FRAMES`], and moves on.
+    /// Writes the forces of the next `frames` frames, at most [`CONTROL_FRAMES`], and advances by them.
     pub fn fill(&mut self, frames: usize, drive: &mut Drive) {
         let Drive { push, pull, noise } = drive;
         [push, pull, noise].into_iter().for_each(|force| force[..frames].fill(0.0));

@@ -1,9 +1,9 @@
-//! A force pulse: a mallet's contact, or the letting go of a string.
+//! A force pulse: a mallet's contact, or the release of a plucked string.
 
 /// The bell `u² (1−u)²` over some frames, of a given area.
 ///
-/// Like the raised cosine it is continuous in slope, so its spectrum falls by 18 dB per octave above `1/duration`, and it
-/// needs no transcendental function per sample. One frame is a bare impulse of exactly the area. Real-time safe.
+/// Like the raised cosine it is continuous in slope, so its spectrum falls by 18 dB per octave above `1/duration`. It needs
+/// no transcendental function per sample. A pulse of one frame is an impulse of exactly the area. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pulse {
     frames: u32,
@@ -13,7 +13,7 @@ pub(super) struct Pulse {
 impl Pulse {
     pub(super) const NONE: Pulse = Pulse { frames: 0, scale: 0.0 };
 
-    /// Of an area, over `frames` frames (at least one); none if the area is 0.
+    /// A pulse of an area, over `frames` frames (at least one); no pulse if the area is 0.
     pub(super) fn new(area: f32, frames: u32) -> Self {
         if area == 0.0 {
             return Self::NONE;

@@ -1,4 +1,4 @@
-//! Areas, energies, spectra and repetition of what moves the masses.
+//! Tests of the areas, energies and spectra of the excitation, and of its repeatability.
 
 use super::*;
 
@@ -35,7 +35,7 @@ fn squares(noise: &[f32]) -> f64 {
     noise.iter().map(|n| f64::from(n * n)).sum()
 }
 
-/// The mean over many streams of the energy of a burst.
+/// The mean energy of a burst over many streams.
 fn mean_energy(setup: BurstSetup) -> f64 {
     (0..400).map(|key| squares(&burst(BurstSetup { key, ..setup }))).sum::<f64>() / 400.0
 }

@@ -14,18 +14,18 @@ use crate::dsp::simd::vector::LANES;
 use crate::dsp::simd::{Instructions, Level};
 use libm::{cosf, sinf};
 
-/// A bank makes tables after it has rung freely at one pitch for one control tick per this many modes. A bank with few
-/// modes regains the cost of its tables within one tick, one with 64 modes in about eight.
+/// The bank makes tables after free ringing at one pitch for one control tick per this many modes. With few modes, the
+/// tables save the time that they cost within one tick, with 64 modes within about eight.
 const MODES_PER_TICK: usize = 8;
 
 /// A bank of modes, as a structure of arrays. Real-time safe, except for the first [`ModeBank::new`], which detects the
 /// CPU.
 ///
-/// Whatever calls are made, the amplitude of a mode never exceeds the sum of `force · gain` over all strikes. Pitch,
+/// For any sequence of calls, the amplitude of a mode never exceeds the sum of `force · gain` over all strikes. Pitch,
 /// damping and their changes can only reduce it.
 ///
-/// Modes that have rung freely at one pitch for a few control ticks are rendered one whole tick at a time, with tables;
-/// all others are stepped. The choice depends on the modes and on the calls made, never on the CPU or on block sizes.
+/// Modes that have rung freely at one pitch for a few control ticks are rendered one whole tick at a time, with tables.
+/// Otherwise they are stepped. The choice depends on the modes and on the calls, never on the CPU or on block sizes.
 #[derive(Clone, Debug)]
 pub struct ModeBank {
     instructions: Instructions,
@@ -34,18 +34,18 @@ pub struct ModeBank {
     /// Modes from this index on are at rest. A multiple of [`LANES`] or all modes, so that every CPU computes the same
     /// modes.
     pub(super) live: usize,
-    /// Gains at full level, left and right, and whether any of them is not 1.
+    /// Output gains without the fade at the top of the spectrum, left and right, and whether any of them is not 1.
     gains: [Row; 2],
     stereo: bool,
-    /// Noise acts on `x` of some modes.
+    /// Whether noise acts on `x` of any mode.
     turned_noise: bool,
-    /// Some modes are so high that they sound below full level.
+    /// Whether some modes are so high that their gains are reduced.
     faded: bool,
     /// Pitch ratio of the coefficients, or their target while they move.
     ratio: f64,
-    /// Frequencies or T60s have changed since the coefficients were computed.
+    /// Whether frequencies or T60s have changed since the coefficients were computed.
     retuned: bool,
-    /// `tuning` has new T60s that the coefficients do not use yet.
+    /// Whether `tuning` has new T60s that the coefficients do not use yet.
     damped: bool,
     /// Frames until the next control tick.
     until_tick: usize,
@@ -62,19 +62,18 @@ pub struct ModeBank {
     half_angle: Wide,
 }
 
-/// How the pitch of a bank moves, which decides how the bank is rendered.
+/// The motion of the pitch, which decides how the bank is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Motion {
-    /// On a straight line of `frames` frames that ends at the next control tick.
+    /// A linear ramp of `frames` frames that ends at the next control tick.
     Line {
         frames: usize,
-        /// Whether gains move as well.
+        /// Whether gains change as well.
         gains: bool,
-        /// Whether an excitation force has acted during the line.
+        /// Whether an excitation force has acted during the ramp.
         driven: bool,
     },
-    /// The pitch does not move, and nothing has driven the bank during the last `ticks` calls of
-    /// [`ModeBank::sweep_to`].
+    /// The pitch does not move, and no force has acted during the last `ticks` calls of [`ModeBank::sweep_to`].
     Still { ticks: usize },
     /// The pitch does not move, and tables are used: `handed_out` frames of the present tick have been returned.
     Tabled { handed_out: usize },
@@ -118,7 +117,7 @@ impl ModeBank {
     pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
         self.instructions = Instructions::current();
         (self.len, self.stereo, self.turned_noise, self.faded) = (0, false, false, false);
-        // Both states, since they swap roles after each tick that is rendered by tables.
+        // Resets both states, since they swap roles after each tick that is rendered by tables.
         (self.states, self.motion) = ([State::REST; 2], Motion::Still { ticks: 0 });
         for (m, mode) in modes.take(MAX_MODES).enumerate() {
             self.len = m + 1;
@@ -130,7 +129,7 @@ impl ModeBank {
         [self.modes.left, self.modes.right] = self.gains;
         [self.modes.left_step, self.modes.right_step] = [Row::ZERO; 2];
         for m in self.len..MAX_MODES {
-            // What was loaded before must not be heard: lanes and tables are filled up with modes at rest.
+            // Clears the modes after the last, which fill up lanes and tables and must stay at rest.
             let Modes { push_x, push_y, pull_x, pull_y, noise_x, noise, bow, .. } = &mut self.modes;
             [push_x, push_y, pull_x, pull_y, noise_x, noise, bow].into_iter().for_each(|row| row.0[m] = 0.0);
         }
@@ -166,7 +165,7 @@ impl ModeBank {
         self.turned_noise |= noise.0 != 0.0;
     }
 
-    /// Sets how far mode `m` moves the point under a bow, and is moved by it. The squares of all are to add up to 1.
+    /// Sets the weight of mode `m` at the point of the bow. The squares of all weights must add up to 1.
     pub fn set_bow_weight(&mut self, m: usize, weight: f32) {
         self.modes.bow.0[m] = weight;
     }
@@ -196,8 +195,8 @@ impl ModeBank {
         }
     }
 
-    /// Moves every mode to a pitch ratio, with coefficients on a straight line over `frames` frames. These are the
-    /// frames until the next control tick, when this must be called again.
+    /// Starts a linear ramp of every mode's coefficients to a pitch ratio, over `frames` frames. These are the frames until
+    /// the next control tick, when this must be called again.
     pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
         let frames = frames.max(1);
         let same = ratio == self.ratio && !self.retuned && !self.damped;
@@ -213,7 +212,7 @@ impl ModeBank {
         let (mut arrived, mut lost) = (false, None);
         if let Motion::Line { frames, driven, .. } = self.motion {
             arrived = same && passed == frames;
-            // A force may have acted late, and its part of the amplitude has lost less: then nothing is given back.
+            // If a force acted late in the ramp, the loss of its part of the amplitude is smaller. So nothing is given back.
             lost = (!driven).then(|| ChordLoss::new(passed, frames));
         }
         self.tune();
@@ -221,7 +220,7 @@ impl ModeBank {
         self.aim((!arrived).then_some(frames), [passed, left], lost);
     }
 
-    /// Sets the pitch ratio of every mode at once, without a line: for modes at rest.
+    /// Sets the pitch ratio of every mode at once, without a ramp: for modes at rest.
     pub fn jump_to(&mut self, ratio: f64) {
         self.leave_tables();
         self.tune();
@@ -229,9 +228,9 @@ impl ModeBank {
         self.aim(None, [0, 0], None);
     }
 
-    /// Sets the target of the coefficients to those of `ratio`, reached after `frames` frames, or at once if `None`. Of
-    /// the line before, `passed` frames have been rendered and `left` frames remain. `lost` is the amplitude that the
-    /// rendered frames have lost; it is given back.
+    /// Sets the target of the coefficients to those of `ratio`, reached after `frames` frames, or at once if `None`. `passed`
+    /// frames of the previous ramp have been rendered and `left` frames remain. `lost` is the loss of amplitude during the
+    /// rendered frames, which is compensated.
     fn aim(&mut self, frames: Option<usize>, [passed, left]: [usize; 2], lost: Option<ChordLoss>) {
         let fades = self.tuning.fades(self.ratio);
         let faded = std::mem::replace(&mut self.faded, fades);
@@ -256,12 +255,12 @@ impl ModeBank {
         };
     }
 
-    /// Frames of the present line that have been rendered.
+    /// Number of rendered frames of the present ramp.
     fn passed(&self) -> usize {
         if let Motion::Line { frames, .. } = self.motion { frames - self.until_tick } else { 0 }
     }
 
-    /// Ends the use of tables: steps from the start of the present tick to the next frame.
+    /// Ends the use of tables: steps the state from the start of the present tick to the next frame.
     fn leave_tables(&mut self) {
         if let Motion::Tabled { handed_out } = self.motion {
             self.motion = Motion::Still { ticks: 0 };
@@ -295,7 +294,7 @@ impl ModeBank {
         self.instructions.run(Bowed { form, modes, state, drive, bow, out });
     }
 
-    /// Makes the tables at the start of a tick, once that is worth while.
+    /// Makes the tables at the start of a tick, if they will save time.
     fn make_tables(&mut self) {
         if let Motion::Still { ticks } = self.motion
             && ticks > self.len / MODES_PER_TICK
@@ -328,7 +327,7 @@ impl ModeBank {
         self.render_bowed(drive, None, frames)
     }
 
-    /// As [`ModeBank::render`], under a bow. It costs more than other forces do, since each frame waits for the one before.
+    /// As [`ModeBank::render`], under a bow. This is slower than with other forces, since each frame depends on the previous one.
     pub fn render_bowed(&mut self, drive: Option<&Drive>, bow: Option<&Bow>, frames: usize) -> [&[f32]; 2] {
         debug_assert!(frames <= self.until_tick);
         let frames = frames.min(CONTROL_FRAMES);

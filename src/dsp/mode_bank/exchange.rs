@@ -1,4 +1,4 @@
-//! Energy that modes of a bank lose and receive at a control tick, by bands.
+//! Exchange of energy between the modes of a bank at a control tick, by bands.
 
 use super::{MAX_MODES, ModeBank};
 use crate::dsp::simd::vector::LANES;
@@ -7,7 +7,7 @@ use libm::sqrt;
 /// Maximum number of bands.
 pub(in crate::dsp) const BANDS: usize = 32;
 
-/// The modes of a band: the sum of their squared amplitudes, and how many there are.
+/// The modes of a band: the sum of their squared amplitudes, and their number.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::dsp) struct Band {
     pub(in crate::dsp) energy: f64,
@@ -15,25 +15,25 @@ pub(in crate::dsp) struct Band {
 }
 
 impl Band {
-    /// Without modes.
+    /// A band without modes.
     pub(in crate::dsp) const EMPTY: Self = Self { energy: 0.0, modes: 0 };
 }
 
-/// What happens to each mode of a band.
+/// The change of each mode of a band.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::dsp) struct Exchange {
-    /// The part of its energy that it keeps, 0–1.
+    /// The fraction of its energy that it keeps, 0–1.
     pub(in crate::dsp) kept: f64,
     /// The energy that it receives.
     pub(in crate::dsp) received: f64,
 }
 
 impl Exchange {
-    /// Nothing.
+    /// No change.
     pub(in crate::dsp) const NONE: Self = Self { kept: 1.0, received: 0.0 };
 }
 
-/// Factors are rounded down by this: more than the rounding errors of the factor and of its product with the state, so the
+/// Factors are rounded down by this: more than the rounding errors of the factor and of its product with the state. So the
 /// energy of all modes together never rises.
 const ROUNDED_DOWN: f32 = 1.0 - 4.0 * (0.5 * f32::EPSILON);
 
@@ -60,8 +60,8 @@ impl ModeBank {
         (0..self.len).map(move |m| square(&state.x.0[m]) + square(&state.y.0[m]))
     }
 
-    /// Lets the modes lose and receive energy by their bands. A mode keeps its phase. A mode at rest starts with a
-    /// displacement of 0, in the direction of `sign` of its number. Must be called at control ticks only.
+    /// Changes the energies of the modes by their bands. A mode keeps its phase. A mode at rest starts with a displacement of
+    /// 0, in the direction that `sign` gives for its number. Must be called at control ticks only.
     pub(in crate::dsp) fn exchange(
         &mut self,
         bands: &[u8; MAX_MODES],
@@ -82,7 +82,7 @@ impl ModeBank {
                 (*x, *y) = (*x * factor, *y * factor);
             } else if received > LEAST_RECEIVED {
                 *y = (sqrt(received) as f32 * ROUNDED_DOWN).copysign(sign(m));
-                // Modes from `live` on are at rest and lie on the end of their line, so this one can just begin.
+                // Modes from `live` on are at rest, with coefficients at the end of the ramp: they can start at once.
                 self.live = self.live.max((m + 1).next_multiple_of(LANES).min(self.len));
             }
         }

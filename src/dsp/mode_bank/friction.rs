@@ -1,9 +1,9 @@
 //! The bank under a bow, stepped frame by frame.
 //!
-//! The friction of each frame depends on where the one before has left the masses. The bow acts on `x`, the coordinate that
-//! is heard, and what `x` is at its point counts as the point's speed: so a bow that pulls steadily is not heard. All modes
-//! are turned in one pass over the bank, which adds up their part in the speed for the next frame, by lane (`m mod 16`) and
-//! then the lanes by halves, as in `step`.
+//! The friction of each frame depends on the state after the previous one. The bow acts on `x`, the audible coordinate, and
+//! the sum of weight times `x` counts as the speed of its point: so a bow that pulls with a constant force is not audible. One
+//! pass over the bank turns all modes and adds up their part of the speed for the next frame, first by lane (`m mod 16`) and
+//! then by halves of the lanes, as in `step`.
 
 use super::MAX_MODES;
 use super::rows::{Form, Modes, Output, State};
@@ -13,7 +13,7 @@ use crate::dsp::exciter::{Bow, Drive};
 use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::{LANES, Partial, Vector};
 
-/// Steps the live modes through some frames, under a bow and whatever else drives them.
+/// Steps the live modes through some frames, under a bow and any other forces.
 pub(super) struct Bowed<'a> {
     pub(super) form: Form,
     pub(super) modes: &'a Modes,
@@ -23,7 +23,7 @@ pub(super) struct Bowed<'a> {
     pub(super) out: &'a mut Output,
 }
 
-/// Sums of a frame: to the left, to the right, and the speed at the bow.
+/// Sums of a frame: left output, right output, and the speed at the bow.
 type Sums = [f32; 3];
 
 impl Kernel for Bowed<'_> {
@@ -44,7 +44,7 @@ impl Kernel for Bowed<'_> {
     }
 }
 
-/// How fast the point under the bow moves.
+/// The speed of the point under the bow.
 #[inline(always)]
 fn speed_at_bow<V: Vector>(proof: V::Proof, modes: &Modes, state: &State, live: usize) -> f32 {
     let mut total = [Partial([0.0; LANES])];
@@ -60,8 +60,8 @@ fn speed_at_bow<V: Vector>(proof: V::Proof, modes: &Modes, state: &State, live: 
     sum[0]
 }
 
-/// Lets the forces (bow, push, pull, noise) of a frame act, and turns all modes. `lines` is where on their lines coefficients
-/// and gains are. `turned_noise` says that noise acts on both coordinates.
+/// Applies the forces (bow, push, pull, noise) of a frame, and turns all modes. `lines` has the positions on the ramps of
+/// coefficients and gains. `turned_noise` says that noise acts on both coordinates.
 #[inline(always)]
 fn turn<V: Vector>(
     proof: V::Proof,

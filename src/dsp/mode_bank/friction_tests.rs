@@ -1,4 +1,4 @@
-//! What a bow can give a bank at most, and that it makes it sound.
+//! Tests of the upper bound of a bow's energy, and of the sound of a bowed bank.
 
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::exciter::{Bow, Drive};
@@ -8,7 +8,7 @@ use crate::dsp::random::{key, uniform};
 const RATE: f64 = 48_000.0;
 const SETTINGS: u64 = 10_000;
 
-/// Numbers from 0 to 1, one after the other.
+/// A sequence of numbers from 0 to 1.
 struct Stream(u64, u64);
 
 impl Stream {
@@ -41,7 +41,7 @@ fn energy(bank: &ModeBank) -> f64 {
     (0..bank.len()).map(|m| f64::from(bank.mass(m).1)).sum()
 }
 
-/// Whatever bow, body, state and movement of the pitch: no frame gives more than friction at the bow's speed.
+/// For all bows, bodies, states and pitch changes, no frame adds more energy than friction at the bow's speed.
 #[test]
 fn a_bow_gives_no_more_than_friction_at_its_speed() {
     let mut gained = 0;
@@ -71,7 +71,7 @@ fn a_bow_gives_no_more_than_friction_at_its_speed() {
     assert!(gained > 50_000, "the bow moved what it was to move: {gained}");
 }
 
-/// The force is at most the friction that is asked for, and pulls towards the bow's speed.
+/// The force is at most the given friction, and its direction is towards the bow's speed.
 #[test]
 fn friction_pulls_towards_the_speed_of_the_bow() {
     let mut stream = Stream(key(78, 0), 0);
@@ -86,7 +86,7 @@ fn friction_pulls_towards_the_speed_of_the_bow() {
     assert_eq!(bow.force_on(0, 0.0), 0.0);
 }
 
-/// A glass under a bow: it begins to ring by itself, and goes on at an amplitude near that of the bow's speed.
+/// A glass under a bow: it starts to ring without a strike, and its amplitude stays near the bow's speed.
 #[test]
 fn a_bowed_mode_rings_for_as_long_as_it_is_bowed() {
     let mut bank = ModeBank::new(RATE);

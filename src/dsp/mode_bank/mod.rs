@@ -3,8 +3,8 @@
 //! The state of each mass is a point that turns around the origin: `x` is the displacement, and `y` is the displacement
 //! a quarter period later, so `|(x, y)|` is the audible amplitude. Each frame multiplies the point by `r e^(iθ)`. This
 //! gives the same damped sinusoid as [`super::HarmonicOscillator`], sample for sample. While the pitch moves, the
-//! coefficients follow straight lines between control ticks. All coefficients lie inside the unit disk, so only a
-//! strike can add energy to a mass, however its pitch and damping move.
+//! coefficients change linearly between control ticks. All coefficients lie inside the unit disk, so for any changes of
+//! pitch and damping, only a strike can add energy to a mass.
 //!
 //! `bank` is the public interface, `rows` the data, `step` and `ring` are the two ways to render, `tuning` is the work
 //! at control ticks, `table` makes the tables for freely ringing modes, `tail` computes how long they ring, and `exchange`
@@ -28,8 +28,8 @@ pub use bank::ModeBank;
 /// Maximum number of modes in a bank.
 pub const MAX_MODES: usize = 64;
 
-/// The logarithm of the smallest radius for which the series is accurate. It is below the shortest T60 of a voice, 0.5
-/// ms, from 8 kHz on; at 1 kHz it limits the T60 to 3.8 ms at least.
+/// The logarithm of the smallest radius for which the series is accurate. At sample rates from 8 kHz on, this is below that
+/// of a voice's shortest T60, 0.5 ms; at 1 kHz the shortest T60 becomes 3.8 ms.
 const LEAST_LN_RADIUS: f64 = -1.8;
 
 /// The logarithm of the largest radius. The rounding of a step can add up to 1.3e-8 of the amplitude per frame, for a
@@ -58,8 +58,8 @@ pub struct ExcitationGains {
     pub pull: f32,
     /// Expected amplitude after a noise burst of unit force.
     pub noise: f32,
-    /// By how many radians what pulses bring is turned ahead; its amplitude stays.
+    /// Phase advance in radians of the response to pulses; the amplitude does not change.
     pub phase: f32,
-    /// Whether what noise brings is turned as well: the phase is the body's, not just a pulse's.
+    /// Whether the response to noise has the phase as well, because the phase belongs to the body and not only to a pulse.
     pub turned_noise: bool,
 }

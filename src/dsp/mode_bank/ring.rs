@@ -1,9 +1,9 @@
 //! Renders with tables: freely ringing modes, sixteen frames at a time.
 //!
 //! Sixteen frames of a mode are `P·x + Q·y`. Lanes are frames and not modes, so a frame does not wait for the one
-//! before, and the lanes need not be added up. Loads from memory limit the speed, and two measures double it: each
-//! table is read once for both windows of a tick, and even lanes sum `P·x` while odd lanes sum `Q·y`, so that a state
-//! is loaded once, as a pair, for all of its frames. The order of every sum is frozen: even and odd modes separately,
+//! before, and the lanes need not be added up. Loads from memory limit the speed, and two measures double it. First, each
+//! table is read once for both windows of a tick. Second, even lanes sum `P·x` and odd lanes sum `Q·y`, so that a state is
+//! loaded once, as a pair, for all of its frames. The order of every sum must not change: even and odd modes separately,
 //! the parts of both coordinates separately; then the modes are added, then the parts. Modes at rest add `+0`, so
 //! leaving them out changes no bit.
 

@@ -1,4 +1,4 @@
-//! The data of a bank: one row of numbers per quantity, so that vectors of modes lie side by side.
+//! The data of a bank: one row of numbers per quantity, so that vectors of modes are contiguous.
 
 use super::MAX_MODES;
 use crate::dsp::CONTROL_FRAMES;
@@ -13,8 +13,8 @@ impl Row {
     pub(super) const ZERO: Row = Row([0.0; MAX_MODES]);
     pub(super) const ONE: Row = Row([1.0; MAX_MODES]);
 
-    /// The numbers of the modes from `at` on. (A method, because closures are not inlined where this is used, and what
-    /// is not inlined is compiled without the level's instructions.)
+    /// The numbers of the modes from `at` on. (A method, because closures would not be inlined here, and functions that are not
+    /// inlined are compiled without the level's instructions.)
     #[inline(always)]
     pub(super) fn at<V: Vector>(&self, proof: V::Proof, at: usize) -> V {
         V::load(proof, &self.0[at..])
@@ -53,14 +53,14 @@ pub(super) struct Modes {
     pub(super) right: Row,
     pub(super) left_step: Row,
     pub(super) right_step: Row,
-    /// What a unit of push, of pull and of noise adds to both coordinates.
+    /// Change of both coordinates for one unit of push, of pull and of noise.
     pub(super) push_x: Row,
     pub(super) push_y: Row,
     pub(super) pull_x: Row,
     pub(super) pull_y: Row,
     pub(super) noise_x: Row,
     pub(super) noise: Row,
-    /// How far each mode moves the point under a bow, and is moved by it.
+    /// Weight of each mode at the point of the bow.
     pub(super) bow: Row,
 }
 
@@ -84,7 +84,7 @@ impl Modes {
     };
 }
 
-/// What moves while frames are rendered.
+/// The quantities that change while frames are rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Moving {
     /// Only the masses.
@@ -95,7 +95,7 @@ pub(super) enum Moving {
     PitchAndGain,
 }
 
-/// Which computations the next frames need. Multiplications by 1 and additions of 0 are left out where possible, which
+/// The computations that the next frames need. Multiplications by 1 and additions of 0 are left out where possible, which
 /// changes no bit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Form {
@@ -105,11 +105,11 @@ pub(super) struct Form {
     pub(super) turned_noise: bool,
     /// Whether the gains are not all 1.
     pub(super) stereo: bool,
-    /// How many modes, from the first, may be ringing.
+    /// Number of modes, from the first, that may be ringing.
     pub(super) live: usize,
     /// Number of frames, at most [`CONTROL_FRAMES`].
     pub(super) frames: usize,
-    /// Length of the line in frames, and how many of them have been rendered before.
+    /// Length of the ramp in frames, and the number of its frames that have been rendered before.
     pub(super) line: usize,
     pub(super) passed: usize,
 }

@@ -1,9 +1,9 @@
 //! Renders sample by sample: all modes are stepped, with their state in registers.
 //!
 //! A frame turns each mode's state: `x ← x − αx + βy`, `y ← y − αy − βx`, both from the old state. Modes are added up
-//! by lane (`m mod 16`) and then the lanes by halves: this order is frozen. Modes at rest add `+0`, so leaving them out
-//! changes no bit. While pitches move, the coefficients change every [`super::tuning::STAIR`] frames, to their values
-//! in the middle of these frames.
+//! by lane (`m mod 16`) and then by halves of the lanes: this order must not change. Modes at rest add `+0`, so leaving
+//! them out changes no bit. While pitches move, the coefficients change every [`super::tuning::STAIR`] frames, to their
+//! values in the middle of these frames.
 
 use super::MAX_MODES;
 use super::rows::{Form, Modes, Moving, Output, Row, State};
@@ -13,20 +13,20 @@ use crate::dsp::exciter::Drive;
 use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::{Folded, LANES, Vector};
 
-/// How much of a [`Drive`] is read: nothing, one force that acts on `y`, noise and one force that acts on both
-/// coordinates, all that there is, or all with noise that acts on both coordinates too.
+/// The parts of a [`Drive`] that are read: none; one force that acts on `y`; noise and one force that acts on both
+/// coordinates; all forces; all forces, with noise that acts on both coordinates.
 const FREE: u8 = 0;
 const PUSHED: u8 = 1;
 const DRIVEN: u8 = 2;
 const ALL: u8 = 3;
 const TURNED: u8 = 4;
 
-/// What moves while frames are rendered, see [`Moving`].
+/// The quantities that change while frames are rendered, see [`Moving`].
 const NOTHING: u8 = 0;
 const PITCH: u8 = 1;
 const PITCH_AND_GAIN: u8 = 2;
 
-/// Length of the right output in frames: 0 unless in stereo.
+/// Length of the right output in frames in stereo. In mono it is 0.
 const STEREO: usize = CONTROL_FRAMES;
 
 /// Steps the live modes through a number of frames.
@@ -44,7 +44,7 @@ impl Kernel for Step<'_> {
     #[inline(always)]
     fn run<V: Vector>(self, proof: V::Proof) {
         let force = if self.form.driven { self.force() } else { FREE };
-        // Fewer functions than cases, because each is compiled for every level.
+        // There are fewer functions than cases, because each is compiled for every level.
         match (self.form.moving, force, self.form.stereo) {
             (_, TURNED, _) => self.all::<V, PITCH_AND_GAIN, TURNED, STEREO>(proof),
             (_, ALL, _) => self.all::<V, PITCH_AND_GAIN, ALL, STEREO>(proof),
@@ -63,7 +63,7 @@ impl Kernel for Step<'_> {
 }
 
 impl Step<'_> {
-    /// How much of the drive must be read for these frames. The rest would only add zeros.
+    /// The parts of the drive that must be read for these frames. The others would only add zeros.
     #[inline(always)]
     fn force(&self) -> u8 {
         let (live, frames) = (self.form.live.min(MAX_MODES), self.form.frames.min(CONTROL_FRAMES));
@@ -146,7 +146,7 @@ fn load<V: Vector, const G: usize, const N: usize>(proof: V::Proof, row: &Row, l
     vectors
 }
 
-/// [`step_some`], compiled as a function of its own. All of them in one function take the compiler several times longer.
+/// [`step_some`] as a separate function. With all variants in one function, compilation takes several times longer.
 #[inline(never)]
 #[allow(clippy::too_many_arguments, reason = "as step_some")]
 fn step_apart<V: Vector, const G: usize, const N: usize, const MOVING: u8, const FORCE: u8, const RIGHT: usize>(
@@ -184,7 +184,7 @@ fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const 
     let (alpha_start, alpha_step, beta_start, beta_step) =
         rows!(modes.alpha, modes.alpha_step, modes.beta, modes.beta_step);
     let (left, left_step, right, right_step) = rows!(modes.left, modes.left_step, modes.right, modes.right_step);
-    // The one force besides the noise, if there is but one.
+    // The only force besides the noise, if there is only one.
     let is_pushed = !is_zero(&drive.push[..frames]);
     let (pulse, pulse_x, pulse_y) = if FORCE == DRIVEN && !is_pushed {
         (&drive.pull, &modes.pull_x, &modes.pull_y)
@@ -199,7 +199,7 @@ fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const 
     while start < frames {
         let mut end = frames;
         if MOVING != NOTHING {
-            // A line of no frames stands still: any place on it is the same.
+            // A ramp of 0 frames does not move, so any position on it is the same.
             let (middle, left) = stair(form.passed + start, form.line.max(1));
             end = frames.min(start + left);
             let middle = V::splat(proof, middle);
@@ -230,8 +230,7 @@ fn step_some<V: Vector, const G: usize, const N: usize, const MOVING: u8, const 
                             x_now = burst.mul_add(noise_x[n][g], x_now);
                         }
                     }
-                    // The values that change every frame are negated: negated coefficients would need registers of
-                    // their own.
+                    // The values that change every frame are negated, since negated coefficients would need additional registers.
                     let (alpha, beta) = (alpha[n][g], beta[n][g]);
                     let (to_x, to_y) = (y_now.mul_add(beta, x_now), x_now.neg_mul_add(beta, y_now));
                     (x_now, y_now) = (x_now.neg_mul_add(alpha, to_x), y_now.neg_mul_add(alpha, to_y));

@@ -12,7 +12,7 @@ use super::tuning::{below_top, expm1_of_radius, sin_to_right_angle};
 use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::Vector;
 
-/// Frames that a table covers; two windows are a control tick. Frozen: bits depend on it.
+/// Frames that a table covers; two windows are a control tick. Must not change, since the output depends on it.
 pub(super) const WINDOW: usize = 16;
 
 /// The displacement after `j + 1` frames is `taps[2j]·x + taps[2j+1]·y`.
@@ -20,8 +20,8 @@ pub(super) const WINDOW: usize = 16;
 #[repr(align(64))]
 pub(super) struct Taps(pub(super) [f32; 2 * WINDOW]);
 
-/// How far a window turns each mode: real and imaginary part of `z¹⁶`, each as the sum of two numbers. With one number
-/// each, T60 would be wrong by up to 0.1 % at 20 s and 192 kHz.
+/// Rotation and decay of each mode over a window: real and imaginary part of `z¹⁶`, each as the sum of two numbers. With one
+/// number each, T60 would be wrong by up to 0.1 % at 20 s and 192 kHz.
 #[derive(Clone, Debug)]
 pub(super) struct Turn {
     pub(super) real: Row,
@@ -52,7 +52,7 @@ impl Table {
     };
 }
 
-/// Makes the tables of the first `len` modes at a pitch ratio. Does not touch the others.
+/// Makes the tables of the first `len` modes at a pitch ratio. Does not change the others.
 pub(super) struct Build<'a> {
     pub(super) table: &'a mut Table,
     pub(super) ln_radius: &'a Wide,

@@ -1,12 +1,12 @@
-//! How long a bank rings: the sum of decaying exponentials, solved for the time.
+//! The time until a bank is silent: the sum of decaying exponentials, solved for the time.
 
 use super::ModeBank;
 use libm::{ceil, exp, log};
 
-/// Maximum number of Newton steps; about five are usual.
+/// Maximum number of Newton steps; about five are typical.
 const MOST_STEPS: usize = 50;
 
-/// Upper limit of every answer: 40 years at 768 kHz.
+/// Upper limit of every result: 40 years at 768 kHz.
 const LONGEST_FRAMES: f64 = 1e15;
 
 /// Squared amplitudes of up to `N` modes, and the logarithms of their ratios per frame. Real-time safe.
@@ -17,7 +17,7 @@ pub(in crate::dsp) struct Energies<const N: usize> {
 }
 
 impl<const N: usize> Energies<N> {
-    /// Without any mode.
+    /// No modes.
     pub(in crate::dsp) const NONE: Self = Self { energy: [0.0; N], rate: [0.0; N], len: 0 };
 
     /// Adds a mode. Does nothing if there is no room.
@@ -31,8 +31,7 @@ impl<const N: usize> Energies<N> {
     /// Frames until the sum of the squared amplitudes falls below `total`. Takes one exponential per mode for each of
     /// about five steps.
     ///
-    /// The logarithm of a sum of exponentials is convex, so Newton's method starting at time 0 never goes past the
-    /// answer.
+    /// The logarithm of a sum of exponentials is convex, so Newton's method starting at time 0 never exceeds the solution.
     pub(in crate::dsp) fn frames_until(&self, total: f64) -> u64 {
         let target = log(total);
         let mut time = 0.0;
@@ -71,9 +70,9 @@ fn whole_frames(time: f64) -> u64 {
 }
 
 impl ModeBank {
-    /// Calls `each` for every mode with its squared amplitude and the logarithm of that amplitude's ratio per frame.
+    /// Calls `each` for every mode with its squared amplitude and the logarithm of the squared amplitude's ratio per frame.
     pub(in crate::dsp) fn tell_energies(&self, mut each: impl FnMut(f64, f64)) {
-        // In a tick that is rendered by tables, the state is that at the start of the tick.
+        // In a tick that is rendered by tables, the stored state is the one at the start of the tick.
         let passed = self.frames_since() as f64;
         for m in 0..self.len {
             let (energy, rate) = (f64::from(self.mass(m).1), 2.0 * self.ln_radius[m]);

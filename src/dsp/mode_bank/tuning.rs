@@ -1,4 +1,4 @@
-//! The work of a bank at control ticks, for all modes at once: tuning, lines of pitch, and the remaining energy.
+//! The work of a bank at control ticks, for all modes at once: tuning, pitch ramps, and the remaining energy.
 
 use super::MAX_MODES;
 use super::rows::{Modes, Row, State, Wide};
@@ -7,19 +7,19 @@ use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::{LANES, Partial, Vector};
 use std::f64::consts::PI;
 
-/// Modes up to this angle per sample sound at full level. From here to π they fade out; above π they are silent.
+/// Modes up to this angle per sample have full gain. From here to π they fade out; above π they are silent.
 pub(super) const TOP_ANGLE: f64 = 0.98 * PI;
 
 /// The data from which the coefficients of each mode are computed.
 #[derive(Clone, Debug)]
 pub(super) struct Tuning {
-    /// Half the angle per sample at a pitch ratio of 1. It may be too high to sound.
+    /// Half the angle per sample at a pitch ratio of 1. It may be too high to be audible.
     half_angle: Row,
     /// The largest of these.
     highest: f32,
     /// `1 − r`.
     loss: Row,
-    /// `r`, and the `r` of the present coefficients. They differ between a change of damping and the next line.
+    /// `r`, and the `r` of the present coefficients. They differ between a change of damping and the next ramp.
     radius: Wide,
     damped_radius: Wide,
     /// `1 − radius / damped_radius`.
@@ -41,13 +41,13 @@ impl Tuning {
         pull_y: Row::ZERO,
     };
 
-    /// Whether a pitch ratio makes any mode so high that it sounds below full level.
+    /// Whether a pitch ratio makes any mode so high that its gain is reduced.
     pub(super) fn fades(&self, ratio: f64) -> bool {
         self.highest * ratio as f32 > (0.5 * TOP_ANGLE) as f32
     }
 }
 
-/// Sets the tuning from the logarithm of each mode's radius (at least [`super::LEAST_LN_RADIUS`]) and half its angle.
+/// Computes the tuning from the logarithm of each mode's radius (at least [`super::LEAST_LN_RADIUS`]) and half its angle.
 ///
 /// Plain double precision without branches, vectorised by the compiler. The error is within 1e−12, in a fifth of the
 /// time of `libm`'s exponential and sine.
@@ -86,58 +86,58 @@ impl Kernel for Tune<'_> {
     }
 }
 
-/// Starts straight lines of the coefficients, from their present values to those of a pitch ratio.
+/// Starts linear ramps of the coefficients, from their present values to those of a pitch ratio.
 ///
-/// A line between two points of the unit disk stays inside it, so no mass gains energy however its pitch moves. But the
-/// chord is shorter than the arc: at the share `t` of a line that turns by `Δθ` in total, the amplitude after a frame
-/// is `√(1 − 4 t (1−t) sin²(Δθ/2))` times what it would be on the arc. The loss of the line before is given back here,
-/// by the first terms of a series whose terms are all positive: always slightly less than was lost.
+/// A straight line between two points of the unit disk stays inside it, so no mass gains energy from changes of its pitch.
+/// But the chord is shorter than the arc: at the fraction `t` of a ramp that turns by `Δθ` in total, the amplitude after a
+/// frame is `√(1 − 4 t (1−t) sin²(Δθ/2))` times that on the arc. The loss of the previous ramp is compensated here, by the
+/// first terms of a series whose terms are all positive: always slightly less than the loss.
 ///
-/// Damping acts at once: the coefficients are multiplied by the new radius over the old one, which does not change the
-/// angle.
+/// Damping acts at once: the coefficients are multiplied by the ratio of the new radius to the old one, which does not change
+/// the angle.
 pub(super) struct Aim<'a> {
     pub(super) tuning: &'a mut Tuning,
     pub(super) modes: &'a mut Modes,
     pub(super) state: &'a mut State,
     pub(super) ratio: f32,
-    /// Frames of the line before that have been rendered, and frames that remain of it.
+    /// Frames of the previous ramp that have been rendered, and frames that remain of it.
     pub(super) passed: usize,
     pub(super) left: usize,
-    /// The loss in the rendered frames, if it is to be given back.
+    /// The loss in the rendered frames, if it must be compensated.
     pub(super) lost: Option<ChordLoss>,
     /// Whether damping has changed.
     pub(super) damped: bool,
-    /// The share of the line that each frame advances, or `None` to jump to its end.
+    /// The fraction of the ramp that each frame advances, or `None` to jump to its end.
     pub(super) per_frame: Option<f32>,
-    /// Gains at full level, left and right, if some modes fade at the top of the spectrum or have just stopped fading.
+    /// Gains without the fade, left and right, if some modes fade at the top of the spectrum or have just stopped fading.
     pub(super) fade: Option<&'a [Row; 2]>,
-    /// Modes from this index on are at rest: they are put at the end of the line.
+    /// Modes from this index on are at rest: their coefficients are set to the end of the ramp.
     pub(super) live: usize,
     pub(super) len: usize,
 }
 
-/// Number of frames for which the coefficients on a line stay the same: this saves two operations per mode in three
-/// frames of four. Frozen: bits depend on it.
+/// Number of frames for which the coefficients on a ramp stay the same: this saves two operations per mode in three frames of
+/// four. Must not change, since the output depends on it.
 pub(super) const STAIR: usize = 4;
 
-/// The position of the next frame's coefficients on a line of `frames` frames after `passed` frames: the middle of the
-/// frame's stair (the last stair ends with the line). Also returns how many frames, this one included, have these
+/// The position of the next frame's coefficients on a ramp of `frames` frames after `passed` frames: the middle of the
+/// frame's stair (the last stair ends with the ramp). Also returns how many frames, this one included, have these
 /// coefficients.
 #[inline(always)]
 pub(super) const fn stair(passed: usize, frames: usize) -> (f32, usize) {
-    // After the end of the line nothing moves.
+    // After the end of the ramp nothing moves.
     let passed = if passed < frames { passed } else { frames - 1 };
     let first = passed - passed % STAIR;
     let last = if first + STAIR < frames { first + STAIR } else { frames };
     (0.5 * (first + 1 + last) as f32, last - passed)
 }
 
-/// The logarithm of the loss on a part of a line compared with the arc, as a polynomial in the squared step `q` of the
-/// line: `first · q + second · q²`.
+/// The logarithm of the loss on a part of a ramp compared with the arc, as a polynomial in the squared step `q` of the
+/// ramp: `first · q + second · q²`.
 ///
-/// For frames at position `v` of the `K` frames of the line, with `t = v/K` and `|Δz|² = K² q = 4 r² sin²(Δθ/2)`, the
-/// sum of `−½ ln(1 − 4 t (1−t) sin²(Δθ/2))` begins with `½ q Σ v (K−v) + ¼ q² Σ v² (K−v)²`. The omitted terms, and `r²
-/// < 1`, make the true loss larger.
+/// For frames at position `v` of the `K` frames of the ramp, with `t = v/K` and `|Δz|² = K² q = 4 r² sin²(Δθ/2)`, the
+/// sum of `−½ ln(1 − 4 t (1−t) sin²(Δθ/2))` begins with `½ q Σ v (K−v) + ¼ q² Σ v² (K−v)²`. Because of the omitted terms,
+/// and of `r² < 1`, the true loss is larger.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ChordLoss {
     first: f32,
@@ -145,7 +145,7 @@ pub(super) struct ChordLoss {
 }
 
 impl ChordLoss {
-    /// The loss over the first `passed` of the `frames` frames of a line.
+    /// The loss over the first `passed` of the `frames` frames of a ramp.
     pub(super) fn new(passed: usize, frames: usize) -> Self {
         const TICK: ChordLoss = ChordLoss::over(CONTROL_FRAMES, CONTROL_FRAMES);
         if (passed, frames) == (CONTROL_FRAMES, CONTROL_FRAMES) { TICK } else { Self::over(passed, frames) }
@@ -222,9 +222,8 @@ impl Kernel for Aim<'_> {
                     let mut alpha: V = passed.mul_add(alpha_step, modes.alpha.at(proof, at));
                     let mut beta: V = passed.mul_add(beta_step, modes.beta.at(proof, at));
                     if broken_off {
-                        // In the middle of the chord the point lies inside the circle, by the factor √(1 − p (K−p) q).
-                        // The next line must start on the circle. Again by the first terms of a series whose terms are
-                        // all positive.
+                        // In the middle of the chord the point lies inside the circle, by the factor √(1 − p (K−p) q). The next
+                        // ramp must start on the circle. This too uses the first terms of a series of positive terms.
                         let step2 = alpha_step.mul_add(alpha_step, beta_step.mul(beta_step));
                         let inside = step2.mul(lift);
                         let more = inside.mul(inside.mul_add(V::splat(proof, 0.375), V::splat(proof, 0.5)));
@@ -308,7 +307,7 @@ pub(super) fn below_top(half_angle: f64) -> f64 {
 /// `r − 1` from `ln r`, for −1.8 ≤ ln r ≤ 0.
 #[inline(always)]
 pub(super) fn expm1_of_radius(ln_radius: f64) -> f64 {
-    // Computed for a quarter of `ln r`; then (1+u)² − 1 = u (2+u), twice. No digit is lost for r close to 1.
+    // Computed for a quarter of `ln r`; then (1+u)² − 1 = u (2+u), twice. No digits are lost for r close to 1.
     let y = 0.25 * ln_radius;
     let mut sum = 1.0;
     // The series of (e^y − 1)/y. The first omitted term is below 1e−16 of the sum.
@@ -354,7 +353,7 @@ fn cosine<V: Vector>(proof: V::Proof, x: V) -> V {
     sum
 }
 
-/// Level factor of modes with these half angles: 1 up to [`TOP_ANGLE`], 0 from π on.
+/// Gain factor of modes with these half angles: 1 up to [`TOP_ANGLE`], 0 from π on.
 #[inline(always)]
 fn audible<V: Vector>(proof: V::Proof, half_angle: V) -> V {
     let below = V::splat(proof, (0.5 * PI) as f32).sub(half_angle);

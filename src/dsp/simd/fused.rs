@@ -1,11 +1,11 @@
 //! Emulates `a · b + c` in single precision, rounded once, for CPUs without fused multiplication.
 //!
-//! A product of two single-precision numbers is exact in double precision: 48 bits of 53, and never too small or too
-//! large. So `a · b + c` in double precision is the exact sum `e` rounded once, to `s`. The result here is `s` rounded
+//! A product of two single-precision numbers is exact in double precision: it has 48 bits of 53, and is never too small or
+//! too large. So `a · b + c` in double precision is the exact sum `e` rounded once, to `s`. The result here is `s` rounded
 //! to single precision. A *midpoint* is a number halfway between two neighbouring single-precision numbers, or the
 //! number from which rounding gives infinity; midpoints are double-precision numbers. Rounding is monotone, so `s` lies
 //! below a midpoint only if `e` does, and above one only if `e` does. Hence, **unless `s` is a midpoint itself, `s` and
-//! `e` round to the same number.** If `s` is a midpoint, `e` may lie on either side of it, and the side decides.
+//! `e` round to the same number.** If `s` is a midpoint, `e` may lie on either side of it, and the result depends on the side.
 //!
 //! Midpoints are recognised by their bits. From 2⁻¹²⁶ on, a single-precision number has 23 of the 52 bits of the
 //! fraction, so the 29 lowest bits of a midpoint are 100…0. Below 2⁻¹²⁶, where single precision has a fixed step, every
@@ -13,7 +13,7 @@
 //! zeros. Only one random sum in 2²⁹ is a midpoint, so it costs little to look for midpoints in a whole vector and to
 //! repair the few that are found. Zeros, which are frequent in banks, cost no more than other numbers.
 
-/// The lowest bits of a double, for which single precision has no room, and their value in a midpoint.
+/// The lowest bits of a double that do not fit into single precision, and their value in a midpoint.
 pub(super) const LOST: u64 = (1 << 29) - 1;
 pub(super) const HALF: u64 = 1 << 28;
 
@@ -46,7 +46,7 @@ pub(super) fn fused(a: [f32; 4], b: [f32; 4], c: [f32; 4]) -> [f32; 4] {
 /// Whether a sum may be a midpoint.
 #[inline(always)]
 fn may_be_midpoint(sum: f64) -> bool {
-    // As two numbers of 32 bits, which every CPU can compare.
+    // Computed with two numbers of 32 bits, which every CPU can compare.
     let (low, high) = (sum.to_bits() as u32, (sum.to_bits() >> 32) as u32);
     let shift = LOST.count_ones();
     let (half, magnitude) = (low << (32 - shift), high << 1);
@@ -167,7 +167,7 @@ mod tests {
         }
     }
 
-    /// Exact sums on a midpoint, and beside one by less than double precision can resolve.
+    /// Exact sums on a midpoint, and sums that differ from one by less than double precision can resolve.
     #[test]
     fn sums_beside_midpoints_round_once() {
         let mut bits = Bits(1 << 40);
@@ -196,7 +196,7 @@ mod tests {
         }
     }
 
-    /// What the vectors of WebAssembly rely on: a sum that single precision rounds to zero needs no repair.
+    /// An assumption of the WebAssembly vectors: a sum that single precision rounds to zero needs no repair.
     #[test]
     fn sums_that_vanish_round_once() {
         let mut bits = Bits(1 << 41);

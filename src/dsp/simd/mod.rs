@@ -70,8 +70,8 @@ impl Level {
         Instructions::detect(self).is_some()
     }
 
-    /// The level that new banks use: the one last forced, else the one that `SPRUNG_SIMD` named when this was first
-    /// called, else the fastest that the CPU has. The first call is not real-time safe.
+    /// The level that new banks use: the one that was forced last; else the one that `SPRUNG_SIMD` named when this was first
+    /// called; else the fastest that the CPU has. The first call is not real-time safe.
     pub fn current() -> Level {
         static DETECTED: OnceLock<Level> = OnceLock::new();
         let forced = FORCED.load(Ordering::Relaxed);
@@ -104,7 +104,7 @@ pub(in crate::dsp) trait Kernel {
     /// The result of the work.
     type Output;
 
-    /// Does the work. Implementations, and all functions that they call, are `#[inline(always)]`: what is not inlined
+    /// Does the work. Implementations, and all functions that they call, are `#[inline(always)]`: a function that is not inlined
     /// into a function of [`Instructions::run`] is compiled without the level's instructions, and is several times
     /// slower.
     fn run<V: Vector>(self, proof: V::Proof) -> Self::Output;

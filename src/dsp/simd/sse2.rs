@@ -120,7 +120,7 @@ impl Sse2 {
         Self([rounded(self.0[0]), rounded(self.0[1])])
     }
 
-    /// Whether any of these sums may be a midpoint (`super::fused`). One branch for all four, as it is hardly ever
+    /// Whether any of these sums may be a midpoint (`super::fused`). One branch for all four, since it is hardly ever
     /// taken.
     #[inline(always)]
     fn may_be_midpoints(self) -> bool {

@@ -2,7 +2,7 @@
 
 use super::fused::fused;
 
-/// Number of partial sums of modes that are kept side by side. Frozen, since the order of summation depends on it.
+/// Number of partial sums of modes. Must not change, since the order of summation depends on it.
 pub(in crate::dsp) const LANES: usize = 16;
 
 /// The partial sums of one frame: lane `l` sums the modes `m` with `m mod 16 = l`.
@@ -17,24 +17,24 @@ pub(in crate::dsp) struct Partial(pub(in crate::dsp) [f32; LANES]);
 pub(in crate::dsp) struct Folded(pub(in crate::dsp) [f32; LANES / 2]);
 
 impl Folded {
-    /// Sums of nothing.
+    /// All sums 0.
     pub(in crate::dsp) const ZERO: Self = Self([0.0; LANES / 2]);
 }
 
 /// A vector of 1 to [`LANES`] single-precision numbers.
 ///
-/// IEEE 754 defines every operation to the bit, so all implementations give the same result.
+/// IEEE 754 defines the result of every operation exactly, so all implementations give the same bits.
 ///
-/// The functions that make a vector take a proof that this CPU has the instructions. Only detection creates proofs, so
+/// The functions that create a vector take a proof that this CPU has the instructions. Only detection creates proofs, so
 /// code that holds a vector or a proof may execute the instructions, and the operations are safe.
 pub(in crate::dsp) trait Vector: Copy {
     /// A value of this type exists only if the CPU has the instructions.
     type Proof: Copy;
     /// Number of lanes.
     const WIDTH: usize;
-    /// How many vectors of each group of modes are stepped at once under a force: 1, or as many as make up all [`LANES`].
+    /// Number of vectors of each group of modes that are stepped at once under a force: 1, or as many as fill all [`LANES`].
     const SIDE_BY_SIDE: usize = 1;
-    /// Whether every CPU that the program is compiled for has the instructions. Functions may then be compiled apart.
+    /// Whether every CPU that the program is compiled for has the instructions. Then functions need not be inlined.
     const ON_EVERY_CPU: bool = true;
 
     /// `value` in every lane.
@@ -64,15 +64,15 @@ pub(in crate::dsp) trait Vector: Copy {
     /// `term − self · factor`, rounded once.
     fn neg_mul_add(self, factor: Self, term: Self) -> Self;
 
-    /// Writes the sums of the lanes from `lane` on to the row of their frame: the lower half as they are, the upper half added
-    /// to the lower one, which must have been written before.
+    /// Adds the lanes from `lane` on to the row of their frame. The lower half is written; the upper half is added to the lower
+    /// one, which must have been written before.
     #[inline(always)]
     fn fold(self, proof: Self::Proof, lane: usize, row: &mut Folded) {
         let place = &mut row.0[lane % (LANES / 2)..];
         if lane < LANES / 2 { self.store(place) } else { Self::load(proof, place).add(self).store(place) }
     }
 
-    /// [`Vector::sum_lanes`] of folded sums. The upper half may never have been added, if its modes are at rest.
+    /// [`Vector::sum_lanes`] of folded sums. If the modes of the upper half are at rest, it may be missing.
     #[inline(always)]
     fn sum_folded(_: Self::Proof, frames: &[Folded], sums: &mut [f32]) {
         sum_folded_frames(frames, sums);
@@ -101,12 +101,12 @@ pub(in crate::dsp) fn sum_frames(frames: &[Partial], sums: &mut [f32]) {
 #[inline(always)]
 pub(super) fn sum_folded_frames(frames: &[Folded], sums: &mut [f32]) {
     for (Folded(eight), sum) in frames.iter().zip(sums) {
-        // Zero stands for an upper half that was never added: it turns −0 into +0.
+        // Adding 0 stands for an upper half that was never added: it turns −0 into +0.
         *sum = sum_eight(&eight.map(|number| number + 0.0));
     }
 }
 
-/// The sum by halves.
+/// Sums eight numbers by halves.
 #[inline(always)]
 fn sum_eight(eight: &[f32; LANES / 2]) -> f32 {
     let mut four = [0.0; LANES / 4];
@@ -116,7 +116,7 @@ fn sum_eight(eight: &[f32; LANES / 2]) -> f32 {
     (four[0] + four[2]) + (four[1] + four[3])
 }
 
-/// Four numbers in plain Rust: for CPUs without a kernel of their own, and as the reference for the others.
+/// Four numbers in plain Rust: for CPUs without their own implementation, and as the reference for the others.
 #[derive(Clone, Copy)]
 pub(in crate::dsp) struct Scalar([f32; 4]);
 
@@ -226,7 +226,7 @@ mod tests {
             }
             Scalar::sum_folded((), &[row], &mut folded);
             Scalar::sum_lanes((), &[Partial(frame)], &mut whole);
-            // An upper half of zeros may be left out, and zeros are added at the end: then −0 becomes +0.
+            // An upper half of zeros may be left out, and then 0 is added at the end: −0 becomes +0.
             assert_eq!(folded[0].to_bits(), (whole[0] + 0.0).to_bits());
         }
     }

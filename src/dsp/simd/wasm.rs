@@ -1,7 +1,7 @@
 //! Vectors for WebAssembly’s simd128, which has no fused multiplication: every number is stored in double precision.
 //!
-//! As in `super::sse2`, which says when sums of double precision may be rounded. A module has these instructions or does not
-//! load, so a program that is compiled for them may use them.
+//! This is like `super::sse2`, which explains when sums of double precision may be rounded. A module with these instructions
+//! loads only if the runtime has them, so a program that is compiled for them may use them.
 
 use super::fused::{LOST, repaired};
 use super::vector::Vector;
@@ -75,7 +75,7 @@ impl Vector for Simd128 {
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        // Of −0 and +0, these two give `other`, as the other levels do.
+        // For −0 and +0, both return `other`, as on the other levels.
         halves!(half => f64x2_pmin(other.0[half], self.0[half]))
     }
     #[inline(always)]
@@ -106,20 +106,19 @@ impl Simd128 {
         i64x2_shuffle::<0, 2>(low, high)
     }
 
-    /// Rounded to single precision; nothing if any of these sums may be a midpoint (`super::fused`). One branch for all four,
-    /// as it is hardly ever taken.
+    /// Rounded to single precision; none if any of these sums may be a midpoint (`super::fused`). One branch for all four, since
+    /// it is hardly ever taken.
     ///
-    /// Below 2⁻¹²⁶ it looks at what a sum was rounded to: zero needs no repair. For a sum of at most 2⁻¹⁵⁰ is exact, since
-    /// single precision ends at 2⁻¹⁴⁹: either nothing was added to the product, or what was added is so near to it that
-    /// what is left has bits enough.
+    /// Below 2⁻¹²⁶ it looks at the rounded sum: zero needs no repair. A sum of at most 2⁻¹⁵⁰ is exact, since single precision
+    /// ends at 2⁻¹⁴⁹: either the term is 0, or it is so close to the negative product that the difference has few enough bits.
     #[inline(always)]
     fn rounded_unless_midpoint(self) -> Option<Self> {
         let [a, b] = self.0;
         let [low_half, high_half] = [f32x4_demote_f64x2_zero(a), f32x4_demote_f64x2_zero(b)];
-        // Shifted left, a midpoint's lowest bits become the least number, which alone has a negative magnitude.
+        // Shifted left, a midpoint's lowest bits become the smallest number, the only one whose absolute value is negative.
         let low = i32x4_shuffle::<0, 2, 4, 6>(a, b);
         let is_half = i32x4_abs(i32x4_shl(low, LOST.leading_zeros() - 32));
-        // Without its sign, less 1: of the numbers up to 2⁻¹²⁶, only zero has any of the eight highest bits then.
+        // Without the sign, minus 1: of all numbers up to 2⁻¹²⁶, only zero then has any of the eight highest bits set.
         let results = i64x2_shuffle::<0, 2>(low_half, high_half);
         let exponent = u32x4_shr(i32x4_add(i32x4_shl(results, 1), i32x4_splat(-1)), 24);
         let is_small = i32x4_eq(exponent, i32x4_splat(0));

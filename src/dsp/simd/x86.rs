@@ -1,6 +1,6 @@
 //! Vectors for x86-64 CPUs with fused multiplication: AVX2 with FMA, and AVX-512.
 //!
-//! SAFETY, throughout: making a vector requires a proof, and a proof exists only if the CPU was found to have the
+//! SAFETY, throughout: creating a vector requires a proof, and a proof exists only if the CPU was found to have the
 //! instructions. So an operation on a vector, or with a proof, may execute them.
 
 use super::vector::{Folded, LANES, Partial, Vector, sum_folded_frames, sum_frames};
@@ -86,7 +86,7 @@ macro_rules! common {
 pub(super) struct Avx2(__m256);
 
 impl Vector for Avx2 {
-    // Eight vectors in sixteen registers: under a force, waiting for results costs more than reading constants from memory.
+    // Eight vectors in sixteen registers: with a force, waiting for results takes longer than reading constants from memory.
     const SIDE_BY_SIDE: usize = 2;
     common!(
         HasAvx2,
@@ -261,7 +261,7 @@ fn sum_folded(proof: HasAvx2, frames: &[Folded], sums: &mut [f32]) {
 }
 
 /// Sums the lanes of eight frames at a time, which saves 4.5 shuffles per frame. `fold` makes eight sums of a frame. Returns
-/// the number of frames that were summed: all but a rest of less than eight.
+/// the number of frames that were summed: all but the last few, fewer than eight.
 #[inline(always)]
 fn sum_eights<R>(proof: HasAvx2, frames: &[R], sums: &mut [f32], fold: impl Fn(HasAvx2, &R) -> __m256) -> usize {
     let eights = frames.as_chunks::<8>().0;

@@ -1,4 +1,4 @@
-//! How much energy a body may hold, by bands of frequency: a bound in closed form, from what went in.
+//! Upper bounds of a body's energy, by bands of frequency, in closed form from its input.
 
 use super::decay::height_of_way;
 use super::kernel::FRAMES;
@@ -13,29 +13,29 @@ pub(super) const BANDS: usize = 32;
 #[derive(Clone, Debug)]
 pub(super) struct Band {
     blocks: Range<usize>,
-    /// Where its lowest and its highest mode lie between low and high frequencies, at the body's own pitch.
+    /// The positions of its lowest and its highest mode between low and high frequencies, at the body's reference pitch.
     ways: [f32; 2],
-    /// Least and greatest height of its modes, by which their decay goes.
+    /// Smallest and largest weight of the high decay among its modes; see [`height_of_way`].
     heights: [f64; 2],
-    /// Whether any of its modes can be heard at the pitch that the body has.
+    /// Whether any of its modes is audible at the body's present pitch.
     is_heard: bool,
-    /// Root of the number of its modes, and of the summed squared gains of the louder pick-up.
+    /// Square roots of the number of its modes, and of the summed squared gains of the louder pick-up.
     drive: f64,
     pick_up: f64,
     /// Sum of the squared gains, the mean of both sides.
     power: f64,
-    /// Logarithm of what a frame leaves of the slowest mode's amplitude.
+    /// Logarithm of the slowest mode's amplitude ratio per frame.
     ln_radius: f64,
-    /// What a tick leaves of it.
+    /// The slowest mode's amplitude ratio per tick.
     per_tick: f64,
-    /// The root of the energy is at most this.
+    /// Upper bound of the square root of the energy.
     amplitude: f64,
 }
 
 impl Band {
     /// A band at rest. Follow with [`Bands::tune`] and [`Bands::damp`].
     ///
-    /// `ways`: of its lowest and highest mode; `gains`: the sum of the squared gains to the left and to the right.
+    /// `ways` has those of its lowest and highest mode; `gains` the sums of the squared gains to the left and to the right.
     pub(super) fn new(blocks: Range<usize>, ways: [f32; 2], modes: usize, gains: [f64; 2]) -> Self {
         let [left, right] = gains;
         let (drive, pick_up, power) = (sqrt(modes as f64), sqrt(left.max(right)), 0.5 * (left + right));
@@ -46,19 +46,19 @@ impl Band {
 
 /// All bands of a body.
 ///
-/// A frame turns and shrinks each mass, and adds the input to it. So by the triangle inequality the root of a band's energy
-/// after a frame is at most `r` times what it was, and `|input| √modes`. By that of Cauchy and Schwarz a pick-up
-/// hears at most `‖pick-up‖` times that root.
+/// A frame turns and shrinks each mass, and adds the input to it. So by the triangle inequality, the square root of a band's
+/// energy after a frame is at most `r` times the one before plus `|input| √modes`. By the Cauchy–Schwarz inequality, the
+/// output of a pick-up is at most `‖pick-up‖` times that square root.
 #[derive(Clone, Debug)]
 pub(super) struct Bands {
     bands: Vec<Band>,
 }
 
-/// What rounding may add to an amplitude between two measurements, and much more.
+/// Upper bound, with a large margin, of the amplitude that rounding adds between two measurements.
 const ROUNDING: f64 = 1.001;
 
 impl Bands {
-    /// None, with room for all.
+    /// No bands, with room for all.
     pub(super) fn new() -> Self {
         Self { bands: Vec::with_capacity(BANDS) }
     }
@@ -67,13 +67,13 @@ impl Bands {
         self.bands.clear();
     }
 
-    /// Adds the next, of higher frequencies than those before.
+    /// Adds the next band. Its frequencies are higher than those of the bands before.
     pub(super) fn push(&mut self, band: Band) {
         self.bands.push(band);
     }
 
-    /// Takes over a pitch that adds `shift` to the ways of all modes, and of which only the first `blocks` are heard.
-    /// Follow with [`Bands::damp`]. Real-time safe.
+    /// Sets the pitch: it adds `shift` to the ways of all modes, and only the first `blocks` blocks are audible. Follow with
+    /// [`Bands::damp`]. Real-time safe.
     pub(super) fn tune(&mut self, shift: f32, blocks: usize) {
         for band in &mut self.bands {
             band.heights = band.ways.map(|way| height_of_way(way + shift).into());
@@ -97,8 +97,8 @@ impl Bands {
         self.bands[index].blocks.clone()
     }
 
-    /// Takes over a decay, as the logarithms of its rates; while modes are still on their way from the decay before, with
-    /// those too: the slower holds. Real-time safe.
+    /// Sets the decay, as the logarithms of its rates. While some modes still have the previous decay, its rates are given too,
+    /// and the slower decay counts. Real-time safe.
     pub(super) fn damp(&mut self, decays: [[f64; 2]; 2]) {
         for band in &mut self.bands {
             let slowest = |[low, span]: [f64; 2]| {
@@ -110,7 +110,7 @@ impl Bands {
         }
     }
 
-    /// Gain by which white noise comes out as loud as it went in, at a decay: a mode's impulse response has the energy
+    /// Gain at which the output is as loud as the input for white noise, at a decay. A mode's impulse response has the energy
     /// `gain² / 4λ`. Real-time safe.
     pub(super) fn noise_gain(&self, [low, span]: [f64; 2]) -> f64 {
         let energy = |band: &Band| {
@@ -121,14 +121,14 @@ impl Bands {
         if sum > 0.0 { 1.0 / sqrt(sum) } else { 0.0 }
     }
 
-    /// A control tick has passed, and with it input whose magnitudes add up to `input`.
+    /// Updates the bounds after a control tick whose input had the summed magnitudes `input`.
     pub(super) fn tick(&mut self, input: f64) {
         for band in self.bands.iter_mut().filter(|band| band.is_heard) {
             band.amplitude = band.amplitude * band.per_tick + input * band.drive;
         }
     }
 
-    /// A band's energy has been measured, and no input is still to come.
+    /// Lowers a band's bound to its measured energy. No input may be pending.
     pub(super) fn measured(&mut self, index: usize, energy: f64) {
         let band = &mut self.bands[index];
         band.amplitude = band.amplitude.min(sqrt(energy) * ROUNDING);
@@ -138,12 +138,12 @@ impl Bands {
         self.bands.iter_mut().for_each(|band| band.amplitude = 0.0);
     }
 
-    /// At most what either pick-up hears, once input whose magnitudes add up to `input` has come as well.
+    /// Upper bound of the output of either pick-up, after further input whose magnitudes sum to `input`.
     pub(super) fn peak(&self, input: f64) -> f64 {
         self.heard().map(|band| band.pick_up * (band.amplitude + input * band.drive)).sum()
     }
 
-    /// At most how many frames it takes until that has fallen to `peak`. An exponential a band for each of some five steps.
+    /// Upper bound of the frames until that has fallen to `peak`. Takes one exponential per band for each of about five steps.
     pub(super) fn frames_until(&self, peak: f64, input: f64) -> u64 {
         let mut amplitudes = Energies::<BANDS>::NONE;
         for band in self.heard() {

@@ -1,10 +1,10 @@
-//! How fast a body's modes decay, by their frequency.
+//! The decay of a body's modes as a function of frequency.
 
 use crate::dsp::coefficients::LN_MINUS_60_DB;
 use libm::{exp2, log2};
 
 /// T60 at low and at high frequencies, in seconds. Between 200 Hz and 6.4 kHz its logarithm follows a smooth step
-/// over the logarithm of frequency; below and above it stays.
+/// over the logarithm of frequency; below and above it is constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decay {
     /// T60 up to [`Decay::LOW_FREQUENCY`].
@@ -14,11 +14,11 @@ pub struct Decay {
 }
 
 impl Decay {
-    /// Up to here `low` holds, in Hz.
+    /// Upper end of the range of `low`, in Hz.
     pub const LOW_FREQUENCY: f64 = 200.0;
-    /// From here on `high` holds, in Hz.
+    /// Lower end of the range of `high`, in Hz.
     pub const HIGH_FREQUENCY: f64 = 6400.0;
-    /// Shortest and longest T60 in seconds. Beyond the longest, single precision would show in the decay.
+    /// Shortest and longest T60 in seconds. With longer ones, the rounding of single precision would change the decay.
     pub const RANGE: [f64; 2] = [0.05, 30.0];
 
     /// T60 in seconds at a frequency in Hz.
@@ -27,27 +27,27 @@ impl Decay {
         exp2(log2(low) + f64::from(height_of_way(way(frequency) as f32)) * log2(high / low))
     }
 
-    /// Within what a body can do; what is not a number is short.
+    /// The values within [`Decay::RANGE`]; NaN becomes the shortest.
     fn clamped(&self) -> Self {
         let [shortest, longest] = Self::RANGE;
         let clamp = |t60: f64| if t60.is_nan() { shortest } else { t60.clamp(shortest, longest) };
         Self { low: clamp(self.low), high: clamp(self.high) }
     }
 
-    /// The rate at which amplitudes decay: base-2 logarithms of its value per frame at the low end, and of its ratio
-    /// between the ends.
+    /// The decay rate of amplitudes: base-2 logarithms of its value per frame at low frequencies, and of the ratio of its
+    /// value at high frequencies to that.
     pub(super) fn log_rates(&self, sample_rate: f64) -> [f64; 2] {
         let Self { low, high } = self.clamped();
         [log2(-LN_MINUS_60_DB / (low * sample_rate)), log2(low / high)]
     }
 }
 
-/// Where between low and high frequencies one lies, by its logarithm: 0 to 1, and beyond where it is beyond.
+/// Position of a frequency between low (0) and high (1) frequencies on a logarithmic scale. It is not clamped.
 pub(super) fn way(frequency: f64) -> f64 {
     log2(frequency / Decay::LOW_FREQUENCY) / OCTAVES
 }
 
-/// What a ratio of frequencies adds to the way.
+/// The change of the position for a ratio of frequencies.
 pub(super) fn shift(ratio: f64) -> f64 {
     log2(ratio) / OCTAVES
 }
@@ -55,7 +55,7 @@ pub(super) fn shift(ratio: f64) -> f64 {
 /// Octaves from low to high frequencies.
 const OCTAVES: f64 = 5.0;
 
-/// Where between the decay of low and that of high frequencies a way is: 0 to 1.
+/// Weight of the high decay at a position, 0–1.
 pub(super) fn height_of_way(way: f32) -> f32 {
     let way = way.clamp(0.0, 1.0);
     way * way * (3.0 - 2.0 * way)

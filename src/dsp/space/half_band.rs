@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 
 /// An elliptic half-band filter of order `2 (A + B) + 1`, as two branches of allpass filters of first order in `z⁻²`:
 /// `A` in the first, `B` in the second. (R. A. Valenzuela and A. G. Constantinides, "Digital signal processing schemes for
-/// efficient interpolation and decimation", IEE Proc. 130 G (1983).) Of minimum delay, not of linear phase. Real-time safe.
+/// efficient interpolation and decimation", IEE Proc. 130 G (1983).) It has minimum delay, not linear phase. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfBand<const A: usize, const B: usize> {
     first: Branch<A>,
@@ -16,7 +16,7 @@ pub(super) struct HalfBand<const A: usize, const B: usize> {
 #[derive(Clone, Copy, Debug)]
 struct Branch<const N: usize> {
     coefficients: [f32; N],
-    /// The last input of each filter and, behind the last, its last output.
+    /// The last input and the last output of each filter.
     inputs: [f32; N],
     outputs: [f32; N],
 }
@@ -33,8 +33,8 @@ impl<const N: usize> Branch<N> {
 }
 
 impl<const A: usize, const B: usize> HalfBand<A, B> {
-    /// A filter whose pass band ends at the share `0.25 − transition/2` of the higher rate, and whose stop band begins as
-    /// far above a quarter.
+    /// A filter whose pass band ends at `0.25 − transition/2` of the higher rate, and whose stop band begins at
+    /// `0.25 + transition/2`.
     pub(super) fn new(transition: f64) -> Self {
         let coefficients = coefficients::<A, B>(transition);
         let branch = |first: usize| coefficients.0.iter().chain(&coefficients.1).skip(first).step_by(2);
@@ -47,18 +47,18 @@ impl<const A: usize, const B: usize> HalfBand<A, B> {
         }
     }
 
-    /// Silence.
+    /// Resets the state to silence.
     pub(super) fn clear(&mut self) {
         (self.first.inputs, self.first.outputs) = ([0.0; A], [0.0; A]);
         (self.second.inputs, self.second.outputs) = ([0.0; B], [0.0; B]);
     }
 
-    /// Two samples for one.
+    /// Returns two samples at the higher rate for one sample.
     pub(super) fn up(&mut self, sample: f32) -> [f32; 2] {
         [self.first.next(sample), self.second.next(sample)]
     }
 
-    /// One sample for two.
+    /// Returns one sample for two samples at the higher rate.
     pub(super) fn down(&mut self, [earlier, later]: [f32; 2]) -> f32 {
         0.5 * (self.first.next(later) + self.second.next(earlier))
     }
@@ -97,7 +97,7 @@ fn coefficients<const A: usize, const B: usize>(transition: f64) -> ([f64; A], [
 mod tests {
     use super::*;
 
-    /// Gain of the way down at a share of the higher rate.
+    /// Gain of the downsampling at a frequency, as a fraction of the higher rate.
     fn gain(filter: &HalfBand<6, 6>, frequency: f64) -> f64 {
         let mut filter = *filter;
         let mut peak = 0.0_f64;
@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn half_of_the_band_passes() {
         let filter = HalfBand::<6, 6>::new(0.02);
-        // None of a short period, whose peaks samples would miss.
+        // No frequency with a short period, since samples could miss its peaks.
         for frequency in [0.0103, 0.1007, 0.2013, 0.2391] {
             assert!((gain(&filter, frequency) - 1.0).abs() < 0.01, "{} at {frequency}", gain(&filter, frequency));
         }

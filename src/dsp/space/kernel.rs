@@ -1,26 +1,26 @@
-//! What happens to a body's masses every sample, and now and then: turned, measured, damped anew.
+//! The work on a body's masses at every sample, and their measurement and damping from time to time.
 //!
 //! The masses are those of [`crate::dsp::mode_bank`]: a frame adds the input to `y` and turns the state,
-//! `x ← x − αx + βy`, `y ← y − αy − βx`, both from the old state. What is left out, since nothing of it is needed here, is
-//! all that moves with pitch. The order of sums is frozen: each of the 16 lanes of a block adds up its masses block by
-//! block, fused, and then lanes are added by halves.
+//! `x ← x − αx + βy`, `y ← y − αy − βx`, both from the old state. Moving pitch is left out, since it is not needed here.
+//! The order of sums must not change: each of the 16 lanes of a block adds up its masses block by block, fused, and then
+//! lanes are added by halves.
 
 use super::decay::height_of_way;
 use crate::dsp::power_of_two;
 use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::{LANES, Partial, Vector};
 
-/// Most frames of a call, and a control tick of a body: so many that reading a body from the second-level cache counts for
-/// little.
+/// Maximum number of frames of a call, and the control tick of a body. It is so large that reading a body from the
+/// second-level cache takes little of the time.
 pub(super) const FRAMES: usize = 64;
 
-/// Blocks that are stepped together: bodies have a whole number of groups.
+/// Blocks that are stepped together. Bodies have a whole number of groups.
 pub(super) const GROUP: usize = 4;
 
 /// A number for each mass of a block.
 pub(super) type Row = [f32; LANES];
 
-/// Masses whose numbers lie together, so that a body is read from memory in one stream.
+/// Masses whose data are contiguous, so that a body is read from memory in one stream.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Block {
@@ -29,8 +29,8 @@ pub(super) struct Block {
     /// `1 − r cos θ` and `r sin θ`.
     pub(super) alpha: Row,
     pub(super) beta: Row,
-    /// Gains from the input to each side. All masses are driven alike, in units of what a sample of 1 gives them, so that
-    /// the drive is one addition and no row of its own.
+    /// Gains from the input to each side. All masses have the same drive, since each amplitude is in units of the mass's response
+    /// to a sample of 1. So the drive is one addition and needs no row.
     pub(super) left: Row,
     pub(super) right: Row,
 }
@@ -42,32 +42,32 @@ impl Block {
     };
 }
 
-/// What the coefficients of a block are made from when its pitch or its decay changes.
+/// The data from which the coefficients of a block are computed when its pitch or its decay changes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Turn {
-    /// The angle of a frame and the way from low to high frequencies, of the body at its own pitch.
+    /// The angle per frame, and the position between low and high frequencies, at the body's reference pitch.
     pub(super) angle: Row,
     pub(super) way: Row,
     /// `1 − cos θ`, `cos θ` and `sin θ`.
     pub(super) versine: Row,
     pub(super) cosine: Row,
     pub(super) sine: Row,
-    /// Where between low and high decay the mode is.
+    /// Weight of the high decay for the mode; see [`height_of_way`].
     pub(super) height: Row,
 }
 
 impl Turn {
-    /// Of what fills up the last group.
+    /// For the blocks that fill up the last group.
     pub(super) const NONE: Self = {
         let zero = [0.0; LANES];
-        // Above all frequencies; and of a radius of 0: at rest after every frame.
+        // The angle is above all frequencies, and the radius is 0: at rest after every frame.
         let (angle, versine) = ([f32::MAX; LANES], [1.0; LANES]);
         Self { angle, way: zero, versine, cosine: zero, sine: zero, height: zero }
     };
 
-    /// Turns the modes by `ratio` times their own angles. Those that `highest` radians a frame cannot carry are silent.
-    /// `shift` is what the ratio adds to the way from low to high frequencies.
+    /// Sets the angles of the modes to `ratio` times their own. Modes above `highest` radians per frame are silent.
+    /// `shift` is the change of the position between low and high frequencies.
     pub(super) fn tune(&mut self, ratio: f64, shift: f32, highest: f64) {
         for lane in 0..LANES {
             let angle = f64::from(self.angle[lane]) * ratio;
@@ -82,8 +82,8 @@ impl Turn {
     }
 }
 
-/// Of an angle up to a quarter turn, by their series: within 1e−11, and without branches, so that a whole body takes no
-/// longer than a tenth of a millisecond.
+/// Sine and cosine of an angle up to a quarter turn, by their series: within 1e−11, and without branches, so that a whole body
+/// takes at most a tenth of a millisecond.
 fn sine_and_cosine(angle: f64) -> [f64; 2] {
     let square = angle * angle;
     let series = |factors: [f64; 7]| factors.iter().rev().fold(1.0, |sum, factor| 1.0 - sum * square * factor);
@@ -94,10 +94,10 @@ fn sine_and_cosine(angle: f64) -> [f64; 2] {
     [angle * sine, cosine]
 }
 
-/// Left and right, of up to [`FRAMES`] frames.
+/// Left and right output, of up to [`FRAMES`] frames.
 pub(super) type Output = [[f32; FRAMES]; 2];
 
-/// Turns the masses through the frames of `input`.
+/// Steps the masses through the frames of `input`.
 pub(super) struct Step<'a> {
     /// A whole number of groups.
     pub(super) blocks: &'a mut [Block],
@@ -134,8 +134,8 @@ impl Step<'_> {
     }
 }
 
-/// A vector of each block of a group, from a lane on: side by side they fill the time that a turn has to wait for the one
-/// before. (Two of each on AVX2, as in the mode bank, were slower: 0.85 instead of 0.89 of the bank's rate.)
+/// Steps one vector of each block of a group, from a lane on. Stepping them together uses the time in which each step has to
+/// wait for the previous one. (Two of each on AVX2, as in the mode bank, were slower: 0.85 instead of 0.89 of the bank's rate.)
 #[inline(always)]
 fn step<V: Vector, const DRIVEN: bool>(
     proof: V::Proof,
@@ -165,7 +165,7 @@ fn step<V: Vector, const DRIVEN: bool>(
             if DRIVEN {
                 y_now = y_now.add(force);
             }
-            // Negated is what changes from frame to frame: a negated coefficient would be kept beside the plain one.
+            // The values that change every frame are negated, since negated coefficients would need additional registers.
             let (to_x, to_y) = (y_now.mul_add(beta[g], x_now), x_now.neg_mul_add(beta[g], y_now));
             (x[g], y[g]) = (x_now.neg_mul_add(alpha[g], to_x), y_now.neg_mul_add(alpha[g], to_y));
             sum_left = x[g].mul_add(to_left[g], sum_left);
@@ -180,11 +180,11 @@ fn step<V: Vector, const DRIVEN: bool>(
     }
 }
 
-/// A state fainter than this, whose square is still a normal number, is set to rest: numbers below the normal ones take a
-/// hundred times as long to compute with.
+/// States with a smaller amplitude, whose square is still a normal number, are set to rest: calculations with subnormal numbers
+/// take a hundred times as long.
 const REST: f32 = 1e-18;
 
-/// Sum of the squared amplitudes of some blocks; masses that have all but stopped are set to rest.
+/// Sum of the squared amplitudes of some blocks. Sets masses that have nearly stopped to rest.
 pub(super) struct Measure<'a> {
     pub(super) blocks: &'a mut [Block],
 }
@@ -207,11 +207,11 @@ impl Kernel for Measure<'_> {
     }
 }
 
-/// Gives blocks the coefficients of another decay. Where the masses are does not change, so it does not click.
+/// Sets the coefficients of blocks to another decay. The state of the masses does not change, so there is no click.
 pub(super) struct Damp<'a> {
     pub(super) blocks: &'a mut [Block],
     pub(super) turns: &'a [Turn],
-    /// Base-2 logarithm of the decay rate per frame at the low end, and how much more it is at the high end.
+    /// Base-2 logarithm of the decay rate per frame at low frequencies, and its increase at high frequencies.
     pub(super) low: f32,
     pub(super) span: f32,
 }
@@ -224,7 +224,7 @@ impl Kernel for Damp<'_> {
         for (block, turn) in self.blocks.iter_mut().zip(self.turns) {
             for lane in 0..LANES {
                 let rate = power_of_two(self.low + self.span * turn.height[lane]);
-                // 1 − e^(−rate): rates are small.
+                // 1 − e^(−rate), by its series, since rates are small.
                 let loss = rate * (1.0 - rate * (0.5 - rate * (1.0 / 6.0 - rate * (1.0 / 24.0))));
                 block.alpha[lane] = turn.versine[lane] + loss * turn.cosine[lane];
                 block.beta[lane] = turn.sine[lane] - loss * turn.sine[lane];

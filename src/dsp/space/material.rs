@@ -1,4 +1,4 @@
-//! What bodies are made of.
+//! The materials of bodies.
 
 use libm::sqrt;
 
@@ -16,13 +16,13 @@ pub struct Material {
 /// Figures: W. M. Haynes (ed.), *CRC Handbook of Chemistry and Physics*, and Fletcher and Rossing, *The Physics of
 /// Musical Instruments* (1998), table of materials; rounded, since alloys differ by more.
 impl Material {
-    /// Cold-rolled steel, as plates and springs are made of.
+    /// Cold-rolled steel, as in plates and springs.
     pub const STEEL: Self = Self::new(200e9, 7850.0, 0.30);
     /// Aluminium.
     pub const ALUMINIUM: Self = Self::new(70e9, 2700.0, 0.34);
-    /// Gold, as the foil of small plates.
+    /// Gold, as in the foil of small plates.
     pub const GOLD: Self = Self::new(79e9, 19_300.0, 0.42);
-    /// Bronze with a fifth of tin: bells and cymbals.
+    /// Bronze with a fifth of tin, as in bells and cymbals.
     pub const BRONZE: Self = Self::new(110e9, 8800.0, 0.34);
     /// Window glass.
     pub const GLASS: Self = Self::new(70e9, 2500.0, 0.22);

@@ -1,12 +1,12 @@
-//! The space behind the voices: stereo processors that know neither voices nor events nor parameters.
+//! The effects after the voices: stereo processors that do not depend on voices, events or parameters.
 //!
 //! | processor | what it does |
 //! |---|---|
-//! | [`ModalReverb`] | a resonant body, all of whose modes are masses that every sample drives: a [`Plate`], a [`Spring`] tank, a [`Room`], sympathetic [`Strings`] |
-//! | [`Tremolo`] | a vibraphone's motor |
-//! | [`Overdrive`] | a soft ceiling |
-//! | [`Tone`] | shelves for lows and highs |
-//! | [`Width`] | the side signal against the middle |
+//! | [`ModalReverb`] | a resonant body whose modes are masses that every sample drives: a [`Plate`], a [`Spring`] tank, a [`Room`], sympathetic [`Strings`] |
+//! | [`Tremolo`] | the tremolo of a vibraphone's motor |
+//! | [`Overdrive`] | soft clipping |
+//! | [`Tone`] | low and high shelving filters |
+//! | [`Width`] | the level of the side signal relative to the middle |
 //!
 //! A body is made in three steps, off the audio thread: its shape gives a [`ModeSet`], which with a [`Decay`] and a sample
 //! rate gives a [`Resonator`]. All processors change `left` and `right` in place, give the same bits for any division into

@@ -1,8 +1,8 @@
-//! What a resonant body is to a reverb: its modes, each with a frequency and its share in the drive and the pick-ups.
+//! The modes of a resonant body for a reverb, each with its frequency, its drive and its gains to the pick-ups.
 
 use super::decay::way;
 
-/// Most modes that a body keeps. A body with more keeps its lowest.
+/// Maximum number of modes of a body. If a body has more, its lowest are kept.
 pub const MAX_MODES: usize = 16_384;
 
 /// One mode of a body.
@@ -10,7 +10,7 @@ pub const MAX_MODES: usize = 16_384;
 pub struct BodyMode {
     /// Frequency in Hz.
     pub frequency: f64,
-    /// Mode shape where the body is driven: amplitude that a sample of 1 gives the mode.
+    /// Mode shape at the point of the drive: the amplitude that a sample of 1 gives the mode.
     pub drive: f64,
     /// Mode shape at the left pick-up.
     pub left: f64,
@@ -20,11 +20,11 @@ pub struct BodyMode {
 
 /// The modes of a body, by ascending frequency. Making one allocates: not for the audio thread.
 ///
-/// Levels do not matter: a [`super::Resonator`] plays every body equally loud.
+/// Absolute levels do not matter: a [`super::Resonator`] plays every body equally loud.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeSet {
     modes: Vec<BodyMode>,
-    /// Where each lies between low and high frequencies.
+    /// Position of each mode between low and high frequencies.
     ways: Vec<f32>,
 }
 
@@ -36,7 +36,7 @@ impl ModeSet {
             mode.frequency > 0.0 && numbers.iter().all(|number| number.is_finite())
         };
         let mut modes: Vec<_> = modes.into_iter().filter(is_valid).collect();
-        // A stable sort: modes of one frequency keep the order in which the body names them, on every machine.
+        // A stable sort: modes of the same frequency keep the body's order, on every machine.
         modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
         modes.truncate(MAX_MODES);
         let ways = modes.iter().map(|mode| way(mode.frequency) as f32).collect();
@@ -48,7 +48,7 @@ impl ModeSet {
         &self.modes
     }
 
-    /// Where each mode lies between low and high frequencies.
+    /// Position of each mode between low and high frequencies.
     pub(super) fn ways(&self) -> &[f32] {
         &self.ways
     }
@@ -58,7 +58,7 @@ impl ModeSet {
         self.modes.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no modes.
     pub fn is_empty(&self) -> bool {
         self.modes.is_empty()
     }

@@ -1,19 +1,19 @@
-//! Overdrive: a soft ceiling, without the false tones that sampling would make of its overtones.
+//! Overdrive: soft clipping, without the aliasing of its overtones.
 
 use super::half_band::HalfBand;
 use super::smoothed::{Smoothed, held};
 use libm::{exp, sqrt};
 use std::f64::consts::LN_10;
 
-/// Lifts what is soft and holds what is loud: `f(x) = x √(1+k²) / √(1+k²x²)`. Full scale stays full scale, and what is very
-/// soft is lifted by the drive, `√(1+k²)`.
+/// Amplifies soft samples and limits loud ones: `f(x) = x √(1+k²) / √(1+k²x²)`. Full scale stays full scale, and very soft
+/// samples are amplified by the drive, `√(1+k²)`.
 ///
-/// At four times the sample rate, and there by the mean of `f` over the line between two samples (J. Parker, V. Zavalishin
+/// Computed at four times the sample rate, as the mean of `f` over the line between two samples (J. Parker, V. Zavalishin
 /// and E. Le Bivic, "Reducing the aliasing of nonlinear waveshaping using continuous-time convolution", DAFx 2016). For this
 /// `f` the mean is `√(1+k²) (x₀ + x₁) / (√(1+k²x₀²) + √(1+k²x₁²))`, without a difference that could cancel. The filters
-/// delay lows by some four samples.
+/// delay low frequencies by some four samples.
 ///
-/// At rest at 0 dB it touches nothing; it is then faded out and in within 20 ms. Real-time safe.
+/// With a constant drive of 0 dB it does not change the signal. It is faded in and out within 20 ms. Real-time safe.
 ///
 /// ```
 /// let mut drive = sprung::dsp::space::Overdrive::new(48_000.0);
@@ -24,11 +24,11 @@ use std::f64::consts::LN_10;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Overdrive {
-    /// The drive in dB that is wanted.
+    /// Target of the drive in dB.
     decibels: f32,
     /// `k`.
     hardness: Smoothed,
-    /// How much of what comes out is driven.
+    /// Share of the driven signal in the output, 0–1.
     blend: Smoothed,
     sides: [Side; 2],
     /// Frames of silence at the input.
@@ -36,7 +36,7 @@ pub struct Overdrive {
     forget_frames: u64,
 }
 
-/// Of the filter next to the sample rate, which has to tell 23 from 25 kHz at 48 kHz, and of the one beyond.
+/// The filter next to the sample rate, which has to separate 23 from 25 kHz at 48 kHz, and the one at the higher rate.
 type Near = HalfBand<5, 5>;
 type Far = HalfBand<2, 2>;
 
@@ -80,14 +80,14 @@ impl Side {
     }
 }
 
-/// Seconds after which nothing is left in the filters.
+/// Seconds after which the filters are silent.
 const FORGET: f64 = 0.05;
 
 impl Overdrive {
     /// Greatest drive in dB.
     pub const MOST: f32 = 36.0;
 
-    /// One that leaves everything as it is.
+    /// An overdrive that is off.
     pub fn new(sample_rate: f64) -> Self {
         Self {
             decibels: 0.0,
@@ -111,7 +111,7 @@ impl Overdrive {
         self.blend.set(if decibels > 0.0 { 1.0 } else { 0.0 });
     }
 
-    /// Silence, and all that moves where it is to be.
+    /// Silences the filters and ends all ramps.
     pub fn reset(&mut self) {
         self.hardness.jump(self.hardness.target());
         self.blend.jump(self.blend.target());
@@ -123,35 +123,35 @@ impl Overdrive {
         self.silent_frames = self.forget_frames;
     }
 
-    /// Whether silence in gives silence out.
+    /// Whether silent input gives silent output.
     pub fn is_silent(&self) -> bool {
         self.blend.rests_at(0.0) || self.silent_frames >= self.forget_frames
     }
 
-    /// At most how many frames of silence it takes until that is so, and nothing moves.
+    /// Upper bound of the frames of silence until that is so and no ramp is running.
     pub fn tail_frames(&self) -> u64 {
         let filters = if self.is_silent() { 0 } else { self.forget_frames - self.silent_frames };
         filters.max(self.hardness.frames_left().max(self.blend.frames_left()).into())
     }
 
-    /// The same after input that has yet to come.
+    /// The same bound, after input that is still to come.
     pub fn tail_frames_after(&self) -> u64 {
         if self.is_off() { 0 } else { self.forget_frames.max(self.tail_frames()) }
     }
 
-    /// Greatest magnitude of what comes out from now on, but for what the filters overshoot, if what comes in has at most
+    /// Upper bound of the output from now on, without the overshoot of the filters, if the magnitude of the input is at most
     /// `peak`.
     pub fn peak_after(&self, peak: f64) -> f64 {
         let hardness = f64::from(self.hardness.after(0).max(self.hardness.target()));
         peak * sqrt(1.0 + hardness * hardness)
     }
 
-    /// Whether it touches nothing.
+    /// Whether the signal is not changed.
     pub fn is_off(&self) -> bool {
         self.blend.rests_at(0.0) && !self.hardness.is_moving()
     }
 
-    /// Whether silence that comes in changes nothing.
+    /// Whether silent input changes nothing.
     pub fn is_idle(&self) -> bool {
         self.is_silent() && !self.blend.is_moving() && !self.hardness.is_moving()
     }

@@ -5,12 +5,12 @@ use super::modes::{BodyMode, MAX_MODES, ModeSet};
 use libm::{ceil, sin, sqrt};
 use std::f64::consts::{PI, TAU};
 
-/// A thin rectangular plate, simply supported at its edges, driven by a force and heard by two velocity pick-ups.
+/// A thin rectangular plate, simply supported at its edges, with one force as the drive and two velocity pick-ups.
 ///
 /// The modes are those of Kirchhoff's equation `u_tt = −κ² ∇⁴u`, in closed form: `ω = κ π² ((m/Lx)² + (n/Ly)²)` with the
 /// shape `sin(mπx/Lx) sin(nπy/Ly)` (A. W. Leissa, *Vibration of Plates*, NASA SP-160, 1969, §4.1; S. Bilbao, *Numerical
-/// Sound Synthesis*, 2009, §12.1). Their number per hertz is the same everywhere, and a force moves the velocity of each
-/// equally: so the plate has no colour of its own, and its highest frequencies arrive first.
+/// Sound Synthesis*, 2009, §12.1). Their number per hertz is constant, and a force moves the velocity of each equally: so
+/// the plate does not favour any frequency, and its highest frequencies arrive first.
 ///
 /// ```
 /// use sprung::dsp::space::{Decay, ModalReverb, Plate, Resonator};
@@ -34,11 +34,11 @@ pub struct Plate {
     pub width: f64,
     /// Thickness in m.
     pub thickness: f64,
-    /// What it is made of.
+    /// The material.
     pub material: Material,
-    /// Where it is driven, as shares of length and width.
+    /// Point of the drive, as fractions of length and width.
     pub drive: [f64; 2],
-    /// Where it is heard to the left and to the right, likewise.
+    /// Points of the left and the right pick-up, likewise.
     pub pick_ups: [[f64; 2]; 2],
     /// Modes up to this frequency in Hz are kept.
     pub top: f64,
@@ -52,7 +52,7 @@ impl Default for Plate {
             width: 1.0,
             thickness: 0.0005,
             material: Material::STEEL,
-            // Off all lines of symmetry, so that few modes have a node there.
+            // Not on any line of symmetry, so that few modes have a node there.
             drive: [0.437, 0.381],
             pick_ups: [[0.123, 0.683], [0.851, 0.287]],
             top: 10_000.0,
@@ -67,7 +67,7 @@ impl Plate {
         let scale = 0.5 * PI * stiffness;
         let along = 1.0 / (self.length * self.length);
         let across = 1.0 / (self.width * self.width);
-        // Of a body with far too many modes, those that would be dropped are not made: `N ≈ Lx Ly k²/4π`.
+        // For a body with far too many modes, those that would be dropped are not computed: `N ≈ Lx Ly k²/4π`.
         let area = self.length * self.width;
         let top = self.top.min(stiffness * 4.0 * MAX_MODES as f64 / area);
         let most = |step: f64| {
@@ -93,7 +93,7 @@ impl Plate {
         ModeSet::new(modes)
     }
 
-    /// How many modes theory expects below a frequency in Hz: Weyl's law with its terms for edges and corners,
+    /// The expected number of modes below a frequency in Hz: Weyl's law with its terms for edges and corners,
     /// `N = Lx Ly k²/4π − (Lx + Ly) k/2π + ¼` at the wavenumber `k = √(ω/κ)`.
     pub fn expected_modes_below(&self, frequency: f64) -> f64 {
         let wavenumber2 = TAU * frequency / self.material.plate_stiffness(self.thickness);
@@ -102,7 +102,7 @@ impl Plate {
     }
 }
 
-/// More half waves along an edge than any plate has whose modes are kept.
+/// Upper limit of the half waves along an edge: no plate whose modes are kept has more.
 const MOST_HALF_WAVES: usize = 4096;
 
 #[cfg(test)]

@@ -1,21 +1,21 @@
-//! What a reverb hears, some time later.
+//! The pre-delay of a reverb.
 
 use crate::dsp::ramp::Ramp;
 
-/// A delay whose length moves without a click: the place that is read from changes by a crossfade.
+/// A delay whose length changes without a click: by a crossfade between two read positions.
 #[derive(Clone, Debug)]
 pub(super) struct PreDelay {
     /// A power of two long.
     line: Vec<f32>,
     next: usize,
-    /// Frames of delay now, and before the crossfade that is under way.
+    /// Present delay in frames, and the delay before the running crossfade.
     delay: usize,
     before: usize,
-    /// What is wanted once that has ended.
+    /// The next delay, after that crossfade.
     wanted: usize,
-    /// 0 to 1: the share of what is read at `delay`.
+    /// Share of the sample at `delay` in the output, 0–1.
     fade: Ramp,
-    /// Frames left of the crossfade.
+    /// Remaining frames of the crossfade.
     left: u32,
     fade_frames: u32,
 }
@@ -24,20 +24,20 @@ pub(super) struct PreDelay {
 const FADE: f64 = 0.02;
 
 impl PreDelay {
-    /// A silent line for at most `longest` frames.
+    /// A silent delay line for at most `longest` frames.
     pub(super) fn new(longest: usize, sample_rate: f64) -> Self {
         let fade_frames = (FADE * sample_rate) as u32;
         let line = vec![0.0; (longest + 1).next_power_of_two()];
         Self { line, next: 0, delay: 0, before: 0, wanted: 0, fade: Ramp::at_rest(1.0), left: 0, fade_frames }
     }
 
-    /// After so many frames of silence, and until another delay is wanted, only silence comes out.
+    /// Frames of silent input after which the output is silent, until another delay is set.
     pub(super) fn reach(&self) -> usize {
         let fades = if self.wanted == self.delay { 0 } else { self.fade_frames };
         self.delay.max(self.before).max(self.wanted) + (self.left + fades) as usize
     }
 
-    /// Wants another delay in frames; at once if nothing sounds.
+    /// Sets another delay in frames. `at_once` if nothing sounds.
     pub(super) fn set(&mut self, frames: usize, at_once: bool) {
         self.wanted = frames.min(self.line.len() - 1);
         if at_once {
@@ -46,7 +46,7 @@ impl PreDelay {
         }
     }
 
-    /// Takes a sample and gives that of `delay` frames ago.
+    /// Adds a sample to the line and returns the one from `delay` frames ago.
     pub(super) fn next(&mut self, sample: f32) -> f32 {
         let mask = self.line.len() - 1;
         self.line[self.next] = sample;
@@ -70,7 +70,7 @@ impl PreDelay {
         out
     }
 
-    /// Forgets what it holds, and has the delay that is wanted.
+    /// Silences the line and sets the target delay.
     pub(super) fn clear(&mut self) {
         self.line.fill(0.0);
         self.set(self.wanted, true);

@@ -1,4 +1,4 @@
-//! A resonant body at work: all of its masses, driven by every sample and heard by two pick-ups.
+//! The running state of a resonant body: all of its masses, one drive and two pick-ups.
 
 use super::bands::{BANDS, Band, Bands};
 use super::decay::{Decay, shift};
@@ -10,39 +10,39 @@ use crate::dsp::simd::{Instructions, Level};
 use libm::{floor, log2};
 use std::f64::consts::PI;
 
-/// Modes nearer to half the sample rate than this share of it are left out.
+/// Modes above this fraction of half the sample rate are left out.
 const TOP: f64 = 0.98;
 
-/// Blocks that a control tick gives another decay: 1,024 masses, in about a microsecond.
+/// Number of blocks that get a new decay in one control tick: 1,024 masses, in about a microsecond.
 const DAMPED_PER_TICK: usize = 64;
 
-/// Least and greatest pitch of a body against its own.
+/// Smallest and largest pitch ratio of a body to its reference pitch.
 const PITCHES: [f64; 2] = [1.0 / 64.0, 64.0];
 
-/// A body whose every mode is a mass on a spring. Making and dropping one (de)allocates: not for the audio thread, but for
-/// all else it is made to be used there. See [`super::ModalReverb`], which plays it.
+/// A body whose every mode is a mass on a spring. Creating one allocates and dropping one frees memory, so do neither on the
+/// audio thread; everything else is meant for it. [`super::ModalReverb`] plays it.
 ///
-/// **Passive.** A frame turns each mass and shrinks it; only input adds to it. So without input the energy falls with every
-/// frame whatever happens to pitch and decay; and its root never rises by more than the input's magnitude times the root of
-/// the number of masses. (A mass's amplitude counts in units of what a sample of 1 gives it.)
+/// **Passive.** A frame turns and shrinks each mass; only input adds energy. So without input the energy falls with every
+/// frame, for all changes of pitch and decay, and its square root never rises by more than the input's magnitude times the
+/// square root of the number of masses. (A mass's amplitude is in units of its response to a sample of 1.)
 #[derive(Clone, Debug)]
 pub struct Resonator {
     instructions: Instructions,
     sample_rate: f64,
-    /// The frequencies are so many times those of the modes.
+    /// Ratio of the frequencies to those of the modes.
     pitch: f64,
-    /// How many masses are heard at this pitch, and the groups' blocks that they are in.
+    /// Number of audible masses at this pitch, and number of the blocks (in whole groups) that contain them.
     len: usize,
     heard: usize,
     blocks: Vec<Block>,
     turns: Vec<Turn>,
     bands: Bands,
-    /// Blocks from here on are at rest; a whole number of groups.
+    /// Blocks from this index on are at rest. A whole number of groups.
     live: usize,
     decay: Decay,
-    /// Logarithms of the rates of the decay, and of the one before while there are blocks that still have it.
+    /// Logarithms of the rates of the decay and, while some blocks still have it, of the previous decay.
     rates: [[f64; 2]; 2],
-    /// Next block to get the decay, and how many are still to get it.
+    /// Next block that gets the new decay, and number of blocks that still have the old one.
     next_damped: usize,
     to_damp: usize,
     out: Output,
@@ -56,7 +56,7 @@ impl Resonator {
         body
     }
 
-    /// A body without masses, with room for so many.
+    /// A body without masses, with room for `masses`.
     pub fn with_room(masses: usize, decay: Decay, sample_rate: f64) -> Self {
         let blocks = blocks_of(masses);
         Self {
@@ -77,8 +77,8 @@ impl Resonator {
         }
     }
 
-    /// Becomes the body of other modes, at rest and at the same pitch. Real-time safe if it has had room for as many;
-    /// some 100 µs for 13,000.
+    /// Loads other modes, at rest and at the same pitch. Real-time safe if there is room for as many; takes some 100 µs for
+    /// 13,000.
     pub(super) fn load(&mut self, modes: &ModeSet) {
         let count = blocks_of(modes.len());
         self.blocks.clear();
@@ -97,12 +97,12 @@ impl Resonator {
         self.tune(self.pitch);
     }
 
-    /// Sends all masses to frequencies of so many times those of the body's modes. Real-time safe; some 100 µs for 13,000.
+    /// Sets the ratio of all frequencies to those of the body's modes. Real-time safe; takes some 100 µs for 13,000.
     pub(super) fn tune(&mut self, pitch: f64) {
         let [least, greatest] = PITCHES;
         self.pitch = if pitch.is_nan() { 1.0 } else { pitch.clamp(least, greatest) };
         let (pitch, highest, shift) = (self.pitch, PI * TOP, shift(self.pitch) as f32);
-        // By ascending frequency.
+        // The modes are sorted by frequency.
         let is_heard = |angle: f32| f64::from(angle) * pitch < highest;
         let whole = self.turns.partition_point(|turn| is_heard(turn.angle[LANES - 1]));
         let rest = self.turns.get(whole).map_or(0, |turn| turn.angle.partition_point(|angle| is_heard(*angle)));
@@ -111,7 +111,7 @@ impl Resonator {
         for turn in &mut self.turns[..self.heard] {
             turn.tune(pitch, shift, highest);
         }
-        // What is too high to be heard has no motion that could come back.
+        // Masses that have become too high are set to rest, so that they are silent if they become audible again.
         let live = self.live.min(self.heard);
         rest_all(&mut self.blocks[live..self.live]);
         self.live = live;
@@ -119,7 +119,7 @@ impl Resonator {
         self.damp_all();
     }
 
-    /// Finds the bands of the modes, which lie in the blocks.
+    /// Groups the blocks into bands by the frequencies of their modes.
     fn find_bands(&mut self, modes: &ModeSet) {
         self.bands.clear();
         let (blocks, modes, ways) = (&self.blocks, modes.modes(), modes.ways());
@@ -146,12 +146,12 @@ impl Resonator {
         }
     }
 
-    /// Number of masses that are heard.
+    /// Number of audible masses.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are none.
+    /// Whether there are no audible masses.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -161,29 +161,29 @@ impl Resonator {
         self.sample_rate
     }
 
-    /// The level of instructions that it uses.
+    /// The instruction level in use.
     pub fn instructions(&self) -> Level {
         self.instructions.level()
     }
 
-    /// The decay that it has, or that it is on the way to.
+    /// The decay, or its target during a change.
     pub fn decay(&self) -> Decay {
         self.decay
     }
 
-    /// Sum of the squared amplitudes of the masses, in double precision. To look at: takes microseconds.
+    /// Sum of the squared amplitudes of the masses, in double precision. For inspection: takes microseconds.
     pub fn energy(&self) -> f64 {
         let lanes = self.blocks.iter().flat_map(|block| block.x.iter().zip(&block.y));
         lanes.map(|(x, y)| f64::from(*x) * f64::from(*x) + f64::from(*y) * f64::from(*y)).sum()
     }
 
-    /// Sends all masses to another decay: some at each of the next control ticks, within 25 ms at 48 kHz. Real-time safe.
+    /// Sets another decay: for some masses at each of the next control ticks, for all within 25 ms at 48 kHz. Real-time safe.
     pub(super) fn set_decay(&mut self, decay: Decay) {
         if decay == self.decay {
             return;
         }
         let rates = decay.log_rates(self.sample_rate);
-        // Some blocks may still have an even older decay: the bound goes by whichever is slower at either end.
+        // Some blocks may still have an even older decay: the bound uses the slower one at either end.
         let [old, older] = self.rates;
         let ends = |[low, span]: [f64; 2]| [low, low + span];
         let slowest = match self.to_damp {
@@ -204,19 +204,19 @@ impl Resonator {
         self.instructions.run(Damp { blocks, turns, low, span });
     }
 
-    /// Sends all masses to the decay that they are to have, at once.
+    /// Sets the target decay of all masses at once.
     fn damp_all(&mut self) {
         self.damp(0..self.heard);
         (self.to_damp, self.next_damped, self.rates[1]) = (0, 0, self.rates[0]);
         self.bands.damp(self.rates);
     }
 
-    /// Gain by which white noise comes out as loud as it went in.
+    /// Gain at which the output is as loud as the input for white noise.
     pub(super) fn noise_gain(&self) -> f32 {
         self.bands.noise_gain(self.rates[0]) as f32
     }
 
-    /// A control tick: `input` is the sum of the magnitudes of what has come in since the last.
+    /// Handles a control tick. `input` is the sum of the input's magnitudes since the last tick.
     pub(super) fn tick(&mut self, input: f64) {
         self.bands.tick(input);
         if self.to_damp > 0 {
@@ -231,8 +231,8 @@ impl Resonator {
         }
     }
 
-    /// Measures the energy, and sets to rest what has all but stopped. `is_all`: no input is still to come that
-    /// [`Resonator::tick`] has been told of. To be called at control ticks.
+    /// Measures the energy, and sets masses that have nearly stopped to rest. `is_all` says that all input that was reported to
+    /// [`Resonator::tick`] has reached the body. Call it at control ticks.
     pub(super) fn measure(&mut self, is_all: bool) {
         let mut last = 0;
         for index in 0..self.bands.len() {
@@ -249,7 +249,7 @@ impl Resonator {
         self.live = self.live.min(last.next_multiple_of(GROUP));
     }
 
-    /// Turns the masses through some frames, at most [`FRAMES`], and gives what the pick-ups hear.
+    /// Steps the masses through some frames, at most [`FRAMES`], and returns the outputs of the pick-ups.
     pub(super) fn render(&mut self, input: &[f32]) -> &Output {
         let driven = input.iter().any(|sample| *sample != 0.0);
         if driven {
@@ -260,12 +260,12 @@ impl Resonator {
         out
     }
 
-    /// At most what either pick-up hears, once input whose magnitudes add up to `input` has come as well.
+    /// Upper bound of the output of either pick-up, after further input whose magnitudes sum to `input`.
     pub(super) fn peak(&self, input: f64) -> f64 {
         self.bands.peak(input)
     }
 
-    /// At most how many frames it takes until that has fallen to `peak`.
+    /// Upper bound of the frames until that has fallen to `peak`.
     pub(super) fn frames_until(&self, peak: f64, input: f64) -> u64 {
         self.bands.frames_until(peak, input)
     }
@@ -277,7 +277,7 @@ impl Resonator {
         self.bands.rest();
     }
 
-    /// Sends masses at rest to the decay that they are on their way to, all at once.
+    /// Sets the target decay of all masses at once, if a change is running. For masses at rest.
     pub(super) fn finish_damping(&mut self) {
         if self.to_damp > 0 {
             self.damp_all();
@@ -285,7 +285,7 @@ impl Resonator {
     }
 }
 
-/// Blocks of so many masses: whole groups.
+/// Number of blocks for some masses, in whole groups.
 fn blocks_of(masses: usize) -> usize {
     masses.div_ceil(GROUP * LANES) * GROUP
 }
@@ -296,7 +296,7 @@ fn rest_all(blocks: &mut [Block]) {
     }
 }
 
-/// A gain in single precision; next to a node, none: products with it would leave the normal numbers.
+/// A gain in single precision. Near a node it is 0, since products with tiny gains would be subnormal.
 fn gain(value: f64) -> f32 {
     if value.abs() < 1e-9 { 0.0 } else { value.clamp(-1e6, 1e6) as f32 }
 }

@@ -8,18 +8,18 @@ use std::f64::consts::PI;
 /// A rectangular room with rigid walls, a source and two ears.
 ///
 /// `f = c/2 √((l/Lx)² + (m/Ly)² + (n/Lz)²)`, shapes `cos(lπx/Lx) cos(mπy/Ly) cos(nπz/Lz)` (P. M. Morse and K. U. Ingard,
-/// *Theoretical Acoustics*, 1968, §9.5; H. Kuttruff, *Room Acoustics*, §3.2). A source whose free field is flat moves each
-/// mode by the inverse of its frequency.
+/// *Theoretical Acoustics*, 1968, §9.5; H. Kuttruff, *Room Acoustics*, §3.2). A source with a flat free field drives each
+/// mode in inverse proportion to its frequency.
 ///
-/// Above Schroeder's frequency modes overlap more than threefold, and what is heard is their number and not each of them.
-/// Where there is more than one a hertz, a random choice of them, and the louder for it, stands for all.
+/// Above Schroeder's frequency modes overlap more than threefold, and the ear perceives their density and not single modes.
+/// Where there are more than 1.3 modes per hertz, a random selection of them, with higher levels, represents all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Room {
     /// Length, width and height in m.
     pub size: [f64; 3],
-    /// Where the source is, as shares of the size.
+    /// Position of the source, as fractions of the size.
     pub source: [f64; 3],
-    /// Where the left and the right ear are, likewise.
+    /// Positions of the left and the right ear, likewise.
     pub ears: [[f64; 3]; 2],
     /// Modes up to this frequency in Hz are kept.
     pub top: f64,
@@ -40,14 +40,14 @@ impl Default for Room {
 /// Speed of sound in m/s, at 20 °C.
 const SPEED_OF_SOUND: f64 = 343.2;
 
-/// Modes per hertz beyond which some stand for all.
+/// Modes per hertz above which a selection represents all modes.
 const DENSITY: f64 = 1.3;
 
-/// Largest room, in m³: its modes are counted through one by one.
+/// Largest room, in m³. It is limited because all modes are counted one by one.
 const LARGEST: f64 = 200.0;
 
 impl Room {
-    /// How many modes theory expects below a frequency in Hz: `4πV/3 (f/c)³ + πS/4 (f/c)² + L/8 (f/c)` with the room's
+    /// The expected number of modes below a frequency in Hz: `4πV/3 (f/c)³ + πS/4 (f/c)² + L/8 (f/c)` with the room's
     /// volume, surface and edges (R. H. Bolt 1939; Kuttruff, eq. 3.21).
     pub fn expected_modes_below(&self, frequency: f64) -> f64 {
         let ([a, b, c], per_metre) = (self.size, frequency / SPEED_OF_SOUND);
@@ -55,7 +55,8 @@ impl Room {
         ((4.0 / 3.0 * PI * volume * per_metre + 0.25 * PI * surface) * per_metre + 0.125 * edges) * per_metre
     }
 
-    /// The modes; none of a room of no size, or of more than 200 m³. Not for the audio thread: takes up to a second.
+    /// The modes; none if the volume is above 200 m³ or a side is not 0.1 to 100 m. Not for the audio thread: takes up to
+    /// a second.
     pub fn modes(&self) -> ModeSet {
         let volume = self.size.iter().product::<f64>();
         if !(volume > 0.0 && volume <= LARGEST) || self.size.iter().any(|size| !(0.1..=100.0).contains(size)) {
@@ -71,7 +72,7 @@ impl Room {
             };
             (0..).map(shape).take_while(|[squared, ..]| *squared <= top * top).collect()
         });
-        // `dN/df` of all modes, by its first term.
+        // `dN/df` of all modes is `per_hertz2 · f²`, by the first term of their number.
         let per_hertz2 = 4.0 * PI * volume / (SPEED_OF_SOUND * SPEED_OF_SOUND * SPEED_OF_SOUND);
         let (choice, mut serial) = (key(0, 0), 0);
         let mut modes = Vec::new();

@@ -1,32 +1,32 @@
-//! Settings that move to where they are set in a straight line of 20 ms, and samples that stay within bounds.
+//! Settings that move linearly to their targets in 20 ms, and a limit for samples.
 
 use crate::dsp::ramp::Ramp;
 
-/// Seconds that a value takes.
+/// Ramp time in seconds.
 const SECONDS: f64 = 0.02;
 
-/// A setting on its way. Real-time safe.
+/// A setting with a linear ramp to its target. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Smoothed {
     ramp: Ramp,
     target: f32,
-    /// Frames until it is there.
+    /// Frames until the end of the ramp.
     left: u32,
     frames: u32,
 }
 
 impl Smoothed {
-    /// One that rests at `value`.
+    /// A constant setting.
     pub(super) fn new(value: f32, sample_rate: f64) -> Self {
         Self { ramp: Ramp::at_rest(value), target: value, left: 0, frames: (SECONDS * sample_rate).max(1.0) as u32 }
     }
 
-    /// Where it is to be.
+    /// The target of the ramp.
     pub(super) fn target(&self) -> f32 {
         self.target
     }
 
-    /// Starts for `value`, unless it is there or on the way. What is no number changes nothing.
+    /// Starts a ramp to `value`, unless that is the target already. NaN changes nothing.
     pub(super) fn set(&mut self, value: f32) {
         if value != self.target && !value.is_nan() {
             self.target = value;
@@ -35,7 +35,7 @@ impl Smoothed {
         }
     }
 
-    /// Is at `value` at once.
+    /// Sets the value at once.
     pub(super) fn jump(&mut self, value: f32) {
         (self.ramp, self.target, self.left) = (Ramp::at_rest(value), value, 0);
     }
@@ -44,17 +44,17 @@ impl Smoothed {
         self.left > 0
     }
 
-    /// Frames until it rests.
+    /// Frames until the end of the ramp.
     pub(super) fn frames_left(&self) -> u32 {
         self.left
     }
 
-    /// Frames that it takes from one value to another.
+    /// Length of a ramp in frames.
     pub(super) fn frames(&self) -> u32 {
         self.frames
     }
 
-    /// Whether it rests at `value`.
+    /// Whether the value is constant at `value`.
     pub(super) fn rests_at(&self, value: f32) -> bool {
         self.left == 0 && self.target == value
     }
@@ -64,7 +64,7 @@ impl Smoothed {
         self.ramp.after(frames as u32)
     }
 
-    /// Lets frames pass.
+    /// Advances by some frames.
     pub(super) fn advance(&mut self, frames: usize) {
         if self.left > 0 {
             self.ramp.advance(frames as u32);
@@ -73,8 +73,8 @@ impl Smoothed {
     }
 }
 
-/// A sample for what remembers: what is no number is silence, and what is beyond ±10⁶ is held there, so that its square has
-/// room.
+/// A sample for a processor with memory: NaN becomes 0, and the magnitude is limited to 10⁶, so that squares cannot
+/// overflow.
 pub(super) fn held(sample: f32) -> f32 {
     if sample.is_nan() { 0.0 } else { sample.clamp(-1e6, 1e6) }
 }

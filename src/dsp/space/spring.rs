@@ -5,24 +5,24 @@ use super::modes::{BodyMode, ModeSet};
 use libm::{cos, sin, sqrt};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Helical springs of one wire and coil, driven at one end and heard at the other.
+/// Helical springs with the same wire and coil, driven at one end, with pick-ups at the other.
 ///
 /// A coil's pitch is small, so a wave along the wire bends it as it would bend a ring of the coil's radius `R`:
 /// `ω = κ β |β² − q²| / √(β² + q²)` with the wavenumber `β`, the curvature `q = 1/R` and `κ = (r/2) √(E/ρ)` for a wire of
 /// radius `r` (A. E. H. Love, *Mathematical Theory of Elasticity*, §293, for rings; W. H. Wittrick 1966 and S. Bilbao and
 /// J. Parker, "A virtual model of spring reverberation", IEEE TASLP 18 (2010), for springs). Between free ends
-/// `β = nπ/L`. Long waves travel slower the nearer they are to the transition frequency `0.337 κ q² / 2π`: the echoes that
-/// chirp. Short ones above it come sooner and are fainter. What spectrograms of springs do not show is left out: waves of
-/// about a turn's length, which move whole turns and hardly the magnets at the ends.
+/// `β = nπ/L`. Long waves travel slower the nearer they are to the transition frequency `0.337 κ q² / 2π`: their echoes
+/// chirp. Short waves above it arrive sooner and are fainter. Waves of about a turn's length are left out, since they are
+/// missing in spectrograms of springs: they move whole turns and hardly move the magnets at the ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
-    /// Lengths of the springs' wires, uncoiled, in m. The first is heard to the left, the last to the right.
+    /// Lengths of the springs' wires, uncoiled, in m. The first spring is on the left, the last on the right.
     pub wires: [f64; 3],
     /// Radius of the wire in m.
     pub wire_radius: f64,
     /// Radius of the coil in m.
     pub coil_radius: f64,
-    /// What the wire is made of.
+    /// The material of the wire.
     pub material: Material,
     /// Modes up to this frequency in Hz are kept.
     pub top: f64,
@@ -41,17 +41,17 @@ impl Default for Spring {
     }
 }
 
-/// Modes below are not heard.
+/// Lowest frequency in Hz of modes that are kept.
 const LOWEST: f64 = 20.0;
 
-/// `(√17 − 3)/4`: the squared number of radians of a wave along a coil's radius at which `√(z (1−z)²/(1+z))`, and so the
-/// frequency of waves longer than a turn, is greatest.
+/// `(√17 − 3)/4`: the value of `z = (βR)²` at which `√(z (1−z)²/(1+z))`, and so the frequency of waves longer than a turn,
+/// is greatest.
 const LONG: f64 = 0.280_776_406_404_415_1;
 
-/// How much a magnet moves waves shorter than a turn, against longer ones.
+/// Response of the magnets to waves shorter than a turn, relative to longer ones.
 const SHORT_WAVES: f64 = 0.5;
 
-/// More half waves than any spring has whose modes are kept.
+/// Upper limit of the half waves: no spring whose modes are kept has more.
 const MOST_HALF_WAVES: usize = 65_536;
 
 impl Spring {
@@ -59,7 +59,7 @@ impl Spring {
         0.5 * self.wire_radius * self.material.bar_speed()
     }
 
-    /// Frequency in Hz above which no wave is longer than a turn.
+    /// Frequency in Hz above which all waves are shorter than a turn.
     pub fn transition_frequency(&self) -> f64 {
         sqrt(LONG / (1.0 + LONG)) * (1.0 - LONG) * self.stiffness() / (self.coil_radius * self.coil_radius * TAU)
     }
@@ -85,7 +85,7 @@ impl Spring {
                 if !heard || !(LOWEST..=self.top).contains(&frequency) {
                     continue;
                 }
-                // A free end moves by cos 0 here and by cos nπ there.
+                // The shape of a mode is cos 0 at the driven free end and cos nπ at the other.
                 let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
                 let drive = if long { 1.0 } else { SHORT_WAVES };
                 modes.push(BodyMode { frequency, drive, left: sign * cos(angle), right: sign * sin(angle) });

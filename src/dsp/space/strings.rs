@@ -1,16 +1,16 @@
-//! A sympathetic body: strings that ring along with whatever is played.
+//! A sympathetic body: strings that resonate with the voices.
 
 use super::modes::{BodyMode, ModeSet};
 use libm::{cos, sin, sqrt};
 use std::f64::consts::FRAC_PI_2;
 
-/// Strings over one bridge, tuned to a chord or to the keys that are played: driven by the bridge, heard by the bridge.
+/// Strings over one bridge, tuned to a chord or to the played keys. The bridge is both the drive and the pick-up.
 ///
-/// Partials of a stiff string are `n f₀ √(1 + B n²)` (H. Fletcher, E. D. Blackham and R. Stratton 1962); a bridge moves
-/// all of them, and their force on it is the same for each.
+/// Partials of a stiff string are `n f₀ √(1 + B n²)` (H. Fletcher, E. D. Blackham and R. Stratton 1962). A bridge drives
+/// all of them, and each has the same force on the bridge.
 ///
-/// Nothing of it returns to what drives it, so it is as passive as the other bodies. A [`super::ModalReverb`] plays it with
-/// `set_levels(1.0, level)`: the strings are added to what they hear.
+/// The strings do not act back on their input, so this body is as passive as the others. A [`super::ModalReverb`] plays it
+/// with `set_levels(1.0, level)`: the strings are added to the input.
 ///
 /// ```
 /// use sprung::dsp::space::{Decay, ModalReverb, Resonator, Strings};
@@ -28,11 +28,11 @@ use std::f64::consts::FRAC_PI_2;
 pub struct Strings {
     /// Frequency of each string in Hz, from the left to the right.
     pub frequencies: Vec<f64>,
-    /// Stiffness `B`: 0 for a perfectly flexible string, 0.0004 for a piano's middle.
+    /// Stiffness `B`: 0 for a perfectly flexible string, 0.0004 for the middle of a piano.
     pub stiffness: f64,
     /// Partials up to this frequency in Hz are kept.
     pub top: f64,
-    /// Most partials of a string.
+    /// Maximum number of partials of a string.
     pub partials: usize,
 }
 

@@ -1,7 +1,7 @@
-//! A processor's own clock: blocks of any size, divided at control ticks of `TICK` frames.
+//! The clock of a processor: it divides blocks of any size at control ticks of `TICK` frames.
 
-/// Counts frames since a processor was made or reset, so that what happens now and then falls on the same frames however
-/// frames are asked for. Real-time safe.
+/// Counts frames since a processor was created or reset, so that control ticks fall on the same frames for all block sizes.
+/// Real-time safe.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ticks<const TICK: u64> {
     frame: u64,
@@ -13,22 +13,22 @@ impl<const TICK: u64> Ticks<TICK> {
         self.frame.is_multiple_of(TICK)
     }
 
-    /// Whether the control tick that is due is one of those of which there is one every `ticks`.
+    /// Whether the present control tick is one of every `ticks`-th.
     pub(super) fn is_due_every(self, ticks: u64) -> bool {
         self.frame.is_multiple_of(ticks * TICK)
     }
 
-    /// Frames until the next of those.
+    /// Frames until the next of every `ticks`-th control tick.
     pub(super) fn frames_until_every(self, ticks: u64) -> u64 {
         self.frame.next_multiple_of(ticks * TICK) - self.frame
     }
 
-    /// How many of `frames` frames there are before the next control tick.
+    /// Number of frames, at most `frames`, before the next control tick.
     pub(super) fn frames_before(self, frames: usize) -> usize {
         frames.min((TICK - self.frame % TICK) as usize)
     }
 
-    /// Lets `frames` frames pass.
+    /// Advances by `frames` frames.
     pub(super) fn advance(&mut self, frames: usize) {
         self.frame += frames as u64;
     }

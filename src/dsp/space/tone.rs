@@ -1,4 +1,4 @@
-//! Tone: a shelf for lows and one for highs.
+//! Tone control: a low and a high shelving filter.
 
 use super::smoothed::{Smoothed, held};
 use super::ticks::Ticks;
@@ -6,11 +6,11 @@ use crate::dsp::CONTROL_FRAMES;
 use libm::{exp, log, tan};
 use std::f64::consts::{LN_10, PI};
 
-/// Two shelves of first order, `H(s) = (s + ω√g)/(s + ω/√g)` for lows of gain `g` and its mirror for highs: a cut undoes the
-/// boost of as many dB. Each is what came in, and `g − 1` times a one-pole filter of it, in a form whose coefficients may
-/// move (V. Zavalishin, *The Art of VA Filter Design*, §3.10).
+/// Two shelves of first order, `H(s) = (s + ω√g)/(s + ω/√g)` for lows with gain `g`, and its mirror image for highs: a cut
+/// is the inverse of a boost by as many dB. The output of each is its input plus `g − 1` times a one-pole filter of the input,
+/// in a form whose coefficients may change (V. Zavalishin, *The Art of VA Filter Design*, §3.10).
 ///
-/// At rest at 0 dB it touches nothing. Real-time safe.
+/// With constant gains of 0 dB it does not change the signal. Real-time safe.
 ///
 /// ```
 /// let mut tone = sprung::dsp::space::Tone::new(48_000.0);
@@ -33,7 +33,7 @@ pub struct Tone {
 #[derive(Clone, Debug)]
 struct Shelf {
     decibels: Smoothed,
-    /// `g − 1`, and the filter's coefficient, at the last control tick and at the next.
+    /// `g − 1`, and the filter's coefficient, each at the last control tick and at the next.
     amount: [f32; 2],
     coefficient: [f32; 2],
     /// The low-pass filter of each side.
@@ -48,7 +48,7 @@ impl Tone {
     /// Greatest boost and cut in dB.
     pub const MOST: f32 = 18.0;
 
-    /// One that leaves everything as it is.
+    /// A tone control that is off.
     pub fn new(sample_rate: f64) -> Self {
         let shelf = Shelf {
             decibels: Smoothed::new(0.0, sample_rate),
@@ -70,7 +70,7 @@ impl Tone {
         }
     }
 
-    /// Silence, and all that moves where it is to be.
+    /// Silences the filters and ends all ramps.
     pub fn reset(&mut self) {
         for shelf in &mut self.shelves {
             shelf.decibels.jump(shelf.decibels.target());
@@ -81,12 +81,12 @@ impl Tone {
         self.aim(0);
     }
 
-    /// Whether silence in gives silence out.
+    /// Whether silent input gives silent output.
     pub fn is_silent(&self) -> bool {
         self.shelves.iter().all(|shelf| shelf.state == [0.0; 2])
     }
 
-    /// At most how many frames of silence it takes until that is so, and nothing moves.
+    /// Upper bound of the frames of silence until that is so and no ramp is running.
     pub fn tail_frames(&self) -> u64 {
         if self.is_idle() {
             return 0;
@@ -95,13 +95,13 @@ impl Tone {
         self.forget_frames().saturating_sub(self.silent_frames).max(moving) + 3 * CONTROL_FRAMES as u64
     }
 
-    /// The same after input that has yet to come.
+    /// The same bound, after input that is still to come.
     pub fn tail_frames_after(&self) -> u64 {
         if self.is_off() { 0 } else { self.forget_frames() + 3 * CONTROL_FRAMES as u64 }
     }
 
-    /// Greatest magnitude of what comes out from now on, if what comes in has at most `peak`: a shelf adds at most what its
-    /// one-pole filter lets through, which is no louder than what comes in.
+    /// Upper bound of the output from now on, if the magnitude of the input is at most `peak`. A shelf adds `g − 1` times the
+    /// output of its one-pole filter. The bound takes twice the input for that output, and at least 1 for `|g − 1|`.
     pub fn peak_after(&self, peak: f64) -> f64 {
         self.shelves.iter().fold(peak, |peak, shelf| {
             let decibels = f64::from(shelf.decibels.after(0).max(shelf.decibels.target()));
@@ -109,18 +109,18 @@ impl Tone {
         })
     }
 
-    /// Whether it touches nothing.
+    /// Whether the signal is not changed.
     pub fn is_off(&self) -> bool {
         self.is_flat() && self.ticks.is_due()
     }
 
-    /// Whether silence that comes in changes nothing but the time: [`Tone::skip`] does the same.
+    /// Whether silent input changes nothing but the clock: [`Tone::skip`] does the same.
     pub fn is_idle(&self) -> bool {
         let moves = self.shelves.iter().any(|shelf| shelf.decibels.is_moving() || shelf.amount[0] != shelf.amount[1]);
         self.is_off() || !moves && self.is_silent()
     }
 
-    /// Lets frames of silence pass while it is idle.
+    /// Advances by frames of silence while it is idle.
     pub fn skip(&mut self, frames: usize) {
         if !self.is_off() {
             self.ticks.advance(frames);
@@ -128,13 +128,13 @@ impl Tone {
         }
     }
 
-    /// In so many frames what a filter holds falls by 160 dB: the lowest pole is at the low shelf's corner over the root of
-    /// its greatest gain.
+    /// Frames in which the filters' states fall by 160 dB: the lowest pole is at the low shelf's corner divided by the square
+    /// root of its largest gain.
     fn forget_frames(&self) -> u64 {
         (8.0 * LN_10 / (2.0 * PI * 80.0) * self.sample_rate) as u64
     }
 
-    /// Sends both shelves to where their gains are `frames` frames from now.
+    /// Starts ramps of both shelves to the gains that they will have `frames` frames from now.
     fn aim(&mut self, frames: usize) {
         let sample_rate = self.sample_rate;
         for (index, shelf) in self.shelves.iter_mut().enumerate() {
@@ -165,7 +165,7 @@ impl Tone {
         let mut start = 0;
         while start < frames {
             if self.ticks.is_due() {
-                // What filters hold is not heard once both are flat; and none holds numbers below the normal ones.
+                // The filters' states are inaudible once both shelves are flat. They must not become subnormal.
                 if self.is_flat() || self.silent_frames > self.forget_frames() {
                     self.shelves.iter_mut().for_each(|shelf| shelf.state = [0.0; 2]);
                 }
@@ -202,7 +202,7 @@ impl Shelf {
         self.amount[0] + (self.amount[1] - self.amount[0]) * share
     }
 
-    /// A sample of one side through the one-pole filter.
+    /// Filters a sample of one side with the one-pole filter.
     fn low_pass(&mut self, side: usize, sample: f32, share: f32) -> f32 {
         let coefficient = self.coefficient[0] + (self.coefficient[1] - self.coefficient[0]) * share;
         let step = (sample - self.state[side]) * coefficient;

@@ -1,4 +1,4 @@
-//! A vibraphone's motor: loudness that goes up and down, left and right in turn if wanted.
+//! The tremolo of a vibraphone's motor: the gain goes up and down, alternately on both sides if wanted.
 
 use super::smoothed::Smoothed;
 use super::ticks::Ticks;
@@ -6,11 +6,11 @@ use crate::dsp::CONTROL_FRAMES;
 use libm::cos;
 use std::f64::consts::TAU;
 
-/// Multiplies both sides by `1 − depth · (1 − cos φ)/2`, as fans that turn in a vibraphone's tubes do; the right side's
+/// Multiplies both sides by `1 − depth · (1 − cos φ)/2`, like the rotating fans in a vibraphone's tubes. The right side's
 /// `φ` is ahead by a constant angle.
 ///
-/// The gain is exact at control ticks and a straight line between: at 12 Hz there are 125 of them a turn at 48 kHz. At rest
-/// at depth 0 it touches nothing, and the motor stands still. Real-time safe.
+/// The gain is exact at control ticks and linear between them: at 12 Hz there are 125 ticks per turn at 48 kHz. With a constant
+/// depth of 0 it does not change the signal, and the motor stands still. Real-time safe.
 ///
 /// ```
 /// let mut tremolo = sprung::dsp::space::Tremolo::new(48_000.0);
@@ -37,7 +37,7 @@ pub struct Tremolo {
 }
 
 impl Tremolo {
-    /// One that stands still, with 5 Hz.
+    /// A tremolo that is off, with a rate of 5 Hz.
     pub fn new(sample_rate: f64) -> Self {
         Self {
             sample_rate,
@@ -52,7 +52,7 @@ impl Tremolo {
         }
     }
 
-    /// Turns a second, from 0 to 20, from the next control tick on.
+    /// Sets the turns per second, from 0 to 20, from the next control tick on.
     pub fn set_rate(&mut self, rate: f64) {
         if !rate.is_nan() && rate.clamp(0.0, 20.0) != self.rate {
             (self.start, self.turned) = (self.phase(), 0);
@@ -60,17 +60,17 @@ impl Tremolo {
         }
     }
 
-    /// From nothing (0) to down to silence (1), in 20 ms.
+    /// Sets the depth, from 0 (off) to 1 (down to silence), in 20 ms.
     pub fn set_depth(&mut self, depth: f32) {
         self.depth.set(depth.clamp(0.0, 1.0));
     }
 
-    /// How far the right side is ahead, in degrees from 0 to 180, in 20 ms.
+    /// Sets by how much the right side is ahead, in degrees from 0 to 180, in 20 ms.
     pub fn set_stereo_phase(&mut self, degrees: f32) {
         self.stereo_phase.set(degrees.clamp(0.0, 180.0) / 360.0);
     }
 
-    /// The motor is where it starts from, and what moves where it is to be.
+    /// Returns the motor to its start and ends all ramps.
     pub fn reset(&mut self) {
         self.depth.jump(self.depth.target());
         self.stereo_phase.jump(self.stereo_phase.target());
@@ -84,7 +84,7 @@ impl Tremolo {
         turns - libm::floor(turns)
     }
 
-    /// Whether it touches nothing.
+    /// Whether the signal is not changed.
     pub fn is_off(&self) -> bool {
         self.is_flat() && self.ticks.is_due()
     }
@@ -93,23 +93,23 @@ impl Tremolo {
         self.depth.rests_at(0.0) && self.gains[1] == [1.0; 2]
     }
 
-    /// Whether silence that comes in changes nothing but the time: [`Tremolo::skip`] does the same.
+    /// Whether silent input changes nothing but the clock: [`Tremolo::skip`] does the same.
     pub fn is_idle(&self) -> bool {
         self.is_off() || self.tail_frames() == 0 && self.gains[1] == self.gains_at(self.phase(), 0)
     }
 
-    /// Frames until depth and phase are where they are to be.
+    /// Frames until the ramps of depth and phase end.
     pub fn tail_frames(&self) -> u64 {
         self.depth.frames_left().max(self.stereo_phase.frames_left()).into()
     }
 
-    /// Lets frames of silence pass while it is idle: the motor goes on.
+    /// Advances by frames of silence while it is idle. The motor keeps turning.
     pub fn skip(&mut self, frames: usize) {
         if self.is_off() {
             return;
         }
         let to_tick = if self.ticks.is_due() { 0 } else { CONTROL_FRAMES - self.passed };
-        // Without depth it is off from the next control tick on, and its clock stands still there.
+        // Without depth it is off from the next control tick on, and its clock stops there.
         let frames = if self.is_flat() { frames.min(to_tick) } else { frames };
         self.ticks.advance(frames);
         if frames <= to_tick {

@@ -1,11 +1,11 @@
-//! How wide the stereo image is: the side signal against the middle.
+//! The width of the stereo image: the level of the side signal relative to the middle.
 
 use super::smoothed::Smoothed;
 
 /// Scales the difference between left and right: 0 is mono, 1 leaves both as they are, 2 is the widest.
 ///
-/// `middle = (l + r)/2` stays, so mono sums do not change (A. D. Blumlein 1931). At rest at 1 it touches nothing. Real-time
-/// safe.
+/// `middle = (l + r)/2` does not change, so the mono sum stays the same (A. D. Blumlein 1931). With a constant width of 1 it
+/// does not change the signal. Real-time safe.
 ///
 /// ```
 /// let mut width = sprung::dsp::space::Width::new(48_000.0);
@@ -20,7 +20,7 @@ pub struct Width {
 }
 
 impl Width {
-    /// One that leaves everything as it is.
+    /// A width of 1.
     pub fn new(sample_rate: f64) -> Self {
         Self { width: Smoothed::new(1.0, sample_rate) }
     }
@@ -30,22 +30,22 @@ impl Width {
         self.width.set(width.clamp(0.0, 2.0));
     }
 
-    /// Ends what moves.
+    /// Ends the ramp.
     pub fn reset(&mut self) {
         self.width.jump(self.width.target());
     }
 
-    /// Whether it touches nothing.
+    /// Whether the signal is not changed.
     pub fn is_off(&self) -> bool {
         self.width.rests_at(1.0)
     }
 
-    /// Whether silence that comes in changes nothing.
+    /// Whether silent input changes nothing.
     pub fn is_idle(&self) -> bool {
         !self.width.is_moving()
     }
 
-    /// Frames until the width is where it is to be.
+    /// Frames until the ramp of the width ends.
     pub fn tail_frames(&self) -> u64 {
         self.width.frames_left().into()
     }
@@ -53,7 +53,7 @@ impl Width {
     /// Changes `left` and `right`, up to the length of the shorter.
     pub fn process(&mut self, left: &mut [f32], right: &mut [f32]) {
         for (left, right) in left.iter_mut().zip(right) {
-            // Also within a block: the sum of middle and side is rounded.
+            // Checked at every frame, since the sum of middle and side is rounded.
             if self.is_off() {
                 return;
             }

@@ -1,4 +1,4 @@
-//! Choke groups across channels: what each part of an ensemble needs to know about the kits of the others.
+//! Choke groups across channels: the information that each part of an ensemble needs about the kits of the others.
 
 use crate::engine::Synth;
 use crate::engine::note::nearest_key;
@@ -6,7 +6,7 @@ use crate::params::Param;
 use crate::sound::{Kit, Tuning};
 use std::sync::Arc;
 
-/// What a part plays, copied between chunks.
+/// The kit that a part plays, and its choke group. Copied between chunks.
 pub(super) struct Playing {
     kit: Arc<Kit>,
     /// The value of the kit's choke group parameter.
@@ -19,8 +19,8 @@ impl Playing {
         Self { kit: kit.clone(), choke: kit.values().get(Param::Choke) }
     }
 
-    /// Copies what a synth plays. Real-time safe as long as someone else holds the previous kit, so that it is not
-    /// freed here.
+    /// Copies a synth's kit and choke group. Real-time safe as long as the previous kit is also held elsewhere, so that it
+    /// is not freed here.
     pub(super) fn follow(&mut self, synth: &Synth) {
         if !Arc::ptr_eq(&self.kit, synth.kit()) {
             self.kit = synth.kit().clone();

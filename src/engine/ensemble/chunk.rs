@@ -6,7 +6,7 @@ use crate::engine::zones::Owners;
 use crate::sound::Kit;
 use std::sync::Arc;
 
-/// What every part renders between two mixes.
+/// The input of every part between two mixes.
 #[derive(Clone, Copy)]
 pub(super) struct Chunk<'a> {
     pub(super) events: &'a [Event],

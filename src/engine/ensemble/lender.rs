@@ -1,9 +1,9 @@
 //! The pool of voices that the parts of an ensemble share: lends voices before each chunk, takes unused ones back.
 //!
-//! Parts render a chunk independently, on any threads. So before the chunk each part is lent the most that its notes
-//! can need. If the pool is too small for that, the chunk ends at the first note that it has no voices for, and the
-//! notes to steal are chosen by the state of all channels at that frame. So the bits depend on the events alone, not on
-//! threads or block sizes.
+//! Parts render a chunk independently, on any threads. So before the chunk, each part receives the maximum that its
+//! notes can need. If the pool is too small for that, the chunk ends at the first note for which there are no voices,
+//! and the notes to steal are chosen by the state of all channels at that frame. So the output depends on the events
+//! alone, and is bit for bit the same for all numbers of threads and block sizes.
 
 use super::chunk::Chunk;
 use super::part::Part;
@@ -24,19 +24,19 @@ pub(super) struct Lender {
     pool: VoicePool<SynthVoice>,
 }
 
-/// The most that one note of a part can take from the pool, judging by the events of the chunk that were examined so
-/// far.
+/// The maximum that one note of a part can take from the pool, according to the events of the chunk that were examined
+/// so far.
 struct MostNeeded {
-    /// The most for any kit that the part has had in the chunk; none until it is first needed.
+    /// The maximum over all kits that the part has had in the chunk; none until it is first needed.
     by_kits: Option<Footprint>,
-    /// An event of the chunk changes the number of unison voices.
+    /// Whether an event of the chunk changes the number of unison voices.
     any_unison: bool,
 }
 
 impl MostNeeded {
     const UNKNOWN: Self = Self { by_kits: None, any_unison: false };
 
-    /// The most for any kit that the part has had in the chunk.
+    /// The maximum over all kits that the part has had in the chunk.
     fn by_kits(&mut self, synth: &Synth) -> Footprint {
         *self.by_kits.get_or_insert_with(|| synth.footprint())
     }
@@ -70,7 +70,7 @@ impl Lender {
             let (most, synth) = (&mut most_needed[owner], &parts[owner].synth);
             match event.kind {
                 EventKind::NoteOn { key, .. } | EventKind::Strike { key, .. } => {
-                    // Events before this one in the chunk may change what the note needs.
+                    // Events before this one in the chunk may change the need of the note.
                     let is_first = index == 0 && chunk.frame(event) == 0;
                     let need = match is_first {
                         true => synth.need(nearest_channel(event.channel), key),

@@ -33,14 +33,14 @@ const CHUNK: usize = 1024;
 /// play on the instrument of their master channel. A note of a choke group silences that group on every
 /// channel. One limiter is at the end of the mix: it is on while any channel that has had a note has a kit that
 /// switches it on. Each channel has its own effects, and only those that are on take time; beside them the channels can
-/// share one space ([`Mix::space`]). Gives the same bits however the frames are divided into blocks. Real-time
-/// safe once built.
+/// share one space ([`Mix::space`]). The output is bit for bit the same for all block
+/// sizes. Real-time safe once built.
 pub struct Ensemble {
     parts: Vec<Part>,
     programs: Vec<Arc<Kit>>,
     /// The kits that channels were built with, kept so that a program change never frees one on the audio thread.
     starts: Vec<Arc<Kit>>,
-    /// What each part plays: its kit and choke groups, which other parts need to know.
+    /// The kit and choke group of each part, which the other parts need to know.
     playing: [Playing; 16],
     /// Maximum length of a chunk in frames.
     chunk_frames: usize,
@@ -108,8 +108,8 @@ impl Ensemble {
         self.parts.iter_mut().for_each(|part| part.synth.reserve_space());
     }
 
-    /// The same ensemble, rendering up to `frames` frames (at least 1) at a time. Longer chunks than the default pay if
-    /// parts are rendered on several threads. Allocates.
+    /// The same ensemble, rendering up to `frames` frames (at least 1) at a time. If parts are rendered on several threads,
+    /// chunks longer than the default are faster. Allocates.
     #[must_use]
     pub fn with_chunk(mut self, frames: usize) -> Self {
         self.chunk_frames = frames.max(1);
@@ -120,7 +120,7 @@ impl Ensemble {
         self
     }
 
-    /// The same ensemble, mixed in another way. Allocates.
+    /// The same ensemble with the gain and the shared space of `mix`. Allocates.
     #[must_use]
     pub fn with_mix(mut self, mix: &Mix) -> Self {
         let sample_rate = self.parts[0].synth.sample_rate();

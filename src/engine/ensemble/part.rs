@@ -6,7 +6,7 @@ use crate::engine::synth::part as part_of;
 use crate::engine::{Event, EventKind, Synth};
 use crate::params::Param;
 
-/// What one channel plays. Parts do not depend on each other while a chunk is played.
+/// The synth of one channel and its output. Parts do not depend on each other while a chunk is played.
 pub struct Part {
     channel: usize,
     pub(super) synth: Synth,
@@ -79,7 +79,7 @@ impl Part {
         }
     }
 
-    /// What it has played in the chunk, if it is heard.
+    /// The part's frames of the chunk. Valid only if `is_heard` is true.
     pub(super) fn output(&self) -> [&[f32]; 2] {
         [&self.left, &self.right]
     }

@@ -8,7 +8,7 @@ use crate::engine::Event;
 use crate::engine::synth::part;
 use crate::engine::zones::Owners;
 
-/// Where a chunk ends, and why.
+/// The end of a chunk, and its reason.
 struct Cut {
     /// How many of the events belong to the chunk.
     events: usize,
@@ -23,10 +23,10 @@ struct Cut {
 enum Cause {
     /// The block ends, or the chunk has its maximum length.
     Length,
-    /// The next event is a note that the pool has no room for. Which notes are stolen depends on the state of all parts
-    /// at its frame, so they are all rendered up to it.
+    /// The next event is a note for which the pool has no room. The choice of the notes to steal depends on the state of
+    /// all parts at this frame, so all parts are rendered up to it.
     Pool,
-    /// The next event configures an MPE zone. Channels change their owners between two chunks only.
+    /// The next event configures an MPE zone. The owners of channels change only between two chunks.
     Zone { master: u8, members: u8 },
 }
 
@@ -46,15 +46,15 @@ impl Ensemble {
         self.process_with_input(events, &[], left, right);
     }
 
-    /// As [`Ensemble::process`], with the sound `input` that comes in, as in
+    /// As [`Ensemble::process`], with the incoming sound `input`, as in
     /// [`Synth::process_with_input`](crate::engine::Synth::process_with_input). Real-time safe.
     pub fn process_with_input(&mut self, events: &[Event], input: &[f32], left: &mut [f32], right: &mut [f32]) {
         self.process_by(|parts, play| parts.iter_mut().for_each(play), events, input, left, right);
     }
 
     /// As [`Ensemble::process_with_input`], but `each` runs the parts: it must call the function that it receives once with
-    /// every part, in any order and on any threads, since no part depends on another. The bits are the same. As real-time
-    /// safe as `each` is.
+    /// every part, in any order and on any threads, since no part depends on another. The output is bit for bit the same.
+    /// As real-time safe as `each` is.
     pub fn process_by(
         &mut self,
         each: impl Fn(&mut [Part], &(dyn Fn(&mut Part) + Sync)),
@@ -64,7 +64,7 @@ impl Ensemble {
         right: &mut [f32],
     ) {
         let (frames, mut start) = (left.len().min(right.len()), 0);
-        // At least once: a block without frames can still have events.
+        // Runs at least once: a block without frames can still have events.
         loop {
             let owners = self.owners;
             let cut = self.cut(events, start, frames);
@@ -90,7 +90,7 @@ impl Ensemble {
             let (left, right) = (&mut left[start..cut.end], &mut right[start..cut.end]);
             left.fill(0.0);
             right.fill(0.0);
-            // In channel order: the sum's bits depend on the order of the additions.
+            // In channel order, since the rounding of the sum depends on the order of the additions.
             self.parts.iter().for_each(|part| part.add_to(left, right));
             let mix = [&mut *left, &mut *right];
             let rings = self.shared_space.as_mut().is_some_and(|space| space.process(&chunk, &self.parts, mix));
@@ -157,7 +157,7 @@ impl Ensemble {
                 self.parts[to].synth.set_channel(channel, held);
             }
         }
-        // Every part needs to know the zones.
+        // Every part needs the zones.
         self.parts.iter_mut().for_each(|part| part.synth.configure_zone(master, members));
         self.parts[usize::from(before.of(master))].synth.handle(event);
     }

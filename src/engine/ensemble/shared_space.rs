@@ -1,4 +1,4 @@
-//! The space that all channels of an ensemble share: each sends it as much as its controller 91 says.
+//! The space that all channels of an ensemble share, with one send for each channel, set by controller 91.
 
 use super::chunk::Chunk;
 use super::part::Part;
@@ -12,15 +12,16 @@ use crate::engine::space::{Space, needs_bodies};
 use crate::engine::synth::flush;
 use crate::params::{Param, Values};
 
-/// Gain of a full send, −8 dB. Measured on the demo songs and a plate: it then returns 3 dB less than it was sent, and 11 to
-/// 13 dB less at the default; FluidSynth 2.3 returns 16 to 20 dB less, an SC-55 more.
+/// Gain of a full send, −8 dB. Measured with the demo songs and a plate: the level of the return is 3 dB below that of the
+/// channels at a full send, and 11 to 13 dB below at the default send. It is 16 to 20 dB below in FluidSynth 2.3, and higher
+/// in an SC-55.
 const FULL_SEND: f32 = 0.4;
 
-/// Time in which a send moves to another value.
+/// Ramp time of a send in seconds.
 const SMOOTHING_SECONDS: f64 = 0.02;
 
-/// One space for sixteen channels. It hears them after their own effects, and only what it adds is mixed to them.
-/// Real-time safe once built.
+/// One space for sixteen channels. Its input comes after the channels' own effects, and only its wet signal is added to
+/// the mix. Real-time safe once built.
 pub(super) struct SharedSpace {
     space: Space,
     sends: [Ramp; 16],
@@ -34,7 +35,7 @@ impl SharedSpace {
     pub(super) fn new(sample_rate: f64, params: &[(Param, f32)], frames: usize) -> Option<Self> {
         let mut values = Values::default();
         params.iter().filter(|(param, _)| param.is_of_space()).for_each(|(param, value)| values.set(*param, *value));
-        // What is dry is in the mix already.
+        // The dry signal is in the mix already, so the space is fully wet.
         values.set(Param::SpaceMix, Param::SpaceMix.info().max);
         if !needs_bodies(&values) {
             return None;
@@ -57,12 +58,12 @@ impl SharedSpace {
         self.right.resize(frames, 0.0);
     }
 
-    /// Whether it rings below −120 dBFS or not at all, and none of its settings is moving.
+    /// Whether the space's sound is below −120 dBFS and no setting is moving.
     pub(super) fn is_idle(&self) -> bool {
         !self.space.is_awake()
     }
 
-    /// Hears what the parts have played in a chunk, and adds its own sound to their mix. Returns whether it sounds.
+    /// Processes the output of the parts in a chunk, and adds the space's sound to their mix. Returns whether it sounds.
     pub(super) fn process(&mut self, chunk: &Chunk, parts: &[Part], [left, right]: [&mut [f32]; 2]) -> bool {
         self.left[..chunk.frames].fill(0.0);
         self.right[..chunk.frames].fill(0.0);
@@ -94,7 +95,7 @@ impl SharedSpace {
         true
     }
 
-    /// Adds up what the channels send between two frames of a chunk, in channel order.
+    /// Sums the sends of the channels between two frames of a chunk, in channel order.
     fn gather(&mut self, parts: &[Part], from: usize, to: usize) {
         let Self { sends, left, right, .. } = self;
         for (send, part) in sends.iter_mut().zip(parts) {
@@ -108,7 +109,7 @@ impl SharedSpace {
     }
 }
 
-/// Adds frames to a sum, with a gain that moves or, mostly, rests.
+/// Adds frames to a sum, with a gain that is usually constant.
 fn add(sum: &mut [f32], frames: &[f32], gain: &Ramp) {
     let both = sum.iter_mut().zip(frames);
     let resting = gain.after(u32::MAX);

@@ -24,8 +24,8 @@ pub(crate) struct Bus {
     /// Sources that any route reads, one bit each; and, in the next field, those that routes to macros or amounts read.
     read: u32,
     read_by_movers: u32,
-    /// Oscillators or envelopes modulate a parameter that decides when a note is over, or may do so through other
-    /// routes.
+    /// Whether oscillators or envelopes modulate a parameter that decides when a note is over, or a macro or amount through
+    /// which they may do so.
     moves_the_end: bool,
 }
 
@@ -83,7 +83,7 @@ impl Bus {
         bus
     }
 
-    /// The index of a destination; it is added if it is new.
+    /// Returns the index of a destination. Adds the destination if it is new.
     fn place_of(&mut self, param: Param) -> usize {
         let known = self.destinations().iter().position(|destination| destination.param == param);
         known.unwrap_or_else(|| {
@@ -137,7 +137,7 @@ impl Bus {
         self.read_by_movers
     }
 
-    /// Whether a route leads to a parameter.
+    /// Whether any route has this parameter as its destination.
     pub(crate) fn leads_to(&self, param: Param) -> bool {
         self.destinations().iter().any(|destination| destination.param == param)
     }

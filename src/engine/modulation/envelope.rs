@@ -2,7 +2,7 @@
 
 use crate::params::{PARAMS, Param};
 
-/// The parameters of an envelope, read when a note is struck.
+/// The parameters of an envelope, as modulated at a strike.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Times {
     /// Length of each stage in seconds; infinite for stages that do not end by themselves.
@@ -119,9 +119,9 @@ impl Envelope {
     }
 }
 
-/// Curve from 0 to 1: linear if `bend` is 1, fast at first if it is smaller, slow at first if it is greater. It is a
-/// hyperbola, which needs one division, unlike an exponential (Schlick 1994, "Fast alternatives to Perlin's bias and
-/// gain functions").
+/// Curve from 0 to 1: linear if `bend` is 1, fast at first if it is smaller, slow at first if it is greater. A hyperbola
+/// is used, since it needs only one division, unlike an exponential (Schlick 1994, "Fast alternatives to Perlin's bias
+/// and gain functions").
 fn bent(share: f32, bend: f32) -> f32 {
     share / (share + bend * (1.0 - share))
 }

@@ -51,7 +51,7 @@ impl Lfo {
     }
 }
 
-/// `sin 2πx` for 0 ≤ x ≤ 1, within 4e−6, at a fifth of the time that an exact one takes.
+/// `sin 2πx` for 0 ≤ x ≤ 1, with an error of at most 4e−6, in a fifth of the time of an exact sine.
 fn sine_of_cycles(x: f32) -> f32 {
     // The angle is folded to the quarter cycle around 0; there the sine's power series up to the ninth power is used.
     let centred = if x > 0.5 { x - 1.0 } else { x };

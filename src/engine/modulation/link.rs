@@ -1,4 +1,4 @@
-//! One route in the form in which it is evaluated: the sources that it reads, and the offset that it gives.
+//! One route in the form in which it is evaluated: the sources that it reads, and the offset of its destination.
 
 use crate::params::Param;
 use crate::patch::routes::{MAX_ROUTES, Response, Route, Source, place_of_amount};
@@ -6,7 +6,7 @@ use crate::patch::routes::{MAX_ROUTES, Response, Route, Source, place_of_amount}
 /// Number of sources.
 pub(crate) const SOURCES: usize = Source::ALL.len();
 
-/// Values of all sources, by `Source as usize`. After them is a 1, by which routes without a second source are scaled.
+/// Values of all sources, by `Source as usize`. The element after them is 1: the scale of routes without a second source.
 /// The length is a power of two, so that [`Link::travel`] needs no bounds checks.
 pub(crate) type Sources = [f32; (SOURCES + 1).next_power_of_two()];
 
@@ -54,7 +54,7 @@ impl Link {
         Self { place: place as u8, to: to as u8, source, scale, response }
     }
 
-    /// Adds a travel to the offset of the destination.
+    /// Adds an offset in knob travel to that of the destination.
     #[inline]
     pub(super) fn add(&self, travel: f32, offsets: &mut Offsets) {
         offsets[usize::from(self.to) % offsets.len()] += travel;
@@ -64,7 +64,7 @@ impl Link {
     #[inline]
     pub(super) fn travel(&self, sources: &Sources, amounts: &Amounts) -> f32 {
         let [source, scale] = [self.source, self.scale].map(|index| sources[usize::from(index) % sources.len()]);
-        // Most routes are linear, and a branch to one of the four curves takes as long as all the rest.
+        // Most routes are linear, and the branch to one of the four curves would take as long as the rest of the function.
         let value = if self.response == Response::Linear { source } else { self.response.apply(source) };
         amounts[usize::from(self.place) % amounts.len()] * value * scale
     }

@@ -2,7 +2,7 @@
 //!
 //! `note` holds the host's offsets for one note. `bus` holds the routes; each is a `link` to a `destination`. `lfo` and
 //! `envelope` are the two kinds of source that change with time; `moving` holds those of one voice. `settings` holds
-//! the parameter values that sources and routes use. `modulators` joins all this for one voice: at each control tick it
+//! the parameter values that sources and routes use. `modulators` combines them for one voice: at each control tick it
 //! reads the sources and computes the destinations' values.
 
 mod bus;

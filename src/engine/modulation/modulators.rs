@@ -40,15 +40,15 @@ pub(crate) struct Struck {
 pub(crate) struct Modulators {
     bus: Bus,
     settings: Settings,
-    /// Values of all sources. The macros among them include what routes add to them.
+    /// Values of all sources. The values of the macros include the offsets from routes.
     sources: Sources,
-    /// Amounts of the routes, including what routes add to them.
+    /// Amounts of the routes, including the offsets from routes.
     amounts: Amounts,
     /// The controllers at the last control tick.
     positions: Positions,
     /// Sources that have changed since the last control tick, one bit each.
     changed: u32,
-    /// The next control tick must compute every destination, since the settings have changed or the controls were
+    /// Whether the next control tick must compute every destination, since the settings have changed or the controls were
     /// replaced.
     unsettled: bool,
     /// Offsets of the destinations in knob travel: at the last control tick (only those that sounding notes follow),
@@ -152,8 +152,8 @@ impl Modulators {
         }
     }
 
-    /// Calls `tell` with each destination and its value: as of the last control tick, or for what only strikes read, as of
-    /// the last strike.
+    /// Calls `tell` with each destination and its value at the last control tick. A destination that only strikes read has the
+    /// value of the last strike.
     pub(crate) fn each_value(&self, mut tell: impl FnMut(Param, f32)) {
         for (place, destination) in self.bus.destinations().iter().enumerate() {
             let base = self.settings.bases[place];
@@ -168,14 +168,14 @@ impl Modulators {
         }
     }
 
-    /// Sets the note's brightness after the strike was set but before it has begun, and computes the offsets of the
-    /// strike again.
+    /// Sets the note's brightness between the setup of the strike and its first frame, and computes the strike's offsets
+    /// again.
     pub(crate) fn shade(&mut self, timbre: f32) {
         self.set_source(Source::Timbre, timbre);
         self.struck_offsets = self.all_offsets();
     }
 
-    /// The key was released, at this velocity from 0 to 1.
+    /// Handles the release of the key, at a velocity 0–1.
     pub(crate) fn release(&mut self, velocity: f32) {
         self.set_source(Source::ReleaseVelocity, velocity);
         self.moving.release();
@@ -203,7 +203,7 @@ impl Modulators {
         self.share(shared);
     }
 
-    /// The next control tick computes every destination again, since the controls were replaced by unmodulated ones.
+    /// Makes the next control tick compute every destination, since the controls were replaced by unmodulated ones.
     pub(crate) fn unsettle(&mut self) {
         self.unsettled = true;
     }

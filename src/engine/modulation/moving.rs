@@ -14,8 +14,8 @@ pub(super) const ENVELOPES: usize = 2;
 /// Oscillators and envelopes of a voice. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moving {
-    /// The state now and the state `ahead_seconds` later, which is usually the next control tick. `now` is the index of
-    /// the present state: if no event cuts the tick short, the two swap roles and nothing is computed twice.
+    /// The state now and the state `ahead_seconds` later, which is usually the next control tick. `now` is the index of the
+    /// current state: if no event ends the tick early, the two swap roles and nothing is computed twice.
     states: [State; 2],
     now: usize,
     ahead_seconds: f64,
@@ -78,7 +78,7 @@ impl Moving {
         self.states[1 - self.now] = *state;
     }
 
-    /// The key was released: envelopes go to their release stage.
+    /// Handles the release of the key: envelopes go to their release stage.
     pub(super) fn release(&mut self) {
         let envelopes = self.states[self.now].envelopes.iter_mut();
         envelopes.zip(&self.times).for_each(|(envelope, times)| envelope.release(times));
@@ -170,7 +170,7 @@ mod tests {
         (moving, Bus::new(&routes))
     }
 
-    /// The values of all sources, so many frames ahead.
+    /// The values of all sources `frames` frames from now.
     fn ahead(moving: &mut Moving, bus: &Bus, frames: f64) -> [f32; 5] {
         let mut values = [f32::NAN; 5];
         moving.look_ahead(bus, &RATES, &SHAPES, frames / 48_000.0, |first, index, value| {

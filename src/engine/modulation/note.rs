@@ -17,7 +17,7 @@ pub(crate) fn moved(param: Param, value: f32, offset: f32) -> f32 {
     info.denormalise(info.normalise(value) + f64::from(offset))
 }
 
-/// How many parameters sounding notes follow while they sound.
+/// Number of parameters that sounding notes follow.
 const FOLLOWED: usize = {
     let (mut index, mut count) = (0, 0);
     while index < PARAM_COUNT {
@@ -36,8 +36,8 @@ pub(crate) struct NoteModulation {
 #[derive(Clone, Copy, Debug)]
 struct Moved {
     param: Param,
-    /// False once the note follows the instrument's value again. Not an `Option` of the offset: in this order the fields
-    /// take a sixth less, and every voice has room for all parameters.
+    /// False once the note follows the instrument's value again. This is a separate field because an `Option` of the offset
+    /// would make the struct a fifth larger, and every voice has room for all parameters.
     has_offset: bool,
     offset: f32,
     value: Ramp,
@@ -61,7 +61,7 @@ impl NoteModulation {
         }
     }
 
-    /// Drops all offsets: from the next [`NoteModulation::aim`] the note follows the instrument.
+    /// Drops all offsets: after the next [`NoteModulation::aim`] the note follows the instrument.
     pub(crate) fn let_go(&mut self) {
         self.moved.iter_mut().flatten().for_each(|moved| moved.has_offset = false);
     }

@@ -19,7 +19,7 @@ pub(super) fn of_lfo(first: Param, index: usize) -> Param {
     PARAMS[first as usize + index * rows].param
 }
 
-/// Values that voices use: of the modulators' own parameters, and of the routes' destinations. Plain data.
+/// Values that voices use: those of the modulators' own parameters and of the routes' destinations. Plain data.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
     /// Number of these settings: each new version has the next one.
@@ -66,7 +66,7 @@ impl Settings {
         }
     }
 
-    /// Settings for one note only. Their serial is one that the instrument will not use next, so that the two differ.
+    /// Settings for one note only. The instrument will not use their serial number next, so the two differ.
     pub(crate) fn own(&self, bus: &Bus, value: impl Fn(Param) -> f32, beat_rate: f64) -> Self {
         Self { serial: self.serial.wrapping_sub(1), ..self.next(bus, value, beat_rate) }
     }

@@ -1,14 +1,14 @@
-//! The bodies that reverberate and ring along, as tables of modes that all synths share.
+//! The bodies of spaces and of sympathetic strings, as tables of modes that all synths share.
 
 use crate::dsp::space::{Material, ModeSet, Plate, Room, Spring, Strings};
 use crate::params::{Space, SpaceMaterial, StringsTuning};
 use crate::units::frequency_from_key;
 use std::sync::LazyLock;
 
-/// The modes of each body at its own size, made when a synth first needs room for them.
+/// The modes of each body at its reference size, computed when a synth first reserves room for bodies.
 ///
-/// A body of another size or material has all frequencies higher or lower by one ratio, so the tables never change, and no
-/// knob needs a body to be made.
+/// A body of another size or material has all its frequencies multiplied by one ratio. So the tables never change, and
+/// changing a knob does not need a new table.
 #[derive(Debug)]
 pub(super) struct Bodies {
     plate: ModeSet,
@@ -26,7 +26,7 @@ const MINOR: [u8; 8] = [36, 43, 48, 51, 55, 60, 63, 67];
 const FIFTHS: [u8; 6] = [36, 43, 50, 57, 64, 71];
 
 impl Bodies {
-    /// The one that there is. The first call makes it, which takes some 10 ms: not for the audio thread.
+    /// The shared instance. The first call creates it, which takes some 10 ms, so do not make it on the audio thread.
     pub(super) fn shared() -> &'static Self {
         static SHARED: LazyLock<Bodies> = LazyLock::new(Bodies::new);
         &SHARED
@@ -47,7 +47,7 @@ impl Bodies {
         }
     }
 
-    /// Most masses of a space, and of strings.
+    /// The largest number of masses of a space, and that of strings.
     pub(super) fn most(&self) -> [usize; 2] {
         let most = |sets: &[&ModeSet]| sets.iter().map(|modes| modes.len()).max().unwrap_or(0);
         [
@@ -77,11 +77,11 @@ impl Bodies {
     }
 }
 
-/// The frequencies of a space of a size (1 is its own) and a material, against those of its table. Real-time safe.
+/// Frequency ratio of a space with a size (1 is the reference) and a material to the modes in its table. Real-time safe.
 ///
-/// Of a plate as thick as before, the modes go with the inverse of its area and with the stiffness of a sheet
-/// ([`Material::plate_stiffness`]); of a tank that is larger as a whole, with the inverse of its size and the speed of
-/// waves in the wire ([`Material::bar_speed`]); of a room, with the inverse of its size.
+/// Plate of constant thickness: inverse to the area, and proportional to the stiffness of a sheet
+/// ([`Material::plate_stiffness`]). Spring tank scaled in all dimensions: inverse to its size, and proportional to the speed
+/// of waves in the wire ([`Material::bar_speed`]). Room: inverse to its size.
 pub(super) fn pitch(space: Space, size: f64, material: SpaceMaterial) -> f64 {
     let material = match material {
         SpaceMaterial::Steel => Material::STEEL,

@@ -1,8 +1,8 @@
-//! What is behind the voices of a synth: strings, tremolo, drive, tone, space and width, one after the other.
+//! The effects after the voices of a synth: strings, tremolo, drive, tone, space and width, in series.
 //!
-//! Those that are off touch nothing. The rest sleep once what they hold is below −120 dBFS and silence comes in; then they
-//! are told of frames that pass, and do with them what they would have done with silence. So it does not matter for the
-//! bits when somebody finds that nothing sounds, and neither do blocks.
+//! A section that is off does not change the signal. A section that is on becomes idle when its content is below −120 dBFS and
+//! its input is silent. [`Space::skip`] then advances it by the frames that pass, with the same result as silent input. So the
+//! output does not depend on the block size, nor on the frame at which the silence is detected.
 
 mod bodies;
 mod resonant;
@@ -12,22 +12,22 @@ use crate::dsp::space::{Overdrive, Tone, Tremolo, Width};
 use crate::params::{self, Param, Values};
 use resonant::Resonant;
 
-/// The sections behind the voices. Real-time safe once made, but for [`Space::reserve`].
+/// The effects after the voices. Real-time safe once made, except for [`Space::reserve`].
 pub(crate) struct Space {
     sample_rate: f64,
-    /// The bodies, if there is room for them.
+    /// Strings and space; none until room for them is reserved.
     resonant: Option<Box<Resonant>>,
     tremolo: Tremolo,
     drive: Overdrive,
     tone: Tone,
     width: Width,
-    /// A section does or may do something to what passes.
+    /// Whether any section changes or may change the signal.
     is_on: bool,
-    /// A section holds something, or is on its way to another setting.
+    /// Whether any section still sounds or is still moving to another setting.
     is_awake: bool,
 }
 
-/// Parameters of the sections, each after those that it needs; [`Param::Space`] brings size, material and mix along.
+/// Parameters of the sections, each after those that it needs. [`Param::Space`] also sets size, material and mix.
 const ALL: [Param; 16] = [
     Param::StringsTuning,
     Param::StringsTune,
@@ -53,7 +53,7 @@ pub(crate) fn needs_bodies(values: &Values) -> bool {
 }
 
 impl Space {
-    /// All off, without room for bodies.
+    /// All sections off, without room for bodies.
     pub(crate) fn new(sample_rate: f64) -> Self {
         Self {
             sample_rate,
@@ -79,13 +79,13 @@ impl Space {
         self.resonant.is_some()
     }
 
-    /// Takes over one parameter: in 20 ms, or `at_once`, which is for times when nothing sounds, here or before.
+    /// Applies one parameter: within 20 ms, or `at_once`, which is meant for when neither the voices nor the effects sound.
     pub(crate) fn set(&mut self, param: Param, values: &Values, at_once: bool) {
         self.follow(param, values);
         self.finish(at_once);
     }
 
-    /// Takes over all parameters, likewise.
+    /// Applies all parameters, in the same way.
     pub(crate) fn set_all(&mut self, values: &Values, at_once: bool) {
         ALL.into_iter().for_each(|param| self.follow(param, values));
         self.finish(at_once);
@@ -113,7 +113,7 @@ impl Space {
         if at_once { self.reset() } else { self.look() }
     }
 
-    /// Silence, and everything where it is to be.
+    /// Silences all sections and sets all smoothed values to their targets.
     pub(crate) fn reset(&mut self) {
         if let Some(resonant) = &mut self.resonant {
             resonant.strings.reset();
@@ -126,7 +126,7 @@ impl Space {
         self.look();
     }
 
-    /// Finds what there is to do from now on.
+    /// Updates `is_on` and `is_awake`.
     fn look(&mut self) {
         let Self { tremolo, drive, tone, width, .. } = self;
         let (mut off, mut idle) = (true, true);
@@ -139,12 +139,12 @@ impl Space {
             self.is_on && !(idle && tremolo.is_idle() && drive.is_idle() && tone.is_idle() && width.is_idle());
     }
 
-    /// Whether something sounds, or is on its way to another setting.
+    /// Whether any section still sounds or is still moving to another setting.
     pub(crate) fn is_awake(&self) -> bool {
         self.is_awake
     }
 
-    /// Sends what the voices play through all sections, in place. Returns whether any has touched it.
+    /// Processes the voices' output through all sections, in place. Returns whether any section is on.
     pub(crate) fn process(&mut self, left: &mut [f32], right: &mut [f32]) -> bool {
         if !self.is_on {
             return false;
@@ -163,7 +163,7 @@ impl Space {
         true
     }
 
-    /// Lets frames of silence pass while it is not awake.
+    /// Advances by silent frames, while the effects are not awake.
     pub(crate) fn skip(&mut self, frames: usize) {
         if !self.is_on {
             return;

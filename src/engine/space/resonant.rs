@@ -1,11 +1,11 @@
-//! The sections whose sound is that of a body of many masses: sympathetic strings and the space.
+//! The effects that are bodies of many masses: sympathetic strings and the space.
 
 use super::bodies::{self, Bodies};
 use crate::dsp::space::{Decay, ModalReverb, Resonator};
 use crate::params::{Param, Space, StringsTuning, Values};
 use crate::units::ratio_from_semitones;
 
-/// Level of strings at 100 %, against what drives them as noise does. What they are tuned to moves them far more.
+/// Level of strings at 100 %. Set with noise as their input; input at the strings' own frequencies excites them far more.
 const FULL_STRINGS: f32 = 0.3;
 
 /// Sections that are bodies of many masses.

@@ -1,14 +1,14 @@
-//! How long what is behind the voices goes on.
+//! The length of the tail of the effects after the voices.
 
 use super::Space;
 use crate::dsp::space::ModalReverb;
 
-/// Tails that are longer than so many frames have no end.
+/// Longer tails count as endless. In frames.
 const ENDLESS: u64 = 1 << 48;
 
 impl Space {
-    /// At most how many frames it takes until all of it sleeps, if voices play for `frames` frames more, no louder than
-    /// `peak`, and then there is silence. Exactly `frames` if all is off.
+    /// Upper bound of the frames until all effects are idle, if voices play for another `frames` frames with at most the
+    /// amplitude `peak`, and are silent afterwards. Exactly `frames` if all effects are off.
     pub(crate) fn tail_frames(&self, frames: u64, peak: f64) -> u64 {
         if !self.is_on || frames > ENDLESS {
             return frames;
@@ -21,7 +21,7 @@ impl Space {
         tail.frames = tail.frames.max(self.tremolo.tail_frames());
         if !self.drive.is_off() {
             let own = if tail.frames > 0 { self.drive.tail_frames_after() } else { self.drive.tail_frames() };
-            // What filters overshoot, doubled.
+            // Twice the peak, to allow for the overshoot of the filters.
             tail = Tail { frames: tail.frames.saturating_add(own), peak: 2.0 * self.drive.peak_after(tail.peak) };
         }
         if !self.tone.is_off() {
@@ -35,7 +35,7 @@ impl Space {
     }
 }
 
-/// How long something sounds at most, and how loudly.
+/// Upper bounds of the duration and the amplitude of a sound.
 #[derive(Clone, Copy)]
 struct Tail {
     frames: u64,

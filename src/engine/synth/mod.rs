@@ -31,7 +31,7 @@ const POOL: Footprint = Footprint { voices: 256, cells: 256 };
 
 /// A synthesizer that plays one kit on sixteen MIDI channels, which can form MPE zones.
 ///
-/// The same seed, kit, events and sample rate give the same bits, however the frames are divided into blocks.
+/// The same seed, kit, events and sample rate give the same output, bit for bit, for all block sizes.
 /// [`Synth::new`], [`Synth::prepare`], [`Synth::reserve`], [`Synth::reserve_space`] and [`Synth::set_patch`] allocate.
 /// [`Synth::set_kit`] is real-time safe under the conditions in its documentation. All other methods always are.
 pub struct Synth {
@@ -40,7 +40,7 @@ pub struct Synth {
     own_pool: Option<Footprint>,
     instruments: Instruments,
     channels: Channels,
-    /// What is behind the voices.
+    /// The effects after the voices.
     space: Space,
     limiter: Limiter,
     /// Number of notes started so far.
@@ -215,7 +215,7 @@ impl Synth {
         self.limiter.work()
     }
 
-    /// What a note of this key on a channel would take from the pool if it started now.
+    /// The voices and cells that a note of this key on a channel would take from the pool if it started now.
     pub(super) fn need(&self, channel: u8, key: u8) -> Footprint {
         let (channel, key) = (nearest_channel(channel), nearest_key(key));
         let Some(instrument) = self.instruments.of_key(key) else { return Footprint::NONE };
@@ -238,13 +238,13 @@ impl Synth {
         &mut self.manager
     }
 
-    /// Passes the parameters of the effects on: they apply at once while nothing sounds.
+    /// Applies the parameters of the effects: at once if nothing sounds.
     fn follow_space(&mut self) {
         let at_once = self.is_silent();
         self.space.set_all(self.instruments.values(), at_once);
     }
 
-    /// Passes the parameters on that belong to the voice manager.
+    /// Applies the parameters that belong to the voice manager.
     fn configure_manager(&mut self) {
         let value = |param| self.instruments.modulated(param);
         let mode = match self.instruments.kit().is_single() {

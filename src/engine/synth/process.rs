@@ -13,9 +13,8 @@ impl Synth {
         self.process_with_input(events, &[], left, right);
     }
 
-    /// As [`Synth::process`], with sound that comes in: it drives the modes of notes whose keys are held, at the level
-    /// that their sounds have for it ([`Param::InputLevel`]). `input` has a sample for each frame; where it is shorter,
-    /// nothing comes in.
+    /// As [`Synth::process`], with incoming sound: it drives the modes of notes whose keys are held, at the input level of
+    /// their sounds ([`Param::InputLevel`]). `input` has a sample for each frame; missing samples count as silence.
     pub fn process_with_input(&mut self, events: &[Event], input: &[f32], left: &mut [f32], right: &mut [f32]) {
         let frames = left.len().min(right.len());
         let (left, right) = (&mut left[..frames], &mut right[..frames]);
@@ -56,7 +55,7 @@ impl Synth {
         true
     }
 
-    /// Lets frames pass in which nothing sounds.
+    /// Advances by frames in which nothing sounds.
     pub(in crate::engine) fn rest(&mut self, frames: usize) {
         self.pass(frames);
         self.space.skip(frames);
@@ -121,7 +120,7 @@ impl Synth {
     }
 }
 
-/// The frames of an input from one to before another, as far as it has them.
+/// The samples of an input from `start` up to, but not including, `end`. Shorter if the input ends earlier.
 pub(in crate::engine) fn part(input: &[f32], start: usize, end: usize) -> &[f32] {
     &input[start.min(input.len())..end.min(input.len())]
 }
@@ -131,7 +130,7 @@ pub(in crate::engine) fn flush(left: &mut [f32], right: &mut [f32]) {
     left.iter_mut().chain(right).for_each(|sample| *sample = without_subnormals(*sample));
 }
 
-/// Replaces subnormal numbers by zero, since CPUs may take a hundred times as long for them. They come from a very low
+/// Replaces subnormal numbers by zero, since CPUs may take a hundred times as long for them. They result from a very low
 /// gain, or from the far side of a pan law, while the sound itself has nearly decayed.
 fn without_subnormals(sample: f32) -> f32 {
     if sample.abs() < f32::MIN_POSITIVE { 0.0 } else { sample }

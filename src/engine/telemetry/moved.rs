@@ -1,4 +1,4 @@
-//! What a player has moved last, for a display that learns it.
+//! The controller that was moved last, for a display that lets the user assign it.
 
 use crate::engine::EventKind;
 use crate::engine::midi::controller::{BREATH, BRIGHTNESS, EXPRESSION, WHEEL};
@@ -6,7 +6,7 @@ use crate::patch::routes::Source;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Something that players move.
+/// A control that players move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Moved {
     /// A controller, by its number.
@@ -17,12 +17,12 @@ pub enum Moved {
     Pressure,
 }
 
-/// The numbers of what is no controller.
+/// Numbers of the controls that are not MIDI controllers, beyond 127.
 const BEND: u8 = 128;
 const PRESSURE: u8 = 129;
-/// Half of the way, as MIDI has it.
+/// The middle of controller 74, as MIDI defines it.
 const BRIGHTNESS_AT_REST: f32 = 64.0 / 127.0;
-/// Bits below the count.
+/// Number of bits below the count. They hold the controller's number.
 const NUMBER: u32 = 8;
 
 impl std::fmt::Display for Moved {
@@ -49,11 +49,12 @@ impl Moved {
         }
     }
 
-    /// What an event moves. Keyboards for MPE send the wheel, pressure and brightness at rest with each note, which moves nothing.
+    /// The control that an event moves. None for the pitch wheel, pressure or brightness at rest, which MPE keyboards send
+    /// with each note.
     fn by(kind: &EventKind) -> Option<Self> {
         match *kind {
             EventKind::Control { controller: BRIGHTNESS, value } if value == BRIGHTNESS_AT_REST => None,
-            // From 120 on they are commands.
+            // Numbers from 120 on are mode messages.
             EventKind::Control { controller: controller @ 0..120, .. } => Some(Self::Controller(controller)),
             EventKind::PitchBend(value) if value != 0.0 => Some(Self::Bend),
             EventKind::ChannelPressure(pressure) | EventKind::PolyPressure { pressure, .. } if pressure > 0.0 => {
@@ -64,7 +65,7 @@ impl Moved {
     }
 }
 
-/// What was moved last, and how many movements there were. One thread may write.
+/// The last movement, and the number of movements so far. Only one thread may write.
 #[derive(Default)]
 pub(super) struct LastMoved(AtomicU64);
 

@@ -1,4 +1,4 @@
-//! The sounding notes, as the audio thread writes them and a display reads them: nobody waits for the other.
+//! The sounding notes, written by the audio thread and read by a display without locks.
 
 use crate::engine::atomic::AtomicF32;
 use crate::engine::snapshot::{SHOWN_NOTES, SoundingNote};
@@ -7,18 +7,18 @@ use crate::patch::routes::MAX_ROUTES;
 use std::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 use std::sync::atomic::{AtomicU32, AtomicU64, fence};
 
-/// How often a reader tries again after it has met a write.
+/// How often a reader tries to read without a write at the same time.
 const TRIES: usize = 4;
 
-/// The notes behind a sequence number, which is odd while they are written: a reader that finds another one afterwards has
-/// read parts of two, and reads again. One thread may write.
+/// The notes with a sequence number that is odd during a write. If the number differs before and after a reading, the
+/// reader may have mixed two writes, and reads again. Only one thread may write.
 #[derive(Default)]
 pub(super) struct Sounding {
     sequence: AtomicU32,
     notes: [Cell; SHOWN_NOTES],
 }
 
-/// A note, or none.
+/// One place for a note, which may be empty.
 #[derive(Default)]
 struct Cell {
     /// Channel and key plus 1; 0 for none.
@@ -42,12 +42,12 @@ impl Sounding {
         self.sequence.store(sequence.wrapping_add(2), Release);
     }
 
-    /// The notes of the last write; no notes if each try met a write.
+    /// The notes of the last write; no notes if each try coincided with a write.
     pub(super) fn read(&self) -> [Option<SoundingNote>; SHOWN_NOTES] {
         (0..TRIES).find_map(|_| self.try_to_read()).unwrap_or([None; SHOWN_NOTES])
     }
 
-    /// None if it met a write.
+    /// None if a write took place at the same time.
     fn try_to_read(&self) -> Option<[Option<SoundingNote>; SHOWN_NOTES]> {
         let before = self.sequence.load(Acquire);
         let notes = self.notes.each_ref().map(Cell::read);
@@ -120,14 +120,14 @@ mod tests {
                 while !is_over.load(Relaxed) {
                     sounding.write(&notes((written % 100) as u8));
                     written += 1;
-                    // As rarely as a display is told, so that a reader has a chance; but at any moment of its reading.
+                    // At the low rate of a display, so that a reader can succeed, but at any time during a reading.
                     (0..written % 4096).for_each(|_| std::hint::spin_loop());
                 }
             })
         };
         let mut found = std::collections::BTreeSet::new();
         let (start, mut reads) = (std::time::Instant::now(), 0);
-        // On a busy machine the writer may come late.
+        // On a busy machine the writer may start late.
         while (reads < 20_000 || found.len() < 2) && start.elapsed().as_secs() < 60 {
             reads += 1;
             let Some(read) = sounding.try_to_read() else { continue };

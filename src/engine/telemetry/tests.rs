@@ -1,4 +1,4 @@
-//! What is written of voices and keys, and when.
+//! Tests of the state that is published about voices and keys.
 
 use super::*;
 

@@ -1,43 +1,44 @@
-//! The bloom of a voice: its energy climbs to higher modes after a hard strike.
+//! The bloom of a voice: its energy moves to higher modes after a hard strike.
 
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::cells::{Cells, Climb};
 use crate::engine::controls::Controls;
 
-/// In a bloom time, the lowest half octave at full energy passes on this many times what is missing above it. Soft mallets
-/// bring much less than full energy to a gong; with this its high modes are loudest after about the bloom time.
+/// During one bloom time, the lowest half octave at full energy passes on this many times the energy that is missing above
+/// it. Soft mallets give a gong much less than full energy; with this value its high modes are loudest after about the
+/// bloom time.
 const SPEED: f64 = 6.0;
 
 /// The bloom of a voice. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bloom {
-    /// The bank's modes are sorted into bands.
+    /// Whether the bank's modes are sorted into bands.
     is_sorted: bool,
-    /// Stream of random numbers for the signs of modes that are woken.
+    /// Stream of random numbers for the signs of modes that receive their first energy.
     key: u64,
 }
 
 impl Bloom {
-    /// That of a voice before its first note.
+    /// The bloom of a voice before its first note.
     pub(super) const NONE: Self = Self { is_sorted: false, key: 0 };
 
-    /// The ratios of the modes may have changed.
+    /// Marks the bands as out of date, since the ratios of the modes may have changed.
     pub(super) fn forget_bands(&mut self) {
         self.is_sorted = false;
     }
 
-    /// A strike with a stream of random numbers.
+    /// Sets the stream of random numbers for a strike.
     pub(super) fn strike(&mut self, key: u64) {
         self.key = key;
     }
 
-    /// Whether energy climbs as long as nothing changes, at an energy in units of a full strike.
+    /// Whether energy moves to higher modes if no event comes, at an energy in units of a full strike.
     pub(super) fn acts(controls: &Controls, energy: f64) -> bool {
         // Measured energy has rounding errors of single precision.
         controls.bloom > 0.0 && energy > 0.99 * Climb::LEAST_ENERGY
     }
 
-    /// Lets energy climb for one control tick, if the sound blooms. `full` is the energy of a full strike.
+    /// Moves energy to higher modes for one control tick, if the sound blooms. `full` is the energy of a full strike.
     pub(super) fn climb(&mut self, controls: &Controls, full: f64, sample_rate: f64, bank: &mut Cells) {
         if controls.bloom == 0.0 {
             return;

@@ -1,4 +1,4 @@
-//! The bow of a voice: what it does from control tick to control tick.
+//! The bow of a voice: its speed and force, updated at each control tick.
 
 use super::line::Line;
 use super::values::StruckValues;
@@ -10,17 +10,18 @@ use crate::patch::Mode;
 use libm::{fabs, sin};
 use std::f64::consts::{PI, TAU};
 
-/// Friction of a bow that is fully pressed on, as a multiple of what brings a mass to the bow's speed within one radian of
-/// the note, or at most within one frame. So the same pressure suits low notes and high ones.
+/// Friction at full bow pressure, as a multiple of the friction that brings a mass to the bow's speed within one radian of
+/// the note's cycle, so that the same pressure suits low and high notes. It is limited to the friction that does so within
+/// one frame.
 const MOST_PRESSURE: f64 = 4.0;
 
-/// The bow of a voice: off until something sets it going. Real-time safe.
+/// The bow of a voice. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bowing {
-    /// Speed that the strike asks for, at a level of 0 dB; and how gradually friction falls.
+    /// Bow speed from the strike's velocity, at a level of 0 dB; and how gradually friction falls with slip.
     speed: f64,
     width: f32,
-    /// The modes have their weights.
+    /// Whether the modes have their bow weights.
     is_placed: bool,
     bow_speed: Line,
     bow_force: Line,
@@ -31,18 +32,18 @@ impl Bowing {
     pub(super) const OFF: Self =
         Self { speed: 0.0, width: 1.0, is_placed: false, bow_speed: Line::ZERO, bow_force: Line::ZERO };
 
-    /// Reads what a strike says of the bow: `speed` is what velocity asks for.
+    /// Reads the bow's parameters at a strike. `speed` follows from the velocity.
     pub(super) fn strike(&mut self, values: &StruckValues, speed: f64) {
         (self.speed, self.width, self.is_placed) = (speed, values.share(Param::BowSlip) as f32, false);
     }
 
-    /// Whether it moves or is about to.
+    /// Whether the bow moves or is about to.
     pub(super) fn is_on(&self) -> bool {
         !self.bow_speed.is_zero()
     }
 
-    /// Starts ramps of speed and force to where they have to be in `frames` frames. `note` gives the note's frequency and the
-    /// sample rate in Hz: it is called only if there is a bow. Without values to place it by, no bow begins.
+    /// Starts ramps of speed and force that end in `frames` frames. `note` returns the note's frequency and the sample rate in
+    /// Hz; it is called only if the bow is on. Without `values`, a bow that has no weights yet does not start.
     pub(super) fn control(
         &mut self,
         controls: &Controls,
@@ -66,7 +67,7 @@ impl Bowing {
         self.bow_force.aim(force as f32, frames);
     }
 
-    /// Gives the modes their weights under the bow.
+    /// Sets the modes' weights at the point of the bow.
     fn place(&mut self, values: &StruckValues, bank: &mut Cells) {
         self.is_placed = true;
         let modes = values.modes().as_slice();

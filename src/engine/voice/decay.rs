@@ -1,4 +1,4 @@
-//! The decay of a note's modes, the damper, and a finger that touches the body.
+//! The decay of a note's modes, with the damper and a touch of the body.
 
 use super::values::StruckValues;
 use crate::dsp::cells::Cells;
@@ -9,7 +9,7 @@ use crate::patch::Mode;
 use libm::{pow, sin};
 use std::f64::consts::PI;
 
-/// T60 in seconds of a mode that moves most where the body is touched as firmly as can be.
+/// T60 in seconds under the firmest touch, for a mode whose motion is largest at the point of touch.
 const FIRMEST_TOUCH: f64 = 0.02;
 
 /// The decay of a voice. Real-time safe.
@@ -17,9 +17,9 @@ pub(super) struct Decay {
     /// Tilt of the decay: the T60 of a mode of ratio r is multiplied by r^−tilt.
     tilt: f64,
     pub(super) damping: Damping,
-    /// Where the body is touched, as a share of its length, if the modes' shapes there are known.
+    /// The point of touch, as a fraction of the body's length, if the mode shapes there have been computed.
     place: Option<f64>,
-    /// The patch lets notes ring on after their release: a release does not damp them.
+    /// Whether the patch lets notes ring on after their release, undamped.
     rings_on: bool,
     released: bool,
 }
@@ -53,7 +53,7 @@ impl Decay {
         }
     }
 
-    /// Sets how far each mode moves at a place, in shares of the body's length. Its shape is a standing wave, as for
+    /// Sets the squared mode shapes at a point, which is a fraction of the body's length. The shape is a standing wave, as for
     /// pluck and bow.
     fn set_place(&mut self, place: f64, modes: &[Mode], bank: &mut Cells) {
         self.place = Some(place);
@@ -63,7 +63,7 @@ impl Decay {
         }
     }
 
-    /// The key was pressed: the note is not damped, and decays with a T60 in seconds. `touch` is that of [`Damping`].
+    /// Handles the press of a key: the note is not damped. `decay` is its T60 in seconds, `touch` as in [`Damping`].
     pub(super) fn press(&mut self, decay: f64, touch: f64) {
         self.damping = Damping { decay, release: 0.0, amount: 0.0, touch };
         self.released = false;
@@ -74,13 +74,13 @@ impl Decay {
         self.rings_on = values.instrument.modulated.choice::<NoteOff>(Param::NoteOff) == NoteOff::Ring;
     }
 
-    /// The key was released.
+    /// Handles the release of the key.
     pub(super) fn release(&mut self) {
         self.released = !self.rings_on;
     }
 
-    /// Sets the T60s of the bank if they have changed. `modes` gives the patch's, for a new tilt and a new place of touch;
-    /// none if the patch was replaced. It is called only for these. Returns whether anything has changed.
+    /// Sets the T60s of the bank if they have changed. `modes` returns the patch's modes, or none if the patch was replaced; it
+    /// is called only for a new tilt or a new point of touch. Returns whether anything has changed.
     pub(super) fn control<'a>(
         &mut self,
         controls: &Controls,
@@ -95,7 +95,7 @@ impl Decay {
         if controls.touch > 0.0 {
             moved = if self.place == Some(controls.touch_position) { None } else { modes() };
             moved.into_iter().for_each(|modes| self.set_place(controls.touch_position, modes, bank));
-            // Without a place the modes' shapes are unknown.
+            // If there is no place, the mode shapes are unknown.
             touch = self.place.map_or(0.0, |_| touch_rate(controls.touch));
         }
         let damping = Damping { decay: controls.decay, release, amount, touch };
@@ -108,7 +108,7 @@ impl Decay {
     }
 }
 
-/// The rate that [`Damping`] has for a touch, 0–1. It grows with the square, so that light touches can be told apart.
+/// The value of [`Damping::touch`] for a touch, 0–1. It grows with the square, for a finer control of light touches.
 fn touch_rate(touch: f64) -> f64 {
     touch * touch / FIRMEST_TOUCH
 }

@@ -1,4 +1,4 @@
-//! The energy of a voice, and the time at which the voice is over: predictable, since only damping removes energy.
+//! The energy of a voice, and the predicted time of its end, which is known because only damping removes energy.
 
 use super::strike::Strike;
 use crate::dsp::CONTROL_FRAMES;
@@ -6,7 +6,7 @@ use crate::dsp::cells::Cells;
 use crate::dsp::fader::Fader;
 use libm::sqrt;
 
-/// A voice is over when the sum of its modes cannot exceed this amplitude: −120 dBFS.
+/// A voice is over when the sum of its modes is below this amplitude, −120 dBFS, for any phases.
 const SILENCE: f64 = 1e-6;
 
 /// Control ticks between two measurements of the energy. Below −110 dBFS it is measured at every tick.
@@ -24,7 +24,7 @@ pub(super) struct Energy {
     measured: f64,
     /// Control ticks until the next measurement.
     until_measured: u32,
-    /// Control ticks between two measurements, while the voice is not nearly silent.
+    /// Control ticks between two measurements, unless the voice is nearly silent.
     interval: u32,
     /// Frames from the voice's start to its end, if already known.
     end: Option<u64>,
@@ -35,7 +35,7 @@ impl Energy {
     pub(super) const NONE: Self =
         Self { pending: 0.0, measured: 0.0, until_measured: 0, interval: MEASURING_TICKS, end: None };
 
-    /// Adds to the energy that the strike will still bring. `more` may be negative.
+    /// Adds to the energy that the strike has still to add. `more` may be negative.
     pub(super) fn expect(&mut self, more: f64) {
         self.pending += more;
     }
@@ -52,7 +52,7 @@ impl Energy {
         }
     }
 
-    /// The energy now, or that of a strike still under way if it is more.
+    /// The energy now, or, if it is greater, that of a strike that is still active.
     pub(super) fn now(&self) -> f64 {
         self.measured.max(self.pending)
     }
@@ -78,7 +78,7 @@ impl Energy {
         self.measured * bank.len() as f64 * gain * gain < amplitude * amplitude
     }
 
-    /// Upper bound of the amplitude from now on: that of all modes in phase.
+    /// Upper bound of the amplitude from now on: the amplitude with all modes in phase.
     pub(super) fn peak(&self, bank: &Cells, fader: &Fader) -> f64 {
         let gain = f64::from(fader.loudest()).max(1.0);
         (sqrt(self.measured) + sqrt(self.pending.max(0.0))) * sqrt(bank.len() as f64) * gain
@@ -94,9 +94,9 @@ impl Energy {
         fader.is_closed() || (self.pending == 0.0 && self.is_below(SILENCE, bank, fader))
     }
 
-    /// Frames until the voice is over if no event comes, `now` frames after its start and `to_tick` frames before the
-    /// next control tick. Exact to a tick after the strike has ended and while neither decay nor gain changes; an upper
-    /// bound during a strike, and while the voice `blooms`.
+    /// Frames until the voice is over if no event comes, `now` frames after its start and `to_tick` frames before the next
+    /// control tick. Exact to a tick after the strike has ended and while neither decay nor gain changes; an upper bound
+    /// during a strike, and while energy moves to higher modes (`blooms`).
     pub(super) fn tail_frames(
         &mut self,
         bank: &Cells,
@@ -109,7 +109,7 @@ impl Energy {
             Some(end) => end,
             None => {
                 let end = now + self.find_end(bank, strike, fader, blooms, to_tick);
-                // As long as the strike adds energy, the gain changes or energy climbs, the end may still change.
+                // While the strike adds energy, the gain changes or energy moves to higher modes, the end may still change.
                 self.end = (self.pending == 0.0 && fader.is_level() && !blooms).then_some(end);
                 end
             }
@@ -118,15 +118,14 @@ impl Energy {
         end.saturating_sub(now).min(fade)
     }
 
-    /// Frames until the end is detected. The energy is measured every [`MEASURING_TICKS`] ticks, or at every tick if it is
-    /// always measured or was found to be nearly silent: the voice ends at the first of these times at which it is below
-    /// the limit.
+    /// Frames until the end is detected. The energy is measured every [`MEASURING_TICKS`] ticks, or at every tick if the
+    /// interval is 1 or the voice is nearly silent. The voice ends at the first measurement below the limit.
     fn find_end(&self, bank: &Cells, strike: &Strike, fader: &Fader, blooms: bool, to_tick: u64) -> u64 {
         let gain = f64::from(fader.loudest()).max(1.0);
         let share = 1.0 / (bank.len().max(1) as f64 * gain * gain);
         let below = |amplitude: f64| amplitude * amplitude * share;
         if self.pending > 0.0 || blooms {
-            // Energy that climbs may reach any mode, so all of it decays like the slowest at the most.
+            // With bloom, energy may reach any mode, so all of it is assumed to decay as slowly as the slowest mode.
             let frames = bank.frames_until_at_most(below(SILENCE), self.pending);
             return to_tick
                 + round_up(u64::from(strike.frames_left()).saturating_add(frames))

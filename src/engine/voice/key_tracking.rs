@@ -5,7 +5,7 @@ use crate::engine::note::Note;
 use crate::params::{Choice, GlideBy, GlideWhen, Param};
 use libm::fabs;
 
-/// The key whose pitch is the same for every amount of tracking.
+/// The key whose pitch does not depend on the amount of tracking.
 const MIDDLE_C: f64 = 60.0;
 
 /// The key tracking and glide of a patch. A voice keeps them as long as it sounds, since the instrument may have

@@ -58,11 +58,10 @@ pub(crate) struct SynthVoice {
     fader: Fader,
     /// The smoothed and modulated parameters, at the next control tick.
     controls: Controls,
-    /// The count of the instrument's controls when `controls` was copied from them; none if the note has offsets of its
-    /// own.
+    /// The instrument's `controls_serial` when `controls` was copied; none if the note has offsets of its own.
     controls_serial: Option<u32>,
     key: u8,
-    /// The place of the note's table of modes among those of the keys; see [`ModeTable::place`].
+    /// The index of the note's table of modes; see [`ModeTable::place`].
     table: usize,
     /// −0.5 to 0.5.
     brightness: f64,
@@ -72,15 +71,15 @@ pub(crate) struct SynthVoice {
     modulation: NoteModulation,
     /// The sources and routes of this voice.
     modulators: Modulators,
-    /// Velocity of a release that the modulators have not received yet: they get it at the next control tick.
+    /// Velocity of a release that the modulators have not received yet; they receive it at the next control tick.
     let_go: Option<f32>,
-    /// The voice has not had a control tick yet. The first one sets pitch and gain without a ramp.
+    /// Whether the voice has had no control tick yet. The first one sets pitch and gain without a ramp.
     fresh: bool,
-    /// The key is down, or a pedal holds the note: then bow and input act.
+    /// Whether the key is down or a pedal holds the note. Only then do bow and input drive the modes.
     is_held: bool,
-    /// Routes of the patch lead to tension or bloom.
+    /// Whether routes of the patch modulate tension or bloom.
     may_move: bool,
-    /// Routes of the patch lead to the level of the bow or of the input.
+    /// Whether routes of the patch modulate the level of the bow or of the input.
     may_be_driven: bool,
 }
 
@@ -142,7 +141,7 @@ impl SynthVoice {
                     .then(|| smoother.own_settings(&self.modulation, frames as u32, settings, bus));
                 self.modulators.follow(own.as_ref().unwrap_or(settings), own.is_some(), &instrument.shared);
             }
-            // A new note starts with its routes applied for this frame. Below, the ramp to the next tick begins there.
+            // A new note starts with its routes applied for this frame. The ramp to the next tick, below, begins at these values.
             self.move_controls(base, wheels, if self.fresh { 0 } else { frames });
         }
 
@@ -171,7 +170,7 @@ impl SynthVoice {
         self.fresh = false;
     }
 
-    /// Sets out for where bow and input are to be in `frames` frames.
+    /// Starts the ramps of bow and input, which end in `frames` frames.
     fn control_driven(&mut self, instrument: Option<&Instrument>, frames: usize) {
         let Self { strike, controls, is_held, modulators, bank, sample_rate, pitch, table, .. } = self;
         if *is_held || strike.bowing.is_on() || strike.input.is_on() {
@@ -182,7 +181,7 @@ impl SynthVoice {
         }
     }
 
-    /// Whether bow or input feed the note, or may any moment.
+    /// Whether bow or input drive the note, or may start to.
     fn is_driven(&self) -> bool {
         let Controls { bow_speed, input_gain, .. } = self.controls;
         let may_be = bow_speed > 0.0 || input_gain > 0.0 || self.may_be_driven;
@@ -229,8 +228,8 @@ impl SynthVoice {
         }
     }
 
-    /// Starts the modes' ramp to the pitch that [`SynthVoice::control`] has computed. It is a separate call for all
-    /// voices, so that the CPU can overlap the latencies of one voice with the work of others: a tenth less time.
+    /// Starts the modes' ramp to the pitch that [`SynthVoice::control`] has computed. A separate loop over all voices calls it,
+    /// so that the CPU can overlap the latencies of one voice with the work of others: this takes a tenth less time.
     pub(crate) fn sweep(&mut self, frames: usize) {
         self.bank.sweep_to(self.pitch.ratio(), frames);
     }
@@ -259,13 +258,13 @@ impl SynthVoice {
         }
     }
 
-    /// At most the greatest sample from now on, if it is left alone. Real-time safe.
+    /// Upper bound of the absolute samples from now on, if no event comes. Real-time safe.
     pub(crate) fn peak(&self) -> f64 {
         self.energy.peak(&self.bank, &self.fader)
     }
 
     /// Adds the next frames, at most [`crate::dsp::CONTROL_FRAMES`], to `left` and `right`.
-    /// `input` is what comes in as sound: nothing, or a sample a frame.
+    /// `input` is the incoming sound: empty, or one sample for each frame.
     pub(crate) fn render(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32]) {
         let frames = left.len();
         let bow = self.strike.bowing.stroke(frames);

@@ -1,4 +1,4 @@
-//! The state of a voice as it is now, for displays; and of its modes, for labels.
+//! The current state of a voice for displays, and that of its modes for labels.
 
 use super::SynthVoice;
 use crate::params::Param;
@@ -6,17 +6,17 @@ use crate::params::Param;
 /// A mode of a sounding voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModeState {
-    /// Hz, at rest: without what bends it for a while, as sweep, glide, vibrato, wheels and tension do.
+    /// Frequency at rest in Hz: without sweep, glide, vibrato, wheels and tension.
     pub frequency: f64,
     /// Present T60 in seconds, with damper and touch.
     pub t60: f64,
-    /// Present amplitude at the voice's output, the root mean square of both sides' gains: before pan of single modes,
+    /// Present amplitude at the voice's output, with the root mean square of both sides' gains: before the pan of single modes,
     /// effects, mix and limiter.
     pub amplitude: f64,
 }
 
 impl SynthVoice {
-    /// Which of its note's unison voices it is.
+    /// The voice's index among the unison voices of its note.
     pub(crate) fn unison_index(&self) -> usize {
         self.unison.index
     }
@@ -26,13 +26,13 @@ impl SynthVoice {
         self.clock.seconds(self.clock.age)
     }
 
-    /// Its pitch in semitones on the MIDI scale, with all that bends it.
+    /// The current pitch in semitones on the MIDI scale, with all offsets.
     pub(crate) fn sounding_pitch(&self) -> f64 {
         self.pitch.sounding()
     }
 
-    /// Calls `tell` with each parameter that its routes or its own offsets modulate, and the value now. One that both
-    /// modulate is told twice: first as the routes have it, which includes the offset.
+    /// Calls `tell` with each parameter that the voice's routes or its own offsets modulate, and its current value. If both
+    /// modulate a parameter, there are two calls; the value of the first, from the routes, includes the offset.
     pub(crate) fn each_moved(&self, mut tell: impl FnMut(Param, f32)) {
         self.modulators.each_value(&mut tell);
         self.modulation.each_value(tell);

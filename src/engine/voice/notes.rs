@@ -35,11 +35,10 @@ impl SynthVoice {
         self.decay.strike(&values);
     }
 
-    /// Replaces the voice's note by `note`: note expressions and offsets start again as neutral. The gain changes
-    /// smoothly.
+    /// Replaces the voice's note by `note`: note expressions and offsets become neutral again. The gain changes smoothly.
     fn take_over(&mut self, note: &Note) {
         self.is_held = true;
-        // A MIDI controller whose key is still down goes on to press it.
+        // If the same key is still down on a MIDI controller, its pressure continues.
         let pressure = if note.key == self.key && note.id.is_none() { self.expressions.pressure } else { 0.0 };
         self.expressions.begin(note.gain, note.pan);
         self.expressions.pressure = pressure;

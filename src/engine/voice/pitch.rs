@@ -35,7 +35,7 @@ pub(super) struct Pitch {
     vibrato_delay: f64,
 }
 
-/// What changes the pitch of a note besides its patch.
+/// Changes to the pitch of a note that do not come from its patch.
 pub(super) struct Bends<'a> {
     pub(super) wheels: Wheels<'a>,
     /// The note expression for tuning, in semitones.
@@ -94,7 +94,7 @@ impl Pitch {
         self.note + self.glide.at(clock.seconds(clock.age - self.glide_start))
     }
 
-    /// The pitch with all that bends it, as of the last control tick, in semitones on the MIDI scale.
+    /// The pitch with all offsets at the last control tick, in semitones on the MIDI scale.
     pub(super) fn sounding(&self) -> f64 {
         self.note + self.tune + self.offset
     }
@@ -146,7 +146,7 @@ impl Pitch {
     pub(super) fn aim(&mut self, controls: &Controls, bends: &Bends, clock: &Clock, ahead: usize) -> f64 {
         let offset = self.offset_after(controls, bends, clock, ahead);
         if offset != self.offset {
-            // Only if it has changed, which is seldom, since the ratio is slow to compute.
+            // The ratio is slow to compute, so it is computed only if the offset has changed, which is seldom.
             (self.offset, self.ratio) = (offset, ratio_from_semitones(offset));
         }
         self.ratio

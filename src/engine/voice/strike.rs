@@ -1,4 +1,4 @@
-//! The strikes of a voice: how hard they are, and how strongly each mode is moved by them.
+//! The strikes of a voice: their forces, and the excitation gains of each mode.
 
 use super::bowing::Bowing;
 use super::input::Input;
@@ -17,39 +17,39 @@ use crate::sound::contact::{contact_time, hertz};
 use libm::{fabs, pow, sin, sqrt};
 use std::f64::consts::{LOG2_10, PI};
 
-/// The soft pedal takes this share of the force …
+/// Share of the force that remains with the soft pedal.
 const SOFT_FORCE: f64 = 0.6;
-/// … and this much of the hardness.
+/// Share of the hardness that the soft pedal removes.
 const SOFT_HARDNESS: f64 = 0.3;
 
-/// The stream of random phases, beside that of a voice's noise.
+/// Number of the random phase's stream. It differs from the stream of the voice's noise.
 const PHASE_STREAM: u64 = 0x55_4e49_534f_4e00;
 
-/// What moves the modes of a voice. Real-time safe.
+/// The excitation of a voice. Real-time safe.
 pub(super) struct Strike {
     exciter: Exciter,
     drive: Drive,
-    /// Forces of the last strike: of the mallet, the pluck and the noise.
+    /// Forces of the last strike: those of mallet, pluck and noise.
     forces: [f64; 3],
-    /// The energy that they bring.
+    /// Energy that these forces add.
     energy: f64,
-    /// Those of the same strike at full velocity and without routes, the noise with its level, and the energy that they
-    /// would bring.
+    /// The forces of the same strike at full velocity and without routes (here that of the noise includes its level), and the
+    /// energy that they would add.
     full_forces: [f64; 3],
     full_energy: f64,
-    /// Whether noise is among what moves the modes.
+    /// Whether noise excites any mode.
     is_noisy: bool,
-    /// Radians by which the strike of a unison voice is turned ahead.
+    /// Phase offset in radians of the strike of a unison voice.
     phase: f32,
     variation: Variation,
-    /// Stream of its random numbers.
+    /// Stream of random numbers of the last strike.
     key: u64,
     pub(super) bowing: Bowing,
     pub(super) input: Input,
 }
 
 impl Strike {
-    /// None yet.
+    /// No strike yet.
     pub(super) fn new() -> Self {
         Self {
             exciter: Exciter::REST,
@@ -79,8 +79,8 @@ impl Strike {
         self.exciter.is_active()
     }
 
-    /// The energy of a full strike: like the last one, but at full velocity and without routes. 1 if none of mallet, pluck
-    /// and noise is on.
+    /// The energy of a full strike: like the last one, but at full velocity and without routes. 1 if mallet, pluck and noise
+    /// are all off.
     pub(super) fn full_energy(&self) -> f64 {
         if self.full_energy > 0.0 { self.full_energy } else { 1.0 }
     }
@@ -90,12 +90,12 @@ impl Strike {
         self.key
     }
 
-    /// Frames until it is not.
+    /// Frames until no force is left.
     pub(super) fn frames_left(&self) -> u32 {
         self.exciter.frames_left()
     }
 
-    /// The force of the next frames, if there is any. `input` is what comes in as sound: nothing, or a sample a frame.
+    /// The force of the next frames, if there is any. `input` is the incoming sound: empty, or one sample for each frame.
     pub(super) fn drive(&mut self, frames: usize, input: &[f32]) -> Option<&Drive> {
         let is_driven = self.exciter.is_active() || (self.input.is_on() && !input.is_empty());
         if is_driven || self.input.is_on() {
@@ -105,7 +105,7 @@ impl Strike {
         is_driven.then_some(&self.drive)
     }
 
-    /// Computes each mode's excitation gains. Returns how much more energy the last strike brings for that.
+    /// Computes each mode's excitation gains. Returns the change of the energy that the last strike adds.
     pub(super) fn set_gains(&mut self, values: &StruckValues, bank: &mut Cells) -> f64 {
         let table = values.modes();
         let modes = table.as_slice();
@@ -126,7 +126,7 @@ impl Strike {
         let place = values.get(Param::PluckPosition) + self.variation.pluck_place;
         let (width, reach) = (values.share(Param::PluckWidth), values.share(Param::NoiseReach));
         let noise_gain = exciter_gain(values.get(Param::NoiseLevel));
-        // Levels with phases are already those of the place at which the body is struck.
+        // Levels with phases already include the mode shapes at the point of the strike.
         let at_place = |ratio: f64| if table.has_phases() { 1.0 } else { sin(PI * place * 0.01 * ratio) };
         let (mut noisy, mut energy, mut full) = (false, 0.0, 0.0);
         for (m, mode) in modes.iter().enumerate() {
@@ -152,8 +152,8 @@ impl Strike {
         more
     }
 
-    /// Reads what the patch says of a strike, and strikes. `frequency` is the note's, in Hz. Returns the energy that it
-    /// brings.
+    /// Reads the strike's parameters and starts the exciters. `frequency` is the note's, in Hz. Returns the energy that the
+    /// strike adds.
     pub(super) fn strike(
         &mut self,
         values: &StruckValues,
@@ -162,7 +162,7 @@ impl Strike {
         unison: Unison,
         bank: &mut Cells,
     ) -> f64 {
-        // Each unison voice has a phase and noise of its own; together they have the energy of one.
+        // Each unison voice has its own phase and noise; together they have the energy of one voice.
         let (Unison { index, count }, key) = (unison, random::key(values.instrument.seed, note.serial));
         let key = if index == 0 { key } else { random::key(key, index as u64) };
         self.key = key;
@@ -185,7 +185,7 @@ impl Strike {
         let level = |param| exciter_gain(values.instrument.modulated.get(param).into()) / sqrt(count as f64);
         self.full_forces = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(level);
         self.bowing.strike(values, force(Param::BowVelocity));
-        // The strike before has brought its energy: only this one's counts.
+        // The energy of earlier strikes has been counted already.
         self.energy = 0.0;
         let more = self.set_gains(values, bank);
 
@@ -219,14 +219,14 @@ impl Strike {
     }
 }
 
-/// How much of a wave so many times as high as a string's lowest a finger moves that covers a share of the string: the
-/// mean of the wave over that width.
+/// Mean of the mode shape over the width of the finger, relative to its centre. `width` is a fraction of the string's
+/// length, `ratio` that of the mode.
 fn under_finger(width: f64, ratio: f64) -> f64 {
     let half = 0.5 * PI * width * ratio;
     if half == 0.0 { 1.0 } else { sin(half) / half }
 }
 
-/// The frames for which a mallet touches that comes with a speed from 0 to 1, on a note of a frequency in Hz.
+/// Contact time of the mallet in frames, for a speed from 0 to 1 and a note's frequency in Hz.
 fn mallet_frames(values: &StruckValues, note: &Note, hardness: f64, speed: f64, frequency: f64) -> u32 {
     let sample_rate = values.instrument.sample_rate;
     if let Some(contact) = note.contact {

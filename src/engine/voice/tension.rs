@@ -1,21 +1,21 @@
-//! The tension of heads and strings: the further they swing, the more they are stretched, and the higher they sound.
+//! The tension of heads and strings: larger amplitudes stretch them more, which raises the pitch.
 //!
-//! A string that swings is longer than one at rest, so its tension rises with the mean square of its slope (Kirchhoff 1876,
+//! A vibrating string is longer than one at rest, so its tension rises with the mean square of its slope (Kirchhoff 1876,
 //! Vorlesungen über mathematische Physik: Mechanik, lecture 29; Carrier 1945, On the non-linear vibration problem of the
-//! elastic string). The squares of all frequencies rise with it by the same factor, which is `1 + k E` for the energy `E`.
+//! elastic string). The squares of all frequencies rise by the same factor, `1 + k E` for the energy `E`.
 
 use super::line::Line;
 use crate::engine::controls::Controls;
 use libm::{exp2, log2};
 
-/// Time in seconds in which the pitch at most rises or falls by what a full strike raises it, or by a semitone if that is
-/// more. So a second strike bends the pitch quickly but smoothly.
+/// Limits the speed of the pitch: in this time, in seconds, it changes by at most the tension parameter, or by a semitone
+/// if that is more. So a second strike bends the pitch quickly but smoothly.
 const SLIDE_SECONDS: f64 = 0.003;
 
-/// Energies count as this many full strikes at most.
+/// Upper limit of the energy, in full strikes.
 const MOST_ENERGY: f64 = 4.0;
 
-/// A smaller rise in semitones counts as none: a hundredth of a cent. Then the modes can ring at one pitch again.
+/// Smaller rises in semitones count as none: a hundredth of a cent. Then the bank can use a constant pitch again.
 const LEAST_RISE: f64 = 1e-4;
 
 /// The rise of a voice's pitch by tension. Real-time safe.
@@ -26,9 +26,9 @@ impl Tension {
     /// No rise.
     pub(super) const NONE: Self = Self(Line::ZERO);
 
-    /// Sets out for the rise that belongs to an energy, as far as it gets in `frames` frames. `energy` is called only if
-    /// there is tension; it is 1 after a full strike. A `fresh` voice begins there. Returns the rise in semitones after
-    /// these frames.
+    /// Starts a ramp to the rise for an energy, limited in speed, over `frames` frames. `energy` is called only if there is
+    /// tension; it is 1 after a full strike. A `fresh` voice starts at the rise without a ramp. Returns the rise in semitones
+    /// after these frames.
     pub(super) fn control(
         &mut self,
         controls: &Controls,
@@ -51,12 +51,12 @@ impl Tension {
         self.0.end().into()
     }
 
-    /// Whether there is tension, or a rise that still falls back.
+    /// Whether there is tension, or a rise that has not fallen back to 0 yet.
     pub(super) fn is_on(&self, controls: &Controls) -> bool {
         controls.tension > 0.0 || !self.0.is_zero()
     }
 
-    /// Lets frames pass.
+    /// Advances by some frames.
     pub(super) fn advance(&mut self, frames: usize) {
         if !self.0.is_zero() {
             self.0.advance(frames);
@@ -64,11 +64,11 @@ impl Tension {
     }
 }
 
-/// The rise in semitones at an energy, if that of a full strike is `most`.
+/// The rise in semitones at an energy, if the rise of a full strike is `most`.
 fn rise(most: f64, energy: f64) -> f64 {
     let stiffening = exp2(most / 6.0) - 1.0;
     let rise = 6.0 * log2(1.0 + stiffening * energy.clamp(0.0, MOST_ENERGY));
-    // Not above, so that NaN counts as none.
+    // Written so that NaN gives 0.
     if rise > LEAST_RISE { rise } else { 0.0 }
 }
 

@@ -6,7 +6,7 @@ use crate::engine::note::Note;
 use crate::params::Param;
 use crate::patch::ModeTable;
 
-/// Gives the modulators a strike: the `first` of the voice, or a later one.
+/// Passes a strike to the modulators. `first` is true for the first strike of the voice.
 pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modulators, note: &Note, first: bool) {
     let (pitch, seed, serial) = (instrument.pitch(note), instrument.seed, note.serial);
     let struck = Struck { velocity: note.velocity, pitch, seed, serial };
@@ -19,7 +19,7 @@ pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modula
 pub(super) struct StruckValues<'a> {
     pub(super) instrument: &'a Instrument,
     pub(super) modulators: &'a Modulators,
-    /// The place of the note's table among those of the keys.
+    /// The index of the note's table of modes.
     pub(super) table: usize,
 }
 
@@ -29,12 +29,12 @@ impl<'a> StruckValues<'a> {
         self.instrument.sound.patch().modes.at(self.table)
     }
 
-    /// In the parameter's unit.
+    /// The value in the parameter's unit.
     pub(super) fn get(&self, param: Param) -> f64 {
         self.modulators.struck_value(param, |param| self.instrument.modulated.get(param)).into()
     }
 
-    /// As [`StruckValues::get`], for an instrument's value that is still being smoothed and now is `value`.
+    /// As [`StruckValues::get`], with the smoothed `value` in place of the instrument's value.
     pub(super) fn moved(&self, param: Param, value: f64) -> f64 {
         self.modulators.struck_value(param, |_| value as f32).into()
     }

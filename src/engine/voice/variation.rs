@@ -1,4 +1,4 @@
-//! How one strike differs from the next, by chance: its place, its hardness, and the level of each mode.
+//! Random differences between strikes: the point of the strike, the hardness, and the level of each mode.
 
 use super::values::StruckValues;
 use crate::dsp::random;
@@ -6,27 +6,27 @@ use crate::params::Param;
 use libm::{cos, pow};
 use std::f64::consts::PI;
 
-/// The stream of a strike's variation, beside that of its noise.
+/// Number of the variation's stream. It differs from the stream of the strike's noise.
 const VARIATION_STREAM: u64 = 0x56_4152_5900;
 
-/// How one strike differs. It repeats with the seed and the note's place among the notes. Real-time safe.
+/// The random differences of one strike. The same seed and note serial number give the same. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Variation {
-    /// How far from its place the mallet falls, as a share of the body's length; and the pluck, in per cent of it.
+    /// Offset of the mallet from its place, as a fraction of the body's length; and that of the pluck, in per cent of it.
     mallet_place: f64,
     pub(super) pluck_place: f64,
-    /// Added to the hardness, from 0 to 1.
+    /// Offset of the hardness, which is 0–1.
     pub(super) hardness: f64,
-    /// Most decibels by which a mode is louder or softer, and the stream of its numbers.
+    /// Largest change of a mode's level in decibels, and the stream of its random numbers.
     modes_db: f64,
     key: u64,
 }
 
 impl Variation {
-    /// Every strike is like the others.
+    /// No variation.
     pub(super) const NONE: Self = Self { mallet_place: 0.0, pluck_place: 0.0, hardness: 0.0, modes_db: 0.0, key: 0 };
 
-    /// That of the strike whose noise has a certain stream.
+    /// The variation of a strike whose noise has the stream `noise_key`.
     pub(super) fn new(values: &StruckValues, noise_key: u64) -> Self {
         let key = random::key(noise_key, VARIATION_STREAM);
         let number = |n: u64| f64::from(random::uniform(key, n));
@@ -53,8 +53,8 @@ impl Variation {
         level * pow(10.0, self.modes_db * f64::from(random::uniform(self.key, m as u64)) / 20.0)
     }
 
-    /// What the mallet gives a mode that it would give `level` at its own place. Modes fall off that place as those of a
-    /// string do off a crest.
+    /// The level of a mode with the mallet's offset; it is `level` without the offset. It falls with the cosine, as the mode
+    /// shape of a string does around its maximum.
     pub(super) fn at_mallet(&self, ratio: f64, level: f64) -> f64 {
         if self.mallet_place == 0.0 { level } else { level * cos(PI * self.mallet_place * ratio) }
     }

@@ -1,4 +1,4 @@
-//! A number of voices and cells: what a note needs, or what a pool has.
+//! A number of voices and cells: the need of a note, or the content of a pool.
 
 use std::ops::{Add, AddAssign, Sub, SubAssign};
 

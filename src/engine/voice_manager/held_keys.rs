@@ -4,7 +4,7 @@ use crate::engine::note::Note;
 use crate::params::Priority;
 
 impl Priority {
-    /// Whether `note` sounds rather than `earlier`.
+    /// Whether `note` has priority over `earlier`.
     pub(super) fn prefers(self, note: &Note, earlier: &Note) -> bool {
         match self {
             Self::Last => true,
@@ -34,7 +34,7 @@ impl HeldKeys {
         &mut self.notes[..self.len]
     }
 
-    /// The oldest note, if it has to be taken out before another can be added.
+    /// The oldest note, if it must be removed before another can be added.
     pub(super) fn surplus(&self) -> Option<Note> {
         (self.len == MAX_HELD_KEYS).then(|| self.notes[0])
     }
@@ -52,7 +52,7 @@ impl HeldKeys {
         self.as_slice().iter().copied().reduce(|best, note| if priority.prefers(&note, &best) { note } else { best })
     }
 
-    /// Takes out the oldest note for which `is_meant` is true.
+    /// Removes and returns the oldest note for which `is_meant` is true.
     pub(super) fn take(&mut self, is_meant: impl Fn(&Note) -> bool) -> Option<Note> {
         let index = self.as_slice().iter().position(is_meant)?;
         let note = self.notes[index];

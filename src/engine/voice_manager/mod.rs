@@ -1,4 +1,4 @@
-//! Voice allocation: polyphony, stealing, re-striking, pedals, choke groups, and finished notes. Contains no DSP.
+//! Voice allocation, without DSP: polyphony, stealing, re-striking, pedals, choke groups, and finished notes.
 
 mod footprint;
 mod held_keys;
@@ -39,7 +39,7 @@ pub struct VoiceManager<V: Voice> {
     patch: u32,
     /// The keys that are down in a monophonic mode.
     held: HeldKeys,
-    /// Ended notes: no voice plays them and no held key will bring them back. Kept until [`VoiceManager::clear_ended`].
+    /// Ended notes: no voice plays them, and no held key will start them again. Kept until [`VoiceManager::clear_ended`].
     ended: Vec<Note>,
     peak: usize,
 }
@@ -70,7 +70,7 @@ impl<V: Voice> VoiceManager<V> {
     }
 
     /// Sets the maximum number of notes at once (1 to [`MAX_VOICES`]), the mode and the key priority, from the next
-    /// note on, and tells which patch the context has.
+    /// note on, and the number of the context's patch.
     pub fn configure(&mut self, polyphony: usize, mode: PlayMode, priority: Priority, patch: u32) {
         self.priority = priority;
         self.patch = patch;
@@ -92,7 +92,7 @@ impl<V: Voice> VoiceManager<V> {
         self.ended.clear();
     }
 
-    /// Reports a note as ended that gets no voice at all.
+    /// Reports a note as ended that gets no voice.
     pub fn turn_away(&mut self, note: Note) {
         self.retire(note);
     }
@@ -158,7 +158,7 @@ impl<V: Voice> VoiceManager<V> {
         self.retire(note);
     }
 
-    /// A slot or a held key has given up a note: the note has ended, unless another slot or held key still has it.
+    /// Handles a note that a slot or a held key no longer has. It has ended, unless another slot or held key still has it.
     fn retire(&mut self, note: Note) {
         let has_note = |slot: &Slot<V>| !slot.is_free() && slot.note.serial == note.serial;
         let is_held = self.held.as_slice().iter().any(|held| held.serial == note.serial);
@@ -167,7 +167,7 @@ impl<V: Voice> VoiceManager<V> {
         }
     }
 
-    /// Removes from the held keys those that `which` selects. Their notes end unless they sound.
+    /// Removes the held keys that `which` selects. Their notes end unless they sound.
     fn forget(&mut self, which: impl Fn(&Note) -> bool) {
         while let Some(note) = self.held.take(&which) {
             self.retire(note);

@@ -8,7 +8,7 @@ use crate::engine::note::Note;
 use crate::params::PlayMode;
 
 impl<V: Voice> VoiceManager<V> {
-    /// What a note would take from the pool. Nothing if it takes over the voices of another note.
+    /// The voices and cells that a note would take from the pool. None if it takes over the voices of another note.
     pub fn need(&self, context: &V::Context, note: &Note) -> Footprint {
         let taken_over = match self.mode {
             PlayMode::Poly => self.slot_to_restrike(note).is_some(),
@@ -17,7 +17,8 @@ impl<V: Voice> VoiceManager<V> {
         if taken_over { Footprint::NONE } else { V::footprint(context) }
     }
 
-    /// Plays a note. Returns false if another key has priority in a monophonic mode: the note then waits.
+    /// Plays a note. Returns false if another key has priority in a monophonic mode: the note then waits until its key has
+    /// priority.
     pub fn note_on(&mut self, context: &V::Context, note: Note) -> bool {
         let is_poly = self.mode == PlayMode::Poly;
         if !is_poly && !self.takes_priority(note) {

@@ -3,7 +3,7 @@
 use super::footprint::Footprint;
 use super::voice::Voice;
 
-/// Free voices and cells. Which of them a note gets makes no difference to its sound. Real-time safe once made.
+/// Free voices and cells. They are all alike, so any of them gives a note the same sound. Real-time safe once made.
 pub struct VoicePool<V: Voice> {
     voices: Vec<Box<V>>,
     cells: Vec<Box<V::Cell>>,

@@ -1,4 +1,4 @@
-//! Voice stealing if a pool runs short: it fades the quietest notes of all managers that share the pool.
+//! Voice stealing when a pool runs short: the quietest notes of all managers that share the pool fade out.
 
 use super::VoiceManager;
 use super::footprint::Footprint;
@@ -10,9 +10,9 @@ pub fn has_room(capacity: Footprint, free: Footprint, need: Footprint) -> bool {
     (capacity - free + need).fits(capacity.for_sounding())
 }
 
-/// Makes room for a note that needs `need` in a pool of size `capacity`. First, sounding notes are faded until those
-/// that remain leave a quarter of the pool to fading ones. If that does not free enough, fading notes are cut off. In
-/// both cases the quietest go first.
+/// Makes room for a note that needs `need` in a pool of size `capacity`. First, sounding notes are faded until the other
+/// sounding notes and the new one fit into three quarters of the pool. If the pool is still too full, fading notes are cut
+/// off. In both cases the quietest notes go first.
 ///
 /// The choice depends only on the state at this frame, so it is the same for all block sizes.
 pub fn make_room<P, V: Voice>(

@@ -5,7 +5,7 @@ use crate::engine::note::Note;
 
 /// Something that sounds one note at a time. All methods are called on the audio thread.
 pub trait Voice {
-    /// What a voice needs to know of the instrument when a note starts.
+    /// The state of the instrument that a voice reads when a note starts.
     type Context;
     /// A block of modes. A voice takes as many cells as its note needs, and gives them back.
     type Cell;
@@ -15,12 +15,12 @@ pub trait Voice {
     fn add_cell(&mut self, cell: Box<Self::Cell>);
     /// Takes a cell from the voice, after it has become silent.
     fn take_cell(&mut self) -> Option<Box<Self::Cell>>;
-    /// Starts a note from rest. Nothing of what the voice and its cells played before may affect it.
+    /// Starts a note from rest. Earlier notes of the voice and its cells must not affect it.
     fn start(&mut self, context: &Self::Context, note: &Note, unison: Unison);
     /// Strikes the sounding voice again, perhaps at another pitch.
     fn restrike(&mut self, context: &Self::Context, note: &Note);
     /// Moves the sounding voice to another pitch without striking it. `context` is none if the instrument now has
-    /// another patch than the one that the voice was started with: the voice then uses what it has stored of its own
+    /// another patch than the one that the voice was started with: the voice then uses its stored values of its own
     /// patch.
     fn retune(&mut self, context: Option<&Self::Context>, note: &Note);
     /// Releases the note, with a release velocity 0–1.

@@ -1,4 +1,4 @@
-//! Beds: dense modes, known only by their statistics, for a drum's shell, a box, snare wires, a cymbal's wash, breath.
+//! Beds: dense modes with a statistical law, for a drum's shell, a box, snare wires, a cymbal's wash, breath.
 
 use super::partial::{Pair, Partial};
 use crate::dsp::random::{key, uniform};
@@ -30,9 +30,9 @@ pub struct Bed {
     pub low: f64,
     /// See `low`.
     pub high: f64,
-    /// The number of modes per hertz is proportional to frequency to this power: −1 is the same number in each octave,
-    /// −½ a bar, 0 a plate or a string, 1 a membrane or a shallow space, 2 a room (Weyl 1912; Kuttruff, "Room
-    /// Acoustics", chapter 3).
+    /// The number of modes per hertz is proportional to frequency to this power: −1 gives the same number in each octave,
+    /// −½ is that of a bar, 0 of a plate or a string, 1 of a membrane or a shallow space, 2 of a room (Weyl 1912; Kuttruff,
+    /// "Room Acoustics", chapter 3).
     pub density: f64,
 }
 
@@ -50,9 +50,9 @@ impl Bed {
     }
 }
 
-/// Divides the integral of the density law into `count` equal parts and places one mode at random in each: the modes of
-/// real plates and rooms also keep such distances. A shape is a plane wave of random direction and phase, with `k ∝ √f`
-/// as in bending waves; many such waves make up a mode of an irregular body (Berry 1977).
+/// Divides the integral of the density law into `count` equal parts and places one mode at random in each, since the modes
+/// of real plates and rooms keep similar distances. A shape is a plane wave of random direction and phase, with `k ∝ √f`
+/// as in bending waves; a mode of an irregular body is a sum of many such waves (Berry 1977).
 pub(super) fn partials(bed: &Bed, seed: u64, count: usize) -> Vec<Partial> {
     let (low, high) = (bed.low.min(bed.high), bed.high.max(bed.low));
     let partial = |n: usize| {

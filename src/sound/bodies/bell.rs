@@ -26,9 +26,9 @@ const CHURCH: [(f64, u32); 12] = [
 ];
 
 /// A church bell: the measured partials and, above them, two series by Chladni's law `f = c (m + b)^p`, which bells
-/// follow (Perrin, Charnley, Banu and Rossing 1985). The first is that of the nominal's group, `0.3831 (m −
+/// follow (Perrin, Charnley, Banu and Rossing 1985). The first continues the group of the nominal, `0.3831 (m −
 /// 0.920)^1.468` from `m = 10` on, fitted to the measured partials. The second goes through 2.514 with the same law and
-/// `(m − 0.398)`. All shapes are `cos m θ` round the bell, with the same height at the sound bow, where clappers
+/// `(m − 0.398)`. All shapes are `cos m θ` round the bell, with the same height at the sound bow, the point where clappers
 /// strike.
 pub(super) fn church(count: usize) -> Vec<Partial> {
     const POWER: f64 = 1.468;

@@ -1,16 +1,16 @@
 //! Bodies as physics describes them: strings, bars, drum heads, plates, bells, tubes, glasses, and dense beds of modes.
 //!
-//! A [`Body`] is a [`Model`] with its size or pitch, its material, the places where it is struck and heard, and its
-//! irregularities. [`Body::modes`] computes its modes: frequencies, T60s, and the mode shapes at those places, whose
-//! product is the level. This runs off the audio thread. It uses exactly rounded operations and `libm` in a frozen
-//! order, so the same body has the same bits everywhere. Each model's file names the source of its law.
+//! A [`Body`] is a [`Model`] with its size or pitch, its material, the points of strike and pickup, and its
+//! irregularities. [`Body::modes`] computes its modes: frequencies, T60s, and the mode shapes at those points, whose
+//! product is the level. This runs off the audio thread. It uses exactly rounded operations and `libm` in an order that must
+//! not change, so the same body has the same bits everywhere. Each model's file names the source of its law.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `body`, `fields`, `modes`, `table` | the body, its numbers with their ranges, its modes, and a patch's table of them |
-//! | `model`, `size`, `material` | the models by name, what they measure and what they are made of |
-//! | `mass`, `string`, `bar`, `membrane`, `timpani`, `plate`, `disc`, `bell`, `tube`, `glass`, `bowl`, `bed` | a model each |
-//! | `partial`, `roots`, `bessel` | what they share |
+//! | `model`, `size`, `material` | the models by name, their dimensions and their materials |
+//! | `mass`, `string`, `bar`, `membrane`, `timpani`, `plate`, `disc`, `bell`, `tube`, `glass`, `bowl`, `bed` | one model each |
+//! | `partial`, `roots`, `bessel` | code that models share |
 
 mod bar;
 mod bed;

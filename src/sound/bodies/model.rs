@@ -126,7 +126,7 @@ impl Model {
         Self::ALL.iter().find(|(name, _)| *name == id).map(|(_, model)| model)
     }
 
-    /// Its name in presets, whatever its values.
+    /// Its name in presets, which does not depend on its values.
     pub fn id(&self) -> &'static str {
         Self::ALL.iter().find(|(_, model)| model.is_same_kind(self)).map_or(Self::CUSTOM, |(id, _)| id)
     }

@@ -38,7 +38,7 @@ fn is_pitch(ratio: f64) -> bool {
     (ratio - 1.0).abs() < 1e-9
 }
 
-/// Indices into the random numbers of a mode. Those that a bed uses itself come before.
+/// Indices into the random numbers of a mode. Lower indices are for beds.
 const SPREAD: u64 = 10;
 const AXIS: u64 = 11;
 const PAN: u64 = 12;
@@ -47,14 +47,14 @@ impl Body {
     /// The modes in ascending order of frequency; at least one. Not real-time safe: it allocates, and takes up to some
     /// tens of milliseconds.
     ///
-    /// Weak modes are kept, so that moving a place changes only levels. High modes are kept too, because the bank fades
-    /// those at the top of the spectrum.
+    /// Weak modes are kept, so that another point of strike or pickup changes only levels. High modes are kept too, because the
+    /// bank fades those at the top of the spectrum.
     pub fn modes(&self) -> Vec<BodyMode> {
         self.modes_at(&[]).into_iter().map(|(mode, _)| mode).collect()
     }
 
-    /// As [`Body::modes`], each with its shape at these places, scaled as [`BodyMode::strike`]. A display draws the body
-    /// with them.
+    /// As [`Body::modes`], each with its shape at these places, scaled as [`BodyMode::strike`]. A display uses them to draw the
+    /// body.
     pub fn modes_at(&self, places: &[Point]) -> Vec<(BodyMode, Vec<f64>)> {
         let body = fields::in_range(self);
         let frequency = body.frequency();
@@ -95,8 +95,8 @@ impl Body {
         places: &[Point],
         modes: &mut Vec<(BodyMode, Vec<f64>)>,
     ) {
-        // The body's imperfection has an axis: one mode of a pair has a lobe there and the other a node. Without a
-        // split, the strike chooses the axis.
+        // The imperfection of a body has an axis: one mode of a pair has a lobe there and the other a node. Without a
+        // split, the strike determines the axis.
         let split = self.split > 0.0 && partial.pair != Pair::Single && self.modes > 1;
         let axis = match (partial.pair, split) {
             (Pair::Diameters(_), true) => 0.5 * random.number(AXIS),
@@ -142,7 +142,7 @@ impl Body {
     }
 }
 
-/// The mode whose ratio is nearest to 1 as an interval: the one that sets the body's pitch.
+/// The mode that sets the body's pitch: the one whose ratio is nearest to 1 as an interval.
 pub(super) fn pitch_mode(modes: &[BodyMode]) -> Option<&BodyMode> {
     modes.iter().min_by(|a, b| log(a.ratio).abs().total_cmp(&log(b.ratio).abs()))
 }

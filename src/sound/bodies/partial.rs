@@ -59,9 +59,9 @@ pub(super) fn lowest<T>(mut items: Vec<T>, count: usize, frequency: impl Fn(&T) 
     items
 }
 
-/// Calls `below` with higher and higher limits until it gives at least `count` items, and keeps the lowest of them.
+/// Calls `below` with higher and higher limits until it returns at least `count` items, and keeps the lowest of them.
 ///
-/// `below(limit)` lists all modes up to a limit. In two dimensions, it is not known beforehand which modes are the
+/// `below(limit)` returns all modes up to a limit. In two dimensions, it is not known beforehand which modes are the
 /// lowest.
 pub(super) fn lowest_below<T>(
     count: usize,

@@ -9,7 +9,7 @@ const INAUDIBLE: f64 = 1e-6;
 
 impl Body {
     /// The mode table of a patch: ratios to the played note, levels whose absolute values add up to 1, and decays as
-    /// multiples of the T60 of the mode that sets the pitch ([`Body::t60`]). That T60 belongs in the patch's `decay`.
+    /// multiples of the T60 of the mode that sets the pitch ([`Body::t60`]). Set the patch's `decay` to that T60.
     /// Allocates.
     ///
     /// The table contains only ratios. For a body that does not follow the keys ([`Body::follows_key`]), the caller

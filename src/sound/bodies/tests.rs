@@ -1,4 +1,4 @@
-//! Properties that hold for every body, whatever its numbers.
+//! Tests of properties that all bodies must have.
 
 use super::*;
 use proptest::collection::vec;
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 /// Random bodies: each number from its whole range, a third of the numbers at an end of the range.
 fn bodies() -> impl Strategy<Value = Body> {
     let number = prop_oneof![2 => 0.0..=1.0, 1 => prop_oneof![Just(0.0), Just(1.0)]];
-    // Most sizes and constants span decades, so their logarithms are drawn.
+    // Most sizes and constants span decades, so they are drawn at random on a logarithmic scale.
     let value = |field: &Field, share: f64| {
         let low = if field.max / field.min.max(1e-9) > 1e3 { field.min.max(field.max * 1e-9) } else { 0.0 };
         if low > 0.0 { low * libm::pow(field.max / low, share) } else { field.min + share * (field.max - field.min) }

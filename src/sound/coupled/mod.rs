@@ -1,20 +1,20 @@
-//! Two bodies joined at a point by a spring and a damper, solved exactly. The result is one set of modes again.
+//! The modes of two bodies joined at a point by a spring and a damper, computed exactly.
 //!
 //! Examples: a string on a soundboard, a bar over a tube, a head on a shell. Each body is given by its modes when it is
 //! free. The joint pulls both bodies towards each other with a force of `K` times the distance of the two points plus
 //! `R` times the rate of change of this distance. The joined pair has as many modes as both bodies together, and each
-//! mode is heard on both bodies. A bank of modes plays it at no extra cost. Beating pairs, a short decay followed by a
-//! long one, and bodies that damp strings at their own resonances result without further rules.
+//! mode is heard on both bodies. A bank of modes plays the pair at no extra cost. Beating pairs, a short decay followed by a
+//! long one, and the damping of strings at the resonances of a soundboard need no further rules.
 //!
-//! As functions of frequency, the joined bodies are those of Woodhouse, "On the synthesis of guitar plucks" (Acta
+//! In the frequency domain, the joined bodies are those of Woodhouse, "On the synthesis of guitar plucks" (Acta
 //! Acustica united with Acustica 90, 2004). Here their poles and residues are computed, without approximating the
 //! damping. The joint changes the diagonal system of all free modes by a matrix of rank one, so the poles are the roots
 //! of a secular equation (Golub, "Some modified matrix eigenvalue problems", SIAM Review 15, 1973), with complex
 //! frequencies instead of Golub's real ones. `system` contains the equation, `start` the first guesses, `poles` the
 //! iteration. The shapes of a mode are the residues, by the formula of Sherman and Morrison (1950).
 //!
-//! Poles and residues agree within 1e−14 with a computation in 50 digits (*`tests/coupled_reference.rs`*), however
-//! close two poles are. For this, every place in the complex plane is stored as its distance from the nearest free pole
+//! Poles and residues agree within 1e−14 with a computation in 50 digits (*`tests/coupled_reference.rs`*), even if two poles
+//! are very close. For this, every place in the complex plane is stored as its distance from the nearest free pole
 //! (Gu & Eisenstat, "A stable and efficient algorithm for the rank-one modification of the symmetric eigenproblem",
 //! SIAM J. Matrix Anal. Appl. 15, 1994).
 //!
@@ -106,7 +106,7 @@ fn solve(first: &[BodyMode], second: &[BodyMode], law: Law, ease: f64) -> Option
 }
 
 /// Whether no strike causes a displacement at once, as physics requires. If one does, or if an amplitude is not finite,
-/// two poles are so close that the amplitudes have lost their digits.
+/// two poles are so close that the amplitudes are inaccurate.
 fn start_at_rest(modes: &[CoupledMode]) -> bool {
     let both = [[1.0, 0.0], [0.0, 1.0]];
     let (mut most, mut size) = (0.0_f64, 0.0);
@@ -142,7 +142,7 @@ pub fn apart(first: &[BodyMode], second: &[BodyMode]) -> Result<Vec<CoupledMode>
     Ok(modes)
 }
 
-/// The modes of two bodies of which the first drives the second, but not the reverse. The force on the second is
+/// The modes of two bodies of which the first drives the second and gets no force back. The force on the second is
 /// `stiffness` in N/m times the displacement of the first at the joint. In the order of their frequencies.
 ///
 /// By partial fractions, a chain of two sets of modes is one set of modes too. If a mode of each body has the same

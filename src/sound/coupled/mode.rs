@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 /// One mode of a free body. The shapes are for a modal mass of 1 kg; see [`BodyMode::with_mass`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMode {
-    /// Angular frequency at which it rings, in radians per second: `2π f`. (Without damping it would be `√(ω² + σ²)`.)
+    /// Angular frequency of the damped oscillation, in radians per second: `2π f`. (Without damping it would be `√(ω² + σ²)`.)
     pub angular_frequency: f64,
     /// Decay rate in nepers per second: `ln 1000 / T60`.
     pub decay_rate: f64,
@@ -47,7 +47,7 @@ impl BodyMode {
 /// One mode of two bodies that act on each other: a damped sinusoid with complex mode shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoupledMode {
-    /// Angular frequency at which it rings, in radians per second. Zero for an overdamped motion, a plain exponential,
+    /// Angular frequency of the damped oscillation, in radians per second. Zero for an overdamped motion, a plain exponential,
     /// which occurs only with strong damping in the joint.
     pub angular_frequency: f64,
     /// Decay rate in nepers per second; never negative.
@@ -81,7 +81,7 @@ impl CoupledMode {
 
     /// The contribution of this mode to the displacement that is heard after a strike with a momentum of 1 N s.
     ///
-    /// `struck` is the share of the strike that each body gets, and `heard` is the gain with which each body is heard:
+    /// `struck` is the fraction of the strike on each body, and `heard` is the output gain of each body:
     /// `[1.0, 0.0]` for the first body alone.
     pub fn displacement(&self, struck: [f64; 2], heard: [f64; 2]) -> Partial {
         let amplitude = self.amplitude(struck, heard);

@@ -35,7 +35,7 @@ impl Law {
 }
 
 /// A place in the complex plane, stored relative to the pole of a nearby mode. So its difference from any pole is known
-/// to nearly all digits, however close the two are (Gu & Eisenstat 1994 do so on the real line).
+/// to nearly all digits, even if the two are very close (Gu & Eisenstat 1994 do so on the real line).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) origin: usize,
@@ -80,13 +80,13 @@ struct Loose {
     pickup: [f64; 2],
 }
 
-/// A shape at the joint changes nothing if it is smaller than this share of the largest one. The same applies to a pull
-/// that is this weak compared with a mode's own. The square of such a number is far below the last digit of the closest
-/// two frequencies.
+/// A shape at the joint has no effect if it is smaller than this fraction of the largest one. The same applies if the
+/// joint's pull is this weak compared with a mode's own stiffness. The square of such a number is far below the last digit
+/// of the closest two frequencies.
 const NEGLIGIBLE: f64 = 1e-36;
 
 impl System {
-    /// Joins two bodies. Also returns the modes that the joint does not move.
+    /// Joins two bodies. Also returns the modes on which the joint has no effect.
     pub(super) fn new(first: &[BodyMode], second: &[BodyMode], law: Law) -> (Self, Vec<CoupledMode>) {
         let one = first.iter().map(|mode| Loose {
             frequency: mode.angular_frequency,

@@ -89,7 +89,7 @@ fn joined_bodies_keep_the_sum_rules_and_never_grow() {
         let modes = joined(&bodies[0], &bodies[1], joint).unwrap();
         let context = format!("case {case}, {joint:?}");
         let both = [1.0, 1.0];
-        // A strike moves nothing at once, and gives each point its momentum, less the part that a rigid joint does not
+        // A strike causes no displacement at once. It gives each point its momentum, without the part that a rigid joint does not
         // allow.
         let weight = total(&bodies, |mode, _| mode.joint * mode.joint);
         let taken = total(&bodies, |mode, sign| sign * mode.strike * mode.joint)
@@ -101,7 +101,7 @@ fn joined_bodies_keep_the_sum_rules_and_never_grow() {
         let expected = if is_rigid { struck - taken } else { struck };
         assert_sum(modes.iter().map(|mode| mode.displacement(both, both)), 0.0, &context);
         assert_sum(modes.iter().map(|mode| mode.velocity(both, both)), expected, &context);
-        // The divergence must be that of all dampers.
+        // The sum of all decay rates must be that of all dampers.
         if let Joint::Spring { damping, .. } = joint
             && !is_rigid
         {

@@ -1,15 +1,15 @@
-//! The modes of a string in the direction across the strike, which the joint pulls only weakly.
+//! The modes of a string in the direction across the strike, on which the joint has only a weak effect.
 //!
-//! A string moves in two directions. A bridge gives way to one of them much more than to the other, so the sound of the
-//! first decays fast, and what is left is the sound of the second (Weinreich, "Coupled piano strings", J. Acoust. Soc.
-//! Am. 62, 1977). The second is in tune: its pitch is not moved by the joint. To first order in the square of its share
-//! of the joint, it loses what the joint takes from it, and moves the other body.
+//! A string moves in two directions. A bridge yields to one of them much more than to the other, so the sound of the
+//! first decays fast, and the second remains audible (Weinreich, "Coupled piano strings", J. Acoust. Soc. Am. 62, 1977). The
+//! joint does not change the pitch of the second, so it is in tune. Its loss to the joint, and the motion of the other body,
+//! are computed to first order in the square of its share of the joint.
 
 use super::response;
 use crate::sound::coupled::{BodyMode, Complex, CoupledMode, Joint};
 
-/// The modes of `body`, free, at the pitch of the note, in the direction across. `share` is the share of the strike and
-/// of the shapes at the joint that this direction has.
+/// The modes of `body`, free, at the pitch of the note, in the direction across. `share` is this direction's share of the
+/// strike and of the shapes at the joint.
 pub(super) fn modes(body: &[BodyMode], other: &[BodyMode], joint: Joint, share: f64) -> Vec<CoupledMode> {
     let one = |(place, mode): (usize, &BodyMode)| {
         let (omega, c) = (mode.angular_frequency, share * mode.joint);

@@ -1,11 +1,11 @@
-//! One table of all numbers of a pair besides those of its bodies.
+//! One table of all numbers of a pair except those of its bodies.
 
 use super::link::Link;
 use super::pair::Pair;
 use crate::error::{Error, Result};
 use crate::patch::MAX_MODES;
 
-/// One number of a pair, besides those of its bodies.
+/// One number of a pair, other than those of its bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkField {
     /// Its name in files.
@@ -28,7 +28,7 @@ macro_rules! field {
     };
 }
 
-/// All numbers of a pair besides those of its bodies.
+/// All numbers of a pair except those of its bodies.
 pub const LINK_FIELDS: &[LinkField] = &[
     field!(
         "stiffness",

@@ -1,16 +1,16 @@
-//! How two bodies act on each other.
+//! The link between the two bodies of a pair.
 
 use crate::sound::coupled::Joint;
 use std::f64::consts::TAU;
 
-/// How two bodies act on each other.
+/// The link between two bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Link {
-    /// Not at all: a strike falls on both.
+    /// No link: a strike excites both.
     Apart,
-    /// The first drives the second, which does not act on it.
+    /// The first drives the second, and gets no force back.
     Series,
-    /// A spring and a damper between their joints.
+    /// A spring and a damper connect their joints.
     Spring {
         /// The frequency in Hz at which the mass of the first body would oscillate on this spring.
         stiffness: f64,
@@ -22,7 +22,7 @@ pub enum Link {
 }
 
 impl Link {
-    /// The joint between the two bodies, if they act on each other, for a first body of this mass in kg.
+    /// The joint for a first body of this mass in kg, if the bodies act on each other.
     pub(super) fn joint(self, mass: f64) -> Option<Joint> {
         match self {
             Self::Apart | Self::Series => None,

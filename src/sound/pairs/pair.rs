@@ -6,20 +6,20 @@ use crate::sound::bodies::Body;
 /// Two bodies in one sound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// The body that is struck, and drives the other one if they are in series.
+    /// The body that is struck. If the two are in series, it drives the other one.
     pub first: Body,
     /// The other body.
     pub second: Body,
-    /// How they act on each other.
+    /// The link between them.
     pub link: Link,
     /// Mass of the second body as a multiple of that of the first.
     pub mass: f64,
     /// Share of a strike that falls on the second body, 0–1; the rest falls on the first.
     pub struck: f64,
-    /// Share of the second body in what is heard, 0–1. At one half, both bodies are as loud on average over the keys.
+    /// Share of the second body in the output, 0–1. At one half, both bodies are equally loud on average over the keys.
     pub heard: f64,
-    /// A string moves in two directions. The one across the strike gets this share of the strike, and of the shapes at the
-    /// joint, 0–1. So it decays more slowly: a sound that decays fast at first and slowly afterwards (Weinreich 1977). At 0,
+    /// A string moves in two directions. This is the share of the direction across the strike in the strike and in the shapes at
+    /// the joint, 0–1. So it decays more slowly: the sound decays fast at first and slowly afterwards (Weinreich 1977). At 0,
     /// only one direction counts.
     pub polarisation: f64,
     /// The lowest and the highest MIDI key with a table of its own, if the keys need different tables.
@@ -33,7 +33,7 @@ impl Pair {
         Self { first, second, link, mass: 10.0, struck, heard: 0.5, polarisation: 0.0, keys: [21, 108] }
     }
 
-    /// Number of modes of the pair at most.
+    /// Maximum number of modes of the pair.
     pub fn count(&self) -> usize {
         self.directions() * self.first.modes + self.second.modes
     }
@@ -43,12 +43,12 @@ impl Pair {
         self.polarisation > 0.0
     }
 
-    /// How many directions of the first body count.
+    /// Number of directions of the first body.
     pub(super) fn directions(&self) -> usize {
         if self.has_polarisation() { 2 } else { 1 }
     }
 
-    /// Whether one table of ratios is for all keys.
+    /// Whether all keys use the same table of ratios.
     pub(super) fn is_same_for_all_keys(&self) -> bool {
         self.first.follows_key && self.second.follows_key
     }

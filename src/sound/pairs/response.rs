@@ -1,12 +1,13 @@
-//! How a joint pulls at one mode, when all other modes of both bodies move along.
+//! The effective stiffness of a joint for one mode, with the motion of all other modes of both bodies.
 //!
 //! A joined mode is a root of `α + β(s) Σ c_k²/q_k(s)`, with `q_k(s) = (s + σ_k)² + ω_k²` and the shapes `c_k` at the joint.
-//! Solved for one mode, `q = −c² β/(α + β S)`, where `S` is the sum over all other modes. So `β/(α + β S)` is the stiffness
-//! that this mode feels.
+//! Solved for one mode, this gives `q = −c² β/(α + β S)`, where `S` is the sum over all other modes. So `β/(α + β S)` is the
+//! effective stiffness of the joint for this mode.
 
 use crate::sound::coupled::{BodyMode, Complex, Joint};
 
-/// The stiffness in N/m that one mode of a body feels at a place `s`. `others` are all other modes of both bodies.
+/// The effective stiffness in N/m of the joint for one mode of a body, at a place `s`. `others` are all other modes of both
+/// bodies.
 pub(super) fn stiffness<'a>(joint: Joint, others: impl Iterator<Item = &'a BodyMode>, s: Complex) -> Complex {
     let sum = sum(others, s, |mode| mode.joint * mode.joint);
     let (alpha, beta) = match joint {

@@ -12,7 +12,7 @@ use crate::units::frequency_from_key;
 use libm::{atan2, hypot};
 use std::f64::consts::TAU;
 
-/// The stream of the random pans, beside those that a body draws from its seed.
+/// Number of the random pans' stream. It differs from the streams that a body uses with its seed.
 const PAN_STREAM: u64 = 0x5041_4952_5041_4E00;
 
 /// The shortest T60 of a mode, as a multiple of the pair's. A voice limits it further.
@@ -21,11 +21,11 @@ const LEAST_DECAY: f32 = 1e-6;
 /// Modes with less than this share of the sum of all levels (−120 dB) are left out of a table for all keys.
 const INAUDIBLE: f64 = 1e-6;
 
-/// The modes of the pair at one frequency, and what is heard of each on both bodies.
+/// The modes of the pair at one frequency, and the output of each on both bodies.
 struct Heard {
     frequency: f64,
     modes: Vec<CoupledMode>,
-    /// On each body, after the strike and after the noise: they may fall on different bodies.
+    /// For each body, the response to the strike and to the noise, which may excite different bodies.
     on: [[Vec<Partial>; 2]; 2],
 }
 
@@ -40,7 +40,7 @@ impl Heard {
         self.on[body].iter().map(|heard| amplitude(&heard[m])).sum()
     }
 
-    /// What is heard of mode `m` with these gains of the bodies: after the strike, and after the noise.
+    /// The output of mode `m` with these gains of the bodies: after the strike, and after the noise.
     fn mixed(&self, m: usize, gains: [f64; 2]) -> [Partial; 2] {
         [0, 1].map(|exciter| {
             let [one, other] = [0, 1].map(|body| self.on[body][exciter][m]);
@@ -51,8 +51,8 @@ impl Heard {
 }
 
 impl Pair {
-    /// The T60 in seconds of the first body's mode that sets the pitch, before it is joined. It belongs in the patch's
-    /// `decay`, of which the table's decays are multiples. Allocates.
+    /// The T60 in seconds of the first body's mode that sets the pitch, before it is joined. Set the patch's `decay` to it: the
+    /// decays of the table are multiples of it. Allocates.
     pub fn t60(&self) -> f64 {
         self.first.t60()
     }
@@ -61,9 +61,9 @@ impl Pair {
     /// multiples of [`Pair::t60`], and phases. Not real-time safe.
     ///
     /// If both bodies follow the keys, one table is for all keys. If not, there is one for each of [`Pair::keys`], made
-    /// when a [`Sound`](crate::sound::Sound) is. A note is played by the table of the key that is nearest to its pitch.
+    /// together with a [`Sound`](crate::sound::Sound). A note uses the table of the key that is nearest to its pitch.
     /// The whole table is shifted to the note's exact pitch, so tuning, bends and vibrato move all modes by the same
-    /// interval: the body that keeps its frequency moves along, by at most half a semitone unless the pitch is bent.
+    /// interval. This includes the body that keeps its frequency: by at most half a semitone unless the pitch is bent.
     ///
     /// # Errors
     /// [`Error::Value`](crate::Error::Value) for a number that is out of range, and if the poles were not found.
@@ -80,7 +80,7 @@ impl Pair {
         Ok(middle.with_keys(pair.keys[0], move || pair.key_tables()))
     }
 
-    /// Number of modes of the pair, for the modes that its bodies have.
+    /// Number of modes of the pair, from the numbers of modes of its bodies.
     fn count_of(&self, free: &Free) -> usize {
         let [first, second] = free.len();
         self.directions() * first + second
@@ -91,7 +91,7 @@ impl Pair {
         let free = self.free();
         let keys = (self.keys[0]..=self.keys[1]).map(|key| {
             let frequency = frequency_from_key(key.into(), 440.0);
-            // The poles are found unless two of them nearly coincide, which another joint prevents.
+            // The search for the poles fails only if two of them nearly coincide. A slightly different joint prevents that.
             let slightly_stiffer = || match self.link {
                 Link::Spring { stiffness, damping } => {
                     let link = Link::Spring { stiffness: 1.001 * stiffness, damping };
@@ -126,8 +126,8 @@ impl Pair {
         Heard { frequency, modes, on }
     }
 
-    /// The tables of some frequencies, with the same gains for all. Each has `count` modes; without a count, it has those
-    /// that are audible.
+    /// The tables of some frequencies, with the same gains for all. Each has `count` modes, or without a count, all audible
+    /// modes.
     fn tables_of(&self, all: &[Heard], count: Option<usize>) -> Vec<ModeTable> {
         let share = [1.0 - self.heard, self.heard];
         let gains = [0, 1].map(|body| {
@@ -168,7 +168,7 @@ impl Pair {
             share(random * pan, sum),
         ];
         let mut ranges = Mode::FIELDS;
-        // A joint has modes that decay within milliseconds, faster than a file may ask for.
+        // A joint can have modes that decay within milliseconds, with a smaller decay than files may contain.
         ranges[2].1 = LEAST_DECAY;
         let within = |field: usize| (fields[field] as f32).clamp(ranges[field].1, ranges[field].2);
         // Noise has no phase of its own.
@@ -180,7 +180,7 @@ fn amplitude(partial: &Partial) -> f64 {
     hypot(partial.cosine, partial.sine)
 }
 
-/// Whether a bank can play the mode: it rings, and its ratio to the note is in range.
+/// Whether a bank can play the mode: it oscillates, and its ratio to the note is in range.
 fn is_playable(mode: &CoupledMode, frequency: f64) -> bool {
     let (_, min, max) = Mode::FIELDS[0];
     (f64::from(min)..=f64::from(max)).contains(&(mode.angular_frequency / (TAU * frequency)))

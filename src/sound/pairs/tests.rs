@@ -37,7 +37,7 @@ fn a_pair_apart_has_the_levels_of_both_bodies() {
         for (m, (mode, expected)) in table.as_slice().iter().zip(expected.as_slice()).enumerate() {
             assert!((mode.ratio / expected.ratio - 1.0).abs() < 1e-6);
             assert!((f64::from(mode.level) - f64::from(expected.level).abs()).abs() < 1e-6);
-            // A negative level is a phase of half a turn.
+            // A negative level becomes a phase of half a turn.
             let phase = if expected.level < 0.0 { std::f32::consts::PI } else { 0.0 };
             assert!((table.phase(m).abs() - phase).abs() < 1e-6, "mode {m}: {}", table.phase(m));
         }
@@ -52,7 +52,7 @@ fn strike_and_noise_move_each_body_by_its_own_share() {
     let shares = |table: &ModeTable| table.as_slice().iter().map(|mode| mode.strike).collect::<Vec<_>>();
     let count = |expected: f32| shares(&apart).iter().filter(|share| (**share - expected).abs() < 1e-4).count();
     assert_eq!([count(1.0), count(0.25)], [6, 20]);
-    // In series, the second body is moved through the first one alone, so the first one's share counts.
+    // In series, only the first body excites the second, so the first one's share counts.
     let table = Pair::new(first, second, Link::Series).table().unwrap();
     assert!(shares(&table).iter().all(|share| (share - 1.0).abs() < 1e-6), "{:?}", shares(&table));
 }
@@ -107,7 +107,7 @@ fn the_body_that_follows_the_keys_is_in_tune() {
     }
 }
 
-/// The direction across the strike is joined weakly: it rings longer, at nearly the same frequency.
+/// The direction across the strike has a weak joint: it rings longer, at nearly the same frequency.
 #[test]
 fn the_second_direction_of_a_string_rings_longer() {
     let mut pair = guitar();

@@ -1,16 +1,17 @@
-//! How far a body must be tuned so that it has a certain pitch when it is joined to another one.
+//! The tuning of a body that gives it a certain pitch once it is joined to another one.
 //!
-//! A joint pulls the pitch of a body away, by its stiffness and by the movement of the other body. A player tunes a
-//! string while it is on the instrument, so the pitch is right there.
+//! A joint changes the pitch of a body, by its stiffness and by the motion of the other body. A player tunes a string on
+//! the instrument, so its pitch is right when it is joined.
 //!
-//! Let all modes of the body be higher by the factor `a`. The mode that sets the pitch is to be at `s = −σ + iω`, with the
-//! wanted `ω`. There, `(s + σ_k)² + a² ω_k² = −c² K`, with the stiffness `K` that the mode feels ([`super::response`]). The
-//! imaginary part gives `σ` and the real part `a`. Both are iterated, because `K` depends on them a little.
+//! Let the frequencies of all modes of the body be multiplied by `a`. The mode that sets the pitch must be at `s = −σ + iω`,
+//! with the wanted `ω`. There, `(s + σ_k)² + a² ω_k² = −c² K`, with the stiffness `K` of the joint for the mode
+//! ([`super::response`]). The imaginary part gives `σ` and the real part `a`. Both are iterated, because `K` depends on them
+//! a little.
 
 use super::response;
 use crate::sound::coupled::{BodyMode, Complex, Joint};
 
-/// Most steps, and the change of `a` after which no more is needed: 1e−6 cents.
+/// Maximum number of steps, and the change of `a` at which the iteration ends: 1e−6 cents.
 const STEPS: usize = 80;
 const ENOUGH: f64 = 5e-10;
 
@@ -20,8 +21,8 @@ const MOST: f64 = 1.12;
 /// The factor `a` of all frequencies of `body` with which its mode nearest to the angular frequency `wanted` has exactly
 /// this frequency once it is joined.
 ///
-/// If the other body has a mode at nearly the same frequency, there may be no such factor, because the two modes push
-/// each other away (the wolf note of a cello). Then the body is tuned for another body that does not move. If the body
+/// If the other body has a mode at nearly the same frequency, there may be no such factor, because the two modes repel each
+/// other (the wolf note of a cello). Then the body is tuned as if the other body did not move. If the body
 /// has no mode near the wanted frequency, the factor is 1.
 pub(super) fn factor(body: &[BodyMode], other: &[BodyMode], joint: Joint, wanted: f64) -> f64 {
     find(body, other, joint, wanted).or_else(|| find(body, &[], joint, wanted)).unwrap_or(1.0)
@@ -47,7 +48,7 @@ fn find(body: &[BodyMode], other: &[BodyMode], joint: Joint, wanted: f64) -> Opt
         if !(1.0 / (MOST * MOST)..=MOST * MOST).contains(&square) {
             return None;
         }
-        // Half a step at a time: where the other body has a mode at the same pitch, whole steps can go back and forth.
+        // Half steps: if the other body has a mode at the same pitch, whole steps may oscillate.
         let step = 0.5 * (square.sqrt() - a);
         (a, rate) = (a + step, rate + 0.5 * (mode.decay_rate - d - rate));
         if step.abs() < ENOUGH {

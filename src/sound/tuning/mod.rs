@@ -20,7 +20,7 @@ use std::ops::RangeInclusive;
 const KEYS: usize = 128;
 
 /// Range of a tuning's pitches, in semitones on the MIDI scale: those of all keys, detuned by up to 128 semitones. A
-/// key outside it (below 0.005 Hz, above 20 MHz) could not be heard and counts as unmapped.
+/// key outside it (below 0.005 Hz, above 20 MHz) would be inaudible and counts as unmapped.
 const PITCHES: RangeInclusive<f64> = -128.0..=255.0;
 
 /// Frequency of A4 in Hz, for the check against [`PITCHES`].
@@ -126,7 +126,7 @@ mod tests {
     fn what_could_not_be_heard_is_unmapped() {
         let tuning = Tuning::from_scala("\n1\n10/1\n", None).unwrap();
         let mapped: Vec<u8> = (0..128).filter(|key| tuning.pitch(*key).is_some()).collect();
-        // Each key is a decade above the one before: 440 Hz, and all that lie between 0.005 Hz and 20 MHz.
+        // Each key is a decade above the previous one: 440 Hz, and all decades between 0.005 Hz and 20 MHz.
         assert_eq!(mapped, (65..=73).collect::<Vec<_>>());
         let digits = "9".repeat(300);
         assert!(Tuning::from_scala(&format!("\n1\n{digits}.\n"), None).unwrap().pitch(70).is_none());

@@ -121,7 +121,7 @@ fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
     }
 }
 
-/// Modes that were loaded before are not heard, whatever the number of lanes of a vector.
+/// Modes that were loaded before do not sound, for any number of lanes of a vector.
 #[test]
 fn a_bank_that_is_loaded_again_has_forgotten_its_modes() {
     let many: Vec<_> = (0..64).map(|m| (200.0 + 50.0 * f64::from(m), 10.0)).collect();
@@ -139,7 +139,7 @@ fn a_bank_that_is_loaded_again_has_forgotten_its_modes() {
     }
 }
 
-/// No wrong argument makes a bank grow louder or hang.
+/// No invalid argument makes a bank louder or a call hang.
 #[test]
 fn odd_requests_are_brought_into_range() {
     let mut bank = bank(&[(1000.0, 1.0)]);
@@ -155,7 +155,7 @@ fn odd_requests_are_brought_into_range() {
     }
 }
 
-/// Modes at rest are left out of a sweep. When struck in the middle of one, they must sound at its present pitch.
+/// Modes at rest are left out of a sweep. If they are struck during one, they must have its present pitch.
 #[test]
 fn a_mode_that_wakes_is_where_the_sweep_is() {
     let modes: Vec<_> = (0..64).map(|m| (200.0, if m == 0 { 10.0 } else { 0.02 })).collect();
@@ -168,7 +168,7 @@ fn a_mode_that_wakes_is_where_the_sweep_is() {
     assert_eq!(bank.live, LANES);
     bank.sweep_to(3.0, CONTROL_FRAMES);
     bank.render(None, 16);
-    // As for an event: every voice starts a new line at its frame.
+    // As for an event: every voice starts a new ramp at its frame.
     bank.sweep_to(3.0, 16);
     bank.render(Some(&strike()), 16);
     // The modes of the first group have not been at rest.
@@ -194,8 +194,8 @@ fn a_pull_and_a_push_give_the_same_amplitude() {
     }
 }
 
-/// Each force alone goes through a form of the kernel that reads no other: the state must be that of the form that reads
-/// all, to the bit, where the others are zero but for a force that no mode feels.
+/// A force that acts alone uses a form of the kernel that reads no other force. The state must be that of the form that reads
+/// all forces, bit for bit. There, the other forces act with gains of zero.
 #[test]
 fn a_force_alone_gives_the_bits_of_the_form_that_reads_all() {
     let modes: Vec<_> = (0..40).map(|m| (90.0 * f64::from(m + 1), 0.7)).collect();
@@ -226,7 +226,7 @@ fn a_force_alone_gives_the_bits_of_the_form_that_reads_all() {
     }
 }
 
-/// A phase turns what a force brings, sample by sample, so the output is the force convolved with `sin(nθ + φ)`.
+/// A phase turns the response to each sample of a force, so the output is the force convolved with `sin(nθ + φ)`.
 #[test]
 fn every_force_is_convolved_with_a_turned_response() {
     let force = [0.3, -0.1, 0.7, 0.0, 0.2, 0.01, 0.5, -0.6, 0.11];
@@ -271,7 +271,7 @@ fn a_damper_acts_at_once() {
     }
 }
 
-/// Random coefficients as the bank rounds them, over the whole parameter range: none grows by more than rounding.
+/// Random coefficients as the bank rounds them, over the whole parameter range: no radius is wrong by more than rounding.
 #[test]
 fn random_parameter_sets_are_stable() {
     let stream = key(5, 0);

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A pitch that moves takes and gives nothing: an octave up and down in 20 ms each, again and again, for as long as the
+/// A moving pitch neither adds nor removes energy: an octave up and down in 20 ms each, repeatedly, for as long as the
 /// mode takes to fall by 60 dB. T60 is kept to 0.1 %, which is 0.06 dB at the end.
 #[test]
 fn decay_does_not_depend_on_the_movement_of_the_pitch() {
@@ -40,18 +40,18 @@ fn nothing_but_a_strike_adds_energy() {
         let mut bank = bank_at(rate, &[(between(1, 8.0, 0.7 * rate), between(2, 0.005, 60.0))]);
         bank.jump_to(between(3, 0.01, 100.0));
         run(&mut bank, CONTROL_FRAMES, Some(&strike()));
-        // The energy that would be left if the pitch had not moved.
+        // The energy that would remain if the pitch had not moved.
         let mut due = 1.0;
         for n in 0..100 {
             if unit(10_000 * case + 10 * n + 9) < 0.2 {
                 bank.set_t60(0, between(10 * n + 8, 0.001, 60.0));
             }
             let frames = 1 + (unit(10_000 * case + 10 * n + 7) * 31.0) as usize;
-            // As events do: lines of any length, most of them interrupted.
+            // As with events: ramps of any length, most of them interrupted.
             let line = frames + (unit(10_000 * case + 10 * n + 5) * (CONTROL_FRAMES - frames) as f64) as usize;
             bank.sweep_to(between(10 * n + 6, 0.01, 100.0), line);
             let peak = bank.render(None, frames)[0].iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
-            // Through rounding, a mode that hardly decays can gain 1e−7 per frame.
+            // Because of rounding, a mode that hardly decays can gain 1e−7 per frame.
             let rounding = 1.0 + 4e-7 * (32 + 32 * n) as f64;
             assert!(f64::from(peak * peak) <= due * rounding + 1e-30, "{case}, {n}: {peak}, {due}");
             due *= libm::exp(2.0 * bank.ln_radius[0] * frames as f64);
@@ -104,7 +104,7 @@ fn a_strike_above_the_spectrum_is_heard_when_the_sweep_comes_down() {
     assert!((heard - 1.0).abs() < 0.02, "{heard}");
 }
 
-/// The fade at the top of the spectrum moves in straight lines to the right value, in mono and in stereo.
+/// The fade at the top of the spectrum moves linearly to the right value, in mono and in stereo.
 #[test]
 fn modes_fade_at_the_top_of_the_spectrum() {
     for right in [1.0, 0.5] {

@@ -16,39 +16,39 @@ use std::f64::consts::FRAC_PI_2;
 /// Longest pre-delay in seconds.
 pub const LONGEST_PRE_DELAY: f64 = 0.25;
 
-/// Below this a tail is over: −120 dBFS.
+/// Level at which a tail is over: −120 dBFS.
 const SILENCE: f64 = 1e-6;
 
 /// Ticks between two measurements of the energy.
 const MEASURE_TICKS: u64 = 32;
 
-/// Ticks between two steps of a pitch that moves.
+/// Ticks between two steps of a moving pitch.
 const PITCH_TICKS: u64 = 4;
 
-/// A stereo processor: the sum of both sides drives a [`Resonator`], whose pick-ups are added to what came in.
+/// A stereo processor: the sum of both sides drives a [`Resonator`], whose outputs are added to the input.
 ///
-/// Real-time safe but for making it: [`ModalReverb::process`] and all setters neither allocate nor wait. Bits do not depend
-/// on how frames are divided into blocks. Output is finite for finite input.
+/// Real-time safe once created: [`ModalReverb::process`] and all setters neither allocate nor wait. The output does not depend
+/// on the block size, and it is finite for finite input.
 ///
-/// Once the input is silent and the tail is below −120 dBFS for certain, it sleeps: a silent block then costs one look at
-/// its samples, and is left as it is. At a wet level of 0 it is off, and does not touch what passes where the dry level is 1.
+/// Once the input is silent and the tail is certainly below −120 dBFS, it sleeps: a silent block then costs one look at its
+/// samples, and is not changed. At a wet level of 0 it is off, and does not change the signal if the dry level is 1.
 #[derive(Clone, Debug)]
 pub struct ModalReverb {
     sample_rate: f64,
     body: Resonator,
-    /// The modes of the body to come, once what sounds has faded out.
+    /// The modes of the next body, which starts after the present one has faded out.
     next_body: Option<&'static ModeSet>,
     pitch: Smoothed,
     line: PreDelay,
     ticks: Ticks<{ FRAMES as u64 }>,
-    /// What comes in is faded in where the body begins to hear something that sounds already.
+    /// Gain of the body's input. It is faded in when the body starts during a sound.
     drive: Smoothed,
     dry: Smoothed,
     wet: Smoothed,
-    /// What the levels are set to.
+    /// Targets of the levels, dry and wet.
     levels: [f32; 2],
     state: State,
-    /// Frames of silence at the input; very many if none came before.
+    /// Frames of silence at the input; a very large number if it was always silent.
     silent_frames: usize,
     /// Sum of the magnitudes of the input since the last control tick.
     input: f64,
@@ -57,9 +57,9 @@ pub struct ModalReverb {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     Awake,
-    /// Everything is at rest, and input wakes it.
+    /// Everything is at rest. Input wakes it.
     Asleep,
-    /// Everything is at rest, and a wet level wakes it.
+    /// Everything is at rest. A wet level above 0 wakes it.
     Off,
 }
 
@@ -90,15 +90,15 @@ impl ModalReverb {
         &self.body
     }
 
-    /// From dry (0) to wet (1) at equal power: white noise stays as loud as it is.
+    /// Sets the mix from dry (0) to wet (1) at equal power: the level of white noise does not change.
     pub fn set_mix(&mut self, mix: f32) {
         let angle = FRAC_PI_2 * f64::from(mix.clamp(0.0, 1.0));
         let dry = if mix >= 1.0 { 0.0 } else { cos(angle) as f32 };
         self.set_levels(dry, sin(angle) as f32);
     }
 
-    /// Gains of what comes in and of what the pick-ups hear, 1 being as loud as white noise that comes in. They move there
-    /// in 20 ms, and a body that was off is faded in; at once while it sleeps, and with [`ModalReverb::reset`].
+    /// Sets the gains of the input and of the body, where 1 means as loud as the input for white noise. They change in 20 ms, and
+    /// a body that was off is faded in; while it sleeps, and with [`ModalReverb::reset`], they change at once.
     pub fn set_levels(&mut self, dry: f32, wet: f32) {
         let levels = [dry, wet].map(|level| if level.is_finite() { level.clamp(0.0, 10.0) } else { 0.0 });
         if levels == self.levels {
@@ -106,7 +106,7 @@ impl ModalReverb {
         }
         self.levels = levels;
         if self.state == State::Off && levels[1] > 0.0 {
-            // What is dry may sound.
+            // The dry signal may sound now.
             self.ticks = Ticks::default();
             self.wake();
             self.fade_in();
@@ -116,7 +116,7 @@ impl ModalReverb {
         self.move_levels();
     }
 
-    /// Gives the body another decay, in place: see [`Decay`].
+    /// Sets another decay of the body: see [`Decay`].
     pub fn set_decay(&mut self, decay: Decay) {
         if decay != self.body.decay() {
             self.body.set_decay(decay);
@@ -128,20 +128,20 @@ impl ModalReverb {
         }
     }
 
-    /// The body takes over a decay that it was given while it was at rest, all at once.
+    /// Wakes the reverb. The body first applies a decay that was set while it was at rest.
     fn wake(&mut self) {
         self.state = State::Awake;
         self.body.finish_damping();
     }
 
-    /// Time in seconds before the body hears what comes in, up to [`LONGEST_PRE_DELAY`]. Changes by a crossfade of 20 ms.
+    /// Sets the pre-delay in seconds, up to [`LONGEST_PRE_DELAY`]. Changes by a crossfade of 20 ms.
     pub fn set_pre_delay(&mut self, seconds: f64) {
-        // What is no number is 0 as a whole one.
+        // NaN becomes 0 in the conversion to an integer.
         let frames = (seconds.clamp(0.0, LONGEST_PRE_DELAY) * self.sample_rate) as usize;
         self.line.set(frames, self.state != State::Awake);
     }
 
-    /// Goes on with a body of other modes, from rest. While it sounds, that is once the one before has faded out in 20 ms.
+    /// Changes to a body with other modes, at rest. If the present one sounds, it is first faded out in 20 ms.
     ///
     /// Real-time safe if the body has room for as many modes ([`Resonator::with_room`]).
     pub fn set_body(&mut self, modes: &'static ModeSet) {
@@ -154,8 +154,8 @@ impl ModalReverb {
         }
     }
 
-    /// Sends all modes to so many times the frequencies that the body has of itself, in 20 ms; at once while nothing
-    /// sounds. From 1/64 to 64; those that come near half the sample rate are silent. What rings goes on at its new pitch.
+    /// Sets the ratio of all frequencies to those of the body's modes, from 1/64 to 64: in 20 ms, or at once while nothing
+    /// sounds. Modes near half the sample rate or above are silent. Ringing modes continue at the new pitch.
     pub fn set_pitch(&mut self, pitch: f32) {
         let pitch = pitch.clamp(1.0 / 64.0, 64.0);
         if self.state == State::Awake {
@@ -167,27 +167,27 @@ impl ModalReverb {
         }
     }
 
-    /// Whether it sleeps or is off: silence in gives silence out.
+    /// Whether it sleeps or is off: silent input gives silent output.
     pub fn is_silent(&self) -> bool {
         self.state != State::Awake
     }
 
-    /// Whether it is off and nothing of it moves: it touches nothing.
+    /// Whether it is off and no level is moving: the signal is not changed.
     pub fn is_off(&self) -> bool {
         self.state == State::Off && self.dry.rests_at(1.0)
     }
 
-    /// Whether silence that comes in changes nothing but the time: [`ModalReverb::skip`] does the same.
+    /// Whether silent input changes nothing but the clock: [`ModalReverb::skip`] does the same.
     pub fn is_idle(&self) -> bool {
         self.state != State::Awake && !self.dry.is_moving()
     }
 
-    /// Lets frames of silence pass while it is idle. Real-time safe.
+    /// Advances by frames of silence while it is idle. Real-time safe.
     pub fn skip(&mut self, frames: usize) {
         self.ticks.advance(frames);
     }
 
-    /// Silence, and all that moves where it is to be.
+    /// Silences the body and ends all ramps.
     pub fn reset(&mut self) {
         self.body.reset();
         self.finish();
@@ -198,13 +198,13 @@ impl ModalReverb {
         self.state = if self.levels[1] > 0.0 { State::Asleep } else { State::Off };
     }
 
-    /// Whether nothing moves to where it has been set.
+    /// Whether no setting is moving.
     fn is_still(&self) -> bool {
         let levels = [&self.drive, &self.dry, &self.wet];
         !levels.iter().any(|level| level.is_moving()) && !self.pitch.is_moving() && self.next_body.is_none()
     }
 
-    /// The body to come comes, and has the pitch that it is to have.
+    /// Starts the next body, if there is one, and sets the target pitch.
     fn finish(&mut self) {
         if let Some(modes) = self.next_body.take() {
             self.body.load(modes);

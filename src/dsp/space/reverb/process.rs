@@ -1,14 +1,14 @@
-//! How a reverb plays: frames divided at control ticks, and what is done there.
+//! How a reverb renders: it divides blocks at control ticks, and does the work of control ticks.
 
 use super::super::kernel::FRAMES;
 use super::super::smoothed::held;
 use super::{MEASURE_TICKS, ModalReverb, PITCH_TICKS, SILENCE, State};
 
-/// Fainter input is silence to the body: masses that it moves would be slow to compute.
+/// Smaller input counts as silence, since masses that it moves would be slow to compute.
 const FAINTEST_INPUT: f32 = 1e-15;
 
 impl ModalReverb {
-    /// Adds the space to what is in `left` and `right`, up to the length of the shorter.
+    /// Adds the space to `left` and `right`, up to the length of the shorter.
     pub fn process(&mut self, left: &mut [f32], right: &mut [f32]) {
         let frames = left.len().min(right.len());
         let (mut left, mut right) = (&mut left[..frames], &mut right[..frames]);
@@ -35,8 +35,8 @@ impl ModalReverb {
         }
     }
 
-    /// What to do with a block at rest, if that is all of it: off, only the dry level counts; asleep, silence is left as it
-    /// is.
+    /// Processes a block at rest, and returns whether that is complete. If the reverb is off, only the dry level acts; if it
+    /// sleeps, silence is not changed.
     fn rest(&mut self, left: &mut [f32], right: &mut [f32]) -> bool {
         if self.state == State::Asleep {
             return is_silent(left, right);
@@ -77,7 +77,7 @@ impl ModalReverb {
         self.wet.advance(frames);
     }
 
-    /// What is done at a control tick.
+    /// Does the work of a control tick.
     fn control(&mut self) {
         if self.state != State::Awake {
             return;

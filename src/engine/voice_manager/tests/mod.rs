@@ -134,7 +134,7 @@ fn stealing_takes_the_same_key_then_the_quietest_then_the_oldest() {
 
 #[test]
 fn more_steals_than_spare_voices_cut_the_oldest_and_go_on() {
-    // There are 128 slots, so each note after the 128th cuts one off.
+    // There are 128 slots, so each note after the 128th cuts off a fading one.
     let script: Vec<_> = (0..200).map(|n| On(n % 128, 1.0)).collect();
     let told = play(1, PlayMode::Poly, &script);
     assert_eq!(told.iter().filter(|line| line.starts_with("start")).count(), 200);
