@@ -43,26 +43,26 @@ impl Stroke {
     pub const NONE: Stroke = Stroke { push: (0.0, 1), pull: (0.0, 1), noise: BurstSetup::NONE };
 }
 
-/// Number of overlapping strikes; one more replaces the oldest.
+/// Number of overlapping strikes.
 const OVERLAPPING: usize = 4;
 
 /// The strikes in progress on one voice. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub struct Exciter {
     blows: [Blow; OVERLAPPING],
-    next: usize,
     /// Frames until no force is left.
     frames_left: u32,
 }
 
 impl Exciter {
     /// An exciter at rest.
-    pub const REST: Exciter = Exciter { blows: [Blow::REST; OVERLAPPING], next: 0, frames_left: 0 };
+    pub const REST: Exciter = Exciter { blows: [Blow::REST; OVERLAPPING], frames_left: 0 };
 
-    /// Starts a strike. Earlier strikes continue.
+    /// Starts a strike. Earlier strikes continue; if there are too many, it replaces the one that would end first.
     pub fn strike(&mut self, stroke: &Stroke, sample_rate: f64) {
-        self.blows[self.next] = Blow::new(stroke, sample_rate);
-        self.next = (self.next + 1) % OVERLAPPING;
+        if let Some(first) = self.blows.iter_mut().min_by_key(|blow| blow.frames_left()) {
+            *first = Blow::new(stroke, sample_rate);
+        }
         self.frames_left = self.blows.iter().map(Blow::frames_left).max().unwrap_or(0);
     }
 

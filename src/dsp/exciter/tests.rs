@@ -80,6 +80,17 @@ fn strikes_add_up_while_they_overlap() {
 }
 
 #[test]
+fn a_long_strike_outlasts_many_short_ones() {
+    let mut exciter = Exciter::REST;
+    exciter.strike(&pushed(0.5, 1000), RATE);
+    for _ in 0..2 * OVERLAPPING {
+        exciter.strike(&pushed(0.25, 5), RATE);
+        exciter.fill(7, &mut Drive::NONE.clone());
+    }
+    assert_eq!(exciter.frames_left(), 1000 - 14 * OVERLAPPING as u32);
+}
+
+#[test]
 fn bursts_of_every_form_carry_the_energy_of_their_force_and_repeat_by_key() {
     let plain = BurstSetup { force: 0.5, frames: 1000, ..BurstSetup::NONE };
     for setup in [
