@@ -63,7 +63,7 @@ fn render(modes: ModeTable, decay: f64, key: u8) -> Vec<f32> {
         (Param::Decay, decay as f32),
         (Param::MalletPulse, MalletPulse::Impulse as u8 as f32),
         (Param::Gain, 0.0),
-        (Param::Limiter, 1.0),
+        (Param::Limiter, 0.0),
     ] {
         patch.set(param, value);
     }
