@@ -44,6 +44,10 @@ impl LiveSender {
         if let Some(banks) = &mut self.banks {
             event.kind = banks.resolve(event.channel, event.kind);
         }
+        // A note-off that was lost leaves its key held: `release_held` sends it again.
+        if self.queue.push(event).is_err() {
+            return false;
+        }
         let channel = usize::from(nearest_channel(event.channel));
         let bit = 1 << channel;
         match event.kind {
@@ -53,7 +57,7 @@ impl LiveSender {
             EventKind::Control { controller: SUSTAIN, .. } => self.pedals &= !bit,
             _ => {}
         }
-        self.queue.push(event).is_ok()
+        true
     }
 
     /// Sends an event with the present time as its time stamp.
@@ -64,8 +68,8 @@ impl LiveSender {
     /// Releases the keys and sustain pedals that this sender holds.
     pub fn release_held(&mut self) {
         for channel in 0..16 {
-            while self.keys[usize::from(channel)] != 0 {
-                let key = self.keys[usize::from(channel)].trailing_zeros() as u8;
+            let held = self.keys[usize::from(channel)];
+            for key in (0..128).filter(|key| held & (1 << key) != 0) {
                 self.send_now(channel, EventKind::NoteOff { key, velocity: 0.5, id: None });
             }
             if self.pedals & (1 << channel) != 0 {

@@ -43,14 +43,14 @@ pub struct MidiPorts {
     sender: Arc<Mutex<LiveSender>>,
     connected: Vec<Connected>,
     scan_at: Instant,
-    /// Whether a problem has been reported. Further problems are not reported.
-    told: bool,
+    /// The problem that was reported last, and is still there.
+    problem: Option<String>,
 }
 
 impl MidiPorts {
     /// Makes no connections yet.
     pub fn new(wanted: Wanted, sender: LiveSender) -> Self {
-        Self { wanted, sender: Arc::new(Mutex::new(sender)), connected: vec![], scan_at: Instant::now(), told: false }
+        Self { wanted, sender: Arc::new(Mutex::new(sender)), connected: vec![], scan_at: Instant::now(), problem: None }
     }
 
     /// Names of the connected ports.
@@ -74,14 +74,19 @@ impl MidiPorts {
         }
         self.scan_at = Instant::now() + SCAN;
         let mut news = vec![];
+        let problem = self.scan(&mut news);
+        if problem != self.problem {
+            news.extend(problem.clone());
+            self.problem = problem;
+        }
+        news
+    }
+
+    /// Connects and drops ports, and adds messages on that. Returns what is wrong now.
+    fn scan(&mut self, news: &mut Vec<String>) -> Option<String> {
         let input = match MidiInput::new(CLIENT) {
             Ok(input) => input,
-            Err(error) => {
-                if !std::mem::replace(&mut self.told, true) {
-                    news.push(format!("no MIDI: the system has no sequencer ({error})"));
-                }
-                return news;
-            }
+            Err(error) => return Some(format!("no MIDI: the system has no sequencer ({error})")),
         };
         let ports: Vec<(MidiInputPort, String)> =
             input.ports().into_iter().filter_map(|port| input.port_name(&port).ok().map(|name| (port, name))).collect();
@@ -99,6 +104,7 @@ impl MidiPorts {
             // A port that has disappeared cannot release its held keys.
             sender.release_held();
         }
+        let mut problem = None;
         for (port, name) in &ports {
             let id = port.id();
             let new = self.connected.iter().all(|connected| connected.id != id);
@@ -108,24 +114,20 @@ impl MidiPorts {
                         news.push(format!("MIDI port ‘{name}’ is connected"));
                         self.connected.push(Connected { id, name: name.clone(), _connection: connection });
                     }
-                    None if !self.told => {
-                        self.told = true;
-                        news.push(format!("MIDI port ‘{name}’ cannot be connected"));
-                    }
-                    None => {}
+                    None => problem = Some(format!("MIDI port ‘{name}’ cannot be connected")),
                 }
             }
         }
         if let Wanted::Named(part) = &self.wanted
             && self.connected.is_empty()
-            && !std::mem::replace(&mut self.told, true)
+            && problem.is_none()
         {
             let names: Vec<_> = ports.iter().map(|(_, name)| format!("‘{name}’")).collect();
             let there =
                 if names.is_empty() { "there is none".to_owned() } else { format!("there are {}", names.join(", ")) };
-            news.push(format!("no MIDI port has ‘{part}’ in its name ({there}); waiting for one"));
+            problem = Some(format!("no MIDI port has ‘{part}’ in its name ({there}); waiting for one"));
         }
-        news
+        problem
     }
 }
 
