@@ -186,6 +186,7 @@ mod tests {
         let examples = [
             EXAMPLES,
             render::EXAMPLES,
+            batch::EXAMPLES,
             presets::EXAMPLES,
             parameters::EXAMPLES,
             #[cfg(feature = "realtime")]

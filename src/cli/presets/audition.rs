@@ -22,7 +22,7 @@ use sprung::{Error, Result};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 const RATE: u32 = 48_000;
@@ -98,16 +98,10 @@ fn page(found: &[Arc<Listed>], args: &Args, done: &AtomicUsize) -> Result<()> {
 
 /// Auditions all sounds on all cores, with a progress bar.
 fn in_parallel(found: &[Arc<Listed>], args: &Args, done: &AtomicUsize) -> Result<Vec<Auditioned>> {
-    let is_over = AtomicBool::new(false);
-    let work = || {
-        let auditioned = found.par_iter().map(|one| audition(one, args, done)).collect();
-        is_over.store(true, Ordering::Relaxed);
-        auditioned
-    };
     std::thread::scope(|scope| {
-        let worker = scope.spawn(work);
+        let worker = scope.spawn(|| found.par_iter().map(|one| audition(one, args, done)).collect());
         let mut bar = Bar::new();
-        while !is_over.load(Ordering::Relaxed) {
+        while !worker.is_finished() {
             bar.show_share(done.load(Ordering::Relaxed) as f64 / found.len() as f64);
             std::thread::sleep(Duration::from_millis(50));
         }

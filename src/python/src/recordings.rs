@@ -63,6 +63,12 @@ fn strike<'py>(py: Python<'py>, strike: &Strike) -> PyResult<Bound<'py, PyDict>>
     Ok(entry)
 }
 
+/// Checks a number of modes by the limits of the command line.
+fn check_most_modes(most_modes: usize, limit: usize) -> PyResult<()> {
+    let is_within = (1..=limit).contains(&most_modes);
+    if is_within { Ok(()) } else { Err(told(format!("most_modes: {most_modes}: expected 1 to {limit}"))) }
+}
+
 /// Splits a recording into the modes of its strikes.
 #[pyfunction]
 pub(crate) fn analyze(
@@ -71,6 +77,7 @@ pub(crate) fn analyze(
     most_modes: usize,
     all_strikes: bool,
 ) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    check_most_modes(most_modes, 1000)?;
     let mut warnings = Vec::new();
     let found = py.detach(|| {
         let (sound, name) = sound.read(&mut warnings)?;
@@ -97,6 +104,7 @@ pub(crate) fn fit(
     body: &str,
     most_modes: usize,
 ) -> PyResult<(String, Vec<f64>)> {
+    check_most_modes(most_modes, 256)?;
     let family = Family::ALL.iter().find(|(name, _)| *name == body).map(|(_, family)| *family);
     let family = family.ok_or_else(|| {
         let expected: Vec<&str> = Family::ALL.iter().map(|(name, _)| *name).collect();
