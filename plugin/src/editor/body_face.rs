@@ -63,8 +63,8 @@ fn surface(painter: &Painter, rect: Rect, shape: &BodyShape, displacements: &[f3
     let mut patches: Vec<usize> =
         (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| row * columns + column)).collect();
     let depth = |patch: &usize| {
-        let ahead = form.is_behind(shape.points[*patch]);
-        (if ahead { -1e6 } else { 0.0 }) + form.on(rect, shape.points[*patch], 0.0).y
+        let is_behind = form.is_behind(shape.points[*patch]);
+        (if is_behind { -1e6 } else { 0.0 }) + form.on(rect, shape.points[*patch], 0.0).y
     };
     patches.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
     for patch in &patches {

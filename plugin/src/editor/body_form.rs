@@ -132,7 +132,7 @@ impl Form {
     /// The point at rest that is nearest to a place in the picture, and how far away it is in pixels.
     pub(super) fn nearest(self, rect: Rect, place: Pos2) -> (Point, f32) {
         const STEPS: usize = 100;
-        let rows = if self == Self::Line { 1 } else { STEPS };
+        let rows = if self == Self::Line { 1 } else { STEPS + 1 };
         let point = |step: usize| Point {
             x: (step % (STEPS + 1)) as f64 / STEPS as f64,
             y: (step / (STEPS + 1)) as f64 / STEPS as f64,

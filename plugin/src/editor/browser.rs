@@ -240,7 +240,7 @@ impl Browser {
     fn try_out(&mut self, ui: &Ui, sound: &Listed, controls: &mut Controls) {
         controls.history.begin(controls.params);
         load(sound.playable.clone(), controls.params, controls.host);
-        controls.history.end(sound.name(), controls.params);
+        controls.history.end_load(sound.name(), controls.params);
         self.details.open(sound.name());
         let key = match &sound.playable {
             Playable::Preset(preset) => preset.guide.home,
@@ -256,7 +256,7 @@ impl Browser {
                 let name = playable.name().to_owned();
                 load(playable, controls.params, controls.host);
                 self.details.open(&name);
-                controls.history.end(name, controls.params);
+                controls.history.end_load(name, controls.params);
                 [vec![format!("loaded {}", self.words.trim())], remarks].concat().join("; ")
             }
             Err(message) => message,

@@ -107,8 +107,11 @@ impl Details {
         let Some(path) = &own.path else { return (String::new(), false) };
         match library.rename(path, &name) {
             Ok(path) => {
-                let is_favourite = library.favourites().is_ok_and(|names| names.contains(own.name()));
-                if is_favourite {
+                let names = match library.favourites() {
+                    Ok(names) => names,
+                    Err(error) => return (format!("renamed, but its star may be lost: {error}"), true),
+                };
+                if names.contains(own.name()) {
                     // In this order, since the new name may be the old one.
                     let moved =
                         library.set_favourite(own.name(), false).and_then(|()| library.set_favourite(&name, true));
@@ -125,7 +128,7 @@ impl Details {
         }
     }
 
-    fn save(&mut self, sounds: &Sounds, controls: &Controls) -> (String, bool) {
+    fn save(&mut self, sounds: &Sounds, controls: &mut Controls) -> (String, bool) {
         let name = self.name.trim().to_owned();
         let replace = self.confirm.take().is_some_and(|confirmed| confirmed == name);
         let Some(library) = &sounds.library else {
@@ -137,6 +140,7 @@ impl Details {
         match library.save(&Preset { name: name.clone(), ..preset }, replace) {
             Ok(path) => {
                 controls.params.rename(name);
+                controls.history.saved();
                 (format!("saved {}", path.display()), true)
             }
             Err(sprung::Error::Exists { path }) => {

@@ -63,6 +63,6 @@ fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Str
     controls.history.begin(controls.params);
     let name = playable.name().to_owned();
     files::load(playable, controls.params, controls.host);
-    controls.history.end(name, controls.params);
+    controls.history.end_load(name, controls.params);
     [vec![said], remarks].concat().join("; ")
 }

@@ -31,12 +31,19 @@ pub(super) fn neighbour(name: &str, places: isize) -> Option<&'static Preset> {
 
 /// Reads a preset or kit file. Returns it with a remark about each retired parameter in it.
 pub(super) fn read(path: &str) -> Result<(Playable, Vec<String>), String> {
-    let mut open =
-        |path: &Path| File::open(path).map_err(|source| sprung::Error::io(path.display().to_string(), source));
     let mut remarks = vec![];
     let mut remark = |_: &str, replaced: Replaced| remarks.push(replaced.to_string());
     let read = check(path).and_then(|path| Playable::read(path, &mut open, &mut remark));
     read.map(|playable| (playable, remarks)).map_err(|error| error.to_string())
+}
+
+/// Opens a file, and nothing else: opening a pipe would block the window.
+pub(super) fn open(path: &Path) -> sprung::Result<File> {
+    let failed = |source| sprung::Error::io(path.display().to_string(), source);
+    if !std::fs::metadata(path).map_err(failed)?.is_file() {
+        return Err(sprung::Error::format(path.display().to_string(), "this is not a file: expected one"));
+    }
+    File::open(path).map_err(failed)
 }
 
 /// Only full paths are accepted, since users do not know a host's working folder.

@@ -16,6 +16,8 @@ struct Step {
     state: State,
     /// Whether the action replaced the sound by the other one of the two versions.
     swaps: bool,
+    /// See [`History::is_changed`].
+    is_changed: bool,
 }
 
 /// The steps that can be undone and redone.
@@ -27,6 +29,7 @@ pub(super) struct History {
     redo: Vec<Step>,
     /// The state before the action in progress.
     open: Option<State>,
+    is_changed: bool,
 }
 
 impl History {
@@ -44,20 +47,36 @@ impl History {
 
     /// Ends the action in progress: it becomes a step if it has changed anything.
     pub(super) fn end(&mut self, name: impl Into<String>, params: &SprungParams) {
-        self.end_step(name.into(), false, params);
+        self.end_step(name.into(), false, true, params);
     }
 
-    /// Like [`History::end`], after the sound was replaced by the other one of the two versions.
-    pub(super) fn end_swap(&mut self, name: &str, params: &SprungParams) {
-        self.end_step(name.to_owned(), true, params);
+    /// Like [`History::end`], after a sound was loaded.
+    pub(super) fn end_load(&mut self, name: impl Into<String>, params: &SprungParams) {
+        self.end_step(name.into(), false, false, params);
+        self.is_changed = false;
     }
 
-    fn end_step(&mut self, name: String, swaps: bool, params: &SprungParams) {
+    /// Like [`History::end`], after the sound was replaced by the other one of the two versions, which may be changed.
+    pub(super) fn end_swap(&mut self, name: &str, is_changed: bool, params: &SprungParams) {
+        self.end_step(name.to_owned(), true, is_changed, params);
+    }
+
+    /// The sound was saved as it is.
+    pub(super) fn saved(&mut self) {
+        self.is_changed = false;
+    }
+
+    /// Whether the sound differs from what was loaded or saved last.
+    pub(super) fn is_changed(&self) -> bool {
+        self.is_changed
+    }
+
+    fn end_step(&mut self, name: String, swaps: bool, is_changed: bool, params: &SprungParams) {
         let Some(state) = self.open.take() else { return };
         if same_sound(&state, &params.state()) {
             return;
         }
-        self.undo.push(Step { name, state, swaps });
+        self.undo.push(Step { name, state, swaps, is_changed: std::mem::replace(&mut self.is_changed, is_changed) });
         self.redo.clear();
         if self.undo.len() > STEPS {
             self.undo.remove(0);
@@ -76,18 +95,18 @@ impl History {
 
     /// Undoes the last step. Returns whether the two versions change places by this.
     pub(super) fn undo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
-        go(&mut self.undo, &mut self.redo, params, host)
+        go([&mut self.undo, &mut self.redo], &mut self.is_changed, params, host)
     }
 
     /// Redoes the step that was undone last. Returns whether the two versions change places by this.
     pub(super) fn redo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
-        go(&mut self.redo, &mut self.undo, params, host)
+        go([&mut self.redo, &mut self.undo], &mut self.is_changed, params, host)
     }
 }
 
-fn go(from: &mut Vec<Step>, to: &mut Vec<Step>, params: &SprungParams, host: &GuiContext) -> bool {
-    let Some(Step { name, state, swaps }) = from.pop() else { return false };
-    to.push(Step { name, state: params.state(), swaps });
+fn go([from, to]: [&mut Vec<Step>; 2], is_changed: &mut bool, params: &SprungParams, host: &GuiContext) -> bool {
+    let Some(Step { name, state, swaps, is_changed: then }) = from.pop() else { return false };
+    to.push(Step { name, state: params.state(), swaps, is_changed: std::mem::replace(is_changed, then) });
     restore(state, params, host);
     swaps
 }

@@ -192,25 +192,25 @@ impl ModesView {
         }
         if response.double_clicked()
             && let Some(pointer) = response.interact_pointer_pos()
+            && self.add_or_remove(pointer, axes, patch, controls)
         {
-            self.add_or_remove(pointer, axes, patch, controls);
             self.audition.strike(home, VELOCITY, now, controls.params.link());
         }
     }
 
-    /// Removes the mode at a place, or adds one where there is none.
-    fn add_or_remove(&mut self, pointer: Pos2, axes: &Axes, patch: &Patch, controls: &mut Controls) {
+    /// Removes the mode at a place, or adds one where there is none. Returns whether the modes have changed.
+    fn add_or_remove(&mut self, pointer: Pos2, axes: &Axes, patch: &Patch, controls: &mut Controls) -> bool {
         let (mut modes, mut phases) = (clamped(patch.modes.as_slice()), phases(&patch.modes));
         let name = match nearest(&modes, axes, pointer) {
             // A body has at least one mode.
-            Some(_) if modes.len() == 1 => return,
+            Some(_) if modes.len() == 1 => return false,
             Some(place) => {
                 if !phases.is_empty() {
                     phases.remove(place);
                 }
                 format!("remove mode {:.3}", modes.remove(place).ratio)
             }
-            None if modes.len() >= MAX_MODES => return,
+            None if modes.len() >= MAX_MODES => return false,
             None => {
                 let ratio = self.snap.nearest(axes.ratio(pointer.x));
                 // The new mode gets the other properties of the nearest one, such as its decay.
@@ -229,6 +229,7 @@ impl ModesView {
         replace(&modes, &phases, controls);
         controls.history.end(name, controls.params);
         touch(controls.params, controls.host);
+        true
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::buttons::{Look, button};
 use super::controls::{Controls, Hint};
+use super::files;
 use super::gestures::load;
 use super::key_grid::{Cell, KeyGrid};
 use super::shown::Shown;
@@ -12,7 +13,6 @@ use sprung::params::Param;
 use sprung::preset::OwnTuning;
 use sprung::sound::Tuning;
 use sprung::units::{frequency_from_key, note_name, semitones_from_ratio};
-use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
@@ -110,13 +110,14 @@ fn about(own: &OwnTuning) -> (String, String) {
 pub(super) fn take(path: &Path, controls: &mut Controls) -> String {
     let read = || -> Result<String, String> {
         let mut text = String::new();
-        let file = File::open(path).map_err(|error| error.to_string())?;
-        let size = file.metadata().map_err(|error| error.to_string())?.len();
+        let mut file = files::open(path).map_err(|error| error.to_string())?;
+        let failed = |error: std::io::Error| format!("{}: {error}", path.display());
+        let size = file.metadata().map_err(failed)?.len();
         if size > LARGEST {
-            return Err(format!("{size} bytes: expected a scale or mapping of at most {LARGEST} bytes"));
+            let message = format!("{size} bytes: expected a scale or mapping of at most {LARGEST} bytes");
+            return Err(format!("{}: {message}", path.display()));
         }
-        // Only a regular file reports its size, so that the number of bytes read is limited too.
-        file.take(LARGEST).read_to_string(&mut text).map_err(|error| error.to_string())?;
+        file.read_to_string(&mut text).map_err(failed)?;
         Ok(text)
     };
     let failed = |error: String| format!("{}: {error}", path.display());
@@ -127,7 +128,7 @@ pub(super) fn take(path: &Path, controls: &mut Controls) -> String {
     };
     let text = match read() {
         Ok(text) => text,
-        Err(error) => return failed(error),
+        Err(error) => return error,
     };
     let state = controls.params.state();
     let mut playable = state.playable;

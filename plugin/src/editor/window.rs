@@ -67,8 +67,8 @@ pub(super) struct Window {
     manual: Manual,
     fitting: Fitting,
     over: Option<Over>,
-    /// The other one of the two versions of the sound.
-    other: Option<State>,
+    /// The other one of the two versions of the sound, and whether it is changed ([`History::is_changed`]).
+    other: Option<(State, bool)>,
     is_b: bool,
     /// The theme that was last applied to egui's own widgets.
     applied: Option<Theme>,
@@ -151,7 +151,7 @@ impl Window {
         let header = Header {
             name: &name,
             words: &self.shown.words(),
-            is_changed: controls.history.undo_name().is_some(),
+            is_changed: controls.history.is_changed(),
             is_browsing: self.over == Some(Over::Browser),
             is_b: self.is_b,
             view,
@@ -232,7 +232,7 @@ impl Window {
         let Some(preset) = neighbour(&self.params.name(), places) else { return };
         self.history.begin(&self.params);
         load(Playable::Preset(preset.clone()), &self.params, host);
-        self.history.end(preset.name.as_str(), &self.params);
+        self.history.end_load(preset.name.as_str(), &self.params);
     }
 
     /// Replaces the sound by a random variation.
@@ -255,7 +255,7 @@ impl Window {
 
     /// Undoes or redoes a step, which may exchange the two versions.
     fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
-        let now = self.params.state();
+        let now = (self.params.state(), self.history.is_changed());
         if go(&mut self.history, &self.params, host) {
             self.other = Some(now);
             self.is_b = !self.is_b;
@@ -280,12 +280,12 @@ impl Window {
             Wish::Step(places) => self.step(places, host),
             Wish::Swap => {
                 self.history.begin(&self.params);
-                let now = self.params.state();
-                if let Some(other) = self.other.replace(now) {
-                    restore(other, &self.params, host);
-                }
+                let now = (self.params.state(), self.history.is_changed());
+                let (other, is_changed) = self.other.replace(now.clone()).unwrap_or(now);
+                restore(other, &self.params, host);
                 self.is_b = !self.is_b;
-                self.history.end_swap(if self.is_b { "version B" } else { "version A" }, &self.params);
+                let name = if self.is_b { "version B" } else { "version A" };
+                self.history.end_swap(name, is_changed, &self.params);
             }
             Wish::Variation(Asked::Lock(section)) => {
                 if !self.locked.remove(section) {
@@ -293,7 +293,7 @@ impl Window {
                 }
             }
             Wish::Variation(Asked::Vary(variation)) => self.vary(variation, host),
-            Wish::Copy => self.other = Some(self.params.state()),
+            Wish::Copy => self.other = Some((self.params.state(), self.history.is_changed())),
         }
     }
 }

@@ -61,7 +61,8 @@ impl Keeper {
             if Instant::now() > keep_at {
                 keep_at = Instant::now() + KEEP;
                 let problem = self.kept.keep_what_changed(&self.params).err();
-                let is_new = problem.is_some() && !std::mem::replace(&mut told, problem.is_some());
+                let is_new = problem.is_some() && !told;
+                told = problem.is_some();
                 tell(&self.params, problem.filter(|_| is_new));
             }
             if self.params.link().is_closing() && asked.get_or_insert_with(Instant::now).elapsed() > PATIENCE {

@@ -1,11 +1,18 @@
 //! Finding, trying, saving and removing sounds in the browser.
 
+use super::fake_host::FakeHost;
 use super::pictures::{Stage, compare, finish, stage};
+use crate::editor::files::load;
+use crate::editor::history::History;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
+use crate::params::SprungParams;
 use egui::{Event, Key, Role};
 use egui_kittest::kittest::Queryable as _;
+use sprung::params::Param;
 use sprung::preset::library::Library;
+use sprung::preset::{Playable, Preset};
+use std::sync::Arc;
 
 impl Stage {
     fn type_text(&mut self, text: &str) {
@@ -71,4 +78,32 @@ fn a_sound_is_saved_under_a_name_found_again_and_thrown_away() {
     stage.button("Move your sound to the bin");
     assert!(library.entries().is_empty());
     assert!(stage.harness.query_by_role_and_label(Role::ListItem, "Marimba of Glass").is_none());
+}
+
+#[test]
+fn a_sound_is_marked_while_it_differs_from_what_was_loaded_or_saved() {
+    let (params, context) = (SprungParams::default(), FakeHost::default());
+    let context = Arc::new(context).context();
+    let mut history = History::default();
+    let step = |history: &mut History, gain: f32| {
+        let mut preset = Preset::find("Marimba").unwrap().clone();
+        preset.patch.set(Param::Gain, gain);
+        history.begin(&params);
+        load(Playable::Preset(preset), &params, &context);
+    };
+    step(&mut history, 0.0);
+    history.end_load("Marimba", &params);
+    assert!(!history.is_changed(), "loaded");
+    step(&mut history, -6.0);
+    history.end("Gain", &params);
+    assert!(history.is_changed(), "changed");
+    history.undo(&params, &context);
+    assert!(!history.is_changed(), "undone");
+    history.redo(&params, &context);
+    assert!(history.is_changed(), "redone");
+    history.saved();
+    assert!(!history.is_changed(), "saved");
+    step(&mut history, -12.0);
+    history.end_swap("version B", false, &params);
+    assert!(!history.is_changed(), "the other version is as it was loaded");
 }
