@@ -50,19 +50,22 @@ const OVERLAPPING: usize = 4;
 #[derive(Clone, Copy, Debug)]
 pub struct Exciter {
     blows: [Blow; OVERLAPPING],
+    /// The slot that is tried first.
+    next: usize,
     /// Frames until no force is left.
     frames_left: u32,
 }
 
 impl Exciter {
     /// An exciter at rest.
-    pub const REST: Exciter = Exciter { blows: [Blow::REST; OVERLAPPING], frames_left: 0 };
+    pub const REST: Exciter = Exciter { blows: [Blow::REST; OVERLAPPING], next: 0, frames_left: 0 };
 
     /// Starts a strike. Earlier strikes continue; if there are too many, it replaces the one that would end first.
     pub fn strike(&mut self, stroke: &Stroke, sample_rate: f64) {
-        if let Some(first) = self.blows.iter_mut().min_by_key(|blow| blow.frames_left()) {
-            *first = Blow::new(stroke, sample_rate);
-        }
+        let slots = (self.next..self.next + OVERLAPPING).map(|slot| slot % OVERLAPPING);
+        let slot = slots.min_by_key(|slot| self.blows[*slot].frames_left()).unwrap_or(self.next);
+        self.blows[slot] = Blow::new(stroke, sample_rate);
+        self.next = slot + 1;
         self.frames_left = self.blows.iter().map(Blow::frames_left).max().unwrap_or(0);
     }
 
