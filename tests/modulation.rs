@@ -99,7 +99,7 @@ fn sources_of_the_strike_and_the_hand_move_a_gain() {
         (Source::Macro3, vec![on(0, 60, 1.0), event(9600, EventKind::Param { param: Macro3, value: 25.0 })], 3.0),
         (Source::Envelope1, vec![on(0, 60, 1.0)], 6.0),
     ] {
-        // The vibrato from wheel and pressure does not change levels.
+        // The vibrato from wheel and pressure changes no level, so peaks can be compared.
         assert_moves_gain(source, &events, expected);
     }
 }

@@ -7,6 +7,8 @@ use libm::{log10, pow};
 
 /// Largest residual of an alignment, in dB, for which one sound counts as a shifted or scaled copy of the other.
 const SAME_BUT_MOVED_DB: f64 = -60.0;
+/// Smallest change of a gain that is reported: 0.005 dB, half of the last digit shown.
+const LEAST_SCALING: f64 = 0.000_6;
 
 /// An octave's levels, RMS in dBFS as mean power of the channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +54,8 @@ impl Comparison {
 
     /// The alignment, if the actual sound is a shifted or scaled copy of the expected one.
     pub fn moved(&self) -> Option<Alignment> {
-        self.alignment.filter(|found| found.residual_db < SAME_BUT_MOVED_DB && (found.shift != 0 || found.gain != 1.0))
+        let is_moved = |found: &Alignment| found.shift != 0 || (found.gain - 1.0).abs() > LEAST_SCALING;
+        self.alignment.filter(|found| found.residual_db < SAME_BUT_MOVED_DB && is_moved(found))
     }
 }
 
@@ -102,6 +105,9 @@ mod tests {
         let found = Comparison::of(&[sine(250.0, 0.5)], &[sine(250.0, 0.25)], 48_000.0).unwrap();
         let moved = found.moved().unwrap();
         assert!(moved.shift == 0 && (moved.gain_db() + 6.0206).abs() < 1e-3, "{moved:?}");
+        // A difference of 0.0009 dB would be shown as 0.
+        let found = Comparison::of(&[sine(250.0, 0.5)], &[sine(250.0, 0.50005)], 48_000.0).unwrap();
+        assert_eq!(found.moved(), None);
     }
 
     #[test]

@@ -85,8 +85,10 @@ impl ParamInfo {
             Unit::Choice => self.choices[value as usize].to_owned(),
             Unit::Count => format!("{value:.0}"),
             Unit::Number => trim_zeros(format!("{value:.3}")),
-            // From 0.9995 s on, three decimals of a second round to 1 s or more.
-            Unit::Seconds if value < 0.9995 => format!("{} ms", trim_zeros(format!("{:.2}", f64::from(value) * 1e3))),
+            // From here on, two decimals of a millisecond round to 1000 ms.
+            Unit::Seconds if value < 0.999_995 => {
+                format!("{} ms", trim_zeros(format!("{:.2}", f64::from(value) * 1e3)))
+            }
             Unit::Seconds => format!("{} s", trim_zeros(format!("{value:.3}"))),
             Unit::Decibels | Unit::DecibelsPerOctave | Unit::Percent | Unit::Cents => {
                 format!("{} {symbol}", trim_zeros(format!("{value:.2}")))
@@ -121,6 +123,20 @@ mod tests {
             (Param::Voices, "8", 8.0),
         ] {
             assert_eq!(param.info().parse(text), Ok(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn times_round_to_what_is_shown() {
+        for (seconds, text) in [
+            (0.25, "250 ms"),
+            (0.9994, "999.4 ms"),
+            (0.9995, "999.5 ms"),
+            (0.9999, "999.9 ms"),
+            (0.999_999, "1 s"),
+            (1.0, "1 s"),
+        ] {
+            assert_eq!(Param::Decay.info().format(seconds), text);
         }
     }
 

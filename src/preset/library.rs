@@ -53,12 +53,14 @@ impl Library {
     fn paths(&self) -> Vec<PathBuf> {
         let Ok(files) = fs::read_dir(self.presets_folder()) else { return Vec::new() };
         let paths = files.filter_map(|file| Some(file.ok()?.path()));
-        let mut paths: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).collect();
+        let mut paths: Vec<PathBuf> =
+            paths.filter(|path| path.extension().is_some_and(|end| end == "toml") && path.is_file()).collect();
         paths.sort();
         paths
     }
 
-    /// Saves a preset in a file named after it; a number is added if a sound of another name has that file. The file is
+    /// Saves a preset. A file that has a preset of this name is replaced, if told so; a new one is named after the preset, with
+    /// a number if a sound of another name has that file. The file is
     /// written under a temporary name and renamed, so that it is never half-written. Returns its path.
     ///
     /// # Errors
@@ -75,9 +77,10 @@ impl Library {
             number => folder.join(format!("{slug}-{number}.toml")),
         };
         let is_it = |path: &PathBuf| matches!(read(path), Ok(Playable::Preset(found)) if found.name.eq_ignore_ascii_case(&preset.name));
-        // Look at all numbers: if a file was discarded, a free number may come before the preset's own.
-        let numbers = 1..=self.paths().len() as u32 + 1;
-        if let Some(path) = numbers.clone().map(place).find(is_it) {
+        // Its usual place first, since there may be copies; but a file of any other name may have it too.
+        let paths = self.paths();
+        let numbers = 1..=paths.len() as u32 + 1;
+        if let Some(path) = numbers.clone().map(place).chain(paths).find(is_it) {
             write_whole(&path, text.as_bytes(), replace)?;
             return Ok(path);
         }

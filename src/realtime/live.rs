@@ -65,8 +65,8 @@ impl LiveSender {
         self.send(LiveEvent { stamp: Stamp::System(Instant::now()), channel, kind })
     }
 
-    /// Releases the keys and sustain pedals that this sender holds.
-    pub fn release_held(&mut self) {
+    /// Releases the keys and sustain pedals that this sender holds. Returns false if the queue is full: some are then still held.
+    pub fn release_held(&mut self) -> bool {
         for channel in 0..16 {
             let held = self.keys[usize::from(channel)];
             for key in (0..128).filter(|key| held & (1 << key) != 0) {
@@ -76,6 +76,7 @@ impl LiveSender {
                 self.send_now(channel, EventKind::Control { controller: SUSTAIN, value: 0.0 });
             }
         }
+        self.keys == [0; 16] && self.pedals == 0
     }
 
     /// Releases every note and pedal on every channel.
@@ -181,6 +182,21 @@ mod tests {
         sender.release_held();
         let released: Vec<_> = std::iter::from_fn(next).collect();
         assert_eq!(released, [(3, off(61)), (3, off(127)), (15, pedal(0.0))]);
+    }
+
+    #[test]
+    fn what_a_full_queue_loses_is_released_later() {
+        let ([mut sender], mut inputs) = LiveInputs::new();
+        let on = EventKind::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: None };
+        let off = EventKind::NoteOff { key: 60, velocity: 0.5, id: None };
+        assert!(sender.send_now(0, on));
+        let wheel = EventKind::Control { controller: 1, value: 0.0 };
+        while sender.send_now(0, wheel) {}
+        assert!(!sender.send_now(0, off) && !sender.release_held(), "the queue is full");
+        while inputs.0[0].pop().is_ok() {}
+        assert!(sender.release_held());
+        assert_eq!(inputs.0[0].pop().ok().map(|event| event.kind), Some(off));
+        assert!(sender.release_held() && inputs.0[0].pop().is_err(), "once");
     }
 
     #[test]

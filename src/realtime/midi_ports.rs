@@ -43,6 +43,8 @@ pub struct MidiPorts {
     sender: Arc<Mutex<LiveSender>>,
     connected: Vec<Connected>,
     scan_at: Instant,
+    /// Whether keys of a port that has disappeared may still be down.
+    is_releasing: bool,
     /// The problem that was reported last, and is still there.
     problem: Option<String>,
 }
@@ -50,7 +52,14 @@ pub struct MidiPorts {
 impl MidiPorts {
     /// Makes no connections yet.
     pub fn new(wanted: Wanted, sender: LiveSender) -> Self {
-        Self { wanted, sender: Arc::new(Mutex::new(sender)), connected: vec![], scan_at: Instant::now(), problem: None }
+        Self {
+            wanted,
+            sender: Arc::new(Mutex::new(sender)),
+            connected: vec![],
+            scan_at: Instant::now(),
+            is_releasing: false,
+            problem: None,
+        }
     }
 
     /// Names of the connected ports.
@@ -82,7 +91,7 @@ impl MidiPorts {
         news
     }
 
-    /// Connects and drops ports, and adds messages on that. Returns what is wrong now.
+    /// Connects and drops ports, and adds messages about them to `news`. Returns the present problem, if any.
     fn scan(&mut self, news: &mut Vec<String>) -> Option<String> {
         let input = match MidiInput::new(CLIENT) {
             Ok(input) => input,
@@ -98,13 +107,15 @@ impl MidiPorts {
             }
             stays
         });
-        if self.connected.len() < released
+        let is_lost = self.connected.len() < released;
+        // A port that has disappeared cannot release its held keys.
+        self.is_releasing |= is_lost;
+        if self.is_releasing
             && let Ok(mut sender) = self.sender.lock()
         {
-            // A port that has disappeared cannot release its held keys.
-            sender.release_held();
+            self.is_releasing = !sender.release_held();
         }
-        let mut problem = None;
+        let mut failed = vec![];
         for (port, name) in &ports {
             let id = port.id();
             let new = self.connected.iter().all(|connected| connected.id != id);
@@ -114,20 +125,26 @@ impl MidiPorts {
                         news.push(format!("MIDI port ‘{name}’ is connected"));
                         self.connected.push(Connected { id, name: name.clone(), _connection: connection });
                     }
-                    None => problem = Some(format!("MIDI port ‘{name}’ cannot be connected")),
+                    None => failed.push(format!("‘{name}’")),
                 }
             }
         }
-        if let Wanted::Named(part) = &self.wanted
-            && self.connected.is_empty()
-            && problem.is_none()
-        {
-            let names: Vec<_> = ports.iter().map(|(_, name)| format!("‘{name}’")).collect();
-            let there =
-                if names.is_empty() { "there is none".to_owned() } else { format!("there are {}", names.join(", ")) };
-            problem = Some(format!("no MIDI port has ‘{part}’ in its name ({there}); waiting for one"));
+        if !failed.is_empty() {
+            return Some(format!("MIDI port {} cannot be connected", failed.join(", ")));
         }
-        problem
+        match &self.wanted {
+            // That a port is gone has just been said.
+            Wanted::Named(part) if self.connected.is_empty() && !is_lost => {
+                let names: Vec<_> = ports.iter().map(|(_, name)| format!("‘{name}’")).collect();
+                let there = if names.is_empty() {
+                    "there is none".to_owned()
+                } else {
+                    format!("there are {}", names.join(", "))
+                };
+                Some(format!("no MIDI port has ‘{part}’ in its name ({there}); waiting for one"))
+            }
+            _ => None,
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Renders a job block by block, with the sounding channels on several cores.
+//! Renders a job block by block, on up to as many cores as channels sound.
 
 use super::job::{Job, Rendered};
 use super::labels::Labels;

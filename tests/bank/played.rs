@@ -16,7 +16,7 @@ pub(crate) fn event(seconds: f64, key: u8, velocity: Option<f32>) -> Event {
     Event { frame: (seconds * RATE) as u32, channel: 0, kind }
 }
 
-/// The mean of both channels of a note that is held for some seconds.
+/// The mean of both channels of a note struck with `velocity`, 1–127, and held for `held` seconds.
 pub(crate) fn note(preset: &Preset, key: u8, velocity: f32, held: f64, seconds: f64) -> Vec<f32> {
     let mut synth = Synth::new(RATE, 1);
     synth.set_kit(&preset.kit());

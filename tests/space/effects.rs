@@ -20,7 +20,8 @@ fn amplitude(samples: &[f32], frequency: f64) -> f64 {
     2.0 * (re * re + im * im).sqrt() / samples.len() as f64
 }
 
-/// All products of 5 kHz at 48 kHz fall on whole kilohertz. Its odd harmonics are 5 and 15 kHz, all others are aliases.
+/// All products of 5 kHz at 48 kHz fall on whole kilohertz. Of its odd harmonics, 5 and 15 kHz are
+/// below half the sample rate (25 kHz folds to 23); all else is an alias.
 #[test]
 fn overdrive_has_no_false_tones() {
     for drive in [6.0, 12.0] {

@@ -124,7 +124,7 @@ impl Form {
         }
     }
 
-    /// Whether a point lies behind others, so that it is drawn faintly or not at all and cannot be touched.
+    /// Whether a point lies behind others, so that its lines are not drawn and it cannot be touched.
     pub(super) fn is_behind(self, point: Point) -> bool {
         matches!(self, Self::Bell | Self::Bowl) && self.place(point).normal[1] < -0.05
     }
@@ -188,6 +188,8 @@ mod tests {
                         distance < 6.0 && (form.on(rect, found, 0.0) - at).length() < 6.0,
                         "{form:?} {point:?} {found:?}"
                     );
+                    let is_edge = matches!(form, Form::Plate { .. }) && point.y == 1.0;
+                    assert!(!is_edge || found.y == 1.0, "{form:?} {point:?} {found:?}");
                 }
             }
         }

@@ -41,7 +41,10 @@ pub(super) fn read(path: &str) -> Result<(Playable, Vec<String>), String> {
 pub(super) fn open(path: &Path) -> sprung::Result<File> {
     let failed = |source| sprung::Error::io(path.display().to_string(), source);
     if !std::fs::metadata(path).map_err(failed)?.is_file() {
-        return Err(sprung::Error::format(path.display().to_string(), "this is not a file: expected one"));
+        return Err(sprung::Error::format(
+            path.display().to_string(),
+            "this is not a regular file: expected a preset, kit, scale or mapping",
+        ));
     }
     File::open(path).map_err(failed)
 }

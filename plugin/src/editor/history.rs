@@ -63,10 +63,11 @@ impl History {
 
     /// The sound was saved as it is.
     pub(super) fn saved(&mut self) {
+        self.undo.iter_mut().chain(&mut self.redo).for_each(|step| step.is_changed = true);
         self.is_changed = false;
     }
 
-    /// Whether the sound differs from what was loaded or saved last.
+    /// Whether the user has changed the sound in this window since it was loaded or saved.
     pub(super) fn is_changed(&self) -> bool {
         self.is_changed
     }

@@ -108,16 +108,14 @@ fn about(own: &OwnTuning) -> (String, String) {
 
 /// Tunes the sound by a scale or mapping file. Returns a message.
 pub(super) fn take(path: &Path, controls: &mut Controls) -> String {
-    let read = || -> Result<String, String> {
+    let read = || -> sprung::Result<String> {
         let mut text = String::new();
-        let mut file = files::open(path).map_err(|error| error.to_string())?;
-        let failed = |error: std::io::Error| format!("{}: {error}", path.display());
-        let size = file.metadata().map_err(failed)?.len();
-        if size > LARGEST {
-            let message = format!("{size} bytes: expected a scale or mapping of at most {LARGEST} bytes");
-            return Err(format!("{}: {message}", path.display()));
+        let failed = |source| sprung::Error::io(path.display().to_string(), source);
+        files::open(path)?.take(LARGEST + 1).read_to_string(&mut text).map_err(failed)?;
+        if text.len() as u64 > LARGEST {
+            let message = format!("it is too large: expected a scale or mapping of at most {LARGEST} bytes");
+            return Err(sprung::Error::format(path.display().to_string(), message));
         }
-        file.read_to_string(&mut text).map_err(failed)?;
         Ok(text)
     };
     let failed = |error: String| format!("{}: {error}", path.display());
@@ -128,7 +126,7 @@ pub(super) fn take(path: &Path, controls: &mut Controls) -> String {
     };
     let text = match read() {
         Ok(text) => text,
-        Err(error) => return error,
+        Err(error) => return error.to_string(),
     };
     let state = controls.params.state();
     let mut playable = state.playable;

@@ -281,8 +281,11 @@ impl Window {
             Wish::Swap => {
                 self.history.begin(&self.params);
                 let now = (self.params.state(), self.history.is_changed());
-                let (other, is_changed) = self.other.replace(now.clone()).unwrap_or(now);
-                restore(other, &self.params, host);
+                let mut is_changed = now.1;
+                if let Some((other, other_is_changed)) = self.other.replace(now) {
+                    restore(other, &self.params, host);
+                    is_changed = other_is_changed;
+                }
                 self.is_b = !self.is_b;
                 let name = if self.is_b { "version B" } else { "version A" };
                 self.history.end_swap(name, is_changed, &self.params);

@@ -23,7 +23,7 @@ const SEARCH: Duration = Duration::from_secs(3);
 /// How long a window may take to close after it was asked to. A window that is not visible may never close.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// The thread that follows devices and ports, and saves the state, while the window is open.
+/// Follows devices and ports, and saves the state, while the window is open. Runs on its own thread.
 pub(super) struct Keeper {
     pub(super) params: Arc<SprungParams>,
     pub(super) kept: Kept,
@@ -43,7 +43,7 @@ impl Keeper {
         let mut keep_at = Instant::now() + KEEP;
         let mut search_at = Instant::now();
         // A problem with the file is reported once.
-        let mut told = false;
+        let mut told = None;
         while !self.is_closed.load(Relaxed) {
             tell(&self.params, self.session.poll());
             tell(&self.params, midi.iter_mut().flat_map(MidiIn::poll).collect::<Vec<_>>());
@@ -61,9 +61,10 @@ impl Keeper {
             if Instant::now() > keep_at {
                 keep_at = Instant::now() + KEEP;
                 let problem = self.kept.keep_what_changed(&self.params).err();
-                let is_new = problem.is_some() && !told;
-                told = problem.is_some();
-                tell(&self.params, problem.filter(|_| is_new));
+                if problem != told {
+                    tell(&self.params, problem.clone());
+                    told = problem;
+                }
             }
             if self.params.link().is_closing() && asked.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
                 break;

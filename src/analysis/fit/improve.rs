@@ -51,7 +51,7 @@ pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) ->
     best.ok_or(Error::Interrupted)
 }
 
-/// The possible drafts of a take: its modes, without a sweep and with those sweeps that explain it best. If these
+/// The possible drafts of a take: its modes, without a sweep and with the sweep that explains it best, if one does. If these
 /// explain little, also modes that only noise excites, found after the noise is over. If the sound rises slowly, also
 /// modes found after the rise.
 fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {

@@ -78,10 +78,13 @@ pub(super) fn draft(
         let delay = delay(&kept, &amplitudes);
         let struck_so = |(mode, amplitude): (&&Mode, &f64)| {
             let partial = partial(mode, *amplitude, delay);
+            // In a held sound many modes can stand for one whose pitch moves; with their measured phases they would cancel,
+            // so all start as sines. So do modes that were measured later than the onset.
+            let phase = if take.is_held || !struck || late > 0.0 { 0.0 } else { partial.phase };
             let before = 60.0 * late / partial.t60;
             let most = if struck { MOST_OF_A_SWELL_DB } else { MOST_BEFORE_DB };
             let amplitude = partial.amplitude * pow(10.0, before.min(most) / 20.0);
-            Partial { amplitude, struck, ..partial }
+            Partial { amplitude, phase, struck, ..partial }
         };
         partials.extend(kept.iter().zip(&amplitudes).map(struck_so));
     }

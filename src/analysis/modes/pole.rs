@@ -144,8 +144,8 @@ impl Ladder {
         Self { powers: poles.iter().map(powers).collect(), lengths }
     }
 
-    /// `Σ τᵐ·wⁿ` with `τ = n/len` for `m` of 0, 1 and 2, where `w` is the product of two poles, the first of them
-    /// conjugated if `conjugated`. The doubling loses no precision if `w` lies in the unit disk.
+    /// `Σ τᵐ·wⁿ` with `τ = n/len` for `m` of 0, 1 and 2, where `w` is the product of two poles, of which the
+    /// first may be `conjugated`. The doubling loses no precision if `w` lies in the unit disk.
     pub(super) fn sums(&self, first: usize, second: usize, conjugated: bool) -> [Complex<f64>; 3] {
         let power = |at: usize| {
             let z = self.powers[first][at];

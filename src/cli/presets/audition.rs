@@ -105,7 +105,7 @@ fn in_parallel(found: &[Arc<Listed>], args: &Args, done: &AtomicUsize) -> Result
             bar.show_share(done.load(Ordering::Relaxed) as f64 / found.len() as f64);
             std::thread::sleep(Duration::from_millis(50));
         }
-        worker.join().expect("auditions do not panic")
+        worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
 }
 
@@ -197,7 +197,7 @@ fn speed(kit: &Arc<Kit>) -> f64 {
     TIMED_SECONDS / start.elapsed().as_secs_f64()
 }
 
-/// Writes the page.
+/// The page as HTML.
 fn written(all: &[Auditioned]) -> String {
     let off = all.iter().filter(|one| one.measures.iter().any(|measure| !measure.is_kept())).count();
     let heaviest = all.iter().min_by(|a, b| a.speed.total_cmp(&b.speed));

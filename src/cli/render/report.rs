@@ -66,7 +66,7 @@ fn summary(report: &Report, target: &Target) -> String {
     )
 }
 
-/// The report as JSON, with names like those of [`Report`]'s fields. For silence, the levels are null and
+/// The report as JSON, mostly with the names of [`Report`]'s fields; `voices_used` is the sum over all channels. For silence, the levels are null and
 /// `non_finite_samples` is 0.
 fn to_json(report: &Report, target: &Target) -> serde_json::Value {
     json!({

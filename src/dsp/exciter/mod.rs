@@ -43,14 +43,14 @@ impl Stroke {
     pub const NONE: Stroke = Stroke { push: (0.0, 1), pull: (0.0, 1), noise: BurstSetup::NONE };
 }
 
-/// Number of overlapping strikes.
+/// Maximum number of strikes in progress; a further one replaces the one that would end first.
 const OVERLAPPING: usize = 4;
 
 /// The strikes in progress on one voice. Real-time safe.
 #[derive(Clone, Copy, Debug)]
 pub struct Exciter {
     blows: [Blow; OVERLAPPING],
-    /// The slot that is tried first.
+    /// The slot that is tried first: one after the other, since the accepted bits depend on the order in which forces add up.
     next: usize,
     /// Frames until no force is left.
     frames_left: u32,
@@ -65,7 +65,7 @@ impl Exciter {
         let slots = (self.next..self.next + OVERLAPPING).map(|slot| slot % OVERLAPPING);
         let slot = slots.min_by_key(|slot| self.blows[*slot].frames_left()).unwrap_or(self.next);
         self.blows[slot] = Blow::new(stroke, sample_rate);
-        self.next = slot + 1;
+        self.next = (slot + 1) % OVERLAPPING;
         self.frames_left = self.blows.iter().map(Blow::frames_left).max().unwrap_or(0);
     }
 

@@ -88,6 +88,19 @@ fn a_long_strike_outlasts_many_short_ones() {
         exciter.fill(7, &mut Drive::NONE.clone());
     }
     assert_eq!(exciter.frames_left(), 1000 - 14 * OVERLAPPING as u32);
+    // One more than can be in progress replaces the one that would end first.
+    let mut exciter = Exciter::REST;
+    for frames in [900, 300, 600, 800, 700] {
+        exciter.strike(&pushed(1.0, frames), RATE);
+    }
+    let forces = collect(&mut exciter);
+    let force = |frame: usize| {
+        [900, 600, 800, 700].map(|frames| struck(pushed(1.0, frames))[0].get(frame).copied().unwrap_or(0.0))
+    };
+    for frame in [100, 500, 650, 750, 850] {
+        let expected: f32 = force(frame).iter().sum();
+        assert!((forces[0][frame] - expected).abs() < 1e-6, "{frame}: {} for {expected}", forces[0][frame]);
+    }
 }
 
 #[test]

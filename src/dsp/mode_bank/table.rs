@@ -12,7 +12,7 @@ use super::tuning::{below_top, expm1_of_radius, sin_to_right_angle};
 use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::Vector;
 
-/// Frames that a table covers; two windows are a control tick. Must not change, since the output depends on it.
+/// Frames that a table covers; two windows are a control tick. Must not change: the accepted bits depend on it.
 pub(super) const WINDOW: usize = 16;
 
 /// The displacement after `j + 1` frames is `taps[2j]·x + taps[2j+1]·y`.

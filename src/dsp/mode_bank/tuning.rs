@@ -117,7 +117,7 @@ pub(super) struct Aim<'a> {
 }
 
 /// Number of frames for which the coefficients on a ramp stay the same: this saves two operations per mode in three frames of
-/// four. Must not change, since the output depends on it.
+/// four. Must not change: the accepted bits depend on it.
 pub(super) const STAIR: usize = 4;
 
 /// The position of the next frame's coefficients on a ramp of `frames` frames after `passed` frames: the middle of the

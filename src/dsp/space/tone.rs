@@ -101,7 +101,8 @@ impl Tone {
     }
 
     /// Upper bound of the output from now on, if the magnitude of the input is at most `peak`. A shelf adds `g − 1` times the
-    /// output of its one-pole filter. The bound takes twice the input for that output, and at least 1 for `|g − 1|`.
+    /// output of its one-pole filter. That output is no larger than the
+    /// input; the bound takes twice the input, as a margin, and at least 1 for `|g − 1|`.
     pub fn peak_after(&self, peak: f64) -> f64 {
         self.shelves.iter().fold(peak, |peak, shelf| {
             let decibels = f64::from(shelf.decibels.after(0).max(shelf.decibels.target()));

@@ -87,6 +87,11 @@ fn sounds_of_other_names_are_not_replaced() {
     library.discard(&library.presets_folder().join("my-bell.toml")).unwrap();
     assert!(matches!(library.save(&named("my-bell!"), false), Err(Error::Exists { .. })));
     assert_eq!(save("my-bell!", true), "my-bell-2.toml", "where it was");
+    let own = library.presets_folder().join("a name of its own.toml");
+    fs::rename(library.presets_folder().join("my-bell-2.toml"), &own).unwrap();
+    assert!(matches!(library.save(&named("my-bell!"), false), Err(Error::Exists { .. })));
+    assert_eq!(save("my-bell!", true), "a name of its own.toml");
+    fs::rename(&own, library.presets_folder().join("my-bell-2.toml")).unwrap();
     fs::write(library.presets_folder().join("sound-3.toml"), "broken").unwrap();
     assert_eq!(save("λ", true), "sound-4.toml");
     assert_eq!(library.entries().len(), 5);

@@ -77,6 +77,9 @@ def test_errors_are_those_of_the_command() -> None:
     for options, message in wrong:
         with pytest.raises(sprung.Error, match=message):
             sprung.render("Kick", "C2", **options)
+    for most_modes in [0, 1001]:
+        with pytest.raises(sprung.Error, match=f"most_modes: {most_modes}: expected 1 to 1000"):
+            sprung.analyze(np.zeros(4410), most_modes=most_modes)
 
 
 def test_warnings_are_raised() -> None:

@@ -103,6 +103,10 @@ fn a_sound_is_marked_while_it_differs_from_what_was_loaded_or_saved() {
     assert!(history.is_changed(), "redone");
     history.saved();
     assert!(!history.is_changed(), "saved");
+    history.undo(&params, &context);
+    assert!(history.is_changed(), "no longer what was saved");
+    history.redo(&params, &context);
+    assert!(!history.is_changed(), "saved, and back again");
     step(&mut history, -12.0);
     history.end_swap("version B", false, &params);
     assert!(!history.is_changed(), "the other version is as it was loaded");

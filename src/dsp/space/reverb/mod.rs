@@ -27,8 +27,8 @@ const PITCH_TICKS: u64 = 4;
 
 /// A stereo processor: the sum of both sides drives a [`Resonator`], whose outputs are added to the input.
 ///
-/// Real-time safe once created: [`ModalReverb::process`] and all setters neither allocate nor wait. The output does not depend
-/// on the block size, and it is finite for finite input.
+/// Real-time safe once created: [`ModalReverb::process`] and all setters neither allocate nor wait. The output does not depend,
+/// bit for bit, on the block size, and it is finite for finite input.
 ///
 /// Once the input is silent and the tail is certainly below −120 dBFS, it sleeps: a silent block then costs one look at its
 /// samples, and is not changed. At a wet level of 0 it is off, and does not change the signal if the dry level is 1.
