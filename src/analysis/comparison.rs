@@ -4,6 +4,7 @@ use super::alignment::{Alignment, align};
 use super::diff::{Difference, compare};
 use super::spectrum::{BAND_CENTRES, band_levels};
 use libm::{log10, pow};
+use std::iter::repeat;
 
 /// Largest residual of an alignment, in dB, for which one sound counts as a shifted or scaled copy of the other.
 const SAME_BUT_MOVED_DB: f64 = -60.0;
@@ -64,8 +65,11 @@ fn channel_of(sound: &[Vec<f32>], channel: usize) -> &[f32] {
 }
 
 fn octaves(expected: &[Vec<f32>], actual: &[Vec<f32>], differences: &[Vec<f32>], sample_rate: f64) -> Vec<Octave> {
+    // All are means over the length of the longer sound: the shorter one counts as silent after its end.
+    let frames = differences.iter().map(Vec::len).max().unwrap_or(0);
+    let whole = |channel: &Vec<f32>| channel.iter().copied().chain(repeat(0.0)).take(frames).collect::<Vec<f32>>();
     let levels = |sound: &[Vec<f32>]| {
-        let channels: Vec<_> = sound.iter().map(|channel| band_levels(channel, sample_rate)).collect();
+        let channels: Vec<_> = sound.iter().map(|channel| band_levels(&whole(channel), sample_rate)).collect();
         let power = |band: usize| channels.iter().map(|levels| pow(10.0, levels[band] / 10.0)).sum::<f64>();
         let mean = |band: usize| 10.0 * log10(power(band) / channels.len().max(1) as f64);
         std::array::from_fn::<f64, 8, _>(mean)
@@ -98,6 +102,17 @@ mod tests {
         let loudest = found.octaves.iter().max_by(|a, b| a.difference_db.total_cmp(&b.difference_db)).unwrap();
         assert_eq!((loudest.frequency, found.octaves.len()), (4000.0, 8));
         assert_eq!(found.moved(), None);
+    }
+
+    #[test]
+    fn octaves_are_means_over_the_longer_sound() {
+        let short = sine(250.0, 0.5);
+        let mut long = short.clone();
+        long.resize(2 * short.len(), 0.0);
+        long[40_000] = 1e-4;
+        let found = Comparison::of(&[short], &[long], 48_000.0).unwrap();
+        let octave = found.octaves.iter().find(|octave| octave.frequency == 250.0).unwrap();
+        assert!((octave.expected_db - octave.actual_db).abs() < 0.01, "{octave:?}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use serde_json::{Map, Value};
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// The version that writes the lines. Another version may render other sounds for the same jobs.
@@ -157,19 +157,13 @@ pub(super) struct Manifest {
 }
 
 impl Manifest {
-    /// Opens or creates a manifest. With `resume`, an existing one is continued; an incomplete last line is cut off.
+    /// Opens or creates a manifest. With `resume`, an existing one is continued; an incomplete last line is cut off. Without, it must be
+    /// empty: a batch whose first job failed leaves it so.
     pub(super) fn open(path: &Path, resume: bool) -> Result<Self> {
         let name = path.display().to_string();
         let failed = |source| Error::io(&name, source);
-        let mut options = OpenOptions::new();
-        options.read(true).write(true);
-        let opened = if resume { options.create(true).truncate(false) } else { options.create_new(true) }.open(path);
-        let mut file = opened.map_err(|error| match error.kind() {
-            ErrorKind::AlreadyExists => {
-                Error::value(&name, "a batch is there already: add --resume to go on with it, or choose another folder")
-            }
-            _ => failed(error),
-        })?;
+        let mut file =
+            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => return Err(Error::Locked { path: name }),
             // Some file systems have no locks.
@@ -186,6 +180,10 @@ impl Manifest {
                 (lines, whole) = (lines + 1, at + index as u64 + 1);
             }
             at += read as u64;
+        }
+        if !resume && at > 0 {
+            let message = "a batch is there already: add --resume to go on with it, or choose another folder";
+            return Err(Error::value(&name, message));
         }
         file.set_len(whole).map_err(failed)?;
         file.seek(SeekFrom::Start(whole)).map_err(failed)?;

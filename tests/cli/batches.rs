@@ -352,6 +352,17 @@ fn wrong_jobs_are_named_by_line_and_key() {
 }
 
 #[test]
+fn a_batch_that_failed_before_its_first_sound_can_be_mended() {
+    let sandbox = Sandbox::new();
+    let job = r#"{"note": "C2", "length": 0.01, "tail": "none", "preset": "Kcik"}"#;
+    sandbox.write("jobs.jsonl", job);
+    sandbox.fails("batch jobs.jsonl --out sounds", 1, "‘Kick’");
+    sandbox.write("jobs.jsonl", job.replace("Kcik", "Kick"));
+    sandbox.succeeds("batch jobs.jsonl --out sounds");
+    assert_eq!(lines(&sandbox, "sounds/manifest.jsonl").len(), 1);
+}
+
+#[test]
 fn what_cannot_be_loaded_ends_the_batch_and_leaves_what_is_finished() {
     let sandbox = Sandbox::new();
     let first = r#"{"note": "C2", "length": 0.01, "tail": "none"}"#;
