@@ -22,7 +22,10 @@ const TRANSPARENT: f64 = -1.0;
 const HIGHEST: f64 = -0.3;
 
 /// Highest true peak in dBFS of noise, which can peak between two samples that are both just below the threshold.
-const HIGHEST_OF_NOISE: f64 = 0.6;
+const HIGHEST_OF_NOISE: f64 = 0.5;
+
+/// The same for white noise up to half the sample rate.
+const HIGHEST_OF_WHITE_NOISE: f64 = 0.6;
 
 const RATES: [u32; 6] = [22_050, 44_100, 48_000, 88_200, 96_000, 192_000];
 
@@ -125,7 +128,7 @@ fn a_true_peak_above_it_is_brought_down() {
 fn white_noise_may_exceed_full_scale_once() {
     for seed in 0..40 {
         let noise = burst(seed);
-        for (gain_db, highest) in [(0.0, HIGHEST_OF_NOISE), (20.0, HIGHEST)] {
+        for (gain_db, highest) in [(0.0, HIGHEST_OF_WHITE_NOISE), (20.0, HIGHEST)] {
             let peak = true_peak(48_000, &limited(48_000, &scaled(&noise, gain_from_db(gain_db))));
             assert!(peak <= highest, "{seed}, {gain_db:+} dB: {peak:.2} dBFS");
         }
