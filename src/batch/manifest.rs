@@ -169,6 +169,10 @@ impl Manifest {
             // Some file systems have no locks.
             Ok(()) | Err(TryLockError::Error(_)) => {}
         }
+        if !resume && file.metadata().map_err(failed)?.len() > 0 {
+            let message = "a batch is there already: add --resume to go on with it, or choose another folder";
+            return Err(Error::value(&name, message));
+        }
         let (mut lines, mut whole, mut block) = (0, 0, vec![0; 1 << 16]);
         let mut at = 0;
         loop {
@@ -180,10 +184,6 @@ impl Manifest {
                 (lines, whole) = (lines + 1, at + index as u64 + 1);
             }
             at += read as u64;
-        }
-        if !resume && at > 0 {
-            let message = "a batch is there already: add --resume to go on with it, or choose another folder";
-            return Err(Error::value(&name, message));
         }
         file.set_len(whole).map_err(failed)?;
         file.seek(SeekFrom::Start(whole)).map_err(failed)?;

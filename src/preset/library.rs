@@ -60,8 +60,8 @@ impl Library {
     }
 
     /// Saves a preset. A file that has a preset of this name is replaced, if told so; a new one is named after the preset, with
-    /// a number if a sound of another name has that file. The file is
-    /// written under a temporary name and renamed, so that it is never half-written. Returns its path.
+    /// a number if a sound of another name has that file. The file is written under a temporary name and renamed, so that it
+    /// is never half-written. Returns its path.
     ///
     /// # Errors
     /// [`Error::Value`] for the name of a factory sound or of a file, by which it would not be found again, [`Error::Exists`] if a
@@ -77,10 +77,12 @@ impl Library {
             number => folder.join(format!("{slug}-{number}.toml")),
         };
         let is_it = |path: &PathBuf| matches!(read(path), Ok(Playable::Preset(found)) if found.name.eq_ignore_ascii_case(&preset.name));
-        // Its usual place first, since there may be copies; but a file of any other name may have it too.
         let paths = self.paths();
         let numbers = 1..=paths.len() as u32 + 1;
-        if let Some(path) = numbers.clone().map(place).chain(paths).find(is_it) {
+        // A file of any name may have it. If there are copies, the usual name comes first.
+        let named: Vec<PathBuf> = paths.into_iter().filter(is_it).collect();
+        let usual = numbers.clone().map(place).find(|path| named.contains(path));
+        if let Some(path) = usual.or_else(|| named.into_iter().next()) {
             write_whole(&path, text.as_bytes(), replace)?;
             return Ok(path);
         }
