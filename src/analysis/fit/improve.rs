@@ -70,9 +70,9 @@ fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
         for (sweep, part) in sweeps.into_iter().zip([first, second]) {
             swept.push(analysed(Source { swept: sweep, ..all }, part, tell)?);
         }
-        swept.retain(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB);
         // The draft without a sweep is kept too: a wrong sweep can leave a smaller residual and still sound worse.
-        found.extend(swept.into_iter().min_by(|a, b| residual_db(a).total_cmp(&residual_db(b))));
+        let best = swept.into_iter().min_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
+        found.extend(best.filter(|best| residual_db(best) < still - WORTH_A_SWEEP_DB));
         found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     }
     let strike = found[0].1.clone();
