@@ -4,7 +4,7 @@ use super::audition::Audition;
 use super::buttons::{Look, button};
 use super::controls::Controls;
 use super::details::Details;
-use super::files::{load, read};
+use super::files::read;
 use super::sounds::{Shelf, Sounds};
 use super::star;
 use super::text::{line, name_field};
@@ -238,9 +238,7 @@ impl Browser {
 
     /// Loads a sound and plays it on the key that suits it best.
     fn try_out(&mut self, ui: &Ui, sound: &Listed, controls: &mut Controls) {
-        controls.history.begin(controls.params);
-        load(sound.playable.clone(), controls.params, controls.host);
-        controls.history.end_load(sound.name(), controls.params);
+        controls.history.load(sound.playable.clone(), controls.params, controls.host);
         self.details.open(sound.name());
         let key = match &sound.playable {
             Playable::Preset(preset) => preset.guide.home,
@@ -252,11 +250,8 @@ impl Browser {
     fn load_file(&mut self, controls: &mut Controls) -> String {
         match read(self.words.trim()) {
             Ok((playable, remarks)) => {
-                controls.history.begin(controls.params);
-                let name = playable.name().to_owned();
-                load(playable, controls.params, controls.host);
-                self.details.open(&name);
-                controls.history.end_load(name, controls.params);
+                self.details.open(playable.name());
+                controls.history.load(playable, controls.params, controls.host);
                 [vec![format!("loaded {}", self.words.trim())], remarks].concat().join("; ")
             }
             Err(message) => message,

@@ -60,9 +60,6 @@ fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Str
         }
         (preset, _) => (preset, format!("loaded {}", path.display())),
     };
-    controls.history.begin(controls.params);
-    let name = playable.name().to_owned();
-    files::load(playable, controls.params, controls.host);
-    controls.history.end_load(name, controls.params);
+    controls.history.load(playable, controls.params, controls.host);
     [vec![said], remarks].concat().join("; ")
 }

@@ -31,6 +31,7 @@ pub(super) fn neighbour(name: &str, places: isize) -> Option<&'static Preset> {
 
 /// Reads a preset or kit file. Returns it with a remark about each retired parameter in it.
 pub(super) fn read(path: &str) -> Result<(Playable, Vec<String>), String> {
+    let mut open = |path: &Path| open(path, &path.display().to_string(), "a preset, kit, scale or mapping");
     let mut remarks = vec![];
     let mut remark = |_: &str, replaced: Replaced| remarks.push(replaced.to_string());
     let read = check(path).and_then(|path| Playable::read(path, &mut open, &mut remark));
@@ -38,13 +39,10 @@ pub(super) fn read(path: &str) -> Result<(Playable, Vec<String>), String> {
 }
 
 /// Opens a file, and nothing else: opening a pipe would block the window.
-pub(super) fn open(path: &Path) -> sprung::Result<File> {
-    let failed = |source| sprung::Error::io(path.display().to_string(), source);
+pub(super) fn open(path: &Path, name: &str, expected: &str) -> sprung::Result<File> {
+    let failed = |source| sprung::Error::io(name, source);
     if !std::fs::metadata(path).map_err(failed)?.is_file() {
-        return Err(sprung::Error::format(
-            path.display().to_string(),
-            "this is not a regular file: expected a preset, kit, scale or mapping",
-        ));
+        return Err(sprung::Error::format(name, format!("this is not a file: expected {expected}")));
     }
     File::open(path).map_err(failed)
 }

@@ -1,5 +1,6 @@
 //! Undo and redo: the states before and after each action of the user's, by name.
 
+use super::files;
 use super::gestures::{Gestures, load};
 use crate::params::SprungParams;
 use crate::state::State;
@@ -50,9 +51,12 @@ impl History {
         self.end_step(name.into(), false, true, params);
     }
 
-    /// Like [`History::end`], after a sound was loaded.
-    pub(super) fn end_load(&mut self, name: impl Into<String>, params: &SprungParams) {
-        self.end_step(name.into(), false, false, params);
+    /// Loads a sound as one step.
+    pub(super) fn load(&mut self, playable: Playable, params: &SprungParams, host: &GuiContext) {
+        self.begin(params);
+        let name = playable.name().to_owned();
+        files::load(playable, params, host);
+        self.end_step(name, false, false, params);
         self.is_changed = false;
     }
 

@@ -1,11 +1,11 @@
 //! Makes a sound from recordings on a thread of its own: reads them and fits a preset as `sprung fit` does.
 
+use super::files;
 use sprung::analysis::fit::{Settings, Take, VELOCITY, fit};
 use sprung::io::sound_file;
 use sprung::preset::Preset;
 use sprung::text::printable;
 use sprung::{Error, Result};
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -121,17 +121,14 @@ fn fitted(paths: &[PathBuf], shared: &Shared) -> Result<Done> {
 fn read(path: &Path) -> Result<Take> {
     let name = file_name(path);
     let failed = |source| Error::io(name.as_str(), source);
-    // Opening a pipe would block.
-    let about = std::fs::metadata(path).map_err(failed)?;
-    if !about.is_file() {
-        return Err(Error::format(&name, "this is not a file: expected a recording"));
-    }
-    if about.len() > LARGEST {
-        let [size, largest] = [about.len(), LARGEST].map(|bytes| bytes as f64 / f64::from(1 << 20));
+    let file = files::open(path, &name, "a recording")?;
+    let size = file.metadata().map_err(failed)?.len();
+    if size > LARGEST {
+        let [size, largest] = [size, LARGEST].map(|bytes| bytes as f64 / f64::from(1 << 20));
         let message = format!("it has {size:.0} MB: expected at most {largest:.0}; cut out a single stroke");
         return Err(Error::format(&name, message));
     }
-    let recording = sound_file::read(File::open(path).map_err(failed)?, &name)?;
+    let recording = sound_file::read(file, &name)?;
     Ok(Take { name, recording, key: None, velocity: VELOCITY })
 }
 

@@ -110,11 +110,12 @@ fn about(own: &OwnTuning) -> (String, String) {
 pub(super) fn take(path: &Path, controls: &mut Controls) -> String {
     let read = || -> sprung::Result<String> {
         let mut text = String::new();
-        let failed = |source| sprung::Error::io(path.display().to_string(), source);
-        files::open(path)?.take(LARGEST + 1).read_to_string(&mut text).map_err(failed)?;
+        let name = path.display().to_string();
+        let failed = |source| sprung::Error::io(name.as_str(), source);
+        files::open(path, &name, "a scale or mapping")?.take(LARGEST + 1).read_to_string(&mut text).map_err(failed)?;
         if text.len() as u64 > LARGEST {
             let message = format!("it is too large: expected a scale or mapping of at most {LARGEST} bytes");
-            return Err(sprung::Error::format(path.display().to_string(), message));
+            return Err(sprung::Error::format(name.as_str(), message));
         }
         Ok(text)
     };

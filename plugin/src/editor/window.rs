@@ -230,9 +230,7 @@ impl Window {
     /// Loads the factory sound at this distance in the list.
     fn step(&mut self, places: isize, host: &GuiContext) {
         let Some(preset) = neighbour(&self.params.name(), places) else { return };
-        self.history.begin(&self.params);
-        load(Playable::Preset(preset.clone()), &self.params, host);
-        self.history.end_load(preset.name.as_str(), &self.params);
+        self.history.load(Playable::Preset(preset.clone()), &self.params, host);
     }
 
     /// Replaces the sound by a random variation.

@@ -85,14 +85,16 @@ fn a_sound_is_marked_while_it_differs_from_what_was_loaded_or_saved() {
     let (params, context) = (SprungParams::default(), FakeHost::default());
     let context = Arc::new(context).context();
     let mut history = History::default();
-    let step = |history: &mut History, gain: f32| {
+    let marimba = |gain: f32| {
         let mut preset = Preset::find("Marimba").unwrap().clone();
         preset.patch.set(Param::Gain, gain);
-        history.begin(&params);
-        load(Playable::Preset(preset), &params, &context);
+        Playable::Preset(preset)
     };
-    step(&mut history, 0.0);
-    history.end_load("Marimba", &params);
+    let step = |history: &mut History, gain: f32| {
+        history.begin(&params);
+        load(marimba(gain), &params, &context);
+    };
+    history.load(marimba(0.0), &params, &context);
     assert!(!history.is_changed(), "loaded");
     step(&mut history, -6.0);
     history.end("Gain", &params);
