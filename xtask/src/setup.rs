@@ -13,6 +13,8 @@ enum Probe {
     ShortProgram(&'static str),
     /// A program in one of the folders of `PATH`.
     OnPath(&'static str),
+    /// A file with this path.
+    File(&'static str),
     /// A library that pkg-config knows.
     Library(&'static str),
     /// A library that the system's loader can find.
@@ -35,6 +37,7 @@ struct Requirement {
 
 const WINDOW: &str = "the plugin's window loads it";
 const DAWDREAMER: &str = "dawdreamer loads it";
+const SCREEN_READER: &str = "a bus on which the plugin's window is read as by a screen reader";
 
 const REQUIREMENTS: &[Requirement] = &[
     Requirement {
@@ -105,6 +108,13 @@ const REQUIREMENTS: &[Requirement] = &[
         why: "draws the plugin's window without a graphics card",
         essential: false,
     },
+    Requirement { probe: Probe::OnPath("dbus-daemon"), package: "dbus", why: SCREEN_READER, essential: false },
+    Requirement {
+        probe: Probe::File("/usr/libexec/at-spi-bus-launcher"),
+        package: "at-spi2-core",
+        why: SCREEN_READER,
+        essential: false,
+    },
     Requirement {
         probe: Probe::Modules("ensurepip, venv"),
         package: "python3-venv",
@@ -142,6 +152,7 @@ impl Requirement {
             Probe::ShortProgram(program) => succeeds(program, &["-V"]),
             Probe::OnPath(program) => std::env::var_os("PATH")
                 .is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(program).is_file())),
+            Probe::File(path) => Path::new(path).is_file(),
             Probe::Library(library) => succeeds("pkg-config", &["--exists", library]),
             Probe::Shared(library) => Command::new("/sbin/ldconfig")
                 .arg("-p")

@@ -18,7 +18,10 @@ pub(super) enum Look {
 pub(super) fn button(ui: &Ui, rect: Rect, text: &str, name: &str, look: Look, palette: &Palette) -> Response {
     let sense = if look == Look::Disabled { Sense::hover() } else { Sense::click() };
     let response = ui.interact(rect, Id::unique(("button", name)), sense);
-    response.widget_info(|| WidgetInfo::selected(Role::Button, look != Look::Disabled, look == Look::On, name));
+    response.widget_info(|| match look {
+        Look::On => WidgetInfo::selected(Role::Button, true, true, name),
+        _ => WidgetInfo::labeled(Role::Button, look != Look::Disabled, name),
+    });
     let (fill, colour) = match look {
         Look::On => (palette.accent, palette.on_accent),
         Look::Disabled => (palette.ground, palette.muted.gamma_multiply(0.55)),

@@ -7,7 +7,7 @@ use nice_plug_egui::Frame;
 #[derive(Default)]
 pub(super) struct Focus {
     #[cfg(target_os = "linux")]
-    x11: x11::Focus,
+    before: before::Before,
 }
 
 impl Focus {
@@ -21,36 +21,33 @@ impl Focus {
                 let _ = window.focus();
             }
             #[cfg(target_os = "linux")]
-            (false, false) => drop(self.x11.remember(window)),
+            (false, false) => drop(self.before.remember(window)),
             // A window that loses the focus during a drag may lose the drag.
             #[cfg(target_os = "linux")]
-            (false, true) if !is_pressed => drop(self.x11.give_back(window)),
+            (false, true) if !is_pressed => drop(self.before.give_back(window)),
             _ => {}
         }
     }
 }
 
 #[cfg(target_os = "linux")]
-mod x11 {
+mod before {
+    use crate::editor::x11::{Display, id};
     use nice_plug_egui::baseview::WindowContext;
-    use raw_window_handle::{HasWindowHandle as _, RawWindowHandle};
     use std::time::{Duration, Instant};
-    use x11rb::CURRENT_TIME;
-    use x11rb::protocol::xproto::{ConnectionExt as _, InputFocus};
-    use x11rb::rust_connection::RustConnection;
 
     /// Shortest time between two queries of the focused window.
     const INTERVAL: Duration = Duration::from_millis(200);
 
+    /// The window that had the focus before this one.
     #[derive(Default)]
-    pub(super) struct Focus {
-        screen: Option<RustConnection>,
-        /// The window that had the focus before this one.
-        before: Option<u32>,
+    pub(super) struct Before {
+        display: Display,
+        window: Option<u32>,
         asked: Option<Instant>,
     }
 
-    impl Focus {
+    impl Before {
         /// Remembers which window has the focus, if it is not this one.
         pub(super) fn remember(&mut self, window: &WindowContext) -> Option<()> {
             if self.asked.is_some_and(|asked| asked.elapsed() < INTERVAL) {
@@ -58,43 +55,26 @@ mod x11 {
             }
             self.asked = Some(Instant::now());
             let own = id(window)?;
-            let focus = self.screen()?.get_input_focus().ok()?.reply().ok()?.focus;
-            // X11: 0 means no window, 1 means the window under the pointer.
-            self.before = Some(focus).filter(|focus| *focus > 1 && *focus != own).or(self.before);
+            let focused = self.display.focused()?;
+            self.window = Some(focused).filter(|focused| *focused > 1 && *focused != own).or(self.window);
             Some(())
         }
 
         /// Gives the focus to the window that had it before or, if there is none, to this window's parent. Keys then go
         /// to that window; but X11 still sends them to this window if it is inside that one and has the pointer.
         pub(super) fn give_back(&mut self, window: &WindowContext) -> Option<()> {
-            let (own, before) = (id(window)?, self.before);
-            let screen = self.screen()?;
+            let own = id(window)?;
             // Another window may have taken the focus meanwhile.
-            if screen.get_input_focus().ok()?.reply().ok()?.focus != own {
+            if self.display.focused()? != own {
                 return None;
             }
-            let give = |to: u32| screen.set_input_focus(InputFocus::PARENT, to, CURRENT_TIME).ok()?.check().ok();
-            if before.and_then(give).is_some() {
+            if let Some(before) = self.window
+                && self.display.give_focus(before).is_some()
+            {
                 return Some(());
             }
-            let around = screen.query_tree(own).ok()?.reply().ok()?;
-            if around.parent == around.root { None } else { give(around.parent) }
-        }
-
-        fn screen(&mut self) -> Option<&RustConnection> {
-            if self.screen.is_none() {
-                self.screen = Some(x11rb::connect(None).ok()?.0);
-            }
-            self.screen.as_ref()
-        }
-    }
-
-    /// The window's X11 id.
-    fn id(window: &WindowContext) -> Option<u32> {
-        match window.platform_handle().window_handle().ok()?.as_raw() {
-            RawWindowHandle::Xlib(handle) => u32::try_from(handle.window).ok(),
-            RawWindowHandle::Xcb(handle) => Some(handle.window.get()),
-            _ => None,
+            let parent = self.display.parent(own)?;
+            self.display.give_focus(parent)
         }
     }
 }

@@ -85,6 +85,18 @@ pub(super) fn show(
         about.current_text_value = Some(text.clone());
         about
     });
+    let value = controls.value(info);
+    ui.ctx().accesskit_node_builder(response.id, |node| {
+        node.set_min_numeric_value(info.min.into());
+        node.set_max_numeric_value(info.max.into());
+        node.add_action(Action::SetValue);
+        if value < info.max {
+            node.add_action(Action::Increment);
+        }
+        if value > info.min {
+            node.add_action(Action::Decrement);
+        }
+    });
     let is_hovered = response.hovered() || response.dragged() || value_response.hovered();
     if is_hovered {
         let newest = controls.modulated(info).next();

@@ -18,9 +18,11 @@
 //! | `browser`, `details`, `star`, `sounds`, `files` | the page on which the user finds and saves sounds; the list of sounds; reading files |
 //! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets and their painting |
 //! | `variation` | random variations of a sound, with locks |
-//! | `focus` | keyboard focus: the host keeps it, except while the user types |
+//! | `focus`, `accessibility`, `x11` | keyboard focus: the host keeps it, except while the user types; screen readers; the X11 display |
 //! | `shown` | the sound that is shown |
 
+#[cfg(target_os = "linux")]
+mod accessibility;
 mod audition;
 mod body_edit;
 mod body_face;
@@ -84,6 +86,8 @@ mod tuning_page;
 mod variation;
 mod voices_panel;
 mod window;
+#[cfg(target_os = "linux")]
+mod x11;
 
 use crate::params::SprungParams;
 use nice_plug_core::context::gui::GuiContext;

@@ -22,6 +22,7 @@ mod process;
 mod realtime;
 mod scan;
 mod screen;
+mod screen_reader;
 mod song;
 mod standalone;
 mod state;
@@ -41,6 +42,8 @@ enum Needs {
     Nothing,
     /// A virtual screen (Xvfb).
     Screen,
+    /// A screen, and a bus for screen readers.
+    ScreenReader,
     /// A screen, the program and a JACK server.
     Program,
     /// The Python hosts.
@@ -57,6 +60,7 @@ impl Needs {
         match self {
             Needs::Nothing => None,
             Needs::Screen => SCREEN.clone(),
+            Needs::ScreenReader => screen_reader::missing().or_else(|| SCREEN.clone()),
             Needs::Program => standalone::missing().or_else(|| SCREEN.clone()),
             Needs::Python => PYTHON.clone(),
             Needs::PythonAndScreen => PYTHON.clone().or_else(|| SCREEN.clone()),
@@ -76,6 +80,7 @@ fn main() -> ExitCode {
         return match work.as_str() {
             "growth" | "reopen" => growth::work(&work),
             "storm" | "endings" => storm::work(&work),
+            "screen-reader" => screen_reader::work(),
             "window-cpu" => cpu::work(),
             "window-pixels" => pixels::work(),
             "window" | "window-keys" | "window-playing" => window::work(&work),
@@ -187,6 +192,9 @@ fn main() -> ExitCode {
         }
         Screen: cpu {
             a_silent_window_draws_nothing
+        }
+        ScreenReader: screen_reader {
+            it_reads_and_turns_knobs_and_the_library_can_be_unloaded
         }
         Program: standalone {
             it_keeps_its_state_whatever_ends_it

@@ -1,6 +1,8 @@
 //! The window in its host: how it is made, resized and dropped.
 
 use super::Window;
+#[cfg(target_os = "linux")]
+use crate::editor::accessibility;
 use crate::editor::theme::LEAST_SIZE;
 use crate::state::{View, WINDOW_RANGE};
 use egui::Ui;
@@ -13,6 +15,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 impl NiceEguiApp for Window {
     fn build(&mut self, context: egui::Context, host: GuiContext, _: &mut Frame) -> Result<(), HandlerError> {
+        #[cfg(target_os = "linux")]
+        {
+            let is_library = host.plugin_api() != PluginApi::Standalone;
+            accessibility::connect(&context, self.params.link().repaint.clone(), is_library);
+        }
         self.open(host);
         context.set_zoom_factor(self.params.view().zoom as f32 / 100.0);
         Ok(())
@@ -29,6 +36,8 @@ impl NiceEguiApp for Window {
             let is_pressed = ui.input(|input| input.pointer.any_down());
             self.focus.follow(frame, typing, is_pressed);
         }
+        #[cfg(target_os = "linux")]
+        accessibility::place(ui.ctx(), frame.baseview_window());
         if self.params.link().is_closing() {
             frame.baseview_window().request_close();
         }

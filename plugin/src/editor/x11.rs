@@ -1,0 +1,56 @@
+//! The X11 display that the window is on: its focus, and the window's place.
+
+use nice_plug_egui::baseview::WindowContext;
+use raw_window_handle::{HasWindowHandle as _, RawWindowHandle};
+use x11rb::CURRENT_TIME;
+use x11rb::protocol::xproto::{ConnectionExt as _, InputFocus};
+use x11rb::rust_connection::RustConnection;
+
+/// A connection to the display of its own, made when it is first needed.
+#[derive(Default)]
+pub(super) struct Display(Option<RustConnection>);
+
+impl Display {
+    fn connection(&mut self) -> Option<&RustConnection> {
+        if self.0.is_none() {
+            self.0 = Some(x11rb::connect(None).ok()?.0);
+        }
+        self.0.as_ref()
+    }
+
+    /// The window that has the focus; X11: 0 means no window, 1 means the window under the pointer.
+    pub(super) fn focused(&mut self) -> Option<u32> {
+        Some(self.connection()?.get_input_focus().ok()?.reply().ok()?.focus)
+    }
+
+    /// Gives the focus to a window, or to the first visible one around it.
+    pub(super) fn give_focus(&mut self, window: u32) -> Option<()> {
+        let connection = self.connection()?;
+        connection.set_input_focus(InputFocus::PARENT, window, CURRENT_TIME).ok()?.check().ok()
+    }
+
+    /// The window around a window, unless that is the whole screen.
+    pub(super) fn parent(&mut self, window: u32) -> Option<u32> {
+        let around = self.connection()?.query_tree(window).ok()?.reply().ok()?;
+        (around.parent != around.root).then_some(around.parent)
+    }
+
+    /// Left, top, right and bottom of a window on the screen, in pixels.
+    pub(super) fn bounds(&mut self, window: &WindowContext) -> Option<[f64; 4]> {
+        let window = id(window)?;
+        let connection = self.connection()?;
+        let size = connection.get_geometry(window).ok()?.reply().ok()?;
+        let place = connection.translate_coordinates(window, size.root, 0, 0).ok()?.reply().ok()?;
+        let [left, top] = [place.dst_x, place.dst_y].map(f64::from);
+        Some([left, top, left + f64::from(size.width), top + f64::from(size.height)])
+    }
+}
+
+/// The window's X11 id.
+pub(super) fn id(window: &WindowContext) -> Option<u32> {
+    match window.platform_handle().window_handle().ok()?.as_raw() {
+        RawWindowHandle::Xlib(handle) => u32::try_from(handle.window).ok(),
+        RawWindowHandle::Xcb(handle) => Some(handle.window.get()),
+        _ => None,
+    }
+}

@@ -1,0 +1,153 @@
+//! The window as a screen reader finds it: AccessKit's tree over AT-SPI, on a session bus of the test's own.
+
+use crate::host::Instance;
+use crate::patches::patch_in;
+use crate::process::{command, succeeds, wait_until};
+use crate::screen::Screen;
+use crate::window::{Editor, Parent};
+use sprung::params::Param;
+use std::io::BufRead as _;
+use std::path::Path;
+use std::process::{Child, Command, ExitCode, Stdio};
+use zbus::blocking::{Connection, Proxy, connection, proxy};
+use zbus::proxy::CacheProperties;
+use zbus::zvariant::OwnedObjectPath;
+
+/// The program that starts the bus of screen readers.
+const LAUNCHER: &str = "/usr/libexec/at-spi-bus-launcher";
+/// Numbers of AT-SPI's roles.
+const PUSH_BUTTON: u32 = 43;
+const SLIDER: u32 = 51;
+const ENTRY: u32 = 79;
+const ACCESSIBLE: &str = "org.a11y.atspi.Accessible";
+/// Number of times that the library is loaded, its window opened and read, and the library unloaded.
+const TIMES: usize = 5;
+
+/// The program that these tests need besides a screen and that is missing here.
+pub(crate) fn missing() -> Option<String> {
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    if !std::env::split_paths(&paths).any(|folder| folder.join("dbus-daemon").is_file()) {
+        return Some("dbus-daemon".to_owned());
+    }
+    (!Path::new(LAUNCHER).is_file()).then(|| LAUNCHER.to_owned())
+}
+
+/// A session bus without a session.
+struct Session {
+    daemon: Child,
+    address: String,
+}
+
+impl Session {
+    fn new(screen: &Screen) -> Self {
+        let mut daemon = Command::new("dbus-daemon");
+        daemon.args(["--session", "--nofork", "--print-address=1"]).env("DISPLAY", &screen.display);
+        let mut daemon = daemon.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("dbus-daemon starts");
+        let mut address = String::new();
+        let stdout = daemon.stdout.take().expect("stdout is piped");
+        std::io::BufReader::new(stdout).read_line(&mut address).unwrap();
+        Self { daemon, address: address.trim().to_owned() }
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        let _ = self.daemon.kill();
+        let _ = self.daemon.wait();
+    }
+}
+
+pub(crate) fn it_reads_and_turns_knobs_and_the_library_can_be_unloaded() {
+    let screen = Screen::new();
+    let session = Session::new(&screen);
+    let mut command = command("screen-reader");
+    command.env("DISPLAY", &screen.display).env("DBUS_SESSION_BUS_ADDRESS", &session.address);
+    print!("{}", succeeds(command));
+}
+
+/// A widget: the connection that has it, and its path there.
+type Node = (String, OwnedObjectPath);
+
+/// A screen reader.
+struct Reader {
+    bus: Connection,
+}
+
+impl Reader {
+    /// Switches accessibility on for the session, and connects to its bus.
+    fn new() -> zbus::Result<Self> {
+        let session = Connection::session()?;
+        let status = Proxy::new(&session, "org.a11y.Bus", "/org/a11y/bus", "org.a11y.Status")?;
+        status.set_property("IsEnabled", true)?;
+        let address: String =
+            Proxy::new(&session, "org.a11y.Bus", "/org/a11y/bus", "org.a11y.Bus")?.call("GetAddress", &())?;
+        Ok(Self { bus: connection::Builder::address(address.as_str())?.build()? })
+    }
+
+    fn proxy<'a>(&'a self, (owner, path): &'a Node, interface: &'a str) -> zbus::Result<Proxy<'a>> {
+        // AT-SPI's registry does not answer when all properties are asked for at once, as a cache would.
+        let builder = proxy::Builder::new(&self.bus).destination(owner.as_str())?.path(path)?.interface(interface)?;
+        builder.cache_properties(CacheProperties::No).build()
+    }
+
+    /// Role, name and children of a widget.
+    fn read(&self, node: &Node) -> zbus::Result<(u32, String, Vec<Node>)> {
+        let widget = self.proxy(node, ACCESSIBLE)?;
+        Ok((widget.call("GetRole", &())?, widget.get_property("Name")?, widget.call("GetChildren", &())?))
+    }
+
+    /// The first widget with this role and name. Widgets that vanish during the search are passed over.
+    fn find(&self, role: u32, name: &str) -> Option<Node> {
+        let root = OwnedObjectPath::try_from("/org/a11y/atspi/accessible/root").unwrap();
+        let mut waiting = vec![("org.a11y.atspi.Registry".to_owned(), root)];
+        while let Some(node) = waiting.pop() {
+            if let Ok((its_role, its_name, children)) = self.read(&node) {
+                if its_role == role && its_name == name {
+                    return Some(node);
+                }
+                waiting.extend(children);
+            }
+        }
+        None
+    }
+}
+
+/// Runs in the process that the test starts.
+pub(crate) fn work() -> ExitCode {
+    let reader = Reader::new().expect("a bus for screen readers");
+    for _ in 0..TIMES {
+        // Loads the library, which the host unloads with the instance.
+        let mut instance = Instance::new();
+        let parent = Parent::new();
+        let editor = Editor::open(&mut instance, &parent);
+        let finds = |instance: &mut Instance, role: u32, name: &str| {
+            let mut found = None;
+            wait_until(&format!("a widget named {name}, of the role {role}"), || {
+                instance.run_callbacks();
+                found = reader.find(role, name);
+                found.is_some()
+            });
+            found.unwrap()
+        };
+        let knob = finds(&mut instance, SLIDER, "Mallet hardness");
+        let value = reader.proxy(&knob, "org.a11y.atspi.Value").unwrap();
+        let range = ["MinimumValue", "MaximumValue"].map(|name| value.get_property::<f64>(name).unwrap());
+        assert_eq!(range, [0.0, 100.0]);
+        value.set_property("CurrentValue", 12.0).unwrap();
+        wait_until("the knob turns", || {
+            instance.run_callbacks();
+            instance.flush(&[]);
+            patch_in(&instance.save()).get(Param::MalletHardness) == 12.0
+        });
+        let component = reader.proxy(&knob, "org.a11y.atspi.Component").unwrap();
+        let (left, top, width, height): (i32, i32, i32, i32) = component.call("GetExtents", &(0_u32)).unwrap();
+        let is_in_the_window = (0..1_100).contains(&left) && (340..600).contains(&top);
+        assert!(is_in_the_window && width > 20 && height > 20, "{left}, {top}: {width} × {height}");
+        let browse = finds(&mut instance, PUSH_BUTTON, "Browse");
+        let pressed: bool = reader.proxy(&browse, "org.a11y.atspi.Action").unwrap().call("DoAction", &(0_i32)).unwrap();
+        assert!(pressed);
+        finds(&mut instance, ENTRY, "Search");
+        editor.close(&mut instance);
+    }
+    ExitCode::SUCCESS
+}
