@@ -67,7 +67,7 @@ impl Field<'_> {
         let mark = pos2(rect.right() - 7.0, rect.center().y);
         let points = vec![mark + vec2(-3.0, -1.5), mark + vec2(3.0, -1.5), mark + vec2(0.0, 2.5)];
         ui.painter().add(Shape::convex_polygon(points, palette.muted, Stroke::NONE));
-        let inside = Rect::from_min_max(rect.min + vec2(5.0, 0.0), rect.max - vec2(12.0, 0.0));
+        let inside = Rect::from_min_max(rect.min + vec2(5.0, 0.0), rect.max - vec2(11.0, 0.0));
         let colour = if is_default { palette.text } else { palette.accent_text };
         line(ui.painter(), inside, Align2::LEFT_CENTER, value, SMALL, colour);
         (response, picked)

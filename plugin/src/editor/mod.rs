@@ -16,7 +16,7 @@
 //! | `manual`, `manual_text` | the manual over the window; its pages split into blocks |
 //! | `drops`, `recordings`, `fitting` | files dropped on the window; fitting recordings in the background; its progress |
 //! | `browser`, `details`, `star`, `sounds`, `files` | the page on which the user finds and saves sounds; the list of sounds; reading files |
-//! | `knob`, `knob_face`, `choice`, `buttons`, `text` | widgets and their painting |
+//! | `knob`, `knob_face`, `choice`, `buttons`, `text`, `disc` | widgets and their painting |
 //! | `variation` | random variations of a sound, with locks |
 //! | `focus`, `accessibility`, `x11` | keyboard focus: the host keeps it, except while the user types; screen readers; the X11 display |
 //! | `shown` | the sound that is shown |
@@ -38,6 +38,7 @@ mod controls;
 mod curves;
 mod details;
 mod devices_page;
+mod disc;
 mod drops;
 mod files;
 mod fitting;
@@ -90,6 +91,7 @@ mod window;
 mod x11;
 
 use crate::params::SprungParams;
+use egui_baseview::GraphicsConfig;
 use nice_plug_core::context::gui::GuiContext;
 use nice_plug_core::editor::dpi::{LogicalSize, NativeSize};
 use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
@@ -145,7 +147,10 @@ impl Editor for SprungEditor {
     ) -> Result<SpawnedEditor<Self::Handle>, Box<dyn Error>> {
         let state = state(&self.params);
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = state.clone();
+        // The window has no gradients that would need dithering, which costs time for each pixel.
+        let graphics = GraphicsConfig { dithering: false, ..GraphicsConfig::default() };
         let settings = EguiNiceSettings::new().with_tile("Sprung").with_resize_hint(self.resize_hint());
+        let settings = settings.with_graphics_config(graphics);
         create_egui_editor(
             state,
             self.params.link().repaint.clone(),

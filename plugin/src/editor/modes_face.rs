@@ -1,5 +1,6 @@
 //! Draws the modes: for each a stem, its decay as a horizontal line, and its present level.
 
+use super::disc::disc;
 use super::mode_axes::Axes;
 use super::text::line;
 use super::theme::{Palette, SMALL};
@@ -54,7 +55,7 @@ pub(super) fn paint(painter: &Painter, axes: &Axes, palette: &Palette, face: &Fa
                 Stroke::new(1.0, colour.gamma_multiply(if is_selected { 1.0 } else { 0.45 })),
             );
         }
-        painter.circle(top, radius, palette.panel, Stroke::new(1.5, colour));
+        disc(painter, top, radius, palette.panel, Stroke::new(1.5, colour));
         if mode.level < 0.0 && !is_dense {
             painter.line_segment([top - vec2(2.0, 0.0), top + vec2(2.0, 0.0)], Stroke::new(1.2, colour));
         }

@@ -2,6 +2,7 @@
 
 use super::audition::Audition;
 use super::controls::{Controls, Hint};
+use super::disc::disc;
 use super::shown::Shown;
 use super::text::line;
 use super::theme::{Palette, SMALL};
@@ -141,7 +142,7 @@ impl Phase {
         if self.pulled.is_some() {
             painter.line_segment([centre, mass], Stroke::new(1.5, palette.text));
         }
-        painter.circle(mass, 7.0, palette.accent, Stroke::new(1.5, palette.panel));
+        disc(painter, mass, 7.0, palette.accent, Stroke::new(1.5, palette.panel));
     }
 }
 

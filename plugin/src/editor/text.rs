@@ -1,15 +1,17 @@
-//! Lines of text. A line that does not fit is drawn a little smaller, and then cut off.
+//! Lines of text. A line that does not fit is drawn smaller and, if that is not enough, cut off.
 
 use super::theme::font;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, Color32, Painter, Rect, Response, WidgetInfo};
 
-/// Factor for the size of text that would be too wide.
-const SHRINK: f32 = 0.9;
+/// Factors for the size of text that would be too wide: the first with which it fits, or else the last.
+const SHRINK: [f32; 3] = [1.0, 0.9, 0.82];
 
 /// Draws a line of text into a rectangle, aligned within it. Returns its place.
 pub(super) fn line(painter: &Painter, rect: Rect, align: Align2, text: &str, size: f32, colour: Color32) -> Rect {
-    let size = if width(painter, text, size) > rect.width() { size * SHRINK } else { size };
+    let sizes = SHRINK.map(|factor| size * factor);
+    let fits = sizes.into_iter().find(|size| width(painter, text, *size) <= rect.width());
+    let size = fits.unwrap_or(sizes[SHRINK.len() - 1]);
     let mut job = LayoutJob::simple_singleline(text.to_owned(), font(size), colour);
     job.wrap = TextWrapping::truncate_at_width(rect.width());
     let galley = painter.layout_job(job);

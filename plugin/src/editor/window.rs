@@ -113,7 +113,7 @@ impl Window {
         self.applied = None;
     }
 
-    /// Shows the window and carries out the user's requests.
+    /// Shows the window, over the theme's ground, and carries out the user's requests.
     pub(super) fn contents(&mut self, ui: &mut Ui, host: &GuiContext) {
         let params = self.params.clone();
         let view = params.view();
@@ -127,7 +127,6 @@ impl Window {
         let palette = view.theme.palette();
         self.shown.refresh(&params);
         let window = ui.ctx().content_rect();
-        ui.painter().rect_filled(window, 0.0, palette.ground);
         let layout = Layout::of(window);
         let telemetry = &params.link().telemetry;
         let (snapshot, is_silent) = (telemetry.snapshot(), telemetry.is_silent());

@@ -1,6 +1,6 @@
 //! The animated PNG in README: two keys are struck on a bell, which rings down.
 
-use super::pictures::{differing, finish, rounded};
+use super::pictures::{STEP, differing, finish, rounded};
 use super::sounding::Band;
 use crate::editor::theme::{SIZE, Theme};
 use image::codecs::png::PngDecoder;
@@ -35,7 +35,7 @@ fn play(mut draw: impl FnMut(usize, &mut Band)) {
 }
 
 fn picture(band: &mut Band) -> RgbaImage {
-    rounded(&band.stage.harness.render().unwrap())
+    rounded(&band.stage.harness.render().unwrap(), STEP)
 }
 
 /// The changed part of a frame: its place, and its pixels; unchanged pixels are transparent.
@@ -97,10 +97,10 @@ fn pictures_of_a_bell_that_rings_down_are_as_accepted() {
     let compared = [0, SECOND - 1, SECOND + 1, FRAMES - 1];
     play(|frame, band| {
         if compared.contains(&frame) {
-            let found = differing(&picture(band), accepted[frame].buffer());
+            let found = differing(&picture(band), accepted[frame].buffer(), STEP);
             assert_eq!(found, 0, "frame {frame}: `cargo xtask bless pictures` accepts the present pictures");
         }
     });
-    let moves = accepted.windows(2).filter(|pair| differing(pair[0].buffer(), pair[1].buffer()) > 0).count();
+    let moves = accepted.windows(2).filter(|pair| differing(pair[0].buffer(), pair[1].buffer(), STEP) > 0).count();
     assert!(moves > FRAMES / 2, "{moves} frames move");
 }

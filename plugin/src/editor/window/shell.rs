@@ -3,9 +3,9 @@
 use super::Window;
 #[cfg(target_os = "linux")]
 use crate::editor::accessibility;
-use crate::editor::theme::LEAST_SIZE;
+use crate::editor::theme::{LEAST_SIZE, Theme};
 use crate::state::{View, WINDOW_RANGE};
-use egui::Ui;
+use egui::{Rgba, Ui};
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
 use nice_plug_egui::baseview::{HandlerError, WindowSize};
@@ -28,6 +28,7 @@ impl NiceEguiApp for Window {
     fn ui(&mut self, ui: &mut Ui, frame: &mut Frame) {
         let Some(host) = self.host.clone() else { return };
         let least = LEAST_SIZE.map(|side| side as f32);
+        frame.set_clear_color(ground(self.params.view().theme));
         ResizableWindow::new("sprung").min_size(least.into()).show(ui, |ui| self.contents(ui, &host));
         // Keys go to the host, except while the user is typing.
         let typing = ui.ctx().egui_wants_keyboard_input();
@@ -49,6 +50,12 @@ impl NiceEguiApp for Window {
         let size = [side(size.logical.width), side(size.logical.height)];
         self.params.set_view(|view: &mut View| view.size = size);
     }
+}
+
+/// The colour that the window is cleared with: the renderer takes its numbers as they are, without conversion.
+fn ground(theme: Theme) -> Rgba {
+    let [red, green, blue, _] = theme.palette().ground.to_array().map(|part| f32::from(part) / 255.0);
+    Rgba::from_rgb(red, green, blue)
 }
 
 /// Dropping the window is the only sign that it was closed: held keys and the gesture are ended here.
