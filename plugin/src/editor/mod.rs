@@ -6,7 +6,7 @@
 //! | `theme`, `fonts`, `layout` | colours and sizes; the fonts; the places of the parts |
 //! | `controls`, `gestures`, `history`, `learn` | the context of every widget; changes that hosts see; undo and redo; MIDI learn |
 //! | `header`, `sections`, `routes`, `curves`, `outlines`, `status` | the parts of the window; menus of routes; small pictures in sections |
-//! | `modes`, `modes_face`, `mode_axes`, `mode_table`, `snap` | the modes: changes by the user, their picture, its axes, their table, series of ratios |
+//! | `modes`, `modes_face`, `mode_drag`, `mode_axes`, `mode_table`, `snap` | the modes: changes by the user, their picture, a drag in progress, the axes, their table, series of ratios |
 //! | `motion`, `phase`, `scope`, `spectrum`, `ringing` | moving pictures: the phase plane; waveform and spectrum; the decay of the modes |
 //! | `body_view`, `body_face`, `body_shape`, `body_form` | the moving body: changes by the user, its picture, the shapes of its modes, its form |
 //! | `body_page`, `body_numbers`, `body_edit`, `made` | the page of the body; its numbers; a change in progress; the body from which the modes are made |
@@ -60,6 +60,7 @@ mod manual;
 mod manual_text;
 mod meter;
 mod mode_axes;
+mod mode_drag;
 mod mode_table;
 mod modes;
 mod modes_face;

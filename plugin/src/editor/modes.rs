@@ -5,6 +5,7 @@ use super::buttons::{Look, button};
 use super::controls::{Controls, Hint};
 use super::gestures::touch;
 use super::mode_axes::Axes;
+use super::mode_drag::{Drag, Step};
 use super::mode_table::{clamped, phases, replace};
 use super::modes_face::{self, Face};
 use super::shown::Shown;
@@ -12,40 +13,14 @@ use super::snap::Snap;
 use super::text::line;
 use super::theme::{PADDING, SMALL, TITLE_HEIGHT};
 use crate::link::Link;
-use crate::loaded::Loaded;
-use egui::{Align2, CursorIcon, Id, Popup, Pos2, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
+use egui::{
+    Align2, CursorIcon, Id, PointerButton, Popup, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo, pos2, vec2,
+};
 use sprung::params::Param;
 use sprung::patch::{MAX_MODES, Mode, Patch};
-use std::sync::Arc;
 
 /// Greatest distance from a mode's circle at which it can be grabbed, in pixels.
 const REACH: f32 = 14.0;
-/// The shortest time between two changes of the sound while a mode is dragged, in seconds.
-const CHANGES: f64 = 0.04;
-
-/// The property of a mode that a drag changes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Aspect {
-    LevelAndRatio,
-    Decay,
-    Pan,
-}
-
-/// A drag in progress.
-struct Drag {
-    mode: usize,
-    aspect: Aspect,
-    /// The mode before the drag, and how far the pointer has moved since.
-    before: Mode,
-    moved: Vec2,
-    /// The modes as dragged, and those that were loaded last.
-    modes: Vec<Mode>,
-    written: Vec<Mode>,
-    /// The sound that was loaded last. If another sound is loaded, the drag is over.
-    loaded: Arc<Loaded>,
-    changed: f64,
-}
-
 /// The state of the modes' picture.
 #[derive(Default)]
 pub(super) struct ModesView {
@@ -82,7 +57,7 @@ impl ModesView {
         let palette = controls.palette;
         let (patch, is_editable) = (shown.patch(), shown.preset().is_some());
         self.audition.follow_time(ui.input(|input| input.time), controls.params.link());
-        let is_other = |drag: &Drag| !Arc::ptr_eq(&drag.loaded, &controls.params.loaded());
+        let is_other = |drag: &Drag| !drag.is_of(&controls.params.loaded());
         if !is_editable || self.drag.as_ref().is_some_and(is_other) {
             self.cancel(controls);
         }
@@ -103,12 +78,12 @@ impl ModesView {
         }
         let pointer = response.hover_pos();
         let hovered = pointer.and_then(|pointer| nearest(patch.modes.as_slice(), &axes, pointer));
-        let modes = self.drag.as_ref().map_or(patch.modes.as_slice(), |drag| &drag.modes);
-        let selected = self.drag.as_ref().map(|drag| drag.mode).or(hovered);
+        let modes = self.drag.as_ref().map_or(patch.modes.as_slice(), Drag::modes);
+        let selected = self.drag.as_ref().map_or(hovered, Drag::mode);
         if let Some(mode) = selected.and_then(|place| modes.get(place).map(|mode| (place, mode))) {
             *controls.hint = describe(mode, controls.value(Param::Decay.info()), is_editable);
         } else if pointer.is_some() {
-            let help = "Double-click where there is none to add a mode.";
+            let help = "Double-click where there is none to add a mode; drag with the right button to draw levels.";
             *controls.hint = Hint::new(format!("{} modes", modes.len()), if is_editable { help } else { "" });
         }
         let decay = controls.value(Param::Decay.info());
@@ -123,7 +98,9 @@ impl ModesView {
         let help = match (is_editable, patch.modes.origin().is_some()) {
             (false, _) => "of the kit’s first sound",
             (true, true) => "from a model; the first change makes them a table of their own",
-            (true, false) => "drag: level, ratio   Alt: decay   Ctrl: pan   Shift: fine   double-click: add, remove",
+            (true, false) => {
+                "drag: level, ratio   Alt: decay   Ctrl: pan   Shift: fine   right-drag: draw   double-click: add, remove"
+            }
         };
         line(ui.painter(), rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
         let look = if self.snap == Snap::Off { Look::Plain } else { Look::On };
@@ -144,48 +121,37 @@ impl ModesView {
         let modes = patch.modes.as_slice();
         let (now, modifiers, delta) = ui.input(|input| (input.time, input.modifiers, input.pointer.delta()));
         let start = ui.input(|input| input.pointer.press_origin());
-        if response.drag_started()
-            && let Some(mode) = start.and_then(|start| nearest(modes, axes, start))
+        if let Some(start) = start
+            && response.drag_started()
         {
-            let aspect = match (modifiers.alt, modifiers.ctrl) {
-                (true, _) => Aspect::Decay,
-                (_, true) => Aspect::Pan,
-                _ => Aspect::LevelAndRatio,
+            let (is_right, loaded) = (response.dragged_by(PointerButton::Secondary), shown.loaded().clone());
+            let mode = nearest(modes, axes, start).filter(|_| !is_right);
+            self.drag = match mode {
+                Some(mode) => Some(Drag::of_mode(mode, modes, modifiers, loaded, now)),
+                None => is_right.then(|| Drag::of_pencil(start, modes, loaded, now)),
             };
-            controls.history.begin(controls.params);
-            self.selected = Some(mode);
-            let modes = clamped(modes);
-            self.drag = Some(Drag {
-                mode,
-                aspect,
-                before: modes[mode],
-                moved: Vec2::ZERO,
-                written: modes.clone(),
-                modes,
-                loaded: shown.loaded().clone(),
-                changed: now,
-            });
+            if self.drag.is_some() {
+                controls.history.begin(controls.params);
+                self.selected = mode.or(self.selected);
+            }
         }
         if let Some(drag) = &mut self.drag {
-            drag.moved += if modifiers.shift { delta * 0.1 } else { delta };
             let is_over = !response.dragged();
-            drag.modes[drag.mode] = moved(drag, axes, self.snap);
-            if (is_over || now - drag.changed >= CHANGES) && drag.modes != drag.written {
-                drag.changed = now;
-                if let Some(loaded) = replace(&drag.modes, &phases(&patch.modes), controls) {
-                    drag.loaded = loaded;
-                }
-                drag.written.clone_from(&drag.modes);
+            let to = response.interact_pointer_pos().unwrap_or_else(|| axes.rect.center());
+            drag.follow(Step { to, by: delta, is_fine: modifiers.shift }, axes, self.snap);
+            if let Some(modes) = drag.due(now, is_over)
+                && let Some(loaded) = replace(modes, &phases(&patch.modes), controls)
+            {
+                drag.loaded(loaded);
             }
             if !is_over {
                 self.audition.repeat(home, now, controls.params.link());
             }
-            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+            ui.ctx().set_cursor_icon(if drag.mode().is_some() { CursorIcon::Grabbing } else { CursorIcon::Crosshair });
             ui.ctx().request_repaint();
             if is_over {
-                let mode = drag.modes[drag.mode];
                 self.audition.release(controls.params.link());
-                controls.history.end(format!("mode {:.3}", mode.ratio), controls.params);
+                controls.history.end(drag.name(), controls.params);
                 touch(controls.params, controls.host);
                 self.drag = None;
             }
@@ -237,29 +203,6 @@ impl ModesView {
 fn nearest(modes: &[Mode], axes: &Axes, place: Pos2) -> Option<usize> {
     let distances = modes.iter().map(|mode| axes.place(mode).distance(place)).enumerate();
     distances.filter(|(_, distance)| *distance <= REACH).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(mode, _)| mode)
-}
-
-/// The dragged mode at the pointer's present place.
-fn moved(drag: &Drag, axes: &Axes, snap: Snap) -> Mode {
-    let (mut mode, moved) = (drag.before, drag.moved);
-    match drag.aspect {
-        Aspect::LevelAndRatio => {
-            let to = axes.place(&drag.before) + moved;
-            if moved.x != 0.0 {
-                mode.ratio = snap.nearest(axes.ratio(to.x));
-            }
-            if moved.y != 0.0 {
-                mode.level = axes.level(to.y).copysign(drag.before.level);
-            }
-        }
-        // An octave of T60 for 30 pixels.
-        Aspect::Decay => {
-            let octaves = f64::from((moved.x - moved.y) / 30.0);
-            mode.decay *= sprung::units::ratio_from_semitones(12.0 * octaves) as f32;
-        }
-        Aspect::Pan => mode.pan += moved.x / 60.0,
-    }
-    mode.clamped()
 }
 
 fn describe((place, mode): (usize, &Mode), decay: f32, is_editable: bool) -> Option<Hint> {

@@ -208,6 +208,8 @@ impl Window {
         self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);
         // In a plugin, the computer's keyboard belongs to the host.
         let is_alone = host.plugin_api() == PluginApi::Standalone;
+        let is_typing = ui.ctx().egui_wants_keyboard_input();
+        let searches = is_alone && !is_typing && ui.input(|input| input.key_pressed(Key::Slash));
         let played = is_alone.then(|| self.key_piano.follow(ui, params.link())).flatten();
         let learnt = learn::follow(ui, &mut controls);
         if let Some(news) = learnt.or_else(|| params.link().take_news()).or(played) {
@@ -221,7 +223,8 @@ impl Window {
         let load = self.load.share(ui.input(|input| input.time), telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
         status::show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
-        if let Some(wish) = wish {
+        let search = (searches && self.over != Some(Over::Browser)).then_some(Wish::Browse);
+        if let Some(wish) = wish.or(search) {
             self.grant(wish, ui, host);
         }
     }

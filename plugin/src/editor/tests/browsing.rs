@@ -13,6 +13,7 @@ use sprung::params::Param;
 use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
 use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
 
 impl Stage {
     fn type_text(&mut self, text: &str) {
@@ -52,6 +53,23 @@ fn sounds_are_found_by_words_tried_by_arrows_and_undone_by_name() {
     assert!(stage.harness.query_by_label("Search").is_none());
     stage.button("Undo");
     assert_eq!(stage.params.state(), before);
+}
+
+#[test]
+fn a_slash_searches_in_the_program_alone_since_a_hosts_keys_are_its_own() {
+    for is_alone in [false, true] {
+        let mut stage = stage("Kick", SIZE, 1.0, Theme::Dark);
+        stage.host.is_alone.store(is_alone, Relaxed);
+        stage.harness.key_press(Key::Slash);
+        stage.harness.run_steps(3);
+        assert_eq!(stage.harness.query_by_label("Search").is_some(), is_alone);
+        if is_alone {
+            stage.type_text("church bell");
+            stage.harness.key_press(Key::Slash);
+            stage.harness.run_steps(2);
+            assert!(stage.harness.query_by_label("Search").is_some(), "it is typed, and closes nothing");
+        }
+    }
 }
 
 #[test]

@@ -101,6 +101,39 @@ fn changed_modes_of_a_pair_keep_their_phases_and_are_saved() {
 }
 
 #[test]
+fn the_right_button_draws_levels_as_one_step() {
+    let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+    let before = band.stage.params.state();
+    let (table, axes) = (band.table(), band.axes());
+    let height = axes.rect.center().y;
+    let [from, to] = [axes.rect.left(), axes.rect.right()].map(|x| Pos2::new(x, height));
+    let button = |pos: Pos2, pressed: bool| Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Secondary,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    };
+    band.event(Event::PointerMoved(from));
+    band.event(button(from, true));
+    for step in 1..=10 {
+        band.event(Event::PointerMoved(from.lerp(to, step as f32 / 10.0)));
+    }
+    assert!(matches!(band.heard[..], [.., Touch::Down { .. }]), "it is heard while it is drawn: {:?}", band.heard);
+    band.event(button(to, false));
+    let drawn = band.table();
+    assert_eq!(drawn.as_slice().len(), table.as_slice().len());
+    for (before, mode) in table.as_slice().iter().zip(drawn.as_slice()) {
+        assert!((mode.level.abs() / axes.level(height) - 1.0).abs() < 1e-3, "{mode:?}");
+        let before = before.clamped();
+        assert_eq!((mode.ratio, mode.decay, mode.pan), (before.ratio, before.decay, before.pan));
+        assert_eq!(mode.level < 0.0, before.level < 0.0);
+    }
+    band.check_state();
+    band.stage.button("Undo");
+    assert!(band.stage.params.state() == before, "one step takes it back");
+}
+
+#[test]
 fn a_drag_ends_if_another_sound_is_loaded() {
     let mut band = Band::new("Glass Marimba", SIZE, Theme::Dark);
     let State { seed, view, .. } = band.stage.params.state();
