@@ -152,7 +152,7 @@ mod tests {
         let tones = [sine(440.0, 3.0, 0.3), sine(1234.5, 1.0, 2.0)];
         let sound: Vec<f32> =
             (0..RATE as usize).map(|n| tones.iter().map(|tone| tone(n)).sum::<f64>() as f32).collect();
-        let found = modes(&[sound.clone()], RATE.into(), &Settings::default(), &mut |_| true).unwrap();
+        let found = modes(std::slice::from_ref(&sound), RATE.into(), &Settings::default(), &mut |_| true).unwrap();
         let strike = &found.strikes[0];
         let left = unexplained(&sound, 0, strike, 2000);
         assert!(left.len() == sound.len() - 2000 && left.iter().all(|sample| sample.abs() < 1e-4));
