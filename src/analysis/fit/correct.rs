@@ -142,11 +142,11 @@ fn corrected(draft: &Draft, share: f64, mut correction: impl FnMut(&Partial) -> 
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::draft::{Noise, Sweep};
     use super::*;
 
-    fn draft(amplitudes: [f64; 2]) -> Draft {
+    pub(crate) fn draft(amplitudes: [f64; 2]) -> Draft {
         let partial =
             |(frequency, t60, amplitude)| Partial { frequency, t60, amplitude, phase: 0.0, pan: 0.0, struck: true };
         let [first, second] = amplitudes;
@@ -159,6 +159,7 @@ mod tests {
             sweep: Sweep::NONE,
             noise: Noise::SHORT,
             swell: None,
+            tremolo: None,
             is_held: false,
         }
     }

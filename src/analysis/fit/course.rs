@@ -205,7 +205,23 @@ impl Movement {
 
 /// The movement of the pitch of samples at [`RATE`], from their onset on; [`Sweep::NONE`] if the pitch is constant.
 pub(super) fn find(samples: &[f32]) -> Sweep {
-    let points = follow(samples);
+    explain(&follow(samples))
+}
+
+/// The movement that explains a measured pitch, as times in seconds and semitones, and its mean in semitones.
+pub(super) fn of_pitch(pitches: &[(f64, f64)]) -> (Sweep, f64) {
+    let points: Vec<Point> =
+        pitches.iter().map(|(time, pitch)| Point { time: *time, pitch: *pitch, weight: 1.0 }).collect();
+    let sweep = explain(&points);
+    let envelope = sweep.envelope();
+    let at = |(time, _): &(f64, f64)| {
+        sweep.vibrato.at(*time) + if sweep.semitones == 0.0 { 0.0 } else { envelope.at(*time) }
+    };
+    (sweep, pitches.iter().map(at).sum::<f64>() / pitches.len().max(1) as f64)
+}
+
+/// The movement that explains the points; [`Sweep::NONE`] if none does.
+fn explain(points: &[Point]) -> Sweep {
     if points.len() < FEWEST {
         return Sweep::NONE;
     }
@@ -218,7 +234,7 @@ pub(super) fn find(samples: &[f32]) -> Sweep {
         curves.flat_map(|curve| seconds.iter().map(move |seconds| Movement { seconds: *seconds, curve, ..still }));
     let swept: Vec<Movement> = swept.collect();
     let least = |movements: &mut dyn Iterator<Item = Movement>, sweeps: bool, trembles: bool| {
-        let error = |movement: &Movement| movement.explain(&points, sweeps, trembles).1;
+        let error = |movement: &Movement| movement.explain(points, sweeps, trembles).1;
         movements.min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or(still)
     };
     let rates = ((RATES.2 - RATES.0) / RATES.1) as usize;
@@ -228,13 +244,13 @@ pub(super) fn find(samples: &[f32]) -> Sweep {
         rates.flat_map(|rate| DELAYS.map(|delay| Movement { rate, delay, ..movement })).collect::<Vec<_>>().into_iter()
     };
     let refined = |mut best: Movement, sweeps: bool, trembles: bool| {
-        let (mut sweep, mut error) = best.explain(&points, sweeps, trembles);
+        let (mut sweep, mut error) = best.explain(points, sweeps, trembles);
         let mut step = 0.5;
         for _ in 0..ROUNDS {
             for number in if sweeps { 0 } else { 2 }..if trembles { 4 } else { 2 } {
                 for signed in [-step, step] {
                     let other = best.moved(number, signed);
-                    let (found, least) = other.explain(&points, sweeps, trembles);
+                    let (found, least) = other.explain(points, sweeps, trembles);
                     if least < error {
                         (best, sweep, error) = (other, found, least);
                     }
@@ -244,7 +260,7 @@ pub(super) fn find(samples: &[f32]) -> Sweep {
         }
         (best, sweep, error)
     };
-    let alone = solve(&points, |_| [1.0]).1;
+    let alone = solve(points, |_| [1.0]).1;
     let (fall, sweep, of_sweep) = refined(least(&mut swept.into_iter(), true, false), true, false);
     let sweeps = of_sweep < (1.0 - WORTH) * alone && fabs(sweep.semitones) > LEAST_SWEEP;
     let (fall, without) = if sweeps { (fall, of_sweep) } else { (still, alone) };

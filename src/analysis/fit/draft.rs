@@ -12,11 +12,12 @@ use std::f64::consts::PI;
 /// Maximum number of modes of a fit.
 pub(super) const MOST_MODES: usize = 256;
 /// Shortest and longest T60 in seconds of a mode that is struck.
-pub(super) const T60: (f64, f64) = (0.004, 60.0);
+pub(super) const T60: (f64, f64) = (0.004, 600.0);
 /// Lower bound of the spectrum of a contact, so that modes near its zeros are not struck ever harder: −40 dB.
 const LEAST_OF_CONTACT: f64 = 0.01;
-/// Place of the route of a swell. The routes made from several takes are before it, those of a new patch after it.
+/// Places of the routes of a swell and a tremolo. The routes made from several takes are before them, those of a new patch after them.
 const SWELL_ROUTE: usize = 3;
+const TREMOLO_ROUTE: usize = 4;
 
 /// A mode of the sound.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +116,17 @@ pub(super) struct Swell {
     pub(super) curve: f64,
 }
 
+/// A regular movement of the level, which begins upwards at phase 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tremolo {
+    /// Depth each way in dB.
+    pub(super) db: f64,
+    /// Hz.
+    pub(super) rate: f64,
+    /// Where in its round it begins, 0–1.
+    pub(super) phase: f64,
+}
+
 /// The description of a sound.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Draft {
@@ -130,6 +142,7 @@ pub(super) struct Draft {
     pub(super) sweep: Sweep,
     pub(super) noise: Noise,
     pub(super) swell: Option<Swell>,
+    pub(super) tremolo: Option<Tremolo>,
     /// Whether it ends when its key is released, and not by itself.
     pub(super) is_held: bool,
 }
@@ -249,6 +262,10 @@ impl Draft {
             set(Param::VibratoRate, self.sweep.vibrato.rate);
             set(Param::VibratoDelay, self.sweep.vibrato.delay);
         }
+        if let Some(tremolo) = self.tremolo {
+            set(Param::Lfo2Rate, tremolo.rate);
+            set(Param::Lfo2Phase, 100.0 * tremolo.phase);
+        }
         if let Some(swell) = self.swell {
             let depth = swell.depth.min(gain_db - f64::from(gain_info.min));
             set(Param::Gain, ((gain_db - depth) * 100.0).round() / 100.0);
@@ -259,6 +276,10 @@ impl Draft {
             set(Param::Envelope1Release, Param::Envelope1Release.info().max.into());
             let amount = 100.0 * depth / f64::from(gain_info.max - gain_info.min);
             patch = patch.with_route(SWELL_ROUTE, Source::Envelope1, Param::Gain, digits(amount, 5) as f32);
+        }
+        if let Some(tremolo) = self.tremolo {
+            let amount = 100.0 * tremolo.db / f64::from(gain_info.max - gain_info.min);
+            patch = patch.with_route(TREMOLO_ROUTE, Source::Lfo2, Param::Gain, digits(amount, 5) as f32);
         }
         patch
     }

@@ -5,7 +5,7 @@ use super::draft::{Draft, Sweep};
 use super::refine::Listener;
 use super::start::Source;
 use super::take::{Prepared, SLOW};
-use super::{bed, start, sweep};
+use super::{bed, held, start, sweep};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
 
@@ -15,9 +15,11 @@ const ANALYSED: f64 = 0.45;
 const NOISE_DB: f64 = -10.0;
 /// Share of a sound after which modes that noise has excited ring freely.
 const LATE: f64 = 0.2;
-/// Residual of the modes in dB below which the pitch counts as constant, and by how many dB a sweep must lower the
-/// residual.
+/// Residual of the modes in dB below which the pitch counts as constant.
 const EXPLAINED_DB: f64 = -50.0;
+/// Reduction of the residual in dB by which modes without the drift stand for a held sound alone.
+const WORTH_A_DRIFT_DB: f64 = 6.0;
+/// Reduction of the residual in dB by which a sweep is kept.
 const WORTH_A_SWEEP_DB: f64 = 2.0;
 /// Reduction of the distance in dB for which a bed is kept.
 const WORTH_A_BED: f64 = 0.02;
@@ -51,19 +53,29 @@ pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) ->
     best.ok_or(Error::Interrupted)
 }
 
-/// The possible drafts of a take: its modes, without a sweep and with the sweep that explains it best, if one does. If these
+/// The possible drafts of a take: its modes, without a sweep and with the sweep that explains it best, if one does. If it is
+/// held or rises slowly, the modes without its drift, alone if these explain much more. If all these
 /// explain little, also modes that only noise excites, found after the noise is over. If the sound rises slowly, also
 /// modes found after the rise.
 fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
-    let [of_still, of_search, first, second, of_noise, of_held] =
-        [[0.0, 0.35], [0.35, 0.45], [0.45, 0.6], [0.6, 0.75], [0.75, 0.9], [0.9, 1.0]];
+    let [of_still, of_drift, of_search, first, second, of_noise, of_rest] =
+        [[0.0, 0.25], [0.25, 0.5], [0.5, 0.55], [0.55, 0.65], [0.65, 0.75], [0.75, 0.9], [0.9, 1.0]];
     let analysed = |source: Source, [from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>| {
         start::draft(take, source, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
     };
     let all = Source { swept: Sweep::NONE, late: 0.0, struck: true };
     let mut found = vec![analysed(all, of_still, tell)?];
     let still = residual_db(&found[0]);
+    if still > EXPLAINED_DB && (take.is_held || take.rise > SLOW) {
+        let [from, to] = of_drift;
+        if let Some(held) = held::draft(take, most, &mut |share| tell(from + (to - from) * share).is_ok())? {
+            if residual_db(&held) < still - WORTH_A_DRIFT_DB {
+                return Ok(vec![held]);
+            }
+            found.push(held);
+        }
+    }
     if still > EXPLAINED_DB {
         let sweeps = sweep::find(&take.mean, &mut || tell(of_search[0]))?;
         let mut swept = Vec::new();
@@ -83,8 +95,8 @@ fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
     }
     if take.rise > SLOW {
         let swept = found[0].0.sweep;
-        let (held, _) = analysed(Source { late: take.rise, swept, ..all }, of_held, tell)?;
-        found.push((held, strike));
+        let (rung, _) = analysed(Source { late: take.rise, swept, ..all }, of_rest, tell)?;
+        found.push((rung, strike));
     }
     Ok(found)
 }
@@ -103,6 +115,7 @@ fn improved(
     part: &dyn Fn(f64) -> f64,
 ) -> Result<Draft> {
     listener.tell(part(0.0))?;
+    listener.choose_tremolo(&mut draft)?;
     if slow {
         listener.choose_swell(&mut draft)?;
     }

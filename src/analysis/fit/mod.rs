@@ -1,8 +1,9 @@
 //! Fits a preset to recordings of a struck sound, which it then plays over the keyboard.
 //!
-//! The sweep of the pitch is found and removed. The sound, whose pitch is now constant, is analysed into modes. Their
-//! residual becomes a bed: modes that noise excites. Then the draft is played and compared with the recording, band by
-//! band ([`super::log_mel`]), to correct the mallet's hardness, the length of the noise, levels and decays.
+//! The sweep of the pitch is found and removed; of a held sound, all drift that its tones have in common. The sound, whose
+//! pitch is now constant, is analysed into modes. Their residual becomes a bed: modes that noise excites. Then the draft is
+//! played and compared with the recording, band by band ([`super::log_mel`]), to correct the mallet's hardness, the length of
+//! the noise, levels and decays.
 
 mod audition;
 mod bed;
@@ -10,6 +11,8 @@ mod body;
 mod correct;
 mod course;
 mod draft;
+mod drift;
+mod held;
 mod improve;
 mod layers;
 mod levels;
@@ -17,11 +20,13 @@ mod pitch;
 mod refine;
 #[cfg(feature = "analysis")]
 pub mod report;
+mod resample;
 mod simplex;
 mod start;
 mod summary;
 mod sweep;
 mod take;
+mod tones;
 mod tuned;
 
 pub use body::{Explained, Family};

@@ -130,6 +130,12 @@ impl<'a> Listener<'a> {
         Ok(())
     }
 
+    /// Keeps the tremolo only if the sound is nearer with it.
+    pub(super) fn choose_tremolo(&mut self, draft: &mut Draft) -> Result<()> {
+        let without = draft.tremolo.is_some().then(|| Draft { tremolo: None, ..draft.clone() });
+        self.best(draft, usize::MAX, without)
+    }
+
     /// Chooses length and rise of the noise burst.
     pub(super) fn choose_noise(&mut self, draft: &mut Draft) -> Result<()> {
         if draft.partials.iter().all(|partial| partial.struck) {

@@ -42,30 +42,51 @@ pub(super) struct Source {
 /// A draft of a sound's modes alone, and the strike in which they were found. Finding no modes is no error: noise has none.
 pub(super) fn draft(
     take: &Prepared,
-    Source { swept, late, struck }: Source,
+    source: Source,
     most_modes: usize,
     progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(Draft, Option<Strike>)> {
     let decay = sweep::decay(&take.mean);
-    let start = (late * f64::from(RATE)) as usize;
+    let start = (source.late * f64::from(RATE)) as usize;
     let still = |channel: &Vec<f32>| {
-        let still = sweep::stilled(channel, &swept, decay);
+        let still = sweep::stilled(channel, &source.swept, decay);
         still[start.min(still.len())..].to_vec()
     };
     let still: Vec<Vec<f32>> = take.channels.iter().map(still).collect();
+    let strike = strike(&still, most_modes, progress)?;
+    // In a held sound many modes can stand for one whose pitch moves; with their measured phases they would cancel, so all
+    // start as sines. So do modes that were measured later than the onset.
+    let has_phases = !take.is_held && source.late == 0.0;
+    Ok((from(take, strike.as_ref(), &source, has_phases), strike))
+}
+
+/// The modes of a sound at [`RATE`], a list of samples per channel; none if it does not ring at all.
+///
+/// # Errors
+/// [`Error::Interrupted`].
+pub(super) fn strike(
+    channels: &[Vec<f32>],
+    most_modes: usize,
+    progress: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<Strike>> {
     let settings =
         modes::Settings { most_modes: most_modes.min(MOST_MODES), longest: LONGEST, ..modes::Settings::default() };
-    let strike = match modes::modes(&still, RATE.into(), &settings, progress) {
-        Ok(found) => found.strikes.into_iter().next(),
-        Err(Error::Interrupted) => return Err(Error::Interrupted),
+    match modes::modes(channels, RATE.into(), &settings, progress) {
+        Ok(found) => Ok(found.strikes.into_iter().next()),
+        Err(Error::Interrupted) => Err(Error::Interrupted),
         // A sound that does not ring at all is left to the bed.
-        Err(_) => None,
-    };
+        Err(_) => Ok(None),
+    }
+}
+
+/// The draft of a strike's modes, with the phases in which they were found or as sines.
+pub(super) fn from(take: &Prepared, strike: Option<&Strike>, source: &Source, has_phases: bool) -> Draft {
+    let Source { swept, late, struck } = *source;
     let peak = 20.0 * libm::log10(take.peak());
     let mut partials = Vec::new();
-    if let Some(strike) = &strike {
+    if let Some(strike) = strike {
         let known = |mode: &&Mode| {
-            let is_sure = mode.uncertainty.level_db < 9.0 && mode.uncertainty.t60 < mode.t60.min(T60.1);
+            let is_sure = mode.uncertainty.level_db < 9.0 && mode.uncertainty.t60 < mode.t60;
             is_sure && mode.frequency < HIGHEST && mode.t60 > T60.0 && mode.level_db < peak + TOO_LOUD_DB
         };
         // Tones that do not decay are heard too, so keep them.
@@ -78,9 +99,7 @@ pub(super) fn draft(
         let delay = delay(&kept, &amplitudes);
         let struck_so = |(mode, amplitude): (&&Mode, &f64)| {
             let partial = partial(mode, *amplitude, delay);
-            // In a held sound many modes can stand for one whose pitch moves; with their measured phases they would cancel,
-            // so all start as sines. So do modes that were measured later than the onset.
-            let phase = if take.is_held || !struck || late > 0.0 { 0.0 } else { partial.phase };
+            let phase = if has_phases && struck { partial.phase } else { 0.0 };
             let before = 60.0 * late / partial.t60;
             let most = if struck { MOST_OF_A_SWELL_DB } else { MOST_BEFORE_DB };
             let amplitude = partial.amplitude * pow(10.0, before.min(most) / 20.0);
@@ -89,7 +108,7 @@ pub(super) fn draft(
         partials.extend(kept.iter().zip(&amplitudes).map(struck_so));
     }
     let note = take.key.map_or_else(|| pitch::estimate(&partials), |key| take.frequency_of(key));
-    let draft = Draft {
+    Draft {
         note,
         velocity: take.velocity,
         follow: 1.0,
@@ -98,9 +117,9 @@ pub(super) fn draft(
         sweep: swept,
         noise: Noise::SHORT,
         swell: None,
+        tremolo: None,
         is_held: take.is_held,
-    };
-    Ok((draft, strike))
+    }
 }
 
 /// The amplitude at the onset of a mode that was found `after` seconds later. If the exciter acts for long, a short

@@ -92,8 +92,8 @@ impl Prepared {
         let third = (blocks / 3).max(1);
         let energy = |levels: &[f64]| levels.iter().map(|level| level * level).sum::<f64>();
         let is_steady = blocks >= 9 && energy(&levels[blocks - third..blocks]) > STEADY * energy(&levels[..third]);
-        let message = "the sound does not decay: expected something that is struck and rings; what is fitted is its mean \
-                       spectrum";
+        let message =
+            "the sound does not decay: expected something that is struck and rings; its slow movements are left out";
         let rise = levels.iter().position(|level| *level > RISEN * loudest).unwrap_or(0) as f64 * BLOCK;
         let mut warnings = Vec::from_iter(is_steady.then(|| format!("{}: {message}", take.name)));
         if let Some(time) = again(&levels, loudest) {
