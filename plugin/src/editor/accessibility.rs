@@ -9,19 +9,19 @@ use nice_plug_egui::baseview::WindowContext;
 use std::ffi::c_void;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// What screen readers ask for, from the thread that talks to them.
-struct Asked {
+struct Requests {
     /// Whether a screen reader listens.
     is_listening: AtomicBool,
     actions: Mutex<Vec<ActionRequest>>,
     repaint: RepaintNotifier,
 }
 
-/// The end of [`Asked`] that AccessKit's thread has.
+/// The end of [`Requests`] that AccessKit's thread has.
 #[derive(Clone)]
-struct Listener(Arc<Asked>);
+struct Listener(Arc<Requests>);
 
 impl Listener {
     fn set_listening(&self, is_listening: bool) {
@@ -54,7 +54,7 @@ impl ActionHandler for Listener {
 /// A window's connection to screen readers. Nothing is computed for it unless one listens.
 struct Accessibility {
     adapter: Adapter,
-    asked: Arc<Asked>,
+    requests: Arc<Requests>,
     display: Display,
     is_on: bool,
     has_focus: bool,
@@ -64,14 +64,15 @@ struct Accessibility {
 /// library that a host can unload.
 pub(super) fn connect(context: &Context, repaint: RepaintNotifier, is_library: bool) {
     // AccessKit's thread never ends: its code must stay where it is.
-    if !has_session_bus() || is_library && !keep_loaded() {
+    static IS_KEPT: OnceLock<bool> = OnceLock::new();
+    if !has_session_bus() || is_library && !IS_KEPT.get_or_init(keep_loaded) {
         return;
     }
-    let asked = Arc::new(Asked { is_listening: AtomicBool::new(false), actions: Mutex::default(), repaint });
-    let listener = Listener(asked.clone());
+    let requests = Arc::new(Requests { is_listening: AtomicBool::new(false), actions: Mutex::default(), repaint });
+    let listener = Listener(requests.clone());
     let adapter = Adapter::new(listener.clone(), listener.clone(), listener);
     let display = Display::default();
-    context.add_plugin(Accessibility { adapter, asked, display, is_on: false, has_focus: false });
+    context.add_plugin(Accessibility { adapter, requests, display, is_on: false, has_focus: false });
 }
 
 /// Tells screen readers where the window is on the screen. To be called in each pass.
@@ -92,13 +93,14 @@ impl egui::Plugin for Accessibility {
     }
 
     fn input_hook(&mut self, context: &Context, input: &mut RawInput) {
-        let is_listening = self.asked.is_listening.load(Relaxed);
+        let is_listening = self.requests.is_listening.load(Relaxed);
         if is_listening != self.is_on {
             self.is_on = is_listening;
             if is_listening { context.enable_accesskit() } else { context.disable_accesskit() }
         }
-        let mut actions = self.asked.actions.lock().unwrap_or_else(PoisonError::into_inner);
-        input.events.extend(actions.drain(..).map(Event::AccessKitActionRequest));
+        // The lock is not held while AccessKit is called: its thread may hold one of its own, and wait for this one.
+        let actions = std::mem::take(&mut *self.requests.actions.lock().unwrap_or_else(PoisonError::into_inner));
+        input.events.extend(actions.into_iter().map(Event::AccessKitActionRequest));
         if input.focused != self.has_focus {
             self.has_focus = input.focused;
             self.adapter.update_window_focus_state(input.focused);
@@ -116,10 +118,12 @@ impl egui::Plugin for Accessibility {
     }
 }
 
-/// Whether the session has a D-Bus, where AT-SPI is found: by its address or, without one, by its usual place.
+/// Whether the session has a D-Bus, where AT-SPI is found: at its address or, if none is set, in the user's folder for sockets.
+/// An address that is set and empty means that there is none.
 fn has_session_bus() -> bool {
-    let usual = || std::env::var_os("XDG_RUNTIME_DIR").is_some_and(|folder| PathBuf::from(folder).join("bus").exists());
-    std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some_and(|address| !address.is_empty()) || usual()
+    let folder = || std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
+    std::env::var_os("DBUS_SESSION_BUS_ADDRESS")
+        .map_or_else(|| folder().is_some_and(|folder| folder.join("bus").exists()), |address| !address.is_empty())
 }
 
 /// Keeps the library that has this code loaded for as long as the process runs. Returns whether that was possible.

@@ -2,7 +2,6 @@
 
 use super::body_form::Form;
 use super::body_shape::BodyShape;
-use super::disc::disc;
 use super::theme::Palette;
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
@@ -38,7 +37,7 @@ pub(super) fn paint(
         });
         let moved = nearest.map_or(0.0, |nearest| displacements[nearest]);
         let at = form.on(rect, strike, moved);
-        disc(painter, at, 5.5, palette.panel, Stroke::new(2.0, palette.text));
+        painter.circle(at, 5.5, palette.panel, Stroke::new(2.0, palette.text));
         painter.circle_filled(at, 1.8, palette.text);
     }
 }

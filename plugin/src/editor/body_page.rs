@@ -121,7 +121,7 @@ impl BodyPage {
             let look = match (is_there, part == self.part) {
                 (false, _) => Look::Disabled,
                 (true, true) => Look::On,
-                (true, false) => Look::Plain,
+                (true, false) => Look::Off,
             };
             if button(ui, at, name, &format!("{name} body").replace("Joint body", "Joint of the bodies"), look, palette)
                 .clicked()
@@ -170,7 +170,7 @@ impl BodyPage {
             return Some((changed, format!("material {}", names[picked])));
         }
         if made.pair().is_some() {
-            let look = if body.follows_key { Look::On } else { Look::Plain };
+            let look = if body.follows_key { Look::On } else { Look::Off };
             if button(ui, row(3), "Follows the keys", "The body follows the keys", look, palette).clicked() {
                 let mut changed = made.clone();
                 let body = self.part.body_mut(&mut changed)?;

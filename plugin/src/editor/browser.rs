@@ -132,7 +132,7 @@ impl Browser {
             for shelf in Shelf::all() {
                 let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 2.0), Sense::hover());
                 let name = shelf.name();
-                let look = if shelf == self.shelf { Look::On } else { Look::Plain };
+                let look = if shelf == self.shelf { Look::On } else { Look::Off };
                 if button(ui, row, &name, &format!("Show {name}"), look, palette).clicked() {
                     self.shelf = shelf;
                 }

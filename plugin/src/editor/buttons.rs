@@ -8,8 +8,11 @@ use egui::{Align2, Id, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, Widg
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Look {
     Plain,
-    /// Pressed, or its setting is on.
+    /// Its setting is off, or on.
+    Off,
     On,
+    /// The action that one most likely wants.
+    Main,
     /// It cannot be used now.
     Disabled,
 }
@@ -19,14 +22,14 @@ pub(super) fn button(ui: &Ui, rect: Rect, text: &str, name: &str, look: Look, pa
     let sense = if look == Look::Disabled { Sense::hover() } else { Sense::click() };
     let response = ui.interact(rect, Id::unique(("button", name)), sense);
     response.widget_info(|| match look {
-        Look::On => WidgetInfo::selected(Role::Button, true, true, name),
+        Look::Off | Look::On => WidgetInfo::selected(Role::Button, true, look == Look::On, name),
         _ => WidgetInfo::labeled(Role::Button, look != Look::Disabled, name),
     });
     let (fill, colour) = match look {
-        Look::On => (palette.accent, palette.on_accent),
+        Look::On | Look::Main => (palette.accent, palette.on_accent),
         Look::Disabled => (palette.ground, palette.muted.gamma_multiply(0.55)),
-        Look::Plain if response.hovered() => (palette.raised, palette.text),
-        Look::Plain => (palette.panel, palette.text),
+        Look::Plain | Look::Off if response.hovered() => (palette.raised, palette.text),
+        Look::Plain | Look::Off => (palette.panel, palette.text),
     };
     ui.painter().rect(rect, 4.0, fill, Stroke::new(1.0, palette.outline), StrokeKind::Inside);
     if response.has_focus() {

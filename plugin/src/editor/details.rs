@@ -76,7 +76,7 @@ impl Details {
         let bin = rename.translate(vec2(wide + 4.0, 0.0));
         let own = shown.filter(|sound| sound.path.is_some());
         let text = if self.confirm.is_some() { "Replace" } else { "Save" };
-        let response = button(ui, save, text, "Save under this name", Look::On, palette);
+        let response = button(ui, save, text, "Save under this name", Look::Main, palette);
         if response.hovered() {
             let folder = sounds.library.as_ref().map(|library| library.presets_folder().display().to_string());
             *controls.hint = Hint::new("Save", folder.unwrap_or_default());

@@ -60,7 +60,7 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
     let undo = controls.history.undo_name().map(|name| format!("Undo {name}"));
     let redo = controls.history.redo_name().map(|name| format!("Redo {name}"));
     let enabled = |name: &Option<String>| if name.is_some() { Look::Plain } else { Look::Disabled };
-    let on = |is_on: bool| if is_on { Look::On } else { Look::Plain };
+    let on = |is_on: bool| if is_on { Look::On } else { Look::Off };
     let width = |wide: f32| if is_narrow { wide - 8.0 } else { wide };
     let buttons = [
         (

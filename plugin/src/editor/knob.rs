@@ -85,18 +85,6 @@ pub(super) fn show(
         about.current_text_value = Some(text.clone());
         about
     });
-    let value = controls.value(info);
-    ui.ctx().accesskit_node_builder(response.id, |node| {
-        node.set_min_numeric_value(info.min.into());
-        node.set_max_numeric_value(info.max.into());
-        node.add_action(Action::SetValue);
-        if value < info.max {
-            node.add_action(Action::Increment);
-        }
-        if value > info.min {
-            node.add_action(Action::Decrement);
-        }
-    });
     let is_hovered = response.hovered() || response.dragged() || value_response.hovered();
     if is_hovered {
         let newest = controls.modulated(info).next();
@@ -180,8 +168,22 @@ pub(super) fn wheel(ui: &Ui, response: &Response, info: &'static ParamInfo, cont
     }
 }
 
-/// Handles the arrow keys, the keys that reset, and the actions of a screen reader.
+/// Handles the arrow keys, the keys that reset, and the actions of a screen reader, which is told the value.
 pub(super) fn keys(ui: &Ui, response: &Response, info: &'static ParamInfo, controls: &mut Controls) {
+    let (value, text) = (controls.value(info), controls.text(info));
+    ui.ctx().accesskit_node_builder(response.id, |node| {
+        node.set_description(text);
+        node.set_numeric_value(value.into());
+        node.set_min_numeric_value(info.min.into());
+        node.set_max_numeric_value(info.max.into());
+        node.add_action(Action::SetValue);
+        if value < info.max {
+            node.add_action(Action::Increment);
+        }
+        if value > info.min {
+            node.add_action(Action::Decrement);
+        }
+    });
     let mut steps = ui.input(|input| {
         let asked = |action| input.num_accesskit_action_requests(response.id, action) as f64;
         asked(Action::Increment) - asked(Action::Decrement)

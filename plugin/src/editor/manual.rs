@@ -38,7 +38,7 @@ impl Manual {
             ui.spacing_mut().item_spacing.y = 0.0;
             for (place, (name, _)) in PAGES.iter().enumerate() {
                 let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
-                let look = if place == self.page { Look::On } else { Look::Plain };
+                let look = if place == self.page { Look::On } else { Look::Off };
                 if button(ui, row, name, &format!("Manual: {name}"), look, palette).clicked() {
                     self.page = place;
                 }

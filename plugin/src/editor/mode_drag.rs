@@ -15,7 +15,7 @@ const BREADTH: f32 = 2.0;
 
 /// The property of a mode that a drag changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Aspect {
+enum Property {
     LevelAndRatio,
     Decay,
     Pan,
@@ -24,7 +24,7 @@ enum Aspect {
 /// What is dragged.
 enum Held {
     /// A mode: its place in the table, what it was before the drag, and how far the pointer has moved since.
-    Mode { place: usize, aspect: Aspect, before: Mode, moved: Vec2 },
+    Mode { place: usize, property: Property, before: Mode, moved: Vec2 },
     /// A pencil, with its last place.
     Pencil { at: Pos2 },
 }
@@ -37,30 +37,31 @@ pub(super) struct Drag {
     written: Vec<Mode>,
     /// The sound that was loaded last. If another sound is loaded, the drag is over.
     loaded: Arc<Loaded>,
-    changed: f64,
+    written_at: f64,
 }
 
 /// A movement of the pointer.
 pub(super) struct Step {
-    pub(super) to: Pos2,
+    /// Its place; none while it is outside the window.
+    pub(super) to: Option<Pos2>,
     pub(super) by: Vec2,
     pub(super) is_fine: bool,
 }
 
 impl Drag {
     fn new(held: Held, modes: Vec<Mode>, loaded: Arc<Loaded>, now: f64) -> Self {
-        Self { held, written: modes.clone(), modes, loaded, changed: now }
+        Self { held, written: modes.clone(), modes, loaded, written_at: now }
     }
 
     /// The drag of one of the modes of a sound. Alt drags its decay, Ctrl its pan.
     pub(super) fn of_mode(place: usize, modes: &[Mode], keys: Modifiers, loaded: Arc<Loaded>, now: f64) -> Self {
-        let aspect = match (keys.alt, keys.ctrl) {
-            (true, _) => Aspect::Decay,
-            (_, true) => Aspect::Pan,
-            _ => Aspect::LevelAndRatio,
+        let property = match (keys.alt, keys.ctrl) {
+            (true, _) => Property::Decay,
+            (_, true) => Property::Pan,
+            _ => Property::LevelAndRatio,
         };
         let modes = clamped(modes);
-        Self::new(Held::Mode { place, aspect, before: modes[place], moved: Vec2::ZERO }, modes, loaded, now)
+        Self::new(Held::Mode { place, property, before: modes[place], moved: Vec2::ZERO }, modes, loaded, now)
     }
 
     /// A pencil that is put down.
@@ -73,7 +74,7 @@ impl Drag {
     }
 
     /// The place in the table of the mode that is dragged.
-    pub(super) fn mode(&self) -> Option<usize> {
+    pub(super) fn place(&self) -> Option<usize> {
         match self.held {
             Held::Mode { place, .. } => Some(place),
             Held::Pencil { .. } => None,
@@ -87,43 +88,45 @@ impl Drag {
     /// Follows the pointer.
     pub(super) fn follow(&mut self, Step { to, by, is_fine }: Step, axes: &Axes, snap: Snap) {
         match &mut self.held {
-            Held::Mode { place, aspect, before, moved } => {
+            Held::Mode { place, property, before, moved } => {
                 *moved += if is_fine { by * 0.1 } else { by };
-                self.modes[*place] = changed(*before, *aspect, *moved, axes, snap);
+                self.modes[*place] = dragged_to(*before, *property, *moved, axes, snap);
             }
             Held::Pencil { at } => {
-                draw(&mut self.modes, [*at, to], axes);
-                *at = to;
+                if let Some(to) = to {
+                    draw(&mut self.modes, [*at, to], axes);
+                    *at = to;
+                }
             }
         }
     }
 
     /// The modes, if they differ from what was loaded last, and the sound may change again or must.
     pub(super) fn due(&mut self, now: f64, is_over: bool) -> Option<&[Mode]> {
-        if !(is_over || now - self.changed >= CHANGES) || self.modes == self.written {
+        if !(is_over || now - self.written_at >= CHANGES) || self.modes == self.written {
             return None;
         }
-        self.changed = now;
+        self.written_at = now;
         self.written.clone_from(&self.modes);
         Some(&self.modes)
     }
 
     /// Takes note of the sound that was loaded for the drag.
-    pub(super) fn loaded(&mut self, loaded: Arc<Loaded>) {
+    pub(super) fn set_loaded(&mut self, loaded: Arc<Loaded>) {
         self.loaded = loaded;
     }
 
     /// What it is called when it is undone.
     pub(super) fn name(&self) -> String {
-        self.mode().map_or("drawn levels".to_owned(), |place| format!("mode {:.3}", self.modes[place].ratio))
+        self.place().map_or("drawn levels".to_owned(), |place| format!("mode {:.3}", self.modes[place].ratio))
     }
 }
 
 /// A mode after the pointer has moved.
-fn changed(before: Mode, aspect: Aspect, moved: Vec2, axes: &Axes, snap: Snap) -> Mode {
+fn dragged_to(before: Mode, property: Property, moved: Vec2, axes: &Axes, snap: Snap) -> Mode {
     let mut mode = before;
-    match aspect {
-        Aspect::LevelAndRatio => {
+    match property {
+        Property::LevelAndRatio => {
             let to = axes.place(&before) + moved;
             if moved.x != 0.0 {
                 mode.ratio = snap.nearest(axes.ratio(to.x));
@@ -133,11 +136,11 @@ fn changed(before: Mode, aspect: Aspect, moved: Vec2, axes: &Axes, snap: Snap) -
             }
         }
         // An octave of T60 for 30 pixels.
-        Aspect::Decay => {
+        Property::Decay => {
             let octaves = f64::from((moved.x - moved.y) / 30.0);
             mode.decay *= sprung::units::ratio_from_semitones(12.0 * octaves) as f32;
         }
-        Aspect::Pan => mode.pan += moved.x / 60.0,
+        Property::Pan => mode.pan += moved.x / 60.0,
     }
     mode.clamped()
 }

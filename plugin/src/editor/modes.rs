@@ -21,6 +21,7 @@ use sprung::patch::{MAX_MODES, Mode, Patch};
 
 /// Greatest distance from a mode's circle at which it can be grabbed, in pixels.
 const REACH: f32 = 14.0;
+
 /// The state of the modes' picture.
 #[derive(Default)]
 pub(super) struct ModesView {
@@ -79,7 +80,7 @@ impl ModesView {
         let pointer = response.hover_pos();
         let hovered = pointer.and_then(|pointer| nearest(patch.modes.as_slice(), &axes, pointer));
         let modes = self.drag.as_ref().map_or(patch.modes.as_slice(), Drag::modes);
-        let selected = self.drag.as_ref().map_or(hovered, Drag::mode);
+        let selected = self.drag.as_ref().map_or(hovered, Drag::place);
         if let Some(mode) = selected.and_then(|place| modes.get(place).map(|mode| (place, mode))) {
             *controls.hint = describe(mode, controls.value(Param::Decay.info()), is_editable);
         } else if pointer.is_some() {
@@ -103,7 +104,7 @@ impl ModesView {
             }
         };
         line(ui.painter(), rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
-        let look = if self.snap == Snap::Off { Look::Plain } else { Look::On };
+        let look = if self.snap == Snap::Off { Look::Plain } else { Look::Main };
         let response = button(ui, snap, self.snap.name(), "Snap", look, palette);
         Popup::menu(&response).show(|ui| {
             ui.set_min_width(90.0);
@@ -137,17 +138,18 @@ impl ModesView {
         }
         if let Some(drag) = &mut self.drag {
             let is_over = !response.dragged();
-            let to = response.interact_pointer_pos().unwrap_or_else(|| axes.rect.center());
+            // The response knows no place after the pointer has left the window, even when it is back.
+            let to = ui.input(|input| input.pointer.interact_pos());
             drag.follow(Step { to, by: delta, is_fine: modifiers.shift }, axes, self.snap);
             if let Some(modes) = drag.due(now, is_over)
                 && let Some(loaded) = replace(modes, &phases(&patch.modes), controls)
             {
-                drag.loaded(loaded);
+                drag.set_loaded(loaded);
             }
             if !is_over {
                 self.audition.repeat(home, now, controls.params.link());
             }
-            ui.ctx().set_cursor_icon(if drag.mode().is_some() { CursorIcon::Grabbing } else { CursorIcon::Crosshair });
+            ui.ctx().set_cursor_icon(if drag.place().is_some() { CursorIcon::Grabbing } else { CursorIcon::Crosshair });
             ui.ctx().request_repaint();
             if is_over {
                 self.audition.release(controls.params.link());

@@ -2,7 +2,6 @@
 
 use super::audition::Audition;
 use super::controls::{Controls, Hint};
-use super::disc::disc;
 use super::shown::Shown;
 use super::text::line;
 use super::theme::{Palette, SMALL};
@@ -142,7 +141,7 @@ impl Phase {
         if self.pulled.is_some() {
             painter.line_segment([centre, mass], Stroke::new(1.5, palette.text));
         }
-        disc(painter, mass, 7.0, palette.accent, Stroke::new(1.5, palette.panel));
+        painter.circle(mass, 7.0, palette.accent, Stroke::new(1.5, palette.panel));
     }
 }
 

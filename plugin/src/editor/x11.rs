@@ -23,7 +23,7 @@ impl Display {
         Some(self.connection()?.get_input_focus().ok()?.reply().ok()?.focus)
     }
 
-    /// Gives the focus to a window, or to the first visible one around it.
+    /// Gives the focus to a visible window. If that is hidden later, the window around it gets the focus.
     pub(super) fn give_focus(&mut self, window: u32) -> Option<()> {
         let connection = self.connection()?;
         connection.set_input_focus(InputFocus::PARENT, window, CURRENT_TIME).ok()?.check().ok()

@@ -194,12 +194,13 @@ fn main() -> ExitCode {
             a_silent_window_draws_nothing
         }
         ScreenReader: screen_reader {
-            it_reads_and_turns_knobs_and_the_library_can_be_unloaded
+            it_reads_and_turns_knobs_and_the_library_can_be_closed
         }
         Program: standalone {
             it_keeps_its_state_whatever_ends_it
             a_broken_state_is_set_aside
             what_is_missing_is_said
+            a_slash_searches
         }
         Program: devices {
             another_device_is_chosen_while_it_plays

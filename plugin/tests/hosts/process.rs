@@ -19,6 +19,8 @@ pub(crate) fn command(work: &str) -> Command {
     let (name, folder) = bundle::environment();
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.env(WORK, work).env(name, folder).stdin(Stdio::null());
+    // Windows do not depend on the session in which the tests run.
+    command.env("DBUS_SESSION_BUS_ADDRESS", "");
     command
 }
 

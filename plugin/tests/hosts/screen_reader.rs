@@ -9,6 +9,7 @@ use sprung::params::Param;
 use std::io::BufRead as _;
 use std::path::Path;
 use std::process::{Child, Command, ExitCode, Stdio};
+use std::time::Duration;
 use zbus::blocking::{Connection, Proxy, connection, proxy};
 use zbus::proxy::CacheProperties;
 use zbus::zvariant::OwnedObjectPath;
@@ -16,11 +17,14 @@ use zbus::zvariant::OwnedObjectPath;
 /// The program that starts the bus of screen readers.
 const LAUNCHER: &str = "/usr/libexec/at-spi-bus-launcher";
 /// Numbers of AT-SPI's roles.
-const PUSH_BUTTON: u32 = 43;
+const COMBO_BOX: u32 = 11;
 const SLIDER: u32 = 51;
+const TOGGLE_BUTTON: u32 = 62;
 const ENTRY: u32 = 79;
 const ACCESSIBLE: &str = "org.a11y.atspi.Accessible";
-/// Number of times that the library is loaded, its window opened and read, and the library unloaded.
+/// Longest time that a request may take.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// Number of times that the library is loaded, its window opened and read, and the library closed.
 const TIMES: usize = 5;
 
 /// The program that these tests need besides a screen and that is missing here.
@@ -32,21 +36,27 @@ pub(crate) fn missing() -> Option<String> {
     (!Path::new(LAUNCHER).is_file()).then(|| LAUNCHER.to_owned())
 }
 
-/// A session bus without a session.
+/// A session bus without a session, and a home of its own, so that the desktop's settings stay as they are.
 struct Session {
     daemon: Child,
     address: String,
+    _home: tempfile::TempDir,
 }
 
 impl Session {
     fn new(screen: &Screen) -> Self {
+        let home = tempfile::tempdir().unwrap();
         let mut daemon = Command::new("dbus-daemon");
+        // Its children, which talk to screen readers, have the same environment.
+        daemon.env("HOME", home.path()).env("XDG_RUNTIME_DIR", home.path()).env("GSETTINGS_BACKEND", "memory");
+        daemon.env_remove("AT_SPI_BUS_ADDRESS");
         daemon.args(["--session", "--nofork", "--print-address=1"]).env("DISPLAY", &screen.display);
         let mut daemon = daemon.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("dbus-daemon starts");
         let mut address = String::new();
         let stdout = daemon.stdout.take().expect("stdout is piped");
         std::io::BufReader::new(stdout).read_line(&mut address).unwrap();
-        Self { daemon, address: address.trim().to_owned() }
+        assert!(!address.trim().is_empty(), "dbus-daemon has told no address");
+        Self { daemon, address: address.trim().to_owned(), _home: home }
     }
 }
 
@@ -57,7 +67,7 @@ impl Drop for Session {
     }
 }
 
-pub(crate) fn it_reads_and_turns_knobs_and_the_library_can_be_unloaded() {
+pub(crate) fn it_reads_and_turns_knobs_and_the_library_can_be_closed() {
     let screen = Screen::new();
     let session = Session::new(&screen);
     let mut command = command("screen-reader");
@@ -76,12 +86,12 @@ struct Reader {
 impl Reader {
     /// Switches accessibility on for the session, and connects to its bus.
     fn new() -> zbus::Result<Self> {
-        let session = Connection::session()?;
+        let session = connection::Builder::session()?.method_timeout(PATIENCE).build()?;
         let status = Proxy::new(&session, "org.a11y.Bus", "/org/a11y/bus", "org.a11y.Status")?;
         status.set_property("IsEnabled", true)?;
         let address: String =
             Proxy::new(&session, "org.a11y.Bus", "/org/a11y/bus", "org.a11y.Bus")?.call("GetAddress", &())?;
-        Ok(Self { bus: connection::Builder::address(address.as_str())?.build()? })
+        Ok(Self { bus: connection::Builder::address(address.as_str())?.method_timeout(PATIENCE).build()? })
     }
 
     fn proxy<'a>(&'a self, (owner, path): &'a Node, interface: &'a str) -> zbus::Result<Proxy<'a>> {
@@ -116,7 +126,7 @@ impl Reader {
 pub(crate) fn work() -> ExitCode {
     let reader = Reader::new().expect("a bus for screen readers");
     for _ in 0..TIMES {
-        // Loads the library, which the host unloads with the instance.
+        // Opens the library, which the host closes with the instance.
         let mut instance = Instance::new();
         let parent = Parent::new();
         let editor = Editor::open(&mut instance, &parent);
@@ -134,6 +144,13 @@ pub(crate) fn work() -> ExitCode {
         let range = ["MinimumValue", "MaximumValue"].map(|name| value.get_property::<f64>(name).unwrap());
         assert_eq!(range, [0.0, 100.0]);
         value.set_property("CurrentValue", 12.0).unwrap();
+        let described = |node: &Node| reader.proxy(node, ACCESSIBLE).unwrap().get_property::<String>("Description");
+        wait_until("the knob tells its value and unit", || {
+            instance.run_callbacks();
+            described(&knob).is_ok_and(|text| text == "12 %")
+        });
+        let choice = finds(&mut instance, COMBO_BOX, "Noise decay");
+        assert_eq!(described(&choice).unwrap(), "quadratic");
         wait_until("the knob turns", || {
             instance.run_callbacks();
             instance.flush(&[]);
@@ -143,11 +160,16 @@ pub(crate) fn work() -> ExitCode {
         let (left, top, width, height): (i32, i32, i32, i32) = component.call("GetExtents", &(0_u32)).unwrap();
         let is_in_the_window = (0..1_100).contains(&left) && (340..600).contains(&top);
         assert!(is_in_the_window && width > 20 && height > 20, "{left}, {top}: {width} × {height}");
-        let browse = finds(&mut instance, PUSH_BUTTON, "Browse");
+        let browse = finds(&mut instance, TOGGLE_BUTTON, "Browse");
         let pressed: bool = reader.proxy(&browse, "org.a11y.atspi.Action").unwrap().call("DoAction", &(0_i32)).unwrap();
         assert!(pressed);
         finds(&mut instance, ENTRY, "Search");
         editor.close(&mut instance);
+        wait_until("the window's widgets are gone", || reader.find(ENTRY, "Search").is_none());
+        drop(instance);
+        // AccessKit's thread runs on, so the library must be there even though it is closed.
+        let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
+        assert!(maps.contains("Sprung.clap"), "the library was unloaded");
     }
     ExitCode::SUCCESS
 }

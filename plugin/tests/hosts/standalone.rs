@@ -103,6 +103,7 @@ impl Stand {
         command.env("JACK_DEFAULT_SERVER", &self.server).env("JACK_NO_START_SERVER", "1");
         command.envs(self.alsa.iter().map(|file| ("ALSA_CONFIG_PATH", file)));
         command.env("XDG_STATE_HOME", self.folder.path()).env("XDG_DATA_HOME", self.folder.path());
+        command.env("DBUS_SESSION_BUS_ADDRESS", "");
         command
     }
 
@@ -169,6 +170,27 @@ pub(crate) fn it_keeps_its_state_whatever_ends_it() {
     let mut names: Vec<_> = files.map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     assert_eq!(names, ["standalone.json", "standalone.lock"], "nothing else is left behind");
+}
+
+/// Keys of an American keyboard.
+const SLASH: u8 = 61;
+const GONG: [u8; 4] = [42, 32, 57, 42];
+const DOWN: u8 = 116;
+
+pub(crate) fn a_slash_searches() {
+    let stand = Stand::new("slash");
+    let (mut running, _) = stand.start(&["Marimba"]);
+    // The window takes the keys with the first click.
+    let empty = [550, 692];
+    stand.onlooker.hover(empty);
+    stand.onlooker.drag_slowly(empty, empty);
+    for key in [SLASH].into_iter().chain(GONG).chain([DOWN]) {
+        stand.onlooker.press_key(key);
+        std::thread::sleep(Duration::from_millis(300));
+    }
+    wait_until("a gong is found and loaded", || stand.state().is_file() && preset(&stand.state()).contains("Gong"));
+    running.signal(libc::SIGINT);
+    assert_eq!(running.ends().code(), Some(0));
 }
 
 pub(crate) fn a_broken_state_is_set_aside() {

@@ -1,4 +1,4 @@
-//! Edits of the library between the window and egui: it passes on files that are dropped on the window.
+//! Edits of the library between the window and egui: it passes on files that are dropped on the window, and three more keys.
 
 use super::edit::{Edit, edit};
 
@@ -35,6 +35,17 @@ pub(super) const EDITS: &[Edit] = &[
                 | baseview::MouseEvent::DragDropped { data: baseview::DropData::Files(_), .. },
             ) => EventStatus::AcceptDrop(baseview::DropEffect::Copy),
             baseview::Event::Keyboard(_) => {
+",
+    ),
+    // The slash, which searches, and the brackets, which choose the octave, were no keys.
+    edit(
+        "src/translate.rs",
+        "            'z' => Key::Z,
+",
+        "            'z' => Key::Z,
+            '/' => Key::Slash,
+            '[' => Key::OpenBracket,
+            ']' => Key::CloseBracket,
 ",
     ),
     edit(

@@ -105,7 +105,7 @@ fn the_right_button_draws_levels_as_one_step() {
     let mut band = Band::new("Marimba", SIZE, Theme::Dark);
     let before = band.stage.params.state();
     let (table, axes) = (band.table(), band.axes());
-    let height = axes.rect.center().y;
+    let height = axes.rect.top() + axes.rect.height() / 4.0;
     let [from, to] = [axes.rect.left(), axes.rect.right()].map(|x| Pos2::new(x, height));
     let button = |pos: Pos2, pressed: bool| Event::PointerButton {
         pos,
@@ -117,6 +117,10 @@ fn the_right_button_draws_levels_as_one_step() {
     band.event(button(from, true));
     for step in 1..=10 {
         band.event(Event::PointerMoved(from.lerp(to, step as f32 / 10.0)));
+        if step == 5 {
+            band.event(Event::PointerGone);
+            band.passes(5);
+        }
     }
     assert!(matches!(band.heard[..], [.., Touch::Down { .. }]), "it is heard while it is drawn: {:?}", band.heard);
     band.event(button(to, false));
