@@ -1,6 +1,6 @@
 //! Corrects levels and decays of a draft's modes by the errors of its mel bands.
 
-use super::draft::{Draft, Partial, T60};
+use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, weights};
 use libm::{exp, pow};
 
@@ -136,7 +136,7 @@ fn corrected(draft: &Draft, share: f64, mut correction: impl FnMut(&Partial) -> 
         // Decay rate in dB/s.
         let falls = 60.0 / partial.t60;
         let change = (share * slope).clamp(-MOST_SHARE * falls, MOST_SHARE * falls);
-        partial.t60 = (60.0 / (falls - change)).clamp(T60.0, T60.1);
+        partial.t60 = (60.0 / (falls - change)).clamp(SHORTEST_T60, longest_t60(draft.is_held));
     }
     draft
 }

@@ -11,8 +11,15 @@ use std::f64::consts::PI;
 
 /// Maximum number of modes of a fit.
 pub(super) const MOST_MODES: usize = 256;
-/// Shortest and longest T60 in seconds of a mode that is struck.
-pub(super) const T60: (f64, f64) = (0.004, 600.0);
+/// Shortest T60 in seconds of a mode that is struck, and the longest ones of a sound that decays and of one that is held.
+pub(super) const SHORTEST_T60: f64 = 0.004;
+const LONGEST_T60: [f64; 2] = [60.0, 600.0];
+
+/// The longest T60 in seconds of a mode that is struck. Longer ones would be guesses: in a sound that decays, they are heard.
+pub(super) fn longest_t60(is_held: bool) -> f64 {
+    LONGEST_T60[usize::from(is_held)]
+}
+
 /// Lower bound of the spectrum of a contact, so that modes near its zeros are not struck ever harder: −40 dB.
 const LEAST_OF_CONTACT: f64 = 0.01;
 /// Places of the routes of a swell and a tremolo. The routes made from several takes are before them, those of a new patch after them.

@@ -7,14 +7,12 @@
 use super::draft::Tremolo;
 use super::resample::Reader;
 use super::take::SLOW;
-use super::tones::{Tone, tones};
+use super::tones::{HOP, Tone, tones};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::Strike;
 use libm::{cos, exp, sin, sqrt};
 use std::f64::consts::{LN_2, LN_10, TAU};
 
-/// Samples from one moment of a course to the next.
-pub(super) const HOP: usize = 128;
 /// Times that the drift is measured. What the first one leaves is smaller, so that higher tones can be followed.
 const ROUNDS: usize = 3;
 /// Times that the weights of the tones are estimated.

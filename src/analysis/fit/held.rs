@@ -1,11 +1,11 @@
 //! Drafts a held sound: the modes of the sound without its drift.
 
 use super::course;
-use super::draft::{Draft, Partial, T60};
-use super::drift::{Drift, HOP};
+use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
+use super::drift::Drift;
 use super::start::{self, Source};
 use super::take::Prepared;
-use super::tones::tones;
+use super::tones::{HOP, tones};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::{Mode, Strike};
 use crate::error::Result;
@@ -92,7 +92,7 @@ fn steady(draft: &mut Draft, sound: &[f32], rest: &[f32], from: usize) {
         let pan =
             strongest.max_by(|a, b| a.amplitude.abs().total_cmp(&b.amplitude.abs())).map_or(0.0, |partial| partial.pan);
         draft.partials.retain(|partial| !is_of(partial));
-        let t60 = (log(1000.0) / (-line[1] * moments(1.0)).max(1e-9)).clamp(T60.0, T60.1);
+        let t60 = (log(1000.0) / (-line[1] * moments(1.0)).max(1e-9)).clamp(SHORTEST_T60, longest_t60(draft.is_held));
         let amplitude = exp(line[0] - line[1] * from as f64 / HOP as f64);
         draft.partials.push(Partial {
             frequency: tone.mean_frequency(),

@@ -54,7 +54,7 @@ pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) ->
 }
 
 /// The possible drafts of a take: its modes, without a sweep and with the sweep that explains it best, if one does. If it is
-/// held or rises slowly, the modes without its drift, alone if these explain much more. If all these
+/// held or rises slowly, the modes without its drift; of a held sound these alone, if they explain much more. If all these
 /// explain little, also modes that only noise excites, found after the noise is over. If the sound rises slowly, also
 /// modes found after the rise.
 fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
@@ -70,7 +70,8 @@ fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
     if still > EXPLAINED_DB && (take.is_held || take.rise > SLOW) {
         let [from, to] = of_drift;
         if let Some(held) = held::draft(take, most, &mut |share| tell(from + (to - from) * share).is_ok())? {
-            if residual_db(&held) < still - WORTH_A_DRIFT_DB {
+            // What decays may have tones that end at different times, of which a residual tells little: let it be heard.
+            if take.is_held && residual_db(&held) < still - WORTH_A_DRIFT_DB {
                 return Ok(vec![held]);
             }
             found.push(held);

@@ -1,6 +1,6 @@
 //! Makes the first draft of a sound from its modes.
 
-use super::draft::{Draft, MOST_MODES, Noise, Partial, Sweep, T60};
+use super::draft::{Draft, MOST_MODES, Noise, Partial, SHORTEST_T60, Sweep, longest_t60};
 use super::take::Prepared;
 use super::{pitch, sweep};
 use crate::analysis::log_mel::RATE;
@@ -85,9 +85,10 @@ pub(super) fn from(take: &Prepared, strike: Option<&Strike>, source: &Source, ha
     let peak = 20.0 * libm::log10(take.peak());
     let mut partials = Vec::new();
     if let Some(strike) = strike {
+        let longest = longest_t60(take.is_held);
         let known = |mode: &&Mode| {
-            let is_sure = mode.uncertainty.level_db < 9.0 && mode.uncertainty.t60 < mode.t60;
-            is_sure && mode.frequency < HIGHEST && mode.t60 > T60.0 && mode.level_db < peak + TOO_LOUD_DB
+            let is_sure = mode.uncertainty.level_db < 9.0 && mode.uncertainty.t60 < mode.t60.min(longest);
+            is_sure && mode.frequency < HIGHEST && mode.t60 > SHORTEST_T60 && mode.level_db < peak + TOO_LOUD_DB
         };
         // Tones that do not decay are heard too, so keep them.
         let steady = strike.steady.iter().filter(|tone| tone.frequency < HIGHEST && tone.level_db < peak + TOO_LOUD_DB);
@@ -99,6 +100,7 @@ pub(super) fn from(take: &Prepared, strike: Option<&Strike>, source: &Source, ha
         let delay = delay(&kept, &amplitudes);
         let struck_so = |(mode, amplitude): (&&Mode, &f64)| {
             let partial = partial(mode, *amplitude, delay);
+            let partial = Partial { t60: partial.t60.min(longest), ..partial };
             let phase = if has_phases && struck { partial.phase } else { 0.0 };
             let before = 60.0 * late / partial.t60;
             let most = if struck { MOST_OF_A_SWELL_DB } else { MOST_BEFORE_DB };
@@ -156,14 +158,7 @@ fn partial(mode: &Mode, amplitude: f64, delay: f64) -> Partial {
         _ => 0.0,
     };
     let pan = if fabs(pan) < 0.02 || pan.is_nan() { 0.0 } else { pan };
-    Partial {
-        frequency: mode.frequency,
-        t60: mode.t60.min(T60.1),
-        amplitude: sign * amplitude,
-        phase,
-        pan,
-        struck: true,
-    }
+    Partial { frequency: mode.frequency, t60: mode.t60, amplitude: sign * amplitude, phase, pan, struck: true }
 }
 
 #[cfg(test)]

@@ -1,12 +1,13 @@
 //! The tones of a sound: peaks of its mean spectrum, each with the course of its pitch and level.
 
-use super::drift::HOP;
 use super::layers::slope;
 use crate::analysis::log_mel::RATE;
 use libm::{atan2, cos, log, log10, sin};
 use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
 
+/// Samples from one moment of a course to the next.
+pub(super) const HOP: usize = 128;
 /// Samples per window of the mean spectrum, and points of its transform.
 const WINDOW: usize = 4096;
 const POINTS: usize = 2 * WINDOW;
