@@ -170,9 +170,9 @@ pub(super) fn wheel(ui: &Ui, response: &Response, info: &'static ParamInfo, cont
 
 /// Handles the arrow keys, the keys that reset, and the actions of a screen reader, which is told the value.
 pub(super) fn keys(ui: &Ui, response: &Response, info: &'static ParamInfo, controls: &mut Controls) {
-    let (value, text) = (controls.value(info), controls.text(info));
     ui.ctx().accesskit_node_builder(response.id, |node| {
-        node.set_description(text);
+        let value = controls.value(info);
+        node.set_description(controls.text(info));
         node.set_numeric_value(value.into());
         node.set_min_numeric_value(info.min.into());
         node.set_max_numeric_value(info.max.into());
