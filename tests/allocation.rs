@@ -25,6 +25,7 @@ fn storm(block: u32) -> Vec<Event> {
             EventKind::NoteOn { key, detune: 0.1, velocity: value, id: NoteId::new(n as i32) },
             EventKind::NoteOff { key: key - 5, velocity: value, id: None },
             EventKind::Strike { key: key + 3, contact: Sound::new(Patch::default()).strike(value, value, value) },
+            EventKind::Nudge { key, mode: n as u16 % 3, amplitude: value },
             EventKind::PitchBend(value),
             EventKind::ChannelPressure(value),
             EventKind::PolyPressure { key, pressure: value },

@@ -133,6 +133,8 @@ fn any_kind() -> impl Strategy<Value = EventKind> {
             let contact = Sound::new(Patch::default()).strike(material, position, impulse);
             EventKind::Strike { key, contact }
         }),
+        2 => (any_key(), 0..8u16, unit.clone())
+            .prop_map(|(key, mode, amplitude)| EventKind::Nudge { key, mode, amplitude }),
         4 => (any_key(), unit.clone(), any_id())
             .prop_map(|(key, velocity, id)| EventKind::NoteOff { key, velocity, id }),
         1 => (any_key(), unit.clone()).prop_map(|(key, pressure)| EventKind::PolyPressure { key, pressure }),
@@ -336,10 +338,11 @@ fn number(kind: EventKind) -> usize {
         EventKind::Choke { .. } => 12,
         EventKind::Program(_) => 13,
         EventKind::Strike { .. } => 14,
+        EventKind::Nudge { .. } => 15,
     }
 }
 
-const KINDS: usize = 15;
+const KINDS: usize = 16;
 
 #[test]
 fn every_kind_of_event_comes_up() {

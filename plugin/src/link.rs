@@ -22,15 +22,25 @@ pub(crate) enum Touch {
     Down { key: u8, velocity: f32 },
     /// A key goes up.
     Up { key: u8 },
+    /// One mass of a note is pushed, with an amplitude from 0 to 1. If the key is not held, it goes up at once.
+    Nudge { channel: u8, key: u8, mode: u16, amplitude: f32, is_held: bool },
 }
 
 impl Touch {
-    /// The touch as an event of the engine. Real-time safe.
-    pub(crate) fn event(self) -> EventKind {
-        match self {
-            Self::Down { key, velocity } => EventKind::NoteOn { key, detune: 0.0, velocity, id: None },
-            Self::Up { key } => EventKind::NoteOff { key, velocity: 0.5, id: None },
-        }
+    /// The touch as events of the engine, each with its channel. Real-time safe.
+    pub(crate) fn events(self) -> impl Iterator<Item = (u8, EventKind)> {
+        let up = |channel, key| (channel, EventKind::NoteOff { key, velocity: 0.5, id: None });
+        let events = match self {
+            Self::Down { key, velocity } => {
+                [Some((0, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })), None]
+            }
+            Self::Up { key } => [Some(up(0, key)), None],
+            Self::Nudge { channel, key, mode, amplitude, is_held } => {
+                let nudge = EventKind::Nudge { key, mode, amplitude };
+                [Some((channel, nudge)), (!is_held).then(|| up(channel, key))]
+            }
+        };
+        events.into_iter().flatten()
     }
 }
 
@@ -65,9 +75,8 @@ impl Link {
     /// Plays a note. Without an audio thread nothing happens. Not for the audio thread.
     pub(crate) fn play(&self, touch: Touch) {
         if let Some(producer) = &mut *self.touches.lock().unwrap_or_else(PoisonError::into_inner) {
-            // Each key that goes down must be able to go up: only half of the space is used for keys that go down.
-            let is_down = matches!(touch, Touch::Down { .. });
-            if !is_down || producer.slots() > WAITING / 2 {
+            // Each key that goes down must be able to go up: only half of the space is used for anything else.
+            if matches!(touch, Touch::Up { .. }) || producer.slots() > WAITING / 2 {
                 let _ = producer.push(touch);
             }
         }

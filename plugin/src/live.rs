@@ -47,7 +47,7 @@ pub(crate) struct Live {
     early: Vec<NoteEvent<()>>,
     /// Buffers for the instrument's stereo output if the host has only one channel for it.
     stereo: [[f32; MONO_FRAMES]; 2],
-    /// Notes that are played in the window.
+    /// What is played in the window.
     touches: Consumer<Touch>,
     /// Whether the host renders to a file.
     is_offline: bool,
@@ -151,7 +151,7 @@ impl Live {
         for _ in 0..self.touches.buffer().capacity() {
             let Ok(touch) = self.touches.pop() else { return };
             if !self.is_offline {
-                self.handle(0, touch.event());
+                touch.events().for_each(|(channel, kind)| self.handle(channel, kind));
             }
         }
     }

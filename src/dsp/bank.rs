@@ -84,6 +84,11 @@ impl Bank {
         }
     }
 
+    /// See [`ModeBank::nudge`].
+    pub fn nudge(&mut self, m: usize, amplitude: f32) {
+        either!(self, bank => bank.nudge(m, amplitude));
+    }
+
     /// See [`ModeBank::set_t60`].
     pub fn set_t60(&mut self, m: usize, t60: f64) {
         either!(self, bank => bank.set_t60(m, t60));

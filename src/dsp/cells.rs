@@ -151,6 +151,13 @@ impl Cells {
         }
     }
 
+    /// Like [`super::ModeBank::nudge`]. Does nothing if there is no mode `m`.
+    pub fn nudge(&mut self, m: usize, amplitude: f32) {
+        if let Some(Some(cell)) = self.cells.get_mut(m / MAX_MODES) {
+            cell.bank.nudge(m % MAX_MODES, amplitude);
+        }
+    }
+
     /// Like [`super::ModeBank::sweep_to`].
     pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
         self.iter_mut().for_each(|cell| cell.bank.sweep_to(ratio, frames));

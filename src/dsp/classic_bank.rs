@@ -209,6 +209,15 @@ impl ClassicBank {
         self.modes[m].set_excitation_gains(gains);
     }
 
+    /// Like [`super::ModeBank::nudge`]; as with strikes, the original formulas give a high mode more than `amplitude`.
+    pub fn nudge(&mut self, m: usize, amplitude: f32) {
+        self.tune();
+        if let Some(mode) = self.modes().get_mut(m) {
+            mode.mass.v += (amplitude * mode.unit_push).copysign(mode.mass.v);
+            mode.asked += f64::from(amplitude);
+        }
+    }
+
     /// Like [`super::ModeBank::set_t60`].
     pub fn set_t60(&mut self, m: usize, t60: f64) {
         self.modes[m].t60 = t60;

@@ -40,6 +40,17 @@ pub enum EventKind {
         /// The hit.
         contact: Contact,
     },
+    /// Pushes a single mass of a key's note, as of one that is pulled aside and let go. If the key's note sounds, that goes on
+    /// as it was, and the mass gains amplitude; otherwise a note begins in which nothing else moves. The key counts as down.
+    Nudge {
+        /// MIDI key, 0–127.
+        key: u8,
+        /// Number of the mode, from 0. A mode that does not exist is not pushed.
+        mode: u16,
+        /// 0–1: the mass's added amplitude. 1 is what the sound's mallet gives it at most, wherever it hits; without a
+        /// mallet, what a mallet at 0 dB would.
+        amplitude: f32,
+    },
     /// Releases a key.
     NoteOff {
         /// MIDI key, 0–127.

@@ -1,6 +1,7 @@
 //! A key that the window plays by itself, so that the user hears a change or a chosen sound.
 
 use crate::link::{Link, Touch};
+use sprung::engine::SoundingNote;
 
 /// How long a key is held when a sound is tried, in seconds.
 const HELD: f64 = 0.7;
@@ -21,8 +22,24 @@ pub(super) struct Audition {
 impl Audition {
     /// Strikes a key, and holds it for a while.
     pub(super) fn strike(&mut self, key: u8, velocity: f32, now: f64, link: &Link) {
+        self.hold(key, Touch::Down { key, velocity }, now, link);
+    }
+
+    /// Pushes one mass of the newest note. If nothing sounds, that is a note of the key, which is held for a while.
+    pub(super) fn nudge(&mut self, key: u8, (mode, amplitude): (usize, f32), now: f64, link: &Link) {
+        let mode = mode as u16;
+        if let Some(SoundingNote { channel, key, .. }) = link.telemetry.snapshot().notes[0] {
+            let is_held = link.telemetry.keys(channel) >> key & 1 == 1;
+            link.play(Touch::Nudge { channel, key, mode, amplitude, is_held });
+        } else {
+            self.hold(key, Touch::Nudge { channel: 0, key, mode, amplitude, is_held: true }, now, link);
+        }
+    }
+
+    /// Holds a key for a while that `touch` presses.
+    fn hold(&mut self, key: u8, touch: Touch, now: f64, link: &Link) {
         self.release(link);
-        link.play(Touch::Down { key, velocity });
+        link.play(touch);
         (self.key, self.end, self.struck) = (Some(key), now + HELD, now);
     }
 

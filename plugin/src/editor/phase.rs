@@ -13,25 +13,31 @@ use std::f32::consts::TAU;
 const TURNS: f32 = 1.0;
 /// Number of points in the trail.
 const TRAIL: usize = 420;
-/// The smallest velocity that strikes when the mass is released.
+/// The smallest amplitude that is heard when the mass is released.
 const LEAST: f32 = 0.03;
 
 /// The picture's state.
-#[derive(Default)]
 pub(super) struct Phase {
     /// In radians.
     angle: f32,
     /// Points of the unit disk, the newest one at the end.
     trail: VecDeque<Pos2>,
-    /// The greatest energy since the mass was at rest.
+    /// The greatest energy since the mass was at rest, and the radius that shows it.
     greatest: f32,
+    reach: f32,
     mode: usize,
     /// Where the mass is held, in the unit disk.
     pulled: Option<Vec2>,
 }
 
+impl Default for Phase {
+    fn default() -> Self {
+        Self { angle: 0.0, trail: VecDeque::new(), greatest: 0.0, reach: 1.0, mode: 0, pulled: None }
+    }
+}
+
 impl Phase {
-    /// Ends the pull without striking.
+    /// Ends the pull without a sound.
     pub(super) fn cancel(&mut self) {
         self.pulled = None;
     }
@@ -51,13 +57,13 @@ impl Phase {
         self.advance(ui, energies, selected);
         self.paint(ui.painter(), rect, (centre, radius), controls.palette);
         match self.pulled {
-            Some(pulled) => format!("velocity {:.0}", velocity(pulled) * 127.0),
+            Some(pulled) => format!("mode {}, pulled by {:.0} %", self.mode + 1, amplitude(pulled) * 100.0),
             None => format!("mode {}, in slow motion", self.mode + 1),
         }
     }
 
-    /// Follows the pointer: a drag pulls the mass, and releasing it strikes with a velocity that grows with the
-    /// distance.
+    /// Follows the pointer: a drag pulls the mass, and when it is released, its mode is heard, the louder the farther it was
+    /// pulled.
     fn pull(
         &mut self,
         ui: &Ui,
@@ -71,7 +77,8 @@ impl Phase {
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Phase plane"));
         let pointer = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
         if response.hovered() || pointer.is_some() {
-            *controls.hint = Hint::new("The mass", "Pull it and let go: the farther, the harder the note is struck.");
+            *controls.hint =
+                Hint::new("The mass", "Pull it and let go: you hear this mode alone, the louder the farther.");
             ui.ctx().set_cursor_icon(if pointer.is_some() { CursorIcon::Grabbing } else { CursorIcon::Grab });
         }
         if let Some(pointer) = pointer {
@@ -79,12 +86,13 @@ impl Phase {
             self.pulled = Some(pulled / pulled.length().max(1.0));
             return;
         }
-        let Some(pulled) = self.pulled.take().filter(|pulled| velocity(*pulled) >= LEAST) else { return };
+        let Some(pulled) = self.pulled.take().filter(|pulled| amplitude(*pulled) >= LEAST) else { return };
         self.trail.clear();
         // The mass continues from where it was released.
-        (self.angle, self.greatest) = ((-pulled.angle()).rem_euclid(TAU), 0.0);
+        self.angle = (-pulled.angle()).rem_euclid(TAU);
+        (self.greatest, self.reach) = (0.0, amplitude(pulled));
         let now = ui.input(|input| input.time);
-        audition.strike(shown.guide().home, velocity(pulled), now, controls.params.link());
+        audition.nudge(shown.guide().home, (self.mode, amplitude(pulled)), now, controls.params.link());
         ui.ctx().request_repaint();
     }
 
@@ -96,17 +104,24 @@ impl Phase {
         // Without a selection, the picture changes to the loudest mode only when the present one has almost died away,
         // so that it does not jump.
         if mode != self.mode && (selected.is_some() || energy(self.mode) < 0.01 * energy(mode)) {
-            (self.greatest, self.mode) = (0.0, mode);
+            (self.greatest, self.reach, self.mode) = (0.0, 1.0, mode);
             self.trail.clear();
         }
         let now = energy(self.mode);
         if now <= 1e-12 {
-            self.greatest = 0.0;
+            if self.greatest > 0.0 {
+                (self.greatest, self.reach) = (0.0, 1.0);
+            }
             self.trail.pop_front();
             return;
         }
-        self.greatest = self.greatest.max(now);
-        let radius = (now / self.greatest).sqrt();
+        if now > self.greatest {
+            if self.greatest > 0.0 {
+                self.reach = (self.reach * (now / self.greatest).sqrt()).min(1.0);
+            }
+            self.greatest = now;
+        }
+        let radius = self.reach * (now / self.greatest).sqrt();
         let turned = TAU * TURNS * ui.input(|input| input.stable_dt.min(0.1));
         // Points between two passes, so that the trail is round.
         for step in 1..=4 {
@@ -145,7 +160,7 @@ impl Phase {
     }
 }
 
-/// The velocity of a strike by a mass that was pulled this far.
-fn velocity(pulled: Vec2) -> f32 {
+/// The amplitude of a mass that was pulled this far.
+fn amplitude(pulled: Vec2) -> f32 {
     pulled.length().min(1.0)
 }

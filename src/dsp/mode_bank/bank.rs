@@ -21,7 +21,7 @@ const MODES_PER_TICK: usize = 8;
 /// A bank of modes, as a structure of arrays. Real-time safe, except for the first [`ModeBank::new`], which detects the
 /// CPU.
 ///
-/// For any sequence of calls, the amplitude of a mode never exceeds the sum of `force · gain` over all strikes. Pitch,
+/// For any sequence of calls, the amplitude of a mode never exceeds the sum of `force · gain` over all strikes and of nudges. Pitch,
 /// damping and their changes can only reduce it.
 ///
 /// Modes that have rung freely at one pitch for a few control ticks are rendered one whole tick at a time, with tables.
@@ -163,6 +163,21 @@ impl ModeBank {
         let noise = if gains.turned_noise { turned(0.0, gains.noise) } else { (0.0, gains.noise) };
         (self.modes.noise_x.0[m], self.modes.noise.0[m]) = noise;
         self.turned_noise |= noise.0 != 0.0;
+    }
+
+    /// Adds `amplitude` to the velocity of mode `m`, in the direction in which it moves: it gains as much amplitude at most,
+    /// and the output does not jump. Does nothing if there is no mode `m`.
+    pub fn nudge(&mut self, m: usize, amplitude: f32) {
+        if m >= self.len {
+            return;
+        }
+        self.leave_tables();
+        if let Motion::Line { driven, .. } = &mut self.motion {
+            *driven = true;
+        }
+        let y = &mut self.states[self.current].y.0[m];
+        *y += amplitude.copysign(*y);
+        self.live = self.live.max((m + 1).next_multiple_of(LANES).min(self.len));
     }
 
     /// Sets the weight of mode `m` at the point of the bow. The squares of all weights must add up to 1.

@@ -23,6 +23,9 @@ impl Synth {
                 let velocity = velocity_of(contact.impulse);
                 self.key_down(Note { channel, key, velocity, contact: Some(contact), ..Note::NONE });
             }
+            EventKind::Nudge { key, mode, amplitude } => {
+                self.key_down(Note { channel, key, velocity: unit(amplitude), nudged: Some(mode), ..Note::NONE });
+            }
             EventKind::NoteOff { key, velocity, id } => {
                 self.note_off(Notes { id, ..Notes::on(channel, key) }, velocity);
             }

@@ -40,6 +40,12 @@ impl Energy {
         self.pending += more;
     }
 
+    /// Adds an amplitude to one mode. Until the next measurement, the energy is an upper bound.
+    pub(super) fn nudge(&mut self, amplitude: f64) {
+        let most = sqrt(self.measured) + amplitude;
+        (self.measured, self.until_measured, self.end) = (most * most, 0, None);
+    }
+
     /// Discards the known end, after a change of decay or gain or after a strike.
     pub(super) fn forget_end(&mut self) {
         self.end = None;

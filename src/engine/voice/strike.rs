@@ -109,18 +109,7 @@ impl Strike {
     pub(super) fn set_gains(&mut self, values: &StruckValues, bank: &mut Cells) -> f64 {
         let table = values.modes();
         let modes = table.as_slice();
-        let tilt = values.get(Param::Tilt) / (20.0 / LOG2_10);
-        let tilted = |mode: &Mode| {
-            let tilt = if tilt == 0.0 { 1.0 } else { pow(f64::from(mode.ratio), tilt) };
-            f64::from(mode.level) * tilt
-        };
-        let mut balance = 1.0;
-        if tilt != 0.0 {
-            let plain: f64 = modes.iter().map(|mode| fabs(mode.level.into())).sum();
-            let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
-            balance = if total > 0.0 { plain / total } else { 1.0 };
-        }
-
+        let tilted = tilted(values);
         let [mallet, pluck, burst] = self.forces;
         let [full_mallet, full_pluck, full_burst] = self.full_forces;
         let place = values.get(Param::PluckPosition) + self.variation.pluck_place;
@@ -130,7 +119,7 @@ impl Strike {
         let at_place = |ratio: f64| if table.has_phases() { 1.0 } else { sin(PI * place * 0.01 * ratio) };
         let (mut noisy, mut energy, mut full) = (false, 0.0, 0.0);
         for (m, mode) in modes.iter().enumerate() {
-            let (level, ratio, strike) = (tilted(mode) * balance, f64::from(mode.ratio), f64::from(mode.strike));
+            let (level, ratio, strike) = (tilted(mode), f64::from(mode.ratio), f64::from(mode.strike));
             let level = self.variation.mode_level(m, level);
             let struck = level * strike;
             let push = self.variation.at_mallet(ratio, struck);
@@ -150,6 +139,13 @@ impl Strike {
         let more = energy - self.energy;
         (self.energy, self.full_energy, self.is_noisy) = (energy, full, noisy);
         more
+    }
+
+    /// The greatest amplitude of a nudge of mode `m`, for one of `count` unison voices; 0 if there is no such mode.
+    pub(super) fn most_nudged(&self, values: &StruckValues, m: usize, count: usize) -> f64 {
+        let mallet = self.full_forces[0];
+        let force = if mallet > 0.0 { mallet } else { 1.0 / sqrt(count as f64) };
+        values.modes().as_slice().get(m).map_or(0.0, |mode| force * fabs(tilted(values)(mode)))
     }
 
     /// Reads the strike's parameters and starts the exciters. `frequency` is the note's, in Hz. Returns the energy that the
@@ -173,11 +169,15 @@ impl Strike {
         self.variation = Variation::new(values, key);
         self.variation.move_mallet(note.contact.map_or(0.0, |contact| contact.place.into()));
 
-        let soft = if note.soft { SOFT_FORCE } else { 1.0 };
+        let share = match note {
+            Note { nudged: Some(_), .. } => 0.0,
+            Note { soft: true, .. } => SOFT_FORCE,
+            _ => 1.0,
+        };
         let follow = values.share(Param::Velocity);
         let force = |own| {
             let power = 2.0 * (follow + values.share(own)).max(0.0);
-            pow(f64::from(note.velocity), power) * soft / sqrt(count as f64)
+            pow(f64::from(note.velocity), power) * share / sqrt(count as f64)
         };
         let [mallet, pluck, burst] = [Param::MalletVelocity, Param::PluckVelocity, Param::NoiseVelocity].map(force);
         let levels = [Param::MalletLevel, Param::PluckLevel].map(|param| exciter_gain(values.get(param)));
@@ -217,6 +217,23 @@ impl Strike {
         self.exciter.strike(&stroke, sample_rate);
         more
     }
+}
+
+/// Returns a function from a mode to its level with the strike's tilt.
+fn tilted(values: &StruckValues) -> impl Fn(&Mode) -> f64 + use<> {
+    let tilt = values.get(Param::Tilt) / (20.0 / LOG2_10);
+    let tilted = move |mode: &Mode| {
+        let tilt = if tilt == 0.0 { 1.0 } else { pow(f64::from(mode.ratio), tilt) };
+        f64::from(mode.level) * tilt
+    };
+    let mut balance = 1.0;
+    if tilt != 0.0 {
+        let modes = values.modes().as_slice();
+        let plain: f64 = modes.iter().map(|mode| fabs(mode.level.into())).sum();
+        let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
+        balance = if total > 0.0 { plain / total } else { 1.0 };
+    }
+    move |mode| tilted(mode) * balance
 }
 
 /// Mean of the mode shape over the width of the finger, relative to its centre. `width` is a fraction of the string's

@@ -9,6 +9,7 @@ use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use egui::{Event, Pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
+use sprung::engine::EventKind;
 use sprung::params::Param;
 use sprung::sound::bodies::Point;
 
@@ -113,27 +114,63 @@ fn a_drag_of_the_strike_is_over_when_another_sound_is_loaded() {
     assert!(band.stage.params.state() == other, "it is the sound that was loaded, as it was");
 }
 
+/// Pulls the mass by a share of the circle's radius, and lets go. Returns what was played.
+fn pull(band: &mut Band, share: f32) -> Vec<Touch> {
+    let rect = band.rect("Phase plane");
+    let by = vec2(0.6, -0.8) * (share * (rect.width().min(rect.height()) / 2.0 - 4.0));
+    band.heard.clear();
+    band.press(rect.center(), true);
+    band.event(Event::PointerMoved(rect.center() + by));
+    assert!(band.heard.is_empty(), "nothing sounds while it is held");
+    band.press(rect.center() + by, false);
+    std::mem::take(&mut band.heard)
+}
+
+/// The energies of the modes that sound.
+fn energies(band: &Band) -> Vec<f32> {
+    band.stage.params.link().telemetry.snapshot().masses.iter().map(|mass| mass.energy).collect()
+}
+
 #[test]
-fn a_mass_that_is_pulled_and_let_go_strikes_the_harder_the_farther() {
-    let velocity = |share: f32| {
+fn a_mass_that_is_pulled_and_let_go_sounds_alone_and_the_louder_the_farther() {
+    let energy = |share: f32| {
         let mut band = Band::new("Marimba", SIZE, Theme::Dark);
-        let rect = band.rect("Phase plane");
-        let radius = rect.width().min(rect.height()) / 2.0 - 4.0;
-        band.press(rect.center(), true);
-        band.event(Event::PointerMoved(rect.center() + vec2(0.6, -0.8) * (share * radius)));
-        assert!(band.heard.is_empty(), "nothing sounds while it is held");
-        band.press(rect.center() + vec2(0.6, -0.8) * (share * radius), false);
-        let heard = band.heard.clone();
+        let heard = pull(&mut band, share);
+        band.passes(3);
+        let energies = energies(&band);
+        assert!(energies[1..].iter().all(|energy| *energy == 0.0), "{energies:?}");
         band.passes(60);
         assert_eq!(band.stage.params.link().telemetry.keys(0), 0, "no key is left down");
-        heard.into_iter().find_map(|touch| match touch {
-            Touch::Down { key, velocity } => Some((key, velocity)),
-            Touch::Up { .. } => None,
-        })
+        (heard, energies[0])
     };
-    let (key, soft) = velocity(0.25).unwrap();
-    let (_, loud) = velocity(2.0).unwrap();
-    assert_eq!(key, 60, "the home key");
-    assert!((soft - 0.25).abs() < 0.02 && loud == 1.0, "{soft} {loud}");
-    assert_eq!(velocity(0.0), None, "a click pulls nothing");
+    let ((soft, quarter), (loud, whole)) = (energy(0.25), energy(2.0));
+    for (heard, expected) in [(soft, 0.25), (loud, 1.0)] {
+        let [Touch::Nudge { channel: 0, key: 60, mode: 0, amplitude, .. }] = heard[..] else { panic!("{heard:?}") };
+        assert!((amplitude - expected).abs() < 0.02, "{amplitude}");
+    }
+    assert!((whole / quarter / 16.0 - 1.0).abs() < 0.1, "{quarter} {whole}");
+    assert!(energy(0.0).0.is_empty(), "a click pulls nothing");
+}
+
+#[test]
+fn the_mass_of_a_sounding_note_is_pulled_and_the_note_goes_on() {
+    let mut band = Band::new("Church Bell", SIZE, Theme::Dark);
+    let strike = EventKind::NoteOn { key: 50, detune: 0.0, velocity: 0.3, id: None };
+    band.play_on(4, strike);
+    band.passes(20);
+    let before = energies(&band);
+    let heard = pull(&mut band, 1.0);
+    let [Touch::Nudge { channel: 4, key: 50, mode, is_held: true, .. }] = heard[..] else { panic!("{heard:?}") };
+    band.passes(3);
+    let (after, mode) = (energies(&band), usize::from(mode));
+    assert!(after[mode] > 2.0 * before[mode], "{} {}", before[mode], after[mode]);
+    let others = (0..after.len()).filter(|m| *m != mode && before[*m] > 1e-6);
+    assert!(others.clone().count() > 3 && others.into_iter().all(|m| after[m] < before[m]), "{before:?} {after:?}");
+    band.passes(60);
+    assert_eq!(band.stage.params.link().telemetry.keys(4), 1 << 50, "the user's key stays down");
+    band.play_on(4, EventKind::NoteOff { key: 50, velocity: 0.5, id: None });
+    band.passes(2);
+    let heard = pull(&mut band, 1.0);
+    assert!(matches!(heard[..], [Touch::Nudge { is_held: false, .. }]), "{heard:?}");
+    assert_eq!(band.stage.params.link().telemetry.keys(4), 0, "a key that was up stays up");
 }

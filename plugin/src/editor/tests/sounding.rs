@@ -33,7 +33,11 @@ impl Band {
     }
 
     pub(super) fn play(&mut self, kind: EventKind) {
-        let event = Played { frame: 0, channel: 0, kind };
+        self.play_on(0, kind);
+    }
+
+    pub(super) fn play_on(&mut self, channel: u8, kind: EventKind) {
+        let event = Played { frame: 0, channel, kind };
         self.writer.note_event(&event);
         self.synth.handle(&event);
     }
@@ -68,7 +72,7 @@ impl Band {
         for _ in 0..count {
             while let Ok(touch) = self.touches.pop() {
                 self.heard.push(touch);
-                self.play(touch.event());
+                touch.events().for_each(|(channel, kind)| self.play_on(channel, kind));
             }
             let (mut left, mut right) = ([0.0; 800], [0.0; 800]);
             self.synth.process(&[], &mut left, &mut right);

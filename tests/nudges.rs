@@ -1,0 +1,125 @@
+//! Nudges: one mass is pushed, and nothing else changes.
+
+#[path = "events/mod.rs"]
+mod events;
+
+use events::{event, off, on};
+use sprung::engine::{Event, EventKind, Snapshot, Synth};
+use sprung::params::Param;
+use sprung::patch::{Mode, ModeTable, Patch};
+use sprung::preset::Preset;
+
+const RATE: f64 = 48_000.0;
+
+/// The mode that is nudged, its level, and its frequency in Hz at key 60.
+const M: u16 = 2;
+const LEVEL: f32 = 0.25;
+const HZ: f64 = 261.63 * 5.4;
+
+/// Three modes with noise but no mallet, without limiter.
+fn bar() -> Patch {
+    let modes = [(1.0, 0.5), (2.76, 0.5), (5.4, LEVEL)].map(|(ratio, level)| Mode { ratio, level, ..Mode::UNIT });
+    let patch = Patch { modes: ModeTable::new(&modes), ..Patch::default() };
+    patch.with(Param::Decay, 5.0).with(Param::Gain, 0.0).with(Param::Limiter, 0.0)
+}
+
+fn nudge(frame: u32, mode: u16, amplitude: f32) -> Event {
+    event(frame, EventKind::Nudge { key: 60, mode, amplitude })
+}
+
+/// A synth after `frames` frames, and its output to the left.
+fn played(patch: &Patch, events: &[Event], frames: usize) -> (Synth, Vec<f32>) {
+    let mut synth = Synth::new(RATE, 3);
+    synth.set_patch(patch);
+    let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
+    synth.process(events, &mut left, &mut right);
+    (synth, left)
+}
+
+fn energies(synth: &Synth) -> Vec<f32> {
+    let mut snapshot = Snapshot::default();
+    synth.show(&mut snapshot);
+    snapshot.masses[..3].iter().map(|mass| mass.energy).collect()
+}
+
+fn peak(sound: &[f32]) -> f32 {
+    sound.iter().fold(0.0, |peak, sample| peak.max(sample.abs()))
+}
+
+#[test]
+fn at_rest_only_the_nudged_mass_moves() {
+    for coefficients in [0.0, 1.0] {
+        let patch = bar().with(Param::Coefficients, coefficients);
+        let (synth, sound) = played(&patch, &[nudge(7, M, 0.5)], 1000);
+        let energies = energies(&synth);
+        assert!(
+            energies.iter().enumerate().all(|(m, energy)| (*energy > 0.0) == (m == usize::from(M))),
+            "{energies:?}"
+        );
+        // A T60 of 5 s loses 2 % of the amplitude by then; the original formulas give a mode of 1.4 kHz 10 % more.
+        let amplitude = peak(&sound) / (0.5 * LEVEL);
+        assert!((0.95..1.0 + 0.12 * coefficients).contains(&amplitude), "{coefficients}: {amplitude}");
+        assert!(sound[..7].iter().all(|sample| *sample == 0.0) && sound[7] != 0.0);
+        let steepest = std::f64::consts::TAU * HZ / RATE * f64::from(0.5 * LEVEL);
+        assert!(f64::from(sound[7].abs()) < 1.1 * steepest, "no click: {} of {steepest}", sound[7]);
+    }
+}
+
+#[test]
+fn what_sounds_goes_on() {
+    // At these frames the modes ring freely, by tables; they are driven by noise; and their pitch moves.
+    let moving = [event(0, EventKind::PitchBend(0.0)), on(1, 60), event(4_990, EventKind::PitchBend(1.0))];
+    let noisy = bar().with(Param::NoiseLevel, 0.0).with(Param::NoiseTime, 1.0);
+    let cases = [(bar(), vec![on(0, 60)]), (noisy, vec![on(0, 60)]), (bar(), moving.to_vec())];
+    for (case, (patch, events)) in cases.into_iter().enumerate() {
+        for frame in [4_992, 5_003] {
+            let (before, _) = played(&patch, &events, frame as usize);
+            let own = energies(&before)[usize::from(M)].sqrt();
+            let frames = frame as usize + 1;
+            let (without, quiet) = played(&patch, &events, frames);
+            let all = [&events[..], &[nudge(frame, M, 0.6)]].concat();
+            let (with, sound) = played(&patch, &all, frames);
+            for (m, (with, without)) in energies(&with).into_iter().zip(energies(&without)).enumerate() {
+                let amplitude = with.sqrt();
+                if m == usize::from(M) {
+                    let added = 0.6 * LEVEL;
+                    let least = (without + added * added).sqrt();
+                    assert!((0.99 * least..1.01 * (own + added)).contains(&amplitude), "{case}: {least} {amplitude}");
+                } else {
+                    // A state that is rendered by tables is up to a control tick old.
+                    let change = (amplitude / without.sqrt() - 1.0).abs();
+                    assert!(change < 1.5e-3, "{case}: mode {m}: {change}");
+                }
+            }
+            let jump = (sound[frames - 1] - quiet[frames - 1]).abs();
+            assert!(f64::from(jump) < std::f64::consts::TAU * HZ / RATE * 0.7 * f64::from(LEVEL), "{case}: {jump}");
+        }
+    }
+}
+
+#[test]
+fn a_bowed_sound_can_be_nudged_and_is_not_bowed_by_it() {
+    let patch = &Preset::find("Bowed Bell").unwrap().patch;
+    let (_, sound) = played(patch, &[nudge(0, 0, 1.0)], 48_000);
+    let (start, end) = (peak(&sound[..9_600]), peak(&sound[38_400..]));
+    assert!(start > 0.01 && end < start, "{start} {end}");
+}
+
+#[test]
+fn a_nudge_is_damped_with_its_key_and_ends() {
+    let patch = bar().with(Param::NoteOff, 0.0).with(Param::Release, 0.1);
+    let (synth, sound) = played(&patch, &[nudge(0, M, 1.0), off(4_800, 60)], 24_000);
+    assert!(peak(&sound) > 0.2 && synth.is_silent());
+    let (synth, _) = played(&patch, &[nudge(0, M, 1.0)], 24_000);
+    assert!(!synth.is_silent());
+}
+
+#[test]
+fn nonsense_moves_nothing() {
+    for (mode, amplitude) in [(3, 1.0), (u16::MAX, 1.0), (M, f32::NAN), (M, -1.0), (M, f32::NEG_INFINITY)] {
+        let (synth, sound) = played(&bar(), &[nudge(0, mode, amplitude)], 64);
+        assert!(sound.iter().all(|sample| *sample == 0.0) && synth.is_silent(), "{mode} {amplitude}");
+    }
+    let (_, sound) = played(&bar(), &[nudge(0, M, f32::INFINITY)], 4_800);
+    assert!(peak(&sound) < 1.001 * LEVEL, "{}", peak(&sound));
+}
