@@ -16,6 +16,7 @@ mod held;
 mod improve;
 mod layers;
 mod levels;
+mod names;
 mod pitch;
 mod refine;
 #[cfg(feature = "analysis")]
@@ -30,6 +31,7 @@ mod tones;
 mod tuned;
 
 pub use body::{Explained, Family};
+pub use names::velocities;
 pub use take::{Take, VELOCITY};
 
 use super::level::rms;
