@@ -7,6 +7,7 @@ use crate::loaded::{Loaded, Slot};
 use crate::state::{self, Read, State, View};
 use nice_plug::prelude::*;
 use nice_plug_core::params::InternalParamMut;
+use nice_plug_core::params::internals::ParamPtr;
 use sprung::params::{Change, PARAM_COUNT, PARAMS, ParamInfo, Unit};
 use sprung::preset::Playable;
 use sprung::sound::Shelf;
@@ -55,6 +56,14 @@ impl Knob {
         match self {
             Self::Continuous(knob) => knob.modulated_normalized_value() - position,
             Self::Stepped(knob) => knob.modulated_normalized_value() - position,
+        }
+    }
+
+    /// The wrapper's name for the parameter.
+    pub(crate) fn as_ptr(&self) -> ParamPtr {
+        match self {
+            Self::Continuous(knob) => knob.as_ptr(),
+            Self::Stepped(knob) => knob.as_ptr(),
         }
     }
 

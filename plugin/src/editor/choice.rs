@@ -2,6 +2,7 @@
 
 use super::controls::{Controls, Hint};
 use super::knob::{self, keys, wheel};
+use super::knob_menu;
 use super::text::line;
 use super::theme::{KNOB, Palette, SMALL};
 use egui::{
@@ -22,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, cell: Rect, info: &'static ParamInfo, name: &str
     if let Some(place) = picked {
         controls.set(info, place as f32);
     }
-    response.context_menu(|ui| knob::menu(ui, info, controls));
+    response.context_menu(|ui| knob_menu::show(ui, info, controls));
     if response.hovered() {
         *controls.hint = Hint::new(format!("{} {value}", info.name), info.help);
     }

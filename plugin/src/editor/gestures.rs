@@ -3,7 +3,7 @@
 use crate::params::{Knob, SprungParams};
 use crate::state::State;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::params::{PARAM_COUNT, Param};
+use sprung::params::{PARAM_COUNT, Param, ParamInfo};
 use std::array::from_fn;
 
 /// A parameter's change in progress, which the host sees as one gesture.
@@ -67,6 +67,14 @@ pub(super) fn load(state: State, params: &SprungParams, host: &GuiContext) {
     let before = positions(params);
     params.load(state.into());
     announce(params, host, &before);
+}
+
+/// Asks the host for its own menu of a parameter, at a place in the window.
+#[allow(unsafe_code, reason = "the wrapper's interface is unsafe")]
+pub(super) fn show_host_menu(params: &SprungParams, host: &GuiContext, info: &ParamInfo, [x, y]: [i32; 2]) {
+    let param = params.knobs()[info.param as usize].as_ptr();
+    // SAFETY: the parameters live as long as the window, and the wrapper ignores those it does not know.
+    unsafe { host.raw_show_host_menu(param, x, y) };
 }
 
 /// Tells the host that something other than a knob has changed, so that it saves the project. The wrapper offers only

@@ -1,17 +1,15 @@
 //! A knob with its name and value: dragged, turned by the wheel or by keys, reset, or typed into.
 
-use super::controls::{Controls, Hint, Typing};
+use super::controls::{Controls, Hint};
 use super::knob_face::{self, Face};
-use super::learn;
-use super::routes::{self, Ring};
-use super::text::{line, name_field};
-use super::theme::{KNOB, SMALL, font};
+use super::knob_menu;
+use super::routes::Ring;
+use super::text::line;
+use super::theme::{KNOB, SMALL};
+use super::typing::{type_value, typed};
 use egui::accesskit::{Action, ActionData};
-use egui::{
-    Align2, CursorIcon, Event, EventFilter, Id, Key, Rect, Response, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2,
-};
+use egui::{Align2, CursorIcon, Event, EventFilter, Id, Key, Rect, Response, Sense, Ui, WidgetInfo, pos2, vec2};
 use sprung::params::{ParamInfo, Unit};
-use sprung::preset::Playable;
 
 /// Mouse movement for the whole travel of a knob, in pixels.
 const TRAVEL: f32 = 220.0;
@@ -76,7 +74,7 @@ pub(super) fn show(
     if response.double_clicked() {
         controls.set(info, info.default);
     }
-    response.context_menu(|ui| menu(ui, info, controls));
+    response.context_menu(|ui| knob_menu::show(ui, info, controls));
 
     let knob = &controls.params.knobs()[index];
     let text = controls.text(info);
@@ -103,7 +101,7 @@ pub(super) fn show(
     knob_face::paint(ui.painter(), parts.face, palette, &face);
     let colour = if is_hovered { palette.text } else { palette.muted };
     line(ui.painter(), parts.name, Align2::CENTER_CENTER, name, SMALL, palette.text);
-    if !typed(ui, parts.value, info, controls) {
+    if !typed(ui, parts.value, id(info).with("field"), info, controls) {
         line(ui.painter(), parts.value, Align2::CENTER_CENTER, &text, SMALL, colour);
     }
 }
@@ -217,74 +215,4 @@ pub(super) fn keys(ui: &Ui, response: &Response, info: &'static ParamInfo, contr
     if let Some(value) = wanted {
         controls.set(info, info.clamp(value));
     }
-}
-
-fn type_value(info: &'static ParamInfo, controls: &mut Controls) {
-    let text = controls.text(info);
-    let index = info.param as usize;
-    controls.hands.typing = Some(Typing { index, text, is_open: false, complaint: None });
-}
-
-/// The menu of a right click.
-pub(super) fn menu(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Controls) {
-    ui.label(info.name);
-    if info.unit != Unit::Choice && ui.button("Type a value").clicked() {
-        type_value(info, controls);
-        ui.close();
-    }
-    if ui.button(format!("Reset to {}", info.format(info.default))).clicked() {
-        controls.set(info, info.default);
-        ui.close();
-    }
-    routes::menu(ui, info, controls);
-    let has_routes = matches!(controls.params.state().playable, Playable::Preset(_));
-    if info.is_modulatable() && has_routes && ui.button("MIDI learn").clicked() {
-        learn::begin(info, controls);
-        ui.close();
-    }
-}
-
-/// Shows the field for a value while one is typed. Enter sets the value, Escape keeps the old one.
-fn typed(ui: &mut Ui, rect: Rect, info: &'static ParamInfo, controls: &mut Controls) -> bool {
-    let Some(mut typing) = controls.hands.typing.take_if(|typing| typing.index == info.param as usize) else {
-        return false;
-    };
-    let field = id(info).with("field");
-    let edit = TextEdit::singleline(&mut typing.text).id(field).font(font(SMALL)).margin(vec2(2.0, 0.0));
-    let place = rect.expand2(vec2(6.0, 2.0));
-    ui.painter().rect_filled(place, 3.0, controls.palette.raised);
-    let response = ui.put(place, edit.frame(egui::Frame::NONE).align(Align2::CENTER_CENTER));
-    name_field(&response, info.name, &typing.text);
-    if !typing.is_open {
-        typing.is_open = true;
-        response.request_focus();
-        select_all(ui, field, &typing.text);
-    } else if response.lost_focus() {
-        if ui.input(|input| input.key_pressed(Key::Escape)) {
-            return true;
-        }
-        match info.parse(&typing.text) {
-            Ok(value) if value == controls.value(info) => return true,
-            Ok(value) => {
-                controls.set(info, value);
-                return true;
-            }
-            // A click elsewhere closes the field, even if its text is not a value.
-            Err(_) if !ui.input(|input| input.key_pressed(Key::Enter)) => return true,
-            Err(complaint) => {
-                typing.complaint = Some(format!("{}: {complaint}", info.name));
-                response.request_focus();
-            }
-        }
-    }
-    controls.hands.typing = Some(typing);
-    true
-}
-
-fn select_all(ui: &Ui, field: Id, text: &str) {
-    use egui::text::{CCursor, CCursorRange};
-    let mut state = egui::text_edit::TextEditState::load(ui.ctx(), field).unwrap_or_default();
-    let end = CCursor::new(text.chars().count());
-    state.cursor.set_char_range(Some(CCursorRange::two(CCursor::default(), end)));
-    state.store(ui.ctx(), field);
 }

@@ -16,7 +16,7 @@
 //! | `manual`, `manual_text` | the manual over the window; its pages split into blocks |
 //! | `drops`, `recordings`, `fitting` | files dropped on the window; fitting recordings in the background; its progress |
 //! | `browser`, `details`, `star`, `sounds`, `files` | the page on which the user finds and saves sounds; the list of sounds; reading files |
-//! | `knob`, `knob_face`, `choice`, `buttons`, `text`, `disc` | widgets and their painting |
+//! | `knob`, `knob_face`, `knob_menu`, `typing`, `choice`, `buttons`, `text`, `disc` | widgets and their painting |
 //! | `variation` | random variations of a sound, with locks |
 //! | `focus`, `accessibility`, `x11` | keyboard focus: the host keeps it, except while the user types; screen readers; the X11 display |
 //! | `shown` | the sound that is shown |
@@ -53,6 +53,7 @@ mod key_piano;
 mod kit_page;
 mod knob;
 mod knob_face;
+mod knob_menu;
 mod layout;
 mod learn;
 mod made;
@@ -85,6 +86,7 @@ mod tests;
 mod text;
 pub(crate) mod theme;
 mod tuning_page;
+mod typing;
 mod variation;
 mod voices_panel;
 mod window;

@@ -12,6 +12,7 @@ mod expression;
 mod fuzz;
 mod growth;
 mod host;
+mod host_menu;
 mod lifecycle;
 mod notes;
 mod parameters;
@@ -80,6 +81,7 @@ fn main() -> ExitCode {
         return match work.as_str() {
             "growth" | "reopen" => growth::work(&work),
             "storm" | "endings" => storm::work(&work),
+            "menu-clap" | "menu-vst3" => host_menu::work(&work),
             "screen-reader" => screen_reader::work(),
             "window-cpu" => cpu::work(),
             "window-pixels" => pixels::work(),
@@ -186,6 +188,10 @@ fn main() -> ExitCode {
             opens_and_closes_fifty_times
             opens_and_closes_while_audio_runs
             keys_go_to_the_host_unless_somebody_types
+        }
+        Screen: host_menu {
+            opens_in_a_clap_host
+            opens_in_a_vst3_host
         }
         Screen: pixels {
             the_real_window_has_the_pixels_of_the_accepted_picture

@@ -161,6 +161,18 @@ impl Onlooker {
         self.drag_with_pauses(from, to, Duration::from_millis(80));
     }
 
+    /// Clicks with the right button.
+    pub(crate) fn click_secondary(&self, [x, y]: [i16; 2]) {
+        const PRESS: u8 = 4;
+        const RELEASE: u8 = 5;
+        const RIGHT: u8 = 3;
+        for kind in [PRESS, RELEASE] {
+            self.connection.xtest_fake_input(kind, RIGHT, 0, self.root, x, y, 0).unwrap();
+            self.connection.flush().unwrap();
+            std::thread::sleep(Duration::from_millis(80));
+        }
+    }
+
     fn drag_with_pauses(&self, from: [i16; 2], to: [i16; 2], pause: Duration) {
         const PRESS: u8 = 4;
         const RELEASE: u8 = 5;

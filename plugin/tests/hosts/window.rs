@@ -203,7 +203,7 @@ impl<'a> Editor<'a> {
     }
 
     /// Waits for a picture with more than one colour.
-    fn wait_until_drawn(&self, instance: &mut Instance) {
+    pub(crate) fn wait_until_drawn(&self, instance: &mut Instance) {
         let [width, height] = self.size(instance);
         wait_until("a picture", || {
             instance.run_callbacks();

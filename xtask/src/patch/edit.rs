@@ -12,6 +12,8 @@ pub(super) struct Edit {
     pub(super) times: usize,
 }
 
+pub(super) const CLAP_CONTEXT: &str = "src/wrapper/clap/context.rs";
+pub(super) const CLAP_WRAPPER: &str = "src/wrapper/clap/wrapper.rs";
 pub(super) const CONTEXT: &str = "src/wrapper/vst3/context.rs";
 pub(super) const INNER: &str = "src/wrapper/vst3/inner.rs";
 pub(super) const VIEW: &str = "src/wrapper/vst3/view.rs";

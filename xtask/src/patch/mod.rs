@@ -1,13 +1,14 @@
 //! `cargo xtask patch`: writes packages used by the plugin, as on crates.io but with the corrections in this folder.
 //!
-//! The corrections keep the wrapper's VST3 from crashing its host and from leaking file descriptors, and make sure that
-//! a closed window is gone. ARCHITECTURE.md, “Around the wrapper”, describes each fault as in a bug report.
+//! The corrections keep the wrapper's VST3 from crashing its host and from leaking file descriptors, make sure that
+//! a closed window is gone, and let the window open the host's menu of a parameter. ARCHITECTURE.md, “Around the wrapper”, describes each fault as in a bug report.
 
 mod baseview;
 mod calls;
 mod digest;
 mod edit;
 mod egui_baseview;
+mod menu;
 mod run_loop;
 mod window;
 mod worker;
@@ -29,12 +30,18 @@ struct Package {
     edits: &'static [&'static [Edit]],
 }
 
-const PACKAGES: [Package; 3] = [
+const PACKAGES: [Package; 4] = [
     Package {
         name: "nice-plug",
         version: "0.4.2",
         source: "391d811e2293b24ebd2b8fa589194d71b32ae003415a61e5ba6222c7abcb7961",
-        edits: &[worker::EDITS, window::EDITS, run_loop::EDITS, calls::EDITS],
+        edits: &[worker::EDITS, window::EDITS, run_loop::EDITS, calls::EDITS, menu::EDITS],
+    },
+    Package {
+        name: "nice-plug-core",
+        version: "0.4.2",
+        source: "ec16c3484f27d64d405e43f1ef5b392a16f8453117d92288c033821e4bd5efe5",
+        edits: &[menu::INTERFACE],
     },
     Package {
         name: "baseview",

@@ -15,6 +15,7 @@ pub(super) enum Said {
     Begin(String),
     Set(String, f32),
     End(String),
+    Menu(String, [i32; 2]),
 }
 
 /// A host that carries out the window's requests.
@@ -23,6 +24,8 @@ pub(super) struct FakeHost {
     said: Mutex<Vec<Said>>,
     /// Whether it plays the part of the standalone program.
     pub(super) is_alone: AtomicBool,
+    /// Whether it has a menu for parameters.
+    pub(super) has_menu: AtomicBool,
 }
 
 impl FakeHost {
@@ -59,6 +62,15 @@ impl GuiContextInner for FakeHost {
     unsafe fn raw_end_set_parameter(&self, param: ParamPtr) {
         // SAFETY: as above.
         self.hear(Said::End(unsafe { param.name() }.to_owned()));
+    }
+
+    fn has_host_menu(&self) -> bool {
+        self.has_menu.load(Relaxed)
+    }
+
+    unsafe fn raw_show_host_menu(&self, param: ParamPtr, x: i32, y: i32) {
+        // SAFETY: as above.
+        self.hear(Said::Menu(unsafe { param.name() }.to_owned(), [x, y]));
     }
 
     fn get_state(&self) -> PluginState {

@@ -3,10 +3,11 @@
 use super::fake_host::Said;
 use super::pictures::{Stage, stage};
 use crate::editor::theme::{SIZE, Theme};
-use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Role, vec2};
+use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Role, pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::params::Param;
 use sprung::patch::routes::{Source, amount_param};
+use std::sync::atomic::Ordering::Relaxed;
 
 impl Stage {
     fn new() -> Self {
@@ -214,6 +215,28 @@ fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
         stage.button("Undo");
     }
     assert_eq!(stage.params.state(), before.0);
+}
+
+#[test]
+fn the_hosts_own_menu_opens_where_the_entry_is() {
+    let mut stage = Stage::new();
+    let open = |stage: &mut Stage| {
+        stage.harness.get_by_role_and_label(Role::Slider, "Mallet speed").click_secondary();
+        stage.harness.run_steps(3);
+    };
+    open(&mut stage);
+    assert!(stage.harness.query_by_label("Menu of the host").is_none(), "this host has none");
+    stage.harness.key_press(Key::Escape);
+    stage.harness.run_steps(3);
+    stage.host.has_menu.store(true, Relaxed);
+    open(&mut stage);
+    let entry = stage.harness.get_by_label("Menu of the host").rect();
+    stage.button("Menu of the host");
+    let [Said::Menu(name, [x, y])] = &stage.host.said()[..] else { panic!("a menu and no gesture") };
+    assert_eq!(name, Param::MalletSpeed.info().name);
+    let there = pos2(*x as f32, *y as f32) / stage.harness.ctx.pixels_per_point();
+    assert!(entry.expand(2.0).contains(there), "{there} {entry}");
+    assert!(stage.harness.query_by_label("Menu of the host").is_none(), "the window's own menu is closed");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Counts the requests of the plugin to its host.
 
+use clack_extensions::context_menu::{ContextMenuBuilder, ContextMenuTarget, HostContextMenu, HostContextMenuImpl};
 use clack_extensions::gui::{GuiSize, HostGui, HostGuiImpl};
 use clack_extensions::latency::{HostLatency, HostLatencyImpl};
 use clack_extensions::params::{
@@ -8,7 +9,7 @@ use clack_extensions::params::{
 use clack_extensions::thread_check::{HostThreadCheck, HostThreadCheckImpl};
 use clack_extensions::voice_info::{HostVoiceInfo, HostVoiceInfoImpl};
 use clack_host::prelude::*;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::thread::ThreadId;
 
@@ -22,6 +23,7 @@ impl HostHandlers for Host {
 
     fn declare_extensions(builder: &mut HostExtensions<Self>, calls: &Calls) {
         builder.register::<HostParams>().register::<HostGui>().register::<HostLatency>().register::<HostVoiceInfo>();
+        builder.register::<HostContextMenu>();
         if calls.tells_threads {
             builder.register::<HostThreadCheck>();
         }
@@ -62,6 +64,8 @@ pub(crate) struct MainThreadCalls {
     pub(crate) rescans: Cell<u32>,
     /// Number of reported latency changes.
     pub(crate) latencies: Cell<u32>,
+    /// The parameters for which the plugin has asked for a menu, and where in its window.
+    pub(crate) menus: RefCell<Vec<(u32, [i32; 2])>>,
 }
 
 impl<'a> MainThreadHandler<'a> for MainThreadCalls {}
@@ -100,6 +104,26 @@ impl HostParamsImplMainThread for MainThreadCalls {
     }
 
     fn clear(&self, _param_id: ClapId, _flags: ParamClearFlags) {}
+}
+
+impl HostContextMenuImpl for MainThreadCalls {
+    fn populate(&self, _: ContextMenuTarget, _: &mut ContextMenuBuilder) -> Result<(), HostError> {
+        Ok(())
+    }
+
+    fn perform(&self, _: ContextMenuTarget, _: ClapId) -> Result<(), HostError> {
+        Ok(())
+    }
+
+    fn can_popup(&self) -> bool {
+        true
+    }
+
+    fn popup(&self, target: ContextMenuTarget, _screen: i32, x: i32, y: i32) -> Result<(), HostError> {
+        let ContextMenuTarget::Param(id) = target else { panic!("a menu of a parameter") };
+        self.menus.borrow_mut().push((id.get(), [x, y]));
+        Ok(())
+    }
 }
 
 impl HostLatencyImpl for MainThreadCalls {

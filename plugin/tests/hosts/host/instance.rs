@@ -76,6 +76,11 @@ impl Instance {
         self.clack.access_handler(|calls| calls.rescans.take())
     }
 
+    /// The parameters for which the plugin has asked for a menu since the last call of this method, and where in its window.
+    pub(crate) fn menus(&self) -> Vec<(u32, [i32; 2])> {
+        self.clack.access_handler(|calls| calls.menus.take())
+    }
+
     /// All parameters, in the plugin's order.
     pub(crate) fn parameters(&mut self) -> Vec<Parameter> {
         let handle = self.clack.plugin_handle();

@@ -12,16 +12,18 @@ pub(crate) use frame::{Frame, FrameWithoutLoop};
 use crate::host::bundle;
 use std::ffi::{CString, c_void};
 use std::ptr::null_mut;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
+use std::thread::ThreadId;
 use stream::Stream;
 use vst3::Steinberg::Vst::{
-    BusDirections_, IAudioProcessor, IAudioProcessorTrait, IComponent, IComponentHandler, IComponentHandlerTrait,
-    IComponentTrait, IEditController, IEditControllerTrait, MediaTypes_, ParamID, ParamValue, ParameterInfo,
-    ProcessModes_, ProcessSetup, SymbolicSampleSizes_,
+    BusDirections_, IAudioProcessor, IAudioProcessorTrait, IComponent, IComponentHandler, IComponentHandler3,
+    IComponentHandler3Trait, IComponentHandlerTrait, IComponentTrait, IContextMenu, IContextMenuItem,
+    IContextMenuTarget, IContextMenuTrait, IEditController, IEditControllerTrait, MediaTypes_, ParamID, ParamValue,
+    ParameterInfo, ProcessModes_, ProcessSetup, SymbolicSampleSizes_,
 };
 use vst3::Steinberg::{
     IBStream, IPlugFrame, IPlugView, IPlugViewTrait, IPluginBaseTrait, IPluginFactory, IPluginFactoryTrait,
-    kPlatformTypeX11EmbedWindowID, kResultOk, tresult,
+    kInvalidArgument, kPlatformTypeX11EmbedWindowID, kResultOk, tresult,
 };
 use vst3::{Class, ComPtr, ComWrapper, Interface};
 
@@ -84,11 +86,61 @@ impl Module {
     }
 }
 
-/// Receives the plugin's reports of edits in its window.
-struct Handler;
+/// Parameters with places in the plugin's window.
+type Places = Arc<Mutex<Vec<(ParamID, [i32; 2])>>>;
+
+/// Receives the plugin's reports of edits in its window, and makes menus.
+struct Handler {
+    /// The menus that were opened.
+    menus: Places,
+    /// The thread of the host's menus.
+    main: ThreadId,
+}
 
 impl Class for Handler {
-    type Interfaces = (IComponentHandler,);
+    type Interfaces = (IComponentHandler, IComponentHandler3);
+}
+
+impl IComponentHandler3Trait for Handler {
+    unsafe fn createContextMenu(&self, view: *mut IPlugView, parameter: *const ParamID) -> *mut IContextMenu {
+        assert!(!view.is_null() && std::thread::current().id() == self.main);
+        // SAFETY: the plugin passes a parameter, which lives until the call returns.
+        let menu = Menu { parameter: unsafe { *parameter }, opened: self.menus.clone() };
+        ComWrapper::new(menu).to_com_ptr::<IContextMenu>().unwrap().into_raw()
+    }
+}
+
+/// A menu of a parameter.
+struct Menu {
+    parameter: ParamID,
+    opened: Places,
+}
+
+impl Class for Menu {
+    type Interfaces = (IContextMenu,);
+}
+
+impl IContextMenuTrait for Menu {
+    unsafe fn getItemCount(&self) -> i32 {
+        0
+    }
+
+    unsafe fn getItem(&self, _: i32, _: *mut IContextMenuItem, _: *mut *mut IContextMenuTarget) -> tresult {
+        kInvalidArgument
+    }
+
+    unsafe fn addItem(&self, _: *const IContextMenuItem, _: *mut IContextMenuTarget) -> tresult {
+        kResultOk
+    }
+
+    unsafe fn removeItem(&self, _: *const IContextMenuItem, _: *mut IContextMenuTarget) -> tresult {
+        kResultOk
+    }
+
+    unsafe fn popup(&self, x: i32, y: i32) -> tresult {
+        self.opened.lock().unwrap().push((self.parameter, [x, y]));
+        kResultOk
+    }
 }
 
 impl IComponentHandlerTrait for Handler {
@@ -115,6 +167,7 @@ pub(crate) struct Vst3 {
     controller: ComPtr<IEditController>,
     pub(crate) processor: ComPtr<IAudioProcessor>,
     component: ComPtr<IComponent>,
+    menus: Places,
     _library: Arc<Library>,
 }
 
@@ -133,9 +186,11 @@ impl Vst3 {
             assert_eq!(component.initialize(null_mut()), kResultOk);
             let controller = component.cast::<IEditController>().expect("a controller");
             let processor = component.cast::<IAudioProcessor>().expect("a processor");
-            let handler = ComWrapper::new(Handler).to_com_ptr::<IComponentHandler>().unwrap();
+            let menus = Places::default();
+            let handler = Handler { menus: menus.clone(), main: std::thread::current().id() };
+            let handler = ComWrapper::new(handler).to_com_ptr::<IComponentHandler>().unwrap();
             assert_eq!(controller.setComponentHandler(handler.as_ptr()), kResultOk);
-            Self { controller, processor, component, _library: module.library.clone() }
+            Self { controller, processor, component, menus, _library: module.library.clone() }
         }
     }
 
@@ -185,6 +240,11 @@ impl Vst3 {
     pub(crate) fn parameter_count(&self) -> i32 {
         // SAFETY: the call has no preconditions.
         unsafe { self.controller.getParameterCount() }
+    }
+
+    /// The parameters whose menus were opened since the last call, and where in the plugin's window.
+    pub(crate) fn menus(&self) -> Vec<(ParamID, [i32; 2])> {
+        std::mem::take(&mut *self.menus.lock().unwrap())
     }
 
     /// The position of a parameter, 0–1.

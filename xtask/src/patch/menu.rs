@@ -1,0 +1,255 @@
+//! Edits for the host's menu of a parameter, which the wrapper does not know: CLAP's context-menu extension and VST3's
+//! `IComponentHandler3`.
+//!
+//! The window may have a thread of its own, and hosts show menus only from their main thread, so the request is a task there.
+
+use super::edit::{CLAP_CONTEXT, CLAP_WRAPPER, CONTEXT, Edit, INNER, edit};
+
+/// The interface of the window's context, in nice-plug-core.
+pub(super) const INTERFACE: &[Edit] = &[
+    edit(
+        GUI,
+        "    /// Serialize the plugin's current state to a serde-serializable object. Useful for implementing
+    /// preset handling within a plugin's GUI.
+    pub fn get_state(&self) -> PluginState {
+",
+        "    /// Whether the host can show a menu of its own for a parameter.
+    pub fn has_host_menu(&self) -> bool {
+        self.inner.has_host_menu()
+    }
+
+    /// Ask the host to show its menu for a parameter, at a place in the window in the units of the
+    /// host's window system. The menu opens later, on the host's main thread.
+    ///
+    /// # Safety
+    ///
+    /// The implementing function still needs to check if `param` actually exists.
+    pub unsafe fn raw_show_host_menu(&self, param: ParamPtr, x: i32, y: i32) {
+        unsafe { self.inner.raw_show_host_menu(param, x, y) };
+    }
+
+    /// Serialize the plugin's current state to a serde-serializable object. Useful for implementing
+    /// preset handling within a plugin's GUI.
+    pub fn get_state(&self) -> PluginState {
+",
+    ),
+    edit(
+        GUI,
+        "    /// Serialize the plugin's current state to a serde-serializable object. Useful for implementing
+    /// preset handling within a plugin's GUI.
+    fn get_state(&self) -> PluginState;
+",
+        "    /// Whether the host can show a menu of its own for a parameter.
+    fn has_host_menu(&self) -> bool {
+        false
+    }
+
+    /// Ask the host to show its menu for a parameter, at a place in the window.
+    ///
+    /// # Safety
+    ///
+    /// The implementing function still needs to check if `param` actually exists.
+    unsafe fn raw_show_host_menu(&self, _param: ParamPtr, _x: i32, _y: i32) {}
+
+    /// Serialize the plugin's current state to a serde-serializable object. Useful for implementing
+    /// preset handling within a plugin's GUI.
+    fn get_state(&self) -> PluginState;
+",
+    ),
+];
+
+const GUI: &str = "src/context/gui.rs";
+
+pub(super) const EDITS: &[Edit] = &[
+    // CLAP: the extension is asked for with the others.
+    edit(
+        CLAP_WRAPPER,
+        "#[cfg(feature = \"editor\")]
+use clap_sys::ext::gui::{clap_host_gui, clap_plugin_gui};
+",
+        "#[cfg(feature = \"editor\")]
+use clap_sys::ext::context_menu::{
+    CLAP_CONTEXT_MENU_TARGET_KIND_PARAM, CLAP_EXT_CONTEXT_MENU, CLAP_EXT_CONTEXT_MENU_COMPAT,
+    clap_context_menu_target, clap_host_context_menu,
+};
+#[cfg(feature = \"editor\")]
+use clap_sys::ext::gui::{clap_host_gui, clap_plugin_gui};
+",
+    ),
+    edit(
+        CLAP_WRAPPER,
+        "    host_voice_info: AtomicRefCell<Option<ClapPtr<clap_host_voice_info>>>,
+",
+        "    host_voice_info: AtomicRefCell<Option<ClapPtr<clap_host_voice_info>>>,
+    #[cfg(feature = \"editor\")]
+    pub host_context_menu: AtomicRefCell<Option<ClapPtr<clap_host_context_menu>>>,
+",
+    ),
+    edit(
+        CLAP_WRAPPER,
+        "            host_voice_info: AtomicRefCell::new(None),
+",
+        "            host_voice_info: AtomicRefCell::new(None),
+            #[cfg(feature = \"editor\")]
+            host_context_menu: AtomicRefCell::new(None),
+",
+    ),
+    edit(
+        CLAP_WRAPPER,
+        "                *wrapper.host_track_info.borrow_mut() = query_host_extension::<clap_host_track_info>(
+",
+        "                *wrapper.host_context_menu.borrow_mut() =
+                    [CLAP_EXT_CONTEXT_MENU, CLAP_EXT_CONTEXT_MENU_COMPAT]
+                        .into_iter()
+                        .find_map(|name| query_host_extension(&wrapper.host_callback, name));
+
+                *wrapper.host_track_info.borrow_mut() = query_host_extension::<clap_host_track_info>(
+",
+    ),
+    edit(
+        CLAP_WRAPPER,
+        "    /// Tell the host that it should rescan the current parameter values.
+    RescanParamValues,
+}
+",
+        "    /// Tell the host that it should rescan the current parameter values.
+    RescanParamValues,
+    /// Ask the host to show its menu for a parameter.
+    #[cfg(feature = \"editor\")]
+    ShowHostMenu { param_hash: u32, x: i32, y: i32 },
+}
+",
+    ),
+    edit(
+        CLAP_WRAPPER,
+        "            Task::VoiceInfoChanged => match &*self.host_voice_info.borrow() {
+",
+        "            #[cfg(feature = \"editor\")]
+            Task::ShowHostMenu { param_hash, x, y } => {
+                let menu = self.host_context_menu.borrow().clone();
+                let (target, host) = (
+                    clap_context_menu_target {
+                        kind: CLAP_CONTEXT_MENU_TARGET_KIND_PARAM,
+                        id: param_hash,
+                    },
+                    &*self.host_callback,
+                );
+                if let Some(menu) = menu
+                    && let (Some(can_popup), Some(popup)) = (menu.can_popup, menu.popup)
+                {
+                    // Without a menu of the host, the click does nothing.
+                    unsafe {
+                        let _ = can_popup(host) && popup(host, &target, 0, x, y);
+                    }
+                }
+            }
+            Task::VoiceInfoChanged => match &*self.host_voice_info.borrow() {
+",
+    ),
+    edit(
+        CLAP_CONTEXT,
+        "    fn get_state(&self) -> nice_plug_core::plugin::PluginState {
+",
+        "    fn has_host_menu(&self) -> bool {
+        let wrapper = self.wrapper.upgrade();
+        wrapper.is_some_and(|wrapper| wrapper.host_context_menu.borrow().is_some())
+    }
+
+    unsafe fn raw_show_host_menu(&self, param: ParamPtr, x: i32, y: i32) {
+        let wrapper = self.wrapper.upgrade().unwrap();
+        if let Some(param_hash) = wrapper.param_ptr_to_hash.get(&param).copied() {
+            let task_posted = wrapper.schedule_gui(Task::ShowHostMenu { param_hash, x, y });
+            crate::nice_debug_assert!(task_posted, \"The task queue is full, dropping task...\");
+        }
+    }
+
+    fn get_state(&self) -> nice_plug_core::plugin::PluginState {
+",
+    ),
+    // VST3: the host's handler may have a further interface that makes menus.
+    edit(
+        INNER,
+        "#[cfg(feature = \"editor\")]
+use vst3::ComWrapper;
+",
+        "#[cfg(feature = \"editor\")]
+use vst3::ComWrapper;
+#[cfg(feature = \"editor\")]
+use vst3::Steinberg::IPlugView;
+#[cfg(feature = \"editor\")]
+use vst3::Steinberg::Vst::{IComponentHandler3, IComponentHandler3Trait, IContextMenuTrait};
+",
+    ),
+    edit(
+        INNER,
+        "    #[cfg(feature = \"editor\")]
+    CallMainThread,
+}
+",
+        "    #[cfg(feature = \"editor\")]
+    CallMainThread,
+    /// Ask the host to show its menu for a parameter.
+    #[cfg(feature = \"editor\")]
+    ShowHostMenu { param_hash: u32, x: i32, y: i32 },
+}
+",
+    ),
+    edit(
+        INNER,
+        "            #[cfg(feature = \"editor\")]
+            Task::CallMainThread => {
+",
+        "            #[cfg(feature = \"editor\")]
+            Task::ShowHostMenu { param_hash, x, y } => {
+                let view = self.plug_view.read().clone();
+                if let (Some(handler), Some(view)) = (self.menu_handler(), view)
+                    && let Some(view) = view.to_com_ptr::<IPlugView>()
+                {
+                    // The menu may run the host's event loop until it is closed.
+                    unsafe {
+                        let menu = handler.createContextMenu(view.as_ptr(), &param_hash);
+                        if let Some(menu) = ComPtr::from_raw(menu) {
+                            menu.popup(x, y);
+                        }
+                    }
+                }
+            }
+            #[cfg(feature = \"editor\")]
+            Task::CallMainThread => {
+",
+    ),
+    edit(
+        INNER,
+        "    /// The host's [`IComponentHandler`], which is not locked while it is being called.
+",
+        "    /// The host's interface for menus of parameters, if it has one.
+    #[cfg(feature = \"editor\")]
+    pub fn menu_handler(&self) -> Option<ComPtr<IComponentHandler3>> {
+        self.component_handler()?.cast()
+    }
+
+    /// The host's [`IComponentHandler`], which is not locked while it is being called.
+",
+    ),
+    edit(
+        CONTEXT,
+        "    fn get_state(&self) -> PluginState {
+",
+        "    fn has_host_menu(&self) -> bool {
+        self.inner
+            .upgrade()
+            .is_some_and(|inner| inner.menu_handler().is_some())
+    }
+
+    unsafe fn raw_show_host_menu(&self, param: ParamPtr, x: i32, y: i32) {
+        let inner = self.inner.upgrade().unwrap();
+        if let Some(param_hash) = inner.param_ptr_to_hash.get(&param).copied() {
+            let task_posted = inner.schedule_gui(Task::ShowHostMenu { param_hash, x, y });
+            crate::nice_debug_assert!(task_posted, \"The task queue is full, dropping task...\");
+        }
+    }
+
+    fn get_state(&self) -> PluginState {
+",
+    ),
+];
