@@ -30,7 +30,7 @@ impl Snap {
 
     pub(super) fn name(self) -> &'static str {
         match self {
-            Self::Off => "no snap",
+            Self::Off => "snap: off",
             Self::Harmonic => "harmonic",
             Self::Bar => "bar",
             Self::Membrane => "membrane",
