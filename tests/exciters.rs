@@ -90,6 +90,14 @@ fn each_exciter_follows_velocity_as_far_as_it_is_told() {
 }
 
 #[test]
+fn velocity_0_is_without_force_even_if_forces_do_not_follow_velocity() {
+    for velocity in [0.0, 100.0] {
+        let silent = render(&bar(0.0, 0.0, 0.0).with(Param::Velocity, velocity), 1, &[strike(0.0)], 960);
+        assert!(silent.iter().all(|sample| *sample == 0.0), "{velocity}");
+    }
+}
+
+#[test]
 fn contact_is_shorter_the_harder_the_strike_the_lighter_the_mallet_and_the_higher_the_key() {
     let soft = bar(0.0, OFF, OFF).with(Param::MalletHardness, 60.0).with(Param::Velocity, 100.0);
     let colour = |patch: &Patch, event| brightness(&render(patch, 1, &[event], 9600));

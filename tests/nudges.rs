@@ -4,8 +4,9 @@
 mod events;
 
 use events::{event, off, on};
-use sprung::engine::{Event, EventKind, Snapshot, Synth};
-use sprung::params::Param;
+use sprung::dsp::CONTROL_FRAMES;
+use sprung::engine::{Event, EventKind, Expression, NoteId, Notes, Snapshot, Synth};
+use sprung::params::{Param, PlayMode};
 use sprung::patch::{Mode, ModeTable, Patch};
 use sprung::preset::Preset;
 
@@ -25,6 +26,12 @@ fn bar() -> Patch {
 
 fn nudge(frame: u32, mode: u16, amplitude: f32) -> Event {
     event(frame, EventKind::Nudge { key: 60, mode, amplitude })
+}
+
+/// A note in which only a nudged mode moves.
+fn alone(frame: u32, mode: u16, amplitude: f32) -> [Event; 2] {
+    let kind = EventKind::NoteOn { key: 60, detune: 0.0, velocity: 0.0, id: None };
+    [event(frame, kind), nudge(frame, mode, amplitude)]
 }
 
 /// A synth after `frames` frames, and its output to the left.
@@ -50,7 +57,7 @@ fn peak(sound: &[f32]) -> f32 {
 fn at_rest_only_the_nudged_mass_moves() {
     for coefficients in [0.0, 1.0] {
         let patch = bar().with(Param::Coefficients, coefficients);
-        let (synth, sound) = played(&patch, &[nudge(7, M, 0.5)], 1000);
+        let (synth, sound) = played(&patch, &alone(7, M, 0.5), 1000);
         let energies = energies(&synth);
         assert!(
             energies.iter().enumerate().all(|(m, energy)| (*energy > 0.0) == (m == usize::from(M))),
@@ -67,7 +74,7 @@ fn at_rest_only_the_nudged_mass_moves() {
 
 #[test]
 fn what_sounds_goes_on() {
-    // At these frames the modes ring freely, by tables; they are driven by noise; and their pitch moves.
+    // At these frames the modes ring freely; they are driven by noise; and their pitch moves.
     let moving = [event(0, EventKind::PitchBend(0.0)), on(1, 60), event(4_990, EventKind::PitchBend(1.0))];
     let noisy = bar().with(Param::NoiseLevel, 0.0).with(Param::NoiseTime, 1.0);
     let cases = [(bar(), vec![on(0, 60)]), (noisy, vec![on(0, 60)]), (bar(), moving.to_vec())];
@@ -100,26 +107,79 @@ fn what_sounds_goes_on() {
 #[test]
 fn a_bowed_sound_can_be_nudged_and_is_not_bowed_by_it() {
     let patch = &Preset::find("Bowed Bell").unwrap().patch;
-    let (_, sound) = played(patch, &[nudge(0, 0, 1.0)], 48_000);
+    let (_, sound) = played(patch, &alone(0, 0, 1.0), 48_000);
     let (start, end) = (peak(&sound[..9_600]), peak(&sound[38_400..]));
     assert!(start > 0.01 && end < start, "{start} {end}");
 }
 
 #[test]
-fn a_nudge_is_damped_with_its_key_and_ends() {
-    let patch = bar().with(Param::NoteOff, 0.0).with(Param::Release, 0.1);
-    let (synth, sound) = played(&patch, &[nudge(0, M, 1.0), off(4_800, 60)], 24_000);
-    assert!(peak(&sound) > 0.2 && synth.is_silent());
-    let (synth, _) = played(&patch, &[nudge(0, M, 1.0)], 24_000);
-    assert!(!synth.is_silent());
+fn a_note_that_is_nudged_stays_as_it_was() {
+    let id = NoteId::new(7);
+    let patch = bar().with(Param::NoteOff, 0.0).with(Param::Release, 0.5).with(Param::Glide, 0.3);
+    let tuning =
+        EventKind::Express { notes: Notes { id, ..Notes::default() }, expression: Expression::Tuning, value: 3.0 };
+    let before = [
+        event(0, EventKind::NoteOn { key: 60, detune: 0.5, velocity: 0.8, id }),
+        event(0, tuning),
+        event(100, EventKind::NoteOff { key: 60, velocity: 0.5, id }),
+    ];
+    let shown = |events: &[Event]| {
+        let (synth, _) = played(&patch, events, 4_000);
+        let mut snapshot = Snapshot::default();
+        synth.show(&mut snapshot);
+        ((snapshot.voices, snapshot.notes, synth.ended().to_vec()), energies(&synth)[0])
+    };
+    let (with, without) = (shown(&[&before[..], &[nudge(2_000, M, 0.5)]].concat()), shown(&before));
+    assert_eq!(with.0, without.0, "pitch, velocity and the note's identifier");
+    assert!((with.1 / without.1 - 1.0).abs() < 1e-5, "the damper stays down: {} {}", with.1, without.1);
+}
+
+#[test]
+fn in_every_play_mode_a_sounding_note_is_nudged_and_others_are_not() {
+    for mode in [PlayMode::Poly, PlayMode::Mono, PlayMode::Legato] {
+        let patch = bar().with(Param::Mode, mode as u8 as f32);
+        let energy = |events: &[Event]| energies(&played(&patch, events, 3_000).0)[usize::from(M)];
+        let held = energy(&[on(0, 60)]);
+        assert!(energy(&[on(0, 60), nudge(1_000, M, 1.0)]) > 1.5 * held, "{mode:?}");
+        assert_eq!(energy(&[on(0, 62), nudge(1_000, M, 1.0)]), energy(&[on(0, 62)]), "{mode:?}");
+    }
+}
+
+#[test]
+fn unison_voices_share_a_nudge() {
+    for voices in [1.0, 4.0] {
+        let patch = bar().with(Param::Unison, voices).with(Param::UnisonDetune, 0.0);
+        let energy = energies(&played(&patch, &alone(0, M, 1.0), 64).0)[usize::from(M)];
+        assert!((energy / (LEVEL * LEVEL) - 1.0).abs() < 0.01, "{voices}: {energy}");
+    }
+}
+
+#[test]
+fn the_end_of_what_was_nudged_is_known() {
+    let patch = bar().with(Param::Decay, 0.2);
+    for events in
+        [&alone(0, M, 1.0)[..], &[on(0, 60), nudge(3_003, M, 1.0)], &[on(0, 60), off(900, 60), nudge(903, M, 1.0)]]
+    {
+        let (mut synth, _) = played(&patch, events, 3_072);
+        let tail = synth.tail_frames() as usize;
+        assert!((1_000..48_000).contains(&tail), "{tail}");
+        let mut found = 0;
+        while !synth.is_silent() {
+            synth.process(&[], &mut [0.0], &mut [0.0]);
+            found += 1;
+        }
+        assert!(tail.abs_diff(found) <= CONTROL_FRAMES, "{tail} told, {found} found: {events:?}");
+    }
 }
 
 #[test]
 fn nonsense_moves_nothing() {
     for (mode, amplitude) in [(3, 1.0), (u16::MAX, 1.0), (M, f32::NAN), (M, -1.0), (M, f32::NEG_INFINITY)] {
-        let (synth, sound) = played(&bar(), &[nudge(0, mode, amplitude)], 64);
+        let (synth, sound) = played(&bar(), &alone(0, mode, amplitude), 64);
         assert!(sound.iter().all(|sample| *sample == 0.0) && synth.is_silent(), "{mode} {amplitude}");
     }
-    let (_, sound) = played(&bar(), &[nudge(0, M, f32::INFINITY)], 4_800);
+    let (synth, _) = played(&bar(), &[nudge(0, M, 1.0)], 64);
+    assert!(synth.is_silent(), "no note sounds that could be nudged");
+    let (_, sound) = played(&bar(), &alone(0, M, f32::INFINITY), 4_800);
     assert!(peak(&sound) < 1.001 * LEVEL, "{}", peak(&sound));
 }

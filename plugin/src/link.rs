@@ -22,22 +22,24 @@ pub(crate) enum Touch {
     Down { key: u8, velocity: f32 },
     /// A key goes up.
     Up { key: u8 },
-    /// One mass of a note is pushed, with an amplitude from 0 to 1. If the key is not held, it goes up at once.
-    Nudge { channel: u8, key: u8, mode: u16, amplitude: f32, is_held: bool },
+    /// A mode of a key's sounding note is pushed, with an amplitude from 0 to 1.
+    Nudge { channel: u8, key: u8, mode: u16, amplitude: f32 },
+    /// A key goes down without a strike, and one mode of its note is pushed.
+    Wake { key: u8, mode: u16, amplitude: f32 },
 }
 
 impl Touch {
     /// The touch as events of the engine, each with its channel. Real-time safe.
     pub(crate) fn events(self) -> impl Iterator<Item = (u8, EventKind)> {
-        let up = |channel, key| (channel, EventKind::NoteOff { key, velocity: 0.5, id: None });
+        let on = |key, velocity| (0, EventKind::NoteOn { key, detune: 0.0, velocity, id: None });
         let events = match self {
-            Self::Down { key, velocity } => {
-                [Some((0, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })), None]
+            Self::Down { key, velocity } => [Some(on(key, velocity)), None],
+            Self::Up { key } => [Some((0, EventKind::NoteOff { key, velocity: 0.5, id: None })), None],
+            Self::Nudge { channel, key, mode, amplitude } => {
+                [Some((channel, EventKind::Nudge { key, mode, amplitude })), None]
             }
-            Self::Up { key } => [Some(up(0, key)), None],
-            Self::Nudge { channel, key, mode, amplitude, is_held } => {
-                let nudge = EventKind::Nudge { key, mode, amplitude };
-                [Some((channel, nudge)), (!is_held).then(|| up(channel, key))]
+            Self::Wake { key, mode, amplitude } => {
+                [Some(on(key, 0.0)), Some((0, EventKind::Nudge { key, mode, amplitude }))]
             }
         };
         events.into_iter().flatten()

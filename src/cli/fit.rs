@@ -5,7 +5,7 @@ use super::progress::Bar;
 use super::quantity;
 use super::recording::{ending, read};
 use super::terminal::{complain, counted, print};
-use sprung::analysis::fit::{Family, Fitted, Settings, Take, VELOCITY, fit, report, velocities};
+use sprung::analysis::fit::{Family, Fitted, Settings, Take, VELOCITY, fit, report, take_velocities_from_names};
 use sprung::io::{Inputs, Output, Target};
 use sprung::units::parse_key;
 use sprung::{Error, Result};
@@ -30,7 +30,8 @@ pub(super) struct Args {
     /// Key that was struck (C4, 60, 261.6Hz), if all recordings have the same [default: estimated]
     #[arg(long, value_parser = quantity::note, allow_hyphen_values = true)]
     note: Option<String>,
-    /// Velocities of the recordings, 1-127, in their order, with commas between them [default: by the names (tom-v40.wav, tom-pp.wav), or 100]
+    /// Velocities of the recordings, 1-127, in their order, with commas between them [default: from
+    /// the names of all files (tom-v40.wav, tom-pp.wav), else 100]
     #[arg(long, value_name = "N,…", value_delimiter = ',', allow_hyphen_values = true,
         value_parser = quantity::whole::<u8>(1..=127))]
     velocity: Vec<u8>,
@@ -72,7 +73,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let mut inputs = Inputs::default();
     let mut takes: Vec<Take> =
         (0..args.recordings.len()).map(|index| take(args, index, &mut inputs)).collect::<Result<_>>()?;
-    let by_names = velocities_by_names(args, &mut takes);
+    if !tells_velocities(args) && take_velocities_from_names(&mut takes) {
+        let velocities: Vec<String> = takes.iter().map(|take| take.velocity.to_string()).collect();
+        complain("note", &format!("the names of the recordings tell their velocities: {}", velocities.join(", ")));
+    }
     interrupt::catch(true)?;
     let mut output = Output::create(&target, args.force, &inputs)?;
     let page = args.report.as_ref().map(|path| Output::create(&Target::Path(path.clone()), args.force, &inputs));
@@ -94,7 +98,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     }
     output.commit()?;
     // With `-`, stdout has the preset.
-    if target == Target::Stdout { Ok(()) } else { print(&text(&takes, &fitted, by_names)) }
+    if target == Target::Stdout { Ok(()) } else { print(&text(&takes, &fitted)) }
 }
 
 fn write(output: &mut Output, bytes: &[u8]) -> Result<()> {
@@ -116,16 +120,10 @@ fn take(args: &Args, index: usize, inputs: &mut Inputs) -> Result<Take> {
     Ok(Take { name, recording, key, velocity: velocity.map_or(VELOCITY, f64::from) })
 }
 
-/// Gives the takes the velocities in the names of their files, unless any is given otherwise. Returns whether it did.
-fn velocities_by_names(args: &Args, takes: &mut [Take]) -> bool {
+/// Whether the user has told the velocity of any recording. Then that of the others is the default.
+fn tells_velocities(args: &Args) -> bool {
     let is_told = |argument: &PathBuf| parts(argument).is_ok_and(|(.., velocity)| velocity.is_some());
-    if !args.velocity.is_empty() || args.recordings.iter().any(is_told) {
-        return false;
-    }
-    let names: Vec<&str> = takes.iter().map(|take| take.name.as_str()).collect();
-    let Some(velocities) = velocities(&names) else { return false };
-    takes.iter_mut().zip(velocities).for_each(|(take, velocity)| take.velocity = velocity);
-    true
+    !args.velocity.is_empty() || args.recordings.iter().any(is_told)
 }
 
 /// Splits `take.wav@C4@100` into a path, a key and a velocity. If a file with the whole name exists, that is the path.
@@ -156,12 +154,8 @@ fn name(args: &Args) -> String {
     args.name.as_deref().or(stem).unwrap_or("Fitted").to_owned()
 }
 
-fn text(takes: &[Take], fitted: &Fitted, by_names: bool) -> String {
+fn text(takes: &[Take], fitted: &Fitted) -> String {
     let mut text = fitted.summary() + "\n";
-    if by_names {
-        let velocities: Vec<String> = takes.iter().map(|take| take.velocity.to_string()).collect();
-        text += &format!("velocities by the names of the files: {}\n", velocities.join(", "));
-    }
     if takes.len() > 1 {
         for (take, distance) in takes.iter().zip(&fitted.distances) {
             text += &format!("{}: {distance:.2} dB\n", take.name);

@@ -40,15 +40,16 @@ pub enum EventKind {
         /// The hit.
         contact: Contact,
     },
-    /// Pushes a single mass of a key's note, as of one that is pulled aside and let go. If the key's note sounds, that goes on
-    /// as it was, and the mass gains amplitude; otherwise a note begins in which nothing else moves. The key counts as down.
+    /// Pushes one mode of a key's sounding note in the direction in which it moves, so that its amplitude grows and the output
+    /// does not jump. Nothing else about the note changes. If no note of the key sounds, or if it has no such mode, nothing
+    /// happens; to let a mode sound alone, send a note on with velocity 0 before it, at the same frame.
     Nudge {
         /// MIDI key, 0–127.
         key: u8,
-        /// Number of the mode, from 0. A mode that does not exist is not pushed.
+        /// Number of the mode, from 0.
         mode: u16,
-        /// 0–1: the mass's added amplitude. 1 is what the sound's mallet gives it at most, wherever it hits; without a
-        /// mallet, what a mallet at 0 dB would.
+        /// 0–1: how much the amplitude grows at most. 1 is what the strongest of mallet, pluck and noise gives the mode at full
+        /// force wherever it acts, or 0 dB if all three are off. Unison voices share its energy.
         amplitude: f32,
     },
     /// Releases a key.

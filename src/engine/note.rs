@@ -55,9 +55,6 @@ pub struct Note {
     pub is_legato: bool,
     /// The hit of another body, if the note is one ([`EventKind::Strike`](super::EventKind::Strike)).
     pub contact: Option<Contact>,
-    /// The only mode that the note excites, if it is a nudge ([`EventKind::Nudge`](super::EventKind::Nudge)); its amplitude is
-    /// the velocity.
-    pub nudged: Option<u16>,
 }
 
 impl Note {
@@ -79,7 +76,6 @@ impl Note {
         pan: 0.0,
         is_legato: false,
         contact: None,
-        nudged: None,
     };
 }
 

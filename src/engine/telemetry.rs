@@ -157,7 +157,7 @@ impl TelemetryWriter {
         };
         match event.kind {
             EventKind::NoteOn { key, id, .. } => press(key, id),
-            EventKind::Strike { key, .. } | EventKind::Nudge { key, .. } => press(key, None),
+            EventKind::Strike { key, .. } => press(key, None),
             EventKind::NoteOff { key, id, .. } => {
                 self.lift(Notes { id, channel: Some(channel as u8), key: Some(key) });
             }

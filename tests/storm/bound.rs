@@ -68,6 +68,8 @@ struct Part {
     /// Bound of the sum of all modes' amplitudes that a bow of speed 1 gives until the end of the case, times the highest level
     /// of the bow.
     bow: f64,
+    /// The highest gain of mallet, pluck and noise, or 1 if they may all be off: the greatest force of a nudge.
+    nudge: f64,
     /// Factor by which bloom may raise the sum of the amplitudes that strikes give; `None` if nothing blooms.
     bloom: Option<f64>,
     /// The reach of a strike; `None` after the patch has changed.
@@ -82,6 +84,8 @@ struct Strike {
     forces: [f64; 3],
     /// Bound of the sum of all modes' amplitudes that a bow gives.
     bow: f64,
+    /// Force of a nudge.
+    nudge: f64,
     law: f64,
     reach: Reach,
 }
@@ -89,8 +93,9 @@ struct Strike {
 impl Strike {
     fn amplitudes(&self) -> [f64; 3] {
         let [mallet, pluck, noise] = self.forces;
-        let Reach { struck, plucked, noise: burst } = self.reach;
-        [0, 1, 2].map(|i| self.law * (mallet * struck[i] + pluck * plucked[i] + noise * burst[i]))
+        let Reach { struck, plucked, noise: burst, nudged } = self.reach;
+        let sum = |i: usize| mallet * struck[i] + pluck * plucked[i] + noise * burst[i] + self.nudge * nudged[i];
+        [0, 1, 2].map(|i| self.law * sum(i))
     }
 }
 
@@ -107,12 +112,15 @@ impl Part {
             unison: 1.0,
             moves_tilt: false,
             bow: 0.0,
+            nudge: 1.0,
             bloom: None,
             reach: None,
         };
         // A voice that is struck again keeps the number of unison voices of its note’s start, so the highest number counts.
         part.unison = part.most(case, Param::Unison).max(1.0);
         part.bow = part.most_bow(case);
+        let levels = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(|level| part.most(case, level));
+        part.nudge = levels.into_iter().map(gain_from_db).fold(1.0, f64::max);
         part.bloom = part.most_bloom(case);
         let has_route = |patch: &Patch| patch.routes.iter().any(|(_, route)| route.destination == Param::Tilt);
         let is_routed = has_route(&case.patch) || case.programs.iter().any(has_route);
@@ -236,6 +244,12 @@ impl Part {
     }
 
     fn strike(&mut self, event: &Event, sample_rate: f64) -> Option<Strike> {
+        let is_exact = self.value(Param::Coefficients) == 0.0;
+        let law = if is_exact { 1.0 } else { CLASSIC };
+        if let EventKind::Nudge { amplitude, .. } = event.kind {
+            let nudge = f64::from(unit(amplitude)) * self.nudge * sqrt(self.unison);
+            return Some(Strike { end: 0, forces: [0.0; 3], bow: 0.0, nudge, law, reach: self.reach() });
+        }
         let EventKind::NoteOn { velocity, .. } = event.kind else { return None };
         let soft = if self.soft[usize::from(event.channel & 15)] { SOFT } else { 1.0 };
         // Each of n unison voices has the force divided by √n, and all of them may be in phase.
@@ -248,14 +262,13 @@ impl Part {
         let is_plain = self.value(Param::MalletMass) <= 1.0 && self.value(Param::MalletSpeed) == 0.0;
         let pulse = if is_plain { 0.01 } else { 0.101 } * sample_rate;
         let end = u64::from(event.frame) + noise.frames().max(pulse) as u64 + 2;
-        let is_exact = self.value(Param::Coefficients) == 0.0;
         let forces = [
             force(Param::MalletVelocity) * self.level(Param::MalletLevel),
             force(Param::PluckVelocity) * self.level(Param::PluckLevel),
             force(Param::NoiseVelocity) * noise.most(is_exact),
         ];
         let bow = force(Param::BowVelocity) * self.bow;
-        Some(Strike { end, forces, bow, law: if is_exact { 1.0 } else { CLASSIC }, reach: self.reach() })
+        Some(Strike { end, forces, bow, nudge: 0.0, law, reach: self.reach() })
     }
 
     /// The reach of a strike of force 1 with the present patch.
@@ -291,7 +304,8 @@ impl Part {
             let plucked =
                 struck * if self.value(Param::VaryPosition) > 0.0 || table.has_phases() { 1.0 } else { fabs(point) };
             let heard = |share: f64| gains.map(|gain| gain * share);
-            let own = Reach { struck: heard(struck), plucked: heard(plucked), noise: heard(reached * noise_gain) };
+            let noise = heard(reached * noise_gain);
+            let own = Reach { struck: heard(struck), plucked: heard(plucked), noise, nudged: heard(1.0) };
             reach = reach.plus(own, level);
             furthest = furthest.max(own);
         }

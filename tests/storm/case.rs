@@ -61,11 +61,12 @@ pub(crate) enum Kind {
     Program,
     /// A route of the patch and its amount.
     Route,
+    Nudge,
 }
 
 impl Kind {
     /// Every kind. Kept cases depend on the order, so new kinds must be added at the end.
-    pub(crate) const ALL: [Kind; 19] = [
+    pub(crate) const ALL: [Kind; 20] = [
         Kind::Mode,
         Kind::Set,
         Kind::NoteOn,
@@ -85,6 +86,7 @@ impl Kind {
         Kind::Choke,
         Kind::Program,
         Kind::Route,
+        Kind::Nudge,
     ];
 }
 
@@ -325,6 +327,7 @@ fn event(kind: Kind, a: u8, b: u8, c: u8) -> EventKind {
         Kind::Release => EventKind::Release { notes, velocity: number(unit(b)) },
         Kind::Silence => EventKind::Silence { notes },
         Kind::Tempo => EventKind::Tempo(number(between(1.0, 10_000.0, b))),
+        Kind::Nudge => EventKind::Nudge { key: a, mode: u16::from(b & 15), amplitude: number(unit(c)) },
         Kind::Choke => EventKind::Choke { group: a % 18 },
         Kind::Program => EventKind::Program(a % 10),
         Kind::Mode | Kind::Set | Kind::Route | Kind::Roll | Kind::Registered => unreachable!("handled by the caller"),

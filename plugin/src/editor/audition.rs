@@ -1,7 +1,6 @@
 //! A key that the window plays by itself, so that the user hears a change or a chosen sound.
 
 use crate::link::{Link, Touch};
-use sprung::engine::SoundingNote;
 
 /// How long a key is held when a sound is tried, in seconds.
 const HELD: f64 = 0.7;
@@ -25,15 +24,9 @@ impl Audition {
         self.hold(key, Touch::Down { key, velocity }, now, link);
     }
 
-    /// Pushes one mass of the newest note. If nothing sounds, that is a note of the key, which is held for a while.
-    pub(super) fn nudge(&mut self, key: u8, (mode, amplitude): (usize, f32), now: f64, link: &Link) {
-        let mode = mode as u16;
-        if let Some(SoundingNote { channel, key, .. }) = link.telemetry.snapshot().notes[0] {
-            let is_held = link.telemetry.keys(channel) >> key & 1 == 1;
-            link.play(Touch::Nudge { channel, key, mode, amplitude, is_held });
-        } else {
-            self.hold(key, Touch::Nudge { channel: 0, key, mode, amplitude, is_held: true }, now, link);
-        }
+    /// Holds a key for a while whose note is not struck: only one mode is pushed, with an amplitude from 0 to 1.
+    pub(super) fn wake(&mut self, key: u8, (mode, amplitude): (usize, f32), now: f64, link: &Link) {
+        self.hold(key, Touch::Wake { key, mode: mode as u16, amplitude }, now, link);
     }
 
     /// Holds a key for a while that `touch` presses.

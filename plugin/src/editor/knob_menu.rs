@@ -30,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, info: &'static ParamInfo, controls: &mut Control
 /// The entry that opens the host's own menu of the parameter, if it has one.
 fn host_menu(ui: &mut Ui, info: &'static ParamInfo, controls: &Controls) {
     let place = ui.next_widget_position();
-    if controls.host.has_host_menu() && ui.button("Menu of the host").clicked() {
+    if controls.host.has_host_menu() && ui.button("Host menu").clicked() {
         gestures::show_host_menu(controls.params, controls.host, info, in_window(ui.ctx(), place));
         ui.close();
     }

@@ -5,7 +5,9 @@ use super::controls::{Controls, Hint};
 use super::shown::Shown;
 use super::text::line;
 use super::theme::{Palette, SMALL};
+use crate::link::Touch;
 use egui::{Align2, CursorIcon, Id, Painter, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
+use sprung::engine::SoundingNote;
 use std::collections::VecDeque;
 use std::f32::consts::TAU;
 
@@ -15,6 +17,8 @@ const TURNS: f32 = 1.0;
 const TRAIL: usize = 420;
 /// The smallest amplitude that is heard when the mass is released.
 const LEAST: f32 = 0.03;
+/// Longest time from the release to the sound, in seconds.
+const WAIT: f32 = 0.3;
 
 /// The picture's state.
 pub(super) struct Phase {
@@ -22,9 +26,12 @@ pub(super) struct Phase {
     angle: f32,
     /// Points of the unit disk, the newest one at the end.
     trail: VecDeque<Pos2>,
-    /// The greatest energy since the mass was at rest, and the radius that shows it.
+    /// The greatest energy since the mass was at rest.
     greatest: f32,
-    reach: f32,
+    /// The radius that shows the greatest energy: 1, or how far the mass was pulled.
+    full: f32,
+    /// Seconds since the mass was let go, while it has not moved yet.
+    waiting: Option<f32>,
     mode: usize,
     /// Where the mass is held, in the unit disk.
     pulled: Option<Vec2>,
@@ -32,7 +39,7 @@ pub(super) struct Phase {
 
 impl Default for Phase {
     fn default() -> Self {
-        Self { angle: 0.0, trail: VecDeque::new(), greatest: 0.0, reach: 1.0, mode: 0, pulled: None }
+        Self { angle: 0.0, trail: VecDeque::new(), greatest: 0.0, full: 1.0, waiting: None, mode: 0, pulled: None }
     }
 }
 
@@ -90,9 +97,19 @@ impl Phase {
         self.trail.clear();
         // The mass continues from where it was released.
         self.angle = (-pulled.angle()).rem_euclid(TAU);
-        (self.greatest, self.reach) = (0.0, amplitude(pulled));
+        (self.greatest, self.full, self.waiting) = (0.0, amplitude(pulled), Some(0.0));
         let now = ui.input(|input| input.time);
-        audition.nudge(shown.guide().home, (self.mode, amplitude(pulled)), now, controls.params.link());
+        let (push, home, link) = ((self.mode, amplitude(pulled)), shown.guide().home, controls.params.link());
+        // A released note of the home key is probably the last one that was pulled: it is held again.
+        let is_held = |note: &SoundingNote| link.telemetry.keys(note.channel) >> note.key & 1 == 1;
+        let is_pushed = |note: &&SoundingNote| shown.shows(note.key) && (is_held(note) || note.key != home);
+        match controls.notes.first().filter(is_pushed) {
+            Some(SoundingNote { channel, key, .. }) => {
+                let (mode, amplitude) = (push.0 as u16, push.1);
+                link.play(Touch::Nudge { channel: *channel, key: *key, mode, amplitude });
+            }
+            None => audition.wake(home, push, now, link),
+        }
         ui.ctx().request_repaint();
     }
 
@@ -104,24 +121,28 @@ impl Phase {
         // Without a selection, the picture changes to the loudest mode only when the present one has almost died away,
         // so that it does not jump.
         if mode != self.mode && (selected.is_some() || energy(self.mode) < 0.01 * energy(mode)) {
-            (self.greatest, self.reach, self.mode) = (0.0, 1.0, mode);
+            (self.greatest, self.full, self.mode) = (0.0, 1.0, mode);
             self.trail.clear();
         }
         let now = energy(self.mode);
         if now <= 1e-12 {
-            if self.greatest > 0.0 {
-                (self.greatest, self.reach) = (0.0, 1.0);
+            // The sound takes a moment to come; if it does not, nothing plays.
+            self.waiting =
+                self.waiting.map(|passed| passed + ui.input(|input| input.stable_dt)).filter(|passed| *passed < WAIT);
+            if self.waiting.is_none() {
+                (self.greatest, self.full) = (0.0, 1.0);
             }
             self.trail.pop_front();
             return;
         }
+        self.waiting = None;
         if now > self.greatest {
             if self.greatest > 0.0 {
-                self.reach = (self.reach * (now / self.greatest).sqrt()).min(1.0);
+                self.full = (self.full * (now / self.greatest).sqrt()).min(1.0);
             }
             self.greatest = now;
         }
-        let radius = self.reach * (now / self.greatest).sqrt();
+        let radius = self.full * (now / self.greatest).sqrt();
         let turned = TAU * TURNS * ui.input(|input| input.stable_dt.min(0.1));
         // Points between two passes, so that the trail is round.
         for step in 1..=4 {

@@ -1,7 +1,7 @@
 //! Makes a sound from recordings on a thread of its own: reads them and fits a preset as `sprung fit` does.
 
 use super::files;
-use sprung::analysis::fit::{Settings, Take, VELOCITY, fit, velocities};
+use sprung::analysis::fit::{Settings, Take, VELOCITY, fit, take_velocities_from_names};
 use sprung::io::sound_file;
 use sprung::preset::Preset;
 use sprung::text::printable;
@@ -108,10 +108,9 @@ fn fitted(paths: &[PathBuf], shared: &Shared) -> Result<Done> {
         said.extend(take.recording.warnings.iter().map(|warning| format!("{}: {warning}", take.name)));
         takes.push(take);
     }
-    let names: Vec<&str> = takes.iter().map(|take| take.name.as_str()).collect();
-    if let Some(velocities) = velocities(&names) {
-        said.push(format!("velocities {} by the names", listed(&velocities)));
-        takes.iter_mut().zip(velocities).for_each(|(take, velocity)| take.velocity = velocity);
+    if take_velocities_from_names(&mut takes) {
+        let velocities: Vec<String> = takes.iter().map(|take| take.velocity.to_string()).collect();
+        said.push(format!("velocities {} by the names", velocities.join(", ")));
     }
     let fitted = fit(&takes, &Settings::default(), &mut |share| {
         shared.steps.store((share * STEPS) as u32, Ordering::Relaxed);
@@ -135,11 +134,6 @@ fn read(path: &Path) -> Result<Take> {
     }
     let recording = sound_file::read(file, &name)?;
     Ok(Take { name, recording, key: None, velocity: VELOCITY })
-}
-
-/// Numbers with commas between them.
-fn listed(numbers: &[f64]) -> String {
-    numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// The last part of a path, safe to show.

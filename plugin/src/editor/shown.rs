@@ -72,6 +72,11 @@ impl Shown {
         self.loaded.kit.sounds()[0].patch()
     }
 
+    /// Whether the note of a key is of the sound whose modes are shown.
+    pub(super) fn shows(&self, key: u8) -> bool {
+        self.loaded.kit.pad(key).is_some_and(|pad| pad.sound == 0)
+    }
+
     /// Family and tags of the sound.
     pub(super) fn words(&self) -> String {
         match &self.playable {

@@ -5,11 +5,12 @@ use crate::process::wait_until;
 use crate::screen::Onlooker;
 use crate::vst3_host::{Frame, Module, Vst3};
 use crate::window::{Editor, Parent, on_a_screen};
+use sprung::params::Param;
 use std::process::ExitCode;
 use vst3::ComWrapper;
 use vst3::Steinberg::IPlugFrame;
 
-/// A knob of the window as it opens.
+/// The knob of the mallet's level in the window as it opens.
 const KNOB: [i16; 2] = [52, 394];
 /// Where the menu's entries may be below the pointer that opened it.
 const ENTRIES: std::ops::Range<i16> = 30..180;
@@ -35,7 +36,7 @@ pub(crate) fn work(name: &str) -> ExitCode {
 fn in_clap() {
     let parent = Parent::new();
     let mut instance = Instance::new();
-    let known: Vec<u32> = instance.parameters().iter().map(|parameter| parameter.id.get()).collect();
+    let expected = instance.id(Param::MalletLevel).get();
     let editor = Editor::open(&mut instance, &parent);
     editor.wait_until_drawn(&mut instance);
     let mut last = 0;
@@ -43,7 +44,7 @@ fn in_clap() {
         instance.run_callbacks();
         instance.menus().pop()
     });
-    assert!(known.contains(&parameter), "{parameter}");
+    assert_eq!(parameter, expected);
     is_near(place, last);
     editor.close(&mut instance);
 }
@@ -52,7 +53,8 @@ fn in_vst3() {
     let onlooker = Onlooker::new(None);
     let window = onlooker.make_window();
     let plugin = Vst3::new(&Module::open());
-    let known: Vec<u32> = (0..).map_while(|index| plugin.parameter(index)).map(|(id, _)| id).collect();
+    let mut known = (0..).map_while(|index| plugin.parameter(index));
+    let (expected, _) = known.find(|(_, title)| title == Param::MalletLevel.info().name).unwrap();
     let frame = ComWrapper::new(Frame::default());
     let view = plugin.open_window(&frame.to_com_ptr::<IPlugFrame>().unwrap(), window);
     wait_until("a picture", || {
@@ -64,17 +66,17 @@ fn in_vst3() {
         frame.turn(10);
         plugin.menus().pop()
     });
-    assert!(known.contains(&parameter), "{parameter}");
+    assert_eq!(parameter, expected);
     is_near(place, last);
     view.close();
 }
 
-/// Opens the window's menu of a knob again and again, and clicks further down each time, until `opened` returns what the
+/// Opens the window's menu of a knob again and again, and clicks further up each time, until `opened` returns what the
 /// host was asked for. `last` becomes the height of the last click.
 fn until_one_opens<T>(onlooker: &Onlooker, last: &mut i16, mut opened: impl FnMut() -> Option<T>) -> T {
     const ESCAPE: u8 = 9;
     let [x, y] = KNOB;
-    let mut heights = ENTRIES.step_by(9).cycle();
+    let mut heights = ENTRIES.rev().step_by(9).cycle();
     let mut found = None;
     wait_until("the host's menu", || {
         *last = y + heights.next().unwrap();

@@ -31,7 +31,7 @@ mod tones;
 mod tuned;
 
 pub use body::{Explained, Family};
-pub use names::velocities;
+pub use names::take_velocities_from_names;
 pub use take::{Take, VELOCITY};
 
 use super::level::rms;

@@ -1,29 +1,35 @@
 //! Velocities in the names of recordings, as libraries of samples write them.
 
-/// The dynamic marks of scores, with the velocities that notation programs play them with.
+use super::take::Take;
+
+/// The dynamic marks of scores, with the velocities at which MuseScore plays them.
 const MARKS: [(&str, f64); 8] =
-    [("ppp", 16.0), ("pp", 33.0), ("p", 49.0), ("mp", 64.0), ("mf", 80.0), ("f", 96.0), ("ff", 112.0), ("fff", 127.0)];
+    [("ppp", 16.0), ("pp", 33.0), ("p", 49.0), ("mp", 64.0), ("mf", 80.0), ("f", 96.0), ("ff", 112.0), ("fff", 126.0)];
 
 /// Words before a velocity in a name.
 const WORDS: [&str; 3] = ["velocity", "vel", "v"];
 
-/// If the loudest of several recordings has a smaller number than this, the numbers are those of versions or layers.
+/// The least number of the loudest recording. Where all numbers are smaller, they count versions or layers: sample libraries
+/// have up to some twenty of these.
 const LEAST_LOUDEST: f64 = 32.0;
 
-/// The velocities of recordings of one instrument by the names of their files, 1–127: numbers as in `bell-C5-v40.wav`,
-/// `bell vel 100.wav` or `A0v127.wav`, or dynamic marks as in `bell-pp.wav`. None unless there are at least two recordings,
-/// each name has a velocity, and two of them differ; or if the numbers are so small that they count versions.
-///
-/// ```
-/// use sprung::analysis::fit::velocities;
-///
-/// assert_eq!(velocities(&["bell-v40.wav", "bell-v120.wav"]), Some(vec![40.0, 120.0]));
-/// assert_eq!(velocities(&["bell-v1.wav", "bell-v2.wav"]), None);
-/// ```
-pub fn velocities(names: &[&str]) -> Option<Vec<f64>> {
-    let found: Vec<f64> = names.iter().map(|name| number(name).or_else(|| mark(name))).collect::<Option<_>>()?;
-    let loudest = found.iter().copied().fold(0.0, f64::max);
-    (loudest >= LEAST_LOUDEST && found.iter().any(|velocity| *velocity != loudest)).then_some(found)
+/// Gives several takes of one instrument the velocities that are in the names of their files, and returns whether there are
+/// any: numbers as in `bell-C5-v40.wav`, `bell vel 100.wav` or `A0v127.wav`, or else dynamic marks as in `bell-pp.wav`. Every
+/// name must have one, two must differ, and numbers that only count versions are left alone.
+pub fn take_velocities_from_names(takes: &mut [Take]) -> bool {
+    let names: Vec<&str> = takes.iter().map(|take| take.name.as_str()).collect();
+    let Some(velocities) = velocities(&names) else { return false };
+    takes.iter_mut().zip(velocities).for_each(|(take, velocity)| take.velocity = velocity);
+    true
+}
+
+fn velocities(names: &[&str]) -> Option<Vec<f64>> {
+    let all = |of: fn(&str) -> Option<f64>| {
+        let found: Vec<f64> = names.iter().map(|name| of(name)).collect::<Option<_>>()?;
+        found.iter().any(|velocity| *velocity != found[0]).then_some(found)
+    };
+    let numbers = all(number).filter(|found| found.iter().any(|velocity| *velocity >= LEAST_LOUDEST));
+    numbers.or_else(|| all(mark))
 }
 
 /// The name without folders and ending, in pieces of letters and of digits.
@@ -56,11 +62,15 @@ fn number(name: &str) -> Option<f64> {
     })
 }
 
-/// The velocity of the last dynamic mark that stands by itself. Capitals are notes.
+/// The velocity of the last dynamic mark that stands by itself. A letter before a digit, a sharp or a flat is a key.
 fn mark(name: &str) -> Option<f64> {
     let pieces = pieces(name);
-    let of = |piece: &&str| MARKS.iter().find(|(mark, _)| mark == piece).map(|(_, velocity)| *velocity);
-    pieces.iter().rev().find_map(of)
+    let is_key = |at: usize| {
+        pieces.get(at + 1).is_some_and(|next| next.starts_with(|letter: char| letter.is_ascii_digit() || letter == '#'))
+    };
+    let of =
+        |at: usize| MARKS.iter().find(|(mark, _)| *mark == pieces[at] && !is_key(at)).map(|(_, velocity)| *velocity);
+    (0..pieces.len()).rev().find_map(of)
 }
 
 #[cfg(test)]
@@ -76,6 +86,8 @@ mod tests {
             ("a/b.v1/tom_Velocity_064.wav", "a/b.v1/tom_Velocity_100.wav", [64.0, 100.0]),
             ("marimba-F3-pp.wav", "marimba-F3-f.wav", [33.0, 96.0]),
             ("trumpet.mf.C4.wav", "trumpet.ff.C4.wav", [80.0, 112.0]),
+            ("bell-pp-f3.wav", "bell-ff-f#3.wav", [33.0, 112.0]),
+            ("bell_v2-pp.wav", "bell_v2-ff.wav", [33.0, 112.0]),
         ] {
             assert_eq!(velocities(&[soft, loud]), Some(expected.to_vec()), "{soft} {loud}");
         }
@@ -88,6 +100,7 @@ mod tests {
             ["bell-v40.wav", "other-v40.wav"],
             ["kick-v1.wav", "kick-v2.wav"],
             ["tom F.wav", "tom P.wav"],
+            ["bell-pp-c3.wav", "bell-pp-f3.wav"],
             ["bell-v200.wav", "bell-v300.wav"],
             ["sov40.wav", "sov50.wav"],
             ["", "ä"],

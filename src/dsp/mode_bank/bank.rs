@@ -21,8 +21,8 @@ const MODES_PER_TICK: usize = 8;
 /// A bank of modes, as a structure of arrays. Real-time safe, except for the first [`ModeBank::new`], which detects the
 /// CPU.
 ///
-/// For any sequence of calls, the amplitude of a mode never exceeds the sum of `force · gain` over all strikes and of nudges. Pitch,
-/// damping and their changes can only reduce it.
+/// For any sequence of calls, the amplitude of a mode never exceeds the sum of `force · gain` over all strikes, plus the
+/// amplitudes of all nudges. Pitch, damping and their changes can only reduce it.
 ///
 /// Modes that have rung freely at one pitch for a few control ticks are rendered one whole tick at a time, with tables.
 /// Otherwise they are stepped. The choice depends on the modes and on the calls, never on the CPU or on block sizes.
@@ -165,15 +165,16 @@ impl ModeBank {
         self.turned_noise |= noise.0 != 0.0;
     }
 
-    /// Adds `amplitude` to the velocity of mode `m`, in the direction in which it moves: it gains as much amplitude at most,
-    /// and the output does not jump. Does nothing if there is no mode `m`.
+    /// Adds velocity to mode `m` in the direction in which it moves: its amplitude grows by `amplitude` at most, and the output
+    /// does not jump. Does nothing if there is no mode `m`.
     pub fn nudge(&mut self, m: usize, amplitude: f32) {
         if m >= self.len {
             return;
         }
         self.leave_tables();
-        if let Motion::Line { driven, .. } = &mut self.motion {
-            *driven = true;
+        match &mut self.motion {
+            Motion::Line { driven, .. } => *driven = true,
+            still => *still = Motion::Still { ticks: 0 },
         }
         let y = &mut self.states[self.current].y.0[m];
         *y += amplitude.copysign(*y);
@@ -235,7 +236,7 @@ impl ModeBank {
         self.aim((!arrived).then_some(frames), [passed, left], lost);
     }
 
-    /// Sets the pitch ratio of every mode at once, without a ramp: for modes at rest.
+    /// Sets the pitch ratio of every mode at once, without a ramp: for modes at rest or pushed just now.
     pub fn jump_to(&mut self, ratio: f64) {
         self.leave_tables();
         self.tune();

@@ -69,7 +69,7 @@ impl Lender {
             let owner = usize::from(chunk.owner(event));
             let (most, synth) = (&mut most_needed[owner], &parts[owner].synth);
             match event.kind {
-                EventKind::NoteOn { key, .. } | EventKind::Strike { key, .. } | EventKind::Nudge { key, .. } => {
+                EventKind::NoteOn { key, .. } | EventKind::Strike { key, .. } => {
                     // Events before this one in the chunk may change the need of the note.
                     let is_first = index == 0 && chunk.frame(event) == 0;
                     let need = match is_first {

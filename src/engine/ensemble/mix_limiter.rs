@@ -38,7 +38,7 @@ impl Channels {
     fn handle(&mut self, event: &Event, chunk: &Chunk) {
         let owner = chunk.owner(event);
         match event.kind {
-            EventKind::NoteOn { .. } | EventKind::Strike { .. } | EventKind::Nudge { .. } => self.played |= 1 << owner,
+            EventKind::NoteOn { .. } | EventKind::Strike { .. } => self.played |= 1 << owner,
             EventKind::Param { param: Param::Limiter, value } => {
                 self.set_asking(owner, Param::Limiter.info().clamp(value));
             }

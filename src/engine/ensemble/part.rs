@@ -44,9 +44,7 @@ impl Part {
                 _ => None,
             };
             let kind = match event.kind {
-                EventKind::NoteOn { key, .. } | EventKind::Strike { key, .. } | EventKind::Nudge { key, .. }
-                    if owner != *channel =>
-                {
+                EventKind::NoteOn { key, .. } | EventKind::Strike { key, .. } if owner != *channel => {
                     EventKind::Choke { group: groups[owner].of_key(key, synth.tuning()) }
                 }
                 kind => kind,

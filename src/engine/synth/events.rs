@@ -24,7 +24,11 @@ impl Synth {
                 self.key_down(Note { channel, key, velocity, contact: Some(contact), ..Note::NONE });
             }
             EventKind::Nudge { key, mode, amplitude } => {
-                self.key_down(Note { channel, key, velocity: unit(amplitude), nudged: Some(mode), ..Note::NONE });
+                for (note, voice) in self.manager.sounding_on(channel, key) {
+                    if let Some(instrument) = self.instruments.of_note(note) {
+                        voice.nudge(instrument, mode.into(), unit(amplitude));
+                    }
+                }
             }
             EventKind::NoteOff { key, velocity, id } => {
                 self.note_off(Notes { id, ..Notes::on(channel, key) }, velocity);

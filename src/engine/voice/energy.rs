@@ -40,7 +40,8 @@ impl Energy {
         self.pending += more;
     }
 
-    /// Adds an amplitude to one mode. Until the next measurement, the energy is an upper bound.
+    /// Adds an amplitude to one mode. Until the next measurement the energy is an upper bound, except with the original formulas,
+    /// which give high modes more than was asked for.
     pub(super) fn nudge(&mut self, amplitude: f64) {
         let most = sqrt(self.measured) + amplitude;
         (self.measured, self.until_measured, self.end) = (most * most, 0, None);

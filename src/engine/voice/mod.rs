@@ -275,6 +275,16 @@ impl SynthVoice {
         self.modulation.advance(frames as u32);
     }
 
+    /// Pushes mode `m`, if there is one, in the direction in which it moves; `share` is 0–1.
+    pub(crate) fn nudge(&mut self, instrument: &Instrument, m: usize, share: f32) {
+        let values = StruckValues { instrument, modulators: &self.modulators, table: self.table };
+        let amplitude = f64::from(share) * strike::most_nudged(&values, m, self.unison.count);
+        if amplitude > 0.0 {
+            self.bank.nudge(m, amplitude as f32);
+            self.energy.nudge(amplitude);
+        }
+    }
+
     /// Applies a note expression. `brightness` is the channel's.
     pub(crate) fn express(
         &mut self,

@@ -35,15 +35,6 @@ impl SynthVoice {
         self.decay.strike(&values);
     }
 
-    /// Pushes the mass that a note nudges; with other notes it does nothing.
-    fn nudge(&mut self, instrument: &Instrument, note: &Note) {
-        let Some(m) = note.nudged.map(usize::from) else { return };
-        let values = StruckValues { instrument, modulators: &self.modulators, table: self.table };
-        let amplitude = f64::from(note.velocity) * self.strike.most_nudged(&values, m, self.unison.count);
-        self.bank.nudge(m, amplitude as f32);
-        self.energy.nudge(amplitude);
-    }
-
     /// Replaces the voice's note by `note`: note expressions and offsets become neutral again. The gain changes smoothly.
     fn take_over(&mut self, note: &Note) {
         self.is_held = true;
@@ -144,14 +135,9 @@ impl Voice for SynthVoice {
         };
         self.bank.load(law, self.sample_rate, values.modes().as_slice(), setup);
         self.excite(instrument, note);
-        self.nudge(instrument, note);
     }
 
     fn restrike(&mut self, instrument: &Instrument, note: &Note) {
-        if note.nudged.is_some() {
-            self.slide(Some(instrument), note, note.is_legato);
-            return self.nudge(instrument, note);
-        }
         let passed = self.clock.since_control();
         if !self.modulators.are_idle() {
             self.modulators.advance(passed);

@@ -141,13 +141,6 @@ impl Strike {
         more
     }
 
-    /// The greatest amplitude of a nudge of mode `m`, for one of `count` unison voices; 0 if there is no such mode.
-    pub(super) fn most_nudged(&self, values: &StruckValues, m: usize, count: usize) -> f64 {
-        let mallet = self.full_forces[0];
-        let force = if mallet > 0.0 { mallet } else { 1.0 / sqrt(count as f64) };
-        values.modes().as_slice().get(m).map_or(0.0, |mode| force * fabs(tilted(values)(mode)))
-    }
-
     /// Reads the strike's parameters and starts the exciters. `frequency` is the note's, in Hz. Returns the energy that the
     /// strike adds.
     pub(super) fn strike(
@@ -169,15 +162,13 @@ impl Strike {
         self.variation = Variation::new(values, key);
         self.variation.move_mallet(note.contact.map_or(0.0, |contact| contact.place.into()));
 
-        let share = match note {
-            Note { nudged: Some(_), .. } => 0.0,
-            Note { soft: true, .. } => SOFT_FORCE,
-            _ => 1.0,
-        };
+        let soft = if note.soft { SOFT_FORCE } else { 1.0 };
         let follow = values.share(Param::Velocity);
         let force = |own| {
             let power = 2.0 * (follow + values.share(own)).max(0.0);
-            pow(f64::from(note.velocity), power) * share / sqrt(count as f64)
+            // Velocity 0 is without force even if forces do not follow the velocity.
+            let force = if note.velocity > 0.0 { pow(f64::from(note.velocity), power) } else { 0.0 };
+            force * soft / sqrt(count as f64)
         };
         let [mallet, pluck, burst] = [Param::MalletVelocity, Param::PluckVelocity, Param::NoiseVelocity].map(force);
         let levels = [Param::MalletLevel, Param::PluckLevel].map(|param| exciter_gain(values.get(param)));
@@ -234,6 +225,15 @@ fn tilted(values: &StruckValues) -> impl Fn(&Mode) -> f64 + use<> {
         balance = if total > 0.0 { plain / total } else { 1.0 };
     }
     move |mode| tilted(mode) * balance
+}
+
+/// The greatest amplitude of a nudge of mode `m`, for one of `count` unison voices; 0 if there is no such mode.
+pub(super) fn most_nudged(values: &StruckValues, m: usize, count: usize) -> f64 {
+    let level = |param| exciter_gain(values.instrument.modulated.get(param).into());
+    let levels = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(level);
+    let loudest = levels.into_iter().fold(0.0, f64::max);
+    let force = if loudest > 0.0 { loudest } else { 1.0 } / sqrt(count as f64);
+    values.modes().as_slice().get(m).map_or(0.0, |mode| force * fabs(tilted(values)(mode)))
 }
 
 /// Mean of the mode shape over the width of the finger, relative to its centre. `width` is a fraction of the string's

@@ -1,9 +1,11 @@
 //! Edits for the host's menu of a parameter, which the wrapper does not know: CLAP's context-menu extension and VST3's
 //! `IComponentHandler3`.
 //!
-//! The window may have a thread of its own, and hosts show menus only from their main thread, so the request is a task there.
+//! Hosts show menus only from their main thread, and a menu may run the host's event loop until it is closed. So the request
+//! must never be carried out within the window's own pass: it is a task for later. In VST3 that is possible on Linux alone, where
+//! the window has a thread of its own; elsewhere a VST3 window has no such entry.
 
-use super::edit::{CLAP_CONTEXT, CLAP_WRAPPER, CONTEXT, Edit, INNER, edit};
+use super::edit::{CLAP_CONTEXT, CLAP_WRAPPER, CONTEXT, Edit, INNER, WRAPPER, edit};
 
 /// The interface of the window's context, in nice-plug-core.
 pub(super) const INTERFACE: &[Edit] = &[
@@ -82,7 +84,10 @@ use clap_sys::ext::gui::{clap_host_gui, clap_plugin_gui};
 ",
         "    host_voice_info: AtomicRefCell<Option<ClapPtr<clap_host_voice_info>>>,
     #[cfg(feature = \"editor\")]
-    pub host_context_menu: AtomicRefCell<Option<ClapPtr<clap_host_context_menu>>>,
+    host_context_menu: AtomicRefCell<Option<ClapPtr<clap_host_context_menu>>>,
+    /// Whether the host can show its menu over the open window.
+    #[cfg(feature = \"editor\")]
+    pub has_host_menu: AtomicBool,
 ",
     ),
     edit(
@@ -92,6 +97,8 @@ use clap_sys::ext::gui::{clap_host_gui, clap_plugin_gui};
         "            host_voice_info: AtomicRefCell::new(None),
             #[cfg(feature = \"editor\")]
             host_context_menu: AtomicRefCell::new(None),
+            #[cfg(feature = \"editor\")]
+            has_host_menu: AtomicBool::new(false),
 ",
     ),
     edit(
@@ -127,23 +134,63 @@ use clap_sys::ext::gui::{clap_host_gui, clap_plugin_gui};
         "            #[cfg(feature = \"editor\")]
             Task::ShowHostMenu { param_hash, x, y } => {
                 let menu = self.host_context_menu.borrow().clone();
-                let (target, host) = (
-                    clap_context_menu_target {
-                        kind: CLAP_CONTEXT_MENU_TARGET_KIND_PARAM,
-                        id: param_hash,
-                    },
-                    &*self.host_callback,
-                );
-                if let Some(menu) = menu
-                    && let (Some(can_popup), Some(popup)) = (menu.can_popup, menu.popup)
-                {
-                    // Without a menu of the host, the click does nothing.
-                    unsafe {
-                        let _ = can_popup(host) && popup(host, &target, 0, x, y);
-                    }
+                let target = clap_context_menu_target {
+                    kind: CLAP_CONTEXT_MENU_TARGET_KIND_PARAM,
+                    id: param_hash,
+                };
+                if let Some(popup) = menu.and_then(|menu| menu.popup) {
+                    // A host that refuses shows nothing.
+                    let _ = unsafe { popup(&*self.host_callback, &target, 0, x, y) };
                 }
             }
             Task::VoiceInfoChanged => match &*self.host_voice_info.borrow() {
+",
+    ),
+    edit(
+        CLAP_WRAPPER,
+        "    pub fn request_restart(&self) {
+        unsafe_clap_call! { &*self.host_callback=>request_restart(&*self.host_callback) };
+    }
+",
+        "    pub fn request_restart(&self) {
+        unsafe_clap_call! { &*self.host_callback=>request_restart(&*self.host_callback) };
+    }
+
+    /// Asks the host whether it can show its menu. To be called on the main thread, with a window.
+    #[cfg(feature = \"editor\")]
+    fn ask_for_host_menu(&self) {
+        let menu = self.host_context_menu.borrow().clone();
+        let can_popup = menu.and_then(|menu| menu.can_popup);
+        let has_menu = can_popup.is_some_and(|can_popup| unsafe { can_popup(&*self.host_callback) });
+        self.has_host_menu.store(has_menu, Ordering::Relaxed);
+    }
+
+    /// Makes the host show its menu for a parameter later, even if this is the main thread.
+    #[cfg(feature = \"editor\")]
+    pub fn show_host_menu(&self, param: ParamPtr, x: i32, y: i32) {
+        if let Some(param_hash) = self.param_ptr_to_hash.get(&param).copied()
+            && self.tasks.push(Task::ShowHostMenu { param_hash, x, y }).is_ok()
+        {
+            let host = &self.host_callback;
+            unsafe_clap_call! { host=>request_callback(&**host) };
+        }
+    }
+",
+    ),
+    edit(
+        CLAP_WRAPPER,
+        "                crate::nice_error!(\"Failed to set editor parent window: {}\", e);
+
+                false
+            } else {
+                true
+",
+        "                crate::nice_error!(\"Failed to set editor parent window: {}\", e);
+
+                false
+            } else {
+                wrapper.ask_for_host_menu();
+                true
 ",
     ),
     edit(
@@ -151,16 +198,12 @@ use clap_sys::ext::gui::{clap_host_gui, clap_plugin_gui};
         "    fn get_state(&self) -> nice_plug_core::plugin::PluginState {
 ",
         "    fn has_host_menu(&self) -> bool {
-        let wrapper = self.wrapper.upgrade();
-        wrapper.is_some_and(|wrapper| wrapper.host_context_menu.borrow().is_some())
+        let wrapper = self.wrapper.upgrade().unwrap();
+        wrapper.has_host_menu.load(std::sync::atomic::Ordering::Relaxed)
     }
 
     unsafe fn raw_show_host_menu(&self, param: ParamPtr, x: i32, y: i32) {
-        let wrapper = self.wrapper.upgrade().unwrap();
-        if let Some(param_hash) = wrapper.param_ptr_to_hash.get(&param).copied() {
-            let task_posted = wrapper.schedule_gui(Task::ShowHostMenu { param_hash, x, y });
-            crate::nice_debug_assert!(task_posted, \"The task queue is full, dropping task...\");
-        }
+        self.wrapper.upgrade().unwrap().show_host_menu(param, x, y);
     }
 
     fn get_state(&self) -> nice_plug_core::plugin::PluginState {
@@ -202,10 +245,11 @@ use vst3::Steinberg::Vst::{IComponentHandler3, IComponentHandler3Trait, IContext
         "            #[cfg(feature = \"editor\")]
             Task::ShowHostMenu { param_hash, x, y } => {
                 let view = self.plug_view.read().clone();
-                if let (Some(handler), Some(view)) = (self.menu_handler(), view)
+                // A host without a run loop has tasks done by the worker, where it may not show a menu.
+                if is_gui_thread
+                    && let (Some(handler), Some(view)) = (self.menu_handler(), view)
                     && let Some(view) = view.to_com_ptr::<IPlugView>()
                 {
-                    // The menu may run the host's event loop until it is closed.
                     unsafe {
                         let menu = handler.createContextMenu(view.as_ptr(), &param_hash);
                         if let Some(menu) = ComPtr::from_raw(menu) {
@@ -216,6 +260,42 @@ use vst3::Steinberg::Vst::{IComponentHandler3, IComponentHandler3Trait, IContext
             }
             #[cfg(feature = \"editor\")]
             Task::CallMainThread => {
+",
+    ),
+    edit(
+        INNER,
+        "    /// The thread that opened the window, while it is open.
+",
+        "    /// Whether the host can show menus of parameters, and the window's thread may ask for them.
+    #[cfg(feature = \"editor\")]
+    pub has_host_menu: AtomicBool,
+
+    /// The thread that opened the window, while it is open.
+",
+    ),
+    edit(
+        INNER,
+        "            window_thread: AtomicCell::new(None),
+",
+        "            window_thread: AtomicCell::new(None),
+            #[cfg(feature = \"editor\")]
+            has_host_menu: AtomicBool::new(false),
+",
+    ),
+    edit(
+        WRAPPER,
+        "            unsafe { ComRef::from_raw(handler) }.map(|r| r.to_com_ptr());
+
+        kResultOk
+",
+        "            unsafe { ComRef::from_raw(handler) }.map(|r| r.to_com_ptr());
+        #[cfg(feature = \"editor\")]
+        {
+            let has_menu = cfg!(target_os = \"linux\") && self.inner.menu_handler().is_some();
+            self.inner.has_host_menu.store(has_menu, std::sync::atomic::Ordering::Relaxed);
+        }
+
+        kResultOk
 ",
     ),
     edit(
@@ -236,9 +316,8 @@ use vst3::Steinberg::Vst::{IComponentHandler3, IComponentHandler3Trait, IContext
         "    fn get_state(&self) -> PluginState {
 ",
         "    fn has_host_menu(&self) -> bool {
-        self.inner
-            .upgrade()
-            .is_some_and(|inner| inner.menu_handler().is_some())
+        let inner = self.inner.upgrade().unwrap();
+        inner.has_host_menu.load(std::sync::atomic::Ordering::Relaxed)
     }
 
     unsafe fn raw_show_host_menu(&self, param: ParamPtr, x: i32, y: i32) {

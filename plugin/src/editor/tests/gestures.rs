@@ -225,18 +225,18 @@ fn the_hosts_own_menu_opens_where_the_entry_is() {
         stage.harness.run_steps(3);
     };
     open(&mut stage);
-    assert!(stage.harness.query_by_label("Menu of the host").is_none(), "this host has none");
+    assert!(stage.harness.query_by_label("Host menu").is_none(), "this host has none");
     stage.harness.key_press(Key::Escape);
     stage.harness.run_steps(3);
     stage.host.has_menu.store(true, Relaxed);
     open(&mut stage);
-    let entry = stage.harness.get_by_label("Menu of the host").rect();
-    stage.button("Menu of the host");
+    let entry = stage.harness.get_by_label("Host menu").rect();
+    stage.button("Host menu");
     let [Said::Menu(name, [x, y])] = &stage.host.said()[..] else { panic!("a menu and no gesture") };
     assert_eq!(name, Param::MalletSpeed.info().name);
     let there = pos2(*x as f32, *y as f32) / stage.harness.ctx.pixels_per_point();
     assert!(entry.expand(2.0).contains(there), "{there} {entry}");
-    assert!(stage.harness.query_by_label("Menu of the host").is_none(), "the window's own menu is closed");
+    assert!(stage.harness.query_by_label("Host menu").is_none(), "the window's own menu is closed");
 }
 
 #[test]

@@ -145,7 +145,7 @@ fn a_mass_that_is_pulled_and_let_go_sounds_alone_and_the_louder_the_farther() {
     };
     let ((soft, quarter), (loud, whole)) = (energy(0.25), energy(2.0));
     for (heard, expected) in [(soft, 0.25), (loud, 1.0)] {
-        let [Touch::Nudge { channel: 0, key: 60, mode: 0, amplitude, .. }] = heard[..] else { panic!("{heard:?}") };
+        let [Touch::Wake { key: 60, mode: 0, amplitude }] = heard[..] else { panic!("{heard:?}") };
         assert!((amplitude - expected).abs() < 0.02, "{amplitude}");
     }
     assert!((whole / quarter / 16.0 - 1.0).abs() < 0.1, "{quarter} {whole}");
@@ -160,7 +160,7 @@ fn the_mass_of_a_sounding_note_is_pulled_and_the_note_goes_on() {
     band.passes(20);
     let before = energies(&band);
     let heard = pull(&mut band, 1.0);
-    let [Touch::Nudge { channel: 4, key: 50, mode, is_held: true, .. }] = heard[..] else { panic!("{heard:?}") };
+    let [Touch::Nudge { channel: 4, key: 50, mode, .. }] = heard[..] else { panic!("{heard:?}") };
     band.passes(3);
     let (after, mode) = (energies(&band), usize::from(mode));
     assert!(after[mode] > 2.0 * before[mode], "{} {}", before[mode], after[mode]);
@@ -171,6 +171,17 @@ fn the_mass_of_a_sounding_note_is_pulled_and_the_note_goes_on() {
     band.play_on(4, EventKind::NoteOff { key: 50, velocity: 0.5, id: None });
     band.passes(2);
     let heard = pull(&mut band, 1.0);
-    assert!(matches!(heard[..], [Touch::Nudge { is_held: false, .. }]), "{heard:?}");
+    assert!(matches!(heard[..], [Touch::Nudge { channel: 4, key: 50, .. }]), "{heard:?}");
     assert_eq!(band.stage.params.link().telemetry.keys(4), 0, "a key that was up stays up");
+}
+
+#[test]
+fn a_mass_that_is_pulled_again_and_again_is_held_each_time() {
+    let mut band = Band::new("Marimba", SIZE, Theme::Dark);
+    for _ in 0..3 {
+        assert!(matches!(pull(&mut band, 1.0)[..], [.., Touch::Wake { key: 60, .. }]), "nothing else is held");
+        assert!(matches!(pull(&mut band, 0.5)[..], [Touch::Nudge { key: 60, .. }]), "the note is held already");
+        band.passes(50);
+        assert_eq!(band.stage.params.link().telemetry.keys(0), 0);
+    }
 }

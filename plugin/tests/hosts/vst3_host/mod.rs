@@ -4,28 +4,28 @@
 
 mod block;
 mod frame;
+mod handler;
 mod stream;
 
 pub(crate) use block::{Automation, Block};
 pub(crate) use frame::{Frame, FrameWithoutLoop};
 
 use crate::host::bundle;
+use handler::{Handler, Places};
 use std::ffi::{CString, c_void};
 use std::ptr::null_mut;
-use std::sync::{Arc, Mutex};
-use std::thread::ThreadId;
+use std::sync::Arc;
 use stream::Stream;
 use vst3::Steinberg::Vst::{
-    BusDirections_, IAudioProcessor, IAudioProcessorTrait, IComponent, IComponentHandler, IComponentHandler3,
-    IComponentHandler3Trait, IComponentHandlerTrait, IComponentTrait, IContextMenu, IContextMenuItem,
-    IContextMenuTarget, IContextMenuTrait, IEditController, IEditControllerTrait, MediaTypes_, ParamID, ParamValue,
-    ParameterInfo, ProcessModes_, ProcessSetup, SymbolicSampleSizes_,
+    BusDirections_, IAudioProcessor, IAudioProcessorTrait, IComponent, IComponentHandler, IComponentTrait,
+    IEditController, IEditControllerTrait, MediaTypes_, ParamID, ParameterInfo, ProcessModes_, ProcessSetup,
+    SymbolicSampleSizes_,
 };
 use vst3::Steinberg::{
     IBStream, IPlugFrame, IPlugView, IPlugViewTrait, IPluginBaseTrait, IPluginFactory, IPluginFactoryTrait,
-    kInvalidArgument, kPlatformTypeX11EmbedWindowID, kResultOk, tresult,
+    kPlatformTypeX11EmbedWindowID, kResultOk,
 };
-use vst3::{Class, ComPtr, ComWrapper, Interface};
+use vst3::{ComPtr, ComWrapper, Interface};
 
 /// Frames per block.
 pub(crate) const FRAMES: usize = 64;
@@ -86,81 +86,6 @@ impl Module {
     }
 }
 
-/// Parameters with places in the plugin's window.
-type Places = Arc<Mutex<Vec<(ParamID, [i32; 2])>>>;
-
-/// Receives the plugin's reports of edits in its window, and makes menus.
-struct Handler {
-    /// The menus that were opened.
-    menus: Places,
-    /// The thread of the host's menus.
-    main: ThreadId,
-}
-
-impl Class for Handler {
-    type Interfaces = (IComponentHandler, IComponentHandler3);
-}
-
-impl IComponentHandler3Trait for Handler {
-    unsafe fn createContextMenu(&self, view: *mut IPlugView, parameter: *const ParamID) -> *mut IContextMenu {
-        assert!(!view.is_null() && std::thread::current().id() == self.main);
-        // SAFETY: the plugin passes a parameter, which lives until the call returns.
-        let menu = Menu { parameter: unsafe { *parameter }, opened: self.menus.clone() };
-        ComWrapper::new(menu).to_com_ptr::<IContextMenu>().unwrap().into_raw()
-    }
-}
-
-/// A menu of a parameter.
-struct Menu {
-    parameter: ParamID,
-    opened: Places,
-}
-
-impl Class for Menu {
-    type Interfaces = (IContextMenu,);
-}
-
-impl IContextMenuTrait for Menu {
-    unsafe fn getItemCount(&self) -> i32 {
-        0
-    }
-
-    unsafe fn getItem(&self, _: i32, _: *mut IContextMenuItem, _: *mut *mut IContextMenuTarget) -> tresult {
-        kInvalidArgument
-    }
-
-    unsafe fn addItem(&self, _: *const IContextMenuItem, _: *mut IContextMenuTarget) -> tresult {
-        kResultOk
-    }
-
-    unsafe fn removeItem(&self, _: *const IContextMenuItem, _: *mut IContextMenuTarget) -> tresult {
-        kResultOk
-    }
-
-    unsafe fn popup(&self, x: i32, y: i32) -> tresult {
-        self.opened.lock().unwrap().push((self.parameter, [x, y]));
-        kResultOk
-    }
-}
-
-impl IComponentHandlerTrait for Handler {
-    unsafe fn beginEdit(&self, _: ParamID) -> tresult {
-        kResultOk
-    }
-
-    unsafe fn performEdit(&self, _: ParamID, _: ParamValue) -> tresult {
-        kResultOk
-    }
-
-    unsafe fn endEdit(&self, _: ParamID) -> tresult {
-        kResultOk
-    }
-
-    unsafe fn restartComponent(&self, _: i32) -> tresult {
-        kResultOk
-    }
-}
-
 /// An instance of the plugin. The thread that created it is the host's main thread.
 pub(crate) struct Vst3 {
     // Fields are dropped in this order, the library last.
@@ -187,8 +112,7 @@ impl Vst3 {
             let controller = component.cast::<IEditController>().expect("a controller");
             let processor = component.cast::<IAudioProcessor>().expect("a processor");
             let menus = Places::default();
-            let handler = Handler { menus: menus.clone(), main: std::thread::current().id() };
-            let handler = ComWrapper::new(handler).to_com_ptr::<IComponentHandler>().unwrap();
+            let handler = ComWrapper::new(Handler::new(&menus)).to_com_ptr::<IComponentHandler>().unwrap();
             assert_eq!(controller.setComponentHandler(handler.as_ptr()), kResultOk);
             Self { controller, processor, component, menus, _library: module.library.clone() }
         }

@@ -98,6 +98,40 @@ fn error_db(rendered: &[f32], masses: &mut [HarmonicOscillator<f64>]) -> f64 {
     10.0 * libm::log10(squares / rendered.len() as f64) - 20.0 * libm::log10(masses.len() as f64)
 }
 
+/// However the bank renders, and although the mode is at rest behind all that are live, a nudge is a push of this mode alone.
+#[test]
+fn a_nudge_is_a_push_of_one_mode() {
+    const NUDGED: usize = 50;
+    let modes: Vec<_> = (0..64).map(|m| (200.0 + 10.0 * f64::from(m), if m % 50 == 0 { 10.0 } else { 0.02 })).collect();
+    for (ticks, moves) in [(3, false), (40, false), (41, false), (40, true)] {
+        for passed in [0, 5, 31] {
+            let mut nudged = bank(&modes);
+            nudged.set_excitation_gains(NUDGED, ExcitationGains::default());
+            run(&mut nudged, 1000 * CONTROL_FRAMES, Some(&strike()));
+            nudged.settle();
+            assert!(nudged.live <= NUDGED, "the mode is at rest");
+            run(&mut nudged, ticks * CONTROL_FRAMES, None);
+            nudged.sweep_to(if moves { 1.1 } else { 1.0 }, CONTROL_FRAMES);
+            nudged.render(None, passed);
+            let mut pushed = nudged.clone();
+            (0..64).for_each(|m| {
+                let push = if m == NUDGED { 1.0 } else { 0.0 };
+                pushed.set_excitation_gains(m, ExcitationGains { push, ..ExcitationGains::default() });
+            });
+            nudged.nudge(NUDGED, 1.0);
+            let left = CONTROL_FRAMES - passed;
+            let [mut a, mut b] =
+                [nudged.render(None, left)[0].to_vec(), pushed.render(Some(&strike()), left)[0].to_vec()];
+            for (bank, sound) in [(&mut nudged, &mut a), (&mut pushed, &mut b)] {
+                sound.extend(run(bank, 20 * CONTROL_FRAMES, None));
+            }
+            let difference = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            let loudest = a.iter().fold(0.0_f32, |most, sample| most.max(sample.abs()));
+            assert!(difference < 2e-5 && loudest > 1.5, "{ticks} {moves} {passed}: {difference} of {loudest}");
+        }
+    }
+}
+
 /// The two states swap roles after every tick that is rendered by tables. Neither may keep old values of modes at rest.
 #[test]
 fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {

@@ -64,7 +64,6 @@ fn play_with(
             pan: 0.0,
             is_legato,
             contact: None,
-            nudged: None,
         };
         if let OnPatch(_, patch) | OnChokePatch(_, _, patch) | Patch(patch) = *action {
             instrument.patch = patch;
