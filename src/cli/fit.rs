@@ -75,7 +75,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
         (0..args.recordings.len()).map(|index| take(args, index, &mut inputs)).collect::<Result<_>>()?;
     if !tells_velocities(args) && take_velocities_from_names(&mut takes) {
         let velocities: Vec<String> = takes.iter().map(|take| take.velocity.to_string()).collect();
-        complain("note", &format!("the names of the recordings tell their velocities: {}", velocities.join(", ")));
+        complain("note", format!("the names of the recordings tell their velocities: {}", velocities.join(", ")));
     }
     interrupt::catch(true)?;
     let mut output = Output::create(&target, args.force, &inputs)?;
