@@ -132,6 +132,9 @@ impl ModeBank {
             // Clears the modes after the last, which fill up lanes and tables and must stay at rest.
             let Modes { push_x, push_y, pull_x, pull_y, noise_x, noise, bow, .. } = &mut self.modes;
             [push_x, push_y, pull_x, pull_y, noise_x, noise, bow].into_iter().for_each(|row| row.0[m] = 0.0);
+            // Otherwise every change of damping would multiply their coefficients by the last factor of an earlier mode, until
+            // they are infinite and the product with a state of 0 is NaN.
+            self.tuning.shrink.0[m] = 0.0;
         }
         self.live = self.len;
         self.jump_to(1.0);

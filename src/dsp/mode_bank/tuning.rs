@@ -23,7 +23,7 @@ pub(super) struct Tuning {
     radius: Wide,
     damped_radius: Wide,
     /// `1 − radius / damped_radius`.
-    shrink: Row,
+    pub(super) shrink: Row,
     /// The state of unit amplitude in which the mass is displaced and at rest.
     pub(super) pull_x: Row,
     pub(super) pull_y: Row,

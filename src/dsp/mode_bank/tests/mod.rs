@@ -132,6 +132,21 @@ fn a_nudge_is_a_push_of_one_mode() {
     }
 }
 
+/// Vectors also hold places behind the last mode. What an earlier sound left there must not grow when damping changes.
+#[test]
+fn places_behind_the_last_mode_stay_finite() {
+    let mut bank = bank(&[(200.0, 0.0005); 64]);
+    (0..64).for_each(|m| bank.set_t60(m, 1.0));
+    run(&mut bank, CONTROL_FRAMES, Some(&strike()));
+    bank.load(std::iter::once(ModeSetup { frequency: 300.0, t60: 1.0, left: 1.0, right: 1.0 }));
+    // An event in each frame breaks off each ramp at its beginning.
+    for frame in 0..1_000 {
+        bank.set_t60(0, if frame % 2 == 0 { 1.0 } else { 1.1 });
+        bank.sweep_to(1.0, CONTROL_FRAMES);
+        assert_eq!(bank.render(None, 1)[0], [0.0], "frame {frame}");
+    }
+}
+
 /// The two states swap roles after every tick that is rendered by tables. Neither may keep old values of modes at rest.
 #[test]
 fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
