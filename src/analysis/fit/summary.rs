@@ -30,6 +30,13 @@ impl Fitted {
             measured(frequency_from_key(self.key, A4)),
             self.distances[self.base],
         );
+        if let Some(release) = self.release {
+            text += &format!(
+                " The key is let go after {:.2} s, and the damper's T60 is {} s.",
+                release.seconds,
+                measured(release.t60)
+            );
+        }
         if let Some(explained) = &self.explained {
             text += &format!(
                 " As a {}: {} of {} modes are its own, {:.1} cents off on average; {:.1} dB of their energy remain unexplained.",
@@ -45,11 +52,16 @@ impl Fitted {
 
     /// The key as musicians write it: `C4`, or `C4 +13 ct` between two keys.
     pub fn key_name(&self) -> String {
-        let nearest = self.key.round().clamp(0.0, 127.0);
-        let cents = (100.0 * (self.key - nearest)).round();
-        let name = note_name(nearest as u8);
-        if cents == 0.0 { name } else { format!("{name} {cents:+} ct") }
+        key_name(self.key)
     }
+}
+
+/// A fractional MIDI key as musicians write it.
+pub(super) fn key_name(key: f64) -> String {
+    let nearest = key.round().clamp(0.0, 127.0);
+    let cents = (100.0 * (key - nearest)).round();
+    let name = note_name(nearest as u8);
+    if cents == 0.0 { name } else { format!("{name} {cents:+} ct") }
 }
 
 /// The last part of a path.
