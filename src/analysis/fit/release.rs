@@ -15,10 +15,12 @@ const STEP: usize = RATE as usize / 100;
 const SMOOTH: usize = 3;
 /// Range in dB below the loudest level in which the sound is played, and not over.
 const PLAYED_DB: f64 = 20.0;
-/// Levels in dB below the median of those between which the fall is measured; a fall that is less deep than the last one is none.
+/// Levels in dB below the median of those between which the fall is measured. A fall that is less deep than the last ones is none:
+/// that of a held sound, and that of modes which are known to be damped.
 const FALLEN_DB: f64 = 6.0;
 const DEEP_DB: f64 = 30.0;
 const LEAST_DB: f64 = 15.0;
+const LEAST_OF_MODES_DB: f64 = 8.0;
 /// Fewest steps before a release, and least number of steps before it over which its slope is compared.
 const FEWEST: usize = 27;
 const COMPARED: usize = 50;
@@ -50,12 +52,12 @@ fn levels(samples: &[f32]) -> Vec<f64> {
     (0..whole).map(level).collect()
 }
 
-/// How the levels fall after a step: by how many dB per step, and until which step.
-fn fall(levels: &[f64], after: usize, top: f64) -> Option<(f64, usize)> {
+/// How the levels fall after a step: by how many dB per step, and until which step; none if they fall by less than `least` dB.
+fn fall(levels: &[f64], after: usize, top: f64, least: f64) -> Option<(f64, usize)> {
     let deep = levels[after..].iter().position(|level| *level < top - DEEP_DB).map(|n| after + n);
     let end = deep.unwrap_or(levels.len() - 1);
     let depth = (top - levels[end]).min(DEEP_DB);
-    (depth >= LEAST_DB).then(|| ((depth - FALLEN_DB) / end.saturating_sub(after + 1).max(1) as f64, end))
+    (depth >= least).then(|| ((depth - FALLEN_DB) / end.saturating_sub(after + 1).max(1) as f64, end))
 }
 
 impl Release {
@@ -72,7 +74,7 @@ impl Release {
         played.sort_by(f64::total_cmp);
         let top = *played.get(played.len() / 2)?;
         let last = levels.iter().rposition(|level| *level > top - FALLEN_DB)?;
-        let (rate, end) = fall(&levels, last, top)?;
+        let (rate, end) = fall(&levels, last, top, LEAST_DB)?;
         // The corner is where the levels are highest above the line from some time before to the end of the fall.
         let start = last.saturating_sub(end - last + COMPARED / 5);
         let line = |n: usize| levels[start] + (levels[end] - levels[start]) * (n - start) as f64 / (end - start) as f64;
@@ -93,7 +95,7 @@ impl Release {
         let at = (seconds * f64::from(RATE)) as usize / STEP;
         let top = *levels.get(at.checked_sub(SMOOTH)?)?;
         let after = at + levels.get(at..)?.iter().position(|level| *level < top - FALLEN_DB)?;
-        let (rate, _) = fall(&levels, after, top)?;
+        let (rate, _) = fall(&levels, after, top, LEAST_OF_MODES_DB)?;
         let before = (at.saturating_sub(COMPARED)..at).map(|n| (n as f64, levels[n]));
         let falls = -slope(before).unwrap_or(0.0);
         (rate > STEEPER_THAN_MODES * falls).then(|| Self::new(seconds, rate))
