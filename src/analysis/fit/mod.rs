@@ -178,7 +178,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     let mut warnings: Vec<String> = prepared.iter().flat_map(|take| take.warnings.clone()).collect();
     warnings.extend(layers.iter().zip(&prepared).zip(takes).filter_map(|((layer, prepared), take)| {
         prepared.key?;
-        wrong_key(layer, &take.name)
+        pitch::wrong_key(&layer.draft, &take.name)
     }));
     if draft.partials.iter().all(|partial| !partial.struck) {
         let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
@@ -207,17 +207,6 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         explained,
         warnings,
     })
-}
-
-/// A warning of a key that is not the pitch that is heard.
-fn wrong_key(layer: &Layer, name: &str) -> Option<String> {
-    // A pitch that moves is no clear one.
-    let draft = Some(&layer.draft).filter(|draft| draft.sweep.semitones == 0.0)?;
-    let heard = key_from_frequency(pitch::contradicts(&draft.partials, draft.note)?, A4);
-    let [heard, given] = [heard, layer.key()].map(summary::key_name);
-    Some(format!(
-        "{name}: it sounds like {heard} and not like {given}, its key: expected {heard}, or none to have it estimated"
-    ))
 }
 
 impl Fitted {

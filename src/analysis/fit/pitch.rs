@@ -1,7 +1,8 @@
-//! Estimates the pitch of a sound from its modes.
+//! Estimates the pitch of a sound from its modes, and tells a key that contradicts it.
 
-use super::draft::Partial;
+use super::draft::{Draft, Partial};
 use crate::sound::bodies::DEFAULT_FREQUENCY;
+use crate::units::{key_from_frequency, note_name};
 use libm::{fabs, log2, sqrt};
 
 /// Lowest and highest pitch in Hz.
@@ -50,11 +51,30 @@ pub(super) fn estimate(partials: &[Partial]) -> f64 {
     heard.max_by(|a, b| score(a).total_cmp(&score(b))).map_or(DEFAULT_FREQUENCY, |partial| partial.frequency)
 }
 
+/// A warning of a key that is not the pitch that is heard.
+pub(super) fn wrong_key(draft: &Draft, name: &str) -> Option<String> {
+    // A pitch that moves is not clear.
+    let heard = Some(draft).filter(|draft| draft.sweep.semitones == 0.0)?;
+    let heard = contradicts(&heard.partials, draft.note)?;
+    let [heard, given] = [heard, draft.note].map(|frequency| key_name(key_from_frequency(frequency, 440.0)));
+    Some(format!(
+        "{name}: it sounds like {heard} and not like {given}, its key: expected {heard}, or none to have it estimated"
+    ))
+}
+
+/// A fractional MIDI key as musicians write it.
+pub(super) fn key_name(key: f64) -> String {
+    let nearest = key.round().clamp(0.0, 127.0);
+    let cents = (100.0 * (key - nearest)).round();
+    let name = note_name(nearest as u8);
+    if cents == 0.0 { name } else { format!("{name} {cents:+} ct") }
+}
+
 /// The pitch in Hz that is clearly heard where another one, `note`, is given.
 ///
 /// It is clear if most of the sound is the harmonics of one pitch. The lowest and strongest mode of a bar is its pitch as well, but a
 /// drum has such a mode too, and any key: so it counts only if it is near the key.
-pub(super) fn contradicts(partials: &[Partial], note: f64) -> Option<f64> {
+fn contradicts(partials: &[Partial], note: f64) -> Option<f64> {
     let heard = estimate(partials);
     let cents = |ratio: f64| fabs(1200.0 * log2(ratio));
     let own = partials.iter().find(|partial| partial.frequency == heard)?;

@@ -1,9 +1,10 @@
 //! Describes the result of a fit in words, for the preset's comment and for users.
 
+use super::pitch::key_name;
 use super::{A4, Fitted, Take};
 use crate::preset::Preset;
 use crate::text::number::measured;
-use crate::units::{frequency_from_key, note_name};
+use crate::units::frequency_from_key;
 use std::path::Path;
 
 /// Maximum number of characters of a preset's name.
@@ -54,14 +55,6 @@ impl Fitted {
     pub fn key_name(&self) -> String {
         key_name(self.key)
     }
-}
-
-/// A fractional MIDI key as musicians write it.
-pub(super) fn key_name(key: f64) -> String {
-    let nearest = key.round().clamp(0.0, 127.0);
-    let cents = (100.0 * (key - nearest)).round();
-    let name = note_name(nearest as u8);
-    if cents == 0.0 { name } else { format!("{name} {cents:+} ct") }
 }
 
 /// The last part of a path.
