@@ -3,6 +3,7 @@
 use super::recording::{FigureArgs, read};
 use super::terminal::{complain, counted, print};
 use super::{interrupt, quantity};
+use libm::log10;
 use serde_json::json;
 use sprung::analysis::comparison::Comparison;
 use sprung::analysis::figure::{Render, comparison_bytes};
@@ -114,7 +115,7 @@ fn mel_distance(expected: &Recording, actual: &Recording) -> Result<Option<f64>>
 
 /// A change of a level in dB with as many digits as it takes to tell it from 0.
 fn change(db: f64) -> String {
-    let places = if db == 0.0 { 2 } else { (1.0 - db.abs().log10().floor()).clamp(2.0, 6.0) as usize };
+    let places = if db == 0.0 { 2 } else { (1.0 - log10(db.abs()).floor()).clamp(2.0, 6.0) as usize };
     format!("{db:+.places$}")
 }
 
