@@ -14,7 +14,7 @@ const ANALYSED: f64 = 0.45;
 /// Residual of the modes in dB above which noise alone may explain the sound better.
 const NOISE_DB: f64 = -10.0;
 /// Residual of the modes in dB below which they tell where the sound is damped.
-const TELLS_DAMPER_DB: f64 = -20.0;
+const TELLS_DAMPER_DB: f64 = -25.0;
 /// Share of a sound after which modes that noise has excited ring freely.
 const LATE: f64 = 0.2;
 /// Residual of the modes in dB below which the pitch counts as constant.

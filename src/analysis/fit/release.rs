@@ -27,7 +27,7 @@ const COMPARED: usize = 50;
 /// Least ratio of the slopes after and before a release: otherwise it is the sound's own decay.
 const STEEPER: f64 = 4.0;
 /// The same if the modes that were found before it say so, too.
-const STEEPER_THAN_MODES: f64 = 1.5;
+const STEEPER_THAN_MODES: f64 = 2.0;
 /// Seconds before the tuned part of a release that are compared, too.
 const BEFORE: f64 = 0.1;
 /// Steps of the search for the damper; change of its moment in seconds for 1, and the same as a share of the T60.
@@ -98,7 +98,8 @@ impl Release {
         let (rate, _) = fall(&levels, after, top, LEAST_OF_MODES_DB)?;
         let before = (at.saturating_sub(COMPARED)..at).map(|n| (n as f64, levels[n]));
         let falls = -slope(before).unwrap_or(0.0);
-        (rate > STEEPER_THAN_MODES * falls).then(|| Self::new(seconds, rate))
+        // Soon after a stroke, levels bend down by themselves.
+        (at >= FEWEST && rate > STEEPER_THAN_MODES * falls).then(|| Self::new(seconds, rate))
     }
 
     /// Frames at [`RATE`] until the key is let go.

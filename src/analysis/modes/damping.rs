@@ -34,6 +34,8 @@ const GUARD_SHARE: f64 = 0.2;
 const GUARD_DB: f64 = 5.0;
 /// Levels in dB that the damper takes until modes are compared with the sound. With less, the modes could still explain it.
 const COMPARED_DB: f64 = 8.0;
+/// Largest share of the time before a damper for which its modes are continued until they are compared.
+const AHEAD: f64 = 0.4;
 /// Seconds after the place in which modes are compared with the sound.
 const COMPARED: f64 = 0.15;
 /// Largest share of the energy that modes leave unexplained if they explain the sound.
@@ -101,9 +103,13 @@ pub(super) fn damped_from(samples: &[f64], sample_rate: f64) -> Option<Damper> {
         .max_by(|a, b| a.0.significance.total_cmp(&b.0.significance))?;
     // Frames in which the damper takes so many dB.
     let takes = |db: f64| (db / bend.steeper * step as f64) as usize;
-    let (place, guard) = (place * step, ((GUARD * sample_rate) as usize).max(takes(GUARD_DB)));
-    let guard = guard.min((GUARD_SHARE * place as f64) as usize);
-    Some(Damper { from: place - guard, lag: guard + ((0.5 * GUARD * sample_rate) as usize).max(takes(COMPARED_DB)) })
+    let (place, shortest) = (place * step, (GUARD * sample_rate) as usize);
+    let slow = [shortest.max(takes(GUARD_DB)), (shortest / 2).max(takes(COMPARED_DB))];
+    // Modes that were measured over a short time tell little about what comes long after it.
+    let is_known = (slow[0] + slow[1]) as f64 <= AHEAD * place as f64;
+    let [guard, later] = if is_known { slow } else { [shortest, shortest / 2] };
+    let from = place - guard.min((GUARD_SHARE * place as f64) as usize);
+    Some(Damper { from, lag: guard + later })
 }
 
 /// How the levels turn down for good at a place. `None` if they do not.
