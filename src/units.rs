@@ -44,6 +44,11 @@ pub fn note_name(key: u8) -> String {
 
 /// MIDI key of a note name (`C#4`, `Db4`, `a0`, `C-1`); `None` if it is not a note name or outside 0–127.
 pub fn key_from_note_name(name: &str) -> Option<u8> {
+    semitones_from_note_name(name).and_then(|key| u8::try_from(key).ok()).filter(|key| *key < 128)
+}
+
+/// Semitones of a note name above C-1; `None` if it is no note name.
+fn semitones_from_note_name(name: &str) -> Option<i32> {
     let mut characters = name.trim().chars();
     let letter = characters.next()?.to_ascii_uppercase();
     let natural = [9, 11, 0, 2, 4, 5, 7].get((letter as usize).checked_sub('A' as usize)?)?;
@@ -54,8 +59,7 @@ pub fn key_from_note_name(name: &str) -> Option<u8> {
         _ => (0, rest),
     };
     let octave: i32 = octave.parse().ok()?;
-    let key = octave.checked_add(1)?.checked_mul(12)?.checked_add(natural + accidental)?;
-    u8::try_from(key).ok().filter(|key| *key < 128)
+    octave.checked_add(1)?.checked_mul(12)?.checked_add(natural + accidental)
 }
 
 /// Mixes two channels to one: their mean. Real-time safe.
@@ -66,7 +70,7 @@ pub fn mono_from_stereo(left: f32, right: f32) -> f32 {
 /// A fractional MIDI key from text: `C#4`, `60`, `60.5`, `440Hz`. `a4_hz` is used to convert frequencies.
 pub fn parse_key(text: &str, a4_hz: f64) -> Result<f64, String> {
     let expected = "expected a note name (C#4), a key from 0 to 127 (60, 60.5) or a frequency (440Hz)";
-    let key = if let Some(key) = key_from_note_name(text) {
+    let key = if let Some(key) = semitones_from_note_name(text) {
         f64::from(key)
     } else {
         match split_quantity(text) {
@@ -83,6 +87,9 @@ pub fn parse_key(text: &str, a4_hz: f64) -> Result<f64, String> {
     let range = if is_frequency { -60.0..=200.0 } else { 0.0..=127.0 };
     if range.contains(&key) {
         return Ok(key);
+    }
+    if semitones_from_note_name(text).is_some() {
+        return Err(format!("note ‘{text}’ is out of range: expected C-1 to G9"));
     }
     let hint =
         if is_frequency || key < 0.0 { String::new() } else { format!("; for {text} Hz, write {}Hz", text.trim()) };
@@ -163,6 +170,10 @@ mod tests {
         assert!(parse_key("440", 440.0).unwrap_err().ends_with("; for 440 Hz, write 440Hz"));
         assert!(parse_key("-1", 440.0).unwrap_err().ends_with("(440Hz)"));
         assert!(parse_key("1e9 Hz", 440.0).unwrap_err().ends_with("(440Hz)"));
+        for name in ["C11", "G#9", "B-2"] {
+            let message = format!("note ‘{name}’ is out of range: expected C-1 to G9");
+            assert_eq!((parse_key(name, 440.0), key_from_note_name(name)), (Err(message), None));
+        }
     }
 
     #[test]

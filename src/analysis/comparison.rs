@@ -8,8 +8,8 @@ use std::iter::repeat;
 
 /// Largest residual of an alignment, in dB, for which one sound counts as a shifted or scaled copy of the other.
 const SAME_BUT_MOVED_DB: f64 = -60.0;
-/// Smallest change of a gain that is reported: 0.005 dB, half of the last digit shown.
-const LEAST_SCALING: f64 = 0.000_6;
+/// Smallest change of a gain that is reported, 10⁻⁵ dB: single precision has no finer ones. The residual must be smaller.
+const LEAST_SCALING: f64 = 1e-6;
 
 /// An octave's levels, RMS in dBFS as mean power of the channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,8 @@ impl Comparison {
 
     /// The alignment, if the actual sound is a shifted or scaled copy of the expected one.
     pub fn moved(&self) -> Option<Alignment> {
-        let is_moved = |found: &Alignment| found.shift != 0 || (found.gain - 1.0).abs() > LEAST_SCALING;
+        let least = |found: &Alignment| LEAST_SCALING.max(pow(10.0, found.residual_db / 20.0));
+        let is_moved = |found: &Alignment| found.shift != 0 || (found.gain - 1.0).abs() > least(found);
         self.alignment.filter(|found| found.residual_db < SAME_BUT_MOVED_DB && is_moved(found))
     }
 }
@@ -120,9 +121,13 @@ mod tests {
         let found = Comparison::of(&[sine(250.0, 0.5)], &[sine(250.0, 0.25)], 48_000.0).unwrap();
         let moved = found.moved().unwrap();
         assert!(moved.shift == 0 && (moved.gain_db() + 6.0206).abs() < 1e-3, "{moved:?}");
-        // A difference of 0.0009 dB would be shown as 0.
-        let found = Comparison::of(&[sine(250.0, 0.5)], &[sine(250.0, 0.50005)], 48_000.0).unwrap();
-        assert_eq!(found.moved(), None);
+        let found = Comparison::of(&[sine(250.0, 0.5)], &[sine(250.0, 0.500_05)], 48_000.0).unwrap();
+        let moved = found.moved().unwrap();
+        assert!((moved.gain_db() - 8.685e-4).abs() < 1e-5, "{moved:?}");
+        // A gain that changes by less than what is left says nothing.
+        let mut near = sine(250.0, 0.5);
+        near[100] += 1e-3;
+        assert_eq!(Comparison::of(&[sine(250.0, 0.5)], &[near], 48_000.0).unwrap().moved(), None);
     }
 
     #[test]

@@ -3,9 +3,12 @@
 use super::recording::{FigureArgs, read};
 use super::terminal::{complain, counted, print};
 use super::{interrupt, quantity};
+use libm::log10;
 use serde_json::json;
 use sprung::analysis::comparison::Comparison;
 use sprung::analysis::figure::{Render, comparison_bytes};
+use sprung::analysis::level::mean_of;
+use sprung::analysis::log_mel;
 use sprung::io::Inputs;
 use sprung::io::sound_file::{Recording, resampled};
 use sprung::{Error, Result};
@@ -83,8 +86,9 @@ fn compare(args: &Args) -> Result<bool> {
         let title = format!("{} and {}", args.expected.display(), args.actual.display());
         figure.write(|format| comparison_bytes(before, after, &title, format))?;
     }
-    let report =
-        Report { expected: &expected, actual: &actual, converted: converted.frames(), found: found.as_ref(), same };
+    let distance = if found.is_some() { mel_distance(&expected, &actual)? } else { Some(0.0) };
+    let converted = converted.frames();
+    let report = Report { expected: &expected, actual: &actual, converted, found: found.as_ref(), distance, same };
     print(&if args.json { format!("{:#}\n", report.json()) } else { report.text() })?;
     Ok(same)
 }
@@ -95,6 +99,24 @@ fn on_channels(sound: &Recording, count: usize) -> Cow<'_, [Vec<f32>]> {
         [mono] if count > 1 => Cow::Owned(vec![mono.clone(); count]),
         channels => Cow::Borrowed(channels),
     }
+}
+
+/// The distance in dB of the means of both sounds, each from its onset on, as `fit` measures it; none if a sample is not finite.
+fn mel_distance(expected: &Recording, actual: &Recording) -> Result<Option<f64>> {
+    if [expected, actual].iter().any(|sound| sound.channels.iter().flatten().any(|sample| !sample.is_finite())) {
+        return Ok(None);
+    }
+    let mean = |sound: &Recording| -> Result<Vec<f32>> {
+        let channels = resampled(sound, log_mel::RATE)?.channels;
+        Ok(mean_of(&channels).into_iter().map(|sample| sample as f32).collect())
+    };
+    Ok(Some(log_mel::distance(&mean(expected)?, &mean(actual)?)))
+}
+
+/// A change of a level in dB with as many digits as it takes to tell it from 0.
+fn change(db: f64) -> String {
+    let places = if db == 0.0 { 2 } else { (1.0 - log10(db.abs()).floor()).clamp(2.0, 6.0) as usize };
+    format!("{db:+.places$}")
 }
 
 /// The first two channels, for figures.
@@ -109,6 +131,8 @@ struct Report<'a> {
     /// Frames of the actual sound at the rate of the expected one.
     converted: usize,
     found: Option<&'a Comparison>,
+    /// Distance of 48 mel bands over time, in dB.
+    distance: Option<f64>,
     same: bool,
 }
 
@@ -158,10 +182,13 @@ impl Report<'_> {
             };
             let inverted = if moved.gain < 0.0 { ", inverted" } else { "" };
             line(format!(
-                "the same sound, {shift}, at {:+.2} dB{inverted}: what is left is {:.1} dB below it",
-                moved.gain_db(),
+                "the same sound, {shift}, at {} dB{inverted}: what is left is {:.1} dB below it",
+                change(moved.gain_db()),
                 -moved.residual_db
             ));
+        }
+        if let Some(distance) = self.distance {
+            line(format!("{distance:.2} dB apart in 48 mel bands over time, each sound from its onset on"));
         }
         for octave in &found.octaves {
             line(format!(
@@ -210,6 +237,7 @@ impl Report<'_> {
                 "inverted": found.gain < 0.0,
                 "residual_db": found.residual_db,
             })),
+            "mel_distance_db": self.distance,
             "octaves": octaves,
         })
     }

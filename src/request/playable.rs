@@ -1,6 +1,6 @@
 //! Loads presets and kits by name or path.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::io::Inputs;
 use crate::preset::library::{Entry, Library};
 use crate::preset::{Playable, is_file_name};
@@ -19,12 +19,21 @@ pub fn playable(name: &OsStr, inputs: &mut Inputs, warn: &mut dyn FnMut(&str)) -
         let mut replaced = |origin: &str, replaced| warn(&format!("{origin}: {replaced}"));
         Playable::read(path, &mut |path| inputs.open(path), &mut replaced)
     };
+    let is_other_file = path.extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("toml"));
+    let other_file = || {
+        let message = format!("‘{}’ is no preset file: expected a name that ends in .toml", path.display());
+        Error::value("preset", message)
+    };
     if is_file_name(path) {
-        return read(path);
+        return read(path).map_err(|error| match error {
+            Error::Format { .. } if is_other_file => other_file(),
+            error => error,
+        });
     }
     let name = name.to_string_lossy();
     Playable::find(&name).or_else(|unknown| match own(name.trim()) {
         Some(path) => read(&path),
+        None if is_other_file && path.is_file() => Err(other_file()),
         None => Err(unknown),
     })
 }

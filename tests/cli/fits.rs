@@ -29,6 +29,14 @@ fn a_recording_becomes_a_preset_that_plays() {
     let page = String::from_utf8(sandbox.read("bar.html")).unwrap();
     assert_eq!((page.matches("data:audio/wav").count(), page.matches("data:image/png").count()), (2, 2));
     assert!(!page.contains("{{") && !page.contains("http"), "the page needs nothing from elsewhere");
+    let rows = page.split("<th scope=\"row\">").skip(1).map(|row| row.split('<').next().unwrap().parse().unwrap());
+    let frequencies: Vec<f64> = rows.collect();
+    assert!(frequencies.len() >= 3 && frequencies.is_sorted(), "{frequencies:?}");
+    let fit = sandbox.sprung("fit bar.wav -o wrong.toml --report wrong.html --modes 12 --note G4").assert().success();
+    let said = String::from_utf8(fit.get_output().stderr.clone()).unwrap();
+    let warning = "bar.wav: it sounds like A4 and not like G4, its key: expected A4";
+    let page = String::from_utf8(sandbox.read("wrong.html")).unwrap();
+    assert!(said.contains(warning) && page.contains(warning), "{said}");
     sandbox.succeeds("presets check bar.toml");
     sandbox.succeeds("render --preset bar.toml --note A4 --length 0.5 --tail none --rate 44100 -o again.wav");
     let again = read(std::fs::File::open(sandbox.path("again.wav")).unwrap(), "again.wav").unwrap();

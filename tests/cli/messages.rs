@@ -16,6 +16,7 @@ fn options_say_what_would_be_right() {
         ("--note 60 --threads all -o x.wav", "‘all’ is not a whole number: expected 1 to 256"),
         ("--note 440 -o x.wav", "note ‘440’ is out of range: expected a note name"),
         ("--note 440 -o x.wav", "for 440 Hz, write 440Hz"),
+        ("--note C11 -o x.wav", "note ‘C11’ is out of range: expected C-1 to G9"),
         ("--note 60 --normalize -1 -o x.wav", "expected peak=DBFS or lufs=LUFS, as in peak=-1"),
         ("--note 60 --normalize -14LUFS -o x.wav", "expected peak=DBFS or lufs=LUFS, as in lufs=-14"),
         ("--note 60 --gain-db -3,5 -o x.wav", "‘-3,5’ is not a number: expected -3.5, with a decimal point"),
@@ -29,6 +30,16 @@ fn options_say_what_would_be_right() {
         ("--note 60 --dether -o x.wav", "a similar argument exists: '--dither'"),
     ] {
         sandbox.fails(&format!("render {args}"), 2, message);
+    }
+}
+
+#[test]
+fn a_file_that_is_no_preset_is_said_to_be_none() {
+    let sandbox = Sandbox::new();
+    sandbox.write("sound.wav", "RIFF");
+    for name in ["sound.wav", "./sound.wav"] {
+        let message = format!("preset: ‘{name}’ is no preset file: expected a name that ends in .toml");
+        sandbox.fails(&format!("render --note C4 --preset {name} -o x.wav"), 1, &message);
     }
 }
 

@@ -133,6 +133,12 @@ fn files_are_compared() {
     assert_eq!(run("diff a.wav same.wav"), (Some(0), "the same: 22050 frames, every sample\n".to_owned()));
     let (code, text) = run("diff a.wav half.wav");
     assert!(code == Some(1) && text.contains("the same sound, in place, at -6.02 dB"), "{text}");
+    let distance = text.lines().find_map(|line| line.split_once(" dB apart in 48 mel bands over time"));
+    let distance: f64 = distance.expect("the distance is told").0.parse().unwrap();
+    assert!((5.0..6.1).contains(&distance), "{text}");
+    sandbox.write("hardly.wav", wav(&strike(0.50005), 44_100));
+    let (_, text) = run("diff a.wav hardly.wav");
+    assert!(text.contains("the same sound, in place, at +0.00087 dB") && text.contains("0.00 dB apart"), "{text}");
     let (code, text) = run("diff a.wav near.wav");
     assert!(code == Some(1) && text.contains("first differing frame 100, worst error -100.0 dBFS"), "{text}");
     assert_eq!(run("diff a.wav near.wav --tolerance-db -99").0, Some(0));
@@ -145,6 +151,7 @@ fn files_are_compared() {
         (&json["same"], &json["first_frame"], &json["alignment"]["shift_frames"]),
         (&false.into(), &0.into(), &0.into())
     );
+    assert!((json["mel_distance_db"].as_f64().unwrap() - distance).abs() < 0.01, "{json}");
     assert!(sandbox.read("d.svg").starts_with(b"<svg"));
 }
 

@@ -27,6 +27,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let trials = vec![
         Trial::test("round_trip_of_some_presets", || round_trips(&some())),
+        Trial::test("releases_are_fitted_too", round_trip::releases),
         Trial::test("a_cancelled_fit_asks_no_more", cancelled),
         Trial::test("the_progress_never_runs_backwards", progress),
         Trial::test("bodies_have_the_levels_of_their_modes", bodies::levels),

@@ -30,12 +30,25 @@ pub(crate) fn preset_struck(preset: &Preset, key: u8, velocity: u8) -> Stereo {
 }
 
 fn played(preset: &Preset, key: u8, velocity: u8, seed: u64) -> Stereo {
+    played_until(preset, key, velocity, seed, None, SECONDS as f64)
+}
+
+/// `seconds` of a note of a preset whose key is let go after some seconds, or is held.
+pub(crate) fn preset_let_go(preset: &Preset, key: u8, let_go: Option<f64>, seconds: f64) -> Stereo {
+    played_until(preset, key, VELOCITY as u8, 0, let_go, seconds)
+}
+
+fn played_until(preset: &Preset, key: u8, velocity: u8, seed: u64, let_go: Option<f64>, seconds: f64) -> Stereo {
     let mut synth = Synth::new(RATE.into(), seed);
     synth.set_kit(&preset.kit());
     synth.reset();
-    let [mut left, mut right] = [0, 1].map(|_| vec![0.0; SECONDS * RATE as usize]);
+    let [mut left, mut right] = [0, 1].map(|_| vec![0.0; (seconds * f64::from(RATE)) as usize]);
     let kind = EventKind::NoteOn { key, detune: 0.0, velocity: f32::from(velocity) / 127.0, id: None };
-    synth.process(&[Event { frame: 0, channel: 0, kind }], &mut left, &mut right);
+    let off = EventKind::NoteOff { key, velocity: 0.5, id: None };
+    let event = |frame: u32, kind| Event { frame, channel: 0, kind };
+    let let_go = let_go.map(|seconds| event((seconds * f64::from(RATE)) as u32, off));
+    let events: Vec<Event> = std::iter::once(event(0, kind)).chain(let_go).collect();
+    synth.process(&events, &mut left, &mut right);
     [left, right]
 }
 

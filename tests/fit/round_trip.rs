@@ -1,9 +1,10 @@
 //! Presets rendered and fitted again: how far the fit's sound is from the preset's.
 
 use crate::clock::Clock;
-use crate::played::{Stereo, fitted_while, in_parallel, log_mel_distance, preset_at, preset_of_seed};
+use crate::played::{Stereo, fitted_while, in_parallel, log_mel_distance, preset_at, preset_let_go, preset_of_seed};
 use libtest_mimic::Failed;
 use sprung::Error;
+use sprung::analysis::log_mel::RATE;
 use sprung::preset::Preset;
 
 const KEYS: [u8; 3] = [48, 60, 72];
@@ -65,7 +66,38 @@ fn round_trip(sound: &Stereo, (_, key): &Note, clock: &Clock) -> Result<f64, Err
     let fit = fitted_while(sound, (*key).into(), &mut |_| clock.seconds() < LONGEST)?;
     // The preset is read from its text, which is what users get.
     let written = Preset::parse(&fit.preset("again", "").to_toml(), "again")?;
-    Ok(log_mel_distance(sound, &preset_at(&written, *key)))
+    let let_go = fit.release.map(|release| release.seconds);
+    let seconds = sound[0].len() as f64 / f64::from(RATE);
+    Ok(log_mel_distance(sound, &preset_let_go(&written, *key, let_go, seconds)))
+}
+
+/// Presets whose key is let go, with key, seconds, and the damper's T60: a string that is damped while it rings, and a held
+/// sound.
+const LET_GO: [(&str, u8, f64, f64); 2] = [("Nylon Guitar", 52, 0.6, 0.25), ("Square Lead", 60, 1.2, 0.2)];
+/// Seconds that are recorded after that.
+const AFTER: f64 = 0.5;
+/// Greatest distance in dB, and greatest errors: in seconds, and of the T60 as a ratio.
+const NEAR: f64 = 1.0;
+const LATE: f64 = 0.03;
+const LONGER: f64 = 1.3;
+
+/// The fit of a sound whose key is let go sounds like all of it if it is played so.
+pub(crate) fn releases() -> Result<(), Failed> {
+    let few = if cfg!(debug_assertions) { 1 } else { LET_GO.len() };
+    for (name, key, seconds, t60) in LET_GO[..few].iter().copied() {
+        let sound = preset_let_go(Preset::find(name)?, key, Some(seconds), seconds + AFTER);
+        let fit = fitted_while(&sound, key.into(), &mut |_| true)?;
+        let release = fit.release.ok_or_else(|| format!("{name}: no release was found"))?;
+        let written = Preset::parse(&fit.preset("again", "").to_toml(), "again")?;
+        let again = preset_let_go(&written, key, Some(release.seconds), seconds + AFTER);
+        let distance = log_mel_distance(&sound, &again);
+        println!("{name}: {distance:.2} dB, {release:?}");
+        let is_near = distance < NEAR && (release.seconds - seconds).abs() < LATE;
+        if !is_near || !(t60 / LONGER..t60 * LONGER).contains(&release.t60) {
+            return Err(format!("{name}: {distance:.2} dB, {release:?}: expected {seconds} s and {t60} s").into());
+        }
+    }
+    Ok(())
 }
 
 /// Prints the table's line of a note and returns the distance: infinite if there is no fit.

@@ -18,8 +18,16 @@ impl Audition {
         Self { synth: Synth::new(RATE.into(), 0) }
     }
 
-    /// The first `frames` frames of a held note, left and right. `key` is a fractional MIDI key, `velocity` 0–1.
-    pub(super) fn play(&mut self, patch: &Patch, key: f64, velocity: f64, frames: usize) -> [Vec<f32>; 2] {
+    /// The first `frames` frames of a note, left and right, whose key is let go at frame `let_go`, or is held. `key` is a
+    /// fractional MIDI key, `velocity` 0–1.
+    pub(super) fn play(
+        &mut self,
+        patch: &Patch,
+        key: f64,
+        velocity: f64,
+        frames: usize,
+        let_go: Option<usize>,
+    ) -> [Vec<f32>; 2] {
         // `set_patch` moves parameters smoothly to their new values; the reset makes the patch the present one at once.
         self.synth.set_patch(patch);
         self.synth.reset();
@@ -30,17 +38,29 @@ impl Audition {
             velocity: velocity as f32,
             id: None,
         };
-        let event = [Event { frame: 0, channel: 0, kind: on }];
+        let off = EventKind::NoteOff { key: nearest as u8, velocity: 0.5, id: None };
         let [mut left, mut right] = [vec![0.0; frames], vec![0.0; frames]];
         for (n, (left, right)) in left.chunks_mut(BLOCK).zip(right.chunks_mut(BLOCK)).enumerate() {
-            self.synth.process(if n == 0 { &event } else { &[] }, left, right);
+            let event = |at: usize, kind| {
+                let frame = at.checked_sub(n * BLOCK).filter(|frame| *frame < left.len())?;
+                Some(Event { frame: frame as u32, channel: 0, kind })
+            };
+            let events: Vec<Event> = event(0, on).into_iter().chain(let_go.and_then(|at| event(at, off))).collect();
+            self.synth.process(&events, left, right);
         }
         [left, right]
     }
 
     /// As [`Audition::play`], the mean of both channels.
-    pub(super) fn mean(&mut self, patch: &Patch, key: f64, velocity: f64, frames: usize) -> Vec<f32> {
-        let [left, right] = self.play(patch, key, velocity, frames);
+    pub(super) fn mean(
+        &mut self,
+        patch: &Patch,
+        key: f64,
+        velocity: f64,
+        frames: usize,
+        let_go: Option<usize>,
+    ) -> Vec<f32> {
+        let [left, right] = self.play(patch, key, velocity, frames, let_go);
         mean_of(&[left, right]).into_iter().map(|sample| sample as f32).collect()
     }
 }

@@ -13,6 +13,8 @@ use crate::error::{Error, Result};
 const ANALYSED: f64 = 0.45;
 /// Residual of the modes in dB above which noise alone may explain the sound better.
 const NOISE_DB: f64 = -10.0;
+/// Residual of the modes in dB below which they tell where the sound is damped.
+const TELLS_DAMPER_DB: f64 = -25.0;
 /// Share of a sound after which modes that noise has excited ring freely.
 const LATE: f64 = 0.2;
 /// Residual of the modes in dB below which the pitch counts as constant.
@@ -30,7 +32,7 @@ const ROUNDS: usize = 8;
 type Found = (Draft, Option<Strike>);
 
 /// The draft of a take with at most `most` modes, and the strike that its modes were found in.
-pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) -> bool) -> Result<Found> {
+pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64) -> bool) -> Result<Found> {
     let found = drafts(take, most, &mut |share| {
         if progress(ANALYSED * share) { Ok(()) } else { Err(Error::Interrupted) }
     })?;
@@ -54,18 +56,24 @@ pub(super) fn fit(take: &Prepared, most: usize, progress: &mut dyn FnMut(f64) ->
 }
 
 /// The possible drafts of a take: its modes, without a sweep and with the sweep that explains it best, if one does. If it is
-/// held or rises slowly, the modes without its drift; of a held sound these alone, if they explain much more. If all these
+/// held or rises slowly, the modes without its drift; of a held sound these alone, if they explain much more. If it is damped
+/// while it rings, the take ends there. If all these
 /// explain little, also modes that only noise excites, found after the noise is over. If the sound rises slowly, also
 /// modes found after the rise.
-fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
+fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
     let [of_still, of_drift, of_search, first, second, of_noise, of_rest] =
         [[0.0, 0.25], [0.25, 0.5], [0.5, 0.55], [0.55, 0.65], [0.65, 0.75], [0.75, 0.9], [0.9, 1.0]];
-    let analysed = |source: Source, [from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>| {
+    let analysed = |take: &Prepared, source, [from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>| {
         start::draft(take, source, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
     };
     let all = Source { swept: Sweep::NONE, late: 0.0, struck: true };
-    let mut found = vec![analysed(all, of_still, tell)?];
+    let mut found = vec![analysed(take, all, of_still, tell)?];
+    // Modes that explain little do not tell whether something damps them.
+    let strike = found[0].1.as_ref().filter(|strike| !take.is_held && strike.residual_db < TELLS_DAMPER_DB);
+    if let Some(seconds) = strike.and_then(|strike| strike.damped) {
+        take.end_at(seconds);
+    }
     let still = residual_db(&found[0]);
     if still > EXPLAINED_DB && (take.is_held || take.rise > SLOW) {
         let [from, to] = of_drift;
@@ -81,7 +89,7 @@ fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
         let sweeps = sweep::find(&take.mean, &mut || tell(of_search[0]))?;
         let mut swept = Vec::new();
         for (sweep, part) in sweeps.into_iter().zip([first, second]) {
-            swept.push(analysed(Source { swept: sweep, ..all }, part, tell)?);
+            swept.push(analysed(take, Source { swept: sweep, ..all }, part, tell)?);
         }
         // The draft without a sweep is kept too: a wrong sweep can leave a smaller residual and still sound worse.
         let best = swept.into_iter().min_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
@@ -91,12 +99,12 @@ fn drafts(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
     let strike = found[0].1.clone();
     if residual_db(&found[0]) > NOISE_DB {
         let late = Source { late: LATE * take.seconds(), struck: false, ..all };
-        let (driven, _) = analysed(late, of_noise, tell)?;
+        let (driven, _) = analysed(take, late, of_noise, tell)?;
         found.push((driven, strike.clone()));
     }
     if take.rise > SLOW {
         let swept = found[0].0.sweep;
-        let (rung, _) = analysed(Source { late: take.rise, swept, ..all }, of_rest, tell)?;
+        let (rung, _) = analysed(take, Source { late: take.rise, swept, ..all }, of_rest, tell)?;
         found.push((rung, strike));
     }
     Ok(found)

@@ -19,6 +19,7 @@ mod levels;
 mod names;
 mod pitch;
 mod refine;
+mod release;
 #[cfg(feature = "analysis")]
 pub mod report;
 mod resample;
@@ -32,6 +33,7 @@ mod tuned;
 
 pub use body::{Explained, Family};
 pub use names::take_velocities_from_names;
+pub use release::Release;
 pub use take::{Take, VELOCITY};
 
 use super::level::rms;
@@ -48,6 +50,9 @@ use take::Prepared;
 
 /// Frequency in Hz of A4 in a new patch.
 const A4: f64 = 440.0;
+
+/// Share of the work that is done when only the release is left to be fitted.
+const LAST: f64 = 0.98;
 
 /// Distance in dB above which a table of modes hardly sounds like its recording.
 const FAR_DB: f64 = 6.0;
@@ -86,6 +91,8 @@ pub struct Fitted {
     pub played: [Vec<f32>; 2],
     /// The strike in which the modes were found, if there are any. Its frequencies are those after the sweep.
     pub strike: Option<Strike>,
+    /// When the key of the base take is let go, if that is heard in it. The patch was played so, and its damper fitted.
+    pub release: Option<Release>,
     /// How well a body explains the modes, if one was asked for.
     pub explained: Option<Explained>,
     /// Doubts about the recordings and the result.
@@ -119,13 +126,14 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     if takes.is_empty() {
         return Err(Error::value("recordings", "there are none: expected at least one"));
     }
-    let prepared: Vec<Prepared> = takes.iter().map(Prepared::new).collect::<Result<_>>()?;
+    let mut prepared: Vec<Prepared> = takes.iter().map(Prepared::new).collect::<Result<_>>()?;
     // Tuning a body takes about as long as a take.
     let count = takes.len() as f64 + if settings.family == Family::Table { 0.0 } else { 1.0 };
+    let mut tell = |share: f64| progress(LAST * share);
     let mut fits = Vec::new();
-    for (n, take) in prepared.iter().enumerate() {
+    for (n, take) in prepared.iter_mut().enumerate() {
         let most = settings.most_modes.clamp(1, MOST_MODES);
-        fits.push(improve::fit(take, most, &mut |share| progress((n as f64 + share) / count))?);
+        fits.push(improve::fit(take, most, &mut |share| tell((n as f64 + share) / count))?);
     }
     let layer =
         |((draft, _), take): (&(draft::Draft, _), &Prepared)| Layer { draft: draft.clone(), level: take.level() };
@@ -144,22 +152,36 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
                     "no mode rings in it: expected a sound that a body can explain, or the body table",
                 )
             })?;
-            let told = &mut |share| progress((takes.len() as f64 + share) / count);
+            let told = &mut |share| tell((takes.len() as f64 + share) / count);
             (tuned::patch(&draft, &body, &levels, take, key_from_frequency(draft.note, A4), told)?, Some(explained))
         }
     };
     let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
     let patch = layers::route(patch, &layers, base);
     let patch = layers::route_gain(patch, &layers, base, &mut |patch, layer| {
-        rms(&audition.mean(patch, layer.key(), layer.draft.velocity, take::LEVEL_FRAMES))
+        rms(&audition.mean(patch, layer.key(), layer.draft.velocity, take::LEVEL_FRAMES, None))
     });
-    let played = audition.play(&patch, key, draft.velocity, take.mean.len());
-    let distance = |(layer, take): (&Layer, &Prepared)| {
+    let (mut patch, mut release) = (patch, None);
+    if let Some(ending) = &take.ending {
+        let (damped, found) =
+            ending.release.tuned(&patch, &ending.mean, (key, draft.velocity), &mut || progress(LAST))?;
+        (patch, release) = (damped, Some(found));
+    }
+    let (_, whole) = take.whole();
+    let played = audition.play(&patch, key, draft.velocity, whole.len(), release.map(|release| release.frames()));
+    let distance = |(index, (layer, take)): (usize, (&Layer, &Prepared))| {
         let key = key_from_frequency(layer.draft.note, A4);
-        log_mel::distance(&audition.mean(&patch, key, take.velocity, take.mean.len()), &take.mean)
+        let (_, whole) = take.whole();
+        let own = take.ending.as_ref().map(|ending| ending.release);
+        let let_go = if index == base { release } else { own }.map(|release| release.frames());
+        log_mel::distance(&audition.mean(&patch, key, take.velocity, whole.len(), let_go), whole)
     };
-    let distances: Vec<f64> = layers.iter().zip(&prepared).map(distance).collect();
+    let distances: Vec<f64> = layers.iter().zip(&prepared).enumerate().map(distance).collect();
     let mut warnings: Vec<String> = prepared.iter().flat_map(|take| take.warnings.clone()).collect();
+    warnings.extend(layers.iter().zip(&prepared).zip(takes).filter_map(|((layer, prepared), take)| {
+        prepared.key?;
+        pitch::wrong_key(&layer.draft, &take.name)
+    }));
     if draft.partials.iter().all(|partial| !partial.struck) {
         let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
         warnings.push(format!("{}: {message}", takes[base].name));
@@ -180,9 +202,10 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         key,
         is_estimated: take.key.is_none(),
         distances,
-        recording: take.channels.clone(),
+        recording: take.whole().0.to_vec(),
         played,
         strike: fits.swap_remove(base).1,
+        release,
         explained,
         warnings,
     })

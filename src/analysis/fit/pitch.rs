@@ -1,7 +1,8 @@
-//! Estimates the pitch of a sound from its modes.
+//! Estimates the pitch of a sound from its modes, and tells a key that contradicts it.
 
-use super::draft::Partial;
+use super::draft::{Draft, Partial};
 use crate::sound::bodies::DEFAULT_FREQUENCY;
+use crate::units::{key_from_frequency, note_name};
 use libm::{fabs, log2, sqrt};
 
 /// Lowest and highest pitch in Hz.
@@ -12,6 +13,19 @@ const NEAR: f64 = 35.0;
 const HARMONICS: f64 = 12.0;
 /// Weight of harmonics relative to the mode itself.
 const SERIES: f64 = 0.7;
+
+/// Least share of the weight that a pitch and its harmonics have, if there is no doubt about it, and least T60 in seconds of the mode
+/// that has it.
+const CLEAR: f64 = 0.8;
+const RINGS: f64 = 0.2;
+/// Weight of lower modes relative to a mode that counts as the lowest one, and distance in cents from the key in which such a mode
+/// counts.
+const FAINT: f64 = 0.1;
+const NEIGHBOUR: f64 = 700.0;
+/// Distance in cents from which a key contradicts the pitch, and ratios of both by which they may differ: octaves and fifths above
+/// them are confused easily, and some bodies are named after a tone that none of their modes has.
+const CONTRADICTS: f64 = 60.0;
+const CONFUSED: [f64; 6] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0];
 
 /// The weight of a mode in hearing. It grows with the T60 up to 0.6 s.
 fn weight(partial: &Partial) -> f64 {
@@ -37,6 +51,46 @@ pub(super) fn estimate(partials: &[Partial]) -> f64 {
     heard.max_by(|a, b| score(a).total_cmp(&score(b))).map_or(DEFAULT_FREQUENCY, |partial| partial.frequency)
 }
 
+/// A warning of a key that is not the pitch that is heard.
+pub(super) fn wrong_key(draft: &Draft, name: &str) -> Option<String> {
+    // A pitch that moves is not clear.
+    let heard = Some(draft).filter(|draft| draft.sweep.semitones == 0.0)?;
+    let heard = contradicts(&heard.partials, draft.note)?;
+    let [heard, given] = [heard, draft.note].map(|frequency| key_name(key_from_frequency(frequency, 440.0)));
+    Some(format!(
+        "{name}: it sounds like {heard} and not like {given}, its key: expected {heard}, or none to have it estimated"
+    ))
+}
+
+/// A fractional MIDI key as musicians write it.
+pub(super) fn key_name(key: f64) -> String {
+    let nearest = key.round().clamp(0.0, 127.0);
+    let cents = (100.0 * (key - nearest)).round();
+    let name = note_name(nearest as u8);
+    if cents == 0.0 { name } else { format!("{name} {cents:+} ct") }
+}
+
+/// The pitch in Hz that is clearly heard where another one, `note`, is given.
+///
+/// It is clear if most of the sound is the harmonics of one pitch. The lowest and strongest mode of a bar is its pitch as well, but a
+/// drum has such a mode too, and any key: so it counts only if it is near the key.
+fn contradicts(partials: &[Partial], note: f64) -> Option<f64> {
+    let heard = estimate(partials);
+    let cents = |ratio: f64| fabs(1200.0 * log2(ratio));
+    let own = partials.iter().find(|partial| partial.frequency == heard)?;
+    let ratio = |partial: &Partial| partial.frequency / heard;
+    let sum = |counts: &dyn Fn(f64) -> bool| {
+        partials.iter().filter(|partial| counts(ratio(partial))).map(weight).sum::<f64>()
+    };
+    let is_harmonic = |ratio: f64| ratio > 0.9 && cents(ratio / ratio.round()) < NEAR;
+    let [all, harmonics, first, below] =
+        [sum(&|_| true), sum(&is_harmonic), sum(&|ratio| cents(ratio) < NEAR), sum(&|ratio| ratio < 0.9)];
+    let leads = 2.0 * first > all && below < FAINT * first && cents(heard / note) < NEIGHBOUR;
+    let is_clear = own.t60 > RINGS && (harmonics > CLEAR * all || leads);
+    let near = |ratio: &f64| cents(heard / note / ratio) < CONTRADICTS || cents(note / heard / ratio) < CONTRADICTS;
+    (is_clear && !CONFUSED.iter().any(near)).then_some(heard)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -60,5 +114,21 @@ mod tests {
         let marimba = partials(&[(261.6, 0.5, 0.8), (1046.0, 0.3, 0.2), (2600.0, 0.2, 0.05), (90.0, 0.02, 0.05)]);
         assert_eq!(estimate(&marimba), 261.6);
         assert_eq!(estimate(&[]), DEFAULT_FREQUENCY);
+    }
+
+    #[test]
+    fn a_key_contradicts_a_clear_pitch_only() {
+        let string = partials(&[(110.0, 0.2, 2.0), (220.2, 0.25, 1.5), (330.5, 0.1, 1.0), (441.0, 0.1, 0.8)]);
+        for note in [110.0, 112.0, 55.0, 220.0, 440.0, 330.0] {
+            assert_eq!(contradicts(&string, note), None, "{note}");
+        }
+        for note in [104.0, 116.6, 123.5, 146.8, 233.0] {
+            assert_eq!(contradicts(&string, note), Some(110.0), "{note}");
+        }
+        let bell = partials(&[(100.0, 0.2, 5.0), (200.0, 0.2, 3.0), (240.0, 0.3, 2.5), (300.0, 0.1, 2.0)]);
+        let drum = partials(&[(110.0, 0.5, 0.5), (175.0, 0.2, 0.3), (235.0, 0.1, 0.3)]);
+        assert_eq!((contradicts(&bell, 222.0), contradicts(&drum, 261.6)), (None, None));
+        let bar = partials(&[(440.0, 0.4, 0.6), (1212.6, 0.2, 0.3), (2377.8, 0.1, 0.15)]);
+        assert_eq!((contradicts(&bar, 415.3), contradicts(&bar, 440.0)), (Some(440.0), None));
     }
 }

@@ -66,7 +66,7 @@ impl<'a> Listener<'a> {
         self.tell(self.share)?;
         let frames = self.take.mean.len().min(windows.saturating_mul(HOP));
         let key = key_from_frequency(draft.note, 440.0);
-        let sound = self.audition.mean(&draft.patch(), key, draft.velocity, frames + 1024);
+        let sound = self.audition.mean(&draft.patch(), key, draft.velocity, frames + 1024, None);
         let sound = crate::analysis::log_mel::from_onset(&sound);
         Ok(self.bands.measure(&sound[..sound.len().min(frames)]))
     }

@@ -36,6 +36,7 @@ pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
         "style" => STYLE.to_owned(),
         "title" => escaped(title),
         "summary" => escaped(&fitted.summary()),
+        "warnings" => fitted.warnings.iter().map(|warning| format!("<p>Warning: {}</p>\n", escaped(warning))).collect(),
         "recording" => data_link("audio/wav", &wav([first, last], fitted.sample_rate() as u32)),
         "preset" => data_link("audio/wav", &wav([left, right], fitted.sample_rate() as u32)),
         "recording-figure" => recording.clone(),
@@ -54,8 +55,9 @@ fn note(fitted: &Fitted, modes: &[DrawnMode]) -> String {
     text + &format!("; the preset's other modes ({} in all) fill up its bands.", modes.len())
 }
 
+/// A line for each mode and tone, by rising frequency.
 fn rows(fitted: &Fitted, modes: &[DrawnMode]) -> String {
-    let row = |mode: &Mode| {
+    let row = |(mode, decays): &(&Mode, bool)| {
         let cents = |other: &&DrawnMode| 1200.0 * log2(other.frequency / mode.frequency);
         let nearest = modes.iter().min_by(|a, b| fabs(cents(a)).total_cmp(&fabs(cents(b))));
         let (frequency, off, t60) = match nearest.filter(|other| fabs(cents(other)) < NEAR) {
@@ -65,12 +67,18 @@ fn rows(fitted: &Fitted, modes: &[DrawnMode]) -> String {
         format!(
             "<tr><th scope=\"row\">{:.2}</th><td>{frequency}</td><td>{off}</td><td>{}</td><td>{t60}</td><td>{:.1}</td><td>{:.0}</td></tr>\n",
             mode.frequency,
-            measured(mode.t60),
+            if *decays { measured(mode.t60) } else { "steady".to_owned() },
             mode.level_db,
             mode.snr_db
         )
     };
-    fitted.strike.iter().flat_map(|strike| &strike.modes).map(row).collect()
+    let mut found: Vec<(&Mode, bool)> = Vec::new();
+    if let Some(strike) = &fitted.strike {
+        found.extend(strike.modes.iter().map(|mode| (mode, true)));
+        found.extend(strike.steady.iter().map(|tone| (tone, false)));
+    }
+    found.sort_by(|a, b| a.0.frequency.total_cmp(&b.0.frequency));
+    found.iter().map(row).collect()
 }
 
 /// A WAV file in memory, of 16 bits.

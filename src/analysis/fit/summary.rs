@@ -1,9 +1,10 @@
 //! Describes the result of a fit in words, for the preset's comment and for users.
 
+use super::pitch::key_name;
 use super::{A4, Fitted, Take};
 use crate::preset::Preset;
 use crate::text::number::measured;
-use crate::units::{frequency_from_key, note_name};
+use crate::units::frequency_from_key;
 use std::path::Path;
 
 /// Maximum number of characters of a preset's name.
@@ -30,6 +31,13 @@ impl Fitted {
             measured(frequency_from_key(self.key, A4)),
             self.distances[self.base],
         );
+        if let Some(release) = self.release {
+            text += &format!(
+                " The key is let go after {:.2} s, and the damper's T60 is {} s.",
+                release.seconds,
+                measured(release.t60)
+            );
+        }
         if let Some(explained) = &self.explained {
             text += &format!(
                 " As a {}: {} of {} modes are its own, {:.1} cents off on average; {:.1} dB of their energy remain unexplained.",
@@ -45,10 +53,7 @@ impl Fitted {
 
     /// The key as musicians write it: `C4`, or `C4 +13 ct` between two keys.
     pub fn key_name(&self) -> String {
-        let nearest = self.key.round().clamp(0.0, 127.0);
-        let cents = (100.0 * (self.key - nearest)).round();
-        let name = note_name(nearest as u8);
-        if cents == 0.0 { name } else { format!("{name} {cents:+} ct") }
+        key_name(self.key)
     }
 }
 

@@ -1,5 +1,6 @@
 //! A recording to fit, with its key and velocity, and the preparation of its samples.
 
+use super::release::Release;
 use crate::analysis::level::{mean_of, rms};
 use crate::analysis::log_mel::RATE;
 use crate::error::{Error, Result};
@@ -45,13 +46,25 @@ const SILENT: f64 = 0.05;
 const SILENT_BLOCKS: usize = 2;
 /// Level relative to the loudest at which a sound begins again: −14 dB, since vowels differ by as much.
 const AS_LOUD: f64 = 0.2;
-/// Energy of the last third of a sound relative to the first, above which the sound does not decay: −3 dB.
+/// Energy of the last third of a sound relative to the first, above which the sound does not decay: −3 dB, and −7 dB if it is
+/// heard that its key is let go, since beats lower it.
 const STEADY: f64 = 0.5;
+const STEADY_IF_LET_GO: f64 = 0.2;
+/// Seconds before a key is let go at which the part ends that is fitted.
+const GUARD: f64 = 0.03;
 
 /// Frames whose RMS is the level of a take: 50 ms.
 pub(super) const LEVEL_FRAMES: usize = RATE as usize / 20;
 
-/// A take at [`RATE`], from its onset to its end.
+/// A take with what follows after the part that is fitted.
+pub(super) struct Ending {
+    pub(super) channels: Vec<Vec<f32>>,
+    /// The mean of the channels.
+    pub(super) mean: Vec<f32>,
+    pub(super) release: Release,
+}
+
+/// A take at [`RATE`], from its onset to its end, or to where its key is let go.
 pub(super) struct Prepared {
     pub(super) channels: Vec<Vec<f32>>,
     /// The mean of the channels.
@@ -63,6 +76,8 @@ pub(super) struct Prepared {
     pub(super) rise: f64,
     /// Whether it sounds for as long as it is played.
     pub(super) is_held: bool,
+    /// The end of the sound, if its key is let go in it.
+    pub(super) ending: Option<Ending>,
     /// Doubts about it.
     pub(super) warnings: Vec<String>,
 }
@@ -89,9 +104,12 @@ impl Prepared {
         if ((end - onset) as f64) < SHORTEST * f64::from(RATE) {
             return wrong("it is shorter than 30 ms: expected a strike that rings");
         }
-        let third = (blocks / 3).max(1);
+        let release = Release::of_held(&middle[onset..end]);
+        let played = release.map_or(blocks, |release| release.frames() / block);
+        let third = (played / 3).max(1);
         let energy = |levels: &[f64]| levels.iter().map(|level| level * level).sum::<f64>();
-        let is_steady = blocks >= 9 && energy(&levels[blocks - third..blocks]) > STEADY * energy(&levels[..third]);
+        let share = if release.is_some() { STEADY_IF_LET_GO } else { STEADY };
+        let is_steady = played >= 9 && energy(&levels[played - third..played]) > share * energy(&levels[..third]);
         let message =
             "the sound does not decay: expected something that is struck and rings; its slow movements are left out";
         let rise = levels.iter().position(|level| *level > RISEN * loudest).unwrap_or(0) as f64 * BLOCK;
@@ -108,15 +126,42 @@ impl Prepared {
                 .push(format!("{}: it sounds for longer: the first {LONGEST} s from its onset are fitted", take.name));
         }
         let channels: Vec<Vec<f32>> = channels.iter().map(|channel| channel[onset..end].to_vec()).collect();
-        Ok(Self {
+        let mut prepared = Self {
             mean: mean(&channels),
             channels,
             key: take.key,
             velocity: (take.velocity / 127.0).clamp(1.0 / 127.0, 1.0),
             rise,
             is_held: is_steady,
+            ending: None,
             warnings,
-        })
+        };
+        if let Some(release) = release {
+            prepared.end(release, release.seconds - GUARD);
+        }
+        Ok(prepared)
+    }
+
+    /// Ends the part that is fitted where the sound is damped, if its level shows a damper, and unless the part already ends where
+    /// its key is let go.
+    pub(super) fn end_at(&mut self, seconds: f64) {
+        if let (None, Some(release)) = (&self.ending, Release::of_damped(&self.mean, seconds)) {
+            self.end(release, seconds);
+        }
+    }
+
+    fn end(&mut self, release: Release, seconds: f64) {
+        let len = ((seconds * f64::from(RATE)) as usize).min(self.mean.len());
+        let head = |samples: &[f32]| samples[..len].to_vec();
+        let channels = self.channels.iter().map(|channel| head(channel)).collect();
+        let channels = std::mem::replace(&mut self.channels, channels);
+        let head = head(&self.mean);
+        self.ending = Some(Ending { channels, mean: std::mem::replace(&mut self.mean, head), release });
+    }
+
+    /// All of it, with what comes after its key is let go: its channels and their mean.
+    pub(super) fn whole(&self) -> (&[Vec<f32>], &[f32]) {
+        self.ending.as_ref().map_or((&self.channels, &self.mean), |ending| (&ending.channels, &ending.mean))
     }
 
     pub(super) fn peak(&self) -> f64 {

@@ -52,7 +52,7 @@ pub(super) fn patch(
     let recording = from_onset(&take.mean);
     let target = bands.measure(recording);
     let mut heard = |body: &Body, patch: &mut Patch| {
-        let mut played = audition.mean(patch, key, draft.velocity, take.mean.len());
+        let mut played = audition.mean(patch, key, draft.velocity, take.mean.len(), None);
         // Make it as loud as the recording.
         let before = f64::from(patch.get(Param::Gain));
         let more = dbfs(rms(&take.mean)) - dbfs(rms(&played));

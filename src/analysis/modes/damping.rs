@@ -28,9 +28,14 @@ const RANGE_DB: f64 = 90.0;
 /// Levels less than this many dB above the quietest give no information.
 const FLOOR_DB: f64 = 6.0;
 /// Seconds before the place that are left out, since the place is only roughly known, and their largest share of the
-/// time before it.
+/// time before it. A damper that acts slowly is noticed late: leave out at least the time in which it takes this many dB.
 const GUARD: f64 = 0.05;
 const GUARD_SHARE: f64 = 0.2;
+const GUARD_DB: f64 = 5.0;
+/// Levels in dB that the damper takes until modes are compared with the sound. With less, the modes could still explain it.
+const COMPARED_DB: f64 = 8.0;
+/// Largest share of the time before a damper for which its modes are continued until they are compared.
+const AHEAD: f64 = 0.4;
 /// Seconds after the place in which modes are compared with the sound.
 const COMPARED: f64 = 0.15;
 /// Largest share of the energy that modes leave unexplained if they explain the sound.
@@ -64,8 +69,25 @@ impl Line {
     }
 }
 
-/// The frame before which the samples seem to ring freely, if they seem to be damped afterwards.
-pub(super) fn damped_from(samples: &[f64], sample_rate: f64) -> Option<usize> {
+/// Where a damper seems to act.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Damper {
+    /// The frame before which the samples ring freely.
+    pub(super) from: usize,
+    /// Number of frames from there until the damper has clearly lowered the level.
+    lag: usize,
+}
+
+/// How the levels turn down for good at a place.
+struct Bend {
+    /// In mean deviations from the lines before and after.
+    significance: f64,
+    /// Change of the slope in dB per step, downwards.
+    steeper: f64,
+}
+
+/// Where the samples seem to be damped, if they do.
+pub(super) fn damped_from(samples: &[f64], sample_rate: f64) -> Option<Damper> {
     let step = ((STEP * sample_rate) as usize).max(1);
     let energies: Vec<f64> =
         samples.chunks_exact(step).map(|block| block.iter().map(|x| x * x).sum::<f64>() / step as f64).collect();
@@ -74,19 +96,24 @@ pub(super) fn damped_from(samples: &[f64], sample_rate: f64) -> Option<usize> {
     let loudest = levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     levels.iter_mut().for_each(|level| *level = level.max(loudest - RANGE_DB));
     let quietest = levels.iter().copied().fold(f64::INFINITY, f64::min);
-    let place = REACHES
+    let (bend, place) = REACHES
         .iter()
         .flat_map(|reach| (*reach..levels.len().saturating_sub(*reach / 2)).map(move |place| (*reach, place)))
-        .filter_map(|(reach, place)| Some((significance(&levels, place, reach, quietest)?, place)))
-        .max_by(|a, b| a.0.total_cmp(&b.0))?
-        .1;
-    let place = place * step;
-    Some(place - ((GUARD * sample_rate) as usize).min((GUARD_SHARE * place as f64) as usize))
+        .filter_map(|(reach, place)| Some((bend(&levels, place, reach, quietest)?, place)))
+        .max_by(|a, b| a.0.significance.total_cmp(&b.0.significance))?;
+    // Frames in which the damper takes so many dB.
+    let takes = |db: f64| (db / bend.steeper * step as f64) as usize;
+    let (place, shortest) = (place * step, (GUARD * sample_rate) as usize);
+    let slow = [shortest.max(takes(GUARD_DB)), (shortest / 2).max(takes(COMPARED_DB))];
+    // Modes that were measured over a short time tell little about what comes long after it.
+    let is_known = (slow[0] + slow[1]) as f64 <= AHEAD * place as f64;
+    let [guard, later] = if is_known { slow } else { [shortest, shortest / 2] };
+    let from = place - guard.min((GUARD_SHARE * place as f64) as usize);
+    Some(Damper { from, lag: guard + later })
 }
 
-/// How clearly the levels turn down for good at a place, in mean deviations from the lines before and after. `None` if they
-/// do not.
-fn significance(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Option<f64> {
+/// How the levels turn down for good at a place. `None` if they do not.
+fn bend(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Option<Bend> {
     // A level covers several steps, so the levels right before the place include later sound.
     let before = Line::through(&levels[place - reach..place + 1 - SMOOTH]);
     let until = (place + reach).min(levels.len());
@@ -104,19 +131,58 @@ fn significance(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Op
         expected > quietest + FLOOR_DB && *level > expected - NO_RETURN_DB
     };
     let comes_back = levels[place..].iter().enumerate().skip(reach / 2).any(back);
-    (!comes_back).then_some(significance)
+    let steeper = before.slope - after.slope;
+    (!comes_back && steeper > 0.0).then_some(Bend { significance, steeper })
 }
 
-/// Whether the sound after the fitted samples differs from the continuation of the modes.
-pub(super) fn confirmed(fit: &Fit, len: usize, after: &[f64], sample_rate: f64) -> bool {
-    let skipped = (1.5 * GUARD * sample_rate) as usize;
-    let compared = (COMPARED * sample_rate) as usize;
-    let Some(after) = after.get(skipped..).map(|after| &after[..compared.min(after.len())]) else { return false };
+/// Whether the sound differs from the continuation of the modes that were fitted to its samples before a damper.
+pub(super) fn confirmed(fit: &Fit, damper: Damper, samples: &[f64], sample_rate: f64) -> bool {
+    let (begin, compared) = (damper.from + damper.lag, (COMPARED * sample_rate) as usize);
+    let Some(after) = samples.get(begin..).map(|after| &after[..compared.min(after.len())]) else { return false };
     let mut expected = vec![fit.constant; after.len()];
     for (pole, amplitude) in fit.poles.iter().zip(&fit.amplitudes) {
-        add(&mut expected, *pole, *amplitude * pole.power(len + skipped), 1.0);
+        add(&mut expected, *pole, *amplitude * pole.power(begin), 1.0);
     }
     let energy = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
     let left = energy(&mut after.iter().zip(&expected).map(|(sample, expected)| sample - expected));
     left > UNEXPLAINED * energy(&mut expected.iter().map(|x| x - fit.constant))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Settings, modes};
+    use libm::{exp, sin};
+    use std::f64::consts::TAU;
+
+    const RATE: f64 = 48_000.0;
+    /// Seconds until the damper falls.
+    const LET_GO: f64 = 1.5;
+
+    /// Three seconds of beating pairs with T60s from 4 to 8 s, damped by a T60 of `damper` seconds.
+    fn damped(damper: f64) -> Vec<f32> {
+        let sample = |n: usize| {
+            let t = n as f64 / RATE;
+            let mode = |k: usize| {
+                let frequency = 300.0 * (1.0 + (k / 2) as f64 * 0.83) + 0.9 * (k % 2) as f64;
+                let t60 = 8.0 - 0.5 * k as f64;
+                let fall = t.min(LET_GO) / t60 + (t - LET_GO).max(0.0) / damper.min(t60);
+                0.1 * exp(-6.907_755 * fall) * sin(TAU * frequency * t + k as f64)
+            };
+            (0..8).map(mode).sum::<f64>() as f32
+        };
+        (0..3 * RATE as usize).map(sample).collect()
+    }
+
+    #[test]
+    fn dampers_are_found_whether_they_are_fast_or_slow() {
+        for damper in [0.05, 0.4, 1.5] {
+            let found = modes(&[damped(damper)], RATE, &Settings::default(), &mut |_| true).unwrap();
+            let strike = &found.strikes[0];
+            let near = strike.damped.is_some_and(|seconds| (LET_GO - 0.3..LET_GO).contains(&seconds));
+            let explains = strike.modes.len() == 8 && strike.residual_db < -80.0;
+            assert!(near && explains, "{damper} s: {:?}, {:?}", strike.damped, strike.residual_db);
+        }
+        let found = modes(&[damped(100.0)], RATE, &Settings::default(), &mut |_| true).unwrap();
+        assert_eq!(found.strikes[0].damped, None);
+    }
 }

@@ -142,12 +142,12 @@ fn search(
     let limits = Limits { peak, late: (stretch.start - stretch.onset) as f64, sample_rate };
     let mut begun = 0.0;
     let shortest = (SHORTEST * sample_rate) as usize;
-    if let Some(len) = damping::damped_from(samples, sample_rate).filter(|len| *len >= shortest) {
+    if let Some(damper) = damping::damped_from(samples, sample_rate).filter(|damper| damper.from >= shortest) {
         begun = 0.5;
-        let before = &samples[..len];
+        let before = &samples[..damper.from];
         let found = search::find(before, sample_rate, most_modes, &limits, &mut |share| progress(begun * share))?;
-        if damping::confirmed(&found.fit, len, &samples[len..], sample_rate) {
-            let end = stretch.start + len;
+        if damping::confirmed(&found.fit, damper, samples, sample_rate) {
+            let end = stretch.start + damper.from;
             return Ok((Stretch { end, ..stretch }, Some(end), found));
         }
     }

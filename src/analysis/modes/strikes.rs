@@ -44,9 +44,8 @@ pub(super) struct Stretch {
 /// Finds strikes in samples that are not silent; none longer than `longest` seconds.
 pub(super) fn strikes(samples: &[f64], sample_rate: f64, longest: f64) -> Vec<Stretch> {
     let frames = |seconds: f64| ((seconds * sample_rate) as usize).max(1);
-    // Remove DC.
-    let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
-    let samples: Vec<f64> = samples.iter().map(|sample| sample - mean).collect();
+    let constant = constant(samples, frames(BLOCK));
+    let samples: Vec<f64> = samples.iter().map(|sample| sample - constant).collect();
     let samples = &samples[..];
     let mut onsets = onsets(samples, sample_rate);
     if onsets.is_empty() {
@@ -68,6 +67,15 @@ pub(super) fn strikes(samples: &[f64], sample_rate: f64, longest: f64) -> Vec<St
     };
     let long_enough = |stretch: &Stretch| stretch.end >= stretch.start + frames(SHORTEST);
     onsets.iter().enumerate().map(stretch).filter(long_enough).collect()
+}
+
+/// The DC of samples: the median of the means of blocks. A strike is asymmetric, so that the mean of all samples is none: taken
+/// from the quiet end of a decay, it would look like noise.
+fn constant(samples: &[f64], block: usize) -> f64 {
+    let mean = |block: &[f64]| block.iter().sum::<f64>() / block.len() as f64;
+    let mut means: Vec<f64> = samples.chunks(block).map(mean).collect();
+    means.sort_by(f64::total_cmp);
+    means.get(means.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Frames at which strikes begin.
@@ -173,6 +181,17 @@ mod tests {
         let [strike] = strikes(&samples, 48_000.0, 10.0)[..] else { panic!("one strike") };
         // The decay stops at frame 24,000, and only noise follows.
         assert!((21_600..60_000).contains(&strike.end), "{strike:?}");
+    }
+
+    #[test]
+    fn an_asymmetric_strike_does_not_end_in_noise_but_a_constant_changes_nothing() {
+        let pushed = |n: usize, x: f64| x + if n < 500 { 1.0 } else { 0.0 };
+        let samples: Vec<f64> = decay(96_000).enumerate().map(|(n, x)| pushed(n, x)).collect();
+        let shifted: Vec<f64> = samples.iter().map(|x| x + 0.1).collect();
+        for samples in [&samples, &shifted] {
+            let [strike] = strikes(samples, 48_000.0, 10.0)[..] else { panic!("one strike") };
+            assert_eq!(strike.end, 96_000);
+        }
     }
 
     #[test]
