@@ -9,8 +9,8 @@ use x11rb::connection::Connection as _;
 use x11rb::protocol::Event;
 use x11rb::protocol::damage::{ConnectionExt as _, ReportLevel};
 use x11rb::protocol::xproto::{
-    AtomEnum, ClientMessageEvent, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat, InputFocus, MapState,
-    WindowClass,
+    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat,
+    InputFocus, MapState, WindowClass,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
@@ -192,6 +192,48 @@ impl Onlooker {
     /// Gives a window the focus.
     pub(crate) fn focus(&self, window: u32) {
         self.connection.set_input_focus(InputFocus::PARENT, window, x11rb::CURRENT_TIME).unwrap().check().unwrap();
+    }
+
+    /// Whether keys go to this window or to one inside it.
+    pub(crate) fn has_focus(&self, window: u32) -> bool {
+        let mut focused = self.connection.get_input_focus().unwrap().reply().unwrap().focus;
+        // Below these numbers are no windows: no focus, or wherever the pointer is.
+        while focused > 1 && focused != self.root {
+            if focused == window {
+                return true;
+            }
+            let Ok(tree) = self.connection.query_tree(focused).unwrap().reply() else { return false };
+            focused = tree.parent;
+        }
+        false
+    }
+
+    /// The largest window inside a window that has none inside it: in a host's window, that of the plugin.
+    pub(crate) fn innermost(&self, window: u32) -> u32 {
+        let tree = self.connection.query_tree(window).unwrap().reply().unwrap();
+        let area = |window: &u32| {
+            let size = self.size(*window);
+            size[0] * size[1]
+        };
+        tree.children.into_iter().max_by_key(area).map_or(window, |child| self.innermost(child))
+    }
+
+    /// Width and height of a window.
+    pub(crate) fn size(&self, window: u32) -> [u32; 2] {
+        let geometry = self.connection.get_geometry(window).unwrap().reply();
+        geometry.map_or([0, 0], |geometry| [geometry.width.into(), geometry.height.into()])
+    }
+
+    /// Where the upper left corner of a window is on the screen.
+    pub(crate) fn place(&self, window: u32) -> [i16; 2] {
+        let place = self.connection.translate_coordinates(window, self.root, 0, 0).unwrap().reply().unwrap();
+        [place.dst_x, place.dst_y]
+    }
+
+    /// Changes the size of a window, as a window manager does.
+    pub(crate) fn resize(&self, window: u32, [width, height]: [u32; 2]) {
+        let size = ConfigureWindowAux::new().width(width).height(height);
+        self.connection.configure_window(window, &size).unwrap().check().unwrap();
     }
 
     /// Presses a key and lets it go, by its number on the keyboard.

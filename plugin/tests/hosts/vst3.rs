@@ -230,6 +230,45 @@ pub(crate) fn automation_has_the_bits_of_the_engine() {
     }
 }
 
+/// Resizes a host's window, types into the plugin's, and checks that keys go back to the host.
+fn is_used(onlooker: &Onlooker, window: u32) {
+    const ESCAPE: u8 = 9;
+    const Z: u8 = 52;
+    let plugin = onlooker.innermost(window);
+    assert!(plugin != window, "the plugin has a window of its own");
+    // A click takes the keys for a moment.
+    wait_until("keys to the host after a drag", || !onlooker.has_focus(plugin));
+    let [width, height] = onlooker.size(plugin);
+    let [outer_width, outer_height] = onlooker.size(window);
+    onlooker.resize(window, [outer_width - 100, outer_height - 60]);
+    wait_until("a smaller window", || onlooker.size(plugin) == [width - 100, height - 60]);
+    onlooker.resize(window, [outer_width, outer_height]);
+    wait_until("the window as it was", || onlooker.size(plugin) == [width, height]);
+    let [left, top] = onlooker.place(plugin);
+    // In the line at the bottom.
+    let empty = [left + 550, top + height as i16 - 8];
+    onlooker.drag_slowly(empty, empty);
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    wait_until("keys to the host after a click", || !onlooker.has_focus(plugin));
+    // The browser's search takes them at once.
+    let browse = [left + 510, top + 22];
+    onlooker.drag_slowly(browse, browse);
+    wait_until("keys to the search", || onlooker.has_focus(plugin));
+    let before = onlooker.pixels(1_100, 700);
+    wait_until("letters in the search", || {
+        onlooker.press_key(Z);
+        std::thread::sleep(std::time::Duration::from_millis(200));
+        // More than a cursor that blinks: the list has become shorter.
+        let changed = onlooker.pixels(1_100, 700).iter().zip(&before).filter(|(now, before)| now != before).count();
+        changed > 5_000
+    });
+    wait_until("keys back to the host", || {
+        onlooker.press_key(ESCAPE);
+        std::thread::sleep(std::time::Duration::from_millis(200));
+        !onlooker.has_focus(plugin)
+    });
+}
+
 pub(crate) fn the_window_opens_and_closes_fifty_times() {
     const TITLE: &str = "DawDreamer: Sprung";
     let screen = Screen::new();
@@ -253,6 +292,9 @@ pub(crate) fn the_window_opens_and_closes_fifty_times() {
         });
         let window = window.expect("it was found");
         onlooker.drag([400, 300 + 5 * time], [500, 300]);
+        if time == 0 {
+            is_used(&onlooker, window);
+        }
         onlooker.close(window);
         wait_until("the window to go", || onlooker.find(TITLE) != Some(window));
     }
