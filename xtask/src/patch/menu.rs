@@ -1,5 +1,4 @@
-//! Edits for the host's menu of a parameter, which the wrapper does not know: CLAP's context-menu extension and VST3's
-//! `IComponentHandler3`.
+//! Edits for the host’s menu of a parameter, by CLAP’s context-menu extension and VST3’s `IComponentHandler3`.
 //!
 //! Hosts show menus only from their main thread, and a menu may run the host's event loop until it is closed. So the request
 //! must never be carried out within the window's own pass: it is a task for later. In VST3 that is possible on Linux alone, where
