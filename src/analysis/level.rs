@@ -24,6 +24,11 @@ pub fn mean_of<C: AsRef<[f32]>>(channels: &[C]) -> Vec<f64> {
     (0..len).map(|n| channels.iter().map(|channel| f64::from(channel.as_ref()[n])).sum::<f64>() / count).collect()
 }
 
+/// [`mean_of`] in single precision.
+pub fn mono<C: AsRef<[f32]>>(channels: &[C]) -> Vec<f32> {
+    mean_of(channels).into_iter().map(|sample| sample as f32).collect()
+}
+
 /// Mean; 0 for no samples.
 pub fn dc(samples: &[f32]) -> f64 {
     samples.iter().map(|sample| f64::from(*sample)).sum::<f64>() / samples.len().max(1) as f64

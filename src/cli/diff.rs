@@ -7,7 +7,7 @@ use libm::log10;
 use serde_json::json;
 use sprung::analysis::comparison::Comparison;
 use sprung::analysis::figure::{Render, comparison_bytes};
-use sprung::analysis::level::mean_of;
+use sprung::analysis::level::mono;
 use sprung::analysis::log_mel;
 use sprung::io::Inputs;
 use sprung::io::sound_file::{Recording, resampled};
@@ -106,10 +106,7 @@ fn mel_distance(expected: &Recording, actual: &Recording) -> Result<Option<f64>>
     if [expected, actual].iter().any(|sound| sound.channels.iter().flatten().any(|sample| !sample.is_finite())) {
         return Ok(None);
     }
-    let mean = |sound: &Recording| -> Result<Vec<f32>> {
-        let channels = resampled(sound, log_mel::RATE)?.channels;
-        Ok(mean_of(&channels).into_iter().map(|sample| sample as f32).collect())
-    };
+    let mean = |sound| -> Result<Vec<f32>> { Ok(mono(&resampled(sound, log_mel::RATE)?.channels)) };
     Ok(Some(log_mel::distance(&mean(expected)?, &mean(actual)?)))
 }
 

@@ -4,7 +4,7 @@ pub mod modes;
 mod panel;
 pub mod sound;
 
-use super::level::mean_of;
+use super::level::mono;
 use crate::error::{Error, Result};
 use crate::figure::colour::{BLUE, VERMILLION};
 use crate::figure::{Area, Drawn, Picture, png, svg, text};
@@ -27,7 +27,7 @@ pub struct Render<'a> {
 /// `.png` of 1600 × 900 pixels or an `.svg`.
 pub fn waveform_and_spectrogram(render: Render, title: &str, path: &Path) -> Result<()> {
     let Render { left, right, sample_rate } = render;
-    save(path, Sheet { title, cell: 1, sample_rate, render, against: None, middle: mean(left, right) })
+    save(path, Sheet { title, cell: 1, sample_rate, render, against: None, middle: mono(&[left, right]) })
 }
 
 /// Draws the expected and the actual render, their difference (at its own scale), and the spectrogram of the difference.
@@ -57,7 +57,7 @@ impl<'a> Sheet<'a> {
     fn comparison(expected: Render<'a>, actual: Render<'a>, title: &'a str) -> Self {
         let len = expected.left.len().max(actual.left.len());
         let middle = |render: Render| {
-            let mut samples = mean(render.left, render.right);
+            let mut samples = mono(&[render.left, render.right]);
             samples.resize(len, 0.0);
             samples
         };
@@ -118,11 +118,6 @@ fn save(path: &Path, sheet: Sheet) -> Result<()> {
 fn bytes(sheet: Sheet, format: &str) -> Result<Vec<u8>> {
     // A vector image has no pixels: larger cells keep the file small.
     if format == "svg" { svg(&Sheet { cell: 5, ..sheet }).map(String::into_bytes) } else { png(&sheet) }
-}
-
-/// The mean of two channels.
-fn mean(left: &[f32], right: &[f32]) -> Vec<f32> {
-    mean_of(&[left, right]).into_iter().map(|sample| sample as f32).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Draws a sound: its waveform, its spectrogram, and its modes, if they are known.
 
+use super::Render;
 use super::panel::{Trace, spectrogram_panel, waveform};
-use super::{Render, mean};
+use crate::analysis::level::mono;
 use crate::figure::colour::{BLUE, INK, VERMILLION};
 use crate::figure::panel::{Axis, Panel, Stroke, line};
 use crate::figure::{Area, Drawn, Picture, png, svg, text};
@@ -92,7 +93,7 @@ impl Picture for SoundFigure<'_> {
         ];
         let traces: &[Trace] = if left == right { &one } else { &both };
         waveform(&upper, traces, sample_rate, "sound", false)?;
-        spectrogram_panel(&middle, &mean(left, right), sample_rate, self.cell)?;
+        spectrogram_panel(&middle, &mono(&[left, right]), sample_rate, self.cell)?;
         if self.modes.is_empty() { Ok(()) } else { self.draw_modes(&lower) }
     }
 }

@@ -1,7 +1,7 @@
 //! A recording to fit, with its key and velocity, and the preparation of its samples.
 
 use super::release::Release;
-use crate::analysis::level::{mean_of, rms};
+use crate::analysis::level::{mono, rms};
 use crate::analysis::log_mel::RATE;
 use crate::error::{Error, Result};
 use crate::io::sound_file::{Recording, resampled};
@@ -90,7 +90,7 @@ impl Prepared {
         take.recording.check_finite(&take.name)?;
         // The rest is never used, so that little of a long recording is kept.
         let channels = resampled(&first_seconds(&take.recording), RATE)?.channels;
-        let middle = mean(&channels);
+        let middle = mono(&channels);
         let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
         if f64::from(peak) < SILENCE {
             return wrong("it is silent: expected a strike above −80 dBFS");
@@ -127,7 +127,7 @@ impl Prepared {
         }
         let channels: Vec<Vec<f32>> = channels.iter().map(|channel| channel[onset..end].to_vec()).collect();
         let mut prepared = Self {
-            mean: mean(&channels),
+            mean: mono(&channels),
             channels,
             key: take.key,
             velocity: (take.velocity / 127.0).clamp(1.0 / 127.0, 1.0),
@@ -197,13 +197,13 @@ fn again(levels: &[f64], loudest: f64) -> Option<f64> {
 fn first_seconds(recording: &Recording) -> Recording {
     let mut channels = match recording.channels.len() {
         0..=2 => recording.channels.clone(),
-        _ => vec![mean(&recording.channels)],
+        _ => vec![mono(&recording.channels)],
     };
     for channel in &mut channels {
         let constant = channel.iter().map(|sample| f64::from(*sample)).sum::<f64>() / channel.len().max(1) as f64;
         channel.iter_mut().for_each(|sample| *sample -= constant as f32);
     }
-    let middle = mean(&channels);
+    let middle = mono(&channels);
     let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
     let onset = middle.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0);
     let frames = |seconds: f64| (seconds * f64::from(recording.sample_rate)) as usize;
@@ -212,10 +212,6 @@ fn first_seconds(recording: &Recording) -> Recording {
         channels.iter_mut().for_each(|channel| *channel = channel[kept.clone()].to_vec());
     }
     Recording { sample_rate: recording.sample_rate, channels, encoding: String::new(), warnings: Vec::new() }
-}
-
-fn mean(channels: &[Vec<f32>]) -> Vec<f32> {
-    mean_of(channels).into_iter().map(|sample| sample as f32).collect()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::recordings::{self, Recording};
 use super::{
     DRUMS, TUNED, attack_flatness, difference, from_onset, high_share, motion, partials, samples, timbre_change,
 };
-use crate::analysis::level::mean_of;
+use crate::analysis::level::mono;
 use crate::analysis::log_mel::RATE;
 use crate::engine::{Event, EventKind, Notes, Synth};
 use crate::error::{Error, Result};
@@ -90,11 +90,6 @@ impl Player {
     fn note(&self, key: u8, velocity: u8, held: f64, seconds: f64) -> Stereo {
         self.play(&[key], velocity, [0.0, held, seconds], false)
     }
-}
-
-/// The mean of both sides.
-fn mono(sound: &Stereo) -> Vec<f32> {
-    mean_of(sound).into_iter().map(|sample| sample as f32).collect()
 }
 
 /// The loudest 400 ms in LUFS (ITU-R BS.1770); none if it is silent.
