@@ -1,12 +1,25 @@
 //! Renders notes of a patch with the engine.
 
-use crate::analysis::level::mean_of;
+use crate::analysis::level::mono;
 use crate::analysis::log_mel::RATE;
 use crate::engine::{Event, EventKind, Synth};
 use crate::patch::Patch;
 
 /// Frames per block.
 const BLOCK: usize = 512;
+
+/// A note to play.
+#[derive(Clone, Copy)]
+pub(super) struct Played {
+    /// As a fractional MIDI key.
+    pub(super) key: f64,
+    /// 0–1.
+    pub(super) velocity: f64,
+    /// Number of frames that are rendered.
+    pub(super) frames: usize,
+    /// The frame at which the key is let go; none if it is held.
+    pub(super) let_go: Option<usize>,
+}
 
 /// A synth that plays one note after another, each as if it were the first. Not real-time safe.
 pub(super) struct Audition {
@@ -18,16 +31,8 @@ impl Audition {
         Self { synth: Synth::new(RATE.into(), 0) }
     }
 
-    /// The first `frames` frames of a note, left and right, whose key is let go at frame `let_go`, or is held. `key` is a
-    /// fractional MIDI key, `velocity` 0–1.
-    pub(super) fn play(
-        &mut self,
-        patch: &Patch,
-        key: f64,
-        velocity: f64,
-        frames: usize,
-        let_go: Option<usize>,
-    ) -> [Vec<f32>; 2] {
+    /// The first frames of a note, left and right.
+    pub(super) fn play(&mut self, patch: &Patch, Played { key, velocity, frames, let_go }: Played) -> [Vec<f32>; 2] {
         // `set_patch` moves parameters smoothly to their new values; the reset makes the patch the present one at once.
         self.synth.set_patch(patch);
         self.synth.reset();
@@ -52,15 +57,7 @@ impl Audition {
     }
 
     /// As [`Audition::play`], the mean of both channels.
-    pub(super) fn mean(
-        &mut self,
-        patch: &Patch,
-        key: f64,
-        velocity: f64,
-        frames: usize,
-        let_go: Option<usize>,
-    ) -> Vec<f32> {
-        let [left, right] = self.play(patch, key, velocity, frames, let_go);
-        mean_of(&[left, right]).into_iter().map(|sample| sample as f32).collect()
+    pub(super) fn mean(&mut self, patch: &Patch, played: Played) -> Vec<f32> {
+        mono(&self.play(patch, played))
     }
 }

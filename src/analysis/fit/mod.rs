@@ -43,7 +43,7 @@ use crate::error::{Error, Result};
 use crate::patch::Patch;
 use crate::preset::{Guide, Preset};
 use crate::units::key_from_frequency;
-use audition::Audition;
+use audition::{Audition, Played};
 use draft::MOST_MODES;
 use layers::Layer;
 use take::Prepared;
@@ -159,7 +159,8 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
     let patch = layers::route(patch, &layers, base);
     let patch = layers::route_gain(patch, &layers, base, &mut |patch, layer| {
-        rms(&audition.mean(patch, layer.key(), layer.draft.velocity, take::LEVEL_FRAMES, None))
+        let (key, velocity) = (layer.key(), layer.draft.velocity);
+        rms(&audition.mean(patch, Played { key, velocity, frames: take::LEVEL_FRAMES, let_go: None }))
     });
     let (mut patch, mut release) = (patch, None);
     if let Some(ending) = &take.ending {
@@ -168,13 +169,15 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         (patch, release) = (damped, Some(found));
     }
     let (_, whole) = take.whole();
-    let played = audition.play(&patch, key, draft.velocity, whole.len(), release.map(|release| release.frames()));
+    let let_go = release.map(|release| release.frames());
+    let played = audition.play(&patch, Played { key, velocity: draft.velocity, frames: whole.len(), let_go });
     let distance = |(index, (layer, take)): (usize, (&Layer, &Prepared))| {
         let key = key_from_frequency(layer.draft.note, A4);
         let (_, whole) = take.whole();
         let own = take.ending.as_ref().map(|ending| ending.release);
         let let_go = if index == base { release } else { own }.map(|release| release.frames());
-        log_mel::distance(&audition.mean(&patch, key, take.velocity, whole.len(), let_go), whole)
+        let note = Played { key, velocity: take.velocity, frames: whole.len(), let_go };
+        log_mel::distance(&audition.mean(&patch, note), whole)
     };
     let distances: Vec<f64> = layers.iter().zip(&prepared).enumerate().map(distance).collect();
     let mut warnings: Vec<String> = prepared.iter().flat_map(|take| take.warnings.clone()).collect();

@@ -1,6 +1,6 @@
 //! Brings a draft nearer to its recording: plays it, compares both band by band, and corrects the draft.
 
-use super::audition::Audition;
+use super::audition::{Audition, Played};
 use super::correct::{by_bands, by_moments};
 use super::draft::{Draft, Noise, Swell};
 use super::simplex;
@@ -66,7 +66,8 @@ impl<'a> Listener<'a> {
         self.tell(self.share)?;
         let frames = self.take.mean.len().min(windows.saturating_mul(HOP));
         let key = key_from_frequency(draft.note, 440.0);
-        let sound = self.audition.mean(&draft.patch(), key, draft.velocity, frames + 1024, None);
+        let played = Played { key, velocity: draft.velocity, frames: frames + 1024, let_go: None };
+        let sound = self.audition.mean(&draft.patch(), played);
         let sound = crate::analysis::log_mel::from_onset(&sound);
         Ok(self.bands.measure(&sound[..sound.len().min(frames)]))
     }

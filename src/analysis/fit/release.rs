@@ -1,6 +1,6 @@
 //! The release of a key in a recording: where it is, and the damper that sounds most like it.
 
-use super::audition::Audition;
+use super::audition::{Audition, Played};
 use super::layers::slope;
 use super::simplex;
 use crate::analysis::level::{dbfs, rms};
@@ -140,7 +140,8 @@ impl Release {
         let target = bands.measure(&end(recording));
         let (place, _) = simplex::least(SEARCHED, |place| {
             let tried = self.moved(place, recording.len());
-            let played = audition.mean(&tried.of(patch.clone()), key, velocity, recording.len(), Some(tried.frames()));
+            let note = Played { key, velocity, frames: recording.len(), let_go: Some(tried.frames()) };
+            let played = audition.mean(&tried.of(patch.clone()), note);
             if go_on() {
                 Ok(bands.measure(&end(from_onset(&played))).distance(&target))
             } else {

@@ -3,7 +3,7 @@
 //! The modes of a recording show where a body is struck and how it loses energy, but only those modes that were found,
 //! and one by one. Here the whole sound is compared.
 
-use super::audition::Audition;
+use super::audition::{Audition, Played};
 use super::body;
 use super::draft::{Draft, digits};
 use super::levels::Levels;
@@ -51,8 +51,9 @@ pub(super) fn patch(
     let (mut audition, mut bands) = (Audition::new(), MelBands::new());
     let recording = from_onset(&take.mean);
     let target = bands.measure(recording);
+    let note = Played { key, velocity: draft.velocity, frames: take.mean.len(), let_go: None };
     let mut heard = |body: &Body, patch: &mut Patch| {
-        let mut played = audition.mean(patch, key, draft.velocity, take.mean.len(), None);
+        let mut played = audition.mean(patch, note);
         // Make it as loud as the recording.
         let before = f64::from(patch.get(Param::Gain));
         let more = dbfs(rms(&take.mean)) - dbfs(rms(&played));
