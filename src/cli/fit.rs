@@ -73,9 +73,10 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let mut inputs = Inputs::default();
     let mut takes: Vec<Take> =
         (0..args.recordings.len()).map(|index| take(args, index, &mut inputs)).collect::<Result<_>>()?;
-    if !tells_velocities(args) && take_velocities_from_names(&mut takes) {
-        let velocities: Vec<String> = takes.iter().map(|take| take.velocity.to_string()).collect();
-        complain("note", format!("the names of the recordings tell their velocities: {}", velocities.join(", ")));
+    if !tells_velocities(args)
+        && let Some(velocities) = take_velocities_from_names(&mut takes)
+    {
+        complain("note", format!("the names of the recordings tell their velocities: {velocities}"));
     }
     interrupt::catch(true)?;
     let mut output = Output::create(&target, args.force, &inputs)?;

@@ -108,9 +108,8 @@ fn fitted(paths: &[PathBuf], shared: &Shared) -> Result<Done> {
         said.extend(take.recording.warnings.iter().map(|warning| format!("{}: {warning}", take.name)));
         takes.push(take);
     }
-    if take_velocities_from_names(&mut takes) {
-        let velocities: Vec<String> = takes.iter().map(|take| take.velocity.to_string()).collect();
-        said.push(format!("velocities {} by the names", velocities.join(", ")));
+    if let Some(velocities) = take_velocities_from_names(&mut takes) {
+        said.push(format!("velocities {velocities} by the names"));
     }
     let fitted = fit(&takes, &Settings::default(), &mut |share| {
         shared.steps.store((share * STEPS) as u32, Ordering::Relaxed);

@@ -13,14 +13,14 @@ const WORDS: [&str; 3] = ["velocity", "vel", "v"];
 /// have up to some twenty of these.
 const LEAST_LOUDEST: f64 = 32.0;
 
-/// Gives several takes of one instrument the velocities that are in the names of their files, and returns whether there are
-/// any: numbers as in `bell-C5-v40.wav`, `bell vel 100.wav` or `A0v127.wav`, or else dynamic marks as in `bell-pp.wav`. Every
+/// Gives several takes of one instrument the velocities that are in the names of their files, and returns them as a list to
+/// read, if there are any: numbers as in `bell-C5-v40.wav`, `bell vel 100.wav` or `A0v127.wav`, or else dynamic marks as in `bell-pp.wav`. Every
 /// name must have one, two must differ, and numbers that only count versions are left alone.
-pub fn take_velocities_from_names(takes: &mut [Take]) -> bool {
+pub fn take_velocities_from_names(takes: &mut [Take]) -> Option<String> {
     let names: Vec<&str> = takes.iter().map(|take| take.name.as_str()).collect();
-    let Some(velocities) = velocities(&names) else { return false };
-    takes.iter_mut().zip(velocities).for_each(|(take, velocity)| take.velocity = velocity);
-    true
+    let velocities = velocities(&names)?;
+    takes.iter_mut().zip(&velocities).for_each(|(take, velocity)| take.velocity = *velocity);
+    Some(velocities.iter().map(f64::to_string).collect::<Vec<_>>().join(", "))
 }
 
 fn velocities(names: &[&str]) -> Option<Vec<f64>> {
