@@ -71,6 +71,9 @@ pub fn mono_from_stereo(left: f32, right: f32) -> f32 {
 pub fn parse_key(text: &str, a4_hz: f64) -> Result<f64, String> {
     let expected = "expected a note name (C#4), a key from 0 to 127 (60, 60.5) or a frequency (440Hz)";
     let key = if let Some(key) = semitones_from_note_name(text) {
+        if !(0..=127).contains(&key) {
+            return Err(format!("note ‘{text}’ is out of range: expected C-1 to G9"));
+        }
         f64::from(key)
     } else {
         match split_quantity(text) {
@@ -87,9 +90,6 @@ pub fn parse_key(text: &str, a4_hz: f64) -> Result<f64, String> {
     let range = if is_frequency { -60.0..=200.0 } else { 0.0..=127.0 };
     if range.contains(&key) {
         return Ok(key);
-    }
-    if semitones_from_note_name(text).is_some() {
-        return Err(format!("note ‘{text}’ is out of range: expected C-1 to G9"));
     }
     let hint =
         if is_frequency || key < 0.0 { String::new() } else { format!("; for {text} Hz, write {}Hz", text.trim()) };
