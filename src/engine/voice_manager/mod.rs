@@ -99,19 +99,13 @@ impl<V: Voice> VoiceManager<V> {
 
     /// The voices that play or fade, in an order that is always the same, each with its note.
     pub fn active(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
-        self.slots.in_use_mut().iter_mut().flat_map(|slot| {
-            let (note, voices) = slot.voices_mut();
-            voices.map(move |voice| (note, voice))
-        })
+        self.slots.in_use_mut().iter_mut().flat_map(Slot::voices_mut)
     }
 
     /// The voices of a key's notes on a channel that sound and do not fade out, each with its note.
     pub fn sounding_on(&mut self, channel: u8, key: u8) -> impl Iterator<Item = (&Note, &mut V)> {
         let notes = Notes::on(channel, key);
-        self.slots.in_use_mut().iter_mut().filter(move |slot| slot.is_one_of(&notes)).flat_map(|slot| {
-            let (note, voices) = slot.voices_mut();
-            voices.map(move |voice| (note, voice))
-        })
+        self.slots.in_use_mut().iter_mut().filter(move |slot| slot.is_one_of(&notes)).flat_map(Slot::voices_mut)
     }
 
     /// The voices that play or fade, with their notes, read-only.

@@ -63,8 +63,10 @@ impl<V: Voice> Slot<V> {
         self.voices.iter().map(|voice| &**voice)
     }
 
-    pub(super) fn voices_mut(&mut self) -> (&Note, impl Iterator<Item = &mut V>) {
-        (&self.note, self.voices.iter_mut().map(|voice| &mut **voice))
+    /// The voices, each with the note.
+    pub(super) fn voices_mut(&mut self) -> impl Iterator<Item = (&Note, &mut V)> {
+        let Self { note, voices, .. } = self;
+        voices.iter_mut().map(|voice| (&*note, &mut **voice))
     }
 
     /// Starts a note in a free slot with voices from the pool. Returns false, and changes nothing, if the pool has too
