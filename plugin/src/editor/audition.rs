@@ -25,8 +25,8 @@ impl Audition {
     }
 
     /// Holds a key for a while whose note is not struck: only one mode is pushed, with an amplitude from 0 to 1.
-    pub(super) fn wake(&mut self, key: u8, (mode, amplitude): (usize, f32), now: f64, link: &Link) {
-        self.hold(key, Touch::Wake { key, mode: mode as u16, amplitude }, now, link);
+    pub(super) fn wake(&mut self, key: u8, (mode, amplitude): (u16, f32), now: f64, link: &Link) {
+        self.hold(key, Touch::Wake { key, mode, amplitude }, now, link);
     }
 
     /// Holds a key for a while that `touch` presses.

@@ -94,21 +94,20 @@ impl Phase {
             return;
         }
         let Some(pulled) = self.pulled.take().filter(|pulled| amplitude(*pulled) >= LEAST) else { return };
+        let (mode, amplitude) = (self.mode as u16, amplitude(pulled));
         self.trail.clear();
         // The mass continues from where it was released.
         self.angle = (-pulled.angle()).rem_euclid(TAU);
-        (self.greatest, self.full, self.waiting) = (0.0, amplitude(pulled), Some(0.0));
-        let now = ui.input(|input| input.time);
-        let (push, home, link) = ((self.mode, amplitude(pulled)), shown.guide().home, controls.params.link());
+        (self.greatest, self.full, self.waiting) = (0.0, amplitude, Some(0.0));
+        let (home, link) = (shown.guide().home, controls.params.link());
         // A released note of the home key is probably the last one that was pulled: it is held again.
         let is_held = |note: &SoundingNote| link.telemetry.keys(note.channel) >> note.key & 1 == 1;
         let is_pushed = |note: &&SoundingNote| shown.shows(note.key) && (is_held(note) || note.key != home);
         match controls.notes.first().filter(is_pushed) {
             Some(SoundingNote { channel, key, .. }) => {
-                let (mode, amplitude) = (push.0 as u16, push.1);
                 link.play(Touch::Nudge { channel: *channel, key: *key, mode, amplitude });
             }
-            None => audition.wake(home, push, now, link),
+            None => audition.wake(home, (mode, amplitude), ui.input(|input| input.time), link),
         }
         ui.ctx().request_repaint();
     }
