@@ -73,12 +73,6 @@ pub(crate) const STEPS: &[Step] = &[
         shows: Shows::Tests,
     },
     Step {
-        name: "modes, release",
-        arguments: "test --release --package sprung --no-default-features --features analysis --lib -- analysis::modes",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
         name: "fit, release",
         arguments: "test --release --package sprung --no-default-features --features analysis --test fit",
         environment: &[],

@@ -11,9 +11,9 @@ use libm::{cos, exp, log2, pow};
 use realfft::num_complex::Complex;
 
 const RATE: f64 = 48_000.0;
-/// Number of modes of a strike, and of strikes; fewer in a build that is not optimised.
-const MODES: usize = if cfg!(debug_assertions) { 24 } else { 60 };
-const SEEDS: u64 = if cfg!(debug_assertions) { 1 } else { 20 };
+/// Number of modes of a strike, and number of strikes, which are fewer in a build that is not optimised.
+const MODES: usize = 60;
+const SEEDS: u64 = if cfg!(debug_assertions) { 5 } else { 20 };
 
 /// A mode that is put into a sound: frequency, T60, amplitude, phase of a sine.
 #[derive(Clone, Copy, Debug)]
