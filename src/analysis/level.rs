@@ -34,6 +34,15 @@ pub fn dc(samples: &[f32]) -> f64 {
     samples.iter().map(|sample| f64::from(*sample)).sum::<f64>() / samples.len().max(1) as f64
 }
 
+/// The constant that is added to a strike: the median of the means of blocks of some samples; 0 for no samples. The mean of all
+/// samples is not it, since a strike can be asymmetric: taken away, it would leave a constant in the quiet end.
+pub fn offset(samples: &[f64], block: usize) -> f64 {
+    let mean = |block: &[f64]| block.iter().sum::<f64>() / block.len() as f64;
+    let mut means: Vec<f64> = samples.chunks(block.max(1)).map(mean).collect();
+    means.sort_by(f64::total_cmp);
+    means.get(means.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// An amplitude in dB relative to full scale (1.0), never below [`SILENCE_DB`].
 pub fn dbfs(amplitude: f64) -> f64 {
     if amplitude.is_nan() { f64::NAN } else { db_from_gain(amplitude).max(SILENCE_DB) }
@@ -55,6 +64,7 @@ mod tests {
         let step = [0.0, 0.25, 0.25, 0.25];
         assert_eq!((peak(&step), dc(&step)), (0.25, 0.1875));
         assert_eq!((peak(&[]), rms(&[]), dc(&[])), (0.0, 0.0, 0.0));
+        assert_eq!((offset(&[0.9, 0.1, 0.1, 0.1, 0.1], 2), offset(&[], 2)), (0.1, 0.0));
         assert_eq!((dbfs(1.0), dbfs(0.1), dbfs(0.0)), (0.0, -20.0, SILENCE_DB));
     }
 

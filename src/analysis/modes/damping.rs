@@ -34,7 +34,7 @@ const GUARD_SHARE: f64 = 0.2;
 const GUARD_DB: f64 = 5.0;
 /// Levels in dB that the damper takes until modes are compared with the sound. With less, the modes could still explain it.
 const COMPARED_DB: f64 = 8.0;
-/// Largest share of the time before a damper for which its modes are continued until they are compared.
+/// The modes are compared with the sound at most this far behind the last fitted sample, as a share of the time before the damper.
 const AHEAD: f64 = 0.4;
 /// Seconds after the place in which modes are compared with the sound.
 const COMPARED: f64 = 0.15;

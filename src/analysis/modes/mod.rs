@@ -24,7 +24,7 @@ mod strikes;
 pub use common::{Common, common};
 pub use mode::{Group, Kind, Mode, Strike, Uncertainty};
 
-use super::level::{dbfs, mean_of};
+use super::level::{dbfs, mean_of, offset};
 use crate::error::{Error, Result};
 use fit::Fit;
 use groups::groups;
@@ -32,7 +32,7 @@ use libm::{log10, sqrt};
 use plausible::{AUDIBLE, Limits};
 use pole::{LN_60_DB, add};
 use std::f64::consts::{LN_10, PI};
-use strikes::{SHORTEST, Stretch, strikes};
+use strikes::{BLOCK, SHORTEST, Stretch, strikes};
 
 /// Settings of an analysis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,6 +64,8 @@ pub struct Analysis {
 
 /// Lowest peak of a recording that is not silent: −100 dBFS.
 const SILENCE: f64 = 1e-5;
+/// Share of the energy of unrelated channels below which the mean of channels has lost what they hold.
+const CANCELLED: f64 = 0.1;
 /// T60 in seconds above which a tone does not decay, and standard deviations by which its decay must differ from 0.
 const ENDLESS: f64 = 2000.0;
 const DEVIATIONS: f64 = 2.0;
@@ -87,8 +89,12 @@ pub fn modes(
     if channels.iter().flatten().any(|sample| !sample.is_finite()) {
         return Err(wrong("some samples are not finite: expected numbers"));
     }
+    if channels.windows(2).any(|pair| pair[0].len() != pair[1].len()) {
+        return Err(wrong("its channels differ in length: expected as many samples in each"));
+    }
     let mut rest = mono(channels, &mut warnings);
-    let peak = rest.iter().fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
+    let constant = offset(&rest, (BLOCK * sample_rate) as usize);
+    let peak = rest.iter().fold(0.0_f64, |peak, sample| peak.max((sample - constant).abs()));
     if peak < SILENCE {
         return Err(wrong("it is silent: expected a strike above −100 dBFS"));
     }
@@ -97,18 +103,24 @@ pub fn modes(
     if stretches.is_empty() {
         return Err(wrong("there is no strike of at least 30 ms in it: expected something that is struck and rings"));
     }
+    // What is left of each channel, if there are several.
+    let several = if channels.len() > 1 { channels } else { &[] };
+    let mut rests: Vec<Vec<f64>> =
+        several.iter().map(|channel| channel.iter().map(|sample| f64::from(*sample)).collect()).collect();
     let count = if settings.all_strikes { stretches.len() } else { 1 };
     let mut found = Vec::new();
     for (index, stretch) in stretches.iter().copied().take(count).enumerate() {
         let mut told = |share: f64| progress((index as f64 + share) / count as f64);
         let (stretch, damped, modes) = search(&rest, stretch, sample_rate, settings.most_modes, &mut told)?;
+        let in_channel = |rest: &Vec<f64>| Fit::new(&rest[stretch.start..stretch.end], modes.fit.poles.clone());
+        let fits: Vec<Option<Fit>> = rests.iter().map(in_channel).collect();
+        let mut strike = strike(&modes, &fits, &rest, &stretch, sample_rate);
         if damped.is_none() {
-            // Remove the modes that still ring from the next strike.
-            for (pole, amplitude) in modes.fit.poles.iter().zip(&modes.fit.amplitudes) {
-                add(&mut rest[stretch.end..], *pole, *amplitude * pole.power(stretch.end - stretch.start), -1.0);
-            }
+            end_ringing(&mut rest, &modes.fit, &stretch);
+            rests.iter_mut().zip(&fits).for_each(|(rest, fit)| {
+                fit.iter().for_each(|fit| end_ringing(rest, fit, &stretch));
+            });
         }
-        let mut strike = strike(&modes, channels, &rest, &stretch, sample_rate);
         strike.damped = damped.map(|frame| frame as f64 / sample_rate);
         if let Some(seconds) = strike.damped {
             warnings.push(format!(
@@ -127,6 +139,13 @@ pub fn modes(
         found.push(strike);
     }
     Ok(Analysis { strikes: found, strikes_found: stretches.len(), warnings })
+}
+
+/// Takes what still rings after a stretch out of the sound, so that it is no part of the next strike.
+fn end_ringing(sound: &mut [f64], fit: &Fit, stretch: &Stretch) {
+    for (pole, amplitude) in fit.poles.iter().zip(&fit.amplitudes) {
+        add(&mut sound[stretch.end..], *pole, *amplitude * pole.power(stretch.end - stretch.start), -1.0);
+    }
 }
 
 /// The modes of a stretch: of all of it, or of the part before the frame at which it is damped.
@@ -161,8 +180,10 @@ fn mono(channels: &[Vec<f32>], warnings: &mut Vec<String>) -> Vec<f64> {
     let energy = |channel: &Vec<f32>| channel.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
     let loudest = channels.iter().enumerate().max_by(|a, b| energy(a.1).total_cmp(&energy(b.1)));
     let of_mean: f64 = mean.iter().map(|sample| sample * sample).sum();
+    // The mean of channels that have nothing in common has this energy.
+    let unrelated = channels.iter().map(energy).sum::<f64>() / (channels.len() * channels.len()) as f64;
     match loudest {
-        Some((index, channel)) if of_mean < 0.1 * energy(channel) && channels.len() > 1 => {
+        Some((index, channel)) if of_mean < CANCELLED * unrelated && channels.len() > 1 => {
             warnings.push(format!("the channels all but cancel: channel {} alone was taken apart", index + 1));
             channel.iter().map(|sample| f64::from(*sample)).collect()
         }
@@ -175,8 +196,8 @@ fn clipping(channels: &[Vec<f32>]) -> Option<String> {
     let mut count = 0;
     for channel in channels {
         let peak = channel.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
-        let flat = |window: &&[f32]| window.iter().all(|sample| *sample == window[0]) && window[0].abs() == peak;
-        count += if peak > 0.5 { channel.windows(3).filter(flat).count() } else { 0 };
+        let flat = |run: &&[f32]| run.len() >= 3 && run[0].abs() == peak;
+        count += if peak > 0.5 { channel.chunk_by(|a, b| a == b).filter(flat).count() } else { 0 };
     }
     let places = if count == 1 { "place" } else { "places" };
     (count > 0).then(|| format!("the sound is clipped in {count} {places}: levels and high modes are doubtful"))
@@ -188,25 +209,16 @@ fn steady(strike: &Strike) -> Option<String> {
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
     let (onset, verb) = (strike.onset, if more.is_empty() { "does" } else { "do" });
     Some(format!(
-        "a tone of {:.2} Hz{more} {verb} not decay that could be told: no modes of the strike at {onset:.3} s",
+        "a tone of {:.2} Hz{more} {verb} not decay measurably: not listed among the modes of the strike at {onset:.3} s",
         first.frequency
     ))
 }
 
-fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: &Stretch, sample_rate: f64) -> Strike {
+/// The strike whose modes were found in a stretch of the sound, with their fits to each of several channels.
+fn strike(found: &search::Found, fits: &[Option<Fit>], sound: &[f64], stretch: &Stretch, sample_rate: f64) -> Strike {
     let samples = &sound[stretch.start..stretch.end];
     let residual = found.fit.residual(samples);
-    let energy = |samples: &[f64]| samples.iter().map(|sample| sample * sample).sum::<f64>();
-    let fits: Vec<Option<Fit>> = match channels.len() {
-        1 => Vec::new(),
-        _ => channels
-            .iter()
-            .map(|channel| {
-                let samples: Vec<f64> = channel[stretch.start..stretch.end].iter().map(|x| f64::from(*x)).collect();
-                Fit::new(&samples, found.fit.poles.clone())
-            })
-            .collect(),
-    };
+    let energy = |samples: &[f64], constant: f64| samples.iter().map(|x| (x - constant) * (x - constant)).sum::<f64>();
     // The modes have been ringing since the onset, but the fit begins where the exciter has let go.
     let late = (stretch.start - stretch.onset) as f64;
     // The floor contains both quadratures of the noise.
@@ -259,7 +271,8 @@ fn strike(found: &search::Found, channels: &[Vec<f32>], sound: &[f64], stretch: 
         steady: by_frequency(steady),
         groups: groups(&modes),
         modes,
-        residual_db: 10.0 * log10((energy(&residual) / energy(samples).max(1e-300)).max(1e-30)),
+        residual_db: 10.0
+            * log10((energy(&residual, 0.0) / energy(samples, found.fit.constant).max(1e-300)).max(1e-30)),
         samples: single(samples),
         residual: single(&residual),
         fitted_from: stretch.start as f64 / sample_rate,

@@ -15,8 +15,8 @@ const LEAST_SHARE: f64 = 1e-13;
 
 /// Least share of the unexplained energy that a round must explain.
 const LEAST_GAIN: f64 = 1e-4;
-/// That share for a sound of which the maximum number of modes explains nothing yet. With fewer modes, or less
-/// unexplained, it is lower in proportion. More modes always explain a little more of noise, which means nothing.
+/// The same share where all modes that are allowed explain nothing. It falls in proportion to the number of modes and to what they
+/// leave. More modes always explain a little more of noise, which means nothing.
 const GAIN_OF_NOISE: f64 = 0.05;
 
 const MOST_ROUNDS: usize = 24;

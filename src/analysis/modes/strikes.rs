@@ -1,6 +1,7 @@
 //! Finds the strikes of a recording, and how long each can be analysed.
 
 use super::contact::let_go;
+use crate::analysis::level::offset;
 use libm::sqrt;
 
 /// Seconds of the steps whose energies are compared before and after an onset.
@@ -21,7 +22,7 @@ const FAINT: f64 = 3e-3;
 /// Seconds within which an exciter lets go.
 const CONTACT: f64 = 0.015;
 /// Seconds per block whose level shows whether there is more than noise.
-const BLOCK: f64 = 0.05;
+pub(super) const BLOCK: f64 = 0.05;
 /// Level relative to the noise above which there is more than noise.
 const ABOVE_NOISE: f64 = 1.03;
 /// Noise keeps its level within 1 dB for this many blocks, in which even a T60 of 30 s falls by more.
@@ -44,7 +45,7 @@ pub(super) struct Stretch {
 /// Finds strikes in samples that are not silent; none longer than `longest` seconds.
 pub(super) fn strikes(samples: &[f64], sample_rate: f64, longest: f64) -> Vec<Stretch> {
     let frames = |seconds: f64| ((seconds * sample_rate) as usize).max(1);
-    let constant = constant(samples, frames(BLOCK));
+    let constant = offset(samples, frames(BLOCK));
     let samples: Vec<f64> = samples.iter().map(|sample| sample - constant).collect();
     let samples = &samples[..];
     let mut onsets = onsets(samples, sample_rate);
@@ -67,15 +68,6 @@ pub(super) fn strikes(samples: &[f64], sample_rate: f64, longest: f64) -> Vec<St
     };
     let long_enough = |stretch: &Stretch| stretch.end >= stretch.start + frames(SHORTEST);
     onsets.iter().enumerate().map(stretch).filter(long_enough).collect()
-}
-
-/// The DC of samples: the median of the means of blocks. A strike is asymmetric, so that the mean of all samples is none: taken
-/// from the quiet end of a decay, it would look like noise.
-fn constant(samples: &[f64], block: usize) -> f64 {
-    let mean = |block: &[f64]| block.iter().sum::<f64>() / block.len() as f64;
-    let mut means: Vec<f64> = samples.chunks(block).map(mean).collect();
-    means.sort_by(f64::total_cmp);
-    means.get(means.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Frames at which strikes begin.

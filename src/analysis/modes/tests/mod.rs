@@ -257,10 +257,12 @@ fn what_rings_on_is_no_part_of_the_next_strike() {
     let (next, scale, _) = sound(&second, 1.0, -300.0, &mut Chance(7));
     samples[48_000..].iter_mut().zip(&next).for_each(|(sample, next)| *sample += 2.0 * next);
     let settings = Settings { all_strikes: true, ..Settings::default() };
-    let found = modes(&[samples], RATE, &settings, &mut |_| true).unwrap();
+    let found = modes(&[samples.clone(), samples], RATE, &settings, &mut |_| true).unwrap();
     assert_eq!(found.strikes.iter().map(|strike| strike.modes.len()).collect::<Vec<_>>(), [1, 2]);
-    let level = found.strikes[1].modes[0].level_db;
-    assert!((level - dbfs(2.0 * scale * 0.5)).abs() < 0.2, "{level}");
+    let mode = &found.strikes[1].modes[0];
+    for level in [mode.level_db, mode.channels[0].0, mode.channels[1].0] {
+        assert!((level - dbfs(2.0 * scale * 0.5)).abs() < 0.2, "{level}");
+    }
     let shared = common(&found.strikes);
     assert_eq!(shared.len(), 1);
     assert!(cents(shared[0].frequency, 300.0) < 0.01 && shared[0].levels_db.iter().all(Option::is_some), "{shared:?}");
@@ -273,13 +275,17 @@ fn what_cannot_be_taken_apart_is_refused_or_warned_of() {
         (vec![], "sound: it is silent: expected a strike above −100 dBFS"),
         (vec![0.0; 5000], "sound: it is silent: expected a strike above −100 dBFS"),
         (
-            vec![0.5; 100],
+            [0.5, -0.5].repeat(50),
             "sound: there is no strike of at least 30 ms in it: expected something that is struck and rings",
         ),
+        (vec![0.1; 48_000], "sound: it is silent: expected a strike above −100 dBFS"),
         (vec![f32::NAN; 5000], "sound: some samples are not finite: expected numbers"),
     ] {
         assert_eq!(try_with(samples).unwrap_err().to_string(), message);
     }
+    let unequal = modes(&[vec![0.5; 5000], vec![0.5; 4000]], RATE, &Settings::default(), &mut |_| true);
+    let message = "sound: its channels differ in length: expected as many samples in each";
+    assert_eq!(unequal.unwrap_err().to_string(), message);
     let mut chance = Chance(5);
     let noise = (0..24_000).map(|_| (0.1 * chance.normal()) as f32).collect();
     let found = try_with(noise).unwrap();
