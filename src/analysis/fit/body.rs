@@ -76,7 +76,7 @@ impl Family {
 pub struct Explained {
     /// The model's name in presets.
     pub model: &'static str,
-    /// Mean distance in cents of the modes from the model's, weighted by their energy.
+    /// Mean distance in cents of the modes from the model's, weighted by what is heard of them: amplitude and T60.
     pub cents: f64,
     /// Number of modes of the sound that are modes of the model, and number of all modes of the sound.
     pub modes: (usize, usize),

@@ -145,6 +145,7 @@ fn corrected(draft: &Draft, share: f64, mut correction: impl FnMut(&Partial) -> 
 pub(super) mod tests {
     use super::super::draft::{Noise, Sweep};
     use super::*;
+    use crate::params::Param;
 
     pub(crate) fn draft(amplitudes: [f64; 2]) -> Draft {
         let partial =
@@ -174,6 +175,15 @@ pub(super) mod tests {
             }
         }
         LogMel { columns: columns.into_iter().map(|column| column.map(|power| 10.0 * libm::log10(power))).collect() }
+    }
+
+    #[test]
+    fn a_faint_mode_rings_on_beside_a_loud_short_one() {
+        let mut draft = draft([0.5, 0.02]);
+        draft.partials[0].t60 = 0.05;
+        let modes = draft.patch().modes;
+        let t60 = modes.as_slice()[1].decay * draft.patch().get(Param::Decay);
+        assert!((t60 - 3.0).abs() < 1e-3, "{t60}");
     }
 
     #[test]

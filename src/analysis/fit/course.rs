@@ -9,7 +9,7 @@ use crate::analysis::log_mel::RATE;
 use crate::dsp::pitch::SweepEnvelope;
 use libm::{cos, exp, fabs, log2, pow, sin, sqrt};
 use nalgebra::{Cholesky, SMatrix, SVector};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Seconds of the sound that are followed, and samples from one moment to the next.
 const LONGEST: f64 = 2.0;
@@ -35,6 +35,8 @@ const CURVES: usize = 17;
 /// Vibratos that are tried: lowest rate in Hz, step, and highest rate; delays in seconds.
 const RATES: (f64, f64, f64) = (2.5, 0.25, 20.0);
 const DELAYS: [f64; 6] = [0.0, 0.3, 0.6, 0.9, 1.3, 2.0];
+/// Fewest cycles of a vibrato or tremolo: a part of one fits any bend.
+pub(super) const LEAST_CYCLES: f64 = 2.0;
 /// Rounds of the fine search.
 const ROUNDS: usize = 12;
 /// Added to the diagonal of the equations, so that they can be solved.
@@ -68,7 +70,7 @@ impl Window {
         let half = (CUT * deviation) as isize;
         let value = |n: isize| {
             let (u, phase) = (n as f64 / deviation, TAU * frequency * n as f64 / f64::from(RATE));
-            let weight = exp(-0.5 * u * u) / (deviation * sqrt(0.5 * TAU * 0.5));
+            let weight = exp(-0.5 * u * u) / (deviation * sqrt(PI / 2.0));
             [weight * cos(phase), -weight * sin(phase)]
         };
         Self { frequency, values: (-half..=half).map(value).collect() }
@@ -186,8 +188,8 @@ impl Movement {
             curve: self.curve,
             vibrato: Vibrato { semitones: depth, ..vibrato },
         };
-        // The engine's vibrato begins upwards, and its sweep reaches five octaves: reject all others.
-        (sweep, if depth < 0.0 || fabs(semitones) > 60.0 { f64::INFINITY } else { error })
+        // The engine's vibrato begins upwards, and reaches one octave, its sweep five: reject all others.
+        (sweep, if depth < 0.0 || fabs(semitones) > 60.0 || depth > 12.0 { f64::INFINITY } else { error })
     }
 
     /// The movement with one number changed: up or down by a step of at most 1.
@@ -240,7 +242,7 @@ fn explain(points: &[Point]) -> Sweep {
     let rates = ((RATES.2 - RATES.0) / RATES.1) as usize;
     let trembling = |movement: Movement| {
         let rate = |n: usize| RATES.0 + RATES.1 * n as f64;
-        let rates = (0..=rates).map(rate).filter(|rate| rate * end > 2.0);
+        let rates = (0..=rates).map(rate).filter(|rate| rate * end > LEAST_CYCLES);
         rates.flat_map(|rate| DELAYS.map(|delay| Movement { rate, delay, ..movement })).collect::<Vec<_>>().into_iter()
     };
     let refined = |mut best: Movement, sweeps: bool, trembles: bool| {
@@ -267,8 +269,7 @@ fn explain(points: &[Point]) -> Sweep {
     let start = least(&mut trembling(fall), sweeps, true);
     let (_, both, of_both) = refined(start, sweeps, true);
     if of_both < (1.0 - WORTH) * without && both.vibrato.semitones > LEAST_VIBRATO {
-        let none = if sweeps { both.semitones } else { 0.0 };
-        return Sweep { semitones: none, ..both };
+        return both;
     }
     if sweeps { sweep } else { Sweep::NONE }
 }

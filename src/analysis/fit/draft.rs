@@ -218,7 +218,10 @@ impl Draft {
     pub(super) fn patch(&self) -> Patch {
         let main = self.main().map_or(1.0, |partial| partial.t60);
         let [decay_info, gain_info] = [Param::Decay, Param::Gain].map(Param::info);
-        let decay = main.clamp(decay_info.min.into(), decay_info.max.into());
+        let longest = self.partials.iter().map(|partial| partial.t60).fold(0.0, f64::max);
+        // A mode rings at most this many times as long as the patch's decay.
+        let reach = f64::from(Mode::FIELDS[2].2);
+        let decay = main.max(longest / reach).clamp(decay_info.min.into(), decay_info.max.into());
         let force = self.force();
         let demands: Vec<f64> = self.partials.iter().map(|partial| self.demand(partial) / force).collect();
         let total: f64 = demands.iter().map(|demand| fabs(*demand)).sum::<f64>().max(1e-9);

@@ -4,6 +4,7 @@
 //! tone's course is measured, and what is common to all is their mean, in which a tone counts the less, the more it
 //! differs from the others. Without the drift, the sound is a sum of modes.
 
+use super::course::LEAST_CYCLES;
 use super::draft::Tremolo;
 use super::resample::Reader;
 use super::take::SLOW;
@@ -94,7 +95,9 @@ impl Drift {
             sum.map(|sum| 2.0 * sum / level.len().max(1) as f64)
         };
         let square = |[a, b]: [f64; 2]| 0.5 * (a * a + b * b);
+        let seconds = (level.len() * HOP) as f64 / f64::from(RATE);
         let rates = (0..).map(|n| RATES.0 + RATES.1 * f64::from(n)).take_while(|rate| *rate < RATES.2);
+        let rates = rates.filter(|rate| rate * seconds > LEAST_CYCLES);
         let best = rates.map(|rate| (rate, explained(rate))).max_by(|a, b| square(a.1).total_cmp(&square(b.1)));
         let (rate, [a, b]) = best?;
         let all = level.iter().map(|level| (level - mean) * (level - mean)).sum::<f64>() / level.len().max(1) as f64;

@@ -62,7 +62,7 @@ pub(super) fn draft(
     let (swept, mean) = course::of_pitch(&drift.pitches());
     let mut draft = start::from(take, Some(&strike), &Source { swept, late: 0.0, struck: true }, true);
     let still = drift.removed_from(&take.mean);
-    steady(&mut draft, &still[from.min(still.len())..], &unexplained(&still, usize::MAX, &strike, from), from);
+    steady(&mut draft, most, &still[from.min(still.len())..], &unexplained(&still, usize::MAX, &strike, from), from);
     // The modes have the mean pitch, and those of a draft the pitch without sweep and vibrato.
     draft.partials.iter_mut().for_each(|partial| partial.frequency *= pow(2.0, -mean / 12.0));
     draft.tremolo = drift.tremolo();
@@ -70,8 +70,8 @@ pub(super) fn draft(
 }
 
 /// Replaces the modes of each tone by a steady mode if that is nearer to the course of its level. `sound` begins with a sample
-/// `from` the onset, and `rest` is what the modes leave of it.
-fn steady(draft: &mut Draft, sound: &[f32], rest: &[f32], from: usize) {
+/// `from` the onset, and `rest` is what the modes leave of it. The draft gets no more than `most` modes.
+fn steady(draft: &mut Draft, most: usize, sound: &[f32], rest: &[f32], from: usize) {
     let modes: Vec<f32> = sound.iter().zip(rest).map(|(sample, rest)| sample - rest).collect();
     let (own, against) = (tones(sound, None), tones(sound, Some(&modes)));
     let moments = |seconds: f64| seconds * f64::from(RATE) / HOP as f64;
@@ -88,10 +88,13 @@ fn steady(draft: &mut Draft, sound: &[f32], rest: &[f32], from: usize) {
         let others = own.iter().filter(|other| other.frequency != tone.frequency);
         let near = others.map(|other| 0.5 * (other.frequency - tone.frequency).abs()).fold(REACH, f64::min);
         let is_of = |partial: &Partial| (partial.frequency - tone.frequency).abs() < near;
-        let strongest = draft.partials.iter().filter(|partial| is_of(partial));
+        let members = draft.partials.iter().filter(|partial| is_of(partial));
         let pan =
-            strongest.max_by(|a, b| a.amplitude.abs().total_cmp(&b.amplitude.abs())).map_or(0.0, |partial| partial.pan);
+            members.max_by(|a, b| a.amplitude.abs().total_cmp(&b.amplitude.abs())).map_or(0.0, |partial| partial.pan);
         draft.partials.retain(|partial| !is_of(partial));
+        if draft.partials.len() >= most {
+            continue;
+        }
         let t60 = (log(1000.0) / (-line[1] * moments(1.0)).max(1e-9)).clamp(SHORTEST_T60, longest_t60(draft.is_held));
         let amplitude = exp(line[0] - line[1] * from as f64 / HOP as f64);
         draft.partials.push(Partial {
@@ -171,7 +174,10 @@ mod tests {
         let partial = |frequency, t60| Partial { frequency, t60, amplitude: 0.3, phase: 0.0, pan: 0.2, struck: true };
         let mut draft = super::super::correct::tests::draft([0.0; 2]);
         draft.partials = vec![partial(700.0, 0.4), partial(1500.0, 100.0)];
-        steady(&mut draft, &sound, &rest, 0);
+        let mut few = draft.clone();
+        steady(&mut few, 1, &sound, &rest, 0);
+        assert_eq!(few.partials, [partial(1500.0, 100.0)]);
+        steady(&mut draft, 8, &sound, &rest, 0);
         assert_eq!(draft.partials.len(), 2, "{:?}", draft.partials);
         assert_eq!(draft.partials[0], partial(1500.0, 100.0));
         let Partial { frequency, t60, amplitude, pan, .. } = draft.partials[1];

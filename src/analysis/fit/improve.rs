@@ -19,7 +19,7 @@ const TELLS_DAMPER_DB: f64 = -25.0;
 const LATE: f64 = 0.2;
 /// Residual of the modes in dB below which the pitch counts as constant.
 const EXPLAINED_DB: f64 = -50.0;
-/// Reduction of the residual in dB by which modes without the drift stand for a held sound alone.
+/// Modes found without the drift are the only draft of a held sound if they lower the residual by this many dB.
 const WORTH_A_DRIFT_DB: f64 = 6.0;
 /// Reduction of the residual in dB by which a sweep is kept.
 const WORTH_A_SWEEP_DB: f64 = 2.0;
@@ -57,9 +57,8 @@ pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64
 
 /// The possible drafts of a take: its modes, without a sweep and with the sweep that explains it best, if one does. If it is
 /// held or rises slowly, the modes without its drift; of a held sound these alone, if they explain much more. If it is damped
-/// while it rings, the take ends there. If all these
-/// explain little, also modes that only noise excites, found after the noise is over. If the sound rises slowly, also
-/// modes found after the rise.
+/// while it rings, the take ends there. If all these explain little, also modes that only noise excites, found after the noise is
+/// over. If the sound rises slowly, also modes found after the rise.
 fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
     let [of_still, of_drift, of_search, first, second, of_noise, of_rest] =

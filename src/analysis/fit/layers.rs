@@ -36,16 +36,9 @@ impl Layer {
 pub(super) fn base(layers: &[Layer]) -> usize {
     let middle = layers.iter().map(Layer::key).sum::<f64>() / layers.len().max(1) as f64;
     let distance = |layer: &Layer| (layer.key() - middle).abs();
-    let order = |a: &usize, b: &usize| {
-        let (a, b) = (&layers[*a], &layers[*b]);
-        let nearer = distance(a).total_cmp(&distance(b));
-        if (distance(a) - distance(b)).abs() < SAME_KEY {
-            b.draft.velocity.total_cmp(&a.draft.velocity)
-        } else {
-            nearer
-        }
-    };
-    (0..layers.len()).min_by(order).unwrap_or(0)
+    let least = layers.iter().map(distance).fold(f64::INFINITY, f64::min);
+    let near = (0..layers.len()).filter(|n| distance(&layers[*n]) < least + SAME_KEY);
+    near.max_by(|a, b| layers[*a].draft.velocity.total_cmp(&layers[*b].draft.velocity)).unwrap_or(0)
 }
 
 /// How much velocity sets the force, 0–1: the amplitude is proportional to velocity to the power of twice this number.
@@ -63,8 +56,10 @@ fn of_the_key(layers: &[Layer], base: usize) -> impl Iterator<Item = &Layer> {
 /// Adds the routes that make the patch of layer `base` follow velocity and key as the layers do.
 pub(super) fn route(mut patch: Patch, layers: &[Layer], base: usize) -> Patch {
     let own = &layers[base];
+    // A body that was tuned has a hardness and a decay of its own.
+    let hardness = own.draft.hardness.map(|_| 0.01 * f64::from(patch.get(Param::MalletHardness)));
     let hardnesses = of_the_key(layers, base).filter_map(|layer| Some((layer.draft.velocity, layer.draft.hardness?)));
-    if let (Some(hardness), Some(slope)) = (own.draft.hardness, slope(hardnesses)) {
+    if let (Some(hardness), Some(slope)) = (hardness, slope(hardnesses)) {
         // In travel of the knob, 0 to 100 %.
         let slope = slope.clamp(0.0, 1.0);
         let softest = (hardness - slope * own.draft.velocity).clamp(0.0, 1.0);
@@ -79,7 +74,8 @@ pub(super) fn route(mut patch: Patch, layers: &[Layer], base: usize) -> Patch {
         let info = Param::Decay.info();
         let travel = log(f64::from(info.max) / f64::from(info.min));
         let amount = rounded((100.0 * slope / travel).clamp(-100.0, 100.0));
-        let at_c4 = own.t60() * libm::exp(-0.01 * f64::from(amount) * travel * (own.key() - 60.0) / 60.0);
+        let at_c4 = f64::from(patch.get(Param::Decay))
+            * libm::exp(-0.01 * f64::from(amount) * travel * (own.key() - 60.0) / 60.0);
         if amount != 0.0 {
             patch.set(Param::Decay, info.clamp(at_c4 as f32));
             patch = patch.with_route(DECAY_ROUTE, Source::Key, Param::Decay, amount);
@@ -125,4 +121,39 @@ pub(super) fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
         (product + (point.0 - x) * (point.1 - y), square + (point.0 - x) * (point.0 - x))
     });
     (square > 1e-4).then(|| product / square)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::correct::tests::draft;
+    use super::*;
+    use crate::patch::routes::amount_param;
+
+    fn layer(note: f64, velocity: f64, hardness: f64) -> Layer {
+        Layer { draft: Draft { note, velocity, hardness: Some(hardness), ..draft([0.5, 0.1]) }, level: velocity }
+    }
+
+    #[test]
+    fn the_hardest_of_the_middle_key_is_compared_with_the_others() {
+        let layers = [layer(220.0, 1.0, 0.5), layer(440.0, 0.3, 0.5), layer(441.0, 0.8, 0.5), layer(880.0, 1.0, 0.5)];
+        assert_eq!(base(&layers), 2);
+    }
+
+    #[test]
+    fn routes_begin_at_what_the_patch_has() {
+        let mut layers = [layer(440.0, 0.5, 0.3), layer(440.0, 1.0, 0.6), layer(880.0, 1.0, 0.6)];
+        layers[2].draft.partials.iter_mut().for_each(|partial| partial.t60 *= 0.5);
+        let mut tuned = layers[1].draft.patch();
+        tuned.set(Param::MalletHardness, 80.0);
+        tuned.set(Param::Decay, 2.5);
+        let routed = route(tuned, &layers, 1);
+        let amount = |place| routed.get(amount_param(place));
+        // At velocity 1 the route adds all of its amount.
+        let hardness = routed.get(Param::MalletHardness) + amount(HARDNESS_ROUTE);
+        assert!((hardness - 80.0).abs() < 0.1, "{hardness}");
+        // A4 is 9 of the 60 keys above C4 over which the route adds all of its amount.
+        let info = Param::Decay.info();
+        let decay = routed.get(Param::Decay) * libm::powf(info.max / info.min, 0.01 * amount(DECAY_ROUTE) * 9.0 / 60.0);
+        assert!((decay - 2.5).abs() < 0.01 && amount(DECAY_ROUTE) < 0.0, "{decay}");
+    }
 }

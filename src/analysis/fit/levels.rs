@@ -63,7 +63,7 @@ impl Levels {
     }
 
     /// The excesses over modes that a contact has struck, with these shares in dB.
-    fn struck(&self, mut points: Vec<Excess>, shares: &[f64]) -> Vec<Excess> {
+    fn struck(mut points: Vec<Excess>, shares: &[f64]) -> Vec<Excess> {
         points.iter_mut().zip(shares).for_each(|(point, share)| point.db -= share);
         points
     }
@@ -75,14 +75,18 @@ impl Levels {
         self.0.iter().map(|pair| 20.0 * log10(of(pair).max(LEAST_SHARE))).collect()
     }
 
-    /// Deviation in dB of the played body's modes from those of a recording, both at [`RATE`] and from their onsets on:
-    /// the fourth root of the mean fourth power, since the largest deviations are heard most.
-    pub(super) fn off_db(&self, body: &Body, [recording, played]: [&[f32]; 2]) -> f64 {
+    /// The amplitude of each partial in a recording at [`RATE`] from its onset on.
+    pub(super) fn amplitudes_in(&self, recording: &[f32]) -> Vec<f64> {
+        self.0.iter().map(|(partial, _)| amplitude(recording, partial.frequency, partial.t60)).collect()
+    }
+
+    /// Deviation in dB of the played body's modes from the partials' `amplitudes` in a recording, both at [`RATE`] and from their
+    /// onsets on: the fourth root of the mean fourth power, since the largest deviations are heard most.
+    pub(super) fn off_db(&self, body: &Body, amplitudes: &[f64], played: &[f32]) -> f64 {
         let modes = body.modes();
         let (mut powers, mut weights) = (0.0, 1e-12);
-        for ((partial, ratio), weight) in self.0.iter().zip(self.weights()) {
+        for (((_, ratio), own), weight) in self.0.iter().zip(amplitudes).zip(self.weights()) {
             let Some(mode) = mode_at(&modes, *ratio) else { continue };
-            let own = amplitude(recording, partial.frequency, partial.t60);
             let off = 20.0 * log10(amplitude(played, mode.frequency, mode.t60).max(1e-9) / own.max(1e-9));
             (powers, weights) = (powers + weight * off * off * off * off, weights + weight);
         }
@@ -95,7 +99,7 @@ impl Levels {
         let shares: Vec<Vec<f64>> = hardnesses.iter().map(|hardness| self.shares(*hardness)).collect();
         let mut best = vec![(f64::INFINITY, body.clone()); hardnesses.len()];
         let try_at = |best: &mut (f64, Body), other: &Body, points: &[Excess], shares: &[f64]| {
-            let (tilt, off) = line(&self.struck(points.to_vec(), shares), -STEEPEST..=STEEPEST);
+            let (tilt, off) = line(&Self::struck(points.to_vec(), shares), -STEEPEST..=STEEPEST);
             if off < best.0 {
                 *best = (off, Body { tilt: digits(tilt, 3), ..other.clone() });
             }

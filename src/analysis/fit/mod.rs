@@ -101,7 +101,7 @@ pub struct Fitted {
 
 /// Fits recordings of one instrument. Several takes of a key give the response to velocity; several keys give the
 /// response of decay and loudness to the key. `progress` is called with the share of the work that is done, and cancels
-/// the fit by returning `false`. Not real-time safe: a take needs some seconds.
+/// the fit by returning `false`. Not real-time safe: a take needs seconds, a long held one up to two minutes.
 ///
 /// # Errors
 /// [`Error::Value`] without takes, [`Error::Format`] for one that is silent, too short or not finite, or has no modes

@@ -5,7 +5,7 @@ use super::correct::{by_bands, by_moments};
 use super::draft::{Draft, Noise, Swell};
 use super::simplex;
 use super::take::Prepared;
-use crate::analysis::log_mel::{HOP, LogMel, MelBands};
+use crate::analysis::log_mel::{HOP, LogMel, MelBands, WINDOW};
 use crate::error::{Error, Result};
 use crate::params::NoiseDecay;
 use crate::units::key_from_frequency;
@@ -31,6 +31,8 @@ const CURVES: [f64; 3] = [0.0, 0.5, 0.9];
 const SWELL_DB: f64 = 36.0;
 /// Windows of the attack: 150 ms.
 const ATTACK: usize = 26;
+/// Frames by which the onset of what is played may be late.
+const LATE: usize = 1024;
 /// Steps of the search for a sweep.
 const SIMPLEX_STEPS: usize = 36;
 
@@ -64,12 +66,15 @@ impl<'a> Listener<'a> {
     /// The bands of a draft over the first windows.
     fn listen(&mut self, draft: &Draft, windows: usize) -> Result<LogMel> {
         self.tell(self.share)?;
-        let frames = self.take.mean.len().min(windows.saturating_mul(HOP));
+        // The last window reaches half of its length further than its middle.
+        let frames = self.take.mean.len().min(windows.saturating_mul(HOP).saturating_add(WINDOW / 2));
         let key = key_from_frequency(draft.note, 440.0);
-        let played = Played { key, velocity: draft.velocity, frames: frames + 1024, let_go: None };
+        let played = Played { key, velocity: draft.velocity, frames: frames + LATE, let_go: None };
         let sound = self.audition.mean(&draft.patch(), played);
         let sound = crate::analysis::log_mel::from_onset(&sound);
-        Ok(self.bands.measure(&sound[..sound.len().min(frames)]))
+        let mut heard = self.bands.measure(&sound[..sound.len().min(frames)]);
+        heard.columns.truncate(windows);
+        Ok(heard)
     }
 
     /// All of a draft's bands.

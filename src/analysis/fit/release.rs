@@ -15,8 +15,8 @@ const STEP: usize = RATE as usize / 100;
 const SMOOTH: usize = 3;
 /// Range in dB below the loudest level in which the sound is played, and not over.
 const PLAYED_DB: f64 = 20.0;
-/// Levels in dB below the median of those between which the fall is measured. A fall that is less deep than the last ones is none:
-/// that of a held sound, and that of modes which are known to be damped.
+/// Levels in dB below the median between which the fall is measured, and the least depth of a fall that counts: in a held sound, and
+/// where the modes show a damper.
 const FALLEN_DB: f64 = 6.0;
 const DEEP_DB: f64 = 30.0;
 const LEAST_DB: f64 = 15.0;
@@ -30,10 +30,11 @@ const STEEPER: f64 = 4.0;
 const STEEPER_THAN_MODES: f64 = 2.0;
 /// Seconds before the tuned part of a release that are compared, too.
 const BEFORE: f64 = 0.1;
-/// Steps of the search for the damper; change of its moment in seconds for 1, and the same as a share of the T60.
+/// Steps of the search for the damper. One unit of the search moves its moment by this many seconds, or by this share of its T60
+/// if that is more.
 const SEARCHED: usize = 14;
 const LATER: (f64, f64) = (0.1, 0.25);
-/// Logarithm of the T60's change for 1.
+/// One unit of the search multiplies the T60 by e to this power.
 const LONGER: f64 = 2.0;
 
 /// The release of a key.

@@ -33,12 +33,14 @@ pub(super) fn least<const N: usize>(
         } else if mirrored.1 < corners[N - 1].1 {
             mirrored
         } else {
-            let nearer = at(along(0.5))?;
-            if nearer.1 >= worst.1 {
+            let (share, least) = if mirrored.1 < worst.1 { (-0.5, mirrored.1) } else { (0.5, worst.1) };
+            let nearer = at(along(share))?;
+            if nearer.1 >= least {
                 let best = corners[0].0;
-                for corner in &mut corners[1..N] {
+                for corner in &mut corners[1..] {
                     *corner = at(std::array::from_fn(|n| 0.5 * (best[n] + corner.0[n])))?;
                 }
+                continue;
             }
             nearer
         };

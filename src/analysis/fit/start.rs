@@ -2,10 +2,11 @@
 
 use super::draft::{Draft, MOST_MODES, Noise, Partial, SHORTEST_T60, Sweep, longest_t60};
 use super::take::Prepared;
-use super::{pitch, sweep};
+use super::{A4, pitch, sweep};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::{self, Mode, Strike};
 use crate::error::{Error, Result};
+use crate::units::frequency_from_key;
 use libm::{asin, cos, fabs, pow, sin};
 use std::f64::consts::PI;
 
@@ -109,7 +110,7 @@ pub(super) fn from(take: &Prepared, strike: Option<&Strike>, source: &Source, ha
         };
         partials.extend(kept.iter().zip(&amplitudes).map(struck_so));
     }
-    let note = take.key.map_or_else(|| pitch::estimate(&partials), |key| take.frequency_of(key));
+    let note = take.key.map_or_else(|| pitch::estimate(&partials), |key| frequency_from_key(key, A4));
     Draft {
         note,
         velocity: take.velocity,

@@ -189,7 +189,9 @@ fn refine(peaks: &mut Peaks, start: Sweep) -> Result<(f64, Sweep)> {
     let swept = start.moved(place);
     let trembling = |[depth, rate]: [f64; 2]| {
         let Vibrato { semitones, rate: before, delay } = swept.vibrato;
-        let vibrato = Vibrato { semitones: semitones * (1.0 + depth), rate: before * (1.0 + 0.1 * rate), delay };
+        // What the engine cannot play would be taken out of the sound and not come back.
+        let semitones = (semitones * (1.0 + depth)).clamp(0.0, 12.0);
+        let vibrato = Vibrato { semitones, rate: (before * (1.0 + 0.1 * rate)).clamp(0.0, 20.0), delay };
         Sweep { vibrato, ..swept }
     };
     let still = swept.vibrato.semitones == 0.0;

@@ -1,11 +1,10 @@
 //! A recording to fit, with its key and velocity, and the preparation of its samples.
 
 use super::release::Release;
-use crate::analysis::level::{mono, rms};
+use crate::analysis::level::{dc, mono, rms};
 use crate::analysis::log_mel::RATE;
 use crate::error::{Error, Result};
 use crate::io::sound_file::{Recording, resampled};
-use crate::units::frequency_from_key;
 
 /// A recording of one struck note.
 #[derive(Clone, Debug)]
@@ -100,7 +99,9 @@ impl Prepared {
         let levels: Vec<f64> = middle[onset..].chunks(block).map(rms).collect();
         let loudest = levels.iter().copied().fold(0.0, f64::max);
         let blocks = levels.iter().rposition(|level| *level > OVER * loudest).map_or(0, |last| last + 1);
-        let end = (onset + blocks * block).min(middle.len()).min(onset + (LONGEST * f64::from(RATE)) as usize);
+        let (over, longest) =
+            ((onset + blocks * block).min(middle.len()), onset + (LONGEST * f64::from(RATE)) as usize);
+        let end = over.min(longest);
         if ((end - onset) as f64) < SHORTEST * f64::from(RATE) {
             return wrong("it is shorter than 30 ms: expected a strike that rings");
         }
@@ -121,7 +122,7 @@ impl Prepared {
             warnings
                 .push(format!("{}: it comes to its level over {rise:.2} s: expected a stroke that rings", take.name));
         }
-        if end == onset + (LONGEST * f64::from(RATE)) as usize {
+        if over > longest {
             warnings
                 .push(format!("{}: it sounds for longer: the first {LONGEST} s from its onset are fitted", take.name));
         }
@@ -177,11 +178,6 @@ impl Prepared {
     pub(super) fn level(&self) -> f64 {
         rms(&self.mean[..self.mean.len().min(LEVEL_FRAMES)])
     }
-
-    /// The frequency of a key in Hz, at the tuning of a new patch.
-    pub(super) fn frequency_of(&self, key: f64) -> f64 {
-        frequency_from_key(key, 440.0)
-    }
 }
 
 /// Seconds from the first level to where the sound begins again after a silence.
@@ -200,7 +196,7 @@ fn first_seconds(recording: &Recording) -> Recording {
         _ => vec![mono(&recording.channels)],
     };
     for channel in &mut channels {
-        let constant = channel.iter().map(|sample| f64::from(*sample)).sum::<f64>() / channel.len().max(1) as f64;
+        let constant = dc(channel);
         channel.iter_mut().for_each(|sample| *sample -= constant as f32);
     }
     let middle = mono(&channels);

@@ -26,7 +26,7 @@ pub(super) struct Tone {
     pub(super) frequency: f64,
     /// Real and imaginary part of its amplitude at each moment, relative to a steady tone or to a model, with a weight.
     course: Vec<([f64; 2], f64)>,
-    /// Turns per moment of a deviation of 1 from its frequency.
+    /// Cycles of the tone from one moment to the next.
     turns: f64,
 }
 

@@ -50,7 +50,7 @@ pub(super) fn patch(
 ) -> Result<Patch> {
     let (mut audition, mut bands) = (Audition::new(), MelBands::new());
     let recording = from_onset(&take.mean);
-    let target = bands.measure(recording);
+    let (target, amplitudes) = (bands.measure(recording), levels.amplitudes_in(recording));
     let note = Played { key, velocity: draft.velocity, frames: take.mean.len(), let_go: None };
     let mut heard = |body: &Body, patch: &mut Patch| {
         let mut played = audition.mean(patch, note);
@@ -62,7 +62,7 @@ pub(super) fn patch(
         let factor = gain_from_db(f64::from(gain) - before) as f32;
         played.iter_mut().for_each(|sample| *sample *= factor);
         let played = from_onset(&played);
-        bands.measure(played).distance(&target) + WORTH_OF_LEVELS * levels.off_db(body, [recording, played])
+        bands.measure(played).distance(&target) + WORTH_OF_LEVELS * levels.off_db(body, &amplitudes, played)
     };
     let grid: Vec<f64> = (1..HARDNESSES).map(|step| f64::from(step) / f64::from(HARDNESSES)).collect();
     let hardnesses: Vec<Option<f64>> = grid.iter().copied().map(Some).collect();
@@ -72,7 +72,7 @@ pub(super) fn patch(
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     starts.truncate(STARTS);
     let mut best = (f64::INFINITY, draft.patch());
-    // A step of the simplex tries one or two places, a round two for each number.
+    // A step of the simplex mostly tries one or two places, a round two for each of six numbers.
     let most = (starts.len() * (2 * STEPS + ROUNDS * 12)) as f64;
     let mut tried = 0.0;
     for (_, hardness, body) in starts {
