@@ -12,7 +12,7 @@ use sprung::sound::bodies::{Body, Model, Point};
 /// Model, key, strike position, hardness of the mallet, and largest difference of a mode's level in dB. The third mode of the
 /// free bar is struck near a node.
 const STRUCK: [(&str, u8, f64, f32, f64); 3] =
-    [("marimba", 60, 0.55, 45.0, 3.0), ("xylophone", 72, 0.6, 65.0, 3.0), ("free_bar", 60, 0.75, 55.0, 4.0)];
+    [("marimba", 60, 0.55, 45.0, 3.0), ("xylophone", 72, 0.6, 65.0, 3.5), ("free_bar", 60, 0.75, 55.0, 4.0)];
 /// Number of these bodies that a debug build fits.
 const FEW: usize = 1;
 /// Level in dB, relative to the loudest mode, above which modes are compared.
