@@ -33,8 +33,12 @@ const FEWEST: usize = 12;
 const SECONDS: (f64, f64, f64) = (0.015, 1.2, 1.6);
 const CURVES: usize = 17;
 /// Vibratos that are tried: lowest rate in Hz, step, and highest rate; delays in seconds.
-const RATES: (f64, f64, f64) = (2.5, 0.25, 20.0);
+const RATES: (f64, f64, f64) = (2.5, 0.25, FASTEST_VIBRATO);
 const DELAYS: [f64; 6] = [0.0, 0.3, 0.6, 0.9, 1.3, 2.0];
+/// Fastest vibrato in Hz and deepest one in semitones that the engine plays, and its largest sweep in semitones.
+pub(super) const FASTEST_VIBRATO: f64 = 20.0;
+pub(super) const DEEPEST_VIBRATO: f64 = 12.0;
+const LARGEST_SWEEP: f64 = 60.0;
 /// Fewest cycles of a vibrato or tremolo: a part of one fits any bend.
 pub(super) const LEAST_CYCLES: f64 = 2.0;
 /// Rounds of the fine search.
@@ -188,8 +192,9 @@ impl Movement {
             curve: self.curve,
             vibrato: Vibrato { semitones: depth, ..vibrato },
         };
-        // The engine's vibrato begins upwards, and reaches one octave, its sweep five: reject all others.
-        (sweep, if depth < 0.0 || fabs(semitones) > 60.0 || depth > 12.0 { f64::INFINITY } else { error })
+        // The engine's vibrato begins upwards.
+        let is_playable = (0.0..=DEEPEST_VIBRATO).contains(&depth) && fabs(semitones) <= LARGEST_SWEEP;
+        (sweep, if is_playable { error } else { f64::INFINITY })
     }
 
     /// The movement with one number changed: up or down by a step of at most 1.

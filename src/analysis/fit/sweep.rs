@@ -190,8 +190,9 @@ fn refine(peaks: &mut Peaks, start: Sweep) -> Result<(f64, Sweep)> {
     let trembling = |[depth, rate]: [f64; 2]| {
         let Vibrato { semitones, rate: before, delay } = swept.vibrato;
         // What the engine cannot play would be taken out of the sound and not come back.
-        let semitones = (semitones * (1.0 + depth)).clamp(0.0, 12.0);
-        let vibrato = Vibrato { semitones, rate: (before * (1.0 + 0.1 * rate)).clamp(0.0, 20.0), delay };
+        let semitones = (semitones * (1.0 + depth)).clamp(0.0, course::DEEPEST_VIBRATO);
+        let vibrato =
+            Vibrato { semitones, rate: (before * (1.0 + 0.1 * rate)).clamp(0.0, course::FASTEST_VIBRATO), delay };
         Sweep { vibrato, ..swept }
     };
     let still = swept.vibrato.semitones == 0.0;

@@ -13,7 +13,8 @@ fn head(count: usize, chance: &mut Chance) -> Vec<Known> {
 
 #[test]
 fn modes_denser_than_their_bandwidths_are_told_apart() {
-    let (count, seeds) = (64, if cfg!(debug_assertions) { 1 } else { 3_u64 });
+    let count = 64;
+    let seeds = if cfg!(debug_assertions) { 1_u64 } else { 3 };
     for seed in 1..=seeds {
         let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
         let known = head(count, &mut chance);
