@@ -34,13 +34,30 @@ pub fn dc(samples: &[f32]) -> f64 {
     samples.iter().map(|sample| f64::from(*sample)).sum::<f64>() / samples.len().max(1) as f64
 }
 
-/// The constant that is added to a strike: the median of the means of blocks of some samples; 0 for no samples. The mean of all
-/// samples is not it, since a strike can be asymmetric: taken away, it would leave a constant in the quiet end.
+/// How many of its standard errors a constant must be.
+const SIGNIFICANT: f64 = 4.0;
+/// Fewest blocks whose agreement says something.
+const FEWEST_BLOCKS: usize = 4;
+/// Standard deviation of normally distributed numbers in medians of their distance from the median, and the standard error of
+/// the median of `n` numbers in their standard deviations, times √n.
+const DEVIATION_OF_MEDIAN: f64 = 1.4826;
+const ERROR_OF_MEDIAN: f64 = 1.2533;
+
+/// The constant that is added to a strike: the median of the means of blocks of some samples; 0 if the blocks do not agree on it,
+/// and for no samples. The mean of all samples is not it, since a strike can be asymmetric: taken away, it would leave a constant
+/// in the quiet end.
 pub fn offset(samples: &[f64], block: usize) -> f64 {
+    let median = |mut numbers: Vec<f64>| {
+        numbers.sort_by(f64::total_cmp);
+        numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
+    };
     let mean = |block: &[f64]| block.iter().sum::<f64>() / block.len() as f64;
-    let mut means: Vec<f64> = samples.chunks(block.max(1)).map(mean).collect();
-    means.sort_by(f64::total_cmp);
-    means.get(means.len() / 2).copied().unwrap_or(0.0)
+    let means: Vec<f64> = samples.chunks(block.max(1)).map(mean).collect();
+    let count = means.len();
+    let middle = median(means.clone());
+    let distance = median(means.iter().map(|mean| libm::fabs(mean - middle)).collect());
+    let error = ERROR_OF_MEDIAN * DEVIATION_OF_MEDIAN * distance / sqrt(count.max(1) as f64);
+    if count < FEWEST_BLOCKS || libm::fabs(middle) > SIGNIFICANT * error { middle } else { 0.0 }
 }
 
 /// An amplitude in dB relative to full scale (1.0), never below [`SILENCE_DB`].
@@ -65,6 +82,8 @@ mod tests {
         assert_eq!((peak(&step), dc(&step)), (0.25, 0.1875));
         assert_eq!((peak(&[]), rms(&[]), dc(&[])), (0.0, 0.0, 0.0));
         assert_eq!((offset(&[0.9, 0.1, 0.1, 0.1, 0.1], 2), offset(&[], 2)), (0.1, 0.0));
+        // Blocks of a sound that swings slowly do not agree on a constant.
+        assert_eq!(offset(&[0.9, -0.5, 0.4, -0.3, 0.2, -0.1, 0.1], 1), 0.0);
         assert_eq!((dbfs(1.0), dbfs(0.1), dbfs(0.0)), (0.0, -20.0, SILENCE_DB));
     }
 

@@ -1,7 +1,7 @@
 //! A recording to fit, with its key and velocity, and the preparation of its samples.
 
 use super::release::Release;
-use crate::analysis::level::{dc, mono, rms};
+use crate::analysis::level::{mono, offset, rms};
 use crate::analysis::log_mel::RATE;
 use crate::error::{Error, Result};
 use crate::io::sound_file::{Recording, resampled};
@@ -189,14 +189,15 @@ fn again(levels: &[f64], loudest: f64) -> Option<f64> {
     Some(next as f64 * BLOCK)
 }
 
-/// A recording from shortly before its onset on, as long as is needed, without its DC; one channel or two.
+/// A recording from shortly before its onset on, as long as is needed, without a constant; one channel or two.
 fn first_seconds(recording: &Recording) -> Recording {
     let mut channels = match recording.channels.len() {
         0..=2 => recording.channels.clone(),
         _ => vec![mono(&recording.channels)],
     };
     for channel in &mut channels {
-        let constant = dc(channel);
+        let samples: Vec<f64> = channel.iter().map(|sample| f64::from(*sample)).collect();
+        let constant = offset(&samples, (BLOCK * f64::from(recording.sample_rate)) as usize);
         channel.iter_mut().for_each(|sample| *sample -= constant as f32);
     }
     let middle = mono(&channels);

@@ -15,6 +15,8 @@ const LOUDEST: f64 = 2.0;
 const SHORTEST: f64 = 0.005;
 /// Least frequency in bandwidths at half power: a mode that decays faster does not oscillate.
 const LEAST_QUALITY: f64 = 1.0;
+/// Distance within which modes are neighbours, as a multiple of the sum of their widths.
+const NEIGHBOURS: f64 = 4.0;
 /// Largest standard deviations of a pole in its widths, and of an amplitude as a share of it.
 const DEVIATION: f64 = 0.5;
 /// A mode 100 dB below a neighbour, and within so many times the sum of their widths, is inaudible: it only corrects
@@ -53,40 +55,42 @@ impl Limits {
     }
 }
 
-/// Indices of modes that the sound cannot have, given the noise floor of each mode. Of neighbours that are too loud,
-/// only the loudest is given, since the others may be plausible without it.
-pub(super) fn implausible(fit: &Fit, floors: &[f64], len: usize, limits: &Limits) -> Vec<usize> {
+/// Indices of modes that the sound cannot have, given the noise floor of each mode. Of neighbours that are too loud, only the
+/// loudest is given, since the others may be plausible without it; if `worst_only`, so of neighbours that are too uncertain.
+pub(super) fn implausible(fit: &Fit, floors: &[f64], len: usize, limits: &Limits, worst_only: bool) -> Vec<usize> {
     let certainty = fit.certainty(len);
-    let unknown = |k: usize| {
-        let Some(certainty) = &certainty else { return true };
+    // The largest deviation of a mode, relative to the largest that is allowed.
+    let doubt = |k: usize| {
+        let Some(certainty) = &certainty else { return f64::INFINITY };
         let deviation = |index: usize| sqrt(certainty.variances[k][index] * floors[k] / 2.0);
-        let width = fit.poles[k].width(len);
-        let known = deviation(0) < DEVIATION * width && deviation(1) < DEVIATION * width && deviation(2) < DEVIATION;
-        !known
+        let pole = deviation(0).max(deviation(1)) / fit.poles[k].width(len);
+        pole.max(deviation(2)) / DEVIATION
     };
+    let reach = |k: usize, other: usize| fit.poles[k].width(len) + fit.poles[other].width(len);
+    let distance = |k: usize, other: usize| (fit.poles[k].theta - fit.poles[other].theta).abs();
     let is_on_a_skirt = |k: usize| {
         let is_of = |other: usize| {
-            let distance = (fit.poles[k].theta - fit.poles[other].theta).abs();
             fit.amplitudes[k].norm() < SKIRT * fit.amplitudes[other].norm()
-                && distance < BESIDE * (fit.poles[k].width(len) + fit.poles[other].width(len))
+                && distance(k, other) < BESIDE * reach(k, other)
         };
         (0..fit.poles.len()).any(is_of)
     };
-    let mut dropped: Vec<usize> = (0..fit.poles.len())
-        .filter(|k| limits.audible(fit.poles[*k]) && (!limits.rings(fit.poles[*k]) || unknown(*k) || is_on_a_skirt(*k)))
-        .collect();
+    let audible = |k: &usize| limits.audible(fit.poles[*k]);
+    let mut dropped: Vec<usize> =
+        (0..fit.poles.len()).filter(audible).filter(|k| !limits.rings(fit.poles[*k]) || is_on_a_skirt(*k)).collect();
     let excess = |k: usize| limits.excess(fit.poles[k], fit.amplitudes[k].norm());
-    let is_loud = |k: usize| excess(k) > 1.0 || excess(k).is_nan();
-    let mut loud: Vec<usize> = (0..fit.poles.len()).filter(|k| is_loud(*k) && !dropped.contains(k)).collect();
-    loud.sort_by(|a, b| excess(*b).total_cmp(&excess(*a)));
-    for k in loud {
-        let beside = |other: &usize| {
-            let distance = (fit.poles[k].theta - fit.poles[*other].theta).abs();
-            distance < 4.0 * (fit.poles[k].width(len) + fit.poles[*other].width(len))
-        };
-        if !dropped.iter().any(beside) {
-            dropped.push(k);
+    let mut drop = |fault: &dyn Fn(usize) -> f64, worst_only: bool| {
+        let mut faulty: Vec<(f64, usize)> = (0..fit.poles.len()).map(|k| (fault(k), k)).collect();
+        faulty.retain(|(fault, k)| (*fault > 1.0 || fault.is_nan()) && !dropped.contains(k));
+        faulty.sort_by(|a, b| b.0.total_cmp(&a.0));
+        for (_, k) in faulty {
+            let beside = |other: &usize| distance(k, *other) < NEIGHBOURS * reach(k, *other);
+            if !worst_only || !dropped.iter().any(beside) {
+                dropped.push(k);
+            }
         }
-    }
+    };
+    drop(&|k| if audible(&k) { doubt(k) } else { 0.0 }, worst_only);
+    drop(&excess, true);
     dropped
 }

@@ -1,16 +1,18 @@
 //! The pole of a mode, which is its frequency and decay, and sums over powers of poles.
 
 use libm::{exp, log, sincos};
+use nalgebra::DMatrix;
 use realfft::num_complex::Complex;
 
 pub(super) use crate::analysis::damped_sine::LN_60_DB;
 
 /// Samples per block: within it powers come from a table, from block to block from a recurrence.
-const BLOCK: usize = 16;
-/// Blocks after which the recurrence starts from an exact power again.
-const ANCHOR: usize = 32;
-/// Number of modes that are computed side by side.
-const LANES: usize = 4;
+const BLOCK: usize = 64;
+/// Number of blocks after which the recurrence starts from an exact power again.
+const ANCHOR: usize = 16;
+/// Number of poles whose sums are computed side by side, and numbers per pole: two complex sums.
+const SIDE_BY_SIDE: usize = 16;
+const PARTS: usize = 4;
 /// Distance below which two poles coincide, as a share of their width.
 const COINCIDING: f64 = 0.05;
 /// `|zⁿ|` below which a mode is over: −280 dB.
@@ -58,50 +60,44 @@ pub(super) fn correlations(samples: &[f64], poles: &[Pole]) -> Vec<[Complex<f64>
     let mut order: Vec<usize> = (0..poles.len()).collect();
     order.sort_unstable_by(|a, b| poles[*a].decay.total_cmp(&poles[*b].decay));
     let mut found = vec![[Complex::ZERO; 2]; poles.len()];
-    for places in order.chunks(LANES) {
+    for places in order.chunks(SIDE_BY_SIDE) {
         let together: Vec<Pole> = places.iter().map(|place| poles[*place]).collect();
         let end = together.iter().map(|pole| pole.end(samples.len())).max().unwrap_or(0);
-        for (place, [sum, moment]) in places.iter().zip(lanes(&samples[..end], &together)) {
+        for (place, [sum, moment]) in places.iter().zip(sums_of_group(&samples[..end], &together)) {
             found[*place] = [sum, moment / samples.len() as f64];
         }
     }
     found
 }
 
-/// `Σ y·z̄ⁿ` and `Σ n·y·z̄ⁿ` for up to [`LANES`] poles.
-fn lanes(samples: &[f64], poles: &[Pole]) -> [[Complex<f64>; 2]; LANES] {
-    let pole = |lane: usize| poles.get(lane).copied().unwrap_or(Pole::CONSTANT);
-    let powers = |n: usize| {
-        let powers: [Complex<f64>; LANES] = std::array::from_fn(|lane| pole(lane).power(n).conj());
-        (powers.map(|z| z.re), powers.map(|z| z.im))
+/// `Σ y·z̄ⁿ` and `Σ n·y·z̄ⁿ` for each pole.
+///
+/// The sums of every block, as if it were the first one, are the product of a table of powers with the samples, which a matrix
+/// product does fastest.
+fn sums_of_group(samples: &[f64], poles: &[Pole]) -> Vec<[Complex<f64>; 2]> {
+    let parts = |(n, pole): (usize, &Pole)| {
+        let z = pole.power(n).conj();
+        [z.re, z.im, n as f64 * z.re, n as f64 * z.im]
     };
-    let table: [_; BLOCK] = std::array::from_fn(powers);
-    let step: [Complex<f64>; LANES] = std::array::from_fn(|lane| pole(lane).power(BLOCK).conj());
-    let mut sums = [[Complex::ZERO; 2]; LANES];
-    let mut z = [Complex::ZERO; LANES];
-    for (index, block) in samples.chunks(BLOCK).enumerate() {
-        let base = index * BLOCK;
-        if index.is_multiple_of(ANCHOR) {
-            z = std::array::from_fn(|lane| pole(lane).power(base).conj());
-        }
-        // Sums and first moments of the block, as if it were the first one.
-        let mut local = [[0.0; LANES]; 4];
-        for (n, (y, (re, im))) in block.iter().zip(&table).enumerate() {
-            let weighted = y * n as f64;
-            for lane in 0..LANES {
-                local[0][lane] += y * re[lane];
-                local[1][lane] += y * im[lane];
-                local[2][lane] += weighted * re[lane];
-                local[3][lane] += weighted * im[lane];
+    let powers = (0..BLOCK).flat_map(|n| poles.iter().map(move |pole| (n, pole)).flat_map(parts));
+    let table = DMatrix::from_iterator(PARTS * poles.len(), BLOCK, powers);
+    let mut sums = vec![[Complex::ZERO; 2]; poles.len()];
+    let mut start = 0;
+    for stretch in samples.chunks(ANCHOR * BLOCK) {
+        let mut blocks = DMatrix::zeros(BLOCK, stretch.len().div_ceil(BLOCK));
+        blocks.as_mut_slice()[..stretch.len()].copy_from_slice(stretch);
+        let locals = &table * blocks;
+        for ((pole, sums), first) in poles.iter().zip(&mut sums).zip((0..).step_by(PARTS)) {
+            let (mut z, step) = (pole.power(start).conj(), pole.power(BLOCK).conj());
+            for (block, local) in locals.column_iter().enumerate() {
+                let sum = z * Complex::new(local[first], local[first + 1]);
+                let moment = z * Complex::new(local[first + 2], local[first + 3]);
+                sums[0] += sum;
+                sums[1] += moment + sum * (start + block * BLOCK) as f64;
+                z *= step;
             }
         }
-        for lane in 0..LANES {
-            let sum = z[lane] * Complex::new(local[0][lane], local[1][lane]);
-            let moment = z[lane] * Complex::new(local[2][lane], local[3][lane]);
-            sums[lane][0] += sum;
-            sums[lane][1] += moment + sum * base as f64;
-            z[lane] *= step[lane];
-        }
+        start += stretch.len();
     }
     sums
 }

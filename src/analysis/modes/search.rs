@@ -23,6 +23,8 @@ const MOST_ROUNDS: usize = 24;
 /// Rounds without progress after which a sound counts as no sum of modes. When modes are resolved again with their
 /// neighbours, a round or two may bring no progress.
 const PATIENCE: usize = 3;
+/// Factor by which the unexplained energy may rise when all doubtful modes are dropped: 10 dB.
+const MOST_LOST: f64 = 10.0;
 /// How many times modes that the sound cannot have are dropped. The remaining modes may become implausible by this.
 const MOST_REMOVALS: usize = 12;
 
@@ -113,30 +115,35 @@ pub(super) fn find(
     fit = fit.refine(samples, 1e-7, 40, &mut go_on);
     fit = pruned(fit.clone(), &mut go_on).unwrap_or(fit);
     fit = join(fit, samples, least, &mut go_on);
+    // Modes that are denser than their bandwidths can all be uncertain, and yet explain the sound together. So if much is lost
+    // without all doubtful ones, only the worst of each neighbourhood are dropped.
+    let without = |fit: &Fit, floors: &[f64], rounds: usize, go_on: &mut dyn FnMut() -> bool| {
+        for worst_only in [false, true] {
+            let dropped = implausible(fit, floors, samples.len(), limits, worst_only);
+            if dropped.is_empty() {
+                return Ok(None);
+            }
+            if !go_on() {
+                return Err(Error::Interrupted);
+            }
+            let left = (0..fit.poles.len()).filter(|k| !dropped.contains(k)).map(|k| fit.poles[k]).collect();
+            let next = Fit::new(samples, left).ok_or_else(unsolvable)?.refine(samples, 1e-7, rounds, go_on);
+            if worst_only || next.unexplained < MOST_LOST * fit.unexplained + least {
+                return Ok(Some(next));
+            }
+        }
+        Ok(None)
+    };
     for _ in 0..MOST_REMOVALS {
-        let dropped = implausible(&fit, &floors(&fit), samples.len(), limits);
-        if dropped.is_empty() {
-            break;
-        }
-        if !go_on() {
-            return Err(Error::Interrupted);
-        }
-        let left = (0..fit.poles.len()).filter(|k| !dropped.contains(k)).map(|k| fit.poles[k]).collect();
-        fit = Fit::new(samples, left).ok_or_else(unsolvable)?.refine(samples, 1e-7, 20, &mut go_on);
+        let Some(next) = without(&fit, &floors(&fit), 20, &mut go_on)? else { break };
+        fit = next;
     }
     fit = fit.refine(samples, 1e-8, 20, &mut go_on);
     // Dropping a mode changes the others, which may then be implausible. So repeat this until no mode is.
     let floors = loop {
         let floors = floors(&fit);
-        let dropped = implausible(&fit, &floors, samples.len(), limits);
-        if dropped.is_empty() {
-            break floors;
-        }
-        if !go_on() {
-            return Err(Error::Interrupted);
-        }
-        let left = (0..fit.poles.len()).filter(|k| !dropped.contains(k)).map(|k| fit.poles[k]).collect();
-        fit = Fit::new(samples, left).ok_or_else(unsolvable)?;
+        let Some(next) = without(&fit, &floors, 0, &mut go_on)? else { break floors };
+        fit = next;
     };
     let certainty = fit.certainty(samples.len()).ok_or_else(unsolvable)?;
     if progress(1.0) { Ok(Found { fit, certainty, floors }) } else { Err(Error::Interrupted) }
