@@ -120,6 +120,11 @@ impl MelBands {
 }
 
 impl LogMel {
+    /// The windows from the one with number `first` on.
+    pub(super) fn from_window(&self, first: usize) -> Self {
+        Self { columns: self.columns.get(first..).unwrap_or_default().to_vec() }
+    }
+
     /// The loudest band of all windows, in dB.
     pub fn loudest(&self) -> f64 {
         self.columns.iter().flatten().copied().fold(SILENCE_DB, f64::max)

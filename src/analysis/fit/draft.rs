@@ -111,6 +111,11 @@ impl Noise {
     /// A click.
     pub(super) const SHORT: Self =
         Self { seconds: 0.004, decay: NoiseDecay::Quadratic, attack: 0.0, hits: 1, spacing: 0.012 };
+
+    /// Seconds from the onset to the last burst.
+    pub(super) fn last(&self) -> f64 {
+        f64::from(self.hits.saturating_sub(1)) * self.spacing
+    }
 }
 
 /// The rise of a sound that is not struck.

@@ -1,11 +1,12 @@
 //! Fits a draft to one take: first its modes, then a bed, then corrections.
 
 use super::bed::Lines;
-use super::draft::{Draft, Sweep};
+use super::draft::{Draft, Noise, Sweep};
 use super::refine::Listener;
 use super::start::Source;
 use super::take::{Prepared, SLOW};
-use super::{bed, held, start, sweep};
+use super::{bed, bursts, held, start, sweep};
+use crate::analysis::log_mel::{HOP, RATE};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
 
@@ -55,10 +56,10 @@ pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64
     best.ok_or(Error::Interrupted)
 }
 
-/// The possible drafts of a take: its modes, without a sweep and with the sweep that explains it best, if one does. If it is
-/// held or rises slowly, the modes without its drift; of a held sound these alone, if they explain much more. If it is damped
+/// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more. If it is
+/// held or rises slowly, the modes without its drift; of a held sound these in place of the others, if they explain much more. If it is damped
 /// while it rings, the take ends there. If all these explain little, also modes that only noise excites, found after the noise is
-/// over. If the sound rises slowly, also modes found after the rise.
+/// over, and the row of bursts with which it begins. If the sound rises slowly, also modes found after the rise.
 fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
     let [of_still, of_drift, of_search, first, second, of_noise, of_rest] =
@@ -74,29 +75,35 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
         take.end_at(seconds);
     }
     let still = residual_db(&found[0]);
+    let mut drifts = false;
     if still > EXPLAINED_DB && (take.is_held || take.rise > SLOW) {
         let [from, to] = of_drift;
         if let Some(held) = held::draft(take, most, &mut |share| tell(from + (to - from) * share).is_ok())? {
             // What decays may have tones that end at different times, of which a residual tells little: let it be heard.
-            if take.is_held && residual_db(&held) < still - WORTH_A_DRIFT_DB {
-                return Ok(vec![held]);
+            drifts = take.is_held && residual_db(&held) < still - WORTH_A_DRIFT_DB;
+            if drifts {
+                found.clear();
             }
             found.push(held);
         }
     }
-    if still > EXPLAINED_DB {
+    if still > EXPLAINED_DB && !drifts {
         let sweeps = sweep::find(&take.mean, &mut || tell(of_search[0]))?;
         let mut swept = Vec::new();
         for (sweep, part) in sweeps.into_iter().zip([first, second]) {
             swept.push(analysed(take, Source { swept: sweep, ..all }, part, tell)?);
         }
         // The draft without a sweep is kept too: a wrong sweep can leave a smaller residual and still sound worse.
-        let best = swept.into_iter().min_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
-        found.extend(best.filter(|best| residual_db(best) < still - WORTH_A_SWEEP_DB));
+        found.extend(swept.into_iter().filter(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB));
         found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     }
     let strike = found[0].1.clone();
     if residual_db(&found[0]) > NOISE_DB {
+        if let Some(bursts::Row { hits, spacing }) = bursts::find(&take.mean) {
+            let noise = Noise { hits, spacing, ..Noise::SHORT };
+            let draft = start::from(take, None, &Source { struck: false, ..all }, false);
+            found.push((Draft { noise, ..draft }, strike.clone()));
+        }
         let late = Source { late: LATE * take.seconds(), struck: false, ..all };
         let (driven, _) = analysed(take, late, of_noise, tell)?;
         found.push((driven, strike.clone()));
@@ -134,7 +141,10 @@ fn improved(
         let heard = listener.hear(&draft)?;
         let room = most.saturating_sub(draft.partials.len());
         let mut other = draft.clone();
-        other.partials.extend(bed::bed([&listener.target, &heard], lines, &draft.sweep, room, seed));
+        // Before the last burst, a band does not decay.
+        let from = (draft.noise.last() * f64::from(RATE)) as usize / HOP;
+        let [wanted, heard] = [&listener.target, &heard].map(|bands| bands.from_window(from));
+        other.partials.extend(bed::bed([&wanted, &heard], lines, &draft.sweep, room, seed));
         if other.partials.is_empty() {
             break;
         }

@@ -8,6 +8,7 @@
 mod audition;
 mod bed;
 mod body;
+mod bursts;
 mod correct;
 mod course;
 mod draft;

@@ -1,5 +1,6 @@
 //! A recording to fit, with its key and velocity, and the preparation of its samples.
 
+use super::bursts;
 use super::release::Release;
 use crate::analysis::level::{mono, offset, rms};
 use crate::analysis::log_mel::RATE;
@@ -49,6 +50,8 @@ const AS_LOUD: f64 = 0.2;
 /// heard that its key is let go, since beats lower it.
 const STEADY: f64 = 0.5;
 const STEADY_IF_LET_GO: f64 = 0.2;
+/// Seconds from the last of a row of bursts within which a fall is not a release.
+const NEAR_LAST: f64 = 0.1;
 /// Seconds before a key is let go at which the part ends that is fitted.
 const GUARD: f64 = 0.03;
 
@@ -105,7 +108,10 @@ impl Prepared {
         if ((end - onset) as f64) < SHORTEST * f64::from(RATE) {
             return wrong("it is shorter than 30 ms: expected a strike that rings");
         }
-        let release = Release::of_held(&middle[onset..end]);
+        // After the last of a row of bursts a sound falls by itself.
+        let last = bursts::find(&middle[onset..end]).map(|row| row.last());
+        let release = Release::of_held(&middle[onset..end])
+            .filter(|release| last.is_none_or(|last| libm::fabs(release.seconds - last) > NEAR_LAST));
         let played = release.map_or(blocks, |release| release.frames() / block);
         let third = (played / 3).max(1);
         let energy = |levels: &[f64]| levels.iter().map(|level| level * level).sum::<f64>();

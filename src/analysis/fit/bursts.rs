@@ -1,0 +1,114 @@
+//! Finds rows of bursts at equal distances, as of the teeth of a guiro, by the regularity with which the level rises.
+
+use crate::analysis::log_mel::RATE;
+use libm::{log, sqrt};
+
+/// Samples per block of levels: half a millisecond.
+const BLOCK: usize = RATE as usize / 2000;
+/// Blocks before one over which its level rises.
+const BEFORE: usize = 3;
+/// Power, relative to the greatest, below which a rise is not heard.
+const FAINT: f64 = 1e-4;
+/// Fewest bursts, for fewer are tried by ear, and the most that the engine plays.
+const FEWEST: usize = 5;
+const MOST: usize = 16;
+/// Shortest and longest distance in seconds, and the step between those that are tried, in blocks.
+const SPACINGS: (f64, f64) = (0.004, 0.08);
+const STEP: f64 = 0.25;
+/// Smallest deviation of the rises, in nepers of power, that is assumed.
+const LEAST_DEVIATION: f64 = 0.05;
+/// How many of their standard deviations the rises of the bursts are above the mean.
+const CLEARLY: f64 = 6.0;
+
+/// A row of bursts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Row {
+    pub(super) hits: u8,
+    /// Seconds from each burst to the next.
+    pub(super) spacing: f64,
+}
+
+impl Row {
+    /// Seconds from the onset to the last burst.
+    pub(super) fn last(&self) -> f64 {
+        f64::from(self.hits.saturating_sub(1)) * self.spacing
+    }
+}
+
+/// How far the level of each block is above the mean of the blocks before it, or of one beside it if that rises more.
+fn rises(samples: &[f32]) -> Vec<f64> {
+    // Differences of samples raise the high frequencies, in which bursts are sharpest.
+    let powers: Vec<f64> = samples
+        .windows(BLOCK + 1)
+        .step_by(BLOCK)
+        .map(|block| block.windows(2).map(|pair| f64::from(pair[1]) - f64::from(pair[0])).map(|d| d * d).sum())
+        .collect();
+    let floor = FAINT * powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let levels: Vec<f64> = powers.iter().map(|power| log(power + floor)).collect();
+    let rise = |n: usize| {
+        let before = &levels[n.saturating_sub(BEFORE)..n];
+        (levels[n] - before.iter().sum::<f64>() / before.len().max(1) as f64).max(0.0)
+    };
+    let rises: Vec<f64> = (0..levels.len()).map(|n| if n == 0 { 0.0 } else { rise(n) }).collect();
+    let beside = |n: usize| rises[n.saturating_sub(1)..(n + 2).min(rises.len())].iter().copied().fold(0.0, f64::max);
+    (0..rises.len()).map(beside).collect()
+}
+
+/// The row of bursts with which samples at [`RATE`] begin; none if their level does not rise regularly.
+pub(super) fn find(samples: &[f32]) -> Option<Row> {
+    let per_second = f64::from(RATE) / BLOCK as f64;
+    let longest = (MOST as f64 * SPACINGS.1 * f64::from(RATE)) as usize;
+    let rises = rises(&samples[..samples.len().min(longest)]);
+    let steps = ((SPACINGS.1 - SPACINGS.0) * per_second / STEP) as usize;
+    let mut best = (CLEARLY, None);
+    for spacing in (0..steps).map(|n| SPACINGS.0 * per_second + STEP * n as f64) {
+        for hits in FEWEST..=MOST {
+            let Some(row) = rises.get(..((hits as f64 - 0.5) * spacing) as usize) else { break };
+            let mean = row.iter().sum::<f64>() / row.len() as f64;
+            let square = row.iter().map(|rise| (rise - mean) * (rise - mean)).sum::<f64>() / row.len() as f64;
+            // The first burst is the onset, which each sound has.
+            let count = hits as f64 - 1.0;
+            let of_bursts = (1..hits).map(|n| row[((n as f64 * spacing).round() as usize).min(row.len() - 1)]);
+            let excess = of_bursts.sum::<f64>() / count - mean;
+            let clearly = excess / (sqrt(square) + LEAST_DEVIATION) * sqrt(count);
+            if clearly > best.0 {
+                best = (clearly, Some(Row { hits: hits as u8, spacing: spacing / per_second }));
+            }
+        }
+    }
+    best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dsp::random::{key, uniform};
+
+    /// A second of noise whose level is set by `level`, from the time in seconds.
+    fn noise(level: impl Fn(f64) -> f64) -> Vec<f32> {
+        let chance = key(5, 0);
+        let sample = |n: usize| level(n as f64 / f64::from(RATE)) as f32 * uniform(chance, n as u64);
+        (0..RATE as usize).map(sample).collect()
+    }
+
+    #[test]
+    fn the_teeth_of_a_guiro_are_counted() {
+        for (hits, spacing) in [(7_u8, 0.031), (12, 0.0173), (16, 0.026)] {
+            let level = |t: f64| {
+                let tooth = libm::floor(t / spacing).min(f64::from(hits) - 1.0);
+                libm::exp(-(t - tooth * spacing) / 0.006)
+            };
+            let found = find(&noise(level)).unwrap();
+            assert_eq!(found.hits, hits, "{found:?}");
+            assert!((found.spacing / spacing - 1.0).abs() < 0.01, "{found:?}, {spacing}");
+        }
+    }
+
+    #[test]
+    fn a_single_stroke_is_no_row() {
+        for t60 in [0.05, 0.4, 10.0] {
+            assert_eq!(find(&noise(|t| libm::exp(-6.9 * t / t60))), None, "{t60}");
+        }
+        assert_eq!(find(&[]), None);
+    }
+}
