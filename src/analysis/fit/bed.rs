@@ -14,6 +14,8 @@ use realfft::RealFftPlanner;
 const EXCESS_DB: f64 = 1.5;
 /// Shortest and longest T60 of the bed in seconds.
 const T60: (f64, f64) = (0.01, 20.0);
+/// T60 in seconds of modes that follow the level of the noise.
+const SHORT_T60: f64 = 0.04;
 /// Range in dB, down from its loudest window, in which the decay of a band is measured.
 const FOLLOWED_DB: f64 = 45.0;
 /// Number of windows among which the loudest of a band is searched for: 1.2 s.
@@ -46,6 +48,21 @@ pub(super) fn bed([target, draft]: [&LogMel; 2], lines: &Lines, sweep: &Sweep, m
     bed
 }
 
+/// Short modes for a noise that goes on for as long as the sound: each band's greatest level, where `lines` are strong.
+pub(super) fn short(target: &LogMel, lines: &Lines, most: usize, seed: u64) -> Vec<Partial> {
+    let floor = target.loudest() - SPAN_DB;
+    let mut bands: Vec<(f64, usize)> = (0..BANDS)
+        .map(|band| (target.columns.iter().map(|column| column[band]).fold(f64::NEG_INFINITY, f64::max), band))
+        .filter(|(level, _)| *level > floor)
+        .collect();
+    bands.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let of_band = |(level, band): (f64, usize)| {
+        let decay = Decay { at_onset: level, t60: SHORT_T60, is_smooth: false };
+        partials(&decay, lines, band, seed)
+    };
+    bands.into_iter().flat_map(of_band).take(most).collect()
+}
+
 /// The modes of one band and their energy.
 fn fill(
     [target, draft]: [&LogMel; 2],
@@ -61,31 +78,56 @@ fn fill(
         (wanted > floor && wanted > has + EXCESS_DB).then(|| 10.0 * log10(missing))
     };
     let levels: Vec<Option<f64>> = (0..target.columns.len()).map(level).collect();
-    let start = (0..levels.len().min(RISE))
-        .filter(|n| levels[*n].is_some())
-        .max_by(|a, b| levels[*a].unwrap_or(f64::NEG_INFINITY).total_cmp(&levels[*b].unwrap_or(f64::NEG_INFINITY)))?;
-    let top = levels[start]?;
-    // A line through the levels in dB, from the loudest on.
-    let points: Vec<(f64, f64)> = (start..levels.len())
-        .map_while(|n| {
-            // A gap of less than twelve windows, where the draft is louder by chance, does not end the decay.
-            let near = &levels[n..(n + 12).min(levels.len())];
-            near.iter().any(Option::is_some).then_some((n, levels[n]))
+    let decay = Decay::of(&levels)?;
+    Some((pow(10.0, 0.1 * decay.at_onset) * decay.t60, partials(&decay, lines, band, seed)))
+}
+
+/// How a band decays.
+struct Decay {
+    /// Level in dB at the onset.
+    at_onset: f64,
+    /// Seconds.
+    t60: f64,
+    /// Whether the level is a line, as that of one mode.
+    is_smooth: bool,
+}
+
+impl Decay {
+    /// A line through the levels in dB of all windows, from the loudest on; none where the band has no level.
+    fn of(levels: &[Option<f64>]) -> Option<Self> {
+        let start = (0..levels.len().min(RISE)).filter(|n| levels[*n].is_some()).max_by(|a, b| {
+            levels[*a].unwrap_or(f64::NEG_INFINITY).total_cmp(&levels[*b].unwrap_or(f64::NEG_INFINITY))
+        })?;
+        let top = levels[start]?;
+        let points: Vec<(f64, f64)> = (start..levels.len())
+            .map_while(|n| {
+                // A gap of less than twelve windows, where the draft is louder by chance, does not end the decay.
+                let near = &levels[n..(n + 12).min(levels.len())];
+                near.iter().any(Option::is_some).then_some((n, levels[n]))
+            })
+            .filter_map(|(n, level)| Some(((n as f64) * HOP as f64 / f64::from(RATE), level?)))
+            .take_while(|(_, level)| *level > top - FOLLOWED_DB)
+            .collect();
+        let count = points.len() as f64;
+        let [t, y] =
+            [0, 1].map(|which| points.iter().map(|(t, y)| if which == 0 { *t } else { *y }).sum::<f64>() / count);
+        let (product, square) = points.iter().fold((0.0, 0.0), |(product, square), point| {
+            (product + (point.0 - t) * (point.1 - y), square + (point.0 - t) * (point.0 - t))
+        });
+        let slope = if count >= 4.0 { (product / square).min(-60.0 / T60.1) } else { -60.0 / 0.03 };
+        let off = points.iter().map(|point| point.1 - y - slope * (point.0 - t)).map(|off| off * off).sum::<f64>();
+        Some(Self {
+            at_onset: if count >= 4.0 { (y - slope * t).min(top + 6.0) } else { top },
+            t60: (-60.0 / slope).clamp(T60.0, T60.1),
+            is_smooth: count >= 4.0 && off < SMOOTH_DB * SMOOTH_DB * count,
         })
-        .filter_map(|(n, level)| Some(((n as f64) * HOP as f64 / f64::from(RATE), level?)))
-        .take_while(|(_, level)| *level > top - FOLLOWED_DB)
-        .collect();
-    let count = points.len() as f64;
-    let [t, y] = [0, 1].map(|which| points.iter().map(|(t, y)| if which == 0 { *t } else { *y }).sum::<f64>() / count);
-    let (product, square) = points.iter().fold((0.0, 0.0), |(product, square), point| {
-        (product + (point.0 - t) * (point.1 - y), square + (point.0 - t) * (point.0 - t))
-    });
-    let slope = if count >= 4.0 { (product / square).min(-60.0 / T60.1) } else { -60.0 / 0.03 };
-    let t60 = (-60.0 / slope).clamp(T60.0, T60.1);
-    let at_onset = if count >= 4.0 { (y - slope * t).min(top + 6.0) } else { top };
-    // A smooth decay gets one mode, since several would beat. Noise gets enough modes for their resonances to overlap.
-    let off = points.iter().map(|point| point.1 - y - slope * (point.0 - t)).map(|off| off * off).sum::<f64>();
-    let is_smooth = count >= 4.0 && off < SMOOTH_DB * SMOOTH_DB * count;
+    }
+}
+
+/// The modes of a band that decays so. A smooth decay gets one mode, since several would beat. Noise gets enough modes for their
+/// resonances to overlap.
+fn partials(decay: &Decay, lines: &Lines, band: usize, seed: u64) -> Vec<Partial> {
+    let Decay { at_onset, t60, is_smooth } = *decay;
     let width = 0.5 * (centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1)));
     let most = if is_smooth { 1.0 } else { (0.5 * width * t60 / BANDWIDTH).clamp(FEWEST, MOST).round() };
     let range = (centre(band) - 0.5 * width, centre(band) + 0.5 * width);
@@ -97,8 +139,7 @@ fn fill(
         let pan = 0.4 * f64::from(uniform(key(seed, band as u64), n as u64));
         Partial { frequency: *frequency, t60, amplitude, phase: 0.0, pan, struck: false }
     };
-    let partials: Vec<Partial> = places.iter().enumerate().map(partial).collect();
-    Some((pow(10.0, 0.1 * at_onset) * t60, partials))
+    places.iter().enumerate().map(partial).collect()
 }
 
 /// The power spectrum of a whole sound.

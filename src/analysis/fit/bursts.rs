@@ -18,7 +18,7 @@ const STEP: f64 = 0.25;
 /// Smallest deviation of the rises, in nepers of power, that is assumed.
 const LEAST_DEVIATION: f64 = 0.05;
 /// How many of their standard deviations the rises of the bursts are above the mean.
-const CLEARLY: f64 = 6.0;
+const CLEARLY: f64 = 5.5;
 
 /// A row of bursts.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use super::refine::Listener;
 use super::start::Source;
 use super::take::{Prepared, SLOW};
 use super::{bed, bursts, held, start, sweep};
-use crate::analysis::log_mel::{HOP, RATE};
+use crate::analysis::log_mel::{BANDS, HOP, MelBands, RATE};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
 
@@ -26,6 +26,13 @@ const WORTH_A_DRIFT_DB: f64 = 6.0;
 const WORTH_A_SWEEP_DB: f64 = 2.0;
 /// Reduction of the distance in dB for which a bed is kept.
 const WORTH_A_BED: f64 = 0.02;
+/// Powers relative to the greatest at which a noise has come to its level, and at which it is over: −3 and −30 dB.
+const HALF: f64 = 0.5;
+const OVER: f64 = 1e-3;
+/// Shortest noise in seconds that goes on for as long as the sound.
+const LEAST_BURST: f64 = 0.02;
+/// Seeds of the pans of modes that noise excites.
+const SEED: u64 = 10;
 /// Rounds of corrections at a time.
 const ROUNDS: usize = 8;
 
@@ -98,12 +105,16 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
         found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     }
     let strike = found[0].1.clone();
-    if residual_db(&found[0]) > NOISE_DB {
+    if still > NOISE_DB && !drifts {
         if let Some(bursts::Row { hits, spacing }) = bursts::find(&take.mean) {
             let noise = Noise { hits, spacing, ..Noise::SHORT };
             let draft = start::from(take, None, &Source { struck: false, ..all }, false);
             found.push((Draft { noise, ..draft }, strike.clone()));
         }
+        found.push((
+            blown(take, most, start::from(take, None, &Source { struck: false, ..all }, false)),
+            strike.clone(),
+        ));
         let late = Source { late: LATE * take.seconds(), struck: false, ..all };
         let (driven, _) = analysed(take, late, of_noise, tell)?;
         found.push((driven, strike.clone()));
@@ -114,6 +125,20 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
         found.push((rung, strike));
     }
     Ok(found)
+}
+
+/// A draft of noise that goes on for as long as the sound, as of breath or a shaker, through short modes.
+fn blown(take: &Prepared, most: usize, draft: Draft) -> Draft {
+    let target = MelBands::new().measure(&take.mean);
+    let power = |column: &[f64; BANDS]| column.iter().map(|level| libm::pow(10.0, 0.1 * level)).sum::<f64>();
+    let powers: Vec<f64> = target.columns.iter().map(power).collect();
+    let loudest = powers.iter().copied().fold(0.0, f64::max);
+    let seconds = |at: Option<usize>| at.unwrap_or(0) as f64 * HOP as f64 / f64::from(RATE);
+    let attack = seconds(powers.iter().position(|power| *power > HALF * loudest));
+    let end = seconds(powers.iter().rposition(|power| *power > OVER * loudest));
+    let noise = Noise { seconds: end.clamp(LEAST_BURST, 1.0), attack: attack.min(1.0), ..Noise::SHORT };
+    let partials = bed::short(&target, &Lines::new(&take.mean), most.div_ceil(2), SEED);
+    Draft { noise, partials, ..draft }
 }
 
 /// The residual of a strike in dB.

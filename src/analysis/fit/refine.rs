@@ -14,9 +14,11 @@ use crate::units::key_from_frequency;
 const HARDNESSES: [f64; 10] = [0.95, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25, 0.15, 0.05];
 /// Lengths and rises in seconds of the noise that are tried.
 const LENGTHS: [f64; 8] = [0.002, 0.006, 0.015, 0.04, 0.1, 0.23, 0.5, 1.0];
+const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
+/// Factor of the lengths beside the best of these that are tried.
+const NEARER: f64 = 1.35;
 /// A burst longer than this many seconds affects the decay.
 const SHORT: f64 = 0.02;
-const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
 /// Ratio of the T60 of an exponential burst to the length of a quadratic burst of the same energy: the energies are T60
 /// / (6 ln 10) and length / 5.
 const EXPONENTIAL: f64 = 2.76;
@@ -157,6 +159,11 @@ impl<'a> Listener<'a> {
             draft,
             [Noise { seconds: (EXPONENTIAL * noise.seconds).min(1.0), decay: NoiseDecay::Exponential, ..noise }],
         )?;
+        if draft.noise.seconds > SHORT {
+            let noise = draft.noise;
+            let near = [1.0 / NEARER, NEARER].map(|factor| (factor * noise.seconds).min(1.0));
+            self.best_corrected(draft, near.map(|seconds| Noise { seconds, ..noise }))?;
+        }
         let noise = draft.noise;
         let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
         self.best(draft, usize::MAX, rises)?;
