@@ -120,8 +120,8 @@ impl MelBands {
 }
 
 impl LogMel {
-    /// The windows from the one with number `first` on.
-    pub(super) fn from_window(&self, first: usize) -> Self {
+    /// The windows without the `first` ones.
+    pub(super) fn skipping(&self, first: usize) -> Self {
         Self { columns: self.columns.get(first..).unwrap_or_default().to_vec() }
     }
 

@@ -27,6 +27,8 @@ mod zones;
 
 pub use ensemble::Ensemble;
 pub use event::{Event, EventKind, Expression};
+#[cfg(feature = "fit")]
+pub(crate) use modulation::Lfo;
 pub use note::{Note, NoteId, Notes};
 pub use snapshot::{SHOWN_NOTES, Snapshot, SoundingNote};
 pub use synth::Synth;

@@ -4,7 +4,8 @@
 //! level and that decay. Their frequencies are where the band's spectrum is highest, since the noise may excite a body
 //! with modes of its own.
 
-use super::draft::{Partial, Sweep, speed};
+use super::draft::Partial;
+use super::movement::{Sweep, speed};
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, centre};
 use crate::dsp::random::{key, uniform};
 use libm::{log10, pow, sqrt};

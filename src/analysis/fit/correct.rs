@@ -143,7 +143,8 @@ fn corrected(draft: &Draft, share: f64, mut correction: impl FnMut(&Partial) -> 
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::draft::{Noise, Sweep};
+    use super::super::draft::Noise;
+    use super::super::movement::Sweep;
     use super::*;
     use crate::params::Param;
 
@@ -160,7 +161,7 @@ pub(super) mod tests {
             sweep: Sweep::NONE,
             noise: Noise::SHORT,
             swell: None,
-            tremolo: None,
+            oscillators: Vec::new(),
             is_held: false,
         }
     }

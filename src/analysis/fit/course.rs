@@ -4,15 +4,16 @@
 //! at all frequencies. Its frequency is the rate at which its phase turns (reassignment: Auger & Flandrin 1995), which
 //! is far more exact than the bandwidth of the window.
 
-use super::draft::{Sweep, Vibrato};
+use super::movement::{Sweep, Vibrato};
 use crate::analysis::log_mel::RATE;
 use crate::dsp::pitch::SweepEnvelope;
 use libm::{cos, exp, fabs, log2, pow, sin, sqrt};
 use nalgebra::{Cholesky, SMatrix, SVector};
 use std::f64::consts::{PI, TAU};
 
-/// Seconds of the sound that are followed, and samples from one moment to the next.
+/// Seconds of the sound that are followed, those in which a regular movement is looked for, and samples from one moment to the next.
 const LONGEST: f64 = 2.0;
+const LONGEST_REGULAR: f64 = 4.0;
 const HOP: usize = 110;
 /// Lowest frequency in Hz, number of bins per octave, and number of bins: eight octaves.
 const LOWEST: f64 = 40.0;
@@ -39,8 +40,8 @@ const DELAYS: [f64; 6] = [0.0, 0.3, 0.6, 0.9, 1.3, 2.0];
 pub(super) const FASTEST_VIBRATO: f64 = 20.0;
 pub(super) const DEEPEST_VIBRATO: f64 = 12.0;
 const LARGEST_SWEEP: f64 = 60.0;
-/// Fewest cycles of a vibrato or tremolo: a part of one fits any bend.
-pub(super) const LEAST_CYCLES: f64 = 2.0;
+/// Fewest cycles of a vibrato: a part of one fits any bend.
+const LEAST_CYCLES: f64 = 2.0;
 /// Rounds of the fine search.
 const ROUNDS: usize = 12;
 /// Added to the diagonal of the equations, so that they can be solved.
@@ -105,10 +106,10 @@ impl Window {
     }
 }
 
-/// Follows the strongest partial of samples at [`RATE`], from their onset on.
-fn follow(samples: &[f32]) -> Vec<Point> {
+/// Follows the strongest partial of samples at [`RATE`] for some seconds from their onset on.
+fn follow(samples: &[f32], longest: f64) -> Vec<Point> {
     let windows: Vec<Window> = (0..BINS).map(Window::new).collect();
-    let len = samples.len().min((LONGEST * f64::from(RATE)) as usize);
+    let len = samples.len().min((longest * f64::from(RATE)) as usize);
     let seen: Vec<Vec<[f64; 3]>> = (0..len)
         .step_by(HOP)
         .map(|middle| windows.iter().map(|window| window.see(samples, middle)).collect())
@@ -210,9 +211,14 @@ impl Movement {
     }
 }
 
+/// The pitch of the strongest partial of samples at [`RATE`], from their onset on: seconds, semitones and a weight each.
+pub(super) fn pitches(samples: &[f32]) -> Vec<[f64; 3]> {
+    follow(samples, LONGEST_REGULAR).into_iter().map(|point| [point.time, point.pitch, point.weight]).collect()
+}
+
 /// The movement of the pitch of samples at [`RATE`], from their onset on; [`Sweep::NONE`] if the pitch is constant.
 pub(super) fn find(samples: &[f32]) -> Sweep {
-    explain(&follow(samples))
+    explain(&follow(samples, LONGEST))
 }
 
 /// The movement that explains a measured pitch, as times in seconds and semitones, and its mean in semitones.

@@ -1,12 +1,12 @@
 //! The fit's description of a sound, in Hz and amplitudes, and the patch that plays it.
 
+use super::movement::{Oscillator, Sweep, Swell, speed};
 use crate::analysis::log_mel::RATE;
-use crate::dsp::pitch::SweepEnvelope;
 use crate::params::{Choice, MalletPulse, NoiseDecay, NoteOff, Param};
 use crate::patch::routes::Source;
 use crate::patch::{Mode, ModeTable, Patch};
 use crate::sound::contact_time;
-use libm::{cos, exp, fabs, log10, pow, sin};
+use libm::{cos, fabs, log10, pow};
 use std::f64::consts::PI;
 
 /// Maximum number of modes of a fit.
@@ -22,9 +22,15 @@ pub(super) fn longest_t60(is_held: bool) -> f64 {
 
 /// Lower bound of the spectrum of a contact, so that modes near its zeros are not struck ever harder: −40 dB.
 const LEAST_OF_CONTACT: f64 = 0.01;
-/// Places of the routes of a swell and a tremolo. The routes made from several takes are before them, those of a new patch after them.
+/// Places of the route of a swell and of the first one of an oscillator. The routes made from several takes are before them, those of a new patch after them.
 const SWELL_ROUTE: usize = 3;
-const TREMOLO_ROUTE: usize = 4;
+const OSCILLATOR_ROUTES: usize = 4;
+/// Low-frequency oscillators, each with its rate, shape and phase.
+const LFOS: [(Source, [Param; 3]); 3] = [
+    (Source::Lfo2, [Param::Lfo2Rate, Param::Lfo2Shape, Param::Lfo2Phase]),
+    (Source::Lfo3, [Param::Lfo3Rate, Param::Lfo3Shape, Param::Lfo3Phase]),
+    (Source::Lfo1, [Param::Lfo1Rate, Param::Lfo1Shape, Param::Lfo1Phase]),
+];
 
 /// A mode of the sound.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,59 +47,6 @@ pub(super) struct Partial {
     pub(super) pan: f64,
     /// Whether the strike excites it, and not the noise.
     pub(super) struck: bool,
-}
-
-/// The movement of the pitch after the strike: a sweep and a vibrato.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Sweep {
-    pub(super) semitones: f64,
-    pub(super) seconds: f64,
-    /// −1 to 1.
-    pub(super) curve: f64,
-    pub(super) vibrato: Vibrato,
-}
-
-/// A vibrato, which begins upwards.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Vibrato {
-    /// Depth each way.
-    pub(super) semitones: f64,
-    /// Hz.
-    pub(super) rate: f64,
-    /// Seconds in which it fades in.
-    pub(super) delay: f64,
-}
-
-impl Sweep {
-    pub(super) const NONE: Self =
-        Self { semitones: 0.0, seconds: 0.1, curve: 0.5, vibrato: Vibrato { semitones: 0.0, rate: 5.0, delay: 0.0 } };
-
-    pub(super) fn envelope(&self) -> SweepEnvelope {
-        SweepEnvelope::new(self.semitones, self.seconds, self.curve)
-    }
-
-    /// The sweep with changed numbers: the semitones by a share of them, the time by a power of e, the curve by a sum.
-    pub(super) fn moved(&self, [semitones, seconds, curve]: [f64; 3]) -> Self {
-        Self {
-            semitones: (self.semitones * (1.0 + semitones)).clamp(-60.0, 60.0),
-            seconds: (self.seconds * exp(seconds)).clamp(0.002, 5.0),
-            curve: (self.curve + curve).clamp(-1.0, 1.0),
-            ..*self
-        }
-    }
-
-    /// Whether the pitch is constant.
-    pub(super) fn is_none(&self) -> bool {
-        self.semitones == 0.0 && self.vibrato.semitones == 0.0
-    }
-}
-
-impl Vibrato {
-    /// Semitones, `time` seconds after the strike.
-    pub(super) fn at(&self, time: f64) -> f64 {
-        let fade = if self.delay > 0.0 { (time / self.delay).min(1.0) } else { 1.0 };
-        if self.semitones == 0.0 { 0.0 } else { self.semitones * fade * sin(2.0 * PI * self.rate * time) }
-    }
 }
 
 /// The burst of noise.
@@ -118,27 +71,6 @@ impl Noise {
     }
 }
 
-/// The rise of a sound that is not struck.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Swell {
-    pub(super) seconds: f64,
-    /// Rise in dB.
-    pub(super) depth: f64,
-    /// −1 to 1: above 0 the rise is fast at first.
-    pub(super) curve: f64,
-}
-
-/// A regular movement of the level, which begins upwards at phase 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Tremolo {
-    /// Depth each way in dB.
-    pub(super) db: f64,
-    /// Hz.
-    pub(super) rate: f64,
-    /// Where in its round it begins, 0–1.
-    pub(super) phase: f64,
-}
-
 /// The description of a sound.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Draft {
@@ -154,7 +86,8 @@ pub(super) struct Draft {
     pub(super) sweep: Sweep,
     pub(super) noise: Noise,
     pub(super) swell: Option<Swell>,
-    pub(super) tremolo: Option<Tremolo>,
+    /// Up to three.
+    pub(super) oscillators: Vec<Oscillator>,
     /// Whether it ends when its key is released, and not by itself.
     pub(super) is_held: bool,
 }
@@ -184,13 +117,6 @@ impl Partial {
     pub(super) fn heard_at(&self, sweep: &Sweep) -> f64 {
         self.frequency * speed(sweep, self.t60)
     }
-}
-
-/// Factor by which a sweep raises a mode at the mean time of the mode's energy, relative to its final pitch. `t60` in
-/// seconds.
-pub(super) fn speed(sweep: &Sweep, t60: f64) -> f64 {
-    // The squared amplitude falls by 120 dB in a T60: its mean time is T60 / ln 10⁶.
-    if sweep.semitones == 0.0 { 1.0 } else { pow(2.0, sweep.envelope().at(t60 / 13.8) / 12.0) }
 }
 
 impl Draft {
@@ -277,9 +203,10 @@ impl Draft {
             set(Param::VibratoRate, self.sweep.vibrato.rate);
             set(Param::VibratoDelay, self.sweep.vibrato.delay);
         }
-        if let Some(tremolo) = self.tremolo {
-            set(Param::Lfo2Rate, tremolo.rate);
-            set(Param::Lfo2Phase, 100.0 * tremolo.phase);
+        for (oscillator, (_, [rate, shape, phase])) in self.oscillators.iter().zip(&LFOS) {
+            set(*rate, oscillator.rate);
+            set(*shape, oscillator.shape.value().into());
+            set(*phase, 100.0 * oscillator.phase);
         }
         if let Some(swell) = self.swell {
             let depth = swell.depth.min(gain_db - f64::from(gain_info.min));
@@ -292,9 +219,13 @@ impl Draft {
             let amount = 100.0 * depth / f64::from(gain_info.max - gain_info.min);
             patch = patch.with_route(SWELL_ROUTE, Source::Envelope1, Param::Gain, digits(amount, 5) as f32);
         }
-        if let Some(tremolo) = self.tremolo {
-            let amount = 100.0 * tremolo.db / f64::from(gain_info.max - gain_info.min);
-            patch = patch.with_route(TREMOLO_ROUTE, Source::Lfo2, Param::Gain, digits(amount, 5) as f32);
+        let moved = self.oscillators.iter().zip(&LFOS).flat_map(|(oscillator, (source, _))| {
+            [(Param::Gain, oscillator.db), (Param::Tune, oscillator.semitones)]
+                .map(|(param, depth)| (*source, param, depth))
+        });
+        for (n, (source, param, depth)) in moved.filter(|(.., depth)| *depth != 0.0).enumerate() {
+            let amount = 100.0 * depth / f64::from(param.info().max - param.info().min);
+            patch = patch.with_route(OSCILLATOR_ROUTES + n, source, param, digits(amount, 5) as f32);
         }
         patch
     }

@@ -4,15 +4,15 @@
 //! tone's course is measured, and what is common to all is their mean, in which a tone counts the less, the more it
 //! differs from the others. Without the drift, the sound is a sum of modes.
 
-use super::course::LEAST_CYCLES;
-use super::draft::Tremolo;
+use super::movement::{Oscillator, Sweep};
 use super::resample::Reader;
+use super::sway;
 use super::take::SLOW;
 use super::tones::{HOP, Tone, tones};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::Strike;
-use libm::{cos, exp, sin, sqrt};
-use std::f64::consts::{LN_2, LN_10, TAU};
+use libm::exp;
+use std::f64::consts::{LN_2, LN_10};
 
 /// Times that the drift is measured. What the first one leaves is smaller, so that higher tones can be followed.
 const ROUNDS: usize = 3;
@@ -27,10 +27,7 @@ const RISING: f64 = 1e-4;
 /// Largest logarithm by which the level of a rising sound is raised: 20 dB.
 const MOST_RAISED: f64 = 2.3;
 
-/// Tremolos that are tried: lowest rate in Hz, step, and highest rate. Share of the squared level that one must explain, and its
-/// least depth in dB.
-const RATES: (f64, f64, f64) = (2.0, 0.02, 16.0);
-const WORTH: f64 = 0.4;
+/// Least depth of a tremolo in dB.
 const LEAST_TREMOLO_DB: f64 = 0.2;
 
 /// The drift at moments that are [`HOP`] samples apart.
@@ -82,32 +79,31 @@ impl Drift {
     }
 
     /// The tremolo that explains the level best, if it explains most of it.
-    pub(super) fn tremolo(&self) -> Option<Tremolo> {
-        let level = &self.level[self.rise.min(self.level.len())..];
-        let time = |n: usize| ((n + self.rise) * HOP) as f64 / f64::from(RATE);
-        let mean = level.iter().sum::<f64>() / level.len().max(1) as f64;
-        let explained = |rate: f64| {
-            let mut sum = [0.0; 2];
-            for (n, level) in level.iter().enumerate() {
-                let turn = TAU * rate * time(n);
-                sum = [sum[0] + (level - mean) * sin(turn), sum[1] + (level - mean) * cos(turn)];
-            }
-            sum.map(|sum| 2.0 * sum / level.len().max(1) as f64)
+    pub(super) fn tremolo(&self) -> Vec<Oscillator> {
+        let point = |n: usize| [(n * HOP) as f64 / f64::from(RATE), 20.0 / LN_10 * self.level[n], 1.0];
+        let mut found = sway::tremolo((self.rise..self.level.len()).map(point).collect());
+        found.retain(|tremolo| tremolo.db.abs() > LEAST_TREMOLO_DB);
+        found
+    }
+
+    /// The drift of a sound of some samples that oscillators and a sweep move.
+    pub(super) fn by(oscillators: &[Oscillator], sweep: &Sweep, samples: usize) -> Self {
+        let envelope = sweep.envelope();
+        let sum = |n: usize, depth: fn(&Oscillator) -> f64| {
+            let time = (n * HOP) as f64 / f64::from(RATE);
+            oscillators.iter().map(|oscillator| depth(oscillator) * oscillator.at(time)).sum::<f64>()
         };
-        let square = |[a, b]: [f64; 2]| 0.5 * (a * a + b * b);
-        let seconds = (level.len() * HOP) as f64 / f64::from(RATE);
-        let rates = (0..).map(|n| RATES.0 + RATES.1 * f64::from(n)).take_while(|rate| *rate < RATES.2);
-        let rates = rates.filter(|rate| rate * seconds > LEAST_CYCLES);
-        let best = rates.map(|rate| (rate, explained(rate))).max_by(|a, b| square(a.1).total_cmp(&square(b.1)));
-        let (rate, [a, b]) = best?;
-        let all = level.iter().map(|level| (level - mean) * (level - mean)).sum::<f64>() / level.len().max(1) as f64;
-        let db = 20.0 / LN_10 * sqrt(a * a + b * b);
-        let phase = libm::atan2(b, a) / TAU;
-        (square([a, b]) > WORTH * all && db > LEAST_TREMOLO_DB).then_some(Tremolo {
-            db,
-            rate,
-            phase: phase - libm::floor(phase),
-        })
+        let swept = |n: usize| if sweep.is_none() { 0.0 } else { envelope.at((n * HOP) as f64 / f64::from(RATE)) };
+        let moments = 0..samples / HOP + 1;
+        Self {
+            pitch: moments
+                .clone()
+                .map(|n| LN_2 / 12.0 * (sum(n, |oscillator| oscillator.semitones) + swept(n)))
+                .collect(),
+            level: moments.map(|n| LN_10 / 20.0 * sum(n, |oscillator| oscillator.db)).collect(),
+            rise: 0,
+            rises: false,
+        }
     }
 
     /// Adds the drift of tones from a moment on.
@@ -233,6 +229,8 @@ fn line_through(course: &[[f64; 2]], common: &[f64], fall: bool) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use libm::{sin, sqrt};
+    use std::f64::consts::TAU;
 
     const SECONDS: f64 = 3.0;
 
@@ -265,10 +263,10 @@ mod tests {
         let pitches = drift.pitches();
         let (moves, off) = (rms(&|n| at(n)[0]), rms(&|n| pitches[n].1 - at(n)[0]));
         assert!(off < 0.2 * moves, "{off} of {moves} semitones");
-        let tremolo = drift.tremolo().unwrap();
+        let tremolo = drift.tremolo()[0];
         let depth = 20.0 / LN_10 * 0.2;
         let is_found = (tremolo.rate - 6.0).abs() < 0.1
-            && (tremolo.db - depth).abs() < 0.25 * depth
+            && (tremolo.db.abs() - depth).abs() < 0.25 * depth
             && (tremolo.phase - 1.0 / TAU).abs() < 0.08;
         assert!(is_found, "{tremolo:?}");
     }
@@ -282,7 +280,7 @@ mod tests {
                 chance as f32 / u32::MAX as f32 - 0.5
             })
             .collect();
-        assert!(Drift::of(&noise, 0.0).is_none_or(|drift| drift.tremolo().is_none()));
+        assert!(Drift::of(&noise, 0.0).is_none_or(|drift| drift.tremolo().is_empty()));
         assert!(Drift::of(&[0.0; 8192], 0.0).is_none());
     }
 }

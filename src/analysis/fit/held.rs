@@ -65,7 +65,7 @@ pub(super) fn draft(
     steady(&mut draft, most, &still[from.min(still.len())..], &unexplained(&still, usize::MAX, &strike, from), from);
     // The modes have the mean pitch, and those of a draft the pitch without sweep and vibrato.
     draft.partials.iter_mut().for_each(|partial| partial.frequency *= pow(2.0, -mean / 12.0));
-    draft.tremolo = drift.tremolo();
+    draft.oscillators = drift.tremolo();
     Ok(Some((draft, Some(strike))))
 }
 

@@ -1,11 +1,13 @@
 //! Fits a draft to one take: first its modes, then a bed, then corrections.
 
 use super::bed::Lines;
-use super::draft::{Draft, Noise, Sweep};
+use super::draft::{Draft, Noise};
+use super::drift::Drift;
+use super::movement::Sweep;
 use super::refine::Listener;
 use super::start::Source;
 use super::take::{Prepared, SLOW};
-use super::{bed, bursts, held, start, sweep};
+use super::{bed, bursts, held, start, sway, sweep};
 use crate::analysis::log_mel::{BANDS, HOP, MelBands, RATE};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
@@ -16,6 +18,8 @@ const ANALYSED: f64 = 0.45;
 const NOISE_DB: f64 = -10.0;
 /// Residual of the modes in dB below which they tell where the sound is damped.
 const TELLS_DAMPER_DB: f64 = -25.0;
+/// Residual of the modes in dB above which the sound may be moved by oscillators.
+const SWAYS_DB: f64 = -20.0;
 /// Share of a sound after which modes that noise has excited ring freely.
 const LATE: f64 = 0.2;
 /// Residual of the modes in dB below which the pitch counts as constant.
@@ -119,12 +123,31 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
         let (driven, _) = analysed(take, late, of_noise, tell)?;
         found.push((driven, strike.clone()));
     }
+    if still > SWAYS_DB {
+        let part = |share: f64| tell(of_noise[0] + (of_noise[1] - of_noise[0]) * share).is_ok();
+        found.extend(swayed(take, most, part)?);
+    }
     if take.rise > SLOW {
         let swept = found[0].0.sweep;
         let (rung, _) = analysed(take, Source { late: take.rise, swept, ..all }, of_rest, tell)?;
         found.push((rung, strike));
     }
     Ok(found)
+}
+
+/// A draft of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
+fn swayed(take: &Prepared, most: usize, mut tell: impl FnMut(f64) -> bool) -> Result<Option<Found>> {
+    let (oscillators, swept) = sway::find(take);
+    if oscillators.is_empty() {
+        return Ok(None);
+    }
+    let drift = Drift::by(&oscillators, &swept, take.mean.len());
+    let still = take.replaced(take.channels.iter().map(|channel| drift.removed_from(channel)).collect());
+    let found = held::draft(&still, most, &mut tell)?.filter(|held| residual_db(held) < NOISE_DB);
+    let source = Source { swept, late: 0.0, struck: false };
+    // Noise that moves so is left to the bed.
+    let (draft, strike) = found.unwrap_or_else(|| (start::from(take, None, &source, false), None));
+    Ok(Some((Draft { oscillators, sweep: swept, ..draft }, strike)))
 }
 
 /// A draft of noise that goes on for as long as the sound, as of breath or a shaker, through short modes.
@@ -155,7 +178,7 @@ fn improved(
     part: &dyn Fn(f64) -> f64,
 ) -> Result<Draft> {
     listener.tell(part(0.0))?;
-    listener.choose_tremolo(&mut draft)?;
+    listener.choose_oscillators(&mut draft)?;
     if slow {
         listener.choose_swell(&mut draft)?;
     }
@@ -168,7 +191,7 @@ fn improved(
         let mut other = draft.clone();
         // Before the last burst, a band does not decay.
         let from = (draft.noise.last() * f64::from(RATE)) as usize / HOP;
-        let [wanted, heard] = [&listener.target, &heard].map(|bands| bands.from_window(from));
+        let [wanted, heard] = [&listener.target, &heard].map(|bands| bands.skipping(from));
         other.partials.extend(bed::bed([&wanted, &heard], lines, &draft.sweep, room, seed));
         if other.partials.is_empty() {
             break;

@@ -2,7 +2,8 @@
 
 use super::audition::{Audition, Played};
 use super::correct::{by_bands, by_moments};
-use super::draft::{Draft, Noise, Swell};
+use super::draft::{Draft, Noise};
+use super::movement::Swell;
 use super::simplex;
 use super::take::Prepared;
 use crate::analysis::log_mel::{HOP, LogMel, MelBands, WINDOW};
@@ -138,9 +139,9 @@ impl<'a> Listener<'a> {
         Ok(())
     }
 
-    /// Keeps the tremolo only if the sound is nearer with it.
-    pub(super) fn choose_tremolo(&mut self, draft: &mut Draft) -> Result<()> {
-        let without = draft.tremolo.is_some().then(|| Draft { tremolo: None, ..draft.clone() });
+    /// Keeps the oscillators only if the sound is nearer with them.
+    pub(super) fn choose_oscillators(&mut self, draft: &mut Draft) -> Result<()> {
+        let without = (!draft.oscillators.is_empty()).then(|| Draft { oscillators: Vec::new(), ..draft.clone() });
         self.best(draft, usize::MAX, without)
     }
 

@@ -1,6 +1,7 @@
 //! Makes the first draft of a sound from its modes.
 
-use super::draft::{Draft, MOST_MODES, Noise, Partial, SHORTEST_T60, Sweep, longest_t60};
+use super::draft::{Draft, MOST_MODES, Noise, Partial, SHORTEST_T60, longest_t60};
+use super::movement::Sweep;
 use super::take::Prepared;
 use super::{A4, pitch, sweep};
 use crate::analysis::log_mel::RATE;
@@ -120,7 +121,7 @@ pub(super) fn from(take: &Prepared, strike: Option<&Strike>, source: &Source, ha
         sweep: swept,
         noise: Noise::SHORT,
         swell: None,
-        tremolo: None,
+        oscillators: Vec::new(),
         is_held: take.is_held,
     }
 }

@@ -4,8 +4,8 @@
 //! its pitch, the frequencies are constant, and the spectrum has the highest peaks.
 
 use super::course;
-use super::draft::{Sweep, Vibrato};
 use super::layers::slope;
+use super::movement::{Sweep, Vibrato};
 use super::simplex;
 use crate::analysis::level::rms;
 use crate::analysis::log_mel::RATE;

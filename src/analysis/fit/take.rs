@@ -157,6 +157,11 @@ impl Prepared {
         }
     }
 
+    /// The same take with other samples.
+    pub(super) fn replaced(&self, channels: Vec<Vec<f32>>) -> Self {
+        Self { mean: mono(&channels), channels, ending: None, warnings: Vec::new(), ..*self }
+    }
+
     fn end(&mut self, release: Release, seconds: f64) {
         let len = ((seconds * f64::from(RATE)) as usize).min(self.mean.len());
         let head = |samples: &[f32]| samples[..len].to_vec();

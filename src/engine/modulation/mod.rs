@@ -18,6 +18,8 @@ mod settings;
 use crate::params::NoteValue;
 
 pub(crate) use bus::Bus;
+#[cfg(feature = "fit")]
+pub(crate) use lfo::Lfo;
 pub(crate) use modulators::{Modulators, Positions, Struck};
 pub(crate) use note::{NoteModulation, modulated, moved};
 pub(crate) use settings::{Settings, SharedLfos};

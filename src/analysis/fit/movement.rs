@@ -1,0 +1,98 @@
+//! What moves the pitch and the level of a draft: sweep, vibrato, swell and oscillators.
+
+use crate::dsp::pitch::SweepEnvelope;
+use crate::engine::Lfo;
+use crate::params::Shape;
+use libm::{exp, pow, sin};
+use std::f64::consts::PI;
+
+/// The movement of the pitch after the strike: a sweep and a vibrato.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sweep {
+    pub(super) semitones: f64,
+    pub(super) seconds: f64,
+    /// −1 to 1.
+    pub(super) curve: f64,
+    pub(super) vibrato: Vibrato,
+}
+
+/// A vibrato, which begins upwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Vibrato {
+    /// Depth each way.
+    pub(super) semitones: f64,
+    /// Hz.
+    pub(super) rate: f64,
+    /// Seconds in which it fades in.
+    pub(super) delay: f64,
+}
+
+impl Sweep {
+    pub(super) const NONE: Self =
+        Self { semitones: 0.0, seconds: 0.1, curve: 0.5, vibrato: Vibrato { semitones: 0.0, rate: 5.0, delay: 0.0 } };
+
+    pub(super) fn envelope(&self) -> SweepEnvelope {
+        SweepEnvelope::new(self.semitones, self.seconds, self.curve)
+    }
+
+    /// The sweep with changed numbers: the semitones by a share of them, the time by a power of e, the curve by a sum.
+    pub(super) fn moved(&self, [semitones, seconds, curve]: [f64; 3]) -> Self {
+        Self {
+            semitones: (self.semitones * (1.0 + semitones)).clamp(-60.0, 60.0),
+            seconds: (self.seconds * exp(seconds)).clamp(0.002, 5.0),
+            curve: (self.curve + curve).clamp(-1.0, 1.0),
+            ..*self
+        }
+    }
+
+    /// Whether the pitch is constant.
+    pub(super) fn is_none(&self) -> bool {
+        self.semitones == 0.0 && self.vibrato.semitones == 0.0
+    }
+}
+
+impl Vibrato {
+    /// Semitones, `time` seconds after the strike.
+    pub(super) fn at(&self, time: f64) -> f64 {
+        let fade = if self.delay > 0.0 { (time / self.delay).min(1.0) } else { 1.0 };
+        if self.semitones == 0.0 { 0.0 } else { self.semitones * fade * sin(2.0 * PI * self.rate * time) }
+    }
+}
+
+/// The rise of a sound that is not struck.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Swell {
+    pub(super) seconds: f64,
+    /// Rise in dB.
+    pub(super) depth: f64,
+    /// −1 to 1: above 0 the rise is fast at first.
+    pub(super) curve: f64,
+}
+
+/// A low-frequency oscillator that moves pitch and level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Oscillator {
+    pub(super) shape: Shape,
+    /// Hz.
+    pub(super) rate: f64,
+    /// Where in its round it begins, 0–1.
+    pub(super) phase: f64,
+    /// Depth each way; negative if the pitch moves against the oscillator.
+    pub(super) semitones: f64,
+    /// The same of the level.
+    pub(super) db: f64,
+}
+
+impl Oscillator {
+    /// Its value, −1 to 1, `time` seconds after the strike.
+    pub(super) fn at(&self, time: f64) -> f64 {
+        Lfo::new(self.phase, 0).after(self.rate * time).value(self.shape).into()
+    }
+}
+
+/// Factor by which a sweep raises a mode at the mean time of the mode's energy, relative to its final pitch. `t60` in
+/// seconds.
+pub(super) fn speed(sweep: &Sweep, t60: f64) -> f64 {
+    // The squared amplitude falls by 120 dB in a T60: its mean time is T60 / ln 10⁶.
+    if sweep.semitones == 0.0 { 1.0 } else { pow(2.0, sweep.envelope().at(t60 / 13.8) / 12.0) }
+}

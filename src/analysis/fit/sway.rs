@@ -1,0 +1,252 @@
+//! Finds the low-frequency oscillators that explain a regular movement of pitch and level, as of a telephone or a bird.
+
+use super::course;
+use super::movement::{Oscillator, Sweep};
+use super::take::Prepared;
+use crate::analysis::level::{dbfs, rms};
+use crate::analysis::log_mel::RATE;
+use crate::params::Shape;
+use nalgebra::{DMatrix, DVector};
+
+/// Shapes that are tried, and in how many phases: the first ones are their own negative half a turn later.
+const SHAPES: [(Shape, usize); 4] = [(Shape::Sine, 8), (Shape::Triangle, 8), (Shape::Square, 8), (Shape::Ramp, 16)];
+/// Fastest oscillator in Hz, fewest cycles of the slowest, and step between rates, in cycles over the whole course.
+const FASTEST: f64 = 40.0;
+const FEWEST_CYCLES: f64 = 1.5;
+const STEP: f64 = 0.25;
+/// Most oscillators: those of the engine.
+const MOST: usize = 3;
+/// Share of the squares left that an oscillator must explain, and that all must explain together.
+const WORTH: f64 = 0.25;
+const WORTH_ALL: f64 = 0.6;
+/// Share of the squares that no oscillator is looked for.
+const LITTLE: f64 = 0.01;
+/// Rounds of the fine search.
+const ROUNDS: usize = 14;
+/// Added to the diagonal of the equations, so that they can be solved.
+const RIDGE: f64 = 1e-9;
+/// Samples from one level to the next, and range of levels in dB.
+const HOP: usize = 128;
+const RANGE_DB: f64 = 45.0;
+/// Least standard deviation of the level in dB at which it moves.
+const LEAST_DB: f64 = 1.0;
+
+/// A value at a time in seconds, with a weight.
+type Point = [f64; 3];
+
+/// What a course does beside its oscillators: it has a mean, and may rise or fall steadily.
+struct Course {
+    points: Vec<Point>,
+    falls: bool,
+    oscillators: Vec<Oscillator>,
+    /// The factors of the oscillators.
+    factors: Vec<f64>,
+    /// What is left of each value.
+    rest: Vec<f64>,
+    /// An orthonormal base of what is explained already.
+    base: Vec<Vec<f64>>,
+    /// Weighted squares of all that is not steady.
+    squares: f64,
+}
+
+impl Course {
+    /// A course that some oscillators move already.
+    fn new(points: Vec<Point>, falls: bool, oscillators: Vec<Oscillator>) -> Self {
+        let mut course = Self {
+            points,
+            falls,
+            oscillators: Vec::new(),
+            factors: Vec::new(),
+            rest: Vec::new(),
+            base: Vec::new(),
+            squares: 0.0,
+        };
+        course.solve();
+        course.squares = course.left();
+        course.oscillators = oscillators;
+        course.solve();
+        course
+    }
+
+    /// Weighted squares of what is left.
+    fn left(&self) -> f64 {
+        self.rest.iter().zip(&self.points).map(|(rest, point)| point[2] * rest * rest).sum()
+    }
+
+    fn product(&self, a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).zip(&self.points).map(|((a, b), point)| point[2] * a * b).sum()
+    }
+
+    fn values(&self, oscillator: &Oscillator) -> Vec<f64> {
+        self.points.iter().map(|[time, ..]| oscillator.at(*time)).collect()
+    }
+
+    /// Solves for mean, slope and factors together.
+    fn solve(&mut self) {
+        let mut functions = vec![vec![1.0; self.points.len()]];
+        if self.falls {
+            functions.push(self.points.iter().map(|[time, ..]| *time).collect());
+        }
+        let steady = functions.len();
+        functions.extend(self.oscillators.iter().map(|oscillator| self.values(oscillator)));
+        let values: Vec<f64> = self.points.iter().map(|[_, value, _]| *value).collect();
+        let matrix = DMatrix::from_fn(functions.len(), functions.len(), |row, column| {
+            self.product(&functions[row], &functions[column]) + if row == column { RIDGE } else { 0.0 }
+        });
+        let right =
+            DVector::from_iterator(functions.len(), functions.iter().map(|function| self.product(function, &values)));
+        let factors = matrix.cholesky().map_or(DVector::zeros(functions.len()), |factors| factors.solve(&right));
+        let explained =
+            |n: usize| functions.iter().zip(factors.iter()).map(|(function, factor)| factor * function[n]).sum::<f64>();
+        self.rest = (0..values.len()).map(|n| values[n] - explained(n)).collect();
+        self.factors = factors.iter().skip(steady).copied().collect();
+        self.base.clear();
+        for mut function in functions {
+            for base in &self.base {
+                let share = self.product(&function, base);
+                function.iter_mut().zip(base).for_each(|(value, base)| *value -= share * base);
+            }
+            let norm = libm::sqrt(self.product(&function, &function));
+            if norm > RIDGE {
+                function.iter_mut().for_each(|value| *value /= norm);
+                self.base.push(function);
+            }
+        }
+    }
+
+    /// The squares that one more oscillator would explain.
+    fn gain(&self, oscillator: &Oscillator) -> f64 {
+        let values = self.values(oscillator);
+        let along = self.product(&values, &self.rest);
+        let known: f64 = self.base.iter().map(|base| self.product(&values, base)).map(|share| share * share).sum();
+        let own = self.product(&values, &values) - known;
+        if own > 1e-3 * (own + known) { along * along / own } else { 0.0 }
+    }
+
+    /// Adds the oscillator that explains most of the rest, if that is worth it.
+    fn add(&mut self) -> bool {
+        let seconds = self.points.last().map_or(0.0, |point| point[0]);
+        let count = ((FASTEST * seconds - FEWEST_CYCLES) / STEP).max(0.0) as usize;
+        let mut best: (f64, Option<Oscillator>) = (0.0, None);
+        for rate in (0..count).map(|n| (FEWEST_CYCLES + STEP * n as f64) / seconds) {
+            for (shape, phases) in SHAPES {
+                for phase in (0..phases).map(|n| n as f64 / 16.0) {
+                    let oscillator = Oscillator { shape, rate, phase, semitones: 0.0, db: 0.0 };
+                    let gain = self.gain(&oscillator);
+                    if gain > best.0 {
+                        best = (gain, Some(oscillator));
+                    }
+                }
+            }
+        }
+        let (mut gain, Some(mut oscillator)) = best else { return false };
+        let mut step = 0.5;
+        for _ in 0..ROUNDS {
+            for (faster, later) in [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step), (step, -step), (-step, step)]
+            {
+                let rate = (oscillator.rate + STEP * faster / seconds).clamp(0.01, FASTEST);
+                let moved = Oscillator { rate, phase: oscillator.phase + later / 8.0, ..oscillator };
+                let gained = self.gain(&moved);
+                if gained > gain {
+                    (gain, oscillator) = (gained, moved);
+                }
+            }
+            step *= 0.75;
+        }
+        let is_worth = gain > WORTH * self.left();
+        if is_worth {
+            oscillator.phase -= libm::floor(oscillator.phase);
+            self.oscillators.push(oscillator);
+            self.solve();
+        }
+        is_worth
+    }
+
+    /// Adds oscillators; keeps none of them unless all explain most of the course.
+    fn explain(&mut self) -> bool {
+        while self.oscillators.len() < MOST && self.left() > LITTLE * self.squares && self.add() {}
+        self.left() < (1.0 - WORTH_ALL) * self.squares
+    }
+}
+
+/// The oscillators that move a sound, and the sweep of its pitch beside them; none if they do not explain most of its movement.
+pub(super) fn find(take: &Prepared) -> (Vec<Oscillator>, Sweep) {
+    let pitches = course::pitches(&take.mean);
+    let mut pitch = Course::new(pitches.clone(), false, Vec::new());
+    let mut swept = Sweep::NONE;
+    let of_pitch = if pitch.explain() {
+        let left: Vec<(f64, f64)> = pitches.iter().zip(&pitch.rest).map(|([time, ..], rest)| (*time, *rest)).collect();
+        let (sweep, _) = course::of_pitch(&left);
+        if sweep.semitones != 0.0 {
+            let envelope = sweep.envelope();
+            let without = pitches.into_iter().map(|[time, pitch, weight]| [time, pitch - envelope.at(time), weight]);
+            let mut again = Course::new(without.collect(), false, Vec::new());
+            if again.explain() && again.left() < pitch.left() {
+                (pitch, swept) = (again, Sweep { vibrato: Sweep::NONE.vibrato, ..sweep });
+            }
+        }
+        pitch.oscillators.clone()
+    } else {
+        Vec::new()
+    };
+    let mut level = Course::new(levels(&take.mean), true, of_pitch.clone());
+    let moves = level.squares > LEAST_DB * LEAST_DB * level.points.len() as f64;
+    let explained = moves && level.explain();
+    let oscillators = if explained { level.oscillators.clone() } else { of_pitch.clone() };
+    let oscillator = |(n, oscillator): (usize, Oscillator)| Oscillator {
+        semitones: if n < of_pitch.len() { pitch.factors[n] } else { 0.0 },
+        db: if explained { level.factors[n] } else { 0.0 },
+        ..oscillator
+    };
+    (oscillators.into_iter().enumerate().map(oscillator).collect(), swept)
+}
+
+/// The tremolo that explains a course of levels in dB best, if it explains most of it.
+pub(super) fn tremolo(levels: Vec<Point>) -> Vec<Oscillator> {
+    let mut level = Course::new(levels, true, Vec::new());
+    if !level.add() || level.left() > (1.0 - WORTH_ALL) * level.squares {
+        return Vec::new();
+    }
+    level.oscillators.iter().zip(&level.factors).map(|(oscillator, db)| Oscillator { db: *db, ..*oscillator }).collect()
+}
+
+/// The levels of samples in dB, from their onset on.
+fn levels(samples: &[f32]) -> Vec<Point> {
+    let level = |n: usize| {
+        let middle = n * HOP;
+        dbfs(rms(&samples[middle.saturating_sub(HOP)..(middle + HOP).min(samples.len())]))
+    };
+    let levels: Vec<f64> = (0..samples.len().div_ceil(HOP)).map(level).collect();
+    let floor = levels.iter().copied().fold(f64::NEG_INFINITY, f64::max) - RANGE_DB;
+    let point = |(n, level): (usize, f64)| [(n * HOP) as f64 / f64::from(RATE), level.max(floor), 1.0];
+    levels.into_iter().enumerate().map(point).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn oscillators_of_all_shapes_are_found() {
+        let known = [
+            Oscillator { shape: Shape::Square, rate: 1.3, phase: 0.2, semitones: 0.0, db: 9.0 },
+            Oscillator { shape: Shape::Ramp, rate: 11.0, phase: 0.7, semitones: 0.0, db: -5.0 },
+        ];
+        let value = |t: f64| -20.0 - 3.0 * t + known.iter().map(|known| known.db * known.at(t)).sum::<f64>();
+        let points = (0..800).map(|n| 0.0025 * f64::from(n)).map(|t| [t, value(t), 1.0]).collect();
+        let mut course = Course::new(points, true, Vec::new());
+        assert!(course.explain());
+        assert_eq!(course.oscillators.len(), 2);
+        for ((found, factor), known) in course.oscillators.iter().zip(&course.factors).zip(&known) {
+            let off = libm::remainder(found.phase - known.phase, 1.0).abs();
+            let is_near = found.shape == known.shape && (found.rate / known.rate - 1.0).abs() < 0.02 && off < 0.03;
+            assert!(is_near && (factor / known.db - 1.0).abs() < 0.1, "{found:?} {factor}, {known:?}");
+        }
+    }
+
+    #[test]
+    fn a_steady_fall_has_no_oscillator() {
+        let points = (0..300).map(|n| [0.003 * f64::from(n), -0.1 * f64::from(n), 1.0]).collect();
+        assert!(tremolo(points).is_empty());
+    }
+}
