@@ -21,7 +21,8 @@ const ATTACK: f64 = 0.1;
 const MOST_OFF: f64 = 3.0;
 const REACH: f64 = 22.0;
 
-/// The draft, and the strike in which its modes were found, with at most `most` modes; none if the sound has no tones.
+/// Two drafts, and the strike in which their modes were found, with at most `most` modes; none if the sound has no tones. In the
+/// second draft each tone is a single mode: several that almost cancel may not do so when they are played.
 ///
 /// First the drift is measured by itself, and then by how the sound differs from the modes that were found without it, since
 /// these explain the beats. More modes are found in what the first ones leave, among them high and faint ones.
@@ -29,13 +30,13 @@ pub(super) fn draft(
     take: &Prepared,
     most: usize,
     tell: &mut dyn FnMut(f64) -> bool,
-) -> Result<Option<(Draft, Option<Strike>)>> {
-    let Some(first) = Drift::of(&take.mean, take.rise) else { return Ok(None) };
+) -> Result<Vec<(Draft, Option<Strike>)>> {
+    let Some(first) = Drift::of(&take.mean, take.rise) else { return Ok(Vec::new()) };
     let without = |drift: &Drift| take.channels.iter().map(|channel| drift.removed_from(channel)).collect::<Vec<_>>();
     let mut part = |n: usize, share: f64| tell((n as f64 + share) / 4.0);
     let found = |drift: &Drift, tell: &mut dyn FnMut(f64) -> bool| start::strike(&without(drift), most / 3, tell);
     let (mut drift, Some(mut strike)) = (first.clone(), found(&first, &mut |share| part(0, share))?) else {
-        return Ok(None);
+        return Ok(Vec::new());
     };
     for n in 1..=MEASURED {
         let refined = drift.refined(&strike);
@@ -62,16 +63,21 @@ pub(super) fn draft(
     let (swept, mean) = course::of_pitch(&drift.pitches());
     let mut draft = start::from(take, Some(&strike), &Source { swept, late: 0.0, struck: true }, true);
     let still = drift.removed_from(&take.mean);
-    steady(&mut draft, most, &still[from.min(still.len())..], &unexplained(&still, usize::MAX, &strike, from), from);
-    // The modes have the mean pitch, and those of a draft the pitch without sweep and vibrato.
-    draft.partials.iter_mut().for_each(|partial| partial.frequency *= pow(2.0, -mean / 12.0));
     draft.oscillators = drift.tremolo();
-    Ok(Some((draft, Some(strike))))
+    let rest = unexplained(&still, usize::MAX, &strike, from);
+    let with_steady = |all: bool| {
+        let mut draft = draft.clone();
+        steady(&mut draft, most, &still[from.min(still.len())..], &rest, (from, all));
+        // The modes have the mean pitch, and those of a draft the pitch without sweep and vibrato.
+        draft.partials.iter_mut().for_each(|partial| partial.frequency *= pow(2.0, -mean / 12.0));
+        (draft, Some(strike.clone()))
+    };
+    Ok([false, true].map(with_steady).into())
 }
 
-/// Replaces the modes of each tone by a steady mode if that is nearer to the course of its level. `sound` begins with a sample
-/// `from` the onset, and `rest` is what the modes leave of it. The draft gets no more than `most` modes.
-fn steady(draft: &mut Draft, most: usize, sound: &[f32], rest: &[f32], from: usize) {
+/// Replaces the modes of each tone by a steady mode if that is nearer to the course of its level, or of `all` tones. `sound`
+/// begins with a sample `from` the onset, and `rest` is what the modes leave of it. The draft gets no more than `most` modes.
+fn steady(draft: &mut Draft, most: usize, sound: &[f32], rest: &[f32], (from, all): (usize, bool)) {
     let modes: Vec<f32> = sound.iter().zip(rest).map(|(sample, rest)| sample - rest).collect();
     let (own, against) = (tones(sound, None), tones(sound, Some(&modes)));
     let moments = |seconds: f64| seconds * f64::from(RATE) / HOP as f64;
@@ -82,7 +88,7 @@ fn steady(draft: &mut Draft, most: usize, sound: &[f32], rest: &[f32], from: usi
         let of_steady: f64 =
             levels.iter().enumerate().map(|(n, [level, _])| off(level - line[0] - line[1] * n as f64)).sum();
         let of_modes: f64 = against.levels().iter().map(|[level, _]| off(*level)).sum();
-        if of_steady >= of_modes {
+        if !all && of_steady >= of_modes {
             continue;
         }
         let others = own.iter().filter(|other| other.frequency != tone.frequency);
@@ -175,9 +181,9 @@ mod tests {
         let mut draft = super::super::correct::tests::draft([0.0; 2]);
         draft.partials = vec![partial(700.0, 0.4), partial(1500.0, 100.0)];
         let mut few = draft.clone();
-        steady(&mut few, 1, &sound, &rest, 0);
+        steady(&mut few, 1, &sound, &rest, (0, false));
         assert_eq!(few.partials, [partial(1500.0, 100.0)]);
-        steady(&mut draft, 8, &sound, &rest, 0);
+        steady(&mut draft, 8, &sound, &rest, (0, false));
         assert_eq!(draft.partials.len(), 2, "{:?}", draft.partials);
         assert_eq!(draft.partials[0], partial(1500.0, 100.0));
         let Partial { frequency, t60, amplitude, pan, .. } = draft.partials[1];

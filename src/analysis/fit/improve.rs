@@ -37,6 +37,8 @@ const OVER: f64 = 1e-3;
 const LEAST_BURST: f64 = 0.02;
 /// Seeds of the pans of modes that noise excites.
 const SEED: u64 = 10;
+/// Distance in dB below which no other draft is tried.
+const NEAR_DB: f64 = 0.4;
 /// Rounds of corrections at a time.
 const ROUNDS: usize = 8;
 
@@ -62,19 +64,23 @@ pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64
         if distance < least {
             (best, least) = (Some((draft, strike)), distance);
         }
+        if least < NEAR_DB {
+            break;
+        }
     }
     listener.tell(1.0)?;
     best.ok_or(Error::Interrupted)
 }
 
-/// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more. If it is
-/// held or rises slowly, the modes without its drift; of a held sound these in place of the others, if they explain much more. If it is damped
-/// while it rings, the take ends there. If all these explain little, also modes that only noise excites, found after the noise is
-/// over, and the row of bursts with which it begins. If the sound rises slowly, also modes found after the rise.
+/// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more. If it is held or rises
+/// slowly, the modes without its drift; of a held sound these in place of the others, if they explain much more. If it is damped
+/// while it rings, the take ends there. If its modes explain little, also drafts of noise: the row of bursts with which it begins,
+/// noise that goes on for as long as the sound, and modes that noise excites, found after the noise is over; and the modes without
+/// the movement of oscillators. If the sound rises slowly, also modes found after the rise.
 fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
-    let [of_still, of_drift, of_search, first, second, of_noise, of_rest] =
-        [[0.0, 0.25], [0.25, 0.5], [0.5, 0.55], [0.55, 0.65], [0.65, 0.75], [0.75, 0.9], [0.9, 1.0]];
+    let [of_still, of_drift, of_search, first, second, of_noise, of_sway, of_rest] =
+        [[0.0, 0.25], [0.25, 0.45], [0.45, 0.5], [0.5, 0.6], [0.6, 0.7], [0.7, 0.8], [0.8, 0.9], [0.9, 1.0]];
     let analysed = |take: &Prepared, source, [from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>| {
         start::draft(take, source, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
     };
@@ -89,13 +95,14 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
     let mut drifts = false;
     if still > EXPLAINED_DB && (take.is_held || take.rise > SLOW) {
         let [from, to] = of_drift;
-        if let Some(held) = held::draft(take, most, &mut |share| tell(from + (to - from) * share).is_ok())? {
+        let held = held::draft(take, most, &mut |share| tell(from + (to - from) * share).is_ok())?;
+        if let Some(first) = held.first() {
             // What decays may have tones that end at different times, of which a residual tells little: let it be heard.
-            drifts = take.is_held && residual_db(&held) < still - WORTH_A_DRIFT_DB;
+            drifts = take.is_held && residual_db(first) < still - WORTH_A_DRIFT_DB;
             if drifts {
                 found.clear();
             }
-            found.push(held);
+            found.extend(held);
         }
     }
     if still > EXPLAINED_DB && !drifts {
@@ -110,22 +117,19 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
     }
     let strike = found[0].1.clone();
     if still > NOISE_DB && !drifts {
+        let empty = || start::from(take, None, &Source { struck: false, ..all }, false);
         if let Some(bursts::Row { hits, spacing }) = bursts::find(&take.mean) {
             let noise = Noise { hits, spacing, ..Noise::SHORT };
-            let draft = start::from(take, None, &Source { struck: false, ..all }, false);
-            found.push((Draft { noise, ..draft }, strike.clone()));
+            found.push((Draft { noise, ..empty() }, strike.clone()));
         }
-        found.push((
-            blown(take, most, start::from(take, None, &Source { struck: false, ..all }, false)),
-            strike.clone(),
-        ));
+        found.push((blown(take, most, empty()), strike.clone()));
         let late = Source { late: LATE * take.seconds(), struck: false, ..all };
         let (driven, _) = analysed(take, late, of_noise, tell)?;
         found.push((driven, strike.clone()));
     }
     if still > SWAYS_DB {
-        let part = |share: f64| tell(of_noise[0] + (of_noise[1] - of_noise[0]) * share).is_ok();
-        found.extend(swayed(take, most, part)?);
+        let [from, to] = of_sway;
+        found.extend(swayed(take, most, &mut |share| tell(from + (to - from) * share))?);
     }
     if take.rise > SLOW {
         let swept = found[0].0.sweep;
@@ -135,19 +139,22 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
     Ok(found)
 }
 
-/// A draft of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
-fn swayed(take: &Prepared, most: usize, mut tell: impl FnMut(f64) -> bool) -> Result<Option<Found>> {
-    let (oscillators, swept) = sway::find(take);
+/// Drafts of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
+fn swayed(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
+    let (oscillators, swept) = sway::find(take, &mut || tell(0.0))?;
     if oscillators.is_empty() {
-        return Ok(None);
+        return Ok(Vec::new());
     }
     let drift = Drift::by(&oscillators, &swept, take.mean.len());
     let still = take.replaced(take.channels.iter().map(|channel| drift.removed_from(channel)).collect());
-    let found = held::draft(&still, most, &mut tell)?.filter(|held| residual_db(held) < NOISE_DB);
-    let source = Source { swept, late: 0.0, struck: false };
-    // Noise that moves so is left to the bed.
-    let (draft, strike) = found.unwrap_or_else(|| (start::from(take, None, &source, false), None));
-    Ok(Some((Draft { oscillators, sweep: swept, ..draft }, strike)))
+    let mut found = held::draft(&still, most, &mut |share| tell(share).is_ok())?;
+    found.retain(|held| residual_db(held) < NOISE_DB);
+    if found.is_empty() {
+        // Noise that moves so is left to the bed.
+        found.push((start::from(take, None, &Source { swept, late: 0.0, struck: false }, false), None));
+    }
+    let swayed = |(draft, strike)| (Draft { oscillators: oscillators.clone(), sweep: swept, ..draft }, strike);
+    Ok(found.into_iter().map(swayed).collect())
 }
 
 /// A draft of noise that goes on for as long as the sound, as of breath or a shaker, through short modes.

@@ -5,6 +5,7 @@ use super::movement::{Oscillator, Sweep};
 use super::take::Prepared;
 use crate::analysis::level::{dbfs, rms};
 use crate::analysis::log_mel::RATE;
+use crate::error::Result;
 use crate::params::Shape;
 use nalgebra::{DMatrix, DVector};
 
@@ -124,11 +125,12 @@ impl Course {
     }
 
     /// Adds the oscillator that explains most of the rest, if that is worth it.
-    fn add(&mut self) -> bool {
+    fn add(&mut self, tell: &mut dyn FnMut() -> Result<()>) -> Result<bool> {
         let seconds = self.points.last().map_or(0.0, |point| point[0]);
         let count = ((FASTEST * seconds - FEWEST_CYCLES) / STEP).max(0.0) as usize;
         let mut best: (f64, Option<Oscillator>) = (0.0, None);
         for rate in (0..count).map(|n| (FEWEST_CYCLES + STEP * n as f64) / seconds) {
+            tell()?;
             for (shape, phases) in SHAPES {
                 for phase in (0..phases).map(|n| n as f64 / 16.0) {
                     let oscillator = Oscillator { shape, rate, phase, semitones: 0.0, db: 0.0 };
@@ -139,7 +141,7 @@ impl Course {
                 }
             }
         }
-        let (mut gain, Some(mut oscillator)) = best else { return false };
+        let (mut gain, Some(mut oscillator)) = best else { return Ok(false) };
         let mut step = 0.5;
         for _ in 0..ROUNDS {
             for (faster, later) in [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step), (step, -step), (-step, step)]
@@ -159,29 +161,30 @@ impl Course {
             self.oscillators.push(oscillator);
             self.solve();
         }
-        is_worth
+        Ok(is_worth)
     }
 
     /// Adds oscillators; keeps none of them unless all explain most of the course.
-    fn explain(&mut self) -> bool {
-        while self.oscillators.len() < MOST && self.left() > LITTLE * self.squares && self.add() {}
-        self.left() < (1.0 - WORTH_ALL) * self.squares
+    fn explain(&mut self, tell: &mut dyn FnMut() -> Result<()>) -> Result<bool> {
+        while self.oscillators.len() < MOST && self.left() > LITTLE * self.squares && self.add(tell)? {}
+        Ok(self.left() < (1.0 - WORTH_ALL) * self.squares)
     }
 }
 
 /// The oscillators that move a sound, and the sweep of its pitch beside them; none if they do not explain most of its movement.
-pub(super) fn find(take: &Prepared) -> (Vec<Oscillator>, Sweep) {
+/// `tell` is called often, and ends the search by an error.
+pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> Result<()>) -> Result<(Vec<Oscillator>, Sweep)> {
     let pitches = course::pitches(&take.mean);
     let mut pitch = Course::new(pitches.clone(), false, Vec::new());
     let mut swept = Sweep::NONE;
-    let of_pitch = if pitch.explain() {
+    let of_pitch = if pitch.explain(tell)? {
         let left: Vec<(f64, f64)> = pitches.iter().zip(&pitch.rest).map(|([time, ..], rest)| (*time, *rest)).collect();
         let (sweep, _) = course::of_pitch(&left);
         if sweep.semitones != 0.0 {
             let envelope = sweep.envelope();
             let without = pitches.into_iter().map(|[time, pitch, weight]| [time, pitch - envelope.at(time), weight]);
             let mut again = Course::new(without.collect(), false, Vec::new());
-            if again.explain() && again.left() < pitch.left() {
+            if again.explain(tell)? && again.left() < pitch.left() {
                 (pitch, swept) = (again, Sweep { vibrato: Sweep::NONE.vibrato, ..sweep });
             }
         }
@@ -191,20 +194,21 @@ pub(super) fn find(take: &Prepared) -> (Vec<Oscillator>, Sweep) {
     };
     let mut level = Course::new(levels(&take.mean), true, of_pitch.clone());
     let moves = level.squares > LEAST_DB * LEAST_DB * level.points.len() as f64;
-    let explained = moves && level.explain();
+    let explained = moves && level.explain(tell)?;
     let oscillators = if explained { level.oscillators.clone() } else { of_pitch.clone() };
     let oscillator = |(n, oscillator): (usize, Oscillator)| Oscillator {
         semitones: if n < of_pitch.len() { pitch.factors[n] } else { 0.0 },
         db: if explained { level.factors[n] } else { 0.0 },
         ..oscillator
     };
-    (oscillators.into_iter().enumerate().map(oscillator).collect(), swept)
+    Ok((oscillators.into_iter().enumerate().map(oscillator).collect(), swept))
 }
 
 /// The tremolo that explains a course of levels in dB best, if it explains most of it.
 pub(super) fn tremolo(levels: Vec<Point>) -> Vec<Oscillator> {
     let mut level = Course::new(levels, true, Vec::new());
-    if !level.add() || level.left() > (1.0 - WORTH_ALL) * level.squares {
+    let found = level.add(&mut || Ok(())).unwrap_or(false);
+    if !found || level.left() > (1.0 - WORTH_ALL) * level.squares {
         return Vec::new();
     }
     level.oscillators.iter().zip(&level.factors).map(|(oscillator, db)| Oscillator { db: *db, ..*oscillator }).collect()
@@ -235,7 +239,7 @@ mod tests {
         let value = |t: f64| -20.0 - 3.0 * t + known.iter().map(|known| known.db * known.at(t)).sum::<f64>();
         let points = (0..800).map(|n| 0.0025 * f64::from(n)).map(|t| [t, value(t), 1.0]).collect();
         let mut course = Course::new(points, true, Vec::new());
-        assert!(course.explain());
+        assert!(course.explain(&mut || Ok(())).unwrap());
         assert_eq!(course.oscillators.len(), 2);
         for ((found, factor), known) in course.oscillators.iter().zip(&course.factors).zip(&known) {
             let off = libm::remainder(found.phase - known.phase, 1.0).abs();
