@@ -43,15 +43,15 @@ const FEWEST_BLOCKS: usize = 4;
 const DEVIATION_OF_MEDIAN: f64 = 1.4826;
 const ERROR_OF_MEDIAN: f64 = 1.2533;
 
-/// The constant that is added to a strike: the median of the means of blocks of some samples; 0 if the blocks do not agree on it,
-/// and for no samples. The mean of all samples is not it, since a strike can be asymmetric: taken away, it would leave a constant
-/// in the quiet end.
-pub fn offset(samples: &[f64], block: usize) -> f64 {
+/// The constant that is added to a strike: the median of the means of blocks of some samples; 0 if the blocks, where there are
+/// four or more, do not agree on it, and for no samples. The mean of all samples is not it, since a strike can be asymmetric: taken
+/// away, it would leave a constant in the quiet end.
+pub fn offset<S: Copy + Into<f64>>(samples: &[S], block: usize) -> f64 {
     let median = |mut numbers: Vec<f64>| {
         numbers.sort_by(f64::total_cmp);
         numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
     };
-    let mean = |block: &[f64]| block.iter().sum::<f64>() / block.len() as f64;
+    let mean = |block: &[S]| block.iter().map(|sample| (*sample).into()).sum::<f64>() / block.len() as f64;
     let means: Vec<f64> = samples.chunks(block.max(1)).map(mean).collect();
     let count = means.len();
     let middle = median(means.clone());
@@ -81,7 +81,8 @@ mod tests {
         let step = [0.0, 0.25, 0.25, 0.25];
         assert_eq!((peak(&step), dc(&step)), (0.25, 0.1875));
         assert_eq!((peak(&[]), rms(&[]), dc(&[])), (0.0, 0.0, 0.0));
-        assert_eq!((offset(&[0.9, 0.1, 0.1, 0.1, 0.1], 2), offset(&[], 2)), (0.1, 0.0));
+        assert_eq!((offset(&[0.9, 0.1, 0.1, 0.1, 0.1], 2), offset::<f64>(&[], 2)), (0.1, 0.0));
+        assert_eq!(offset(&[0.9, 0.11, 0.1, 0.09, 0.1, 0.1, 0.1], 1), 0.1);
         // Blocks of a sound that swings slowly do not agree on a constant.
         assert_eq!(offset(&[0.9, -0.5, 0.4, -0.3, 0.2, -0.1, 0.1], 1), 0.0);
         assert_eq!((dbfs(1.0), dbfs(0.1), dbfs(0.0)), (0.0, -20.0, SILENCE_DB));

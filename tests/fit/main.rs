@@ -40,7 +40,7 @@ fn main() -> ExitCode {
 }
 
 /// Numbers of progress calls after which the fit is cancelled, and the number of calls that may follow.
-const CALLS: [usize; 6] = [1, 2, 6, 20, 60, 150];
+const CALLS: [usize; 6] = [1, 2, 6, 20, 40, 80];
 const AGAIN: usize = 8;
 const KEY: u8 = 60;
 /// Samples over which the noise fades in.

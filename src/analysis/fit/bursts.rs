@@ -1,5 +1,6 @@
 //! Finds rows of bursts at equal distances, as of the teeth of a guiro, by the regularity with which the level rises.
 
+use super::draft::Noise;
 use crate::analysis::log_mel::RATE;
 use libm::{log, sqrt};
 
@@ -19,21 +20,10 @@ const STEP: f64 = 0.25;
 const LEAST_DEVIATION: f64 = 0.05;
 /// How many of their standard deviations the rises of the bursts are above the mean.
 const CLEARLY: f64 = 5.5;
-
-/// A row of bursts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Row {
-    pub(super) hits: u8,
-    /// Seconds from each burst to the next.
-    pub(super) spacing: f64,
-}
-
-impl Row {
-    /// Seconds from the onset to the last burst.
-    pub(super) fn last(&self) -> f64 {
-        f64::from(self.hits.saturating_sub(1)) * self.spacing
-    }
-}
+/// Correlation of a sound with itself, a burst later, from which it is a tone whose periods look like bursts; and the samples by
+/// which the distance may be off.
+const TONE: f64 = 0.5;
+const OFF: usize = 8;
 
 /// How far the level of each block is above the mean of the blocks before it, or of one beside it if that rises more.
 fn rises(samples: &[f32]) -> Vec<f64> {
@@ -47,18 +37,32 @@ fn rises(samples: &[f32]) -> Vec<f64> {
     let levels: Vec<f64> = powers.iter().map(|power| log(power + floor)).collect();
     let rise = |n: usize| {
         let before = &levels[n.saturating_sub(BEFORE)..n];
-        (levels[n] - before.iter().sum::<f64>() / before.len().max(1) as f64).max(0.0)
+        if before.is_empty() { 0.0 } else { (levels[n] - before.iter().sum::<f64>() / before.len() as f64).max(0.0) }
     };
-    let rises: Vec<f64> = (0..levels.len()).map(|n| if n == 0 { 0.0 } else { rise(n) }).collect();
+    let rises: Vec<f64> = (0..levels.len()).map(rise).collect();
     let beside = |n: usize| rises[n.saturating_sub(1)..(n + 2).min(rises.len())].iter().copied().fold(0.0, f64::max);
     (0..rises.len()).map(beside).collect()
 }
 
-/// The row of bursts with which samples at [`RATE`] begin; none if their level does not rise regularly.
-pub(super) fn find(samples: &[f32]) -> Option<Row> {
+/// Whether samples repeat themselves after a distance, as a low tone does and noise does not.
+fn repeats(samples: &[f32], distance: usize) -> bool {
+    let correlation = |distance: usize| {
+        let pairs = samples.iter().zip(samples.get(distance..).unwrap_or_default());
+        let (product, first, second) = pairs.fold((0.0, 0.0, 0.0), |(product, first, second), (a, b)| {
+            let (a, b) = (f64::from(*a), f64::from(*b));
+            (product + a * b, first + a * a, second + b * b)
+        });
+        product / sqrt(first * second).max(f64::MIN_POSITIVE)
+    };
+    (distance.saturating_sub(OFF)..=distance + OFF).any(|distance| correlation(distance) > TONE)
+}
+
+/// The row of bursts with which samples at [`RATE`] begin, up to sixteen; none if their level does not rise regularly.
+pub(super) fn find(samples: &[f32]) -> Option<Noise> {
     let per_second = f64::from(RATE) / BLOCK as f64;
     let longest = (MOST as f64 * SPACINGS.1 * f64::from(RATE)) as usize;
-    let rises = rises(&samples[..samples.len().min(longest)]);
+    let samples = &samples[..samples.len().min(longest)];
+    let rises = rises(samples);
     let steps = ((SPACINGS.1 - SPACINGS.0) * per_second / STEP) as usize;
     let mut best = (CLEARLY, None);
     for spacing in (0..steps).map(|n| SPACINGS.0 * per_second + STEP * n as f64) {
@@ -68,15 +72,18 @@ pub(super) fn find(samples: &[f32]) -> Option<Row> {
             let square = row.iter().map(|rise| (rise - mean) * (rise - mean)).sum::<f64>() / row.len() as f64;
             // The first burst is the onset, which each sound has.
             let count = hits as f64 - 1.0;
-            let of_bursts = (1..hits).map(|n| row[((n as f64 * spacing).round() as usize).min(row.len() - 1)]);
+            let of_bursts = (1..hits).map(|n| row[(n as f64 * spacing).round() as usize]);
             let excess = of_bursts.sum::<f64>() / count - mean;
             let clearly = excess / (sqrt(square) + LEAST_DEVIATION) * sqrt(count);
             if clearly > best.0 {
-                best = (clearly, Some(Row { hits: hits as u8, spacing: spacing / per_second }));
+                best = (clearly, Some((hits, spacing)));
             }
         }
     }
-    best.1
+    let (hits, spacing) = best.1?;
+    let row = &samples[..samples.len().min((hits as f64 * spacing) as usize * BLOCK)];
+    let is_tone = repeats(row, (spacing * BLOCK as f64) as usize);
+    (!is_tone).then_some(Noise { hits: hits as u8, spacing: spacing / per_second, ..Noise::SHORT })
 }
 
 #[cfg(test)]
@@ -110,5 +117,7 @@ mod tests {
             assert_eq!(find(&noise(|t| libm::exp(-6.9 * t / t60))), None, "{t60}");
         }
         assert_eq!(find(&[]), None);
+        let saw = |n: usize| (n as f32 * 55.0 / RATE as f32).fract() - 0.5;
+        assert_eq!(find(&(0..RATE as usize).map(saw).collect::<Vec<f32>>()), None);
     }
 }

@@ -22,14 +22,17 @@ pub(super) fn longest_t60(is_held: bool) -> f64 {
 
 /// Lower bound of the spectrum of a contact, so that modes near its zeros are not struck ever harder: −40 dB.
 const LEAST_OF_CONTACT: f64 = 0.01;
-/// Places of the route of a swell and of the first one of an oscillator. The routes made from several takes are before them, those of a new patch after them.
+/// Places of the route of a swell and of the first one of an oscillator. The routes made from several takes are before them, those
+/// of a new patch after them.
 const SWELL_ROUTE: usize = 3;
 const OSCILLATOR_ROUTES: usize = 4;
+/// Most oscillators of a draft: as many as the engine has.
+pub(super) const MOST_OSCILLATORS: usize = 3;
 /// Low-frequency oscillators, each with its rate, shape and phase.
-const LFOS: [(Source, [Param; 3]); 3] = [
+const LFOS: [(Source, [Param; 3]); MOST_OSCILLATORS] = [
+    (Source::Lfo1, [Param::Lfo1Rate, Param::Lfo1Shape, Param::Lfo1Phase]),
     (Source::Lfo2, [Param::Lfo2Rate, Param::Lfo2Shape, Param::Lfo2Phase]),
     (Source::Lfo3, [Param::Lfo3Rate, Param::Lfo3Shape, Param::Lfo3Phase]),
-    (Source::Lfo1, [Param::Lfo1Rate, Param::Lfo1Shape, Param::Lfo1Phase]),
 ];
 
 /// A mode of the sound.
@@ -86,7 +89,7 @@ pub(super) struct Draft {
     pub(super) sweep: Sweep,
     pub(super) noise: Noise,
     pub(super) swell: Option<Swell>,
-    /// Up to three.
+    /// Up to [`MOST_OSCILLATORS`].
     pub(super) oscillators: Vec<Oscillator>,
     /// Whether it ends when its key is released, and not by itself.
     pub(super) is_held: bool,

@@ -4,13 +4,15 @@
 //! tone's course is measured, and what is common to all is their mean, in which a tone counts the less, the more it
 //! differs from the others. Without the drift, the sound is a sum of modes.
 
-use super::movement::{Oscillator, Sweep};
+use super::movement::Oscillator;
 use super::resample::Reader;
 use super::sway;
 use super::take::SLOW;
 use super::tones::{HOP, Tone, tones};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::Strike;
+use crate::dsp::pitch::SweepEnvelope;
+use crate::error::Result;
 use libm::exp;
 use std::f64::consts::{LN_2, LN_10};
 
@@ -27,6 +29,8 @@ const RISING: f64 = 1e-4;
 /// Largest logarithm by which the level of a rising sound is raised: 20 dB.
 const MOST_RAISED: f64 = 2.3;
 
+/// How many times as long a sound may become without its drift.
+const MOST_LONGER: usize = 2;
 /// Least depth of a tremolo in dB.
 const LEAST_TREMOLO_DB: f64 = 0.2;
 
@@ -79,21 +83,19 @@ impl Drift {
     }
 
     /// The tremolo that explains the level best, if it explains most of it.
-    pub(super) fn tremolo(&self) -> Vec<Oscillator> {
+    pub(super) fn tremolo(&self, tell: &mut dyn FnMut() -> Result<()>) -> Result<Option<Oscillator>> {
         let point = |n: usize| [(n * HOP) as f64 / f64::from(RATE), 20.0 / LN_10 * self.level[n], 1.0];
-        let mut found = sway::tremolo((self.rise..self.level.len()).map(point).collect());
-        found.retain(|tremolo| tremolo.db.abs() > LEAST_TREMOLO_DB);
-        found
+        let found = sway::tremolo((self.rise..self.level.len()).map(point).collect(), tell)?;
+        Ok(found.filter(|tremolo| tremolo.db.abs() > LEAST_TREMOLO_DB))
     }
 
     /// The drift of a sound of some samples that oscillators and a sweep move.
-    pub(super) fn by(oscillators: &[Oscillator], sweep: &Sweep, samples: usize) -> Self {
-        let envelope = sweep.envelope();
+    pub(super) fn by(oscillators: &[Oscillator], envelope: SweepEnvelope, samples: usize) -> Self {
         let sum = |n: usize, depth: fn(&Oscillator) -> f64| {
             let time = (n * HOP) as f64 / f64::from(RATE);
             oscillators.iter().map(|oscillator| depth(oscillator) * oscillator.at(time)).sum::<f64>()
         };
-        let swept = |n: usize| if sweep.is_none() { 0.0 } else { envelope.at((n * HOP) as f64 / f64::from(RATE)) };
+        let swept = |n: usize| envelope.at((n * HOP) as f64 / f64::from(RATE));
         let moments = 0..samples / HOP + 1;
         Self {
             pitch: moments
@@ -153,7 +155,8 @@ impl Drift {
     pub(super) fn removed_from(&self, samples: &[f32]) -> Vec<f32> {
         let reader = Reader::new(samples);
         let (mut time, mut still) = (0.0, Vec::with_capacity(samples.len()));
-        while time < samples.len() as f64 {
+        // A deep fall of the pitch would make it far longer.
+        while time < samples.len() as f64 && still.len() < MOST_LONGER * samples.len() {
             still.push((reader.at(time) * exp(-Self::at(&self.level, time))) as f32);
             time += exp(-Self::at(&self.pitch, time));
         }
@@ -263,10 +266,10 @@ mod tests {
         let pitches = drift.pitches();
         let (moves, off) = (rms(&|n| at(n)[0]), rms(&|n| pitches[n].1 - at(n)[0]));
         assert!(off < 0.2 * moves, "{off} of {moves} semitones");
-        let tremolo = drift.tremolo()[0];
+        let tremolo = drift.tremolo(&mut || Ok(())).unwrap().unwrap();
         let depth = 20.0 / LN_10 * 0.2;
         let is_found = (tremolo.rate - 6.0).abs() < 0.1
-            && (tremolo.db.abs() - depth).abs() < 0.25 * depth
+            && (tremolo.db - depth).abs() < 0.25 * depth
             && (tremolo.phase - 1.0 / TAU).abs() < 0.08;
         assert!(is_found, "{tremolo:?}");
     }
@@ -280,7 +283,7 @@ mod tests {
                 chance as f32 / u32::MAX as f32 - 0.5
             })
             .collect();
-        assert!(Drift::of(&noise, 0.0).is_none_or(|drift| drift.tremolo().is_empty()));
+        assert!(Drift::of(&noise, 0.0).is_none_or(|drift| drift.tremolo(&mut || Ok(())).unwrap().is_none()));
         assert!(Drift::of(&[0.0; 8192], 0.0).is_none());
     }
 }

@@ -3,12 +3,13 @@
 use super::course;
 use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
 use super::drift::Drift;
+use super::movement::Sweep;
 use super::start::{self, Source};
 use super::take::Prepared;
 use super::tones::{HOP, tones};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::{Mode, Strike};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use libm::{cos, exp, log, pow, sin};
 use std::f64::consts::TAU;
 
@@ -21,13 +22,15 @@ const ATTACK: f64 = 0.1;
 const MOST_OFF: f64 = 3.0;
 const REACH: f64 = 22.0;
 
-/// Two drafts, and the strike in which their modes were found, with at most `most` modes; none if the sound has no tones. In the
-/// second draft each tone is a single mode: several that almost cancel may not do so when they are played.
+/// Up to two drafts, and the strike in which their modes were found, with at most `most` modes; none if the sound has no tones. In
+/// the second draft each tone is a single mode: several that almost cancel may not do so when they are played. If the movement of
+/// the pitch is `known`, the drafts have that one.
 ///
 /// First the drift is measured by itself, and then by how the sound differs from the modes that were found without it, since
 /// these explain the beats. More modes are found in what the first ones leave, among them high and faint ones.
 pub(super) fn draft(
     take: &Prepared,
+    known: Option<Sweep>,
     most: usize,
     tell: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Vec<(Draft, Option<Strike>)>> {
@@ -60,10 +63,11 @@ pub(super) fn draft(
         strike.residual_db += more.residual_db;
         strike.residual = more.residual;
     }
-    let (swept, mean) = course::of_pitch(&drift.pitches());
+    let (swept, mean) = known.map_or_else(|| course::of_pitch(&drift.pitches()), |known| (known, 0.0));
     let mut draft = start::from(take, Some(&strike), &Source { swept, late: 0.0, struck: true }, true);
     let still = drift.removed_from(&take.mean);
-    draft.oscillators = drift.tremolo();
+    let mut go_on = || if tell(1.0) { Ok(()) } else { Err(Error::Interrupted) };
+    draft.oscillators = drift.tremolo(&mut go_on)?.into_iter().collect();
     let rest = unexplained(&still, usize::MAX, &strike, from);
     let with_steady = |all: bool| {
         let mut draft = draft.clone();
@@ -72,7 +76,9 @@ pub(super) fn draft(
         draft.partials.iter_mut().for_each(|partial| partial.frequency *= pow(2.0, -mean / 12.0));
         (draft, Some(strike.clone()))
     };
-    Ok([false, true].map(with_steady).into())
+    let mut drafts = [false, true].map(with_steady).to_vec();
+    drafts.dedup_by(|second, first| second.0 == first.0);
+    Ok(drafts)
 }
 
 /// Replaces the modes of each tone by a steady mode if that is nearer to the course of its level, or of `all` tones. `sound`
@@ -82,7 +88,7 @@ fn steady(draft: &mut Draft, most: usize, sound: &[f32], rest: &[f32], (from, al
     let (own, against) = (tones(sound, None), tones(sound, Some(&modes)));
     let moments = |seconds: f64| seconds * f64::from(RATE) / HOP as f64;
     for (tone, against) in own.iter().zip(&against) {
-        let line = tone.line(moments(ATTACK) as usize);
+        let Some(line) = tone.line(moments(ATTACK) as usize) else { continue };
         let off = |value: f64| value.abs().min(MOST_OFF);
         let levels: Vec<[f64; 2]> = tone.levels();
         let of_steady: f64 =

@@ -1,7 +1,7 @@
 //! Fits a draft to one take: first its modes, then a bed, then corrections.
 
 use super::bed::Lines;
-use super::draft::{Draft, Noise};
+use super::draft::{Draft, MOST_OSCILLATORS, Noise};
 use super::drift::Drift;
 use super::movement::Sweep;
 use super::refine::Listener;
@@ -24,7 +24,7 @@ const SWAYS_DB: f64 = -20.0;
 const LATE: f64 = 0.2;
 /// Residual of the modes in dB below which the pitch counts as constant.
 const EXPLAINED_DB: f64 = -50.0;
-/// Modes found without the drift are the only draft of a held sound if they lower the residual by this many dB.
+/// Modes found without the drift replace those of a held sound as it is if they lower the residual by this many dB.
 const WORTH_A_DRIFT_DB: f64 = 6.0;
 /// Reduction of the residual in dB by which a sweep is kept.
 const WORTH_A_SWEEP_DB: f64 = 2.0;
@@ -33,10 +33,10 @@ const WORTH_A_BED: f64 = 0.02;
 /// Powers relative to the greatest at which a noise has come to its level, and at which it is over: −3 and −30 dB.
 const HALF: f64 = 0.5;
 const OVER: f64 = 1e-3;
-/// Shortest noise in seconds that goes on for as long as the sound.
-const LEAST_BURST: f64 = 0.02;
-/// Seeds of the pans of modes that noise excites.
-const SEED: u64 = 10;
+/// Shortest and longest noise in seconds that goes on for as long as the sound.
+const BURSTS: (f64, f64) = (0.02, 1.0);
+/// Seeds of the pans of modes that noise excites: for such noise, and for two beds.
+const SEEDS: [u64; 3] = [10, 11, 12];
 /// Distance in dB below which no other draft is tried.
 const NEAR_DB: f64 = 0.4;
 /// Rounds of corrections at a time.
@@ -75,8 +75,8 @@ pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64
 /// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more. If it is held or rises
 /// slowly, the modes without its drift; of a held sound these in place of the others, if they explain much more. If it is damped
 /// while it rings, the take ends there. If its modes explain little, also drafts of noise: the row of bursts with which it begins,
-/// noise that goes on for as long as the sound, and modes that noise excites, found after the noise is over; and the modes without
-/// the movement of oscillators. If the sound rises slowly, also modes found after the rise.
+/// noise that goes on for as long as the sound, and modes that noise excites, found after the noise is over. If they explain part of
+/// it, also the modes without the movement of oscillators. If the sound rises slowly, also modes found after the rise.
 fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
     let [of_still, of_drift, of_search, first, second, of_noise, of_sway, of_rest] =
@@ -95,7 +95,7 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
     let mut drifts = false;
     if still > EXPLAINED_DB && (take.is_held || take.rise > SLOW) {
         let [from, to] = of_drift;
-        let held = held::draft(take, most, &mut |share| tell(from + (to - from) * share).is_ok())?;
+        let held = held::draft(take, None, most, &mut |share| tell(from + (to - from) * share).is_ok())?;
         if let Some(first) = held.first() {
             // What decays may have tones that end at different times, of which a residual tells little: let it be heard.
             drifts = take.is_held && residual_db(first) < still - WORTH_A_DRIFT_DB;
@@ -118,10 +118,7 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
     let strike = found[0].1.clone();
     if still > NOISE_DB && !drifts {
         let empty = || start::from(take, None, &Source { struck: false, ..all }, false);
-        if let Some(bursts::Row { hits, spacing }) = bursts::find(&take.mean) {
-            let noise = Noise { hits, spacing, ..Noise::SHORT };
-            found.push((Draft { noise, ..empty() }, strike.clone()));
-        }
+        found.extend(bursts::find(&take.mean).map(|noise| (Draft { noise, ..empty() }, strike.clone())));
         found.push((blown(take, most, empty()), strike.clone()));
         let late = Source { late: LATE * take.seconds(), struck: false, ..all };
         let (driven, _) = analysed(take, late, of_noise, tell)?;
@@ -145,19 +142,22 @@ fn swayed(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
     if oscillators.is_empty() {
         return Ok(Vec::new());
     }
-    let drift = Drift::by(&oscillators, &swept, take.mean.len());
+    let drift = Drift::by(&oscillators, swept.envelope(), take.mean.len());
     let still = take.replaced(take.channels.iter().map(|channel| drift.removed_from(channel)).collect());
-    let mut found = held::draft(&still, most, &mut |share| tell(share).is_ok())?;
+    let mut found = held::draft(&still, (!swept.is_none()).then_some(swept), most, &mut |share| tell(share).is_ok())?;
     found.retain(|held| residual_db(held) < NOISE_DB);
     if found.is_empty() {
         // Noise that moves so is left to the bed.
         found.push((start::from(take, None, &Source { swept, late: 0.0, struck: false }, false), None));
     }
-    let swayed = |(draft, strike)| (Draft { oscillators: oscillators.clone(), sweep: swept, ..draft }, strike);
+    let swayed = |(draft, strike): Found| {
+        let all = oscillators.iter().chain(&draft.oscillators).copied().take(MOST_OSCILLATORS).collect();
+        (Draft { oscillators: all, ..draft }, strike)
+    };
     Ok(found.into_iter().map(swayed).collect())
 }
 
-/// A draft of noise that goes on for as long as the sound, as of breath or a shaker, through short modes.
+/// A draft of noise that goes on for as long as the sound, up to a second, as of breath or a shaker, through short modes.
 fn blown(take: &Prepared, most: usize, draft: Draft) -> Draft {
     let target = MelBands::new().measure(&take.mean);
     let power = |column: &[f64; BANDS]| column.iter().map(|level| libm::pow(10.0, 0.1 * level)).sum::<f64>();
@@ -166,8 +166,10 @@ fn blown(take: &Prepared, most: usize, draft: Draft) -> Draft {
     let seconds = |at: Option<usize>| at.unwrap_or(0) as f64 * HOP as f64 / f64::from(RATE);
     let attack = seconds(powers.iter().position(|power| *power > HALF * loudest));
     let end = seconds(powers.iter().rposition(|power| *power > OVER * loudest));
-    let noise = Noise { seconds: end.clamp(LEAST_BURST, 1.0), attack: attack.min(1.0), ..Noise::SHORT };
-    let partials = bed::short(&target, &Lines::new(&take.mean), most.div_ceil(2), SEED);
+    // The engine's noise falls after its attack.
+    let seconds = (end - attack).clamp(BURSTS.0, BURSTS.1);
+    let noise = Noise { seconds, attack: attack.min(BURSTS.1), ..Noise::SHORT };
+    let partials = bed::short(&target, &Lines::new(&take.mean), most.div_ceil(2), SEEDS[0]);
     Draft { noise, partials, ..draft }
 }
 
@@ -192,7 +194,7 @@ fn improved(
     listener.choose_hardness(&mut draft)?;
     listener.tell(part(0.3))?;
     // Two passes, so that a sound that decays in two stages gets two beds.
-    for (pass, seed) in [(1.0, 11), (2.0, 12)] {
+    for (pass, seed) in [(1.0, SEEDS[1]), (2.0, SEEDS[2])] {
         let heard = listener.hear(&draft)?;
         let room = most.saturating_sub(draft.partials.len());
         let mut other = draft.clone();
@@ -214,6 +216,7 @@ fn improved(
     if slow {
         listener.choose_swell(&mut draft)?;
     }
+    listener.choose_oscillators(&mut draft)?;
     listener.choose_hardness(&mut draft)?;
     listener.choose_sweep(&mut draft)?;
     listener.correct(&mut draft, ROUNDS)?;

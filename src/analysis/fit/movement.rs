@@ -75,7 +75,7 @@ pub(super) struct Oscillator {
     pub(super) shape: Shape,
     /// Hz.
     pub(super) rate: f64,
-    /// Where in its round it begins, 0–1.
+    /// Phase in which it starts, 0–1 of a cycle.
     pub(super) phase: f64,
     /// Depth each way; negative if the pitch moves against the oscillator.
     pub(super) semitones: f64,

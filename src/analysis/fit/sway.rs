@@ -1,6 +1,7 @@
 //! Finds the low-frequency oscillators that explain a regular movement of pitch and level, as of a telephone or a bird.
 
 use super::course;
+use super::draft::MOST_OSCILLATORS;
 use super::movement::{Oscillator, Sweep};
 use super::take::Prepared;
 use crate::analysis::level::{dbfs, rms};
@@ -9,36 +10,48 @@ use crate::error::Result;
 use crate::params::Shape;
 use nalgebra::{DMatrix, DVector};
 
-/// Shapes that are tried, and in how many phases: the first ones are their own negative half a turn later.
+/// Phases per turn, and shapes that are tried with so many of them: most shapes are their own negative half a turn later.
+const PHASES: f64 = 16.0;
 const SHAPES: [(Shape, usize); 4] = [(Shape::Sine, 8), (Shape::Triangle, 8), (Shape::Square, 8), (Shape::Ramp, 16)];
-/// Fastest oscillator in Hz, fewest cycles of the slowest, and step between rates, in cycles over the whole course.
+/// Fastest oscillator of the engine in Hz, and fastest movement of tones, whose levels are measured through windows of 46 ms.
 const FASTEST: f64 = 40.0;
+const FASTEST_OF_TONES: f64 = 16.0;
+/// Fewest cycles of the slowest oscillator, and step between rates, in cycles over the whole course.
 const FEWEST_CYCLES: f64 = 1.5;
 const STEP: f64 = 0.25;
-/// Most oscillators: those of the engine.
-const MOST: usize = 3;
 /// Share of the squares left that an oscillator must explain, and that all must explain together.
 const WORTH: f64 = 0.25;
 const WORTH_ALL: f64 = 0.6;
-/// Share of the squares that no oscillator is looked for.
+/// Share of the squares below which no more oscillators are looked for.
 const LITTLE: f64 = 0.01;
-/// Rounds of the fine search.
+/// Share of an oscillator's square that must differ from what is explained already.
+const DIFFERENT: f64 = 1e-3;
+/// Rounds of the fine search, its first step as a share of a step of the coarse one, and its shrinkage per round.
 const ROUNDS: usize = 14;
+const FIRST: f64 = 0.5;
+const SHRINKAGE: f64 = 0.75;
 /// Added to the diagonal of the equations, so that they can be solved.
 const RIDGE: f64 = 1e-9;
 /// Samples from one level to the next, and range of levels in dB.
 const HOP: usize = 128;
 const RANGE_DB: f64 = 45.0;
-/// Least standard deviation of the level in dB at which it moves.
+/// Least standard deviations of the level in dB and of the pitch in semitones at which they move, and fewest values of a course.
 const LEAST_DB: f64 = 1.0;
+const LEAST_SEMITONES: f64 = 0.02;
+const FEWEST: usize = 100;
+/// Largest sum of the depths in semitones and in dB that the engine plays: the range of its tune, and half that of its gain.
+const MOST_SEMITONES: f64 = 48.0;
+const MOST_DB: f64 = 36.0;
 
 /// A value at a time in seconds, with a weight.
 type Point = [f64; 3];
 
-/// What a course does beside its oscillators: it has a mean, and may rise or fall steadily.
+/// A course that is explained by a mean, oscillators, and perhaps a slope.
 struct Course {
     points: Vec<Point>,
-    falls: bool,
+    has_slope: bool,
+    /// Hz of the fastest oscillator.
+    fastest: f64,
     oscillators: Vec<Oscillator>,
     /// The factors of the oscillators.
     factors: Vec<f64>,
@@ -52,10 +65,11 @@ struct Course {
 
 impl Course {
     /// A course that some oscillators move already.
-    fn new(points: Vec<Point>, falls: bool, oscillators: Vec<Oscillator>) -> Self {
+    fn new(points: Vec<Point>, has_slope: bool, oscillators: Vec<Oscillator>) -> Self {
         let mut course = Self {
             points,
-            falls,
+            has_slope,
+            fastest: FASTEST,
             oscillators: Vec::new(),
             factors: Vec::new(),
             rest: Vec::new(),
@@ -67,6 +81,17 @@ impl Course {
         course.oscillators = oscillators;
         course.solve();
         course
+    }
+
+    /// Seconds from its first value to its last.
+    fn seconds(&self) -> f64 {
+        self.points.last().zip(self.points.first()).map_or(0.0, |(last, first)| last[0] - first[0])
+    }
+
+    /// Whether it has enough values, and these move by a least standard deviation.
+    fn moves(&self, least: f64) -> bool {
+        let weight: f64 = self.points.iter().map(|point| point[2]).sum();
+        self.points.len() >= FEWEST && self.squares > least * least * weight
     }
 
     /// Weighted squares of what is left.
@@ -85,7 +110,7 @@ impl Course {
     /// Solves for mean, slope and factors together.
     fn solve(&mut self) {
         let mut functions = vec![vec![1.0; self.points.len()]];
-        if self.falls {
+        if self.has_slope {
             functions.push(self.points.iter().map(|[time, ..]| *time).collect());
         }
         let steady = functions.len();
@@ -121,18 +146,18 @@ impl Course {
         let along = self.product(&values, &self.rest);
         let known: f64 = self.base.iter().map(|base| self.product(&values, base)).map(|share| share * share).sum();
         let own = self.product(&values, &values) - known;
-        if own > 1e-3 * (own + known) { along * along / own } else { 0.0 }
+        if own > DIFFERENT * (own + known) { along * along / own } else { 0.0 }
     }
 
     /// Adds the oscillator that explains most of the rest, if that is worth it.
     fn add(&mut self, tell: &mut dyn FnMut() -> Result<()>) -> Result<bool> {
-        let seconds = self.points.last().map_or(0.0, |point| point[0]);
-        let count = ((FASTEST * seconds - FEWEST_CYCLES) / STEP).max(0.0) as usize;
+        let seconds = self.seconds();
+        let count = ((self.fastest * seconds - FEWEST_CYCLES) / STEP).max(0.0) as usize;
         let mut best: (f64, Option<Oscillator>) = (0.0, None);
         for rate in (0..count).map(|n| (FEWEST_CYCLES + STEP * n as f64) / seconds) {
             tell()?;
             for (shape, phases) in SHAPES {
-                for phase in (0..phases).map(|n| n as f64 / 16.0) {
+                for phase in (0..phases).map(|n| n as f64 / PHASES) {
                     let oscillator = Oscillator { shape, rate, phase, semitones: 0.0, db: 0.0 };
                     let gain = self.gain(&oscillator);
                     if gain > best.0 {
@@ -142,18 +167,18 @@ impl Course {
             }
         }
         let (mut gain, Some(mut oscillator)) = best else { return Ok(false) };
-        let mut step = 0.5;
+        let mut step = FIRST;
         for _ in 0..ROUNDS {
             for (faster, later) in [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step), (step, -step), (-step, step)]
             {
-                let rate = (oscillator.rate + STEP * faster / seconds).clamp(0.01, FASTEST);
-                let moved = Oscillator { rate, phase: oscillator.phase + later / 8.0, ..oscillator };
+                let rate = (oscillator.rate + STEP * faster / seconds).min(self.fastest);
+                let moved = Oscillator { rate, phase: oscillator.phase + 2.0 * later / PHASES, ..oscillator };
                 let gained = self.gain(&moved);
                 if gained > gain {
                     (gain, oscillator) = (gained, moved);
                 }
             }
-            step *= 0.75;
+            step *= SHRINKAGE;
         }
         let is_worth = gain > WORTH * self.left();
         if is_worth {
@@ -166,7 +191,7 @@ impl Course {
 
     /// Adds oscillators; keeps none of them unless all explain most of the course.
     fn explain(&mut self, tell: &mut dyn FnMut() -> Result<()>) -> Result<bool> {
-        while self.oscillators.len() < MOST && self.left() > LITTLE * self.squares && self.add(tell)? {}
+        while self.oscillators.len() < MOST_OSCILLATORS && self.left() > LITTLE * self.squares && self.add(tell)? {}
         Ok(self.left() < (1.0 - WORTH_ALL) * self.squares)
     }
 }
@@ -177,7 +202,7 @@ pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> Result<()>) -> Res
     let pitches = course::pitches(&take.mean);
     let mut pitch = Course::new(pitches.clone(), false, Vec::new());
     let mut swept = Sweep::NONE;
-    let of_pitch = if pitch.explain(tell)? {
+    let of_pitch = if pitch.moves(LEAST_SEMITONES) && pitch.explain(tell)? {
         let left: Vec<(f64, f64)> = pitches.iter().zip(&pitch.rest).map(|([time, ..], rest)| (*time, *rest)).collect();
         let (sweep, _) = course::of_pitch(&left);
         if sweep.semitones != 0.0 {
@@ -193,25 +218,26 @@ pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> Result<()>) -> Res
         Vec::new()
     };
     let mut level = Course::new(levels(&take.mean), true, of_pitch.clone());
-    let moves = level.squares > LEAST_DB * LEAST_DB * level.points.len() as f64;
-    let explained = moves && level.explain(tell)?;
+    let explained = level.moves(LEAST_DB) && level.explain(tell)?;
     let oscillators = if explained { level.oscillators.clone() } else { of_pitch.clone() };
     let oscillator = |(n, oscillator): (usize, Oscillator)| Oscillator {
         semitones: if n < of_pitch.len() { pitch.factors[n] } else { 0.0 },
         db: if explained { level.factors[n] } else { 0.0 },
         ..oscillator
     };
-    Ok((oscillators.into_iter().enumerate().map(oscillator).collect(), swept))
+    let found: Vec<Oscillator> = oscillators.into_iter().enumerate().map(oscillator).collect();
+    let sum = |depth: fn(&Oscillator) -> f64| found.iter().map(depth).map(f64::abs).sum::<f64>();
+    let is_playable = sum(|found| found.semitones) < MOST_SEMITONES && sum(|found| found.db) < MOST_DB;
+    Ok(if is_playable { (found, swept) } else { (Vec::new(), Sweep::NONE) })
 }
 
-/// The tremolo that explains a course of levels in dB best, if it explains most of it.
-pub(super) fn tremolo(levels: Vec<Point>) -> Vec<Oscillator> {
-    let mut level = Course::new(levels, true, Vec::new());
-    let found = level.add(&mut || Ok(())).unwrap_or(false);
-    if !found || level.left() > (1.0 - WORTH_ALL) * level.squares {
-        return Vec::new();
-    }
-    level.oscillators.iter().zip(&level.factors).map(|(oscillator, db)| Oscillator { db: *db, ..*oscillator }).collect()
+/// The tremolo that explains a course of levels of tones in dB best, if it explains most of it. `tell` is called often, and ends the
+/// search by an error.
+pub(super) fn tremolo(levels: Vec<Point>, tell: &mut dyn FnMut() -> Result<()>) -> Result<Option<Oscillator>> {
+    let mut level = Course { fastest: FASTEST_OF_TONES, ..Course::new(levels, true, Vec::new()) };
+    let is_found = level.points.len() >= FEWEST && level.add(tell)? && level.left() < (1.0 - WORTH_ALL) * level.squares;
+    let tremolo = level.oscillators.first().zip(level.factors.first());
+    Ok(tremolo.filter(|_| is_found).map(|(oscillator, db)| Oscillator { db: *db, ..*oscillator }))
 }
 
 /// The levels of samples in dB, from their onset on.
@@ -228,7 +254,12 @@ fn levels(samples: &[f32]) -> Vec<Point> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::audition::{Audition, Played};
+    use super::super::correct;
+    use super::super::draft::{Draft, Partial};
+    use super::super::take::{Take, VELOCITY};
     use super::*;
+    use crate::io::sound_file::Recording;
 
     #[test]
     fn oscillators_of_all_shapes_are_found() {
@@ -249,8 +280,38 @@ mod tests {
     }
 
     #[test]
+    fn what_a_draft_plays_is_found_again() {
+        let known = [
+            Oscillator { shape: Shape::Triangle, rate: 4.0, phase: 0.3, semitones: 1.5, db: 0.0 },
+            Oscillator { shape: Shape::Sine, rate: 1.9, phase: 0.0, semitones: 0.0, db: 6.0 },
+        ];
+        let partial = Partial { frequency: 880.0, t60: 60.0, amplitude: 0.1, phase: 0.0, pan: 0.0, struck: true };
+        let draft = Draft {
+            partials: vec![partial],
+            oscillators: known.to_vec(),
+            is_held: true,
+            ..correct::tests::draft([0.0; 2])
+        };
+        let note = Played { key: 69.0, velocity: draft.velocity, frames: 2 * RATE as usize, let_go: None };
+        let samples = Audition::new().mean(&draft.patch(), note);
+        let recording =
+            Recording { sample_rate: RATE, channels: vec![samples], encoding: String::new(), warnings: Vec::new() };
+        let take = Take { name: "a.wav".to_owned(), recording, key: None, velocity: VELOCITY };
+        let (found, _) = find(&Prepared::new(&take).unwrap(), &mut || Ok(())).unwrap();
+        let near = |known: &Oscillator| {
+            found.iter().any(|found| {
+                let off = libm::remainder(found.phase - known.phase, 1.0).abs();
+                let depths = [found.semitones - known.semitones, 0.25 * (found.db - known.db)];
+                let is_near = found.shape == known.shape && (found.rate / known.rate - 1.0).abs() < 0.02 && off < 0.04;
+                is_near && depths.iter().all(|depth| depth.abs() < 0.15)
+            })
+        };
+        assert!(known.iter().all(near), "{found:?}");
+    }
+
+    #[test]
     fn a_steady_fall_has_no_oscillator() {
         let points = (0..300).map(|n| [0.003 * f64::from(n), -0.1 * f64::from(n), 1.0]).collect();
-        assert!(tremolo(points).is_empty());
+        assert_eq!(tremolo(points, &mut || Ok(())).unwrap(), None);
     }
 }

@@ -109,9 +109,11 @@ impl Prepared {
             return wrong("it is shorter than 30 ms: expected a strike that rings");
         }
         // After the last of a row of bursts a sound falls by itself.
-        let last = bursts::find(&middle[onset..end]).map(|row| row.last());
-        let release = Release::of_held(&middle[onset..end])
-            .filter(|release| last.is_none_or(|last| libm::fabs(release.seconds - last) > NEAR_LAST));
+        let is_last = |release: &Release| {
+            let row = bursts::find(&middle[onset..end]);
+            row.is_some_and(|row| libm::fabs(release.seconds - row.last()) < NEAR_LAST)
+        };
+        let release = Release::of_held(&middle[onset..end]).filter(|release| !is_last(release));
         let played = release.map_or(blocks, |release| release.frames() / block);
         let third = (played / 3).max(1);
         let energy = |levels: &[f64]| levels.iter().map(|level| level * level).sum::<f64>();
@@ -207,8 +209,7 @@ fn first_seconds(recording: &Recording) -> Recording {
         _ => vec![mono(&recording.channels)],
     };
     for channel in &mut channels {
-        let samples: Vec<f64> = channel.iter().map(|sample| f64::from(*sample)).collect();
-        let constant = offset(&samples, (BLOCK * f64::from(recording.sample_rate)) as usize);
+        let constant = offset(channel, (BLOCK * f64::from(recording.sample_rate)) as usize);
         channel.iter_mut().for_each(|sample| *sample -= constant as f32);
     }
     let middle = mono(&channels);

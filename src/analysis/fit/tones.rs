@@ -52,15 +52,16 @@ impl Tone {
         self.frequency * (1.0 + sum / all)
     }
 
-    /// The line through the logarithm of its level from a moment on: the value at moment 0, and the change per moment.
-    pub(super) fn line(&self, from: usize) -> [f64; 2] {
+    /// The line through the logarithm of its level from a moment on: the value at moment 0, and the change per moment; none if
+    /// the sound is over before.
+    pub(super) fn line(&self, from: usize) -> Option<[f64; 2]> {
         // Windows that reach beyond the end show a fall.
         let whole = self.course.len().saturating_sub(FOLLOWED / 2 / HOP);
         let points =
             self.levels().into_iter().enumerate().take(whole).skip(from).map(|(n, [level, _])| (n as f64, level));
         let slope = slope(points.clone()).unwrap_or(0.0).min(0.0);
         let (sum, count) = points.fold((0.0, 0.0), |(sum, count), (n, level)| (sum + level - slope * n, count + 1.0));
-        [if count > 0.0 { sum / count } else { 0.0 }, slope]
+        (count > 0.0).then(|| [sum / count, slope])
     }
 
     /// The logarithm of its level at each moment, with its weight.

@@ -63,8 +63,11 @@ pub(super) fn implausible(fit: &Fit, floors: &[f64], len: usize, limits: &Limits
     let doubt = |k: usize| {
         let Some(certainty) = &certainty else { return f64::INFINITY };
         let deviation = |index: usize| sqrt(certainty.variances[k][index] * floors[k] / 2.0);
-        let pole = deviation(0).max(deviation(1)) / fit.poles[k].width(len);
-        pole.max(deviation(2)) / DEVIATION
+        let width = fit.poles[k].width(len);
+        let doubts = [deviation(0) / width, deviation(1) / width, deviation(2)];
+        // What is not a number is not known.
+        let is_known = doubts.iter().all(|doubt| doubt.is_finite());
+        if is_known { doubts.into_iter().fold(0.0, f64::max) / DEVIATION } else { f64::INFINITY }
     };
     let reach = |k: usize, other: usize| fit.poles[k].width(len) + fit.poles[other].width(len);
     let distance = |k: usize, other: usize| (fit.poles[k].theta - fit.poles[other].theta).abs();
