@@ -11,7 +11,8 @@ use libm::{cos, exp, fabs, log2, pow, sin, sqrt};
 use nalgebra::{Cholesky, SMatrix, SVector};
 use std::f64::consts::{PI, TAU};
 
-/// Seconds of the sound that are followed, those in which a regular movement is looked for, and samples from one moment to the next.
+/// Seconds of the sound in which a sweep or vibrato is looked for, those for a regular movement, and samples from one moment to
+/// the next.
 const LONGEST: f64 = 2.0;
 const LONGEST_REGULAR: f64 = 4.0;
 const HOP: usize = 110;

@@ -24,7 +24,7 @@ const REACH: f64 = 22.0;
 
 /// Up to two drafts, and the strike in which their modes were found, with at most `most` modes; none if the sound has no tones. In
 /// the second draft each tone is a single mode: several that almost cancel may not do so when they are played. If the movement of
-/// the pitch is `known`, the drafts have that one.
+/// the pitch is `known`, the drafts have that one, and no tremolo.
 ///
 /// First the drift is measured by itself, and then by how the sound differs from the modes that were found without it, since
 /// these explain the beats. More modes are found in what the first ones leave, among them high and faint ones.
@@ -66,8 +66,10 @@ pub(super) fn draft(
     let (swept, mean) = known.map_or_else(|| course::of_pitch(&drift.pitches()), |known| (known, 0.0));
     let mut draft = start::from(take, Some(&strike), &Source { swept, late: 0.0, struck: true }, true);
     let still = drift.removed_from(&take.mean);
-    let mut go_on = || if tell(1.0) { Ok(()) } else { Err(Error::Interrupted) };
-    draft.oscillators = drift.tremolo(&mut go_on)?.into_iter().collect();
+    if known.is_none() {
+        let mut go_on = || if tell(1.0) { Ok(()) } else { Err(Error::Interrupted) };
+        draft.oscillators = drift.tremolo(&mut go_on)?.into_iter().collect();
+    }
     let rest = unexplained(&still, usize::MAX, &strike, from);
     let with_steady = |all: bool| {
         let mut draft = draft.clone();

@@ -1,7 +1,7 @@
 //! Fits a draft to one take: first its modes, then a bed, then corrections.
 
 use super::bed::Lines;
-use super::draft::{Draft, MOST_OSCILLATORS, Noise};
+use super::draft::{Draft, Noise};
 use super::drift::Drift;
 use super::movement::Sweep;
 use super::refine::Listener;
@@ -75,8 +75,8 @@ pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64
 /// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more. If it is held or rises
 /// slowly, the modes without its drift; of a held sound these in place of the others, if they explain much more. If it is damped
 /// while it rings, the take ends there. If its modes explain little, also drafts of noise: the row of bursts with which it begins,
-/// noise that goes on for as long as the sound, and modes that noise excites, found after the noise is over. If they explain part of
-/// it, also the modes without the movement of oscillators. If the sound rises slowly, also modes found after the rise.
+/// noise that goes on for as long as the sound, and modes that noise excites, found after the noise is over. If they leave much
+/// of it, also the modes without the movement of oscillators. If the sound rises slowly, also modes found after the rise.
 fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
     let [of_still, of_drift, of_search, first, second, of_noise, of_sway, of_rest] =
@@ -144,16 +144,13 @@ fn swayed(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
     }
     let drift = Drift::by(&oscillators, swept.envelope(), take.mean.len());
     let still = take.replaced(take.channels.iter().map(|channel| drift.removed_from(channel)).collect());
-    let mut found = held::draft(&still, (!swept.is_none()).then_some(swept), most, &mut |share| tell(share).is_ok())?;
+    let mut found = held::draft(&still, Some(swept), most, &mut |share| tell(share).is_ok())?;
     found.retain(|held| residual_db(held) < NOISE_DB);
     if found.is_empty() {
         // Noise that moves so is left to the bed.
         found.push((start::from(take, None, &Source { swept, late: 0.0, struck: false }, false), None));
     }
-    let swayed = |(draft, strike): Found| {
-        let all = oscillators.iter().chain(&draft.oscillators).copied().take(MOST_OSCILLATORS).collect();
-        (Draft { oscillators: all, ..draft }, strike)
-    };
+    let swayed = |(draft, strike)| (Draft { oscillators: oscillators.clone(), ..draft }, strike);
     Ok(found.into_iter().map(swayed).collect())
 }
 

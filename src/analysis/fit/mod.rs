@@ -1,9 +1,10 @@
 //! Fits a preset to recordings of a struck sound, which it then plays over the keyboard.
 //!
 //! The sweep of the pitch is found and removed; of a held sound, all drift that its tones have in common. The sound, whose
-//! pitch is now constant, is analysed into modes. Their residual becomes a bed: modes that noise excites. Then the draft is
+//! pitch is now constant, is analysed into modes. Their residual becomes a bed: modes that noise excites. Of a sound that modes
+//! explain badly, rows of bursts are counted, and regular movement becomes that of low-frequency oscillators. Then each draft is
 //! played and compared with the recording, band by band ([`super::log_mel`]), to correct the mallet's hardness, the length of
-//! the noise, levels and decays.
+//! the noise, levels and decays; the nearest one is the result.
 
 mod audition;
 mod bed;
@@ -169,7 +170,14 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     if let Some(ending) = &take.ending {
         let (damped, found) =
             ending.release.tuned(&patch, &ending.mean, (key, draft.velocity), &mut || progress(LAST))?;
-        (patch, release) = (damped, Some(found));
+        // What falls by itself, or comes back, is nearer without.
+        let mut distance = |patch: &Patch, let_go| {
+            let note = Played { key, velocity: draft.velocity, frames: ending.mean.len(), let_go };
+            log_mel::distance(&audition.mean(patch, note), &ending.mean)
+        };
+        if distance(&damped, Some(found.frames())) <= distance(&patch, None) {
+            (patch, release) = (damped, Some(found));
+        }
     }
     let (_, whole) = take.whole();
     let let_go = release.map(|release| release.frames());

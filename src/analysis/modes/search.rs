@@ -118,7 +118,8 @@ pub(super) fn find(
     // Modes that are denser than their bandwidths can all be uncertain, and yet explain the sound together. So if much is lost
     // without all doubtful ones, only the worst of each neighbourhood are dropped.
     let without = |fit: &Fit, floors: &[f64], rounds: usize, go_on: &mut dyn FnMut() -> bool| {
-        for worst_only in [false, true] {
+        let mut worst_only = false;
+        loop {
             let dropped = implausible(fit, floors, samples.len(), limits, worst_only);
             if dropped.is_empty() {
                 return Ok(None);
@@ -131,8 +132,8 @@ pub(super) fn find(
             if worst_only || next.unexplained < MOST_LOST * fit.unexplained + least {
                 return Ok(Some(next));
             }
+            worst_only = true;
         }
-        Ok(None)
     };
     for _ in 0..MOST_REMOVALS {
         let Some(next) = without(&fit, &floors(&fit), 20, &mut go_on)? else { break };
