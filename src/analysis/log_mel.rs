@@ -119,6 +119,11 @@ impl MelBands {
     }
 }
 
+/// The time in seconds of the middle of window `n`.
+pub(super) fn time(n: usize) -> f64 {
+    n as f64 * HOP as f64 / f64::from(RATE)
+}
+
 impl LogMel {
     /// The windows without the `first` ones.
     pub(super) fn skipping(&self, first: usize) -> Self {

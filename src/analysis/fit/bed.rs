@@ -6,7 +6,7 @@
 
 use super::draft::Partial;
 use super::movement::{Sweep, speed};
-use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, centre};
+use crate::analysis::log_mel::{BANDS, LogMel, RATE, SPAN_DB, centre, time};
 use crate::dsp::random::{key, uniform};
 use libm::{log10, pow, sqrt};
 use realfft::RealFftPlanner;
@@ -106,7 +106,7 @@ impl Decay {
                 let near = &levels[n..(n + 12).min(levels.len())];
                 near.iter().any(Option::is_some).then_some((n, levels[n]))
             })
-            .filter_map(|(n, level)| Some(((n as f64) * HOP as f64 / f64::from(RATE), level?)))
+            .filter_map(|(n, level)| Some((time(n), level?)))
             .take_while(|(_, level)| *level > top - FOLLOWED_DB)
             .collect();
         let count = points.len() as f64;

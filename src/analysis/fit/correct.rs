@@ -1,7 +1,7 @@
 //! Corrects levels and decays of a draft's modes by the errors of its mel bands.
 
 use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
-use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, weights};
+use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, time, weights};
 use libm::{exp, pow};
 
 /// Largest correction at a time: of a level in dB, and of a decay rate as a share of that rate.
@@ -66,11 +66,6 @@ pub(super) fn by_moments(draft: &Draft, target: &LogMel, heard: &LogMel, share: 
 fn powers_of(partial: &Partial, columns: usize) -> impl Iterator<Item = f64> {
     let step = exp(-LN_120_DB * HOP as f64 / f64::from(RATE) / partial.t60);
     std::iter::successors(Some(partial.amplitude * partial.amplitude), move |power| Some(power * step)).take(columns)
-}
-
-/// The time in seconds of a window's middle.
-fn time(n: usize) -> f64 {
-    n as f64 * HOP as f64 / f64::from(RATE)
 }
 
 /// The level in dB that is missing in each band of each window; none where neither sound is audible.

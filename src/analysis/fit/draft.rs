@@ -219,19 +219,22 @@ impl Draft {
             set(Param::Envelope1Sustain, 100.0);
             // The damper ends the note, and not the envelope.
             set(Param::Envelope1Release, Param::Envelope1Release.info().max.into());
-            let amount = 100.0 * depth / f64::from(gain_info.max - gain_info.min);
-            patch = patch.with_route(SWELL_ROUTE, Source::Envelope1, Param::Gain, digits(amount, 5) as f32);
+            patch = patch.with_route(SWELL_ROUTE, Source::Envelope1, Param::Gain, amount(Param::Gain, depth));
         }
         let moved = self.oscillators.iter().zip(&LFOS).flat_map(|(oscillator, (source, _))| {
             [(Param::Gain, oscillator.db), (Param::Tune, oscillator.semitones)]
                 .map(|(param, depth)| (*source, param, depth))
         });
         for (n, (source, param, depth)) in moved.filter(|(.., depth)| *depth != 0.0).enumerate() {
-            let amount = 100.0 * depth / f64::from(param.info().max - param.info().min);
-            patch = patch.with_route(OSCILLATOR_ROUTES + n, source, param, digits(amount, 5) as f32);
+            patch = patch.with_route(OSCILLATOR_ROUTES + n, source, param, amount(param, depth));
         }
         patch
     }
+}
+
+/// The amount in percent of a route that moves a parameter by `depth` in its unit.
+fn amount(param: Param, depth: f64) -> f32 {
+    digits(100.0 * depth / f64::from(param.info().max - param.info().min), 5) as f32
 }
 
 /// A number rounded to `digits` significant digits.

@@ -6,7 +6,7 @@ use super::drift::Drift;
 use super::movement::Sweep;
 use super::start::{self, Source};
 use super::take::Prepared;
-use super::tones::{HOP, tones};
+use super::tones::{HOP, Tone, tones};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::{Mode, Strike};
 use crate::error::{Error, Result};
@@ -70,10 +70,10 @@ pub(super) fn draft(
         let mut go_on = || if tell(1.0) { Ok(()) } else { Err(Error::Interrupted) };
         draft.oscillators = drift.tremolo(&mut go_on)?.into_iter().collect();
     }
-    let rest = unexplained(&still, usize::MAX, &strike, from);
+    let pairs = compared(&still[from.min(still.len())..], &unexplained(&still, usize::MAX, &strike, from));
     let with_steady = |all: bool| {
         let mut draft = draft.clone();
-        steady(&mut draft, most, &still[from.min(still.len())..], &rest, (from, all));
+        steady(&mut draft, most, &pairs, from, all);
         // The modes have the mean pitch, and those of a draft the pitch without sweep and vibrato.
         draft.partials.iter_mut().for_each(|partial| partial.frequency *= pow(2.0, -mean / 12.0));
         (draft, Some(strike.clone()))
@@ -83,13 +83,17 @@ pub(super) fn draft(
     Ok(drafts)
 }
 
-/// Replaces the modes of each tone by a steady mode if that is nearer to the course of its level, or of `all` tones. `sound`
-/// begins with a sample `from` the onset, and `rest` is what the modes leave of it. The draft gets no more than `most` modes.
-fn steady(draft: &mut Draft, most: usize, sound: &[f32], rest: &[f32], (from, all): (usize, bool)) {
+/// The tones of a sound, each with its course relative to the modes that leave `rest` of the sound.
+fn compared(sound: &[f32], rest: &[f32]) -> Vec<(Tone, Tone)> {
     let modes: Vec<f32> = sound.iter().zip(rest).map(|(sample, rest)| sample - rest).collect();
-    let (own, against) = (tones(sound, None), tones(sound, Some(&modes)));
+    tones(sound, None).into_iter().zip(tones(sound, Some(&modes))).collect()
+}
+
+/// Replaces the modes of each tone by a steady mode if that is nearer to the course of its level, or of `all` tones. `pairs` are
+/// those of [`compared`], of a sound that begins with a sample `from` the onset. The draft gets no more than `most` modes.
+fn steady(draft: &mut Draft, most: usize, pairs: &[(Tone, Tone)], from: usize, all: bool) {
     let moments = |seconds: f64| seconds * f64::from(RATE) / HOP as f64;
-    for (tone, against) in own.iter().zip(&against) {
+    for (tone, against) in pairs {
         let Some(line) = tone.line(moments(ATTACK) as usize) else { continue };
         let off = |value: f64| value.abs().min(MOST_OFF);
         let levels: Vec<[f64; 2]> = tone.levels();
@@ -99,7 +103,7 @@ fn steady(draft: &mut Draft, most: usize, sound: &[f32], rest: &[f32], (from, al
         if !all && of_steady >= of_modes {
             continue;
         }
-        let others = own.iter().filter(|other| other.frequency != tone.frequency);
+        let others = pairs.iter().map(|(other, _)| other).filter(|other| other.frequency != tone.frequency);
         let near = others.map(|other| 0.5 * (other.frequency - tone.frequency).abs()).fold(REACH, f64::min);
         let is_of = |partial: &Partial| (partial.frequency - tone.frequency).abs() < near;
         let members = draft.partials.iter().filter(|partial| is_of(partial));
@@ -189,9 +193,10 @@ mod tests {
         let mut draft = super::super::correct::tests::draft([0.0; 2]);
         draft.partials = vec![partial(700.0, 0.4), partial(1500.0, 100.0)];
         let mut few = draft.clone();
-        steady(&mut few, 1, &sound, &rest, (0, false));
+        let pairs = compared(&sound, &rest);
+        steady(&mut few, 1, &pairs, 0, false);
         assert_eq!(few.partials, [partial(1500.0, 100.0)]);
-        steady(&mut draft, 8, &sound, &rest, (0, false));
+        steady(&mut draft, 8, &pairs, 0, false);
         assert_eq!(draft.partials.len(), 2, "{:?}", draft.partials);
         assert_eq!(draft.partials[0], partial(1500.0, 100.0));
         let Partial { frequency, t60, amplitude, pan, .. } = draft.partials[1];

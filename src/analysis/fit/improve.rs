@@ -8,7 +8,7 @@ use super::refine::Listener;
 use super::start::Source;
 use super::take::{Prepared, SLOW};
 use super::{bed, bursts, held, start, sway, sweep};
-use crate::analysis::log_mel::{BANDS, HOP, MelBands, RATE};
+use crate::analysis::log_mel::{BANDS, HOP, MelBands, RATE, time};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
 
@@ -160,7 +160,7 @@ fn blown(take: &Prepared, most: usize, draft: Draft) -> Draft {
     let power = |column: &[f64; BANDS]| column.iter().map(|level| libm::pow(10.0, 0.1 * level)).sum::<f64>();
     let powers: Vec<f64> = target.columns.iter().map(power).collect();
     let loudest = powers.iter().copied().fold(0.0, f64::max);
-    let seconds = |at: Option<usize>| at.unwrap_or(0) as f64 * HOP as f64 / f64::from(RATE);
+    let seconds = |at: Option<usize>| time(at.unwrap_or(0));
     let attack = seconds(powers.iter().position(|power| *power > HALF * loudest));
     let end = seconds(powers.iter().rposition(|power| *power > OVER * loudest));
     // The engine's noise falls after its attack.

@@ -189,7 +189,7 @@ impl Course {
         Ok(is_worth)
     }
 
-    /// Adds oscillators; keeps none of them unless all explain most of the course.
+    /// Adds oscillators, and tells whether all of them explain most of the course.
     fn explain(&mut self, tell: &mut dyn FnMut() -> Result<()>) -> Result<bool> {
         while self.oscillators.len() < MOST_OSCILLATORS && self.left() > LITTLE * self.squares && self.add(tell)? {}
         Ok(self.left() < (1.0 - WORTH_ALL) * self.squares)

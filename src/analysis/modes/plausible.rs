@@ -3,7 +3,7 @@
 //! Sounds that are no sums of damped sinusoids, such as glides, are explained best by modes that almost cancel each
 //! other. Such modes explain much, so they stand out of noise, but they have no meaning for the sound.
 
-use super::fit::Fit;
+use super::fit::{Certainty, Fit};
 use super::pole::{LN_60_DB, Pole};
 use libm::{exp, sqrt};
 use std::f64::consts::PI;
@@ -55,13 +55,19 @@ impl Limits {
     }
 }
 
-/// Indices of modes that the sound cannot have, given the noise floor of each mode. Of neighbours that are too loud, only the
+/// Indices of modes that the sound cannot have, given their certainty, if it is known, and the noise floor of each mode. Of neighbours that are too loud, only the
 /// loudest is given, since the others may be plausible without it; if `worst_only`, so of neighbours that are too uncertain.
-pub(super) fn implausible(fit: &Fit, floors: &[f64], len: usize, limits: &Limits, worst_only: bool) -> Vec<usize> {
-    let certainty = fit.certainty(len);
+pub(super) fn implausible(
+    fit: &Fit,
+    certainty: Option<&Certainty>,
+    floors: &[f64],
+    len: usize,
+    limits: &Limits,
+    worst_only: bool,
+) -> Vec<usize> {
     // The largest deviation of a mode, relative to the largest that is allowed.
     let doubt = |k: usize| {
-        let Some(certainty) = &certainty else { return f64::INFINITY };
+        let Some(certainty) = certainty else { return f64::INFINITY };
         let deviation = |index: usize| sqrt(certainty.variances[k][index] * floors[k] / 2.0);
         let width = fit.poles[k].width(len);
         let doubts = [deviation(0) / width, deviation(1) / width, deviation(2)];

@@ -118,9 +118,9 @@ pub(super) fn find(
     // Modes that are denser than their bandwidths can all be uncertain, and yet explain the sound together. So if much is lost
     // without all doubtful ones, only the worst of each neighbourhood are dropped.
     let without = |fit: &Fit, floors: &[f64], rounds: usize, go_on: &mut dyn FnMut() -> bool| {
-        let mut worst_only = false;
+        let (certainty, mut worst_only) = (fit.certainty(samples.len()), false);
         loop {
-            let dropped = implausible(fit, floors, samples.len(), limits, worst_only);
+            let dropped = implausible(fit, certainty.as_ref(), floors, samples.len(), limits, worst_only);
             if dropped.is_empty() {
                 return Ok(None);
             }
