@@ -25,7 +25,7 @@ const RISE: usize = 207;
 const SMOOTH_DB: f64 = 2.0;
 /// Fewest and most modes of a band whose decay is not smooth.
 const FEWEST: f64 = 2.0;
-const MOST: f64 = 6.0;
+const MOST: usize = 6;
 /// Power, relative to the strongest line of its band, below which a line is left out: −13 dB.
 const FAINT: f64 = 0.05;
 /// Bandwidth in Hz of a mode with a T60 of 1 s.
@@ -34,44 +34,48 @@ const BANDWIDTH: f64 = 2.2;
 /// The bed that fills `draft` up to `target`: at most `most` modes, where `lines` are strong. `seed` sets their pans.
 pub(super) fn bed([target, draft]: [&LogMel; 2], lines: &Lines, sweep: &Sweep, most: usize, seed: u64) -> Vec<Partial> {
     let floor = target.loudest() - SPAN_DB - 6.0;
-    let mut bands: Vec<(f64, Vec<Partial>)> =
-        (0..BANDS).filter_map(|band| fill([target, draft], lines, band, floor, seed)).collect();
-    bands.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut bed = Vec::new();
-    for (_, partials) in bands {
-        if bed.len() + partials.len() <= most {
-            // The sweep changes the frequencies by this factor, so divide by it.
-            let lower =
-                |partial: Partial| Partial { frequency: partial.frequency / speed(sweep, partial.t60), ..partial };
-            bed.extend(partials.into_iter().map(lower));
-        }
-    }
-    bed
+    let mut bands: Vec<(usize, Decay)> =
+        (0..BANDS).filter_map(|band| Some((band, missing([target, draft], band, floor)?))).collect();
+    bands.sort_by(|a, b| b.1.energy().total_cmp(&a.1.energy()));
+    let bed = of_bands(&bands, lines, most, seed);
+    // The sweep changes the frequencies by this factor, so divide by it.
+    let lower = |partial: Partial| Partial { frequency: partial.frequency / speed(sweep, partial.t60), ..partial };
+    bed.into_iter().map(lower).collect()
 }
 
 /// Short modes for a noise that goes on for as long as the sound: each band's greatest level, where `lines` are strong.
 pub(super) fn short(target: &LogMel, lines: &Lines, most: usize, seed: u64) -> Vec<Partial> {
     let floor = target.loudest() - SPAN_DB;
-    let mut bands: Vec<(f64, usize)> = (0..BANDS)
-        .map(|band| (target.columns.iter().map(|column| column[band]).fold(f64::NEG_INFINITY, f64::max), band))
-        .filter(|(level, _)| *level > floor)
-        .collect();
-    bands.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let of_band = |(level, band): (f64, usize)| {
-        let decay = Decay { at_onset: level, t60: SHORT_T60, is_smooth: false };
-        partials(&decay, lines, band, seed)
-    };
-    bands.into_iter().flat_map(of_band).take(most).collect()
+    let level = |band: usize| target.columns.iter().map(|column| column[band]).fold(f64::NEG_INFINITY, f64::max);
+    let decay = |level: f64| Decay { at_onset: level, t60: SHORT_T60, is_smooth: false };
+    let bands = (0..BANDS).map(|band| (band, level(band))).filter(|(_, level)| *level > floor);
+    of_bands(&bands.map(|(band, level)| (band, decay(level))).collect::<Vec<_>>(), lines, most, seed)
 }
 
-/// The modes of one band and their energy.
-fn fill(
-    [target, draft]: [&LogMel; 2],
-    lines: &Lines,
-    band: usize,
-    floor: f64,
-    seed: u64,
-) -> Option<(f64, Vec<Partial>)> {
+/// The modes of bands, in this order: at most `most`. If all bands together need more, each gets fewer: a band that is empty is
+/// further from the recording than one whose modes are few.
+fn of_bands(bands: &[(usize, Decay)], lines: &Lines, most: usize, seed: u64) -> Vec<Partial> {
+    let of_each = |limit: usize| -> Vec<Vec<Partial>> {
+        bands.iter().map(|(band, decay)| partials(decay, lines, *band, limit, seed)).collect()
+    };
+    let limits = (1..=MOST).rev().map(of_each);
+    let fits = |found: &Vec<Vec<Partial>>| found.iter().map(Vec::len).sum::<usize>() <= most;
+    let found = limits.into_iter().find(fits).unwrap_or_else(|| of_each(1));
+    found.into_iter().flatten().take(most).collect()
+}
+
+/// Gives modes that noise moves alternating signs, in the order of their frequencies. The same noise moves all of them: with one sign
+/// they add up below the lowest and above the highest one, and cancel each other halfway between two.
+pub(super) fn alternate(partials: &mut [Partial]) {
+    let mut driven: Vec<&mut Partial> = partials.iter_mut().filter(|partial| !partial.struck).collect();
+    driven.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    for (n, partial) in driven.into_iter().enumerate() {
+        partial.amplitude = if n % 2 == 0 { 1.0 } else { -1.0 } * partial.amplitude.abs();
+    }
+}
+
+/// How the level decays that a band of the draft is short of.
+fn missing([target, draft]: [&LogMel; 2], band: usize, floor: f64) -> Option<Decay> {
     let level = |n: usize| {
         let wanted = target.columns[n][band];
         let has = draft.columns.get(n).map_or(-300.0, |column| column[band]);
@@ -79,8 +83,7 @@ fn fill(
         (wanted > floor && wanted > has + EXCESS_DB).then(|| 10.0 * log10(missing))
     };
     let levels: Vec<Option<f64>> = (0..target.columns.len()).map(level).collect();
-    let decay = Decay::of(&levels)?;
-    Some((pow(10.0, 0.1 * decay.at_onset) * decay.t60, partials(&decay, lines, band, seed)))
+    Decay::of(&levels)
 }
 
 /// How a band decays.
@@ -94,6 +97,11 @@ struct Decay {
 }
 
 impl Decay {
+    /// Proportional to the energy of the whole decay.
+    fn energy(&self) -> f64 {
+        pow(10.0, 0.1 * self.at_onset) * self.t60
+    }
+
     /// A line through the levels in dB of all windows, from the loudest on; none where the band has no level.
     fn of(levels: &[Option<f64>]) -> Option<Self> {
         let start = (0..levels.len().min(RISE)).filter(|n| levels[*n].is_some()).max_by(|a, b| {
@@ -127,12 +135,12 @@ impl Decay {
 
 /// The modes of a band that decays so. A smooth decay gets one mode, since several would beat. Noise gets enough modes for their
 /// resonances to overlap.
-fn partials(decay: &Decay, lines: &Lines, band: usize, seed: u64) -> Vec<Partial> {
+fn partials(decay: &Decay, lines: &Lines, band: usize, limit: usize, seed: u64) -> Vec<Partial> {
     let Decay { at_onset, t60, is_smooth } = *decay;
     let width = 0.5 * (centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1)));
-    let most = if is_smooth { 1.0 } else { (0.5 * width * t60 / BANDWIDTH).clamp(FEWEST, MOST).round() };
+    let most = if is_smooth { 1.0 } else { (0.5 * width * t60 / BANDWIDTH).clamp(FEWEST, MOST as f64).round() };
     let range = (centre(band) - 0.5 * width, centre(band) + 0.5 * width);
-    let places = lines.highest(range, BANDWIDTH / t60, most as usize);
+    let places = lines.highest(range, BANDWIDTH / t60, limit.min(most as usize));
     let all: f64 = places.iter().map(|(_, power)| power).sum();
     let partial = |(n, (frequency, power)): (usize, &(f64, f64))| {
         // The main lobe of a Hann window has 3/2 of a sine's power, of which a triangular band has 2/3 on average.
@@ -192,5 +200,42 @@ impl Lines {
             }
         }
         kept
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noise(seconds: f64) -> Vec<f32> {
+        let key = key(7, 0);
+        (0..(seconds * f64::from(RATE)) as u64).map(|n| 0.3 * uniform(key, n)).collect()
+    }
+
+    #[test]
+    fn every_band_of_noise_gets_modes() {
+        let samples = noise(0.5);
+        let (target, lines) = (crate::analysis::log_mel::MelBands::new().measure(&samples), Lines::new(&samples));
+        let silence = LogMel { columns: Vec::new() };
+        for most in [60, 100, 192] {
+            let bed = bed([&target, &silence], &lines, &Sweep::NONE, most, 1);
+            for partials in [bed, short(&target, &lines, most, 1)] {
+                assert!(partials.len() <= most && partials.len() > most / 2, "{} of {most}", partials.len());
+                let width = |band: usize| centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1));
+                let near = |band: usize, partial: &Partial| (partial.frequency - centre(band)).abs() < width(band);
+                let empty = |band: &usize| !partials.iter().any(|partial| near(*band, partial));
+                assert_eq!((0..BANDS).find(empty), None, "of {most}");
+            }
+        }
+        assert!(bed([&target, &silence], &lines, &Sweep::NONE, 5, 1).len() <= 5);
+    }
+
+    #[test]
+    fn signs_alternate_in_the_order_of_frequencies_and_struck_modes_keep_theirs() {
+        let partial =
+            |(frequency, struck)| Partial { frequency, t60: 0.1, amplitude: 0.5, phase: 0.0, pan: 0.0, struck };
+        let mut partials = [(300.0, false), (100.0, false), (150.0, true), (200.0, false)].map(partial);
+        alternate(&mut partials);
+        assert_eq!(partials.map(|partial| partial.amplitude), [0.5, 0.5, 0.5, -0.5]);
     }
 }

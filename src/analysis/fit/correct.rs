@@ -34,6 +34,19 @@ pub(super) fn by_bands(draft: &Draft, target: &LogMel, heard: &LogMel, share: f6
     })
 }
 
+/// Corrects the levels of all modes of a band by its mean error, and no decays.
+pub(super) fn by_levels(draft: &Draft, target: &LogMel, heard: &LogMel) -> Draft {
+    let errors = Errors::new(target, heard);
+    let means: [f64; BANDS] = std::array::from_fn(|band| {
+        let (sum, count) = errors.of(band).fold((0.0, 0.0), |(sum, count), (_, error)| (sum + error, count + 1.0));
+        if count > 0.0 { sum / count } else { 0.0 }
+    });
+    corrected(draft, 1.0, |partial| {
+        let weights = weights(partial.heard_at(&draft.sweep));
+        (weights.iter().zip(&means).map(|(weight, mean)| weight * mean).sum(), 0.0)
+    })
+}
+
 /// Corrects each mode by the errors of its bands, each weighted by the mode's share of the band's power at that moment.
 /// Of two modes in a band, the shorter one is corrected by the beginning of the sound, and the longer one by the rest.
 pub(super) fn by_moments(draft: &Draft, target: &LogMel, heard: &LogMel, share: f64) -> Draft {
@@ -198,5 +211,14 @@ pub(super) mod tests {
             alike = by_bands(&alike, &target, &bands(&alike), 0.8);
         }
         assert!(off(&alike, 0, 0.4) > 4.0 || off(&alike, 1, 0.1) > 1.0, "{:?}", alike.partials);
+    }
+
+    #[test]
+    fn levels_alone_are_corrected_and_decays_stay() {
+        let (target, found) = (bands(&draft([0.4, 0.1])), draft([0.04, 0.01]));
+        let other = by_levels(&found, &target, &bands(&found));
+        let t60s = |draft: &Draft| [draft.partials[0].t60, draft.partials[1].t60];
+        assert_eq!(t60s(&other), t60s(&found));
+        assert!((other.partials[1].amplitude / found.partials[1].amplitude - 3.98).abs() < 0.1, "{:?}", other.partials);
     }
 }

@@ -216,7 +216,13 @@ impl Draft {
             set(Param::Gain, ((gain_db - depth) * 100.0).round() / 100.0);
             set(Param::Envelope1Attack, swell.seconds);
             set(Param::Envelope1Curve, 100.0 * swell.curve);
-            set(Param::Envelope1Sustain, 100.0);
+            match swell.fall {
+                None => set(Param::Envelope1Sustain, 100.0),
+                Some(seconds) => {
+                    set(Param::Envelope1Sustain, 0.0);
+                    set(Param::Envelope1Decay, seconds);
+                }
+            }
             // The damper ends the note, and not the envelope.
             set(Param::Envelope1Release, Param::Envelope1Release.info().max.into());
             patch = patch.with_route(SWELL_ROUTE, Source::Envelope1, Param::Gain, amount(Param::Gain, depth));

@@ -1,16 +1,18 @@
 //! Fits a draft to one take: first its modes, then a bed, then corrections.
 
+use super::audition::{Audition, Played};
 use super::bed::Lines;
-use super::draft::{Draft, Noise};
+use super::draft::Draft;
 use super::drift::Drift;
-use super::movement::Sweep;
-use super::refine::Listener;
+use super::movement::{Sweep, Swell};
+use super::refine::{Listener, NEAR_DB};
 use super::start::Source;
 use super::take::{Prepared, SLOW};
-use super::{bed, bursts, held, start, sway, sweep};
-use crate::analysis::log_mel::{BANDS, HOP, MelBands, RATE, time};
+use super::{A4, bed, bursts, held, noise, start, sway, sweep};
+use crate::analysis::log_mel::{self, HOP, RATE};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
+use crate::units::key_from_frequency;
 
 /// Share of the work until the first drafts are made.
 const ANALYSED: f64 = 0.45;
@@ -30,15 +32,10 @@ const WORTH_A_DRIFT_DB: f64 = 6.0;
 const WORTH_A_SWEEP_DB: f64 = 2.0;
 /// Reduction of the distance in dB for which a bed is kept.
 const WORTH_A_BED: f64 = 0.02;
-/// Powers relative to the greatest at which a noise has come to its level, and at which it is over: −3 and −30 dB.
-const HALF: f64 = 0.5;
-const OVER: f64 = 1e-3;
-/// Shortest and longest noise in seconds that goes on for as long as the sound.
-const BURSTS: (f64, f64) = (0.02, 1.0);
-/// Seeds of the pans of modes that noise excites: for such noise, and for two beds.
-const SEEDS: [u64; 3] = [10, 11, 12];
-/// Distance in dB below which no other draft is tried.
-const NEAR_DB: f64 = 0.4;
+/// Seconds of a fall from which the search for it begins.
+const FALL: f64 = 0.1;
+/// Seeds of the pans of the modes of two beds.
+const SEEDS: [u64; 2] = [11, 12];
 /// Rounds of corrections at a time.
 const ROUNDS: usize = 8;
 
@@ -58,6 +55,8 @@ pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64
             _ => Lines::new(&take.mean),
         };
         let part = |share: f64| ANALYSED + (1.0 - ANALYSED) * (n as f64 + share) / count;
+        listener.tell(part(0.0))?;
+        let draft = if noise::lasts(&draft) { noise::shaped(draft, take, most, &mut listener)? } else { draft };
         let slow = take.rise > SLOW;
         let draft = improved(draft, &mut listener, &lines, most, slow, &part)?;
         let distance = listener.distance(&draft, usize::MAX)?;
@@ -69,7 +68,32 @@ pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64
         }
     }
     listener.tell(1.0)?;
-    best.ok_or(Error::Interrupted)
+    let (draft, strike) = best.ok_or(Error::Interrupted)?;
+    Ok(match fallen(take, &draft, progress)? {
+        Some((whole, draft)) => {
+            *take = whole;
+            (draft, strike)
+        }
+        None => (draft, strike),
+    })
+}
+
+/// Of a sound that swells and seems to be let go, the draft that falls by itself instead, and the whole take, if these are nearer.
+fn fallen(take: &Prepared, draft: &Draft, progress: &mut dyn FnMut(f64) -> bool) -> Result<Option<(Prepared, Draft)>> {
+    let Some((ending, swell)) = take.ending.as_ref().zip(draft.swell) else { return Ok(None) };
+    let key = key_from_frequency(draft.note, A4);
+    let (damped, found) =
+        ending.release.tuned(&draft.patch(), &ending.mean, (key, draft.velocity), &mut || progress(1.0))?;
+    let whole = take.not_let_go();
+    let mut listener = Listener::new(&whole, progress);
+    listener.tell(1.0)?;
+    let note = Played { key, velocity: draft.velocity, frames: whole.mean.len(), let_go: Some(found.frames()) };
+    let let_go = log_mel::distance(&Audition::new().mean(&damped, note), &whole.mean);
+    let mut other = Draft { swell: Some(Swell { fall: Some(FALL), ..swell }), is_held: false, ..draft.clone() };
+    listener.choose_swell(&mut other)?;
+    listener.correct(&mut other, ROUNDS)?;
+    let distance = listener.distance(&other, usize::MAX)?;
+    Ok((distance < let_go).then_some((whole, other)))
 }
 
 /// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more. If it is held or rises
@@ -119,7 +143,7 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
     if still > NOISE_DB && !drifts {
         let empty = || start::from(take, None, &Source { struck: false, ..all }, false);
         found.extend(bursts::find(&take.mean).map(|noise| (Draft { noise, ..empty() }, strike.clone())));
-        found.push((blown(take, most, empty()), strike.clone()));
+        found.push((noise::lasting(take, most, empty()), strike.clone()));
         let late = Source { late: LATE * take.seconds(), struck: false, ..all };
         let (driven, _) = analysed(take, late, of_noise, tell)?;
         found.push((driven, strike.clone()));
@@ -145,29 +169,12 @@ fn swayed(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>)
     let drift = Drift::by(&oscillators, swept.envelope(), take.mean.len());
     let still = take.replaced(take.channels.iter().map(|channel| drift.removed_from(channel)).collect());
     let mut found = held::draft(&still, Some(swept), most, &mut |share| tell(share).is_ok())?;
-    found.retain(|held| residual_db(held) < NOISE_DB);
-    if found.is_empty() {
+    if found.iter().all(|held| residual_db(held) > NOISE_DB) {
         // Noise that moves so is left to the bed.
         found.push((start::from(take, None, &Source { swept, late: 0.0, struck: false }, false), None));
     }
     let swayed = |(draft, strike)| (Draft { oscillators: oscillators.clone(), ..draft }, strike);
     Ok(found.into_iter().map(swayed).collect())
-}
-
-/// A draft of noise that goes on for as long as the sound, up to a second, as of breath or a shaker, through short modes.
-fn blown(take: &Prepared, most: usize, draft: Draft) -> Draft {
-    let target = MelBands::new().measure(&take.mean);
-    let power = |column: &[f64; BANDS]| column.iter().map(|level| libm::pow(10.0, 0.1 * level)).sum::<f64>();
-    let powers: Vec<f64> = target.columns.iter().map(power).collect();
-    let loudest = powers.iter().copied().fold(0.0, f64::max);
-    let seconds = |at: Option<usize>| time(at.unwrap_or(0));
-    let attack = seconds(powers.iter().position(|power| *power > HALF * loudest));
-    let end = seconds(powers.iter().rposition(|power| *power > OVER * loudest));
-    // The engine's noise falls after its attack.
-    let seconds = (end - attack).clamp(BURSTS.0, BURSTS.1);
-    let noise = Noise { seconds, attack: attack.min(BURSTS.1), ..Noise::SHORT };
-    let partials = bed::short(&target, &Lines::new(&take.mean), most.div_ceil(2), SEEDS[0]);
-    Draft { noise, partials, ..draft }
 }
 
 /// The residual of a strike in dB.
@@ -190,22 +197,38 @@ fn improved(
     }
     listener.choose_hardness(&mut draft)?;
     listener.tell(part(0.3))?;
+    let is_shaped = noise::lasts(&draft);
     // Two passes, so that a sound that decays in two stages gets two beds.
-    for (pass, seed) in [(1.0, SEEDS[1]), (2.0, SEEDS[2])] {
+    for (pass, seed) in [(1.0, SEEDS[0]), (2.0, SEEDS[1])] {
         let heard = listener.hear(&draft)?;
         let room = most.saturating_sub(draft.partials.len());
-        let mut other = draft.clone();
         // Before the last burst, a band does not decay.
         let from = (draft.noise.last() * f64::from(RATE)) as usize / HOP;
         let [wanted, heard] = [&listener.target, &heard].map(|bands| bands.skipping(from));
-        other.partials.extend(bed::bed([&wanted, &heard], lines, &draft.sweep, room, seed));
-        if other.partials.is_empty() {
+        let more = bed::bed([&wanted, &heard], lines, &draft.sweep, room, seed);
+        if more.is_empty() && draft.partials.is_empty() {
             break;
         }
-        listener.choose_noise(&mut other)?;
-        listener.correct(&mut other, ROUNDS)?;
-        if listener.distance(&other, usize::MAX)? < listener.distance(&draft, usize::MAX)? - WORTH_A_BED {
-            draft = other;
+        let (mut least, mut noise) = (listener.distance(&draft, usize::MAX)? - WORTH_A_BED, None);
+        let mut with_bed = draft.clone();
+        with_bed.partials.extend(more);
+        for alternate in [true, false] {
+            let mut other = with_bed.clone();
+            if alternate {
+                bed::alternate(&mut other.partials);
+            }
+            match noise {
+                // What suits one choice of signs suits the other.
+                Some(noise) => other.noise = noise,
+                None if !is_shaped => listener.choose_noise(&mut other)?,
+                None => (),
+            }
+            noise = Some(other.noise);
+            listener.correct(&mut other, ROUNDS)?;
+            let distance = listener.distance(&other, usize::MAX)?;
+            if distance < least {
+                (draft, least) = (other, distance);
+            }
         }
         listener.tell(part(0.3 + 0.2 * pass))?;
     }
@@ -215,6 +238,7 @@ fn improved(
     }
     listener.choose_oscillators(&mut draft)?;
     listener.choose_hardness(&mut draft)?;
+    listener.shape_noise(&mut draft)?;
     listener.choose_sweep(&mut draft)?;
     listener.correct(&mut draft, ROUNDS)?;
     listener.tell(part(1.0))?;

@@ -20,12 +20,14 @@ mod layers;
 mod levels;
 mod movement;
 mod names;
+mod noise;
 mod pitch;
 mod refine;
 mod release;
 #[cfg(feature = "analysis")]
 pub mod report;
 mod resample;
+mod shaping;
 mod simplex;
 mod start;
 mod summary;

@@ -67,6 +67,8 @@ pub(super) struct Swell {
     pub(super) depth: f64,
     /// −1 to 1: above 0 the rise is fast at first.
     pub(super) curve: f64,
+    /// Seconds in which it falls again, if it does not stay at its level.
+    pub(super) fall: Option<f64>,
 }
 
 /// A low-frequency oscillator that moves pitch and level.

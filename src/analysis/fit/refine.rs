@@ -2,40 +2,31 @@
 
 use super::audition::{Audition, Played};
 use super::correct::{by_bands, by_moments};
-use super::draft::{Draft, Noise};
+use super::draft::Draft;
 use super::movement::Swell;
 use super::simplex;
 use super::take::Prepared;
 use crate::analysis::log_mel::{HOP, LogMel, MelBands, WINDOW};
 use crate::error::{Error, Result};
-use crate::params::NoiseDecay;
 use crate::units::key_from_frequency;
 
 /// Hardnesses that are tried.
 const HARDNESSES: [f64; 10] = [0.95, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25, 0.15, 0.05];
-/// Lengths and rises in seconds of the noise that are tried.
-const LENGTHS: [f64; 8] = [0.002, 0.006, 0.015, 0.04, 0.1, 0.23, 0.5, 1.0];
-const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
-/// Factor of the lengths beside the best of these that are tried.
-const NEARER: f64 = 1.35;
-/// A burst longer than this many seconds affects the decay.
-const SHORT: f64 = 0.02;
-/// Ratio of the T60 of an exponential burst to the length of a quadratic burst of the same energy: the energies are T60
-/// / (6 ln 10) and length / 5.
-const EXPONENTIAL: f64 = 2.76;
-/// Bursts that follow each other, and seconds between them, that are tried.
-const HITS: [u8; 3] = [2, 3, 4];
-const SPACINGS: [f64; 4] = [0.008, 0.0105, 0.0135, 0.018];
-/// Reduction of the attack's distance in dB for which several bursts are kept.
-const WORTH_HITS: f64 = 0.3;
-/// Swells that are tried: seconds and curves, and dB.
+/// Swells that are tried: seconds, curves and dB, then these factors of the best one's seconds and dB, and seconds of its fall.
 const SWELLS: [f64; 8] = [0.02, 0.04, 0.08, 0.15, 0.3, 0.6, 1.2, 2.4];
 const CURVES: [f64; 3] = [0.0, 0.5, 0.9];
 const SWELL_DB: f64 = 36.0;
+const LONGER: [f64; 2] = [1.0, 1.6];
+const DEEPER: [f64; 3] = [0.5, 1.4, 1.8];
+const FALLS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
+/// Distance in dB below which nothing nearer is looked for.
+pub(super) const NEAR_DB: f64 = 0.4;
 /// Windows of the attack: 150 ms.
-const ATTACK: usize = 26;
+pub(super) const ATTACK: usize = 26;
 /// Frames by which the onset of what is played may be late.
 const LATE: usize = 1024;
+/// Factors of the depths of oscillators that are tried, one after the other.
+const DEPTHS: [f64; 4] = [1.4, 1.2, 1.1, 0.9];
 /// Steps of the search for a sweep.
 const SIMPLEX_STEPS: usize = 36;
 
@@ -53,7 +44,8 @@ pub(super) struct Listener<'a> {
 impl<'a> Listener<'a> {
     pub(super) fn new(take: &'a Prepared, progress: &'a mut dyn FnMut(f64) -> bool) -> Self {
         let mut bands = MelBands::new();
-        let target = bands.measure(&take.mean);
+        let heard = [&take.mean[..], &take.silence].concat();
+        let target = bands.measure(&heard);
         Self { audition: Audition::new(), bands, take, target, progress, share: 0.0 }
     }
 
@@ -70,7 +62,8 @@ impl<'a> Listener<'a> {
     fn listen(&mut self, draft: &Draft, windows: usize) -> Result<LogMel> {
         self.tell(self.share)?;
         // The last window reaches half of its length further than its middle.
-        let frames = self.take.mean.len().min(windows.saturating_mul(HOP).saturating_add(WINDOW / 2));
+        let frames = (self.take.mean.len() + self.take.silence.len())
+            .min(windows.saturating_mul(HOP).saturating_add(WINDOW / 2));
         let key = key_from_frequency(draft.note, 440.0);
         let played = Played { key, velocity: draft.velocity, frames: frames + LATE, let_go: None };
         let sound = self.audition.mean(&draft.patch(), played);
@@ -96,7 +89,12 @@ impl<'a> Listener<'a> {
     }
 
     /// Replaces the draft by the best of `others` over the first windows, if that is better.
-    fn best(&mut self, draft: &mut Draft, windows: usize, others: impl IntoIterator<Item = Draft>) -> Result<()> {
+    pub(super) fn best(
+        &mut self,
+        draft: &mut Draft,
+        windows: usize,
+        others: impl IntoIterator<Item = Draft>,
+    ) -> Result<()> {
         let mut least = self.distance(draft, windows)?;
         for other in others {
             let distance = self.distance(&other, windows)?;
@@ -121,78 +119,51 @@ impl<'a> Listener<'a> {
         Ok(())
     }
 
-    /// Chooses the rise of a sound that is not struck.
+    /// Chooses the rise of a sound that is not struck, and its fall if it does not stay at its level.
     pub(super) fn choose_swell(&mut self, draft: &mut Draft) -> Result<()> {
-        let with = |draft: &Draft, swell| Draft { swell, ..draft.clone() };
-        let swell = |seconds| CURVES.map(|curve| Swell { seconds, depth: SWELL_DB, curve });
-        let swells: Vec<Draft> = SWELLS.into_iter().flat_map(swell).map(|swell| with(draft, Some(swell))).collect();
-        self.best(draft, usize::MAX, swells)?;
+        let fall = draft.swell.and_then(|swell| swell.fall);
+        let swell = |seconds| CURVES.map(|curve| Swell { seconds, depth: SWELL_DB, curve, fall });
+        self.best_swell(draft, SWELLS.into_iter().flat_map(swell))?;
+        if let Some(swell) = draft.swell {
+            let larger = |longer| {
+                DEEPER.map(|deeper| Swell { seconds: longer * swell.seconds, depth: deeper * swell.depth, ..swell })
+            };
+            self.best_swell(draft, LONGER.into_iter().flat_map(larger))?;
+        }
         for step in [0.35, 0.2, 0.1] {
+            let factors = [1.0 - step, 1.0 + step];
             let Some(swell) = draft.swell else { break };
-            let times = [1.0 - step, 1.0 + step].map(|factor| Swell { seconds: factor * swell.seconds, ..swell });
-            let depths = [1.0 - step, 1.0 + step].map(|factor| Swell { depth: factor * swell.depth, ..swell });
+            let times = factors.map(|factor| Swell { seconds: factor * swell.seconds, ..swell });
+            let depths = factors.map(|factor| Swell { depth: factor * swell.depth, ..swell });
             let curves = [-step, step].map(|by| Swell { curve: (swell.curve + by).clamp(-1.0, 1.0), ..swell });
-            let near: Vec<Draft> =
-                times.into_iter().chain(depths).chain(curves).map(|swell| with(draft, Some(swell))).collect();
-            self.best(draft, usize::MAX, near)?;
+            self.best_swell(draft, times.into_iter().chain(depths).chain(curves))?;
+            let Some(swell) = draft.swell else { break };
+            let falls = match swell.fall {
+                None => FALLS.to_vec(),
+                Some(fall) => factors.map(|factor| factor * fall).to_vec(),
+            };
+            self.best_swell(draft, falls.into_iter().map(|fall| Swell { fall: Some(fall), ..swell }))?;
         }
         Ok(())
     }
 
-    /// Keeps the oscillators only if the sound is nearer with them.
+    /// Replaces the draft's swell by the best of some, if that is better.
+    fn best_swell(&mut self, draft: &mut Draft, swells: impl Iterator<Item = Swell>) -> Result<()> {
+        let before = draft.clone();
+        self.best(draft, usize::MAX, swells.map(|swell| Draft { swell: Some(swell), ..before.clone() }))
+    }
+
+    /// Keeps the oscillators only if the sound is nearer with them, and changes the depths in which they move the level.
     pub(super) fn choose_oscillators(&mut self, draft: &mut Draft) -> Result<()> {
+        for n in 0..draft.oscillators.len() {
+            for factor in DEPTHS {
+                let mut other = draft.clone();
+                other.oscillators[n].db *= factor;
+                self.best(draft, usize::MAX, [other])?;
+            }
+        }
         let without = (!draft.oscillators.is_empty()).then(|| Draft { oscillators: Vec::new(), ..draft.clone() });
         self.best(draft, usize::MAX, without)
-    }
-
-    /// Chooses length and rise of the noise burst.
-    pub(super) fn choose_noise(&mut self, draft: &mut Draft) -> Result<()> {
-        if draft.partials.iter().all(|partial| partial.struck) {
-            return Ok(());
-        }
-        let with = |draft: &Draft, noise| Draft { noise, ..draft.clone() };
-        let noise = draft.noise;
-        // The decays of the modes were measured together with the burst, so they are corrected for each burst.
-        let bursts = LENGTHS.map(|seconds| Noise { seconds, ..noise });
-        self.best_corrected(draft, bursts)?;
-        let noise = draft.noise;
-        self.best_corrected(
-            draft,
-            [Noise { seconds: (EXPONENTIAL * noise.seconds).min(1.0), decay: NoiseDecay::Exponential, ..noise }],
-        )?;
-        if draft.noise.seconds > SHORT {
-            let noise = draft.noise;
-            let near = [1.0 / NEARER, NEARER].map(|factor| (factor * noise.seconds).min(1.0));
-            self.best_corrected(draft, near.map(|seconds| Noise { seconds, ..noise }))?;
-        }
-        let noise = draft.noise;
-        let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
-        self.best(draft, usize::MAX, rises)?;
-        let noise = draft.noise;
-        let several = HITS.map(|hits| SPACINGS.map(|spacing| with(draft, Noise { hits, spacing, ..noise })));
-        let mut other = draft.clone();
-        self.best(&mut other, ATTACK, several.into_iter().flatten())?;
-        if self.distance(&other, ATTACK)? < self.distance(draft, ATTACK)? - WORTH_HITS {
-            *draft = other;
-        }
-        Ok(())
-    }
-
-    /// Replaces the noise of the draft by the best of `bursts`, with levels and decays corrected for it, if that is better.
-    fn best_corrected(&mut self, draft: &mut Draft, bursts: impl IntoIterator<Item = Noise>) -> Result<()> {
-        let mut least = self.distance(draft, usize::MAX)?;
-        let before = draft.clone();
-        for noise in bursts {
-            let mut other = Draft { noise, ..before.clone() };
-            if noise.seconds > SHORT {
-                self.correct(&mut other, 2)?;
-            }
-            let distance = self.distance(&other, usize::MAX)?;
-            if distance < least {
-                (*draft, least) = (other, distance);
-            }
-        }
-        Ok(())
     }
 
     /// Moves the sweep to where the distance is least.

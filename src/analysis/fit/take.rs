@@ -55,6 +55,9 @@ const NEAR_LAST: f64 = 0.1;
 /// Seconds before a key is let go at which the part ends that is fitted.
 const GUARD: f64 = 0.03;
 
+/// Seconds after the end of a sound in which a draft is heard, too.
+const SILENCE_HEARD: f64 = 0.5;
+
 /// Frames whose RMS is the level of a take: 50 ms.
 pub(super) const LEVEL_FRAMES: usize = RATE as usize / 20;
 
@@ -71,6 +74,8 @@ pub(super) struct Prepared {
     pub(super) channels: Vec<Vec<f32>>,
     /// The mean of the channels.
     pub(super) mean: Vec<f32>,
+    /// The mean of what is recorded after that, of a sound that ends by itself: silence, in which no draft should ring.
+    pub(super) silence: Vec<f32>,
     pub(super) key: Option<f64>,
     /// 0–1.
     pub(super) velocity: f64,
@@ -134,10 +139,13 @@ impl Prepared {
             warnings
                 .push(format!("{}: it sounds for longer: the first {LONGEST} s from its onset are fitted", take.name));
         }
+        let silent = (over + (SILENCE_HEARD * f64::from(RATE)) as usize).min(middle.len()).min(longest).max(end);
+        let silence = middle[end..silent].to_vec();
         let channels: Vec<Vec<f32>> = channels.iter().map(|channel| channel[onset..end].to_vec()).collect();
         let mut prepared = Self {
             mean: mono(&channels),
             channels,
+            silence,
             key: take.key,
             velocity: (take.velocity / 127.0).clamp(1.0 / 127.0, 1.0),
             rise,
@@ -161,7 +169,7 @@ impl Prepared {
 
     /// The same take with other samples.
     pub(super) fn replaced(&self, channels: Vec<Vec<f32>>) -> Self {
-        Self { mean: mono(&channels), channels, ending: None, warnings: Vec::new(), ..*self }
+        Self { mean: mono(&channels), channels, silence: Vec::new(), ending: None, warnings: Vec::new(), ..*self }
     }
 
     fn end(&mut self, release: Release, seconds: f64) {
@@ -170,7 +178,13 @@ impl Prepared {
         let channels = self.channels.iter().map(|channel| head(channel)).collect();
         let channels = std::mem::replace(&mut self.channels, channels);
         let head = head(&self.mean);
+        self.silence.clear();
         self.ending = Some(Ending { channels, mean: std::mem::replace(&mut self.mean, head), release });
+    }
+
+    /// The same take with what comes after its key is let go as a part of it: nothing is let go.
+    pub(super) fn not_let_go(&self) -> Self {
+        Self { warnings: self.warnings.clone(), ..self.replaced(self.whole().0.to_vec()) }
     }
 
     /// All of it, with what comes after its key is let go: its channels and their mean.
@@ -255,6 +269,20 @@ mod tests {
             warnings: Vec::new(),
         });
         assert!(kept.channels[0].len() < 13 * RATE_OF_FILE as usize, "{}", kept.channels[0].len());
+    }
+
+    #[test]
+    fn silence_after_a_sound_is_kept_but_not_as_a_part_of_it() {
+        let strike = |t: f64| if t < 0.4 { 0.5 * libm::exp(-6.9 * t / 0.3) * libm::sin(TAU * 440.0 * t) } else { 0.0 };
+        let take = prepared(samples(2.0, RATE, strike), RATE);
+        assert!((0.3..0.45).contains(&take.seconds()) && take.silence.len() == RATE as usize / 2, "{}", take.seconds());
+        // A file that ends with its sound says nothing of what follows.
+        assert!(prepared(samples(0.3, RATE, strike), RATE).silence.len() < RATE as usize / 50);
+        let held =
+            prepared(samples(2.0, RATE, |t| libm::exp(-69.0 * (t - 1.0).max(0.0)) * libm::sin(TAU * 440.0 * t)), RATE);
+        assert!(held.ending.is_some() && held.silence.is_empty());
+        let whole = held.not_let_go();
+        assert!(whole.ending.is_none() && whole.mean == held.whole().1 && whole.mean.len() > held.mean.len());
     }
 
     /// Pulses of a voice through its first three formants (Peterson & Barney 1952), two vowels with a stop between them.

@@ -1,0 +1,156 @@
+//! Shapes the noise of a draft by ear: its length, rise and fall, and its bursts.
+
+use super::correct::by_levels;
+use super::draft::{Draft, Noise};
+use super::refine::{ATTACK, Listener};
+use crate::error::Result;
+use crate::params::NoiseDecay;
+
+/// Lengths and rises in seconds of the noise that are tried.
+const LENGTHS: [f64; 8] = [0.002, 0.006, 0.015, 0.04, 0.1, 0.23, 0.5, 1.0];
+const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
+/// Factor of the lengths beside the best of these that are tried.
+const NEARER: f64 = 1.35;
+/// Longest noise of the engine in seconds. A noise longer than the shorter time affects the decay.
+const LONGEST: f64 = 1.0;
+const SHORT: f64 = 0.02;
+/// Steps by which length, rise and distance of a noise are changed: of one that lasts as long as the sound, and of any.
+const COARSE: [f64; 3] = [0.5, 0.25, 0.12];
+const FINE: [f64; 3] = [0.4, 0.2, 0.1];
+/// Longest distance of the engine's bursts in seconds.
+const FARTHEST: f64 = 0.5;
+/// Rise in seconds from which one is looked for.
+const LEAST_RISE: f64 = 0.002;
+/// Ratio of the T60 of an exponential burst to the length of a quadratic burst of the same energy: the energies are T60
+/// / (6 ln 10) and length / 5.
+const EXPONENTIAL: f64 = 2.76;
+/// Corrections of levels at a time.
+const SETTLINGS: usize = 3;
+/// Bursts that follow each other, and seconds between them, that are tried.
+const HITS: [u8; 3] = [2, 3, 4];
+const SPACINGS: [f64; 4] = [0.008, 0.0105, 0.0135, 0.018];
+/// Reduction of the attack's distance in dB for which several bursts are kept.
+const WORTH_HITS: f64 = 0.3;
+
+/// A shorter and a longer noise.
+fn lengthened(noise: Noise, step: f64) -> [Noise; 2] {
+    factors(step).map(|factor| Noise { seconds: (factor * noise.seconds).min(LONGEST), ..noise })
+}
+
+/// Noises that rise faster and more slowly.
+fn risen(noise: Noise, step: f64) -> [Noise; 2] {
+    factors(step).map(|factor| Noise { attack: (factor * noise.attack.max(LEAST_RISE)).min(LONGEST), ..noise })
+}
+
+/// Rows of bursts that follow each other faster and more slowly.
+fn spaced(noise: Noise, step: f64) -> [Noise; 2] {
+    factors(step).map(|factor| Noise { spacing: (factor * noise.spacing).min(FARTHEST), ..noise })
+}
+
+fn factors(step: f64) -> [f64; 2] {
+    [1.0 / (1.0 + step), 1.0 + step]
+}
+
+impl Listener<'_> {
+    /// Chooses length and rise of the noise burst.
+    pub(super) fn choose_noise(&mut self, draft: &mut Draft) -> Result<()> {
+        if draft.partials.iter().all(|partial| partial.struck) {
+            return Ok(());
+        }
+        let with = |draft: &Draft, noise| Draft { noise, ..draft.clone() };
+        let noise = draft.noise;
+        // The decays of the modes were measured together with the burst, so they are corrected for each burst.
+        let bursts = LENGTHS.map(|seconds| Noise { seconds, ..noise });
+        self.best_corrected(draft, bursts)?;
+        let noise = draft.noise;
+        self.best_corrected(
+            draft,
+            [Noise { seconds: (EXPONENTIAL * noise.seconds).min(LONGEST), decay: NoiseDecay::Exponential, ..noise }],
+        )?;
+        if draft.noise.seconds > SHORT {
+            let noise = draft.noise;
+            let near = [1.0 / NEARER, NEARER].map(|factor| (factor * noise.seconds).min(LONGEST));
+            self.best_corrected(draft, near.map(|seconds| Noise { seconds, ..noise }))?;
+        }
+        let noise = draft.noise;
+        let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
+        self.best(draft, usize::MAX, rises)?;
+        let noise = draft.noise;
+        let several = HITS.map(|hits| SPACINGS.map(|spacing| with(draft, Noise { hits, spacing, ..noise })));
+        let mut other = draft.clone();
+        self.best(&mut other, ATTACK, several.into_iter().flatten())?;
+        if self.distance(&other, ATTACK)? < self.distance(draft, ATTACK)? - WORTH_HITS {
+            *draft = other;
+        }
+        Ok(())
+    }
+
+    /// Corrects the levels alone of the modes of a draft, and returns its distance.
+    pub(super) fn settle(&mut self, draft: &mut Draft) -> Result<f64> {
+        let mut heard = self.hear(draft)?;
+        let mut least = heard.distance(&self.target);
+        for _ in 0..SETTLINGS {
+            let other = by_levels(draft, &self.target, &heard);
+            heard = self.hear(&other)?;
+            let distance = heard.distance(&self.target);
+            if distance >= least {
+                break;
+            }
+            (*draft, least) = (other, distance);
+        }
+        Ok(least)
+    }
+
+    /// Changes length, rise and fall of a noise that lasts as long as the sound, with the levels alone corrected for each: decays
+    /// would take over what is wrong in the noise.
+    pub(super) fn settle_noise(&mut self, draft: &mut Draft) -> Result<()> {
+        let mut least = self.settle(draft)?;
+        for step in COARSE {
+            let before = draft.clone();
+            let noise = before.noise;
+            let others = if noise.hits > 1 { spaced(noise, step) } else { risen(noise, step) };
+            let (decay, factor) = match noise.decay {
+                NoiseDecay::Quadratic => (NoiseDecay::Exponential, EXPONENTIAL),
+                NoiseDecay::Exponential => (NoiseDecay::Quadratic, 1.0 / EXPONENTIAL),
+            };
+            let fall = Noise { seconds: (factor * noise.seconds).min(LONGEST), decay, ..noise };
+            for noise in lengthened(noise, step).into_iter().chain(others).chain([fall]) {
+                let mut other = Draft { noise, ..before.clone() };
+                let distance = self.settle(&mut other)?;
+                if distance < least {
+                    (*draft, least) = (other, distance);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Changes length and rise of a noise that is heard as such, as long as the sound comes nearer.
+    pub(super) fn shape_noise(&mut self, draft: &mut Draft) -> Result<()> {
+        if draft.noise.seconds <= SHORT || draft.partials.iter().all(|partial| partial.struck) {
+            return Ok(());
+        }
+        for step in FINE {
+            let near = [lengthened(draft.noise, step), risen(draft.noise, step)];
+            self.best_corrected(draft, near.into_iter().flatten())?;
+        }
+        Ok(())
+    }
+
+    /// Replaces the noise of the draft by the best of `bursts`, with levels and decays corrected for it, if that is better.
+    fn best_corrected(&mut self, draft: &mut Draft, bursts: impl IntoIterator<Item = Noise>) -> Result<()> {
+        let mut least = self.distance(draft, usize::MAX)?;
+        let before = draft.clone();
+        for noise in bursts {
+            let mut other = Draft { noise, ..before.clone() };
+            if noise.seconds > SHORT {
+                self.correct(&mut other, 2)?;
+            }
+            let distance = self.distance(&other, usize::MAX)?;
+            if distance < least {
+                (*draft, least) = (other, distance);
+            }
+        }
+        Ok(())
+    }
+}
