@@ -12,7 +12,7 @@ const BEFORE: usize = 3;
 const FAINT: f64 = 1e-4;
 /// Fewest bursts, for fewer are tried by ear, and the most that the engine plays.
 const FEWEST: usize = 5;
-const MOST: usize = 16;
+const MOST: usize = Noise::MOST_HITS as usize;
 /// Shortest and longest distance in seconds, and the step between those that are tried, in blocks.
 const SPACINGS: (f64, f64) = (0.004, 0.08);
 const STEP: f64 = 0.25;

@@ -68,6 +68,18 @@ impl Noise {
     pub(super) const SHORT: Self =
         Self { seconds: 0.004, decay: NoiseDecay::Quadratic, attack: 0.0, hits: 1, spacing: 0.012 };
 
+    /// The engine's longest burst and the longest distance of two bursts, in seconds, and its greatest number of bursts.
+    pub(super) const LONGEST: f64 = 1.0;
+    pub(super) const FARTHEST: f64 = 0.5;
+    pub(super) const MOST_HITS: u8 = 16;
+    /// Seconds from which a burst is heard as noise, and affects the decays.
+    pub(super) const AUDIBLE: f64 = 0.02;
+
+    /// Whether it is heard as noise, and not as a click.
+    pub(super) fn is_audible(&self) -> bool {
+        self.seconds >= Self::AUDIBLE
+    }
+
     /// Seconds from the onset to the last burst.
     pub(super) fn last(&self) -> f64 {
         f64::from(self.hits.saturating_sub(1)) * self.spacing
@@ -217,14 +229,18 @@ impl Draft {
             set(Param::Envelope1Attack, swell.seconds);
             set(Param::Envelope1Curve, 100.0 * swell.curve);
             match swell.fall {
-                None => set(Param::Envelope1Sustain, 100.0),
+                None => {
+                    set(Param::Envelope1Sustain, 100.0);
+                    // The damper ends the note, and not the envelope.
+                    set(Param::Envelope1Release, Param::Envelope1Release.info().max.into());
+                }
                 Some(seconds) => {
                     set(Param::Envelope1Sustain, 0.0);
+                    // A key that comes up before the end lets the sound fall, too.
                     set(Param::Envelope1Decay, seconds);
+                    set(Param::Envelope1Release, seconds);
                 }
             }
-            // The damper ends the note, and not the envelope.
-            set(Param::Envelope1Release, Param::Envelope1Release.info().max.into());
             patch = patch.with_route(SWELL_ROUTE, Source::Envelope1, Param::Gain, amount(Param::Gain, depth));
         }
         let moved = self.oscillators.iter().zip(&LFOS).flat_map(|(oscillator, (source, _))| {

@@ -2,7 +2,7 @@
 
 use super::audition::{Audition, Played};
 use super::bed::Lines;
-use super::draft::Draft;
+use super::draft::{Draft, Partial, longest_t60};
 use super::drift::Drift;
 use super::movement::{Sweep, Swell};
 use super::refine::{Listener, NEAR_DB};
@@ -32,8 +32,11 @@ const WORTH_A_DRIFT_DB: f64 = 6.0;
 const WORTH_A_SWEEP_DB: f64 = 2.0;
 /// Reduction of the distance in dB for which a bed is kept.
 const WORTH_A_BED: f64 = 0.02;
-/// Seconds of a fall from which the search for it begins.
+/// Share of its length for which a sound rises that is not held by a key, and seconds of a fall from which the search for it begins.
+const MOSTLY: f64 = 0.6;
 const FALL: f64 = 0.1;
+/// Share of the work on a draft of noise in which that is shaped.
+const SHAPED: f64 = 0.4;
 /// Seeds of the pans of the modes of two beds.
 const SEEDS: [u64; 2] = [11, 12];
 /// Rounds of corrections at a time.
@@ -55,11 +58,16 @@ pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64
             _ => Lines::new(&take.mean),
         };
         let part = |share: f64| ANALYSED + (1.0 - ANALYSED) * (n as f64 + share) / count;
-        listener.tell(part(0.0))?;
-        let draft = if noise::lasts(&draft) { noise::shaped(draft, take, most, &mut listener)? } else { draft };
-        let slow = take.rise > SLOW;
-        let draft = improved(draft, &mut listener, &lines, most, slow, &part)?;
-        let distance = listener.distance(&draft, usize::MAX)?;
+        let is_shaped = draft.noise.is_audible();
+        let (draft, from) = if is_shaped {
+            let tell = |listener: &mut Listener, share: f64| listener.tell(part(SHAPED * share));
+            listener.tell(part(0.0))?;
+            (noise::shaped(draft, take, most, &mut listener, &tell)?, SHAPED)
+        } else {
+            (draft, 0.0)
+        };
+        let part = |share: f64| part(from + (1.0 - from) * share);
+        let (draft, distance) = improved(draft, &mut listener, &lines, most, is_shaped, &part)?;
         if distance < least {
             (best, least) = (Some((draft, strike)), distance);
         }
@@ -68,19 +76,20 @@ pub(super) fn fit(take: &mut Prepared, most: usize, progress: &mut dyn FnMut(f64
         }
     }
     listener.tell(1.0)?;
-    let (draft, strike) = best.ok_or(Error::Interrupted)?;
-    Ok(match fallen(take, &draft, progress)? {
-        Some((whole, draft)) => {
-            *take = whole;
-            (draft, strike)
-        }
-        None => (draft, strike),
-    })
+    best.ok_or(Error::Interrupted)
 }
 
-/// Of a sound that swells and seems to be let go, the draft that falls by itself instead, and the whole take, if these are nearer.
-fn fallen(take: &Prepared, draft: &Draft, progress: &mut dyn FnMut(f64) -> bool) -> Result<Option<(Prepared, Draft)>> {
+/// Of a take whose level rises until its key seems to be let go, the draft of a swell that falls by itself, and the take as a whole,
+/// if that is nearer than a damper.
+pub(super) fn fallen(
+    take: &Prepared,
+    draft: &Draft,
+    progress: &mut dyn FnMut(f64) -> bool,
+) -> Result<Option<(Prepared, Draft)>> {
     let Some((ending, swell)) = take.ending.as_ref().zip(draft.swell) else { return Ok(None) };
+    if take.rise < MOSTLY * ending.release.seconds {
+        return Ok(None);
+    }
     let key = key_from_frequency(draft.note, A4);
     let (damped, found) =
         ending.release.tuned(&draft.patch(), &ending.mean, (key, draft.velocity), &mut || progress(1.0))?;
@@ -89,10 +98,15 @@ fn fallen(take: &Prepared, draft: &Draft, progress: &mut dyn FnMut(f64) -> bool)
     listener.tell(1.0)?;
     let note = Played { key, velocity: draft.velocity, frames: whole.mean.len(), let_go: Some(found.frames()) };
     let let_go = log_mel::distance(&Audition::new().mean(&damped, note), &whole.mean);
-    let mut other = Draft { swell: Some(Swell { fall: Some(FALL), ..swell }), is_held: false, ..draft.clone() };
+    let shorter = |partial: &Partial| Partial { t60: partial.t60.min(longest_t60(false)), ..*partial };
+    let mut other = Draft {
+        partials: draft.partials.iter().map(shorter).collect(),
+        swell: Some(Swell { fall: Some(FALL), ..swell }),
+        is_held: false,
+        ..draft.clone()
+    };
     listener.choose_swell(&mut other)?;
-    listener.correct(&mut other, ROUNDS)?;
-    let distance = listener.distance(&other, usize::MAX)?;
+    let distance = listener.correct(&mut other, ROUNDS)?;
     Ok((distance < let_go).then_some((whole, other)))
 }
 
@@ -182,14 +196,16 @@ fn residual_db((_, strike): &Found) -> f64 {
     strike.as_ref().map_or(0.0, |strike| strike.residual_db)
 }
 
+/// The draft with a bed, and corrected until it hardly comes nearer, and its distance. Noise that is shaped already stays as it is.
 fn improved(
     mut draft: Draft,
     listener: &mut Listener,
     lines: &Lines,
     most: usize,
-    slow: bool,
+    is_shaped: bool,
     part: &dyn Fn(f64) -> f64,
-) -> Result<Draft> {
+) -> Result<(Draft, f64)> {
+    let slow = listener.take.rise > SLOW;
     listener.tell(part(0.0))?;
     listener.choose_oscillators(&mut draft)?;
     if slow {
@@ -197,7 +213,6 @@ fn improved(
     }
     listener.choose_hardness(&mut draft)?;
     listener.tell(part(0.3))?;
-    let is_shaped = noise::lasts(&draft);
     // Two passes, so that a sound that decays in two stages gets two beds.
     for (pass, seed) in [(1.0, SEEDS[0]), (2.0, SEEDS[1])] {
         let heard = listener.hear(&draft)?;
@@ -212,20 +227,19 @@ fn improved(
         let (mut least, mut noise) = (listener.distance(&draft, usize::MAX)? - WORTH_A_BED, None);
         let mut with_bed = draft.clone();
         with_bed.partials.extend(more);
-        for alternate in [true, false] {
-            let mut other = with_bed.clone();
-            if alternate {
-                bed::alternate(&mut other.partials);
-            }
+        let mut alternating = with_bed.clone();
+        bed::alternate(&mut alternating.partials);
+        // The same draft twice if nothing alternates.
+        let is_other = alternating != with_bed;
+        for mut other in [Some(alternating), is_other.then_some(with_bed)].into_iter().flatten() {
             match noise {
-                // What suits one choice of signs suits the other.
+                // Choosing it anew brought nothing: twenty presets came 0.00 dB nearer in the mean.
                 Some(noise) => other.noise = noise,
                 None if !is_shaped => listener.choose_noise(&mut other)?,
                 None => (),
             }
             noise = Some(other.noise);
-            listener.correct(&mut other, ROUNDS)?;
-            let distance = listener.distance(&other, usize::MAX)?;
+            let distance = listener.correct(&mut other, ROUNDS)?;
             if distance < least {
                 (draft, least) = (other, distance);
             }
@@ -240,7 +254,7 @@ fn improved(
     listener.choose_hardness(&mut draft)?;
     listener.shape_noise(&mut draft)?;
     listener.choose_sweep(&mut draft)?;
-    listener.correct(&mut draft, ROUNDS)?;
+    let distance = listener.correct(&mut draft, ROUNDS)?;
     listener.tell(part(1.0))?;
-    Ok(draft)
+    Ok((draft, distance))
 }

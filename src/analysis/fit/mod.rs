@@ -2,9 +2,10 @@
 //!
 //! The sweep of the pitch is found and removed; of a held sound, all drift that its tones have in common. The sound, whose
 //! pitch is now constant, is analysed into modes. Their residual becomes a bed: modes that noise excites. Of a sound that modes
-//! explain badly, rows of bursts are counted, and regular movement becomes that of low-frequency oscillators. Then each draft is
-//! played and compared with the recording, band by band ([`super::log_mel`]), to correct the mallet's hardness, the length of
-//! the noise, levels and decays; the nearest one is the result.
+//! explain badly, rows of bursts are counted, noise that lasts as long as the sound is shaped, and regular movement becomes that of
+//! low-frequency oscillators. Then each draft is played and compared with the recording, band by band ([`super::log_mel`]), to
+//! correct the mallet's hardness, the rise, fall and length of swells and of noise, levels and decays; the nearest one is the
+//! result.
 
 mod audition;
 mod bed;
@@ -139,7 +140,14 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     let mut fits = Vec::new();
     for (n, take) in prepared.iter_mut().enumerate() {
         let most = settings.most_modes.clamp(1, MOST_MODES);
-        fits.push(improve::fit(take, most, &mut |share| tell((n as f64 + share) / count))?);
+        let mut tell = |share| tell((n as f64 + share) / count);
+        let (mut draft, strike) = improve::fit(take, most, &mut tell)?;
+        // Of several takes, those that are let go tell how the others end.
+        let fallen = if takes.len() == 1 { improve::fallen(take, &draft, &mut tell)? } else { None };
+        if let Some(fallen) = fallen {
+            (*take, draft) = fallen;
+        }
+        fits.push((draft, strike));
     }
     let layer =
         |((draft, _), take): (&(draft::Draft, _), &Prepared)| Layer { draft: draft.clone(), level: take.level() };

@@ -8,14 +8,16 @@ use super::simplex;
 use super::take::Prepared;
 use crate::analysis::log_mel::{HOP, LogMel, MelBands, WINDOW};
 use crate::error::{Error, Result};
+use crate::params::Param;
 use crate::units::key_from_frequency;
 
 /// Hardnesses that are tried.
 const HARDNESSES: [f64; 10] = [0.95, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25, 0.15, 0.05];
-/// Swells that are tried: seconds, curves and dB, then these factors of the best one's seconds and dB, and seconds of its fall.
+/// Swells that are tried: each of the seconds with each of the curves, at first with so many dB.
 const SWELLS: [f64; 8] = [0.02, 0.04, 0.08, 0.15, 0.3, 0.6, 1.2, 2.4];
 const CURVES: [f64; 3] = [0.0, 0.5, 0.9];
 const SWELL_DB: f64 = 36.0;
+/// Then the best one's seconds and dB are multiplied by these factors, and these seconds are tried for its fall.
 const LONGER: [f64; 2] = [1.0, 1.6];
 const DEEPER: [f64; 3] = [0.5, 1.4, 1.8];
 const FALLS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
@@ -34,7 +36,7 @@ const SIMPLEX_STEPS: usize = 36;
 pub(super) struct Listener<'a> {
     audition: Audition,
     bands: MelBands,
-    take: &'a Prepared,
+    pub(super) take: &'a Prepared,
     pub(super) target: LogMel,
     progress: &'a mut dyn FnMut(f64) -> bool,
     /// The share of the work that is done.
@@ -139,6 +141,8 @@ impl<'a> Listener<'a> {
             self.best_swell(draft, times.into_iter().chain(depths).chain(curves))?;
             let Some(swell) = draft.swell else { break };
             let falls = match swell.fall {
+                // What is held stays at its level.
+                None if draft.is_held => Vec::new(),
                 None => FALLS.to_vec(),
                 Some(fall) => factors.map(|factor| factor * fall).to_vec(),
             };
@@ -155,15 +159,22 @@ impl<'a> Listener<'a> {
 
     /// Keeps the oscillators only if the sound is nearer with them, and changes the depths in which they move the level.
     pub(super) fn choose_oscillators(&mut self, draft: &mut Draft) -> Result<()> {
+        if draft.oscillators.is_empty() {
+            return Ok(());
+        }
+        let [least, most] = [Param::Gain.info().min, Param::Gain.info().max].map(f64::from);
         for n in 0..draft.oscillators.len() {
             for factor in DEPTHS {
                 let mut other = draft.clone();
                 other.oscillators[n].db *= factor;
-                self.best(draft, usize::MAX, [other])?;
+                let sum: f64 = other.oscillators.iter().map(|oscillator| oscillator.db.abs()).sum();
+                if other.oscillators[n].db != 0.0 && sum < most - least {
+                    self.best(draft, usize::MAX, [other])?;
+                }
             }
         }
-        let without = (!draft.oscillators.is_empty()).then(|| Draft { oscillators: Vec::new(), ..draft.clone() });
-        self.best(draft, usize::MAX, without)
+        let without = Draft { oscillators: Vec::new(), ..draft.clone() };
+        self.best(draft, usize::MAX, [without])
     }
 
     /// Moves the sweep to where the distance is least.
@@ -179,8 +190,8 @@ impl<'a> Listener<'a> {
         Ok(())
     }
 
-    /// Corrects level and decay of the modes, as long as the distance falls.
-    pub(super) fn correct(&mut self, draft: &mut Draft, rounds: usize) -> Result<()> {
+    /// Corrects level and decay of the modes, as long as the distance falls. Returns the distance.
+    pub(super) fn correct(&mut self, draft: &mut Draft, rounds: usize) -> Result<f64> {
         let mut heard = self.hear(draft)?;
         let (mut least, mut share, mut idle) = (heard.distance(&self.target), 0.8, 0);
         for round in 0..rounds {
@@ -204,6 +215,6 @@ impl<'a> Listener<'a> {
                 break;
             }
         }
-        Ok(())
+        Ok(least)
     }
 }

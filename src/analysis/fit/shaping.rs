@@ -11,21 +11,16 @@ const LENGTHS: [f64; 8] = [0.002, 0.006, 0.015, 0.04, 0.1, 0.23, 0.5, 1.0];
 const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
 /// Factor of the lengths beside the best of these that are tried.
 const NEARER: f64 = 1.35;
-/// Longest noise of the engine in seconds. A noise longer than the shorter time affects the decay.
-const LONGEST: f64 = 1.0;
-const SHORT: f64 = 0.02;
-/// Steps by which length, rise and distance of a noise are changed: of one that lasts as long as the sound, and of any.
+/// Steps by which a noise is changed: one that lasts as long as the sound, and any.
 const COARSE: [f64; 3] = [0.5, 0.25, 0.12];
 const FINE: [f64; 3] = [0.4, 0.2, 0.1];
-/// Longest distance of the engine's bursts in seconds.
-const FARTHEST: f64 = 0.5;
-/// Rise in seconds from which one is looked for.
+/// Rise in seconds from which the search for one begins.
 const LEAST_RISE: f64 = 0.002;
 /// Ratio of the T60 of an exponential burst to the length of a quadratic burst of the same energy: the energies are T60
 /// / (6 ln 10) and length / 5.
 const EXPONENTIAL: f64 = 2.76;
 /// Corrections of levels at a time.
-const SETTLINGS: usize = 3;
+const LEVELLINGS: usize = 3;
 /// Bursts that follow each other, and seconds between them, that are tried.
 const HITS: [u8; 3] = [2, 3, 4];
 const SPACINGS: [f64; 4] = [0.008, 0.0105, 0.0135, 0.018];
@@ -34,17 +29,17 @@ const WORTH_HITS: f64 = 0.3;
 
 /// A shorter and a longer noise.
 fn lengthened(noise: Noise, step: f64) -> [Noise; 2] {
-    factors(step).map(|factor| Noise { seconds: (factor * noise.seconds).min(LONGEST), ..noise })
+    factors(step).map(|factor| Noise { seconds: (factor * noise.seconds).min(Noise::LONGEST), ..noise })
 }
 
-/// Noises that rise faster and more slowly.
+/// Noises whose rise is shorter and longer.
 fn risen(noise: Noise, step: f64) -> [Noise; 2] {
-    factors(step).map(|factor| Noise { attack: (factor * noise.attack.max(LEAST_RISE)).min(LONGEST), ..noise })
+    factors(step).map(|factor| Noise { attack: (factor * noise.attack.max(LEAST_RISE)).min(Noise::LONGEST), ..noise })
 }
 
 /// Rows of bursts that follow each other faster and more slowly.
 fn spaced(noise: Noise, step: f64) -> [Noise; 2] {
-    factors(step).map(|factor| Noise { spacing: (factor * noise.spacing).min(FARTHEST), ..noise })
+    factors(step).map(|factor| Noise { spacing: (factor * noise.spacing).min(Noise::FARTHEST), ..noise })
 }
 
 fn factors(step: f64) -> [f64; 2] {
@@ -65,11 +60,15 @@ impl Listener<'_> {
         let noise = draft.noise;
         self.best_corrected(
             draft,
-            [Noise { seconds: (EXPONENTIAL * noise.seconds).min(LONGEST), decay: NoiseDecay::Exponential, ..noise }],
+            [Noise {
+                seconds: (EXPONENTIAL * noise.seconds).min(Noise::LONGEST),
+                decay: NoiseDecay::Exponential,
+                ..noise
+            }],
         )?;
-        if draft.noise.seconds > SHORT {
+        if draft.noise.is_audible() {
             let noise = draft.noise;
-            let near = [1.0 / NEARER, NEARER].map(|factor| (factor * noise.seconds).min(LONGEST));
+            let near = [1.0 / NEARER, NEARER].map(|factor| (factor * noise.seconds).min(Noise::LONGEST));
             self.best_corrected(draft, near.map(|seconds| Noise { seconds, ..noise }))?;
         }
         let noise = draft.noise;
@@ -86,10 +85,10 @@ impl Listener<'_> {
     }
 
     /// Corrects the levels alone of the modes of a draft, and returns its distance.
-    pub(super) fn settle(&mut self, draft: &mut Draft) -> Result<f64> {
+    pub(super) fn correct_levels(&mut self, draft: &mut Draft) -> Result<f64> {
         let mut heard = self.hear(draft)?;
         let mut least = heard.distance(&self.target);
-        for _ in 0..SETTLINGS {
+        for _ in 0..LEVELLINGS {
             let other = by_levels(draft, &self.target, &heard);
             heard = self.hear(&other)?;
             let distance = heard.distance(&self.target);
@@ -103,8 +102,9 @@ impl Listener<'_> {
 
     /// Changes length, rise and fall of a noise that lasts as long as the sound, with the levels alone corrected for each: decays
     /// would take over what is wrong in the noise.
-    pub(super) fn settle_noise(&mut self, draft: &mut Draft) -> Result<()> {
-        let mut least = self.settle(draft)?;
+    /// Returns the distance.
+    pub(super) fn shape_lasting_noise(&mut self, draft: &mut Draft) -> Result<f64> {
+        let mut least = self.correct_levels(draft)?;
         for step in COARSE {
             let before = draft.clone();
             let noise = before.noise;
@@ -113,21 +113,21 @@ impl Listener<'_> {
                 NoiseDecay::Quadratic => (NoiseDecay::Exponential, EXPONENTIAL),
                 NoiseDecay::Exponential => (NoiseDecay::Quadratic, 1.0 / EXPONENTIAL),
             };
-            let fall = Noise { seconds: (factor * noise.seconds).min(LONGEST), decay, ..noise };
+            let fall = Noise { seconds: (factor * noise.seconds).min(Noise::LONGEST), decay, ..noise };
             for noise in lengthened(noise, step).into_iter().chain(others).chain([fall]) {
                 let mut other = Draft { noise, ..before.clone() };
-                let distance = self.settle(&mut other)?;
+                let distance = self.correct_levels(&mut other)?;
                 if distance < least {
                     (*draft, least) = (other, distance);
                 }
             }
         }
-        Ok(())
+        Ok(least)
     }
 
     /// Changes length and rise of a noise that is heard as such, as long as the sound comes nearer.
     pub(super) fn shape_noise(&mut self, draft: &mut Draft) -> Result<()> {
-        if draft.noise.seconds <= SHORT || draft.partials.iter().all(|partial| partial.struck) {
+        if !draft.noise.is_audible() || draft.partials.iter().all(|partial| partial.struck) {
             return Ok(());
         }
         for step in FINE {
@@ -143,10 +143,8 @@ impl Listener<'_> {
         let before = draft.clone();
         for noise in bursts {
             let mut other = Draft { noise, ..before.clone() };
-            if noise.seconds > SHORT {
-                self.correct(&mut other, 2)?;
-            }
-            let distance = self.distance(&other, usize::MAX)?;
+            let distance =
+                if noise.is_audible() { self.correct(&mut other, 2)? } else { self.distance(&other, usize::MAX)? };
             if distance < least {
                 (*draft, least) = (other, distance);
             }

@@ -55,6 +55,8 @@ const NEAR_LAST: f64 = 0.1;
 /// Seconds before a key is let go at which the part ends that is fitted.
 const GUARD: f64 = 0.03;
 
+const DOES_NOT_DECAY: &str =
+    "the sound does not decay: expected something that is struck and rings; its slow movements are left out";
 /// Seconds after the end of a sound in which a draft is heard, too.
 const SILENCE_HEARD: f64 = 0.5;
 
@@ -67,6 +69,8 @@ pub(super) struct Ending {
     /// The mean of the channels.
     pub(super) mean: Vec<f32>,
     pub(super) release: Release,
+    /// As of [`Prepared`].
+    silence: Vec<f32>,
 }
 
 /// A take at [`RATE`], from its onset to its end, or to where its key is let go.
@@ -124,10 +128,8 @@ impl Prepared {
         let energy = |levels: &[f64]| levels.iter().map(|level| level * level).sum::<f64>();
         let share = if release.is_some() { STEADY_IF_LET_GO } else { STEADY };
         let is_steady = played >= 9 && energy(&levels[played - third..played]) > share * energy(&levels[..third]);
-        let message =
-            "the sound does not decay: expected something that is struck and rings; its slow movements are left out";
         let rise = levels.iter().position(|level| *level > RISEN * loudest).unwrap_or(0) as f64 * BLOCK;
-        let mut warnings = Vec::from_iter(is_steady.then(|| format!("{}: {message}", take.name)));
+        let mut warnings = Vec::from_iter(is_steady.then(|| format!("{}: {DOES_NOT_DECAY}", take.name)));
         if let Some(time) = again(&levels, loudest) {
             let message = "it falls silent and sounds again";
             warnings.push(format!("{}: {message} {time:.2} s after its onset: expected a single stroke", take.name));
@@ -178,13 +180,16 @@ impl Prepared {
         let channels = self.channels.iter().map(|channel| head(channel)).collect();
         let channels = std::mem::replace(&mut self.channels, channels);
         let head = head(&self.mean);
-        self.silence.clear();
-        self.ending = Some(Ending { channels, mean: std::mem::replace(&mut self.mean, head), release });
+        let (mean, silence) = (std::mem::replace(&mut self.mean, head), std::mem::take(&mut self.silence));
+        self.ending = Some(Ending { channels, mean, release, silence });
     }
 
-    /// The same take with what comes after its key is let go as a part of it: nothing is let go.
+    /// The same take as a sound that ends by itself, and not when its key is let go.
     pub(super) fn not_let_go(&self) -> Self {
-        Self { warnings: self.warnings.clone(), ..self.replaced(self.whole().0.to_vec()) }
+        let silence = self.ending.as_ref().map_or(&self.silence, |ending| &ending.silence).clone();
+        let says = |warning: &&String| !warning.ends_with(DOES_NOT_DECAY);
+        let warnings = self.warnings.iter().filter(says).cloned().collect();
+        Self { silence, is_held: false, warnings, ..self.replaced(self.whole().0.to_vec()) }
     }
 
     /// All of it, with what comes after its key is let go: its channels and their mean.
@@ -283,6 +288,7 @@ mod tests {
         assert!(held.ending.is_some() && held.silence.is_empty());
         let whole = held.not_let_go();
         assert!(whole.ending.is_none() && whole.mean == held.whole().1 && whole.mean.len() > held.mean.len());
+        assert!(!whole.is_held && !whole.silence.is_empty() && held.warnings.len() == 1 && whole.warnings.is_empty());
     }
 
     /// Pulses of a voice through its first three formants (Peterson & Barney 1952), two vowels with a stop between them.
