@@ -6,9 +6,12 @@ use crate::params::{Choice, MalletPulse, NoiseDecay, NoteOff, Param};
 use crate::patch::routes::Source;
 use crate::patch::{Mode, ModeTable, Patch};
 use crate::sound::contact_time;
+use crate::units::key_from_frequency;
 use libm::{cos, fabs, log10, pow};
 use std::f64::consts::PI;
 
+/// Frequency in Hz of A4 in a new patch.
+pub(super) const A4: f64 = 440.0;
 /// Maximum number of modes of a fit.
 pub(super) const MOST_MODES: usize = 256;
 /// Shortest T60 in seconds of a mode that is struck, and the longest ones of a sound that decays and of one that is held.
@@ -139,6 +142,11 @@ impl Draft {
     pub(super) fn main(&self) -> Option<&Partial> {
         let energy = |partial: &&Partial| partial.amplitude * partial.amplitude * partial.t60;
         self.partials.iter().max_by(|a, b| energy(a).total_cmp(&energy(b)))
+    }
+
+    /// The key that it was recorded on, as a fractional MIDI key.
+    pub(super) fn key(&self) -> f64 {
+        key_from_frequency(self.note, A4)
     }
 
     /// The force of its strike, 0–1.

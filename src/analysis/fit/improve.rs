@@ -8,11 +8,10 @@ use super::movement::{Sweep, Swell};
 use super::refine::{Listener, NEAR_DB};
 use super::start::Source;
 use super::take::{Prepared, SLOW};
-use super::{A4, bed, bursts, held, noise, start, sway, sweep};
+use super::{bed, bursts, held, noise, start, sway, sweep};
 use crate::analysis::log_mel::{self, HOP, RATE};
 use crate::analysis::modes::Strike;
 use crate::error::{Error, Result};
-use crate::units::key_from_frequency;
 
 /// Share of the work until the first drafts are made.
 const ANALYSED: f64 = 0.45;
@@ -90,7 +89,7 @@ pub(super) fn fallen(
     if take.rise < MOSTLY * ending.release.seconds {
         return Ok(None);
     }
-    let key = key_from_frequency(draft.note, A4);
+    let key = draft.key();
     let (damped, found) =
         ending.release.tuned(&draft.patch(), &ending.mean, (key, draft.velocity), &mut || progress(1.0))?;
     let whole = take.not_let_go();

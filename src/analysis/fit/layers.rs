@@ -4,7 +4,6 @@ use super::draft::Draft;
 use crate::params::Param;
 use crate::patch::Patch;
 use crate::patch::routes::Source;
-use crate::units::key_from_frequency;
 use libm::{log, log10};
 
 /// Distance in semitones below which two takes have the same key.
@@ -24,7 +23,7 @@ pub(super) struct Layer {
 impl Layer {
     /// Its key as a fractional MIDI key.
     pub(super) fn key(&self) -> f64 {
-        key_from_frequency(self.draft.note, 440.0)
+        self.draft.key()
     }
 
     fn t60(&self) -> f64 {

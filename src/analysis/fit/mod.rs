@@ -49,14 +49,10 @@ use super::modes::Strike;
 use crate::error::{Error, Result};
 use crate::patch::Patch;
 use crate::preset::{Guide, Preset};
-use crate::units::key_from_frequency;
 use audition::{Audition, Played};
 use draft::MOST_MODES;
 use layers::Layer;
 use take::Prepared;
-
-/// Frequency in Hz of A4 in a new patch.
-const A4: f64 = 440.0;
 
 /// Share of the work that is done when only the release is left to be fitted.
 const LAST: f64 = 0.98;
@@ -167,10 +163,10 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
                 )
             })?;
             let told = &mut |share| tell((takes.len() as f64 + share) / count);
-            (tuned::patch(&draft, &body, &levels, take, key_from_frequency(draft.note, A4), told)?, Some(explained))
+            (tuned::patch(&draft, &body, &levels, take, draft.key(), told)?, Some(explained))
         }
     };
-    let (mut audition, key) = (Audition::new(), key_from_frequency(draft.note, A4));
+    let (mut audition, key) = (Audition::new(), draft.key());
     let patch = layers::route(patch, &layers, base);
     let patch = layers::route_gain(patch, &layers, base, &mut |patch, layer| {
         let (key, velocity) = (layer.key(), layer.draft.velocity);
@@ -193,7 +189,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     let let_go = release.map(|release| release.frames());
     let played = audition.play(&patch, Played { key, velocity: draft.velocity, frames: whole.len(), let_go });
     let distance = |(index, (layer, take)): (usize, (&Layer, &Prepared))| {
-        let key = key_from_frequency(layer.draft.note, A4);
+        let key = layer.key();
         let (_, whole) = take.whole();
         let own = take.ending.as_ref().map(|ending| ending.release);
         let let_go = if index == base { release } else { own }.map(|release| release.frames());

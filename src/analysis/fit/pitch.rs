@@ -1,6 +1,6 @@
 //! Estimates the pitch of a sound from its modes, and tells a key that contradicts it.
 
-use super::draft::{Draft, Partial};
+use super::draft::{A4, Draft, Partial};
 use crate::sound::bodies::DEFAULT_FREQUENCY;
 use crate::units::{key_from_frequency, note_name};
 use libm::{fabs, log2, sqrt};
@@ -56,7 +56,7 @@ pub(super) fn wrong_key(draft: &Draft, name: &str) -> Option<String> {
     // A pitch that moves is not clear.
     let heard = Some(draft).filter(|draft| draft.sweep.semitones == 0.0)?;
     let heard = contradicts(&heard.partials, draft.note)?;
-    let [heard, given] = [heard, draft.note].map(|frequency| key_name(key_from_frequency(frequency, 440.0)));
+    let [heard, given] = [heard, draft.note].map(|frequency| key_name(key_from_frequency(frequency, A4)));
     Some(format!(
         "{name}: it sounds like {heard} and not like {given}, its key: expected {heard}, or none to have it estimated"
     ))

@@ -9,7 +9,6 @@ use super::take::Prepared;
 use crate::analysis::log_mel::{HOP, LogMel, MelBands, WINDOW};
 use crate::error::{Error, Result};
 use crate::params::Param;
-use crate::units::key_from_frequency;
 
 /// Hardnesses that are tried.
 const HARDNESSES: [f64; 10] = [0.95, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25, 0.15, 0.05];
@@ -66,8 +65,7 @@ impl<'a> Listener<'a> {
         // The last window reaches half of its length further than its middle.
         let frames = (self.take.mean.len() + self.take.silence.len())
             .min(windows.saturating_mul(HOP).saturating_add(WINDOW / 2));
-        let key = key_from_frequency(draft.note, 440.0);
-        let played = Played { key, velocity: draft.velocity, frames: frames + LATE, let_go: None };
+        let played = Played { key: draft.key(), velocity: draft.velocity, frames: frames + LATE, let_go: None };
         let sound = self.audition.mean(&draft.patch(), played);
         let sound = crate::analysis::log_mel::from_onset(&sound);
         let mut heard = self.bands.measure(&sound[..sound.len().min(frames)]);

@@ -20,7 +20,7 @@ const NEAR: f64 = 50.0;
 /// # Errors
 /// [`Error::Format`](crate::Error::Format) if a figure cannot be drawn.
 pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
-    let modes = modes_of(&fitted.patch, frequency_from_key(fitted.key, super::A4));
+    let modes = modes_of(&fitted.patch, frequency_from_key(fitted.key, super::draft::A4));
     // A recording with one channel has it on both sides.
     let first = fitted.recording.first().map_or(&[][..], Vec::as_slice);
     let last = fitted.recording.last().map_or(&[][..], Vec::as_slice);

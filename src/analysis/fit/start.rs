@@ -1,9 +1,9 @@
 //! Makes the first draft of a sound from its modes.
 
-use super::draft::{Draft, MOST_MODES, Noise, Partial, SHORTEST_T60, longest_t60};
+use super::draft::{A4, Draft, MOST_MODES, Noise, Partial, SHORTEST_T60, longest_t60};
 use super::movement::Sweep;
 use super::take::Prepared;
-use super::{A4, pitch, sweep};
+use super::{pitch, sweep};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::{self, Mode, Strike};
 use crate::error::{Error, Result};

@@ -1,7 +1,8 @@
 //! Describes the result of a fit in words, for the preset's comment and for users.
 
+use super::draft::A4;
 use super::pitch::key_name;
-use super::{A4, Fitted, Take};
+use super::{Fitted, Take};
 use crate::preset::Preset;
 use crate::text::number::measured;
 use crate::units::frequency_from_key;
