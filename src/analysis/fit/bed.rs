@@ -131,10 +131,15 @@ impl Decay {
     }
 }
 
+/// Hz from half-way below a band to half-way above it.
+fn width(band: usize) -> f64 {
+    0.5 * (centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1)))
+}
+
 /// The places of the modes of a band that decays so, strongest first, each with its power. A smooth decay gets one mode, since
 /// several would beat. Noise gets enough modes for their resonances to overlap.
 fn places(Decay { t60, is_smooth, .. }: &Decay, lines: &Lines, band: usize) -> Vec<(f64, f64)> {
-    let width = 0.5 * (centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1)));
+    let width = width(band);
     let most = if *is_smooth { 1.0 } else { (0.5 * width * t60 / BANDWIDTH).clamp(FEWEST, MOST as f64).round() };
     lines.highest((centre(band) - 0.5 * width, centre(band) + 0.5 * width), BANDWIDTH / t60, most as usize)
 }
@@ -226,9 +231,8 @@ mod tests {
             let bed = bed([&target, &silence], &lines, &Sweep::NONE, most, 1);
             for partials in [bed, short(&target, &lines, most, 1)] {
                 assert!(partials.len() <= most && partials.len() > most / 2, "{} of {most}", partials.len());
-                let width = |band: usize| centre((band + 1).min(BANDS - 1)) - centre(band.saturating_sub(1));
                 let within =
-                    |band: usize, partial: &Partial| (partial.frequency - centre(band)).abs() <= 0.26 * width(band);
+                    |band: usize, partial: &Partial| (partial.frequency - centre(band)).abs() <= 0.52 * width(band);
                 let empty = |band: &usize| !partials.iter().any(|partial| within(*band, partial));
                 assert_eq!((0..BANDS).find(empty), None, "of {most}");
             }

@@ -25,25 +25,27 @@ pub(super) fn by_bands(draft: &Draft, target: &LogMel, heard: &LogMel, share: f6
         errors.of(band).for_each(|(n, error)| line.add(time(n), error, 1.0));
         line.correction()
     });
-    corrected(draft, share, |partial| {
-        let weights = weights(partial.heard_at(&draft.sweep));
-        let both = weights.iter().zip(&corrections);
-        both.fold((0.0, 0.0), |sum, (weight, correction)| {
-            (sum.0 + weight * correction.0, sum.1 + weight * correction.1)
-        })
-    })
+    corrected_by_bands(draft, share, &corrections)
 }
 
 /// Corrects the levels of all modes of a band by its mean error, and no decays.
 pub(super) fn by_levels(draft: &Draft, target: &LogMel, heard: &LogMel) -> Draft {
     let errors = Errors::new(target, heard);
-    let means: [f64; BANDS] = std::array::from_fn(|band| {
+    let means: [Correction; BANDS] = std::array::from_fn(|band| {
         let (sum, count) = errors.of(band).fold((0.0, 0.0), |(sum, count), (_, error)| (sum + error, count + 1.0));
-        if count > 0.0 { sum / count } else { 0.0 }
+        (if count > 0.0 { sum / count } else { 0.0 }, 0.0)
     });
-    corrected(draft, 1.0, |partial| {
+    corrected_by_bands(draft, 1.0, &means)
+}
+
+/// The draft with a share of each band's correction.
+fn corrected_by_bands(draft: &Draft, share: f64, corrections: &[Correction; BANDS]) -> Draft {
+    corrected(draft, share, |partial| {
         let weights = weights(partial.heard_at(&draft.sweep));
-        (weights.iter().zip(&means).map(|(weight, mean)| weight * mean).sum(), 0.0)
+        let both = weights.iter().zip(corrections);
+        both.fold((0.0, 0.0), |sum, (weight, correction)| {
+            (sum.0 + weight * correction.0, sum.1 + weight * correction.1)
+        })
     })
 }
 

@@ -6,7 +6,7 @@ use super::movement::Sweep;
 use super::refine::{Listener, NEAR_DB};
 use super::sweep;
 use super::take::Prepared;
-use crate::analysis::log_mel::{BANDS, MelBands, RATE, time};
+use crate::analysis::log_mel::{BANDS, LogMel, MelBands, RATE, time};
 use crate::error::Result;
 
 /// Powers relative to the greatest at which a noise has come to its level, and at which it is over: −3 and −30 dB.
@@ -25,8 +25,7 @@ const OVERLAP: f64 = 3.0;
 const SEED: u64 = 10;
 
 /// Seconds from the onset until a sound has come to its level, and until it is over.
-fn extent(take: &Prepared) -> (f64, f64) {
-    let target = MelBands::new().measure(&take.mean);
+fn extent(target: &LogMel) -> (f64, f64) {
     let power = |column: &[f64; BANDS]| column.iter().map(|level| libm::pow(10.0, 0.1 * level)).sum::<f64>();
     let powers: Vec<f64> = target.columns.iter().map(power).collect();
     let loudest = powers.iter().copied().fold(0.0, f64::max);
@@ -37,22 +36,24 @@ fn extent(take: &Prepared) -> (f64, f64) {
 
 /// A draft of noise that goes on for as long as the sound, up to a second, as of breath or a shaker, through short modes.
 pub(super) fn lasting(take: &Prepared, most: usize, draft: Draft) -> Draft {
-    let (attack, end) = extent(take);
+    let target = MelBands::new().measure(&take.mean);
+    let (attack, end) = extent(&target);
     // The engine's noise falls after its attack.
     let seconds = (end - attack).clamp(Noise::AUDIBLE, Noise::LONGEST);
     let noise = Noise { seconds, attack: attack.min(Noise::LONGEST), ..Noise::SHORT };
-    through_short_modes(&take.mean, most, Draft { noise, ..draft })
+    through_short_modes(&target, &take.mean, most, Draft { noise, ..draft })
 }
 
 /// A row of bursts without gaps, whose level stays about the same until the sound is over.
 fn level_noise(take: &Prepared) -> Noise {
-    let spacing = (extent(take).1 / f64::from(Noise::MOST_HITS)).clamp(Noise::AUDIBLE / OVERLAP, Noise::FARTHEST);
+    let spacing = (extent(&MelBands::new().measure(&take.mean)).1 / f64::from(Noise::MOST_HITS))
+        .clamp(Noise::AUDIBLE / OVERLAP, Noise::FARTHEST);
     Noise { hits: Noise::MOST_HITS, spacing, seconds: (OVERLAP * spacing).min(Noise::LONGEST), ..Noise::SHORT }
 }
 
-/// The draft with short modes at the levels of samples whose pitch is constant.
-fn through_short_modes(samples: &[f32], most: usize, draft: Draft) -> Draft {
-    let mut partials = bed::short(&MelBands::new().measure(samples), &Lines::new(samples), most, SEED);
+/// The draft with short modes at the levels `target` of samples whose pitch is constant.
+fn through_short_modes(target: &LogMel, samples: &[f32], most: usize, draft: Draft) -> Draft {
+    let mut partials = bed::short(target, &Lines::new(samples), most, SEED);
     bed::alternate(&mut partials);
     Draft { partials, ..draft }
 }
@@ -83,7 +84,7 @@ pub(super) fn shaped(
 
 /// The draft with the sweep that brings it nearer than `still` dB, if there is one: found by ear, since noise has no pitch to follow.
 fn swept(draft: &Draft, still: f64, take: &Prepared, most: usize, listener: &mut Listener) -> Result<Option<Draft>> {
-    let decay = sweep::decay(&take.mean);
+    let (decay, mut bands) = (sweep::decay(&take.mean), MelBands::new());
     let (mut least, mut found) = (still - AUDIBLE_SWEEP_DB, None);
     let coarse = SEMITONES.iter().flat_map(|semitones| SECONDS.map(|seconds| (*semitones, seconds)));
     let mut tried: Vec<Sweep> =
@@ -91,7 +92,8 @@ fn swept(draft: &Draft, still: f64, take: &Prepared, most: usize, listener: &mut
     for step in STEPS {
         for sweep in tried {
             let samples = sweep::stilled(&take.mean, &sweep, decay);
-            let mut other = through_short_modes(&samples, most, Draft { sweep, ..draft.clone() });
+            let mut other =
+                through_short_modes(&bands.measure(&samples), &samples, most, Draft { sweep, ..draft.clone() });
             let distance = listener.correct_levels(&mut other)?;
             if distance < least {
                 (found, least) = (Some(other), distance);
@@ -112,9 +114,8 @@ mod tests {
     use super::super::audition::{Audition, Played};
     use super::super::correct;
     use super::super::draft::Partial;
-    use super::super::take::{Take, VELOCITY};
+    use super::super::take::tests::prepared;
     use super::*;
-    use crate::io::sound_file::Recording;
 
     /// A draft of noise through forty modes, and what it sounds like.
     fn sound(noise: Noise, sweep: Sweep) -> (Draft, Prepared) {
@@ -130,10 +131,7 @@ mod tests {
         let draft = Draft { noise, sweep, partials, ..correct::tests::draft([0.0; 2]) };
         let note = Played { key: 69.0, velocity: draft.velocity, frames: RATE as usize, let_go: None };
         let samples = Audition::new().mean(&draft.patch(), note);
-        let recording =
-            Recording { sample_rate: RATE, channels: vec![samples], encoding: String::new(), warnings: Vec::new() };
-        let take = Take { name: "a.wav".to_owned(), recording, key: Some(69.0), velocity: VELOCITY };
-        (draft, Prepared::new(&take).unwrap())
+        (draft, prepared(samples, RATE))
     }
 
     /// The shaped draft of a sound, and by how many dB it is nearer than before.

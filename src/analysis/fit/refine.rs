@@ -161,18 +161,26 @@ impl<'a> Listener<'a> {
             return Ok(());
         }
         let [least, most] = [Param::Gain.info().min, Param::Gain.info().max].map(f64::from);
+        let mut nearest = self.distance(draft, usize::MAX)?;
         for n in 0..draft.oscillators.len() {
             for factor in DEPTHS {
                 let mut other = draft.clone();
                 other.oscillators[n].db *= factor;
                 let sum: f64 = other.oscillators.iter().map(|oscillator| oscillator.db.abs()).sum();
-                if other.oscillators[n].db != 0.0 && sum < most - least {
-                    self.best(draft, usize::MAX, [other])?;
+                if other.oscillators[n].db == 0.0 || sum >= most - least {
+                    continue;
+                }
+                let distance = self.distance(&other, usize::MAX)?;
+                if distance < nearest {
+                    (*draft, nearest) = (other, distance);
                 }
             }
         }
         let without = Draft { oscillators: Vec::new(), ..draft.clone() };
-        self.best(draft, usize::MAX, [without])
+        if self.distance(&without, usize::MAX)? < nearest {
+            *draft = without;
+        }
+        Ok(())
     }
 
     /// Moves the sweep to where the distance is least.

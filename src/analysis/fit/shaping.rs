@@ -9,8 +9,8 @@ use crate::params::NoiseDecay;
 /// Lengths and rises in seconds of the noise that are tried.
 const LENGTHS: [f64; 8] = [0.002, 0.006, 0.015, 0.04, 0.1, 0.23, 0.5, 1.0];
 const RISES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
-/// Factor of the lengths beside the best of these that are tried.
-const NEARER: f64 = 1.35;
+/// Step to the lengths beside the best of these that are tried.
+const NEARER: f64 = 0.35;
 /// Steps by which a noise is changed: one that lasts as long as the sound, and any.
 const COARSE: [f64; 3] = [0.5, 0.25, 0.12];
 const FINE: [f64; 3] = [0.4, 0.2, 0.1];
@@ -42,6 +42,11 @@ fn spaced(noise: Noise, step: f64) -> [Noise; 2] {
     factors(step).map(|factor| Noise { spacing: (factor * noise.spacing).min(Noise::FARTHEST), ..noise })
 }
 
+/// A noise of the same energy that falls exponentially.
+fn exponential(noise: Noise) -> Noise {
+    Noise { seconds: (EXPONENTIAL * noise.seconds).min(Noise::LONGEST), decay: NoiseDecay::Exponential, ..noise }
+}
+
 fn factors(step: f64) -> [f64; 2] {
     [1.0 / (1.0 + step), 1.0 + step]
 }
@@ -57,19 +62,9 @@ impl Listener<'_> {
         // The decays of the modes were measured together with the burst, so they are corrected for each burst.
         let bursts = LENGTHS.map(|seconds| Noise { seconds, ..noise });
         self.best_corrected(draft, bursts)?;
-        let noise = draft.noise;
-        self.best_corrected(
-            draft,
-            [Noise {
-                seconds: (EXPONENTIAL * noise.seconds).min(Noise::LONGEST),
-                decay: NoiseDecay::Exponential,
-                ..noise
-            }],
-        )?;
+        self.best_corrected(draft, [exponential(draft.noise)])?;
         if draft.noise.is_audible() {
-            let noise = draft.noise;
-            let near = [1.0 / NEARER, NEARER].map(|factor| (factor * noise.seconds).min(Noise::LONGEST));
-            self.best_corrected(draft, near.map(|seconds| Noise { seconds, ..noise }))?;
+            self.best_corrected(draft, lengthened(draft.noise, NEARER))?;
         }
         let noise = draft.noise;
         let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
@@ -101,19 +96,19 @@ impl Listener<'_> {
     }
 
     /// Changes length, rise and fall of a noise that lasts as long as the sound, with the levels alone corrected for each: decays
-    /// would take over what is wrong in the noise.
-    /// Returns the distance.
+    /// would take over what is wrong in the noise. Returns the distance.
     pub(super) fn shape_lasting_noise(&mut self, draft: &mut Draft) -> Result<f64> {
         let mut least = self.correct_levels(draft)?;
         for step in COARSE {
             let before = draft.clone();
             let noise = before.noise;
             let others = if noise.hits > 1 { spaced(noise, step) } else { risen(noise, step) };
-            let (decay, factor) = match noise.decay {
-                NoiseDecay::Quadratic => (NoiseDecay::Exponential, EXPONENTIAL),
-                NoiseDecay::Exponential => (NoiseDecay::Quadratic, 1.0 / EXPONENTIAL),
+            let fall = match noise.decay {
+                NoiseDecay::Quadratic => exponential(noise),
+                NoiseDecay::Exponential => {
+                    Noise { seconds: (1.0 / EXPONENTIAL) * noise.seconds, decay: NoiseDecay::Quadratic, ..noise }
+                }
             };
-            let fall = Noise { seconds: (factor * noise.seconds).min(Noise::LONGEST), decay, ..noise };
             for noise in lengthened(noise, step).into_iter().chain(others).chain([fall]) {
                 let mut other = Draft { noise, ..before.clone() };
                 let distance = self.correct_levels(&mut other)?;

@@ -257,9 +257,8 @@ mod tests {
     use super::super::audition::{Audition, Played};
     use super::super::correct;
     use super::super::draft::{Draft, Partial};
-    use super::super::take::{Take, VELOCITY};
+    use super::super::take::tests::prepared;
     use super::*;
-    use crate::io::sound_file::Recording;
 
     #[test]
     fn oscillators_of_all_shapes_are_found() {
@@ -294,10 +293,7 @@ mod tests {
         };
         let note = Played { key: 69.0, velocity: draft.velocity, frames: 2 * RATE as usize, let_go: None };
         let samples = Audition::new().mean(&draft.patch(), note);
-        let recording =
-            Recording { sample_rate: RATE, channels: vec![samples], encoding: String::new(), warnings: Vec::new() };
-        let take = Take { name: "a.wav".to_owned(), recording, key: None, velocity: VELOCITY };
-        let (found, _) = find(&Prepared::new(&take).unwrap(), &mut || Ok(())).unwrap();
+        let (found, _) = find(&prepared(samples, RATE), &mut || Ok(())).unwrap();
         let near = |known: &Oscillator| {
             found.iter().any(|found| {
                 let off = libm::remainder(found.phase - known.phase, 1.0).abs();

@@ -141,7 +141,7 @@ impl Prepared {
             warnings
                 .push(format!("{}: it sounds for longer: the first {LONGEST} s from its onset are fitted", take.name));
         }
-        let silent = (over + (SILENCE_HEARD * f64::from(RATE)) as usize).min(middle.len()).min(longest).max(end);
+        let silent = (over + (SILENCE_HEARD * f64::from(RATE)) as usize).min(middle.len()).min(longest);
         let silence = middle[end..silent].to_vec();
         let channels: Vec<Vec<f32>> = channels.iter().map(|channel| channel[onset..end].to_vec()).collect();
         let mut prepared = Self {
@@ -243,11 +243,12 @@ fn first_seconds(recording: &Recording) -> Recording {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    fn prepared(samples: Vec<f32>, sample_rate: u32) -> Prepared {
+    /// The take of a recording with one channel.
+    pub(crate) fn prepared(samples: Vec<f32>, sample_rate: u32) -> Prepared {
         let recording =
             Recording { sample_rate, channels: vec![samples], encoding: String::new(), warnings: Vec::new() };
         Prepared::new(&Take { name: "a.wav".to_owned(), recording, key: None, velocity: VELOCITY }).unwrap()

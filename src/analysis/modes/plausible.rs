@@ -55,8 +55,9 @@ impl Limits {
     }
 }
 
-/// Indices of modes that the sound cannot have, given their certainty, if it is known, and the noise floor of each mode. Of neighbours that are too loud, only the
-/// loudest is given, since the others may be plausible without it; if `worst_only`, so of neighbours that are too uncertain.
+/// Indices of modes that the sound cannot have, given their certainty, if it is known, and the noise floor of each mode. Of
+/// neighbours that are too loud, only the loudest is given, since the others may be plausible without it; if `worst_only`, so of
+/// neighbours that are too uncertain.
 pub(super) fn implausible(
     fit: &Fit,
     certainty: Option<&Certainty>,
