@@ -78,9 +78,13 @@ pub(super) fn implausible(
     };
     let reach = |k: usize, other: usize| fit.poles[k].width(len) + fit.poles[other].width(len);
     let distance = |k: usize, other: usize| (fit.poles[k].theta - fit.poles[other].theta).abs();
+    let excess = |k: usize| limits.excess(fit.poles[k], fit.amplitudes[k].norm());
+    // What the sound cannot have itself, such as a short burst of a thousand times its peak, hides nothing.
+    let hides = |k: usize| limits.rings(fit.poles[k]) && excess(k) <= 1.0;
     let is_on_a_skirt = |k: usize| {
         let is_of = |other: usize| {
-            fit.amplitudes[k].norm() < SKIRT * fit.amplitudes[other].norm()
+            hides(other)
+                && fit.amplitudes[k].norm() < SKIRT * fit.amplitudes[other].norm()
                 && distance(k, other) < BESIDE * reach(k, other)
         };
         (0..fit.poles.len()).any(is_of)
@@ -88,7 +92,6 @@ pub(super) fn implausible(
     let audible = |k: &usize| limits.audible(fit.poles[*k]);
     let mut dropped: Vec<usize> =
         (0..fit.poles.len()).filter(audible).filter(|k| !limits.rings(fit.poles[*k]) || is_on_a_skirt(*k)).collect();
-    let excess = |k: usize| limits.excess(fit.poles[k], fit.amplitudes[k].norm());
     let mut drop = |fault: &dyn Fn(usize) -> f64, worst_only: bool| {
         let mut faulty: Vec<(f64, usize)> = (0..fit.poles.len()).map(|k| (fault(k), k)).collect();
         faulty.retain(|(fault, k)| (*fault > 1.0 || fault.is_nan()) && !dropped.contains(k));
