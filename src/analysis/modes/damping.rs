@@ -40,6 +40,8 @@ const AHEAD: f64 = 0.4;
 const COMPARED: f64 = 0.15;
 /// Largest share of the energy that modes leave unexplained if they explain the sound.
 const UNEXPLAINED: f64 = 0.2;
+/// Largest share of the modes' energy that a damper leaves. If more is left, the modes were wrong.
+const DAMPED: f64 = 0.5;
 
 /// A line through levels: its value at their first step, its slope per step, and the mean deviation from it.
 struct Line {
@@ -135,7 +137,8 @@ fn bend(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Option<Ben
     (!comes_back && steeper > 0.0).then_some(Bend { significance, steeper })
 }
 
-/// Whether the sound differs from the continuation of the modes that were fitted to its samples before a damper.
+/// Whether the sound differs from the continuation of the modes that were fitted to its samples before a damper, and is weaker
+/// than it.
 pub(super) fn confirmed(fit: &Fit, damper: Damper, samples: &[f64], sample_rate: f64) -> bool {
     let (begin, compared) = (damper.from + damper.lag, (COMPARED * sample_rate) as usize);
     let Some(after) = samples.get(begin..).map(|after| &after[..compared.min(after.len())]) else { return false };
@@ -145,7 +148,8 @@ pub(super) fn confirmed(fit: &Fit, damper: Damper, samples: &[f64], sample_rate:
     }
     let energy = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
     let left = energy(&mut after.iter().zip(&expected).map(|(sample, expected)| sample - expected));
-    left > UNEXPLAINED * energy(&mut expected.iter().map(|x| x - fit.constant))
+    let [after, expected] = [after, &expected[..]].map(|sound| energy(&mut sound.iter().map(|x| x - fit.constant)));
+    left > UNEXPLAINED * expected && after < DAMPED * expected
 }
 
 #[cfg(test)]
