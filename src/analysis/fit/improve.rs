@@ -130,7 +130,7 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
     }
     let still = residual_db(&found[0]);
     let mut drifts = false;
-    if still > EXPLAINED_DB && (take.is_held || take.rise > SLOW) {
+    if take.is_held || still > EXPLAINED_DB && take.rise > SLOW {
         let [from, to] = of_drift;
         let held = held::draft(take, None, most, &mut |share| tell(from + (to - from) * share).is_ok())?;
         if let Some(first) = held.first() {
