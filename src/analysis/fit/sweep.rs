@@ -34,8 +34,9 @@ const REFINED: usize = 4;
 /// Blocks per second whose levels show the decay, and their range below the loudest, as a logarithm: 40 dB.
 const BLOCKS: usize = 100;
 const HEARD: f64 = 4.6;
-/// Steps of the fine search.
+/// Steps of the fine search, and times that sweep and vibrato are searched for in turn.
 const STEPS: usize = 40;
+const ROUNDS: usize = 3;
 
 /// Measures how high the peaks of a sound's spectrum are.
 struct Peaks<'a> {
@@ -185,21 +186,24 @@ pub(super) fn find(samples: &[f32], tell: &mut dyn FnMut() -> Result<()>) -> Res
 
 /// Changes a sweep until the peaks are highest. Returns their height and the sweep.
 fn refine(peaks: &mut Peaks, start: Sweep) -> Result<(f64, Sweep)> {
-    let (place, _) = simplex::least(STEPS, |place| Ok(-peaks.height(&start.moved(place))?))?;
-    let swept = start.moved(place);
-    let trembling = |[depth, rate]: [f64; 2]| {
-        let Vibrato { semitones, rate: before, delay } = swept.vibrato;
-        // What the engine cannot play would be taken out of the sound and not come back.
-        let semitones = (semitones * (1.0 + depth)).clamp(0.0, course::DEEPEST_VIBRATO);
-        let vibrato =
-            Vibrato { semitones, rate: (before * (1.0 + 0.1 * rate)).clamp(0.0, course::FASTEST_VIBRATO), delay };
-        Sweep { vibrato, ..swept }
-    };
-    let still = swept.vibrato.semitones == 0.0;
-    let best = match still {
-        true => swept,
-        false => trembling(simplex::least(STEPS, |place| Ok(-peaks.height(&trembling(place))?))?.0),
-    };
+    let mut best = start;
+    // A sweep makes up for the faults of its vibrato, so each is found again once the other is better.
+    for _ in 0..ROUNDS {
+        let (place, _) = simplex::least(STEPS, |place| Ok(-peaks.height(&best.moved(place))?))?;
+        best = best.moved(place);
+        if best.vibrato.semitones == 0.0 {
+            break;
+        }
+        let swept = best;
+        let trembling = |[depth, rate]: [f64; 2]| {
+            let Vibrato { semitones, rate: before, delay } = swept.vibrato;
+            // What the engine cannot play would be taken out of the sound and not come back.
+            let semitones = (semitones * (1.0 + depth)).clamp(0.0, course::DEEPEST_VIBRATO);
+            let rate = (before * (1.0 + 0.1 * rate)).clamp(0.0, course::FASTEST_VIBRATO);
+            Sweep { vibrato: Vibrato { semitones, rate, delay }, ..swept }
+        };
+        best = trembling(simplex::least(STEPS, |place| Ok(-peaks.height(&trembling(place))?))?.0);
+    }
     Ok((peaks.height(&best)?, best))
 }
 
@@ -213,7 +217,7 @@ mod tests {
         (0..30_000)
             .map(|n| {
                 let t = n as f64 / f64::from(RATE);
-                let speed = pow(2.0, envelope.at(t) / 12.0);
+                let speed = pow(2.0, (envelope.at(t) + sweep.vibrato.at(t)) / 12.0);
                 phases[0] += 2.0 * PI * 80.0 * speed / f64::from(RATE);
                 phases[1] += 2.0 * PI * 130.0 * speed / f64::from(RATE);
                 (exp(-8.0 * t) * (0.5 * sin(phases[0]) + 0.2 * sin(phases[1]))) as f32
@@ -233,5 +237,20 @@ mod tests {
         // A sweep may be proposed here: the caller compares it with no sweep.
         let still = find(&swept(&Sweep::NONE), &mut || Ok(())).unwrap();
         assert!(still.iter().all(|sweep| sweep.semitones.abs() < 2.0));
+    }
+
+    #[test]
+    fn a_sweep_and_its_vibrato_are_found_together() {
+        let vibrato = Vibrato { semitones: 0.8, rate: 17.0, delay: 0.0 };
+        let sweep = Sweep { semitones: 40.0, seconds: 0.45, curve: 0.0, vibrato };
+        let found = *find(&swept(&sweep), &mut || Ok(())).unwrap().last().unwrap();
+        let (rate, depth) = (found.vibrato.rate, found.vibrato.semitones);
+        assert!((rate - 17.0).abs() < 0.3 && (depth - 0.8).abs() < 0.06, "{found:?}");
+        // The sound is over before its pitch settles, so compare how far it falls.
+        let falls = |sweep: &Sweep, t: f64| sweep.envelope().at(0.0) - sweep.envelope().at(t);
+        for t in [0.05, 0.1, 0.2] {
+            let off = (falls(&found, t) - falls(&sweep, t)).abs();
+            assert!(off < 0.4, "{found:?} at {t} s: {off} semitones off");
+        }
     }
 }
