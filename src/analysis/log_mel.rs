@@ -4,7 +4,7 @@ use super::level::SILENCE_DB;
 use libm::{cos, log10, pow};
 use realfft::{RealFftPlanner, RealToComplex, num_complex::Complex};
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// Sample rate in Hz of the sounds that are measured.
 pub const RATE: u32 = 44_100;
@@ -49,20 +49,19 @@ pub(super) fn hertz(mel: f64) -> f64 {
     700.0 * (pow(10.0, mel / 2595.0) - 1.0)
 }
 
-/// The lower edge of band `edge` in Hz. A band ends where the next but one begins.
-fn edge(edge: usize) -> f64 {
-    hertz(mel(HIGHEST) * edge as f64 / (BANDS + 1) as f64)
-}
+/// The lower edge of each band in Hz. A band ends where the next but one begins.
+static EDGES: LazyLock<[f64; BANDS + 2]> =
+    LazyLock::new(|| std::array::from_fn(|edge| hertz(mel(HIGHEST) * edge as f64 / (BANDS + 1) as f64)));
 
 /// The frequency in Hz at which a band weighs most.
 pub fn centre(band: usize) -> f64 {
-    edge(band + 1)
+    EDGES[band + 1]
 }
 
 /// The weights of a frequency in Hz in the bands: at most two are not 0.
 pub fn weights(frequency: f64) -> [f64; BANDS] {
     std::array::from_fn(|band| {
-        let (low, middle, high) = (edge(band), edge(band + 1), edge(band + 2));
+        let [low, middle, high] = [EDGES[band], EDGES[band + 1], EDGES[band + 2]];
         let rise = (frequency - low) / (middle - low);
         let fall = (high - frequency) / (high - middle);
         rise.min(fall).max(0.0)

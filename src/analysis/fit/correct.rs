@@ -1,7 +1,9 @@
 //! Corrects levels and decays of a draft's modes by the errors of its mel bands.
 
 use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
+use super::movement::Sweep;
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, time, weights};
+use crate::dsp::pitch::SweepEnvelope;
 use libm::{exp, pow};
 
 /// Largest correction at a time: of a level in dB, and of a decay rate as a share of that rate.
@@ -17,9 +19,16 @@ const LN_120_DB: f64 = 13.815_510_557_964_274;
 /// The level in dB that is missing at the onset, and its change in dB/s.
 type Correction = (f64, f64);
 
-/// Corrects all modes of a band by the same amount.
+/// Corrects all modes of a band by the same amount, or if a sweep moves them through several bands, each by what is off there.
 pub(super) fn by_bands(draft: &Draft, target: &LogMel, heard: &LogMel, share: f64) -> Draft {
     let errors = Errors::new(target, heard);
+    if draft.sweep.semitones != 0.0 {
+        return corrected(draft, share, |partial| {
+            let (track, mut line) = (Track::new(partial, &draft.sweep), Line::default());
+            errors.along(&track).for_each(|(n, _, error, weight)| line.add(time(n), error, weight));
+            line.correction()
+        });
+    }
     let corrections: [Correction; BANDS] = std::array::from_fn(|band| {
         let mut line = Line::default();
         errors.of(band).for_each(|(n, error)| line.add(time(n), error, 1.0));
@@ -55,26 +64,43 @@ pub(super) fn by_moments(draft: &Draft, target: &LogMel, heard: &LogMel, share: 
     let errors = Errors::new(target, heard);
     let columns = errors.columns.len();
     let mut powers = vec![[1e-30; BANDS]; columns];
-    let modes = draft.partials.iter().map(|partial| weights(partial.heard_at(&draft.sweep)));
-    let modes: Vec<[f64; BANDS]> = modes.collect();
-    for (partial, weights) in draft.partials.iter().zip(&modes) {
-        for (band, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
-            for (n, power) in powers_of(partial, columns).enumerate() {
-                powers[n][band] += weight * power;
+    for partial in &draft.partials {
+        let track = Track::new(partial, &draft.sweep);
+        for (n, power) in powers_of(partial, columns).enumerate() {
+            for (sum, weight) in powers[n].iter_mut().zip(track.at(n)) {
+                *sum += weight * power;
             }
         }
     }
-    let mut bands = modes.iter();
     corrected(draft, share, |partial| {
-        let mut line = Line::default();
-        let weights = bands.next().unwrap_or(&[0.0; BANDS]);
+        let (track, mut line) = (Track::new(partial, &draft.sweep), Line::default());
         let own: Vec<f64> = powers_of(partial, columns).collect();
-        for (band, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
-            let share = |n: usize| weight * own[n] / powers[n][band];
-            errors.of(band).for_each(|(n, error)| line.add(time(n), error, share(n) * weight));
-        }
+        let share = |n: usize, band: usize, weight: f64| weight * own[n] / powers[n][band];
+        errors.along(&track).for_each(|(n, band, error, weight)| {
+            line.add(time(n), error, share(n, band, weight) * weight);
+        });
         line.correction()
     })
+}
+
+/// The weights of a mode in the bands, window by window.
+struct Track {
+    frequency: f64,
+    /// Of a mode whose pitch moves.
+    sweep: Option<SweepEnvelope>,
+    still: [f64; BANDS],
+}
+
+impl Track {
+    fn new(partial: &Partial, sweep: &Sweep) -> Self {
+        let moves = sweep.semitones != 0.0;
+        Self { frequency: partial.frequency, sweep: moves.then(|| sweep.envelope()), still: weights(partial.frequency) }
+    }
+
+    fn at(&self, n: usize) -> [f64; BANDS] {
+        let semitones = self.sweep.map_or(0.0, |sweep| sweep.at(time(n)));
+        if semitones == 0.0 { self.still } else { weights(self.frequency * pow(2.0, semitones / 12.0)) }
+    }
 }
 
 /// The power of a mode in each window.
@@ -99,6 +125,15 @@ impl Errors {
             })
         };
         Self { columns: target.columns.iter().enumerate().map(column).collect() }
+    }
+
+    /// The errors of a mode: for each the number of its window, its band, the error, and the weight of the mode in that band.
+    fn along(&self, track: &Track) -> impl Iterator<Item = (usize, usize, f64, f64)> {
+        self.columns.iter().enumerate().flat_map(|(n, column)| {
+            let weights = track.at(n);
+            let error = move |band: usize| Some((n, band, column[band]?, weights[band]));
+            (0..BANDS).filter(move |band| weights[*band] > 0.0).filter_map(error)
+        })
     }
 
     /// The errors of a band, with the numbers of their windows.
@@ -180,8 +215,9 @@ pub(super) mod tests {
     fn bands(draft: &Draft) -> LogMel {
         let mut columns = vec![[1e-12; BANDS]; 300];
         for partial in &draft.partials {
+            let track = Track::new(partial, &draft.sweep);
             for (n, power) in powers_of(partial, 300).enumerate() {
-                let weights = weights(partial.frequency);
+                let weights = track.at(n);
                 columns[n].iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight * power);
             }
         }
@@ -213,6 +249,26 @@ pub(super) mod tests {
             alike = by_bands(&alike, &target, &bands(&alike), 0.8);
         }
         assert!(off(&alike, 0, 0.4) > 4.0 || off(&alike, 1, 0.1) > 1.0, "{:?}", alike.partials);
+    }
+
+    #[test]
+    fn a_mode_whose_pitch_falls_is_corrected_wherever_it_is() {
+        let falling = Sweep { semitones: 36.0, seconds: 0.4, curve: 0.0, ..Sweep::NONE };
+        let mut known = draft([0.4, 0.1]);
+        (known.sweep, known.partials[0].t60) = (falling, 0.5);
+        known.partials[1].frequency = 1000.0;
+        let target = bands(&known);
+        for by in [by_bands, by_moments] {
+            let mut found = known.clone();
+            found.partials[0] = Partial { amplitude: 0.2, t60: 0.8, ..found.partials[0] };
+            for _ in 0..12 {
+                found = by(&found, &target, &bands(&found), 0.8);
+            }
+            let [found, known] = [found.partials[0], known.partials[0]];
+            let near =
+                (found.amplitude / known.amplitude - 1.0).abs() < 0.1 && (found.t60 / known.t60 - 1.0).abs() < 0.1;
+            assert!(near, "{found:?}");
+        }
     }
 
     #[test]
