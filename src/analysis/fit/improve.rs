@@ -31,6 +31,8 @@ const WORTH_A_DRIFT_DB: f64 = 6.0;
 const WORTH_A_SWEEP_DB: f64 = 2.0;
 /// Reduction of the distance in dB for which a bed is kept.
 const WORTH_A_BED: f64 = 0.02;
+/// Octaves within which a mode of a swept sound lies near a stronger one.
+const BESIDE: f64 = 0.3;
 /// Share of its length for which a sound rises that is not held by a key, and seconds of a fall from which the search for it begins.
 const MOSTLY: f64 = 0.6;
 const FALL: f64 = 0.1;
@@ -109,7 +111,7 @@ pub(super) fn fallen(
     Ok((distance < let_go).then_some((whole, other)))
 }
 
-/// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more. If it is held or rises
+/// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more, all of them and a single one for each tone. If it is held or rises
 /// slowly, the modes without its drift; of a held sound these in place of the others, if they explain much more. If it is damped
 /// while it rings, the take ends there. If its modes explain little, also drafts of noise: the row of bursts with which it begins,
 /// noise that goes on for as long as the sound, and modes that noise excites, found after the noise is over. If they leave much
@@ -149,7 +151,11 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
             swept.push(analysed(take, Source { swept: sweep, ..all }, part, tell)?);
         }
         // The draft without a sweep is kept too: a wrong sweep can leave a smaller residual and still sound worse.
-        found.extend(swept.into_iter().filter(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB));
+        swept.retain(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB);
+        let sparse: Vec<Found> =
+            swept.iter().filter_map(|(draft, strike)| Some((sparse(draft)?, strike.clone()))).collect();
+        found.extend(swept.into_iter().chain(sparse));
+        // Stable, so that a sparse draft comes after that with all modes.
         found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
     }
     let strike = found[0].1.clone();
@@ -171,6 +177,22 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
         found.push((rung, strike));
     }
     Ok(found)
+}
+
+/// A draft without the modes that lie near a stronger one; none if there are no such modes. Where a sweep is not quite that of the
+/// sound, or tones decay at different rates, several modes that almost cancel stand for each tone. When they are played, they do not.
+fn sparse(draft: &Draft) -> Option<Draft> {
+    let mut partials = draft.partials.clone();
+    let energy = |partial: &Partial| partial.amplitude * partial.amplitude * partial.t60;
+    partials.sort_by(|a, b| energy(b).total_cmp(&energy(a)));
+    let mut kept: Vec<Partial> = Vec::new();
+    for partial in partials {
+        let is_far = |other: &Partial| libm::fabs(libm::log2(partial.frequency / other.frequency)) > BESIDE;
+        if kept.iter().all(is_far) {
+            kept.push(partial);
+        }
+    }
+    (kept.len() < draft.partials.len()).then(|| Draft { partials: kept, ..draft.clone() })
 }
 
 /// Drafts of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
@@ -256,4 +278,41 @@ fn improved(
     let distance = listener.correct(&mut draft, ROUNDS)?;
     listener.tell(part(1.0))?;
     Ok((draft, distance))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::correct;
+    use super::super::take::tests::prepared;
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn a_sparse_draft_has_one_mode_for_each_tone() {
+        let mode =
+            |frequency, amplitude| Partial { frequency, t60: 0.5, amplitude, phase: 0.0, pan: 0.0, struck: true };
+        let mut draft = correct::tests::draft([0.0; 2]);
+        draft.partials = vec![mode(95.0, 0.1), mode(100.0, -0.4), mode(160.0, 0.05), mode(101.0, 0.3)];
+        let found = sparse(&draft).unwrap();
+        assert_eq!(found.partials, [mode(100.0, -0.4), mode(160.0, 0.05)]);
+        assert_eq!(sparse(&found), None);
+    }
+
+    #[test]
+    fn a_vibrato_that_modes_explain_is_found_as_one() {
+        let mut turn = 0.0;
+        let mut sample = |n: usize| {
+            let semitones = 0.15 * libm::sin(TAU * 5.5 * n as f64 / f64::from(RATE));
+            turn += TAU * 523.0 * libm::exp2(semitones / 12.0) / f64::from(RATE);
+            (0.3 * libm::sin(turn) + 0.02 * libm::sin(2.0 * turn)) as f32
+        };
+        let sound = (0..RATE as usize).map(&mut sample).collect();
+        let mut take = prepared(sound, RATE);
+        let found = drafts(&mut take, 60, &mut |_| Ok(())).unwrap();
+        let is_found = |(draft, _): &Found| {
+            let vibrato = draft.sweep.vibrato;
+            (vibrato.semitones - 0.15).abs() < 0.03 && (vibrato.rate - 5.5).abs() < 0.2
+        };
+        assert!(found.iter().any(is_found), "{:?}", found.iter().map(|(draft, _)| draft.sweep).collect::<Vec<_>>());
+    }
 }
