@@ -111,11 +111,12 @@ pub(super) fn fallen(
     Ok((distance < let_go).then_some((whole, other)))
 }
 
-/// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more, all of them and a single one for each tone. If it is held or rises
-/// slowly, the modes without its drift; of a held sound these in place of the others, if they explain much more. If it is damped
-/// while it rings, the take ends there. If its modes explain little, also drafts of noise: the row of bursts with which it begins,
-/// noise that goes on for as long as the sound, and modes that noise excites, found after the noise is over. If they leave much
-/// of it, also the modes without the movement of oscillators. If the sound rises slowly, also modes found after the rise.
+/// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more, of which also those with a
+/// single mode for each tone. If it is held or rises slowly, the modes without its drift; of a held sound these in place of the
+/// others, if they explain much more and the others do not explain it. If it is damped while it rings, the take ends there. If its
+/// modes explain little, also drafts of noise: the row of bursts with which it begins, noise that goes on for as long as the sound,
+/// and modes that noise excites, found after the noise is over. If they leave much of it, also the modes without the movement of
+/// oscillators. If the sound rises slowly, also modes found after the rise.
 fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
     let [of_still, of_drift, of_search, first, second, of_noise, of_sway, of_rest] =
@@ -137,7 +138,8 @@ fn drafts(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<
         let held = held::draft(take, None, most, &mut |share| tell(from + (to - from) * share).is_ok())?;
         if let Some(first) = held.first() {
             // What decays may have tones that end at different times, of which a residual tells little: let it be heard.
-            drifts = take.is_held && residual_db(first) < still - WORTH_A_DRIFT_DB;
+            // Modes that explain the sound may stay the nearest, however little the others leave.
+            drifts = take.is_held && still > EXPLAINED_DB && residual_db(first) < still - WORTH_A_DRIFT_DB;
             if drifts {
                 found.clear();
             }
