@@ -1,11 +1,13 @@
 //! The error type of the crate: every message says what is wrong, where, and what would be right.
 
+use std::io::ErrorKind;
+
 /// Everything that can fail outside the audio thread. The audio path itself cannot fail.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A file or stream could not be read or written.
-    #[error("{path}: {source}")]
+    #[error("{path}: {}", reason(source))]
     Io {
         /// The file, or `stdout`/`stdin`.
         path: String,
@@ -70,6 +72,16 @@ impl Error {
     /// An [`Error::Io`] on `path`.
     pub fn io(path: impl Into<String>, source: std::io::Error) -> Self {
         Self::Io { path: path.into(), source }
+    }
+}
+
+/// The system's words, and for frequent errors what would be right.
+fn reason(source: &std::io::Error) -> String {
+    match source.kind() {
+        ErrorKind::NotFound => "No such file or folder: expected one that exists".to_owned(),
+        ErrorKind::IsADirectory => "Is a folder: expected a file".to_owned(),
+        ErrorKind::PermissionDenied => "Permission denied: expected a file that you may read or write".to_owned(),
+        _ => source.to_string(),
     }
 }
 
