@@ -16,7 +16,7 @@ use sprung::params::Param;
 use sprung::preset::{Playable, Replaced};
 use sprung::render::{Job, Options, Tail};
 use sprung::text::printable;
-use sprung::units::frequency_from_key;
+use sprung::units::{frequency_from_key, note_name};
 use sprung::{Error, Result};
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
@@ -81,13 +81,12 @@ fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
     sprung::request::playable(name, inputs, &mut terminal::warn)
 }
 
-/// Key and velocity of the note with which a preset is drawn, and its length in seconds.
-const DRAWN_KEY: f64 = 60.0;
+/// Velocity of the note with which a preset is drawn, and its length in seconds.
 const DRAWN_VELOCITY: f32 = 100.0 / 127.0;
 const DRAWN_SECONDS: f64 = 2.0;
 const DRAWN_RATE: u32 = 48_000;
 
-/// Draws a note of a preset and its modes.
+/// Draws the note of a preset's home key and its modes.
 fn drawn(playable: &Playable, format: &str) -> Result<Vec<u8>> {
     let Playable::Preset(preset) = playable else {
         let message = format!(
@@ -96,11 +95,17 @@ fn drawn(playable: &Playable, format: &str) -> Result<Vec<u8>> {
         );
         return Err(Error::value("--figure", message));
     };
-    let (kit, song) = (preset.kit(), Song::chord(&[DRAWN_KEY], DRAWN_VELOCITY, DRAWN_SECONDS));
+    let key = f64::from(preset.guide.home);
+    let (kit, song) = (preset.kit(), Song::chord(&[key], DRAWN_VELOCITY, DRAWN_SECONDS));
     let options = Options { sample_rate: DRAWN_RATE, seed: 0, block: 4096, tail: Tail::Auto };
     let a4_hz = f64::from(preset.patch.get(Param::Tuning));
-    let modes = modes_of(&preset.patch, frequency_from_key(DRAWN_KEY, a4_hz));
-    figure::drawn(&Job::new(&song, &kit, options), &format!("{}: C4", preset.name), &modes, format)
+    let modes = modes_of(&preset.patch, frequency_from_key(key, a4_hz));
+    figure::drawn(
+        &Job::new(&song, &kit, options),
+        &format!("{}: {}", preset.name, note_name(preset.guide.home)),
+        &modes,
+        format,
+    )
 }
 
 fn warn(origin: &str, replaced: Replaced) {
