@@ -75,9 +75,11 @@ impl Error {
     }
 }
 
-/// The system's words, and for frequent errors what would be right.
+/// For frequent errors of the system what would be right; else the error's own words.
 fn reason(source: &std::io::Error) -> String {
+    let ours = source.get_ref().is_some();
     match source.kind() {
+        _ if ours => source.to_string(),
         ErrorKind::NotFound => "No such file or folder: expected one that exists".to_owned(),
         ErrorKind::IsADirectory => "Is a folder: expected a file".to_owned(),
         ErrorKind::PermissionDenied => "Permission denied: expected a file that you may read or write".to_owned(),
