@@ -230,11 +230,10 @@ pub(super) fn patch(draft: &Draft, body: &Body) -> Patch {
 }
 
 fn explained(model: &'static str, found: &Match, partials: &[Partial]) -> Explained {
-    let energy = |partial: &Partial| partial.amplitude * partial.amplitude * partial.t60;
-    let all: f64 = partials.iter().map(energy).sum();
+    let all: f64 = partials.iter().map(Partial::energy).sum();
     let (mut met, mut off, mut weights, mut count) = (0.0, 0.0, 0.0, 0);
     for (partial, _, cents) in pairs(found, partials) {
-        met += energy(partial);
+        met += partial.energy();
         off += weight(partial) * fabs(cents);
         weights += weight(partial);
         count += 1;

@@ -1,11 +1,21 @@
-//! Finds rows of bursts at equal distances, as of the teeth of a guiro, by the regularity with which the level rises.
+//! Finds rows of bursts at equal distances, as of the teeth of a guiro or of echoes, by the regularity with which the level rises.
 
 use super::draft::Noise;
 use crate::analysis::log_mel::RATE;
 use libm::{log, sqrt};
 
-/// Samples per block of levels: half a millisecond.
-const BLOCK: usize = RATE as usize / 2000;
+/// How fast bursts follow each other.
+struct Pace {
+    /// Samples per block of levels.
+    block: usize,
+    /// Shortest and longest distance in seconds.
+    spacings: (f64, f64),
+}
+
+/// Teeth, in blocks of half a millisecond, and echoes, in blocks of five.
+const TEETH: Pace = Pace { block: RATE as usize / 2000, spacings: (0.004, 0.08) };
+const ECHOES: Pace = Pace { block: RATE as usize / 200, spacings: (0.08, Noise::FARTHEST) };
+
 /// Blocks before one over which its level rises.
 const BEFORE: usize = 3;
 /// Power, relative to the greatest, below which a rise is not heard.
@@ -13,8 +23,7 @@ const FAINT: f64 = 1e-4;
 /// Fewest bursts, for fewer are tried by ear, and the most that the engine plays.
 const FEWEST: usize = 5;
 const MOST: usize = Noise::MOST_HITS as usize;
-/// Shortest and longest distance in seconds, and the step between those that are tried, in blocks.
-const SPACINGS: (f64, f64) = (0.004, 0.08);
+/// Step between the distances that are tried, in blocks.
 const STEP: f64 = 0.25;
 /// Smallest deviation of the rises, in nepers of power, that is assumed.
 const LEAST_DEVIATION: f64 = 0.05;
@@ -26,11 +35,11 @@ const TONE: f64 = 0.5;
 const OFF: usize = 8;
 
 /// How far the level of each block is above the mean of the blocks before it, or of one beside it if that rises more.
-fn rises(samples: &[f32]) -> Vec<f64> {
+fn rises(samples: &[f32], block: usize) -> Vec<f64> {
     // Differences of samples raise the high frequencies, in which bursts are sharpest.
     let powers: Vec<f64> = samples
-        .windows(BLOCK + 1)
-        .step_by(BLOCK)
+        .windows(block + 1)
+        .step_by(block)
         .map(|block| block.windows(2).map(|pair| f64::from(pair[1]) - f64::from(pair[0])).map(|d| d * d).sum())
         .collect();
     let floor = FAINT * powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
@@ -58,14 +67,24 @@ fn repeats(samples: &[f32], distance: usize) -> bool {
 }
 
 /// The row of bursts with which samples at [`RATE`] begin, up to sixteen; none if their level does not rise regularly.
-pub(super) fn find(samples: &[f32]) -> Option<Noise> {
-    let per_second = f64::from(RATE) / BLOCK as f64;
-    let longest = (MOST as f64 * SPACINGS.1 * f64::from(RATE)) as usize;
-    let samples = &samples[..samples.len().min(longest)];
-    let rises = rises(samples);
-    let steps = ((SPACINGS.1 - SPACINGS.0) * per_second / STEP) as usize;
+pub(super) fn teeth(samples: &[f32]) -> Option<Noise> {
+    let row = row(samples, &TEETH)?;
+    let spacing = (row.spacing * f64::from(RATE)) as usize;
+    let end = samples.len().min(usize::from(row.hits) * spacing);
+    (!repeats(&samples[..end], spacing)).then_some(row)
+}
+
+/// The same for bursts that follow each other slowly, between which other modes may ring.
+pub(super) fn echoes(samples: &[f32]) -> Option<Noise> {
+    row(samples, &ECHOES)
+}
+
+fn row(samples: &[f32], pace: &Pace) -> Option<Noise> {
+    let per_second = f64::from(RATE) / pace.block as f64;
+    let [shortest, longest] = [pace.spacings.0, pace.spacings.1].map(|seconds| seconds * per_second);
+    let rises = rises(&samples[..samples.len().min(MOST * longest as usize * pace.block)], pace.block);
     let mut best = (CLEARLY, None);
-    for spacing in (0..steps).map(|n| SPACINGS.0 * per_second + STEP * n as f64) {
+    for spacing in (0..((longest - shortest) / STEP) as usize).map(|n| shortest + STEP * n as f64) {
         for hits in FEWEST..=MOST {
             let Some(row) = rises.get(..((hits as f64 - 0.5) * spacing) as usize) else { break };
             let mean = row.iter().sum::<f64>() / row.len() as f64;
@@ -76,14 +95,11 @@ pub(super) fn find(samples: &[f32]) -> Option<Noise> {
             let excess = of_bursts.sum::<f64>() / count - mean;
             let clearly = excess / (sqrt(square) + LEAST_DEVIATION) * sqrt(count);
             if clearly > best.0 {
-                best = (clearly, Some((hits, spacing)));
+                best = (clearly, Some(Noise { hits: hits as u8, spacing: spacing / per_second, ..Noise::SHORT }));
             }
         }
     }
-    let (hits, spacing) = best.1?;
-    let row = &samples[..samples.len().min((hits as f64 * spacing) as usize * BLOCK)];
-    let is_tone = repeats(row, (spacing * BLOCK as f64) as usize);
-    (!is_tone).then_some(Noise { hits: hits as u8, spacing: spacing / per_second, ..Noise::SHORT })
+    best.1
 }
 
 #[cfg(test)]
@@ -105,19 +121,32 @@ mod tests {
                 let tooth = libm::floor(t / spacing).min(f64::from(hits) - 1.0);
                 libm::exp(-(t - tooth * spacing) / 0.006)
             };
-            let found = find(&noise(level)).unwrap();
+            let found = teeth(&noise(level)).unwrap();
             assert_eq!(found.hits, hits, "{found:?}");
             assert!((found.spacing / spacing - 1.0).abs() < 0.01, "{found:?}, {spacing}");
         }
     }
 
     #[test]
+    fn echoes_are_counted_though_a_tone_stays() {
+        let echo = |t: f64| libm::exp(-(t - libm::floor(t / 0.23).min(5.0) * 0.23) / 0.03);
+        let tone = |n: usize| 0.1 * libm::sin(0.07 * n as f64) as f32;
+        let noise: Vec<f32> = noise(echo).into_iter().chain(noise(|t| echo(t + 1.0))).collect();
+        let sound: Vec<f32> = noise.iter().enumerate().map(|(n, noise)| noise + tone(n)).collect();
+        let found = echoes(&sound).unwrap();
+        assert!(found.hits == 6 && (found.spacing / 0.23 - 1.0).abs() < 0.01, "{found:?}");
+        let alone: Vec<f32> = (0..sound.len()).map(tone).collect();
+        assert_eq!(echoes(&alone), None);
+    }
+
+    #[test]
     fn a_single_stroke_is_no_row() {
         for t60 in [0.05, 0.4, 10.0] {
-            assert_eq!(find(&noise(|t| libm::exp(-6.9 * t / t60))), None, "{t60}");
+            let stroke = noise(|t| libm::exp(-6.9 * t / t60));
+            assert_eq!([teeth(&stroke), echoes(&stroke)], [None; 2], "{t60}");
         }
-        assert_eq!(find(&[]), None);
+        assert_eq!(teeth(&[]), None);
         let saw = |n: usize| (n as f32 * 55.0 / RATE as f32).fract() - 0.5;
-        assert_eq!(find(&(0..RATE as usize).map(saw).collect::<Vec<f32>>()), None);
+        assert_eq!(teeth(&(0..RATE as usize).map(saw).collect::<Vec<f32>>()), None);
     }
 }

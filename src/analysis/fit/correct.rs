@@ -1,9 +1,8 @@
 //! Corrects levels and decays of a draft's modes by the errors of its mel bands.
 
 use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
-use super::movement::Sweep;
+use super::movement::{Sweep, speed_at};
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, time, weights};
-use crate::dsp::pitch::SweepEnvelope;
 use libm::{exp, pow};
 
 /// Largest correction at a time: of a level in dB, and of a decay rate as a share of that rate.
@@ -23,9 +22,10 @@ type Correction = (f64, f64);
 pub(super) fn by_bands(draft: &Draft, target: &LogMel, heard: &LogMel, share: f64) -> Draft {
     let errors = Errors::new(target, heard);
     if draft.sweep.semitones != 0.0 {
+        let speeds = speeds(&draft.sweep, errors.columns.len());
         return corrected(draft, share, |partial| {
-            let (track, mut line) = (Track::new(partial, &draft.sweep), Line::default());
-            errors.along(&track).for_each(|(n, _, error, weight)| line.add(time(n), error, weight));
+            let mut line = Line::default();
+            errors.along(partial, &speeds).for_each(|(n, _, error, weight)| line.add(time(n), error, weight));
             line.correction()
         });
     }
@@ -63,44 +63,46 @@ fn corrected_by_bands(draft: &Draft, share: f64, corrections: &[Correction; BAND
 pub(super) fn by_moments(draft: &Draft, target: &LogMel, heard: &LogMel, share: f64) -> Draft {
     let errors = Errors::new(target, heard);
     let columns = errors.columns.len();
-    let mut powers = vec![[1e-30; BANDS]; columns];
-    for partial in &draft.partials {
-        let track = Track::new(partial, &draft.sweep);
-        for (n, power) in powers_of(partial, columns).enumerate() {
-            for (sum, weight) in powers[n].iter_mut().zip(track.at(n)) {
-                *sum += weight * power;
-            }
-        }
-    }
+    let speeds = speeds(&draft.sweep, columns);
+    let powers = powers(&draft.partials, &speeds);
     corrected(draft, share, |partial| {
-        let (track, mut line) = (Track::new(partial, &draft.sweep), Line::default());
+        let mut line = Line::default();
         let own: Vec<f64> = powers_of(partial, columns).collect();
         let share = |n: usize, band: usize, weight: f64| weight * own[n] / powers[n][band];
-        errors.along(&track).for_each(|(n, band, error, weight)| {
+        errors.along(partial, &speeds).for_each(|(n, band, error, weight)| {
             line.add(time(n), error, share(n, band, weight) * weight);
         });
         line.correction()
     })
 }
 
-/// The weights of a mode in the bands, window by window.
-struct Track {
-    frequency: f64,
-    /// Of a mode whose pitch moves.
-    sweep: Option<SweepEnvelope>,
-    still: [f64; BANDS],
+/// How much a sweep raises the pitch in each window.
+fn speeds(sweep: &Sweep, columns: usize) -> Vec<f64> {
+    (0..columns).map(|n| speed_at(sweep, time(n))).collect()
 }
 
-impl Track {
-    fn new(partial: &Partial, sweep: &Sweep) -> Self {
-        let moves = sweep.semitones != 0.0;
-        Self { frequency: partial.frequency, sweep: moves.then(|| sweep.envelope()), still: weights(partial.frequency) }
-    }
+/// The bands that a mode passes through: numbers of windows, the band there, and the mode's weight in it.
+fn track(frequency: f64, speeds: &[f64]) -> impl Iterator<Item = (usize, usize, f64)> {
+    let mut end = 0;
+    speeds.chunk_by(|a, b| a == b).flat_map(move |run| {
+        let windows = end..end + run.len();
+        end = windows.end;
+        let weights = weights(frequency * run[0]);
+        let low = weights.iter().position(|weight| *weight > 0.0).unwrap_or(BANDS);
+        let high = weights.get(low + 1).copied().unwrap_or(0.0);
+        let pair = [(low, weights.get(low).copied().unwrap_or(0.0)), (low + 1, high)];
+        windows.flat_map(move |n| pair.map(|(band, weight)| (n, band, weight))).filter(|(.., weight)| *weight > 0.0)
+    })
+}
 
-    fn at(&self, n: usize) -> [f64; BANDS] {
-        let semitones = self.sweep.map_or(0.0, |sweep| sweep.at(time(n)));
-        if semitones == 0.0 { self.still } else { weights(self.frequency * pow(2.0, semitones / 12.0)) }
+/// The power of modes in each band of each window.
+fn powers(partials: &[Partial], speeds: &[f64]) -> Vec<[f64; BANDS]> {
+    let mut powers = vec![[1e-30; BANDS]; speeds.len()];
+    for partial in partials {
+        let own: Vec<f64> = powers_of(partial, speeds.len()).collect();
+        track(partial.frequency, speeds).for_each(|(n, band, weight)| powers[n][band] += weight * own[n]);
     }
+    powers
 }
 
 /// The power of a mode in each window.
@@ -128,12 +130,9 @@ impl Errors {
     }
 
     /// The errors of a mode: for each the number of its window, its band, the error, and the weight of the mode in that band.
-    fn along(&self, track: &Track) -> impl Iterator<Item = (usize, usize, f64, f64)> {
-        self.columns.iter().enumerate().flat_map(|(n, column)| {
-            let weights = track.at(n);
-            let error = move |band: usize| Some((n, band, column[band]?, weights[band]));
-            (0..BANDS).filter(move |band| weights[*band] > 0.0).filter_map(error)
-        })
+    fn along(&self, partial: &Partial, speeds: &[f64]) -> impl Iterator<Item = (usize, usize, f64, f64)> {
+        let track = track(partial.frequency, speeds);
+        track.filter_map(|(n, band, weight)| Some((n, band, self.columns[n][band]?, weight)))
     }
 
     /// The errors of a band, with the numbers of their windows.
@@ -213,15 +212,9 @@ pub(super) mod tests {
 
     /// The bands of a draft's modes, without beats.
     fn bands(draft: &Draft) -> LogMel {
-        let mut columns = vec![[1e-12; BANDS]; 300];
-        for partial in &draft.partials {
-            let track = Track::new(partial, &draft.sweep);
-            for (n, power) in powers_of(partial, 300).enumerate() {
-                let weights = track.at(n);
-                columns[n].iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight * power);
-            }
-        }
-        LogMel { columns: columns.into_iter().map(|column| column.map(|power| 10.0 * libm::log10(power))).collect() }
+        let level = |power: f64| 10.0 * libm::log10(power.max(1e-12));
+        let columns = powers(&draft.partials, &speeds(&draft.sweep, 300));
+        LogMel { columns: columns.into_iter().map(|column| column.map(level)).collect() }
     }
 
     #[test]

@@ -131,6 +131,17 @@ pub(super) fn share_of_mean(pan: f64) -> f64 {
 }
 
 impl Partial {
+    /// Proportional to the energy of its whole decay.
+    pub(super) fn energy(&self) -> f64 {
+        self.amplitude * self.amplitude * self.t60
+    }
+
+    /// A partial measured so many seconds after the onset with the level that it had at the onset, but at most `most_db` above.
+    pub(super) fn earlier(&self, seconds: f64, most_db: f64) -> Self {
+        let before = (60.0 * seconds / self.t60).min(most_db);
+        Self { amplitude: self.amplitude * pow(10.0, before / 20.0), ..*self }
+    }
+
     /// The frequency in Hz at the mean time of its energy, since a sweep moves it.
     pub(super) fn heard_at(&self, sweep: &Sweep) -> f64 {
         self.frequency * speed(sweep, self.t60)
@@ -140,8 +151,7 @@ impl Partial {
 impl Draft {
     /// The partial with the most energy over its whole decay.
     pub(super) fn main(&self) -> Option<&Partial> {
-        let energy = |partial: &&Partial| partial.amplitude * partial.amplitude * partial.t60;
-        self.partials.iter().max_by(|a, b| energy(a).total_cmp(&energy(b)))
+        self.partials.iter().max_by(|a, b| a.energy().total_cmp(&b.energy()))
     }
 
     /// The key that it was recorded on, as a fractional MIDI key.

@@ -11,6 +11,7 @@ mod audition;
 mod bed;
 mod body;
 mod bursts;
+mod candidates;
 mod correct;
 mod course;
 mod draft;

@@ -45,6 +45,15 @@ impl Sweep {
         }
     }
 
+    /// The sweep with a changed vibrato: its depth by a share of it, its rate by a tenth of a share.
+    pub(super) fn trembling(&self, [depth, rate]: [f64; 2]) -> Self {
+        let Vibrato { semitones, rate: before, delay } = self.vibrato;
+        // What the engine cannot play would be taken out of the sound and not come back.
+        let semitones = (semitones * (1.0 + depth)).clamp(0.0, Vibrato::DEEPEST);
+        let rate = (before * (1.0 + 0.1 * rate)).clamp(0.0, Vibrato::FASTEST);
+        Self { vibrato: Vibrato { semitones, rate, delay }, ..*self }
+    }
+
     /// Whether the pitch is constant.
     pub(super) fn is_none(&self) -> bool {
         self.semitones == 0.0 && self.vibrato.semitones == 0.0
@@ -52,6 +61,10 @@ impl Sweep {
 }
 
 impl Vibrato {
+    /// The engine's fastest vibrato in Hz, and its deepest one in semitones.
+    pub(super) const FASTEST: f64 = 20.0;
+    pub(super) const DEEPEST: f64 = 12.0;
+
     /// Semitones, `time` seconds after the strike.
     pub(super) fn at(&self, time: f64) -> f64 {
         let fade = if self.delay > 0.0 { (time / self.delay).min(1.0) } else { 1.0 };
@@ -96,5 +109,10 @@ impl Oscillator {
 /// seconds.
 pub(super) fn speed(sweep: &Sweep, t60: f64) -> f64 {
     // The squared amplitude falls by 120 dB in a T60: its mean time is T60 / ln 10⁶.
-    if sweep.semitones == 0.0 { 1.0 } else { pow(2.0, sweep.envelope().at(t60 / 13.8) / 12.0) }
+    speed_at(sweep, t60 / 13.8)
+}
+
+/// The same, `time` seconds after the strike.
+pub(super) fn speed_at(sweep: &Sweep, time: f64) -> f64 {
+    if sweep.semitones == 0.0 { 1.0 } else { pow(2.0, sweep.envelope().at(time) / 12.0) }
 }

@@ -70,6 +70,10 @@ impl Listener<'_> {
         let rises: Vec<Draft> = RISES.map(|attack| with(draft, Noise { attack, ..noise })).into();
         self.best(draft, usize::MAX, rises)?;
         let noise = draft.noise;
+        if noise.hits > 1 {
+            // A row was found, and is longer than those that are tried.
+            return Ok(());
+        }
         let several = HITS.map(|hits| SPACINGS.map(|spacing| with(draft, Noise { hits, spacing, ..noise })));
         let mut other = draft.clone();
         self.best(&mut other, ATTACK, several.into_iter().flatten())?;

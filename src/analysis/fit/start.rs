@@ -17,9 +17,9 @@ const HIGHEST: f64 = 20_000.0;
 const TOO_LOUD_DB: f64 = 12.0;
 /// Modes this many dB below the loudest are left to the bed.
 const FAINT_DB: f64 = 75.0;
-/// Largest level in dB that a mode excited by noise gains by going back to the onset from where it was found.
-const MOST_BEFORE_DB: f64 = 40.0;
-/// The same for a mode that is not excited by noise.
+/// Largest level in dB that a mode gains by going back to the onset from where it was found.
+pub(super) const MOST_BEFORE_DB: f64 = 40.0;
+/// The same for a mode of a sound that rises slowly.
 const MOST_OF_A_SWELL_DB: f64 = 6.0;
 /// Seconds of the sound that are analysed, at most.
 const LONGEST: f64 = 5.0;
@@ -104,10 +104,8 @@ pub(super) fn from(take: &Prepared, strike: Option<&Strike>, source: &Source, ha
             let partial = partial(mode, *amplitude, delay);
             let partial = Partial { t60: partial.t60.min(longest), ..partial };
             let phase = if has_phases && struck { partial.phase } else { 0.0 };
-            let before = 60.0 * late / partial.t60;
             let most = if struck { MOST_OF_A_SWELL_DB } else { MOST_BEFORE_DB };
-            let amplitude = partial.amplitude * pow(10.0, before.min(most) / 20.0);
-            Partial { amplitude, phase, struck, ..partial }
+            Partial { phase, struck, ..partial }.earlier(late, most)
         };
         partials.extend(kept.iter().zip(&amplitudes).map(struck_so));
     }

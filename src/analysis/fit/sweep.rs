@@ -5,7 +5,7 @@
 
 use super::course;
 use super::layers::slope;
-use super::movement::{Sweep, Vibrato};
+use super::movement::Sweep;
 use super::simplex;
 use crate::analysis::level::rms;
 use crate::analysis::log_mel::RATE;
@@ -186,29 +186,23 @@ pub(super) fn find(samples: &[f32], tell: &mut dyn FnMut() -> Result<()>) -> Res
 
 /// Changes a sweep until the peaks are highest. Returns their height and the sweep.
 fn refine(peaks: &mut Peaks, start: Sweep) -> Result<(f64, Sweep)> {
-    let mut best = start;
+    let (mut best, mut height) = (start, f64::NEG_INFINITY);
     // A sweep makes up for the faults of its vibrato, so each is found again once the other is better.
     for _ in 0..ROUNDS {
-        let (place, _) = simplex::least(STEPS, |place| Ok(-peaks.height(&best.moved(place))?))?;
-        best = best.moved(place);
+        let (place, least) = simplex::least(STEPS, |place| Ok(-peaks.height(&best.moved(place))?))?;
+        (best, height) = (best.moved(place), -least);
         if best.vibrato.semitones == 0.0 {
             break;
         }
-        let swept = best;
-        let trembling = |[depth, rate]: [f64; 2]| {
-            let Vibrato { semitones, rate: before, delay } = swept.vibrato;
-            // What the engine cannot play would be taken out of the sound and not come back.
-            let semitones = (semitones * (1.0 + depth)).clamp(0.0, course::DEEPEST_VIBRATO);
-            let rate = (before * (1.0 + 0.1 * rate)).clamp(0.0, course::FASTEST_VIBRATO);
-            Sweep { vibrato: Vibrato { semitones, rate, delay }, ..swept }
-        };
-        best = trembling(simplex::least(STEPS, |place| Ok(-peaks.height(&trembling(place))?))?.0);
+        let (place, least) = simplex::least(STEPS, |place| Ok(-peaks.height(&best.trembling(place))?))?;
+        (best, height) = (best.trembling(place), -least);
     }
-    Ok((peaks.height(&best)?, best))
+    Ok((height, best))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::movement::Vibrato;
     use super::*;
     use libm::sin;
 

@@ -119,7 +119,8 @@ impl Prepared {
         }
         // After the last of a row of bursts a sound falls by itself.
         let is_last = |release: &Release| {
-            let row = bursts::find(&middle[onset..end]);
+            let sound = &middle[onset..end];
+            let row = bursts::teeth(sound).or_else(|| bursts::echoes(sound));
             row.is_some_and(|row| libm::fabs(release.seconds - row.last()) < NEAR_LAST)
         };
         let release = Release::of_held(&middle[onset..end]).filter(|release| !is_last(release));

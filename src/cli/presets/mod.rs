@@ -95,17 +95,13 @@ fn drawn(playable: &Playable, format: &str) -> Result<Vec<u8>> {
         );
         return Err(Error::value("--figure", message));
     };
-    let key = f64::from(preset.guide.home);
+    let home = preset.guide.home;
+    let key = f64::from(home);
     let (kit, song) = (preset.kit(), Song::chord(&[key], DRAWN_VELOCITY, DRAWN_SECONDS));
     let options = Options { sample_rate: DRAWN_RATE, seed: 0, block: 4096, tail: Tail::Auto };
     let a4_hz = f64::from(preset.patch.get(Param::Tuning));
     let modes = modes_of(&preset.patch, frequency_from_key(key, a4_hz));
-    figure::drawn(
-        &Job::new(&song, &kit, options),
-        &format!("{}: {}", preset.name, note_name(preset.guide.home)),
-        &modes,
-        format,
-    )
+    figure::drawn(&Job::new(&song, &kit, options), &format!("{}: {}", preset.name, note_name(home)), &modes, format)
 }
 
 fn warn(origin: &str, replaced: Replaced) {

@@ -1,0 +1,212 @@
+//! The possible drafts of a take: what its modes may be, and what may move and excite them.
+
+use super::draft::{Draft, Noise, Partial};
+use super::drift::Drift;
+use super::movement::Sweep;
+use super::start::{MOST_BEFORE_DB, Source};
+use super::take::{Prepared, SLOW};
+use super::{bursts, held, noise, start, sway, sweep};
+use crate::analysis::log_mel::RATE;
+use crate::analysis::modes::Strike;
+use crate::error::Result;
+
+/// Residual of the modes in dB above which noise alone may explain the sound better.
+const NOISE_DB: f64 = -10.0;
+/// Residual of the modes in dB below which they tell where the sound is damped.
+const TELLS_DAMPER_DB: f64 = -25.0;
+/// Residual of the modes in dB above which the sound may be moved by oscillators.
+const SWAYS_DB: f64 = -20.0;
+/// Share of a sound after which modes that noise has excited ring freely.
+const LATE: f64 = 0.2;
+/// Residual of the modes in dB below which the pitch counts as constant.
+const EXPLAINED_DB: f64 = -50.0;
+/// Modes found without the drift replace those of a held sound as it is if they lower the residual by this many dB.
+const WORTH_A_DRIFT_DB: f64 = 6.0;
+/// Reduction of the residual in dB by which a sweep is kept.
+const WORTH_A_SWEEP_DB: f64 = 2.0;
+/// Octaves within which a mode of a swept sound lies near a stronger one.
+const BESIDE: f64 = 0.3;
+/// Share of the distance of bursts after which the last one is over.
+const AFTER_ECHO: f64 = 0.5;
+
+/// A draft with the strike that its modes were found in.
+pub(super) type Found = (Draft, Option<Strike>);
+
+/// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more, of which also those with a
+/// single mode for each tone. If it is held or rises slowly, the modes without its drift; of a held sound these in place of the
+/// others, if they explain much more and the others do not explain it. If it is damped while it rings, the take ends there. If its
+/// modes explain little, also drafts of noise: the row of bursts with which it begins, noise that goes on for as long as the sound,
+/// and modes that noise excites, found after the noise is over. If it has echoes, modes of the tone that stays after them. If they leave much of it, also the modes without the movement of
+/// oscillators. If the sound rises slowly, also modes found after the rise.
+pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
+    // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
+    let [of_still, of_drift, of_search, first, second, of_noise, of_echoes, of_sway, of_rest] = [
+        [0.0, 0.25],
+        [0.25, 0.45],
+        [0.45, 0.5],
+        [0.5, 0.6],
+        [0.6, 0.7],
+        [0.7, 0.8],
+        [0.8, 0.85],
+        [0.85, 0.9],
+        [0.9, 1.0],
+    ];
+    let analysed = |take: &Prepared, source, [from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>| {
+        start::draft(take, source, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
+    };
+    let all = Source { swept: Sweep::NONE, late: 0.0, struck: true };
+    let mut found = vec![analysed(take, all, of_still, tell)?];
+    // Modes that explain little do not tell whether something damps them.
+    let strike = found[0].1.as_ref().filter(|strike| !take.is_held && strike.residual_db < TELLS_DAMPER_DB);
+    if let Some(seconds) = strike.and_then(|strike| strike.damped) {
+        take.end_at(seconds);
+    }
+    let still = residual_db(&found[0]);
+    let is_explained = still <= EXPLAINED_DB;
+    let mut drifts = false;
+    if take.is_held || !is_explained && take.rise > SLOW {
+        let [from, to] = of_drift;
+        let held = held::draft(take, None, most, &mut |share| tell(from + (to - from) * share).is_ok())?;
+        if let Some(first) = held.first() {
+            // What decays may have tones that end at different times, of which a residual tells little: let it be heard.
+            // Modes that explain the sound may stay the nearest, however little the others leave.
+            drifts = take.is_held && !is_explained && residual_db(first) < still - WORTH_A_DRIFT_DB;
+            if drifts {
+                found.clear();
+            }
+            found.extend(held);
+        }
+    }
+    if !is_explained && !drifts {
+        let sweeps = sweep::find(&take.mean, &mut || tell(of_search[0]))?;
+        let mut swept = Vec::new();
+        for (sweep, part) in sweeps.into_iter().zip([first, second]) {
+            swept.push(analysed(take, Source { swept: sweep, ..all }, part, tell)?);
+        }
+        // The draft without a sweep is kept too: a wrong sweep can leave a smaller residual and still sound worse.
+        swept.retain(|swept| residual_db(swept) < still - WORTH_A_SWEEP_DB);
+        let fewer: Vec<Found> =
+            swept.iter().filter_map(|(draft, strike)| Some((sparse(draft)?, strike.clone()))).collect();
+        found.extend(swept.into_iter().chain(fewer));
+        // Stable, so that a sparse draft comes after that with all modes.
+        found.sort_by(|a, b| residual_db(a).total_cmp(&residual_db(b)));
+    }
+    let strike = found[0].1.clone();
+    if still > NOISE_DB && !drifts {
+        let empty = || start::from(take, None, &Source { struck: false, ..all }, false);
+        found.extend(bursts::teeth(&take.mean).map(|noise| (Draft { noise, ..empty() }, strike.clone())));
+        found.push((noise::lasting(take, most, empty()), strike.clone()));
+        let late = Source { late: LATE * take.seconds(), struck: false, ..all };
+        let (driven, _) = analysed(take, late, of_noise, tell)?;
+        found.push((driven, strike.clone()));
+    }
+    if let Some(row) = bursts::echoes(&take.mean).filter(|_| !is_explained) {
+        let [from, to] = of_echoes;
+        let echoed = echoed(take, row, most, &mut |share| tell(from + (to - from) * share).is_ok())?;
+        found.extend(echoed.into_iter().map(|draft| (draft, strike.clone())));
+    }
+    if still > SWAYS_DB {
+        let [from, to] = of_sway;
+        found.extend(swayed(take, most, &mut |share| tell(from + (to - from) * share))?);
+    }
+    if take.rise > SLOW {
+        let swept = found[0].0.sweep;
+        let (rung, _) = analysed(take, Source { late: take.rise, swept, ..all }, of_rest, tell)?;
+        found.push((rung, strike));
+    }
+    Ok(found)
+}
+
+/// A draft without the modes that lie near a stronger one; none if there are no such modes. Where a sweep is not quite that of the
+/// sound, or tones decay at different rates, several modes that almost cancel stand for each tone. When they are played, they do not.
+fn sparse(draft: &Draft) -> Option<Draft> {
+    let mut partials = draft.partials.clone();
+    partials.sort_by(|a, b| b.energy().total_cmp(&a.energy()));
+    let mut kept: Vec<Partial> = Vec::new();
+    for partial in partials {
+        let is_far = |other: &Partial| libm::fabs(libm::log2(partial.frequency / other.frequency)) > BESIDE;
+        if kept.iter().all(is_far) {
+            kept.push(partial);
+        }
+    }
+    (kept.len() < draft.partials.len()).then(|| Draft { partials: kept, ..draft.clone() })
+}
+
+/// Drafts of a tone that stays after a row of bursts, found after the last of these; none if the sound ends before that.
+fn echoed(take: &Prepared, row: Noise, most: usize, tell: &mut dyn FnMut(f64) -> bool) -> Result<Vec<Draft>> {
+    let late = row.last() + AFTER_ECHO * row.spacing;
+    let start = (late * f64::from(RATE)) as usize;
+    if start >= take.mean.len() {
+        return Ok(Vec::new());
+    }
+    let after = take.replaced(take.channels.iter().map(|channel| channel[start..].to_vec()).collect());
+    let earlier = |partial: &Partial| Partial { phase: 0.0, ..partial.earlier(late, MOST_BEFORE_DB) };
+    let from_onset = |(draft, _): Found| Draft {
+        partials: draft.partials.iter().map(earlier).collect(),
+        noise: row,
+        // What was measured of the movement has its phase after the last burst.
+        sweep: Sweep::NONE,
+        oscillators: Vec::new(),
+        ..draft
+    };
+    Ok(held::draft(&after, None, most.div_ceil(2), tell)?.into_iter().map(from_onset).collect())
+}
+
+/// Drafts of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
+fn swayed(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
+    let (oscillators, swept) = sway::find(take, &mut || tell(0.0))?;
+    if oscillators.is_empty() {
+        return Ok(Vec::new());
+    }
+    let drift = Drift::by(&oscillators, swept.envelope(), take.mean.len());
+    let still = take.replaced(take.channels.iter().map(|channel| drift.removed_from(channel)).collect());
+    let mut found = held::draft(&still, Some(swept), most, &mut |share| tell(share).is_ok())?;
+    if found.iter().all(|held| residual_db(held) > NOISE_DB) {
+        // Noise that moves so is left to the bed.
+        found.push((start::from(take, None, &Source { swept, late: 0.0, struck: false }, false), None));
+    }
+    let swayed = |(draft, strike)| (Draft { oscillators: oscillators.clone(), ..draft }, strike);
+    Ok(found.into_iter().map(swayed).collect())
+}
+
+/// The residual of a strike in dB.
+fn residual_db((_, strike): &Found) -> f64 {
+    strike.as_ref().map_or(0.0, |strike| strike.residual_db)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::correct;
+    use super::super::take::tests::prepared;
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn a_sparse_draft_has_one_mode_for_each_tone() {
+        let mode =
+            |frequency, amplitude| Partial { frequency, t60: 0.5, amplitude, phase: 0.0, pan: 0.0, struck: true };
+        let mut draft = correct::tests::draft([0.0; 2]);
+        draft.partials = vec![mode(95.0, 0.1), mode(100.0, -0.4), mode(160.0, 0.05), mode(101.0, 0.3)];
+        let found = sparse(&draft).unwrap();
+        assert_eq!(found.partials, [mode(100.0, -0.4), mode(160.0, 0.05)]);
+        assert_eq!(sparse(&found), None);
+    }
+
+    #[test]
+    fn a_vibrato_that_modes_explain_is_found_as_one() {
+        let mut turn = 0.0;
+        let mut sample = |n: usize| {
+            let semitones = 0.15 * libm::sin(TAU * 5.5 * n as f64 / f64::from(RATE));
+            turn += TAU * 523.0 * libm::exp2(semitones / 12.0) / f64::from(RATE);
+            (0.3 * libm::sin(turn) + 0.02 * libm::sin(2.0 * turn)) as f32
+        };
+        let sound = (0..RATE as usize).map(&mut sample).collect();
+        let mut take = prepared(sound, RATE);
+        let found = of(&mut take, 60, &mut |_| Ok(())).unwrap();
+        let is_found = |(draft, _): &Found| {
+            let vibrato = draft.sweep.vibrato;
+            (vibrato.semitones - 0.15).abs() < 0.03 && (vibrato.rate - 5.5).abs() < 0.2
+        };
+        assert!(found.iter().any(is_found), "{:?}", found.iter().map(|(draft, _)| draft.sweep).collect::<Vec<_>>());
+    }
+}
