@@ -121,14 +121,14 @@ fn lay(body: &Body, frequency: f64, partials: &[Partial]) -> Match {
         let cents = |mode: &BodyMode| 1200.0 * log2(partial.frequency / mode.frequency);
         let nearest = modes.iter().min_by(|a, b| fabs(cents(a)).total_cmp(&fabs(cents(b))))?;
         let off = cents(nearest);
+        score -= weight(partial) * by_chance(modes.iter().map(&cents));
         (fabs(off) < NEAR).then(|| {
             score += weight(partial) * (1.0 - (off / NEAR) * (off / NEAR));
             (*nearest, off)
         })
     };
     let pairs: Vec<_> = partials.iter().map(pair).collect();
-    // A model with many modes has one near any partial. So a mode of the model that should sound below the highest
-    // partial, but is no partial, lowers the score.
+    // A mode of the model that should sound below the highest partial, but is no partial, lowers the score.
     let highest = partials.iter().map(|partial| partial.frequency).fold(0.0, f64::max);
     let missing = modes
         .iter()
@@ -137,6 +137,16 @@ fn lay(body: &Body, frequency: f64, partials: &[Partial]) -> Match {
     let mean = partials.iter().map(weight).sum::<f64>() / partials.len().max(1) as f64;
     let score = score - 0.08 * mean * missing.count() as f64;
     Match { body, pairs, score }
+}
+
+/// The mean score of a partial anywhere between the two modes around it, from the distances of all modes in cents: where modes are
+/// dense, one is near any partial, which means nothing.
+fn by_chance(cents: impl Iterator<Item = f64>) -> f64 {
+    let (below, above) = cents.fold((f64::INFINITY, f64::INFINITY), |(below, above), off| {
+        if off < 0.0 { (below, above.min(-off)) } else { (below.min(off), above) }
+    });
+    // Within NEAR of a mode the mean of the score is two thirds.
+    (2.0 / 3.0) * (2.0 * NEAR / (below + above)).min(1.0)
 }
 
 /// The mode that is a partial of this frequency in Hz. The frequencies differ if the partial was found later in the sound.
@@ -243,5 +253,31 @@ fn explained(model: &'static str, found: &Match, partials: &[Partial]) -> Explai
         cents: off / weights.max(1e-12),
         modes: (count, partials.len()),
         unexplained_db: 10.0 * log10(((all - met) / all.max(1e-300)).max(1e-12)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::correct::tests::draft;
+    use super::*;
+    use crate::dsp::random::{key, uniform};
+
+    #[test]
+    fn a_bar_is_found_among_modes_of_other_things() {
+        let partial =
+            |frequency, amplitude, t60| Partial { frequency, t60, amplitude, phase: 0.0, pan: 0.0, struck: true };
+        let (_, model) = Model::ALL.iter().find(|(id, _)| *id == "marimba").unwrap();
+        let bar = Body { pitch: Pitch::Frequency(262.0), ..Body::new(model.clone()) };
+        let own = bar.modes().into_iter().take(5).enumerate();
+        let own = own.map(|(n, mode)| partial(mode.frequency, pow(0.5, n as f64), 1.0 / (n as f64 + 1.0)));
+        // A very low bar has modes near all of these.
+        let other = |n: u64| {
+            let place = 0.5 * (1.0 + f64::from(uniform(key(4, 0), n)));
+            partial(180.0 * pow(30.0, place), 0.04, 0.2)
+        };
+        let draft = Draft { partials: own.chain((0..60).map(other)).collect(), ..draft([0.0; 2]) };
+        let (body, _, explained) = find(&draft, None, Family::Bar).unwrap();
+        assert_eq!(explained.model, "marimba");
+        assert!((body.frequency() / 262.0 - 1.0).abs() < 0.01, "{} Hz", body.frequency());
     }
 }
