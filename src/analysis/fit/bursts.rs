@@ -1,4 +1,4 @@
-//! Finds rows of bursts at equal distances, as of the teeth of a guiro or of echoes, by the regularity with which the level rises.
+//! Finds rows of bursts at equal spacings, as of the teeth of a guiro or of echoes, by the regularity with which the level rises.
 
 use super::draft::Noise;
 use crate::analysis::log_mel::RATE;
@@ -8,7 +8,7 @@ use libm::{log, sqrt};
 struct Pace {
     /// Samples per block of levels.
     block: usize,
-    /// Shortest and longest distance in seconds.
+    /// Shortest and longest spacing in seconds.
     spacings: (f64, f64),
 }
 
@@ -20,15 +20,17 @@ const ECHOES: Pace = Pace { block: RATE as usize / 200, spacings: (0.08, Noise::
 const BEFORE: usize = 3;
 /// Power, relative to the greatest, below which a rise is not heard.
 const FAINT: f64 = 1e-4;
-/// Fewest bursts, for fewer are tried by ear, and the most that the engine plays.
+/// Fewest bursts, since a few rises may be chance, and the most that the engine plays.
 const FEWEST: usize = 5;
 const MOST: usize = Noise::MOST_HITS as usize;
-/// Step between the distances that are tried, in blocks.
+/// Step between the spacings that are tried, in blocks.
 const STEP: f64 = 0.25;
 /// Smallest deviation of the rises, in nepers of power, that is assumed.
 const LEAST_DEVIATION: f64 = 0.05;
 /// How many of their standard deviations the rises of the bursts are above the mean.
 const CLEARLY: f64 = 5.5;
+/// Least rise of a burst, relative to the mean of all.
+const RISES: f64 = 0.4;
 /// Correlation of a sound with itself, a burst later, from which it is a tone whose periods look like bursts; and the samples by
 /// which the distance may be off.
 const TONE: f64 = 0.5;
@@ -40,7 +42,7 @@ fn rises(samples: &[f32], block: usize) -> Vec<f64> {
     let powers: Vec<f64> = samples
         .windows(block + 1)
         .step_by(block)
-        .map(|block| block.windows(2).map(|pair| f64::from(pair[1]) - f64::from(pair[0])).map(|d| d * d).sum())
+        .map(|samples| samples.windows(2).map(|pair| f64::from(pair[1]) - f64::from(pair[0])).map(|d| d * d).sum())
         .collect();
     let floor = FAINT * powers.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let levels: Vec<f64> = powers.iter().map(|power| log(power + floor)).collect();
@@ -66,7 +68,8 @@ fn repeats(samples: &[f32], distance: usize) -> bool {
     (distance.saturating_sub(OFF)..=distance + OFF).any(|distance| correlation(distance) > TONE)
 }
 
-/// The row of bursts with which samples at [`RATE`] begin, up to sixteen; none if their level does not rise regularly.
+/// The row of bursts with which samples at [`RATE`] begin, up to sixteen; none if their level does not rise regularly, or if they are
+/// a low tone.
 pub(super) fn teeth(samples: &[f32]) -> Option<Noise> {
     let row = row(samples, &TEETH)?;
     let spacing = (row.spacing * f64::from(RATE)) as usize;
@@ -74,27 +77,31 @@ pub(super) fn teeth(samples: &[f32]) -> Option<Noise> {
     (!repeats(&samples[..end], spacing)).then_some(row)
 }
 
-/// The same for bursts that follow each other slowly, between which other modes may ring.
+/// The same for bursts that follow each other slowly. A tone may go on between them.
 pub(super) fn echoes(samples: &[f32]) -> Option<Noise> {
     row(samples, &ECHOES)
 }
 
+/// The row whose bursts rise most clearly above what is between them.
 fn row(samples: &[f32], pace: &Pace) -> Option<Noise> {
     let per_second = f64::from(RATE) / pace.block as f64;
     let [shortest, longest] = [pace.spacings.0, pace.spacings.1].map(|seconds| seconds * per_second);
     let rises = rises(&samples[..samples.len().min(MOST * longest as usize * pace.block)], pace.block);
+    let steps = ((longest - shortest) / STEP).ceil() as usize;
     let mut best = (CLEARLY, None);
-    for spacing in (0..((longest - shortest) / STEP) as usize).map(|n| shortest + STEP * n as f64) {
+    for spacing in (0..=steps).map(|n| (shortest + STEP * n as f64).min(longest)) {
         for hits in FEWEST..=MOST {
-            let Some(row) = rises.get(..((hits as f64 - 0.5) * spacing) as usize) else { break };
-            let mean = row.iter().sum::<f64>() / row.len() as f64;
-            let square = row.iter().map(|rise| (rise - mean) * (rise - mean)).sum::<f64>() / row.len() as f64;
+            let Some(heard) = rises.get(..((hits as f64 - 0.5) * spacing) as usize) else { break };
+            let mean = heard.iter().sum::<f64>() / heard.len() as f64;
+            let square = heard.iter().map(|rise| (rise - mean) * (rise - mean)).sum::<f64>() / heard.len() as f64;
             // The first burst is the onset, which each sound has.
             let count = hits as f64 - 1.0;
-            let of_bursts = (1..hits).map(|n| row[(n as f64 * spacing).round() as usize]);
-            let excess = of_bursts.sum::<f64>() / count - mean;
-            let clearly = excess / (sqrt(square) + LEAST_DEVIATION) * sqrt(count);
-            if clearly > best.0 {
+            let burst = |n: usize| heard[(n as f64 * spacing).round() as usize];
+            let of_bursts = (1..hits).map(burst).sum::<f64>() / count;
+            let clearly = (of_bursts - mean) / (sqrt(square) + LEAST_DEVIATION) * sqrt(count);
+            // Of a row that ends before, the last burst does not rise, and of one with twice the spacing every second one.
+            let rising = (1..hits).filter(|n| burst(*n) > RISES * of_bursts).count();
+            if clearly > best.0 && burst(hits - 1) > RISES * of_bursts && 2 * rising > hits {
                 best = (clearly, Some(Noise { hits: hits as u8, spacing: spacing / per_second, ..Noise::SHORT }));
             }
         }
@@ -127,16 +134,27 @@ mod tests {
         }
     }
 
+    /// Noise that echoes `hits` times at a spacing, over a tone that stays.
+    fn with_echoes(hits: u8, spacing: f64) -> Vec<f32> {
+        let level = |t: f64| libm::exp(-(t - libm::floor(t / spacing).min(f64::from(hits) - 1.0) * spacing) / 0.03);
+        let tone = |n: usize| 0.1 * libm::sin(0.07 * n as f64);
+        let sample = |n: usize| {
+            let burst = level(n as f64 / f64::from(RATE)) * f64::from(uniform(key(5, 0), n as u64));
+            (burst + tone(n)) as f32
+        };
+        (0..5 * RATE as usize).map(sample).collect()
+    }
+
     #[test]
     fn echoes_are_counted_though_a_tone_stays() {
-        let echo = |t: f64| libm::exp(-(t - libm::floor(t / 0.23).min(5.0) * 0.23) / 0.03);
-        let tone = |n: usize| 0.1 * libm::sin(0.07 * n as f64) as f32;
-        let noise: Vec<f32> = noise(echo).into_iter().chain(noise(|t| echo(t + 1.0))).collect();
-        let sound: Vec<f32> = noise.iter().enumerate().map(|(n, noise)| noise + tone(n)).collect();
-        let found = echoes(&sound).unwrap();
-        assert!(found.hits == 6 && (found.spacing / 0.23 - 1.0).abs() < 0.01, "{found:?}");
-        let alone: Vec<f32> = (0..sound.len()).map(tone).collect();
-        assert_eq!(echoes(&alone), None);
+        for (hits, spacing) in [(6, 0.23), (9, 0.5), (16, 0.1)] {
+            let found = echoes(&with_echoes(hits, spacing)).unwrap();
+            assert_eq!(found.hits, hits, "{found:?}");
+            assert!((found.spacing / spacing - 1.0).abs() < 0.012, "{found:?}, {spacing}");
+        }
+        for spacing in [0.2, 0.3, 0.45] {
+            assert_eq!([3, 4].map(|hits| echoes(&with_echoes(hits, spacing))), [None; 2], "{spacing}");
+        }
     }
 
     #[test]
@@ -145,8 +163,9 @@ mod tests {
             let stroke = noise(|t| libm::exp(-6.9 * t / t60));
             assert_eq!([teeth(&stroke), echoes(&stroke)], [None; 2], "{t60}");
         }
-        assert_eq!(teeth(&[]), None);
         let saw = |n: usize| (n as f32 * 55.0 / RATE as f32).fract() - 0.5;
-        assert_eq!(teeth(&(0..RATE as usize).map(saw).collect::<Vec<f32>>()), None);
+        for sound in [Vec::new(), (0..RATE as usize).map(saw).collect()] {
+            assert_eq!([teeth(&sound), echoes(&sound)], [None; 2]);
+        }
     }
 }

@@ -3,11 +3,10 @@
 use super::draft::{Draft, Noise, Partial};
 use super::drift::Drift;
 use super::movement::Sweep;
-use super::start::{MOST_BEFORE_DB, Source};
-use super::take::{Prepared, SLOW};
+use super::start::{Found, MOST_BEFORE_DB, Source};
+use super::take::{Prepared, SHORTEST, SLOW};
 use super::{bursts, held, noise, start, sway, sweep};
 use crate::analysis::log_mel::RATE;
-use crate::analysis::modes::Strike;
 use crate::error::Result;
 
 /// Residual of the modes in dB above which noise alone may explain the sound better.
@@ -26,18 +25,20 @@ const WORTH_A_DRIFT_DB: f64 = 6.0;
 const WORTH_A_SWEEP_DB: f64 = 2.0;
 /// Octaves within which a mode of a swept sound lies near a stronger one.
 const BESIDE: f64 = 0.3;
-/// Share of the distance of bursts after which the last one is over.
+/// Share of the spacing of bursts after which the last one is over.
 const AFTER_ECHO: f64 = 0.5;
 
-/// A draft with the strike that its modes were found in.
-pub(super) type Found = (Draft, Option<Strike>);
-
-/// The possible drafts of a take: its modes, without a sweep and with each sweep that explains more, of which also those with a
-/// single mode for each tone. If it is held or rises slowly, the modes without its drift; of a held sound these in place of the
-/// others, if they explain much more and the others do not explain it. If it is damped while it rings, the take ends there. If its
-/// modes explain little, also drafts of noise: the row of bursts with which it begins, noise that goes on for as long as the sound,
-/// and modes that noise excites, found after the noise is over. If it has echoes, modes of the tone that stays after them. If they leave much of it, also the modes without the movement of
-/// oscillators. If the sound rises slowly, also modes found after the rise.
+/// The possible drafts of a take. If it is damped while it rings, it ends there.
+///
+/// * Its modes.
+/// * If it is held, or rises slowly and its modes do not explain it: the modes without its drift. Of a held sound they replace the first
+///   ones if they explain much more.
+/// * Unless its modes explain it: those of each sweep that explains more, and of these also with a single mode for each tone.
+/// * If its modes explain little: the row of bursts with which it begins, noise that goes on for as long as the sound, and modes that
+///   noise excites, found after the noise is over.
+/// * Unless its modes explain it, and if it has echoes: the tones that stay after these.
+/// * If its modes leave much of it: the modes without the movement of oscillators.
+/// * If it rises slowly: modes found after the rise.
 pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
     // Parts of the progress, one after the other. Parts of steps that are not needed are skipped.
     let [of_still, of_drift, of_search, first, second, of_noise, of_echoes, of_sway, of_rest] = [
@@ -100,7 +101,8 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
         let (driven, _) = analysed(take, late, of_noise, tell)?;
         found.push((driven, strike.clone()));
     }
-    if let Some(row) = bursts::echoes(&take.mean).filter(|_| !is_explained) {
+    let row = if is_explained { None } else { bursts::echoes(&take.mean) };
+    if let Some(row) = row {
         let [from, to] = of_echoes;
         let echoed = echoed(take, row, most, &mut |share| tell(from + (to - from) * share).is_ok())?;
         found.extend(echoed.into_iter().map(|draft| (draft, strike.clone())));
@@ -132,24 +134,25 @@ fn sparse(draft: &Draft) -> Option<Draft> {
     (kept.len() < draft.partials.len()).then(|| Draft { partials: kept, ..draft.clone() })
 }
 
-/// Drafts of a tone that stays after a row of bursts, found after the last of these; none if the sound ends before that.
+/// Drafts of the tones that stay after a row of bursts, found after the last of these; none if the sound ends before that.
 fn echoed(take: &Prepared, row: Noise, most: usize, tell: &mut dyn FnMut(f64) -> bool) -> Result<Vec<Draft>> {
     let late = row.last() + AFTER_ECHO * row.spacing;
     let start = (late * f64::from(RATE)) as usize;
-    if start >= take.mean.len() {
+    if take.seconds() - late < SHORTEST {
         return Ok(Vec::new());
     }
     let after = take.replaced(take.channels.iter().map(|channel| channel[start..].to_vec()).collect());
+    let after = Prepared { rise: 0.0, ..after };
+    // What has rung since the onset, and is not what is left of the last burst.
+    let stays = |partial: &&Partial| partial.fallen_db(late) < MOST_BEFORE_DB;
     let earlier = |partial: &Partial| Partial { phase: 0.0, ..partial.earlier(late, MOST_BEFORE_DB) };
-    let from_onset = |(draft, _): Found| Draft {
-        partials: draft.partials.iter().map(earlier).collect(),
-        noise: row,
-        // What was measured of the movement has its phase after the last burst.
-        sweep: Sweep::NONE,
-        oscillators: Vec::new(),
-        ..draft
+    let from_onset = |(draft, _): Found| {
+        let partials: Vec<Partial> = draft.partials.iter().filter(stays).map(earlier).collect();
+        (!partials.is_empty()).then_some(Draft { partials, noise: row, ..draft })
     };
-    Ok(held::draft(&after, None, most.div_ceil(2), tell)?.into_iter().map(from_onset).collect())
+    // A sweep is over by then, and the phase of a vibrato would be lost.
+    let found = held::draft(&after, Some(Sweep::NONE), most.div_ceil(2), tell)?;
+    Ok(found.into_iter().filter_map(from_onset).collect())
 }
 
 /// Drafts of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
@@ -179,6 +182,7 @@ mod tests {
     use super::super::correct;
     use super::super::take::tests::prepared;
     use super::*;
+    use crate::dsp::random;
     use std::f64::consts::TAU;
 
     #[test]
@@ -190,6 +194,24 @@ mod tests {
         let found = sparse(&draft).unwrap();
         assert_eq!(found.partials, [mode(100.0, -0.4), mode(160.0, 0.05)]);
         assert_eq!(sparse(&found), None);
+    }
+
+    #[test]
+    fn tones_that_stay_after_echoes_are_found() {
+        let (spacing, chance) = (0.25, random::key(3, 0));
+        let sample = |n: usize| {
+            let t = n as f64 / f64::from(RATE);
+            let since = t - libm::floor(t / spacing).min(5.0) * spacing;
+            let burst = libm::exp(-since / 0.02) * f64::from(random::uniform(chance, n as u64));
+            (0.3 * burst + 0.1 * libm::exp(-0.7 * t) * libm::sin(TAU * 440.0 * t)) as f32
+        };
+        let mut take = prepared((0..3 * RATE as usize).map(sample).collect(), RATE);
+        let found = of(&mut take, 60, &mut |_| Ok(())).unwrap();
+        let echoed = found.iter().find(|(draft, _)| draft.noise.hits > 1).map(|(draft, _)| draft).unwrap();
+        assert_eq!(echoed.noise.hits, 6, "{:?}", echoed.noise);
+        let main = echoed.main().unwrap();
+        let off_db = 20.0 * libm::log10(main.amplitude.abs() / 0.1);
+        assert!((main.frequency - 440.0).abs() < 0.2 && off_db.abs() < 1.0, "{main:?}");
     }
 
     #[test]

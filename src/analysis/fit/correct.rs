@@ -212,9 +212,14 @@ pub(super) mod tests {
 
     /// The bands of a draft's modes, without beats.
     fn bands(draft: &Draft) -> LogMel {
-        let level = |power: f64| 10.0 * libm::log10(power.max(1e-12));
-        let columns = powers(&draft.partials, &speeds(&draft.sweep, 300));
-        LogMel { columns: columns.into_iter().map(|column| column.map(level)).collect() }
+        let mut columns = vec![[1e-12; BANDS]; 300];
+        for partial in &draft.partials {
+            for (n, power) in powers_of(partial, 300).enumerate() {
+                let weights = weights(partial.frequency * speed_at(&draft.sweep, time(n)));
+                columns[n].iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight * power);
+            }
+        }
+        LogMel { columns: columns.into_iter().map(|column| column.map(|power| 10.0 * libm::log10(power))).collect() }
     }
 
     #[test]

@@ -37,8 +37,6 @@ const CURVES: usize = 17;
 /// Vibratos that are tried: lowest rate in Hz, step, and highest rate; delays in seconds.
 const RATES: (f64, f64, f64) = (2.5, 0.25, Vibrato::FASTEST);
 const DELAYS: [f64; 6] = [0.0, 0.3, 0.6, 0.9, 1.3, 2.0];
-/// The engine's largest sweep in semitones.
-const LARGEST_SWEEP: f64 = 60.0;
 /// Fewest cycles of a vibrato: a part of one fits any bend.
 const LEAST_CYCLES: f64 = 2.0;
 /// Rounds of the fine search.
@@ -193,7 +191,7 @@ impl Movement {
             vibrato: Vibrato { semitones: depth, ..vibrato },
         };
         // The engine's vibrato begins upwards.
-        let is_playable = (0.0..=Vibrato::DEEPEST).contains(&depth) && fabs(semitones) <= LARGEST_SWEEP;
+        let is_playable = (0.0..=Vibrato::DEEPEST).contains(&depth) && fabs(semitones) <= Sweep::LARGEST;
         (sweep, if is_playable { error } else { f64::INFINITY })
     }
 

@@ -136,9 +136,14 @@ impl Partial {
         self.amplitude * self.amplitude * self.t60
     }
 
-    /// A partial measured so many seconds after the onset with the level that it had at the onset, but at most `most_db` above.
+    /// By how many dB it falls in so many seconds.
+    pub(super) fn fallen_db(&self, seconds: f64) -> f64 {
+        60.0 * seconds / self.t60
+    }
+
+    /// A partial measured so many seconds after the onset, with the level that it had there, but at most `most_db` above.
     pub(super) fn earlier(&self, seconds: f64, most_db: f64) -> Self {
-        let before = (60.0 * seconds / self.t60).min(most_db);
+        let before = self.fallen_db(seconds).min(most_db);
         Self { amplitude: self.amplitude * pow(10.0, before / 20.0), ..*self }
     }
 

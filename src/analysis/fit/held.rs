@@ -4,7 +4,7 @@ use super::course;
 use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
 use super::drift::Drift;
 use super::movement::Sweep;
-use super::start::{self, Source};
+use super::start::{self, Found, Source};
 use super::take::Prepared;
 use super::tones::{HOP, Tone, tones};
 use crate::analysis::log_mel::RATE;
@@ -33,7 +33,7 @@ pub(super) fn draft(
     known: Option<Sweep>,
     most: usize,
     tell: &mut dyn FnMut(f64) -> bool,
-) -> Result<Vec<(Draft, Option<Strike>)>> {
+) -> Result<Vec<Found>> {
     let Some(first) = Drift::of(&take.mean, take.rise) else { return Ok(Vec::new()) };
     let without = |drift: &Drift| take.channels.iter().map(|channel| drift.removed_from(channel)).collect::<Vec<_>>();
     let mut part = |n: usize, share: f64| tell((n as f64 + share) / 4.0);

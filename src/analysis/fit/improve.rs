@@ -2,10 +2,10 @@
 
 use super::audition::{Audition, Played};
 use super::bed::Lines;
-use super::candidates::Found;
 use super::draft::{Draft, Partial, longest_t60};
 use super::movement::Swell;
 use super::refine::{Listener, NEAR_DB};
+use super::start::Found;
 use super::take::{Prepared, SLOW};
 use super::{bed, candidates, noise};
 use crate::analysis::log_mel::{self, HOP, RATE};

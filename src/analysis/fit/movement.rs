@@ -28,6 +28,8 @@ pub(super) struct Vibrato {
 }
 
 impl Sweep {
+    /// The engine's largest sweep in semitones.
+    pub(super) const LARGEST: f64 = 60.0;
     pub(super) const NONE: Self =
         Self { semitones: 0.0, seconds: 0.1, curve: 0.5, vibrato: Vibrato { semitones: 0.0, rate: 5.0, delay: 0.0 } };
 
@@ -38,7 +40,7 @@ impl Sweep {
     /// The sweep with changed numbers: the semitones by a share of them, the time by a power of e, the curve by a sum.
     pub(super) fn moved(&self, [semitones, seconds, curve]: [f64; 3]) -> Self {
         Self {
-            semitones: (self.semitones * (1.0 + semitones)).clamp(-60.0, 60.0),
+            semitones: (self.semitones * (1.0 + semitones)).clamp(-Self::LARGEST, Self::LARGEST),
             seconds: (self.seconds * exp(seconds)).clamp(0.002, 5.0),
             curve: (self.curve + curve).clamp(-1.0, 1.0),
             ..*self
@@ -46,7 +48,7 @@ impl Sweep {
     }
 
     /// The sweep with a changed vibrato: its depth by a share of it, its rate by a tenth of a share.
-    pub(super) fn trembling(&self, [depth, rate]: [f64; 2]) -> Self {
+    pub(super) fn with_vibrato_moved(&self, [depth, rate]: [f64; 2]) -> Self {
         let Vibrato { semitones, rate: before, delay } = self.vibrato;
         // What the engine cannot play would be taken out of the sound and not come back.
         let semitones = (semitones * (1.0 + depth)).clamp(0.0, Vibrato::DEEPEST);
@@ -112,7 +114,7 @@ pub(super) fn speed(sweep: &Sweep, t60: f64) -> f64 {
     speed_at(sweep, t60 / 13.8)
 }
 
-/// The same, `time` seconds after the strike.
+/// Factor by which a sweep raises all modes `time` seconds after the strike, relative to their final pitch.
 pub(super) fn speed_at(sweep: &Sweep, time: f64) -> f64 {
     if sweep.semitones == 0.0 { 1.0 } else { pow(2.0, sweep.envelope().at(time) / 12.0) }
 }

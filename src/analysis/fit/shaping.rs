@@ -71,7 +71,7 @@ impl Listener<'_> {
         self.best(draft, usize::MAX, rises)?;
         let noise = draft.noise;
         if noise.hits > 1 {
-            // A row was found, and is longer than those that are tried.
+            // A row that was counted has more bursts than those that are tried.
             return Ok(());
         }
         let several = HITS.map(|hits| SPACINGS.map(|spacing| with(draft, Noise { hits, spacing, ..noise })));

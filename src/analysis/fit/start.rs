@@ -41,13 +41,16 @@ pub(super) struct Source {
     pub(super) struck: bool,
 }
 
+/// A draft with the strike in which its modes were found, or of noise with that of the sound's first draft.
+pub(super) type Found = (Draft, Option<Strike>);
+
 /// A draft of a sound's modes alone, and the strike in which they were found. Finding no modes is no error: noise has none.
 pub(super) fn draft(
     take: &Prepared,
     source: Source,
     most_modes: usize,
     progress: &mut dyn FnMut(f64) -> bool,
-) -> Result<(Draft, Option<Strike>)> {
+) -> Result<Found> {
     let decay = sweep::decay(&take.mean);
     let start = (source.late * f64::from(RATE)) as usize;
     let still = |channel: &Vec<f32>| {

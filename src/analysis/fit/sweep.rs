@@ -194,8 +194,8 @@ fn refine(peaks: &mut Peaks, start: Sweep) -> Result<(f64, Sweep)> {
         if best.vibrato.semitones == 0.0 {
             break;
         }
-        let (place, least) = simplex::least(STEPS, |place| Ok(-peaks.height(&best.trembling(place))?))?;
-        (best, height) = (best.trembling(place), -least);
+        let (place, least) = simplex::least(STEPS, |place| Ok(-peaks.height(&best.with_vibrato_moved(place))?))?;
+        (best, height) = (best.with_vibrato_moved(place), -least);
     }
     Ok((height, best))
 }

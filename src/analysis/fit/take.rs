@@ -28,7 +28,7 @@ const LONGEST: f64 = 12.0;
 const BEFORE: f64 = 0.05;
 const AFTER: f64 = 0.1;
 /// Shortest stretch in seconds that is fitted.
-const SHORTEST: f64 = 0.03;
+pub(super) const SHORTEST: f64 = 0.03;
 /// Lowest peak of a sound that is not silent: −80 dBFS.
 const SILENCE: f64 = 1e-4;
 /// The onset is the first sample above this share of the peak.
@@ -119,8 +119,7 @@ impl Prepared {
         }
         // After the last of a row of bursts a sound falls by itself.
         let is_last = |release: &Release| {
-            let sound = &middle[onset..end];
-            let row = bursts::teeth(sound).or_else(|| bursts::echoes(sound));
+            let row = bursts::teeth(&middle[onset..end]);
             row.is_some_and(|row| libm::fabs(release.seconds - row.last()) < NEAR_LAST)
         };
         let release = Release::of_held(&middle[onset..end]).filter(|release| !is_last(release));
