@@ -26,10 +26,12 @@ const LEAST: f64 = 1e-9;
 /// Least energy of an error as a multiple of those that follow: 6 dB. Errors of modes that are not predicted fall more
 /// slowly.
 const FALLS: f64 = 4.0;
-/// Number of predictions that are fitted one after the other.
-const ROUNDS: usize = 4;
+/// Most predictions that are fitted one after the other.
+const ROUNDS: usize = 12;
 /// Energy of a block, relative to the loudest one, below which it is silent.
 const FAINTEST: f64 = 1e-9;
+/// Median of the errors, relative to that of the prediction before, above which it does not improve any more.
+const SETTLED: f64 = 0.8;
 /// Samples whose products are added up at a time.
 const ROWS: usize = 1024;
 /// Ridge of the normal equations, relative to their diagonal.
@@ -56,7 +58,7 @@ pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
         })
         .collect();
     let mut weights: Vec<f64> = levels.iter().map(|level| 1.0 / level).collect();
-    let mut work = None;
+    let (mut work, mut before) = (None, f64::INFINITY);
     for _ in 0..ROUNDS {
         let Some(errors) = errors(samples, |n| weights[(n / block).min(blocks - 1)]) else { return 0 };
         let errors = energies(&errors);
@@ -69,10 +71,10 @@ pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
             errors[*index] > FALLS * mean && errors[*index] > (STANDS_OUT * median).max(LEAST) * levels[*index]
         };
         let last = (0..latest).rfind(at_work);
-        if last == work {
+        if last == work && median > SETTLED * before {
             break;
         }
-        work = last;
+        (work, before) = (last, median);
         // Blocks that are predicted badly get little weight in the next prediction.
         let weight = |(error, level): (&f64, &f64)| 1.0 / error.max(1e-12 * level);
         weights = errors.iter().zip(&levels).map(weight).collect();

@@ -38,10 +38,17 @@ const COMPARED_DB: f64 = 8.0;
 const AHEAD: f64 = 0.4;
 /// Seconds after the place in which modes are compared with the sound.
 const COMPARED: f64 = 0.15;
+/// How many times they are compared, one time after the other, and how far behind the last fitted sample at most, as a share of the
+/// time before that.
+const COMPARISONS: usize = 3;
+const FARTHEST: f64 = 0.8;
 /// Largest share of the energy that modes leave unexplained if they explain the sound.
 const UNEXPLAINED: f64 = 0.2;
 /// Largest share of the modes' energy that a damper leaves. If more is left, the modes were wrong.
 const DAMPED: f64 = 0.5;
+
+/// Most dampers that are tried: each costs a search.
+const MOST_DAMPERS: usize = 2;
 
 /// A line through levels: its value at their first step, its slope per step, and the mean deviation from it.
 struct Line {
@@ -88,8 +95,18 @@ struct Bend {
     steeper: f64,
 }
 
-/// Where the samples seem to be damped, if they do.
-pub(super) fn damped_from(samples: &[f64], sample_rate: f64) -> Option<Damper> {
+/// Where the samples seem to be damped, earliest first: a sound that falls for long after its key is let go may turn down most clearly
+/// in that fall.
+pub(super) fn dampers(samples: &[f64], sample_rate: f64) -> Vec<Damper> {
+    let earlier = |damper: &Damper| damped_from(&samples[..damper.from], sample_rate);
+    let mut dampers: Vec<Damper> =
+        std::iter::successors(damped_from(samples, sample_rate), earlier).take(MOST_DAMPERS).collect();
+    dampers.reverse();
+    dampers
+}
+
+/// Where the samples seem to be damped most clearly, if they do.
+fn damped_from(samples: &[f64], sample_rate: f64) -> Option<Damper> {
     let step = ((STEP * sample_rate) as usize).max(1);
     let energies: Vec<f64> =
         samples.chunks_exact(step).map(|block| block.iter().map(|x| x * x).sum::<f64>() / step as f64).collect();
@@ -140,8 +157,17 @@ fn bend(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Option<Ben
 /// Whether the sound differs from the continuation of the modes that were fitted to its samples before a damper, and is weaker
 /// than it.
 pub(super) fn confirmed(fit: &Fit, damper: Damper, samples: &[f64], sample_rate: f64) -> bool {
-    let (begin, compared) = (damper.from + damper.lag, (COMPARED * sample_rate) as usize);
-    let Some(after) = samples.get(begin..).map(|after| &after[..compared.min(after.len())]) else { return false };
+    let compared = ((COMPARED * sample_rate) as usize).max(1);
+    let first = damper.from + damper.lag;
+    let farthest = ((1.0 + FARTHEST) * damper.from as f64) as usize;
+    // The place may be too early, so that the damper has done little at first.
+    let begins = (first..first + COMPARISONS * compared).step_by(compared);
+    begins.filter(|begin| *begin == first || *begin < farthest).any(|begin| differs(fit, begin, compared, samples))
+}
+
+/// Whether some samples differ from the continuation of modes, and are weaker than it.
+fn differs(fit: &Fit, begin: usize, len: usize, samples: &[f64]) -> bool {
+    let Some(after) = samples.get(begin..).map(|after| &after[..len.min(after.len())]) else { return false };
     let mut expected = vec![fit.constant; after.len()];
     for (pole, amplitude) in fit.poles.iter().zip(&fit.amplitudes) {
         add(&mut expected, *pole, *amplitude * pole.power(begin), 1.0);

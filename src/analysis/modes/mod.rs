@@ -159,16 +159,18 @@ fn search(
     let samples = &sound[stretch.start..stretch.end];
     let peak = sound[stretch.onset..stretch.end].iter().fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
     let limits = Limits { peak, late: (stretch.start - stretch.onset) as f64, sample_rate };
-    let mut begun = 0.0;
     let shortest = (SHORTEST * sample_rate) as usize;
-    if let Some(damper) = damping::damped_from(samples, sample_rate).filter(|damper| damper.from >= shortest) {
-        begun = 0.5;
-        let before = &samples[..damper.from];
-        let found = search::find(before, sample_rate, most_modes, &limits, &mut |share| progress(begun * share))?;
+    let dampers = damping::dampers(samples, sample_rate).into_iter().filter(|damper| damper.from >= shortest);
+    let mut begun = 0.0;
+    for damper in dampers {
+        let part = 0.5 * (1.0 - begun);
+        let told = &mut |share| progress(begun + part * share);
+        let found = search::find(&samples[..damper.from], sample_rate, most_modes, &limits, told)?;
         if damping::confirmed(&found.fit, damper, samples, sample_rate) {
             let end = stretch.start + damper.from;
             return Ok((Stretch { end, ..stretch }, Some(end), found));
         }
+        begun += part;
     }
     let mut told = |share: f64| progress(begun + (1.0 - begun) * share);
     Ok((stretch, None, search::find(samples, sample_rate, most_modes, &limits, &mut told)?))
