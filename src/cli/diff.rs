@@ -68,6 +68,11 @@ fn compare(args: &Args) -> Result<bool> {
     let (expected, _) = read(&args.expected, &mut inputs)?;
     let (actual, _) = read(&args.actual, &mut inputs)?;
     interrupt::end_at_once()?;
+    for (path, sound) in [(&args.expected, &expected), (&args.actual, &actual)] {
+        if let Err(error) = sound.check_finite(&path.display().to_string()) {
+            complain("warning", &error);
+        }
+    }
     let figure = args.figure.open(&inputs)?;
     // Samples can be compared only at the same rate. Different rates still count as a difference.
     let converted = resampled(&actual, expected.sample_rate)?;

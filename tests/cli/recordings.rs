@@ -107,6 +107,12 @@ fn what_is_compared_is_said() {
         "1 channel → 2: the mono sound is compared with each channel\n\
          different, but the same samples: 22050 frames, every sample\n"
     );
+    let mut broken = sound.clone();
+    broken[1000] = f32::NAN;
+    sandbox.write("broken.wav", wav(&broken, 44_100));
+    let (code, _, warning) = run("diff a.wav broken.wav");
+    assert_eq!(code, Some(1));
+    assert!(warning.contains("broken.wav: frame 1000 ") && warning.contains(" is not a number: expected"), "{warning}");
     let (code, text, _) = run("diff a.wav short.wav");
     let lengths =
         "length 0.500 s → 0.250 s (22050 → 11025 frames): what is beyond the shorter one is compared with silence";

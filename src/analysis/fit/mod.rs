@@ -58,7 +58,7 @@ use take::Prepared;
 /// Share of the work that is done when only the release is left to be fitted.
 const LAST: f64 = 0.98;
 
-/// Distance in dB above which a table of modes hardly sounds like its recording.
+/// Distance in dB above which a preset hardly sounds like its recording.
 const FAR_DB: f64 = 6.0;
 
 /// Settings of a fit.
@@ -207,12 +207,12 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
         warnings.push(format!("{}: {message}", takes[base].name));
     }
-    if explained.is_none() && distances[base] > FAR_DB {
-        let message = format!(
-            "the preset is {:.1} dB from it: expected a dry stroke that rings, no speech, vibrato or phrase",
-            distances[base]
-        );
-        warnings.push(format!("{}: {message}", takes[base].name));
+    if distances[base] > FAR_DB {
+        let expected = match explained {
+            None => "expected a dry stroke that rings, no speech, vibrato or phrase",
+            Some(_) => "expected the sound of such a body alone; a table of modes comes nearer",
+        };
+        warnings.push(format!("{}: the preset is {:.1} dB from it: {expected}", takes[base].name, distances[base]));
     }
     if !progress(1.0) {
         return Err(Error::Interrupted);
