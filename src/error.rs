@@ -77,9 +77,11 @@ impl Error {
 
 /// For frequent errors of the system what would be right; else the error's own words.
 fn reason(source: &std::io::Error) -> String {
-    let ours = source.get_ref().is_some();
+    if source.get_ref().is_some() {
+        // A message of this crate, which says it already.
+        return source.to_string();
+    }
     match source.kind() {
-        _ if ours => source.to_string(),
         ErrorKind::NotFound => "No such file or folder: expected one that exists".to_owned(),
         ErrorKind::IsADirectory => "Is a folder: expected a file".to_owned(),
         ErrorKind::PermissionDenied => "Permission denied: expected a file that you may read or write".to_owned(),

@@ -68,9 +68,11 @@ fn compare(args: &Args) -> Result<bool> {
     let (expected, _) = read(&args.expected, &mut inputs)?;
     let (actual, _) = read(&args.actual, &mut inputs)?;
     interrupt::end_at_once()?;
+    let mut is_finite = true;
     for (path, sound) in [(&args.expected, &expected), (&args.actual, &actual)] {
         if let Err(error) = sound.check_finite(&path.display().to_string()) {
             complain("warning", &error);
+            is_finite = false;
         }
     }
     let figure = args.figure.open(&inputs)?;
@@ -91,7 +93,11 @@ fn compare(args: &Args) -> Result<bool> {
         let title = format!("{} and {}", args.expected.display(), args.actual.display());
         figure.write(|format| comparison_bytes(before, after, &title, format))?;
     }
-    let distance = if found.is_some() { mel_distance(&expected, &actual)? } else { Some(0.0) };
+    let distance = match &found {
+        None => Some(0.0),
+        Some(_) if is_finite => Some(mel_distance(&expected, &actual)?),
+        Some(_) => None,
+    };
     let converted = converted.frames();
     let report = Report { expected: &expected, actual: &actual, converted, found: found.as_ref(), distance, same };
     print(&if args.json { format!("{:#}\n", report.json()) } else { report.text() })?;
@@ -106,13 +112,10 @@ fn on_channels(sound: &Recording, count: usize) -> Cow<'_, [Vec<f32>]> {
     }
 }
 
-/// The distance in dB of the means of both sounds, each from its onset on, as `fit` measures it; none if a sample is not finite.
-fn mel_distance(expected: &Recording, actual: &Recording) -> Result<Option<f64>> {
-    if [expected, actual].iter().any(|sound| sound.channels.iter().flatten().any(|sample| !sample.is_finite())) {
-        return Ok(None);
-    }
+/// The distance in dB of the means of both sounds, whose samples are finite, each from its onset on, as `fit` measures it.
+fn mel_distance(expected: &Recording, actual: &Recording) -> Result<f64> {
     let mean = |sound| -> Result<Vec<f32>> { Ok(mono(&resampled(sound, log_mel::RATE)?.channels)) };
-    Ok(Some(log_mel::distance(&mean(expected)?, &mean(actual)?)))
+    Ok(log_mel::distance(&mean(expected)?, &mean(actual)?))
 }
 
 /// A change of a level in dB with as many digits as it takes to tell it from 0.

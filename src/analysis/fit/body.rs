@@ -118,13 +118,12 @@ fn lay(body: &Body, frequency: f64, partials: &[Partial]) -> Match {
     let modes = body.modes();
     let mut score = 0.0;
     let pair = |partial: &Partial| {
-        let cents = |mode: &BodyMode| 1200.0 * log2(partial.frequency / mode.frequency);
-        let nearest = modes.iter().min_by(|a, b| fabs(cents(a)).total_cmp(&fabs(cents(b))))?;
-        let off = cents(nearest);
-        score -= weight(partial) * by_chance(modes.iter().map(&cents));
-        (fabs(off) < NEAR).then(|| {
+        let cents: Vec<f64> = modes.iter().map(|mode| 1200.0 * log2(partial.frequency / mode.frequency)).collect();
+        let (nearest, off) = modes.iter().zip(&cents).min_by(|a, b| fabs(*a.1).total_cmp(&fabs(*b.1)))?;
+        score -= weight(partial) * by_chance(&cents);
+        (fabs(*off) < NEAR).then(|| {
             score += weight(partial) * (1.0 - (off / NEAR) * (off / NEAR));
-            (*nearest, off)
+            (*nearest, *off)
         })
     };
     let pairs: Vec<_> = partials.iter().map(pair).collect();
@@ -141,9 +140,9 @@ fn lay(body: &Body, frequency: f64, partials: &[Partial]) -> Match {
 
 /// The mean score of a partial anywhere between the two modes around it, from the distances of all modes in cents: where modes are
 /// dense, one is near any partial, which means nothing.
-fn by_chance(cents: impl Iterator<Item = f64>) -> f64 {
-    let (below, above) = cents.fold((f64::INFINITY, f64::INFINITY), |(below, above), off| {
-        if off < 0.0 { (below, above.min(-off)) } else { (below.min(off), above) }
+fn by_chance(cents: &[f64]) -> f64 {
+    let (below, above) = cents.iter().fold((f64::INFINITY, f64::INFINITY), |(below, above), off| {
+        if *off < 0.0 { (below, above.min(-off)) } else { (below.min(*off), above) }
     });
     // Within NEAR of a mode the mean of the score is two thirds.
     (2.0 / 3.0) * (2.0 * NEAR / (below + above)).min(1.0)

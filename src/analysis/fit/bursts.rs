@@ -100,8 +100,8 @@ fn row(samples: &[f32], pace: &Pace) -> Option<Noise> {
             let of_bursts = (1..hits).map(burst).sum::<f64>() / count;
             let clearly = (of_bursts - mean) / (sqrt(square) + LEAST_DEVIATION) * sqrt(count);
             // Of a row that ends before, the last burst does not rise, and of one with twice the spacing every second one.
-            let rising = (1..hits).filter(|n| burst(*n) > RISES * of_bursts).count();
-            if clearly > best.0 && burst(hits - 1) > RISES * of_bursts && 2 * rising > hits {
+            let does_rise = |n: &usize| burst(*n) > RISES * of_bursts;
+            if clearly > best.0 && does_rise(&(hits - 1)) && 2 * (1..hits).filter(does_rise).count() > hits {
                 best = (clearly, Some(Noise { hits: hits as u8, spacing: spacing / per_second, ..Noise::SHORT }));
             }
         }
@@ -110,9 +110,14 @@ fn row(samples: &[f32], pace: &Pace) -> Option<Noise> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::dsp::random::{key, uniform};
+
+    /// Seconds since the last of a row of bursts.
+    pub(crate) fn since_burst(time: f64, hits: u8, spacing: f64) -> f64 {
+        time - libm::floor(time / spacing).min(f64::from(hits) - 1.0) * spacing
+    }
 
     /// A second of noise whose level is set by `level`, from the time in seconds.
     fn noise(level: impl Fn(f64) -> f64) -> Vec<f32> {
@@ -124,11 +129,7 @@ mod tests {
     #[test]
     fn the_teeth_of_a_guiro_are_counted() {
         for (hits, spacing) in [(7_u8, 0.031), (12, 0.0173), (16, 0.026)] {
-            let level = |t: f64| {
-                let tooth = libm::floor(t / spacing).min(f64::from(hits) - 1.0);
-                libm::exp(-(t - tooth * spacing) / 0.006)
-            };
-            let found = teeth(&noise(level)).unwrap();
+            let found = teeth(&noise(|t| libm::exp(-since_burst(t, hits, spacing) / 0.006))).unwrap();
             assert_eq!(found.hits, hits, "{found:?}");
             assert!((found.spacing / spacing - 1.0).abs() < 0.01, "{found:?}, {spacing}");
         }
@@ -136,10 +137,10 @@ mod tests {
 
     /// Noise that echoes `hits` times at a spacing, over a tone that stays.
     fn with_echoes(hits: u8, spacing: f64) -> Vec<f32> {
-        let level = |t: f64| libm::exp(-(t - libm::floor(t / spacing).min(f64::from(hits) - 1.0) * spacing) / 0.03);
         let tone = |n: usize| 0.1 * libm::sin(0.07 * n as f64);
         let sample = |n: usize| {
-            let burst = level(n as f64 / f64::from(RATE)) * f64::from(uniform(key(5, 0), n as u64));
+            let level = libm::exp(-since_burst(n as f64 / f64::from(RATE), hits, spacing) / 0.03);
+            let burst = level * f64::from(uniform(key(5, 0), n as u64));
             (burst + tone(n)) as f32
         };
         (0..5 * RATE as usize).map(sample).collect()

@@ -7,7 +7,7 @@ use super::start::{Found, MOST_BEFORE_DB, Source};
 use super::take::{Prepared, SHORTEST, SLOW};
 use super::{bursts, held, noise, start, sway, sweep};
 use crate::analysis::log_mel::RATE;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Residual of the modes in dB above which noise alone may explain the sound better.
 const NOISE_DB: f64 = -10.0;
@@ -52,8 +52,8 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
         [0.85, 0.9],
         [0.9, 1.0],
     ];
-    let analysed = |take: &Prepared, source, [from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>| {
-        start::draft(take, source, most.div_ceil(2), &mut |share| tell(from + (to - from) * share).is_ok())
+    let analysed = |take: &Prepared, source, part, tell: &mut dyn FnMut(f64) -> Result<()>| {
+        start::draft(take, source, most.div_ceil(2), &mut within(part, tell))
     };
     let all = Source { swept: Sweep::NONE, late: 0.0, struck: true };
     let mut found = vec![analysed(take, all, of_still, tell)?];
@@ -66,8 +66,7 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
     let is_explained = still <= EXPLAINED_DB;
     let mut drifts = false;
     if take.is_held || !is_explained && take.rise > SLOW {
-        let [from, to] = of_drift;
-        let held = held::draft(take, None, most, &mut |share| tell(from + (to - from) * share).is_ok())?;
+        let held = held::draft(take, None, most, &mut within(of_drift, tell))?;
         if let Some(first) = held.first() {
             // What decays may have tones that end at different times, of which a residual tells little: let it be heard.
             // Modes that explain the sound may stay the nearest, however little the others leave.
@@ -103,13 +102,11 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
     }
     let row = if is_explained { None } else { bursts::echoes(&take.mean) };
     if let Some(row) = row {
-        let [from, to] = of_echoes;
-        let echoed = echoed(take, row, most, &mut |share| tell(from + (to - from) * share).is_ok())?;
+        let echoed = echoed(take, row, most, &mut within(of_echoes, tell))?;
         found.extend(echoed.into_iter().map(|draft| (draft, strike.clone())));
     }
     if still > SWAYS_DB {
-        let [from, to] = of_sway;
-        found.extend(swayed(take, most, &mut |share| tell(from + (to - from) * share))?);
+        found.extend(swayed(take, most, &mut within(of_sway, tell))?);
     }
     if take.rise > SLOW {
         let swept = found[0].0.sweep;
@@ -117,6 +114,11 @@ pub(super) fn of(take: &mut Prepared, most: usize, tell: &mut dyn FnMut(f64) -> 
         found.push((rung, strike));
     }
     Ok(found)
+}
+
+/// Tells the share of a part of the work as that of all; false if the work is to end.
+fn within([from, to]: [f64; 2], tell: &mut dyn FnMut(f64) -> Result<()>) -> impl FnMut(f64) -> bool {
+    move |share| tell(from + (to - from) * share).is_ok()
 }
 
 /// A draft without the modes that lie near a stronger one; none if there are no such modes. Where a sweep is not quite that of the
@@ -156,14 +158,14 @@ fn echoed(take: &Prepared, row: Noise, most: usize, tell: &mut dyn FnMut(f64) ->
 }
 
 /// Drafts of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
-fn swayed(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> Result<()>) -> Result<Vec<Found>> {
-    let (oscillators, swept) = sway::find(take, &mut || tell(0.0))?;
+fn swayed(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> bool) -> Result<Vec<Found>> {
+    let (oscillators, swept) = sway::find(take, &mut || if tell(0.0) { Ok(()) } else { Err(Error::Interrupted) })?;
     if oscillators.is_empty() {
         return Ok(Vec::new());
     }
     let drift = Drift::by(&oscillators, swept.envelope(), take.mean.len());
     let still = take.replaced(take.channels.iter().map(|channel| drift.removed_from(channel)).collect());
-    let mut found = held::draft(&still, Some(swept), most, &mut |share| tell(share).is_ok())?;
+    let mut found = held::draft(&still, Some(swept), most, tell)?;
     if found.iter().all(|held| residual_db(held) > NOISE_DB) {
         // Noise that moves so is left to the bed.
         found.push((start::from(take, None, &Source { swept, late: 0.0, struck: false }, false), None));
@@ -179,6 +181,7 @@ fn residual_db((_, strike): &Found) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bursts::tests::since_burst;
     use super::super::correct;
     use super::super::take::tests::prepared;
     use super::*;
@@ -201,8 +204,7 @@ mod tests {
         let (spacing, chance) = (0.25, random::key(3, 0));
         let sample = |n: usize| {
             let t = n as f64 / f64::from(RATE);
-            let since = t - libm::floor(t / spacing).min(5.0) * spacing;
-            let burst = libm::exp(-since / 0.02) * f64::from(random::uniform(chance, n as u64));
+            let burst = libm::exp(-since_burst(t, 6, spacing) / 0.02) * f64::from(random::uniform(chance, n as u64));
             (0.3 * burst + 0.1 * libm::exp(-0.7 * t) * libm::sin(TAU * 440.0 * t)) as f32
         };
         let mut take = prepared((0..3 * RATE as usize).map(sample).collect(), RATE);

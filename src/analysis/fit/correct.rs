@@ -89,8 +89,7 @@ fn track(frequency: f64, speeds: &[f64]) -> impl Iterator<Item = (usize, usize, 
         end = windows.end;
         let weights = weights(frequency * run[0]);
         let low = weights.iter().position(|weight| *weight > 0.0).unwrap_or(BANDS);
-        let high = weights.get(low + 1).copied().unwrap_or(0.0);
-        let pair = [(low, weights.get(low).copied().unwrap_or(0.0)), (low + 1, high)];
+        let pair = [low, low + 1].map(|band| (band, weights.get(band).copied().unwrap_or(0.0)));
         windows.flat_map(move |n| pair.map(|(band, weight)| (n, band, weight))).filter(|(.., weight)| *weight > 0.0)
     })
 }

@@ -46,7 +46,6 @@ const FARTHEST: f64 = 0.8;
 const UNEXPLAINED: f64 = 0.2;
 /// Largest share of the modes' energy that a damper leaves. If more is left, the modes were wrong.
 const DAMPED: f64 = 0.5;
-
 /// Most dampers that are tried: each costs a search.
 const MOST_DAMPERS: usize = 2;
 
