@@ -44,6 +44,8 @@ const COMPARISONS: usize = 3;
 const FARTHEST: f64 = 0.8;
 /// Largest share of the energy that modes leave unexplained if they explain the sound.
 const UNEXPLAINED: f64 = 0.2;
+/// The same of the last samples that they were fitted to: modes that do not explain these tell nothing of what follows.
+const UNEXPLAINED_BEFORE: f64 = 0.01;
 /// Largest share of the modes' energy that a damper leaves. If more is left, the modes were wrong.
 const DAMPED: f64 = 0.5;
 /// Most dampers that are tried: each costs a search.
@@ -153,10 +155,20 @@ fn bend(levels: &[f64], place: usize, reach: usize, quietest: f64) -> Option<Ben
     (!comes_back && steeper > 0.0).then_some(Bend { significance, steeper })
 }
 
+/// The energy of a sound about a constant.
+pub(super) fn energy(sound: &[f64], constant: f64) -> f64 {
+    sound.iter().map(|x| (x - constant) * (x - constant)).sum()
+}
+
 /// Whether the sound differs from the continuation of the modes that were fitted to its samples before a damper, and is weaker
 /// than it.
 pub(super) fn confirmed(fit: &Fit, damper: Damper, samples: &[f64], sample_rate: f64) -> bool {
     let compared = ((COMPARED * sample_rate) as usize).max(1);
+    let last = damper.from.saturating_sub(compared);
+    let before = fit.residual(&samples[..damper.from]);
+    if energy(&before[last..], 0.0) > UNEXPLAINED_BEFORE * energy(&samples[last..damper.from], fit.constant) {
+        return false;
+    }
     let first = damper.from + damper.lag;
     let farthest = ((1.0 + FARTHEST) * damper.from as f64) as usize;
     // The place may be too early, so that the damper has done little at first.
@@ -171,9 +183,9 @@ fn differs(fit: &Fit, begin: usize, len: usize, samples: &[f64]) -> bool {
     for (pole, amplitude) in fit.poles.iter().zip(&fit.amplitudes) {
         add(&mut expected, *pole, *amplitude * pole.power(begin), 1.0);
     }
-    let energy = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
-    let left = energy(&mut after.iter().zip(&expected).map(|(sample, expected)| sample - expected));
-    let [after, expected] = [after, &expected[..]].map(|sound| energy(&mut sound.iter().map(|x| x - fit.constant)));
+    let left: Vec<f64> = after.iter().zip(&expected).map(|(sample, expected)| sample - expected).collect();
+    let [left, after, expected] = [(&left[..], 0.0), (after, fit.constant), (&expected[..], fit.constant)]
+        .map(|(sound, constant)| energy(sound, constant));
     left > UNEXPLAINED * expected && after < DAMPED * expected
 }
 
@@ -214,5 +226,30 @@ mod tests {
         }
         let found = modes(&[damped(100.0)], RATE, &Settings::default(), &mut |_| true).unwrap();
         assert_eq!(found.strikes[0].damped, None);
+    }
+
+    /// One second of a mode that noise drives for so many seconds.
+    fn driven(seconds: f64) -> Vec<f32> {
+        let mut state = 1_u32;
+        let [mut last, mut before] = [0.0; 2];
+        let sample = |n: usize| {
+            state ^= state << 13;
+            state ^= state >> 17;
+            state ^= state << 5;
+            let force = if (n as f64) < seconds * RATE { f64::from(state) / f64::from(u32::MAX) - 0.5 } else { 0.0 };
+            let radius = exp(-6.907_755 / (0.3 * RATE));
+            let next = 0.01 * force + 2.0 * radius * libm::cos(TAU * 300.0 / RATE) * last - radius * radius * before;
+            (last, before) = (next, last);
+            next as f32
+        };
+        (0..RATE as usize).map(sample).collect()
+    }
+
+    #[test]
+    fn the_end_of_what_modes_do_not_explain_is_no_damper() {
+        for seconds in [0.15, 0.3] {
+            let found = modes(&[driven(seconds)], RATE, &Settings::default(), &mut |_| true).unwrap();
+            assert_eq!(found.strikes[0].damped, None, "{seconds} s");
+        }
     }
 }

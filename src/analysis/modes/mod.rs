@@ -220,7 +220,6 @@ fn steady(strike: &Strike) -> Option<String> {
 fn strike(found: &search::Found, fits: &[Option<Fit>], sound: &[f64], stretch: &Stretch, sample_rate: f64) -> Strike {
     let samples = &sound[stretch.start..stretch.end];
     let residual = found.fit.residual(samples);
-    let energy = |samples: &[f64], constant: f64| samples.iter().map(|x| (x - constant) * (x - constant)).sum::<f64>();
     // The modes have been ringing since the onset, but the fit begins where the exciter has let go.
     let late = (stretch.start - stretch.onset) as f64;
     // The floor contains both quadratures of the noise.
@@ -274,7 +273,9 @@ fn strike(found: &search::Found, fits: &[Option<Fit>], sound: &[f64], stretch: &
         groups: groups(&modes),
         modes,
         residual_db: 10.0
-            * log10((energy(&residual, 0.0) / energy(samples, found.fit.constant).max(1e-300)).max(1e-30)),
+            * log10(
+                (damping::energy(&residual, 0.0) / damping::energy(samples, found.fit.constant).max(1e-300)).max(1e-30),
+            ),
         samples: single(samples),
         residual: single(&residual),
         fitted_from: stretch.start as f64 / sample_rate,
