@@ -1,7 +1,7 @@
 //! Corrects levels and decays of a draft's modes by the errors of its mel bands.
 
 use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
-use super::movement::{Sweep, speed_at};
+use super::movement::{LN_120_DB, Sweep, speed_at};
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, time, weights};
 use libm::{exp, pow};
 
@@ -12,8 +12,6 @@ const MOST_SHARE: f64 = 0.6;
 const MOST_ERROR_DB: f64 = 20.0;
 /// Least number of windows in which a mode must be audible for its decay to be corrected.
 const FEWEST: f64 = 8.0;
-/// ln 10⁶: in a T60, the energy falls by e to the power of this.
-const LN_120_DB: f64 = 13.815_510_557_964_274;
 
 /// The level in dB that is missing at the onset, and its change in dB/s.
 type Correction = (f64, f64);

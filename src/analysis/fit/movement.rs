@@ -6,6 +6,9 @@ use crate::params::Shape;
 use libm::{exp, pow, sin};
 use std::f64::consts::PI;
 
+/// ln 10⁶: in a T60, the energy falls by e to the power of this.
+pub(super) const LN_120_DB: f64 = 13.815_510_557_964_274;
+
 /// The movement of the pitch after the strike: a sweep and a vibrato.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sweep {
@@ -110,8 +113,8 @@ impl Oscillator {
 /// Factor by which a sweep raises a mode at the mean time of the mode's energy, relative to its final pitch. `t60` in
 /// seconds.
 pub(super) fn speed(sweep: &Sweep, t60: f64) -> f64 {
-    // The squared amplitude falls by 120 dB in a T60: its mean time is T60 / ln 10⁶.
-    speed_at(sweep, t60 / 13.8)
+    // The mean time of an energy that falls so is the time in which it falls by a factor of e.
+    speed_at(sweep, t60 / LN_120_DB)
 }
 
 /// Factor by which a sweep raises all modes `time` seconds after the strike, relative to their final pitch.
