@@ -3,6 +3,7 @@
 use crate::analysis::level::mono;
 use crate::analysis::log_mel::RATE;
 use crate::engine::{Event, EventKind, Synth};
+use crate::params::{Choice, Limiter, Param};
 use crate::patch::Patch;
 
 /// Frames per block.
@@ -24,17 +25,28 @@ pub(super) struct Played {
 /// A synth that plays one note after another, each as if it were the first. Not real-time safe.
 pub(super) struct Audition {
     synth: Synth,
+    has_limiter: bool,
 }
 
 impl Audition {
+    /// Without the limiter: a search for levels cannot see beyond it.
     pub(super) fn new() -> Self {
-        Self { synth: Synth::new(RATE.into(), 0) }
+        Self { synth: Synth::new(RATE.into(), 0), has_limiter: false }
+    }
+
+    /// With the patch's limiter, as a player hears it.
+    pub(super) fn with_limiter() -> Self {
+        Self { has_limiter: true, ..Self::new() }
     }
 
     /// The first frames of a note, left and right.
     pub(super) fn play(&mut self, patch: &Patch, Played { key, velocity, frames, let_go }: Played) -> [Vec<f32>; 2] {
         // `set_patch` moves parameters smoothly to their new values; the reset makes the patch the present one at once.
-        self.synth.set_patch(patch);
+        let mut patch = patch.clone();
+        if !self.has_limiter {
+            patch.set(Param::Limiter, Limiter::Off.value());
+        }
+        self.synth.set_patch(&patch);
         self.synth.reset();
         let nearest = key.round().clamp(0.0, 127.0);
         let on = EventKind::NoteOn {

@@ -7,7 +7,7 @@ use crate::patch::routes::Source;
 use libm::{log, log10};
 
 /// Distance in semitones below which two takes have the same key.
-const SAME_KEY: f64 = 0.5;
+pub(super) const SAME_KEY: f64 = 0.5;
 /// Places of the routes. Those of a new patch are in the last places, so that they never meet.
 const HARDNESS_ROUTE: usize = 0;
 const DECAY_ROUTE: usize = 1;

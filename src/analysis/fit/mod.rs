@@ -14,6 +14,7 @@ mod bursts;
 mod candidates;
 mod correct;
 mod course;
+mod doubts;
 mod draft;
 mod drift;
 mod held;
@@ -130,7 +131,8 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     if takes.is_empty() {
         return Err(Error::value("recordings", "there are none: expected at least one"));
     }
-    let mut prepared: Vec<Prepared> = takes.iter().map(Prepared::new).collect::<Result<_>>()?;
+    let gain = doubts::gain_to_full_scale(takes);
+    let mut prepared: Vec<Prepared> = takes.iter().map(|take| Prepared::new(take, gain)).collect::<Result<_>>()?;
     // Tuning a body takes about as long as a take.
     let count = takes.len() as f64 + if settings.family == Family::Table { 0.0 } else { 1.0 };
     let mut tell = |share: f64| progress(LAST * share);
@@ -188,6 +190,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     }
     let (_, whole) = take.whole();
     let let_go = release.map(|release| release.frames());
+    let mut audition = Audition::with_limiter();
     let played = audition.play(&patch, Played { key, velocity: draft.velocity, frames: whole.len(), let_go });
     let distance = |(index, (layer, take)): (usize, (&Layer, &Prepared))| {
         let key = layer.key();
@@ -199,21 +202,19 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     };
     let distances: Vec<f64> = layers.iter().zip(&prepared).enumerate().map(distance).collect();
     let mut warnings: Vec<String> = prepared.iter().flat_map(|take| take.warnings.clone()).collect();
-    warnings.extend(layers.iter().zip(&prepared).zip(takes).filter_map(|((layer, prepared), take)| {
-        prepared.key?;
-        pitch::wrong_key(&layer.draft, &take.name)
-    }));
+    warnings.extend(doubts::of_takes(takes, &prepared, &layers));
     if draft.partials.iter().all(|partial| !partial.struck) {
         let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
         warnings.push(format!("{}: {message}", takes[base].name));
     }
-    if distances[base] > FAR_DB {
-        let expected = match explained {
-            None => "expected a dry stroke that rings, no speech, vibrato or phrase",
-            Some(_) => "expected the sound of such a body alone; a table of modes comes nearer",
-        };
-        warnings.push(format!("{}: the preset is {:.1} dB from it: {expected}", takes[base].name, distances[base]));
-    }
+    let expected = match explained {
+        None => "expected a dry stroke that rings, no speech, vibrato or phrase",
+        Some(_) => "expected the sound of such a body alone; a table of modes comes nearer",
+    };
+    let far = takes.iter().zip(&distances).filter(|(_, distance)| **distance > FAR_DB);
+    warnings.extend(
+        far.map(|(take, distance)| format!("{}: the preset is {distance:.1} dB from it: {expected}", take.name)),
+    );
     if !progress(1.0) {
         return Err(Error::Interrupted);
     }

@@ -94,13 +94,15 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
+    /// Prepares a take times a gain.
+    ///
     /// # Errors
     /// [`Error::Format`] for silence, sounds that are too short, and samples that are not finite.
-    pub(super) fn new(take: &Take) -> Result<Self> {
+    pub(super) fn new(take: &Take, gain: f64) -> Result<Self> {
         let wrong = |message: &str| Err(Error::format(&take.name, message));
         take.recording.check_finite(&take.name)?;
         // The rest is never used, so that little of a long recording is kept.
-        let channels = resampled(&first_seconds(&take.recording), RATE)?.channels;
+        let channels = resampled(&first_seconds(&take.recording, gain), RATE)?.channels;
         let middle = mono(&channels);
         let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
         if f64::from(peak) < SILENCE {
@@ -221,15 +223,15 @@ fn again(levels: &[f64], loudest: f64) -> Option<f64> {
     Some(next as f64 * BLOCK)
 }
 
-/// A recording from shortly before its onset on, as long as is needed, without a constant; one channel or two.
-fn first_seconds(recording: &Recording) -> Recording {
+/// A recording times a gain, from shortly before its onset on, as long as is needed, without a constant; one channel or two.
+fn first_seconds(recording: &Recording, gain: f64) -> Recording {
     let mut channels = match recording.channels.len() {
         0..=2 => recording.channels.clone(),
         _ => vec![mono(&recording.channels)],
     };
     for channel in &mut channels {
         let constant = offset(channel, (BLOCK * f64::from(recording.sample_rate)) as usize);
-        channel.iter_mut().for_each(|sample| *sample -= constant as f32);
+        channel.iter_mut().for_each(|sample| *sample = (*sample - constant as f32) * gain as f32);
     }
     let middle = mono(&channels);
     let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
@@ -251,7 +253,7 @@ pub(super) mod tests {
     pub(crate) fn prepared(samples: Vec<f32>, sample_rate: u32) -> Prepared {
         let recording =
             Recording { sample_rate, channels: vec![samples], encoding: String::new(), warnings: Vec::new() };
-        Prepared::new(&Take { name: "a.wav".to_owned(), recording, key: None, velocity: VELOCITY }).unwrap()
+        Prepared::new(&Take { name: "a.wav".to_owned(), recording, key: None, velocity: VELOCITY }, 1.0).unwrap()
     }
 
     fn samples(seconds: f64, rate: u32, at: impl Fn(f64) -> f64) -> Vec<f32> {
@@ -268,12 +270,18 @@ pub(super) mod tests {
         // Of a short strike followed by silence, only the strike is kept.
         let short = prepared(samples(600.0, RATE_OF_FILE, ringing(0.5)), RATE_OF_FILE);
         assert!((0.4..0.7).contains(&short.seconds()) && short.warnings.is_empty(), "{:?}", short.warnings);
-        let kept = first_seconds(&Recording {
-            sample_rate: 8000,
-            channels: vec![samples(600.0, RATE_OF_FILE, |t| if t < 300.0 { 0.0 } else { ringing(100.0)(t - 300.0) })],
-            encoding: String::new(),
-            warnings: Vec::new(),
-        });
+        let kept =
+            first_seconds(
+                &Recording {
+                    sample_rate: 8000,
+                    channels: vec![samples(600.0, RATE_OF_FILE, |t| {
+                        if t < 300.0 { 0.0 } else { ringing(100.0)(t - 300.0) }
+                    })],
+                    encoding: String::new(),
+                    warnings: Vec::new(),
+                },
+                1.0,
+            );
         assert!(kept.channels[0].len() < 13 * RATE_OF_FILE as usize, "{}", kept.channels[0].len());
     }
 
