@@ -1,6 +1,7 @@
 //! Finds where two renders first differ, and by how much.
 
 use super::level::dbfs;
+use crate::text::counted;
 use libm::sqrt;
 
 /// The difference between two renders.
@@ -64,7 +65,7 @@ impl std::fmt::Display for Difference {
              RMS error {rms_dbfs:.1} dBFS"
         )?;
         if expected != actual {
-            write!(f, ", {actual} frames where {expected} were expected")?;
+            write!(f, ", {} where {expected} were expected", counted(*actual, "frame"))?;
         }
         Ok(())
     }

@@ -26,5 +26,6 @@ pub(super) fn drawn(job: &Job, title: &str, modes: &[DrawnMode], format: &str) -
         Ok(())
     })?;
     let render = Render { left: &left, right: &right, sample_rate };
-    SoundFigure { title, render, modes, cell: if format == "svg" { VECTOR_CELL } else { 1 } }.bytes(format)
+    SoundFigure { title, render, modes, ranges: None, cell: if format == "svg" { VECTOR_CELL } else { 1 } }
+        .bytes(format)
 }

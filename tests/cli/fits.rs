@@ -87,7 +87,7 @@ fn what_cannot_be_fitted_is_refused() {
             1,
             "nan.wav: frame 1 (0.000 s) of channel 1 is not a number: expected finite samples",
         ),
-        ("fit silent.wav -o b.toml", 1, "silent.wav: it is silent: expected a strike above −80 dBFS"),
+        ("fit silent.wav -o b.toml", 1, "silent.wav: it is silent, or a constant: expected a strike above −80 dBFS"),
         ("fit short.wav -o b.toml", 1, "short.wav: it is shorter than 30 ms: expected a strike that rings"),
         ("fit none.wav -o b.toml", 1, "none.wav: "),
         ("fit a.wav -o b.txt", 1, "--output: b.txt: expected a name that ends in .toml"),

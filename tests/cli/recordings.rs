@@ -171,7 +171,7 @@ fn what_is_no_recording_is_refused() {
     sandbox.write("text.wav", "a text");
     for (args, code, message) in [
         ("analyze nan.wav", 1, "nan.wav: frame 1 (0.000 s) of channel 1 is not a number: expected finite samples"),
-        ("analyze silent.wav", 1, "silent.wav: it is silent: expected a strike above −100 dBFS"),
+        ("analyze silent.wav", 1, "silent.wav: it is silent, or a constant: expected a strike above −100 dBFS"),
         ("analyze empty.wav", 1, "empty.wav: there is no sound in the file: expected at least one frame"),
         ("analyze text.wav", 1, "text.wav: this is not a sound file: expected WAV, AIFF, FLAC, Ogg Vorbis or MP3"),
         ("analyze none.wav", 1, "none.wav: "),

@@ -8,7 +8,7 @@ use super::level::mono;
 use crate::error::{Error, Result};
 use crate::figure::colour::{BLUE, VERMILLION};
 use crate::figure::{Area, Drawn, Picture, png, svg, text};
-use panel::{Trace, spectrogram_panel, waveform};
+use panel::{Trace, spectrogram_panel, waveform, waveform_range};
 use plotters::prelude::*;
 use std::path::Path;
 
@@ -99,9 +99,9 @@ impl Picture for Sheet<'_> {
                     Trace { name: "right", samples: right, colour: VERMILLION },
                 ]
             };
-            waveform(area, &traces, self.sample_rate, label, false)?;
+            waveform(area, &traces, self.sample_rate, label, waveform_range([left, right]))?;
         }
-        spectrogram_panel(&lower, &self.middle, self.sample_rate, self.cell)
+        spectrogram_panel(&lower, &self.middle, self.sample_rate, self.cell, None)
     }
 }
 

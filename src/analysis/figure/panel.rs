@@ -1,6 +1,6 @@
 //! The parts that figures are made of: a waveform over time, a spectrogram over time, a scale of colours.
 
-use crate::analysis::spectrum::spectrogram;
+use crate::analysis::spectrum::{Spectrogram, spectrogram};
 use crate::figure::colour::{GRID, INK, viridis};
 use crate::figure::{Area, Drawn, envelope::envelope, text};
 use crate::text::number::short;
@@ -24,18 +24,25 @@ pub(super) struct Trace<'a> {
     pub(super) colour: RGBColor,
 }
 
-/// Draws signals over one another, with `label` at the vertical axis. Wherever several samples share a pixel, the
-/// trace spans all of them.
+/// Opacity of traces, if there are several: each is seen through the others.
+const SEEN_THROUGH: f64 = 0.6;
+
+/// Half the range of a waveform's axis that shows some signals.
+pub(super) fn waveform_range<'a>(signals: impl IntoIterator<Item = &'a [f32]>) -> f64 {
+    let finite = |sample: &f32| if sample.is_finite() { f64::from(sample.abs()) } else { 0.0 };
+    let peak = signals.into_iter().flatten().map(finite).fold(0.0, f64::max);
+    if peak > 0.0 { 1.08 * peak } else { 1.0 }
+}
+
+/// Draws signals over one another, with `label` at the vertical axis, which reaches from `-range` to `range`. Wherever several
+/// samples share a pixel, the trace spans all of them.
 pub(super) fn waveform<B: DrawingBackend>(
     area: &Area<B>,
     traces: &[Trace],
     sample_rate: f64,
     label: &str,
-    last: bool,
+    range: f64,
 ) -> Drawn<B> {
-    let finite = |sample: &f32| if sample.is_finite() { f64::from(sample.abs()) } else { 0.0 };
-    let peak = traces.iter().flat_map(|trace| trace.samples).map(finite).fold(0.0, f64::max);
-    let peak = if peak > 0.0 { 1.08 * peak } else { 1.0 };
     let seconds = traces.iter().map(|trace| trace.samples.len()).max().unwrap_or(0).max(2) as f64 / sample_rate;
     let (width, height) = area.dim_in_pixel();
     let mut chart = ChartBuilder::on(area)
@@ -43,8 +50,8 @@ pub(super) fn waveform<B: DrawingBackend>(
         .margin_top(10)
         .margin_left(LEFT_MARGIN)
         .y_label_area_size(LABEL_WIDTH)
-        .x_label_area_size(if last { 52 } else { 12 })
-        .build_cartesian_2d(0.0..seconds, -peak..peak)?;
+        .x_label_area_size(12)
+        .build_cartesian_2d(0.0..seconds, -range..range)?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -52,33 +59,48 @@ pub(super) fn waveform<B: DrawingBackend>(
         .axis_style(INK)
         .label_style(text(16))
         .axis_desc_style(text(18))
-        .x_labels(if last { 11 } else { 0 })
+        .x_labels(0)
         .y_labels((height as usize / 20).clamp(3, 11))
-        .x_label_formatter(&|t| trimmed(*t))
         .y_label_formatter(&|y| {
-            if y.abs() < 1e-9 * peak || peak > 0.01 { trimmed((y * 1e6).round() / 1e6) } else { format!("{y:.1e}") }
+            if y.abs() < 1e-9 * range || range > 0.01 { trimmed((y * 1e6).round() / 1e6) } else { format!("{y:.1e}") }
         })
-        .x_desc(if last { "time / s" } else { "" })
         .y_desc(label)
         .draw()?;
     let (columns, _) = chart.plotting_area().dim_in_pixel();
     for (index, Trace { name, samples, colour }) in traces.iter().enumerate() {
         let share = samples.len() as f64 / (seconds * sample_rate);
         let points = envelope(samples, sample_rate, (f64::from(columns) * share) as usize);
-        chart.draw_series(LineSeries::new(points, colour.stroke_width(1)))?;
+        let opacity = if traces.len() > 1 { SEEN_THROUGH } else { 1.0 };
+        chart.draw_series(LineSeries::new(points, colour.mix(opacity).stroke_width(1)))?;
         let corner = ((width - RIGHT_MARGIN + 18) as i32, 12 + 22 * index as i32);
         area.draw_text(name, &text(16).color(colour), corner)?;
     }
     Ok(())
 }
 
+/// Samples of a transform for a spectrogram: about 80 ms resolve the partials of a bass note and still show a strike as a vertical edge.
+fn length(sample_rate: f64) -> usize {
+    ((0.08 * sample_rate) as usize).next_power_of_two()
+}
+
+/// The level in dB of a spectrogram's loudest bin, rounded up to ten.
+fn loudest(grams: &Spectrogram) -> f64 {
+    10.0 * (grams.columns.iter().flatten().copied().fold(-160.0, f64::max) / 10.0).ceil()
+}
+
+/// The level in dB at which the colours of a signal's spectrogram end.
+pub(super) fn top_level(samples: &[f32], sample_rate: f64) -> f64 {
+    loudest(&spectrogram(samples, sample_rate, length(sample_rate), length(sample_rate) / 8))
+}
+
 /// Draws a signal's spectrogram, 30 Hz (or less, at low rates) to Nyquist on a logarithmic axis, in cells of `cell`
-/// pixels, with its scale of colours to the right.
+/// pixels, with its scale of colours to the right, down from `top_level` in dB or else from its loudest bin.
 pub(super) fn spectrogram_panel<B: DrawingBackend>(
     area: &Area<B>,
     samples: &[f32],
     sample_rate: f64,
     cell: usize,
+    top_level: Option<f64>,
 ) -> Drawn<B> {
     let seconds = samples.len().max(2) as f64 / sample_rate;
     let (low, high) = (30.0_f64.min(0.01 * sample_rate), sample_rate / 2.0);
@@ -109,11 +131,9 @@ pub(super) fn spectrogram_panel<B: DrawingBackend>(
     let cells = chart.plotting_area().strip_coord_spec();
     let (width, height) = cells.dim_in_pixel();
     let (width, height) = (width as usize, height as usize);
-    // About 80 ms resolves the partials of a bass note and still shows a strike as a vertical edge.
-    let length = ((0.08 * sample_rate) as usize).next_power_of_two();
-    let grams = spectrogram(samples, sample_rate, length, (samples.len() * cell / width.max(1)).max(1));
-    let loudest = grams.columns.iter().flatten().copied().fold(-160.0, f64::max);
-    let top_level = 10.0 * (loudest / 10.0).ceil();
+    let hop = (samples.len() * cell / width.max(1)).max(1);
+    let grams = spectrogram(samples, sample_rate, length(sample_rate), hop);
+    let top_level = top_level.unwrap_or_else(|| loudest(&grams));
     for y in (0..height).step_by(cell) {
         let frequency = |edge: usize| high * pow(low / high, edge as f64 / height as f64);
         let (top, bottom) = (frequency(y), frequency(y + cell));

@@ -1,7 +1,7 @@
 //! Draws a sound: its waveform, its spectrogram, and its modes, if they are known.
 
 use super::Render;
-use super::panel::{Trace, spectrogram_panel, waveform};
+use super::panel::{Trace, spectrogram_panel, top_level, waveform, waveform_range};
 use crate::analysis::level::mono;
 use crate::figure::colour::{BLUE, INK, VERMILLION};
 use crate::figure::panel::{Axis, Panel, Stroke, line};
@@ -53,6 +53,26 @@ pub fn modes_of(patch: &Patch, frequency: f64) -> Vec<DrawnMode> {
     patch.modes.as_slice().iter().map(mode).collect()
 }
 
+/// Ranges of a figure's axes, so that several figures can be compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ranges {
+    /// Half the range of the waveform.
+    waveform: f64,
+    /// The level in dB at which the colours of the spectrogram end.
+    top_level: f64,
+}
+
+impl Ranges {
+    /// The ranges that show all of some sounds.
+    pub fn of(renders: &[Render]) -> Self {
+        let level = |render: &Render| top_level(&mono(&[render.left, render.right]), render.sample_rate);
+        Self {
+            waveform: waveform_range(renders.iter().flat_map(|render| [render.left, render.right])),
+            top_level: renders.iter().map(level).fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+}
+
 /// The figure of a sound.
 pub struct SoundFigure<'a> {
     /// Its title.
@@ -61,6 +81,8 @@ pub struct SoundFigure<'a> {
     pub render: Render<'a>,
     /// Its modes; without any there is no panel for them.
     pub modes: &'a [DrawnMode],
+    /// Ranges of its axes; none for those of the sound itself.
+    pub ranges: Option<Ranges>,
     /// Pixels per cell of the spectrogram: 1 for an image of pixels, more for a vector image.
     pub cell: usize,
 }
@@ -77,28 +99,35 @@ impl SoundFigure<'_> {
 
 impl Picture for SoundFigure<'_> {
     fn size(&self) -> (u32, u32) {
-        (1600, 46 + WAVEFORM + SPECTROGRAM + if self.modes.is_empty() { 0 } else { MODES })
+        (1600, 46 + self.waveforms() + SPECTROGRAM + if self.modes.is_empty() { 0 } else { MODES })
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
         area.draw_text(self.title, &text(24), (20, 14))?;
         let (_, body) = area.split_vertically(46);
-        let (upper, rest) = body.split_vertically(WAVEFORM);
+        let (upper, rest) = body.split_vertically(self.waveforms());
         let (middle, lower) = rest.split_vertically(SPECTROGRAM);
         let Render { left, right, sample_rate } = self.render;
-        let one = [Trace { name: "", samples: left, colour: BLUE }];
-        let both = [
-            Trace { name: "left", samples: left, colour: BLUE },
-            Trace { name: "right", samples: right, colour: VERMILLION },
-        ];
-        let traces: &[Trace] = if left == right { &one } else { &both };
-        waveform(&upper, traces, sample_rate, "sound", false)?;
-        spectrogram_panel(&middle, &mono(&[left, right]), sample_rate, self.cell)?;
+        let range = self.ranges.map_or_else(|| waveform_range([left, right]), |ranges| ranges.waveform);
+        let strips = match left == right {
+            true => vec![("sound", left, BLUE)],
+            false => vec![("left", left, BLUE), ("right", right, VERMILLION)],
+        };
+        for ((label, samples, colour), strip) in strips.iter().zip(upper.split_evenly((strips.len(), 1))) {
+            waveform(&strip, &[Trace { name: "", samples, colour: *colour }], sample_rate, label, range)?;
+        }
+        let top_level = self.ranges.map(|ranges| ranges.top_level);
+        spectrogram_panel(&middle, &mono(&[left, right]), sample_rate, self.cell, top_level)?;
         if self.modes.is_empty() { Ok(()) } else { self.draw_modes(&lower) }
     }
 }
 
 impl SoundFigure<'_> {
+    /// Height of the waveforms: one if both channels are the same.
+    fn waveforms(&self) -> u32 {
+        if self.render.left == self.render.right { WAVEFORM } else { 3 * WAVEFORM / 2 }
+    }
+
     fn draw_modes<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
         let (width, _) = area.dim_in_pixel();
         let (plots, key) = area.split_horizontally(width - REMARKS);
@@ -157,7 +186,7 @@ mod tests {
         let samples = [0.0, 0.5, -0.5, 0.25];
         let render = Render { left: &samples, right: &samples, sample_rate: 48_000.0 };
         let modes = modes_of(&Patch::default(), 440.0);
-        let with = SoundFigure { title: "a", render, modes: &modes, cell: 5 };
+        let with = SoundFigure { title: "a", render, modes: &modes, ranges: None, cell: 5 };
         let without = SoundFigure { modes: &[], ..with };
         assert!(with.size().1 > without.size().1);
         assert!(String::from_utf8(with.bytes("svg").unwrap()).unwrap().contains("T60 / s"));

@@ -2,7 +2,7 @@
 
 use super::Fitted;
 use crate::analysis::figure::Render;
-use crate::analysis::figure::sound::{DrawnMode, SoundFigure, modes_of};
+use crate::analysis::figure::sound::{DrawnMode, Ranges, SoundFigure, modes_of};
 use crate::analysis::modes::Mode;
 use crate::error::Result;
 use crate::figure::page::{STYLE, data_link, escaped, fill};
@@ -25,11 +25,13 @@ pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
     let first = fitted.recording.first().map_or(&[][..], Vec::as_slice);
     let last = fitted.recording.last().map_or(&[][..], Vec::as_slice);
     let [left, right] = &fitted.played;
-    let figure = |title, left, right, modes| {
-        let render = Render { left, right, sample_rate: fitted.sample_rate() };
-        Ok(data_link("image/png", &SoundFigure { title, render, modes, cell: 1 }.bytes("png")?))
+    let renders =
+        [[first, last], [left, right]].map(|[left, right]| Render { left, right, sample_rate: fitted.sample_rate() });
+    let ranges = Some(Ranges::of(&renders));
+    let figure = |title, render, modes| {
+        Ok(data_link("image/png", &SoundFigure { title, render, modes, ranges, cell: 1 }.bytes("png")?))
     };
-    let figures: [Result<String>; 2] = [figure("Recording", first, last, &[]), figure("Preset", left, right, &modes)];
+    let figures: [Result<String>; 2] = [figure("Recording", renders[0], &[]), figure("Preset", renders[1], &modes)];
     let [recording, preset] = figures;
     let (recording, preset) = (recording?, preset?);
     Ok(fill(PAGE, |name| match name {

@@ -106,7 +106,7 @@ impl Prepared {
         let middle = mono(&channels);
         let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
         if f64::from(peak) < SILENCE {
-            return wrong("it is silent: expected a strike above −80 dBFS");
+            return wrong("it is silent, or a constant: expected a strike above −80 dBFS");
         }
         let onset = middle.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0);
         let block = (BLOCK * f64::from(RATE)) as usize;

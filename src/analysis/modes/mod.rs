@@ -96,7 +96,7 @@ pub fn modes(
     let constant = offset(&rest, (BLOCK * sample_rate) as usize);
     let peak = rest.iter().fold(0.0_f64, |peak, sample| peak.max((sample - constant).abs()));
     if peak < SILENCE {
-        return Err(wrong("it is silent: expected a strike above −100 dBFS"));
+        return Err(wrong("it is silent, or a constant: expected a strike above −100 dBFS"));
     }
     warnings.extend(clipping(channels));
     let stretches = strikes(&rest, sample_rate, settings.longest);
