@@ -8,6 +8,7 @@
 use super::fit::Fit;
 use super::pole::add;
 use libm::log10;
+use std::ops::Range;
 
 /// Seconds from one level to the next, and number of steps over which a level is measured.
 const STEP: f64 = 0.005;
@@ -38,16 +39,21 @@ const COMPARED_DB: f64 = 8.0;
 const AHEAD: f64 = 0.4;
 /// Seconds after the place in which modes are compared with the sound.
 const COMPARED: f64 = 0.15;
-/// How many times they are compared, one time after the other, and how far behind the last fitted sample at most, as a share of the
+/// Most times that they are compared, one after the other, and how far behind the last fitted sample at most, as a share of the
 /// time before that.
 const COMPARISONS: usize = 3;
 const FARTHEST: f64 = 0.8;
 /// Largest share of the energy that modes leave unexplained if they explain the sound.
 const UNEXPLAINED: f64 = 0.2;
-/// The same of the last samples that they were fitted to: modes that do not explain these tell nothing of what follows.
-const UNEXPLAINED_BEFORE: f64 = 0.01;
 /// Largest share of the modes' energy that a damper leaves. If more is left, the modes were wrong.
 const DAMPED: f64 = 0.5;
+/// Modes that leave more than this share of the last samples that they were fitted to do not tell what follows.
+const UNKNOWN: f64 = 0.035;
+/// From this share on, a damper must leave less than so much.
+const DOUBTFUL: f64 = 0.01;
+const DAMPED_IF_DOUBTFUL: f64 = 0.1;
+/// Up to this share, modes tell what comes later, too.
+const CLEAR: f64 = 0.001;
 /// Most dampers that are tried: each costs a search.
 const MOST_DAMPERS: usize = 2;
 
@@ -166,27 +172,33 @@ pub(super) fn confirmed(fit: &Fit, damper: Damper, samples: &[f64], sample_rate:
     let compared = ((COMPARED * sample_rate) as usize).max(1);
     let last = damper.from.saturating_sub(compared);
     let before = fit.residual(&samples[..damper.from]);
-    if energy(&before[last..], 0.0) > UNEXPLAINED_BEFORE * energy(&samples[last..damper.from], fit.constant) {
-        return false;
-    }
+    let unexplained = energy(&before[last..], 0.0) / energy(&samples[last..damper.from], fit.constant).max(1e-300);
+    let (comparisons, damped) = match unexplained {
+        share if share > UNKNOWN => return false,
+        share if share > DOUBTFUL => (1, DAMPED_IF_DOUBTFUL),
+        share if share > CLEAR => (1, DAMPED),
+        _ => (COMPARISONS, DAMPED),
+    };
     let first = damper.from + damper.lag;
     let farthest = ((1.0 + FARTHEST) * damper.from as f64) as usize;
     // The place may be too early, so that the damper has done little at first.
-    let begins = (first..first + COMPARISONS * compared).step_by(compared);
-    begins.filter(|begin| *begin == first || *begin < farthest).any(|begin| differs(fit, begin, compared, samples))
+    let begins = (first..first + comparisons * compared).step_by(compared);
+    begins
+        .filter(|begin| *begin == first || *begin < farthest)
+        .any(|begin| differs(fit, samples, begin..begin + compared, damped))
 }
 
-/// Whether some samples differ from the continuation of modes, and are weaker than it.
-fn differs(fit: &Fit, begin: usize, len: usize, samples: &[f64]) -> bool {
-    let Some(after) = samples.get(begin..).map(|after| &after[..len.min(after.len())]) else { return false };
+/// Whether a range of the samples differs from the continuation of modes, and has at most a share `damped` of its energy.
+fn differs(fit: &Fit, samples: &[f64], range: Range<usize>, damped: f64) -> bool {
+    let Some(after) = samples.get(range.start..range.end.min(samples.len())) else { return false };
     let mut expected = vec![fit.constant; after.len()];
     for (pole, amplitude) in fit.poles.iter().zip(&fit.amplitudes) {
-        add(&mut expected, *pole, *amplitude * pole.power(begin), 1.0);
+        add(&mut expected, *pole, *amplitude * pole.power(range.start), 1.0);
     }
     let left: Vec<f64> = after.iter().zip(&expected).map(|(sample, expected)| sample - expected).collect();
     let [left, after, expected] = [(&left[..], 0.0), (after, fit.constant), (&expected[..], fit.constant)]
         .map(|(sound, constant)| energy(sound, constant));
-    left > UNEXPLAINED * expected && after < DAMPED * expected
+    left > UNEXPLAINED * expected && after < damped * expected
 }
 
 #[cfg(test)]
