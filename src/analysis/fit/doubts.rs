@@ -2,11 +2,14 @@
 
 use super::layers::{Layer, SAME_KEY};
 use super::pitch::{key_name, wrong_key};
-use super::take::{Prepared, Take};
+use super::take::Take;
 use crate::analysis::level::{dbfs, peak};
 
 /// Distance below which two velocities of 0–1 are the same.
 const SAME_VELOCITY: f64 = 0.5 / 127.0;
+
+/// Least number of dB beyond full scale that is told.
+const WORTH_TELLING_DB: f64 = 0.05;
 
 /// Peak of a recording in full scale.
 fn peak_of(take: &Take) -> f64 {
@@ -19,16 +22,16 @@ pub(super) fn gain_to_full_scale(takes: &[Take]) -> f64 {
 }
 
 /// Warnings of takes that are beyond full scale, have another pitch than their key, or the key and velocity of another one.
-pub(super) fn of_takes(takes: &[Take], prepared: &[Prepared], layers: &[Layer]) -> Vec<String> {
+pub(super) fn of_takes(takes: &[Take], layers: &[Layer]) -> Vec<String> {
     let loudest = takes.iter().max_by(|a, b| peak_of(a).total_cmp(&peak_of(b)));
-    let beyond = loudest.map(|take| (take, dbfs(peak_of(take)))).filter(|(_, db)| *db > 0.0);
+    let beyond = loudest.map(|take| (take, dbfs(peak_of(take)))).filter(|(_, db)| *db > WORTH_TELLING_DB);
     let softer = if takes.len() > 1 { "all are" } else { "it is" };
     let too_loud = beyond.map(|(take, db)| {
         format!("{}: it peaks {db:.1} dB above full scale: {softer} fitted {db:.1} dB softer", take.name)
     });
     let named = takes.iter().zip(layers);
-    let with_key = named.clone().zip(prepared).filter(|(_, prepared)| prepared.key.is_some());
-    let wrong = with_key.filter_map(|((take, layer), _)| wrong_key(&layer.draft, &take.name));
+    let with_key = named.clone().filter(|(take, _)| take.key.is_some());
+    let wrong = with_key.filter_map(|(take, layer)| wrong_key(&layer.draft, &take.name));
     let is_same = |a: &Layer, b: &Layer| {
         (a.key() - b.key()).abs() < SAME_KEY && (a.draft.velocity - b.draft.velocity).abs() < SAME_VELOCITY
     };
@@ -48,7 +51,7 @@ pub(super) fn of_takes(takes: &[Take], prepared: &[Prepared], layers: &[Layer]) 
 mod tests {
     use super::super::correct::tests::draft;
     use super::super::draft::Draft;
-    use super::super::take::VELOCITY;
+    use super::super::take::{Prepared, VELOCITY};
     use super::*;
     use crate::io::sound_file::Recording;
 
@@ -67,14 +70,14 @@ mod tests {
             [given("a", 0.5, 0.5), given("b", 2.0, 1.0), given("c", 0.5, 0.5)].into_iter().unzip();
         let gain = gain_to_full_scale(&takes);
         assert_eq!(gain, 0.5);
-        let prepared: Vec<Prepared> = takes.iter().map(|take| Prepared::new(take, gain).unwrap()).collect();
-        assert!(prepared[1].peak() < 1.01, "{}", prepared[1].peak());
-        let doubts = of_takes(&takes, &prepared, &layers);
+        let peak = Prepared::new(&takes[1], gain).unwrap().peak();
+        assert!(peak < 1.01, "{peak}");
+        let doubts = of_takes(&takes, &layers);
         assert!(
             doubts[0].starts_with("b: it peaks 6.0 dB above full scale: all are fitted 6.0 dB softer"),
             "{doubts:?}"
         );
         assert!(doubts[1].starts_with("c: it has the key and velocity of a (") && doubts.len() == 2, "{doubts:?}");
-        assert_eq!(of_takes(&takes[..1], &prepared[..1], &layers[..1]), [""; 0]);
+        assert_eq!(of_takes(&takes[..1], &layers[..1]), [""; 0]);
     }
 }

@@ -90,7 +90,8 @@ pub struct Fitted {
     pub is_estimated: bool,
     /// Distance of the patch's sound from each recording in dB ([`super::log_mel::distance`]).
     pub distances: Vec<f64>,
-    /// The base take from its onset on, at [`super::log_mel::RATE`], a list per channel.
+    /// The base take from its onset on, at [`super::log_mel::RATE`], a list per channel. Takes beyond full scale are brought to it,
+    /// all by the same gain.
     pub recording: Vec<Vec<f32>>,
     /// The same note played by the patch, left and right.
     pub played: [Vec<f32>; 2],
@@ -202,7 +203,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     };
     let distances: Vec<f64> = layers.iter().zip(&prepared).enumerate().map(distance).collect();
     let mut warnings: Vec<String> = prepared.iter().flat_map(|take| take.warnings.clone()).collect();
-    warnings.extend(doubts::of_takes(takes, &prepared, &layers));
+    warnings.extend(doubts::of_takes(takes, &layers));
     if draft.partials.iter().all(|partial| !partial.struck) {
         let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
         warnings.push(format!("{}: {message}", takes[base].name));

@@ -270,18 +270,9 @@ pub(super) mod tests {
         // Of a short strike followed by silence, only the strike is kept.
         let short = prepared(samples(600.0, RATE_OF_FILE, ringing(0.5)), RATE_OF_FILE);
         assert!((0.4..0.7).contains(&short.seconds()) && short.warnings.is_empty(), "{:?}", short.warnings);
-        let kept =
-            first_seconds(
-                &Recording {
-                    sample_rate: 8000,
-                    channels: vec![samples(600.0, RATE_OF_FILE, |t| {
-                        if t < 300.0 { 0.0 } else { ringing(100.0)(t - 300.0) }
-                    })],
-                    encoding: String::new(),
-                    warnings: Vec::new(),
-                },
-                1.0,
-            );
+        let late = samples(600.0, RATE_OF_FILE, |t| if t < 300.0 { 0.0 } else { ringing(100.0)(t - 300.0) });
+        let late = Recording { sample_rate: 8000, channels: vec![late], encoding: String::new(), warnings: Vec::new() };
+        let kept = first_seconds(&late, 1.0);
         assert!(kept.channels[0].len() < 13 * RATE_OF_FILE as usize, "{}", kept.channels[0].len());
     }
 
