@@ -78,7 +78,7 @@ impl Error {
 /// For frequent errors of the system what would be right; else the error's own words.
 fn reason(source: &std::io::Error) -> String {
     if source.get_ref().is_some() {
-        // A message of this crate, which says it already.
+        // An error of a library or of this crate, with words of its own.
         return source.to_string();
     }
     match source.kind() {

@@ -65,7 +65,7 @@ impl std::fmt::Display for Difference {
              RMS error {rms_dbfs:.1} dBFS"
         )?;
         if expected != actual {
-            write!(f, ", {} where {expected} were expected", counted(*actual, "frame"))?;
+            write!(f, ", {} in place of {expected}", counted(*actual, "frame"))?;
         }
         Ok(())
     }

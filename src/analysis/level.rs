@@ -29,6 +29,11 @@ pub fn mono<C: AsRef<[f32]>>(channels: &[C]) -> Vec<f32> {
     mean_of(channels).into_iter().map(|sample| sample as f32).collect()
 }
 
+/// Sum of the squares of samples about a constant.
+pub fn energy(samples: &[f64], constant: f64) -> f64 {
+    samples.iter().map(|sample| (sample - constant) * (sample - constant)).sum()
+}
+
 /// Mean; 0 for no samples.
 pub fn dc(samples: &[f32]) -> f64 {
     samples.iter().map(|sample| f64::from(*sample)).sum::<f64>() / samples.len().max(1) as f64

@@ -65,12 +65,12 @@ fn compare(args: &Args) -> Result<bool> {
         return Err(Error::value("stdin", "both sounds are read from it: expected a file for one of them"));
     }
     let mut inputs = Inputs::default();
-    let (expected, _) = read(&args.expected, &mut inputs)?;
-    let (actual, _) = read(&args.actual, &mut inputs)?;
+    let (expected, first) = read(&args.expected, &mut inputs)?;
+    let (actual, second) = read(&args.actual, &mut inputs)?;
     interrupt::end_at_once()?;
     let mut is_finite = true;
-    for (path, sound) in [(&args.expected, &expected), (&args.actual, &actual)] {
-        if let Err(error) = sound.check_finite(&path.display().to_string()) {
+    for (name, sound) in [(first, &expected), (second, &actual)] {
+        if let Err(error) = sound.check_finite(&name) {
             complain("warning", &error);
             is_finite = false;
         }

@@ -1,7 +1,7 @@
 //! Figures of rendered jobs.
 
 use sprung::analysis::figure::Render;
-use sprung::analysis::figure::sound::{DrawnMode, SoundFigure};
+use sprung::analysis::figure::sound::{DrawnMode, Ranges, SoundFigure};
 use sprung::render::Job;
 use sprung::{Error, Result};
 
@@ -26,6 +26,12 @@ pub(super) fn drawn(job: &Job, title: &str, modes: &[DrawnMode], format: &str) -
         Ok(())
     })?;
     let render = Render { left: &left, right: &right, sample_rate };
-    SoundFigure { title, render, modes, ranges: None, cell: if format == "svg" { VECTOR_CELL } else { 1 } }
-        .bytes(format)
+    SoundFigure {
+        title,
+        render,
+        modes,
+        ranges: Ranges::of(&[render]),
+        cell: if format == "svg" { VECTOR_CELL } else { 1 },
+    }
+    .bytes(format)
 }

@@ -115,7 +115,7 @@ fn take(args: &Args, index: usize, inputs: &mut Inputs) -> Result<Take> {
         let message = format!("{}: its key is given twice: expected @KEY or --note", path.display());
         return Err(wrong(message));
     }
-    let named = |message| wrong(if common.is_some() { message } else { format!("{}: {message}", path.display()) });
+    let named = |message| wrong(format!("{}: {message}", path.display()));
     let key = key.as_deref().or(common).map(|note| parse_key(note, 440.0)).transpose().map_err(named)?;
     let velocity = velocity.or_else(|| args.velocity.get(index).copied());
     let (recording, name) = read(&path, inputs)?;

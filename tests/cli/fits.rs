@@ -92,6 +92,7 @@ fn what_cannot_be_fitted_is_refused() {
         ("fit none.wav -o b.toml", 1, "none.wav: "),
         ("fit a.wav -o b.txt", 1, "--output: b.txt: expected a name that ends in .toml"),
         ("fit a.wav -o b.toml --report b.txt", 1, "--report: b.txt: expected a name that ends in .html"),
+        ("fit a.wav@H2 -o b.toml", 1, "a.wav: ‘H2’ is not a note: expected a note name (C#4)"),
         ("fit a.wav@C4 -o b.toml --note C4", 1, "its key is given twice: expected @KEY or --note"),
         ("fit a.wav -o b.toml --velocity 40,80", 1, "--velocity: 2 of them for 1 recording: expected one for each"),
         ("fit a.wav -o b.toml --body drum", 2, "invalid value 'drum'"),
@@ -109,14 +110,21 @@ fn noise_and_sounds_that_do_not_decay_are_warned_of() {
     let burst = first.iter().enumerate().map(|(n, sample)| sample * libm::exp(-2e-4 * n as f64) as f32);
     sandbox.write("noise.wav", wav(&burst.collect::<Vec<_>>()));
     sandbox.write("steady.wav", wav(second));
-    for (file, warning) in
-        [("noise", ""), ("steady", "steady.wav: the sound does not decay: expected something that is struck")]
-    {
+    sandbox.write("loud.wav", wav(&bar(440.0, 6.0)));
+    for (file, warning) in [
+        ("noise", ""),
+        ("steady", "steady.wav: the sound does not decay: expected something that is struck"),
+        ("loud", "loud.wav: it is fitted 1"),
+    ] {
         let output = sandbox.sprung(&format!("fit {file}.wav -o {file}.toml --modes 48")).assert().success();
         let said = String::from_utf8(output.get_output().stderr.clone()).unwrap();
         assert!(said.contains(warning), "{said}");
         sandbox.succeeds(&format!("presets check {file}.toml"));
     }
+    let preset = String::from_utf8(sandbox.read("loud.toml")).unwrap();
+    let distance: f64 =
+        preset.split(" dB from the recording").next().unwrap().rsplit(' ').next().unwrap().parse().unwrap();
+    assert!(distance < 0.5, "{distance} dB");
 }
 
 #[test]

@@ -6,9 +6,9 @@ pub mod sound;
 
 use super::level::mono;
 use crate::error::{Error, Result};
-use crate::figure::colour::{BLUE, VERMILLION};
+use crate::figure::colour::BLUE;
 use crate::figure::{Area, Drawn, Picture, png, svg, text};
-use panel::{Trace, spectrogram_panel, waveform, waveform_range};
+use panel::{Trace, channels, spectrogram_panel, top_level, waveform, waveform_range};
 use plotters::prelude::*;
 use std::path::Path;
 
@@ -67,7 +67,7 @@ impl<'a> Sheet<'a> {
     }
 }
 
-impl Picture for Sheet<'_> {
+impl<'a> Picture for Sheet<'a> {
     fn size(&self) -> (u32, u32) {
         (1600, 900)
     }
@@ -78,30 +78,25 @@ impl Picture for Sheet<'_> {
         let (_, body) = area.split_vertically(46);
         let (upper, lower) =
             body.split_vertically(if self.against.is_some() { height * 11 / 20 } else { height * 2 / 5 });
-        let (left, right) = (self.render.left, self.render.right);
-        let strips = match self.against {
-            Some(expected) => vec![
-                ("expected", expected.left, expected.right),
-                ("actual", left, right),
-                ("difference", &self.middle[..], &self.middle[..]),
-            ],
-            None if left == right => vec![("both channels", left, right)],
-            None => vec![("left", left, left), ("right", right, right)],
+        // Two sounds are compared with both channels in one strip.
+        let both = |render: &Render<'a>| -> Vec<Trace<'a>> {
+            channels(render).into_iter().map(|(name, samples, colour)| Trace { name, samples, colour }).collect()
         };
-        let areas = upper.split_evenly((strips.len(), 1));
-        for ((label, left, right), area) in strips.into_iter().zip(&areas) {
-            let colour = if label == "right" { VERMILLION } else { BLUE };
-            let traces = if left == right {
-                vec![Trace { name: "", samples: left, colour }]
-            } else {
-                vec![
-                    Trace { name: "left", samples: left, colour: BLUE },
-                    Trace { name: "right", samples: right, colour: VERMILLION },
-                ]
-            };
-            waveform(area, &traces, self.sample_rate, label, waveform_range([left, right]))?;
+        let alone = |(label, samples, colour)| (label, vec![Trace { name: "", samples, colour }]);
+        let strips: Vec<(&str, Vec<Trace>)> = match &self.against {
+            Some(expected) => vec![
+                ("expected", both(expected)),
+                ("actual", both(&self.render)),
+                alone(("difference", &self.middle[..], BLUE)),
+            ],
+            None => channels(&self.render).into_iter().map(alone).collect(),
+        };
+        for ((label, traces), area) in strips.iter().zip(upper.split_evenly((strips.len(), 1))) {
+            let range = waveform_range(traces.iter().map(|trace| trace.samples));
+            waveform(&area, traces, self.sample_rate, label, range)?;
         }
-        spectrogram_panel(&lower, &self.middle, self.sample_rate, self.cell, None)
+        let top_level = top_level(&self.middle, self.sample_rate);
+        spectrogram_panel(&lower, &self.middle, self.sample_rate, self.cell, top_level)
     }
 }
 

@@ -1,13 +1,14 @@
 //! The parts that figures are made of: a waveform over time, a spectrogram over time, a scale of colours.
 
-use crate::analysis::spectrum::{Spectrogram, spectrogram};
-use crate::figure::colour::{GRID, INK, viridis};
+use super::Render;
+use crate::analysis::spectrum::spectrogram;
+use crate::figure::colour::{BLUE, GRID, INK, VERMILLION, viridis};
 use crate::figure::{Area, Drawn, envelope::envelope, text};
 use crate::text::number::short;
 use libm::pow;
 use plotters::prelude::*;
 
-/// Range in dB that the colours of a spectrogram span, down from its loudest bin rounded up to ten.
+/// Range in dB that the colours of a spectrogram span, down from [`top_level`].
 const SPAN_DB: f64 = 100.0;
 /// Width in pixels to the left of every panel's axis, so that time axes line up.
 const LABEL_WIDTH: u32 = 84;
@@ -15,6 +16,15 @@ const LABEL_WIDTH: u32 = 84;
 const LEFT_MARGIN: u32 = 14;
 /// Width in pixels to the right of every panel, which a spectrogram uses for its scale of colours.
 pub(super) const RIGHT_MARGIN: u32 = 110;
+
+/// What a render's waveforms show: each channel with its name and colour, or one if both are the same.
+pub(super) fn channels<'a>(render: &Render<'a>) -> Vec<(&'static str, &'a [f32], RGBColor)> {
+    if render.left == render.right {
+        vec![("both", render.left, BLUE)]
+    } else {
+        vec![("left", render.left, BLUE), ("right", render.right, VERMILLION)]
+    }
+}
 
 /// A signal in a waveform panel.
 pub(super) struct Trace<'a> {
@@ -83,24 +93,20 @@ fn length(sample_rate: f64) -> usize {
     ((0.08 * sample_rate) as usize).next_power_of_two()
 }
 
-/// The level in dB of a spectrogram's loudest bin, rounded up to ten.
-fn loudest(grams: &Spectrogram) -> f64 {
+/// The level in dB at which the colours of a signal's spectrogram end: that of its loudest bin, rounded up to ten.
+pub(super) fn top_level(samples: &[f32], sample_rate: f64) -> f64 {
+    let grams = spectrogram(samples, sample_rate, length(sample_rate), length(sample_rate) / 8);
     10.0 * (grams.columns.iter().flatten().copied().fold(-160.0, f64::max) / 10.0).ceil()
 }
 
-/// The level in dB at which the colours of a signal's spectrogram end.
-pub(super) fn top_level(samples: &[f32], sample_rate: f64) -> f64 {
-    loudest(&spectrogram(samples, sample_rate, length(sample_rate), length(sample_rate) / 8))
-}
-
 /// Draws a signal's spectrogram, 30 Hz (or less, at low rates) to Nyquist on a logarithmic axis, in cells of `cell`
-/// pixels, with its scale of colours to the right, down from `top_level` in dB or else from its loudest bin.
+/// pixels, with its scale of colours to the right, down from `top_level` in dB.
 pub(super) fn spectrogram_panel<B: DrawingBackend>(
     area: &Area<B>,
     samples: &[f32],
     sample_rate: f64,
     cell: usize,
-    top_level: Option<f64>,
+    top_level: f64,
 ) -> Drawn<B> {
     let seconds = samples.len().max(2) as f64 / sample_rate;
     let (low, high) = (30.0_f64.min(0.01 * sample_rate), sample_rate / 2.0);
@@ -133,7 +139,6 @@ pub(super) fn spectrogram_panel<B: DrawingBackend>(
     let (width, height) = (width as usize, height as usize);
     let hop = (samples.len() * cell / width.max(1)).max(1);
     let grams = spectrogram(samples, sample_rate, length(sample_rate), hop);
-    let top_level = top_level.unwrap_or_else(|| loudest(&grams));
     for y in (0..height).step_by(cell) {
         let frequency = |edge: usize| high * pow(low / high, edge as f64 / height as f64);
         let (top, bottom) = (frequency(y), frequency(y + cell));

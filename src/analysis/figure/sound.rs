@@ -1,7 +1,7 @@
 //! Draws a sound: its waveform, its spectrogram, and its modes, if they are known.
 
 use super::Render;
-use super::panel::{Trace, spectrogram_panel, top_level, waveform, waveform_range};
+use super::panel::{Trace, channels, spectrogram_panel, top_level, waveform, waveform_range};
 use crate::analysis::level::mono;
 use crate::figure::colour::{BLUE, INK, VERMILLION};
 use crate::figure::panel::{Axis, Panel, Stroke, line};
@@ -14,8 +14,8 @@ use plotters::prelude::*;
 const LOWEST: f64 = 20.0;
 /// Range of levels in dB.
 const SPAN_DB: f64 = 80.0;
-/// Height in pixels of the panels of waveform, spectrogram and modes.
-const WAVEFORM: u32 = 220;
+/// Height in pixels of the panels of a waveform, the spectrogram and the modes.
+const WAVEFORM: u32 = 180;
 const SPECTROGRAM: u32 = 520;
 const MODES: u32 = 320;
 /// Width in pixels of the remarks beside the modes.
@@ -56,19 +56,19 @@ pub fn modes_of(patch: &Patch, frequency: f64) -> Vec<DrawnMode> {
 /// Ranges of a figure's axes, so that several figures can be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ranges {
-    /// Half the range of the waveform.
+    /// Half the range of a waveform.
     waveform: f64,
     /// The level in dB at which the colours of the spectrogram end.
     top_level: f64,
 }
 
 impl Ranges {
-    /// The ranges that show all of some sounds.
+    /// The ranges that show all of some sounds, of which there is at least one.
     pub fn of(renders: &[Render]) -> Self {
         let level = |render: &Render| top_level(&mono(&[render.left, render.right]), render.sample_rate);
         Self {
             waveform: waveform_range(renders.iter().flat_map(|render| [render.left, render.right])),
-            top_level: renders.iter().map(level).fold(f64::NEG_INFINITY, f64::max),
+            top_level: renders.iter().map(level).fold(-160.0, f64::max),
         }
     }
 }
@@ -81,8 +81,8 @@ pub struct SoundFigure<'a> {
     pub render: Render<'a>,
     /// Its modes; without any there is no panel for them.
     pub modes: &'a [DrawnMode],
-    /// Ranges of its axes; none for those of the sound itself.
-    pub ranges: Option<Ranges>,
+    /// Ranges of its axes.
+    pub ranges: Ranges,
     /// Pixels per cell of the spectrogram: 1 for an image of pixels, more for a vector image.
     pub cell: usize,
 }
@@ -108,24 +108,20 @@ impl Picture for SoundFigure<'_> {
         let (upper, rest) = body.split_vertically(self.waveforms());
         let (middle, lower) = rest.split_vertically(SPECTROGRAM);
         let Render { left, right, sample_rate } = self.render;
-        let range = self.ranges.map_or_else(|| waveform_range([left, right]), |ranges| ranges.waveform);
-        let strips = match left == right {
-            true => vec![("sound", left, BLUE)],
-            false => vec![("left", left, BLUE), ("right", right, VERMILLION)],
-        };
+        let strips = channels(&self.render);
         for ((label, samples, colour), strip) in strips.iter().zip(upper.split_evenly((strips.len(), 1))) {
-            waveform(&strip, &[Trace { name: "", samples, colour: *colour }], sample_rate, label, range)?;
+            let trace = Trace { name: "", samples, colour: *colour };
+            waveform(&strip, &[trace], sample_rate, label, self.ranges.waveform)?;
         }
-        let top_level = self.ranges.map(|ranges| ranges.top_level);
-        spectrogram_panel(&middle, &mono(&[left, right]), sample_rate, self.cell, top_level)?;
+        spectrogram_panel(&middle, &mono(&[left, right]), sample_rate, self.cell, self.ranges.top_level)?;
         if self.modes.is_empty() { Ok(()) } else { self.draw_modes(&lower) }
     }
 }
 
 impl SoundFigure<'_> {
-    /// Height of the waveforms: one if both channels are the same.
+    /// Height in pixels of the waveforms.
     fn waveforms(&self) -> u32 {
-        if self.render.left == self.render.right { WAVEFORM } else { 3 * WAVEFORM / 2 }
+        WAVEFORM * channels(&self.render).len() as u32
     }
 
     fn draw_modes<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
@@ -186,10 +182,27 @@ mod tests {
         let samples = [0.0, 0.5, -0.5, 0.25];
         let render = Render { left: &samples, right: &samples, sample_rate: 48_000.0 };
         let modes = modes_of(&Patch::default(), 440.0);
-        let with = SoundFigure { title: "a", render, modes: &modes, ranges: None, cell: 5 };
+        let with = SoundFigure { title: "a", render, modes: &modes, ranges: Ranges::of(&[render]), cell: 5 };
         let without = SoundFigure { modes: &[], ..with };
         assert!(with.size().1 > without.size().1);
         assert!(String::from_utf8(with.bytes("svg").unwrap()).unwrap().contains("T60 / s"));
         assert!(without.bytes("png").unwrap().starts_with(b"\x89PNG"));
+    }
+
+    #[test]
+    fn figures_with_the_same_ranges_show_all_of_both_sounds() {
+        let tone = |amplitude: f32| (0..9600).map(|n| amplitude * libm::cosf(0.1 * n as f32)).collect::<Vec<_>>();
+        let (soft, loud) = (tone(0.05), tone(0.5));
+        let [one, two, stereo] = [(&soft, &soft), (&loud, &loud), (&soft, &loud)].map(|(left, right)| Render {
+            left,
+            right,
+            sample_rate: 48_000.0,
+        });
+        assert_eq!(Ranges::of(&[one, two]), Ranges::of(&[two]));
+        assert!(Ranges::of(&[one]).top_level <= Ranges::of(&[two]).top_level - 20.0);
+        let height =
+            |render| SoundFigure { title: "", render, modes: &[], ranges: Ranges::of(&[render]), cell: 1 }.size().1;
+        assert_eq!(height(stereo), height(one) + WAVEFORM);
+        assert_eq!(Ranges::of(&[stereo]).waveform, Ranges::of(&[two]).waveform);
     }
 }

@@ -41,11 +41,11 @@ impl Audition {
 
     /// The first frames of a note, left and right.
     pub(super) fn play(&mut self, patch: &Patch, Played { key, velocity, frames, let_go }: Played) -> [Vec<f32>; 2] {
-        // `set_patch` moves parameters smoothly to their new values; the reset makes the patch the present one at once.
         let mut patch = patch.clone();
         if !self.has_limiter {
             patch.set(Param::Limiter, Limiter::Off.value());
         }
+        // `set_patch` moves parameters smoothly to their new values; the reset makes the patch the present one at once.
         self.synth.set_patch(&patch);
         self.synth.reset();
         let nearest = key.round().clamp(0.0, 127.0);
@@ -71,5 +71,21 @@ impl Audition {
     /// As [`Audition::play`], the mean of both channels.
     pub(super) fn mean(&mut self, patch: &Patch, played: Played) -> Vec<f32> {
         mono(&self.play(patch, played))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn peaks_pass_the_audition_unless_a_player_is_to_hear_them() {
+        let loud = Patch::default().with(Param::Gain, 12.0);
+        let peak = |mut audition: Audition| {
+            let note = Played { key: 60.0, velocity: 1.0, frames: 4800, let_go: None };
+            audition.mean(&loud, note).iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()))
+        };
+        let [free, limited] = [Audition::new(), Audition::with_limiter()].map(peak);
+        assert!(free > 1.5 && limited < 0.95, "{free}, {limited}");
     }
 }

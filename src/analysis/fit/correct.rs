@@ -1,7 +1,7 @@
 //! Corrects levels and decays of a draft's modes by the errors of its mel bands.
 
 use super::draft::{Draft, Partial, SHORTEST_T60, longest_t60};
-use super::movement::{LN_120_DB, Sweep, speed_at};
+use super::movement::{ENERGY_PER_T60, Sweep, speed_at};
 use crate::analysis::log_mel::{BANDS, HOP, LogMel, RATE, SPAN_DB, time, weights};
 use libm::{exp, pow};
 
@@ -104,7 +104,7 @@ fn powers(partials: &[Partial], speeds: &[f64]) -> Vec<[f64; BANDS]> {
 
 /// The power of a mode in each window.
 fn powers_of(partial: &Partial, columns: usize) -> impl Iterator<Item = f64> {
-    let step = exp(-LN_120_DB * HOP as f64 / f64::from(RATE) / partial.t60);
+    let step = exp(-ENERGY_PER_T60 * HOP as f64 / f64::from(RATE) / partial.t60);
     std::iter::successors(Some(partial.amplitude * partial.amplitude), move |power| Some(power * step)).take(columns)
 }
 

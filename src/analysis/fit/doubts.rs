@@ -1,34 +1,30 @@
-//! What may be wrong with recordings that are given together.
+//! Warnings of recordings and of what was made of them.
 
 use super::layers::{Layer, SAME_KEY};
 use super::pitch::{key_name, wrong_key};
 use super::take::Take;
-use crate::analysis::level::{dbfs, peak};
+use crate::analysis::level::dbfs;
 
 /// Distance below which two velocities of 0–1 are the same.
 const SAME_VELOCITY: f64 = 0.5 / 127.0;
 
-/// Least number of dB beyond full scale that is told.
-const WORTH_TELLING_DB: f64 = 0.05;
+/// Least number of dB that is told by which takes are softer. Recordings often reach full scale, 0.9 dB above the limiter's threshold.
+const WORTH_TELLING_DB: f64 = 1.0;
 
-/// Peak of a recording in full scale.
-fn peak_of(take: &Take) -> f64 {
-    take.recording.channels.iter().map(|channel| peak(channel)).fold(0.0, f64::max)
+/// A warning that takes are fitted softer than they are: by this gain.
+pub(super) fn softer(takes: &[Take], gain: f64) -> Option<String> {
+    let db = -dbfs(gain);
+    let which = match takes {
+        [take] => format!("{}: it is", take.name),
+        _ => "the recordings are".to_owned(),
+    };
+    (db > WORTH_TELLING_DB).then(|| {
+        format!("{which} fitted {db:.1} dB softer: expected peaks below full scale, which the limiter lets pass")
+    })
 }
 
-/// The factor that brings the loudest of some takes to full scale; 1 if none is beyond it.
-pub(super) fn gain_to_full_scale(takes: &[Take]) -> f64 {
-    1.0 / takes.iter().map(peak_of).fold(1.0, f64::max)
-}
-
-/// Warnings of takes that are beyond full scale, have another pitch than their key, or the key and velocity of another one.
+/// Warnings of takes that have another pitch than their key, or the key and velocity of another one.
 pub(super) fn of_takes(takes: &[Take], layers: &[Layer]) -> Vec<String> {
-    let loudest = takes.iter().max_by(|a, b| peak_of(a).total_cmp(&peak_of(b)));
-    let beyond = loudest.map(|take| (take, dbfs(peak_of(take)))).filter(|(_, db)| *db > WORTH_TELLING_DB);
-    let softer = if takes.len() > 1 { "all are" } else { "it is" };
-    let too_loud = beyond.map(|(take, db)| {
-        format!("{}: it peaks {db:.1} dB above full scale: {softer} fitted {db:.1} dB softer", take.name)
-    });
     let named = takes.iter().zip(layers);
     let with_key = named.clone().filter(|(take, _)| take.key.is_some());
     let wrong = with_key.filter_map(|(take, layer)| wrong_key(&layer.draft, &take.name));
@@ -44,40 +40,61 @@ pub(super) fn of_takes(takes: &[Take], layers: &[Layer]) -> Vec<String> {
             take.name, first.name
         ))
     });
-    too_loud.into_iter().chain(wrong).chain(twice).collect()
+    wrong.chain(twice).collect()
+}
+
+/// Distance in dB above which a preset hardly sounds like its recording.
+const FAR_DB: f64 = 6.0;
+
+/// Warnings of takes that the preset is far from: it has the sound of take `base`, and a body if there is one.
+pub(super) fn of_distances(takes: &[Take], distances: &[f64], base: usize, has_body: bool) -> Vec<String> {
+    let far = takes.iter().zip(distances).enumerate().filter(|(_, (_, distance))| **distance > FAR_DB);
+    let warning = |(n, (take, distance)): (usize, (&Take, &f64))| {
+        let expected = match (n == base, has_body) {
+            (false, _) => "expected strokes on one instrument that differ in key and velocity only",
+            (true, false) => "expected a dry stroke that rings, no speech, vibrato or phrase",
+            (true, true) => "expected the sound of such a body alone; a table of modes may come nearer",
+        };
+        format!("{}: the preset is {distance:.1} dB from it: {expected}", take.name)
+    };
+    far.map(warning).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::correct::tests::draft;
     use super::super::draft::Draft;
-    use super::super::take::{Prepared, VELOCITY};
+    use super::super::take::VELOCITY;
     use super::*;
     use crate::io::sound_file::Recording;
 
-    /// A take of some peak, as it is prepared, and its layer of some velocity.
-    fn given(name: &str, peak: f32, velocity: f64) -> (Take, Layer) {
-        let samples = (0..4800).map(|n| peak * libm::cosf(0.06 * n as f32)).collect();
+    fn take(name: &str) -> Take {
         let recording =
-            Recording { sample_rate: 48_000, channels: vec![samples], encoding: String::new(), warnings: Vec::new() };
-        let take = Take { name: name.to_owned(), recording, key: None, velocity: VELOCITY };
-        (take, Layer { draft: Draft { velocity, ..draft([0.5, 0.1]) }, level: 0.1 })
+            Recording { sample_rate: 48_000, channels: Vec::new(), encoding: String::new(), warnings: Vec::new() };
+        Take { name: name.to_owned(), recording, key: None, velocity: VELOCITY }
     }
 
     #[test]
-    fn takes_that_are_alike_or_too_loud_are_doubted() {
-        let (takes, layers): (Vec<Take>, Vec<Layer>) =
-            [given("a", 0.5, 0.5), given("b", 2.0, 1.0), given("c", 0.5, 0.5)].into_iter().unzip();
-        let gain = gain_to_full_scale(&takes);
-        assert_eq!(gain, 0.5);
-        let peak = Prepared::new(&takes[1], gain).unwrap().peak();
-        assert!(peak < 1.01, "{peak}");
+    fn takes_that_are_alike_are_doubted() {
+        let takes = ["a", "b", "c"].map(take);
+        let layers =
+            [0.5, 1.0, 0.5].map(|velocity| Layer { draft: Draft { velocity, ..draft([0.5, 0.1]) }, level: 0.1 });
         let doubts = of_takes(&takes, &layers);
-        assert!(
-            doubts[0].starts_with("b: it peaks 6.0 dB above full scale: all are fitted 6.0 dB softer"),
-            "{doubts:?}"
-        );
-        assert!(doubts[1].starts_with("c: it has the key and velocity of a (") && doubts.len() == 2, "{doubts:?}");
-        assert_eq!(of_takes(&takes[..1], &layers[..1]), [""; 0]);
+        assert!(doubts[0].starts_with("c: it has the key and velocity of a (") && doubts.len() == 1, "{doubts:?}");
+        assert_eq!(of_takes(&takes[..2], &layers[..2]), [""; 0]);
+    }
+
+    #[test]
+    fn what_is_made_softer_and_what_is_far_is_told() {
+        let takes = ["a", "b"].map(take);
+        assert_eq!((softer(&takes, 1.0), softer(&takes, 0.9)), (None, None));
+        assert!(softer(&takes, 0.25).unwrap().starts_with("the recordings are fitted 12.0 dB softer"));
+        assert!(softer(&takes[..1], 0.25).unwrap().starts_with("a: it is fitted 12.0 dB softer"));
+        let far = |distances, has_body| of_distances(&takes, distances, 1, has_body);
+        assert_eq!(far(&[1.0, 5.9], false), [""; 0]);
+        let warnings = far(&[7.0, 8.04], true);
+        assert!(warnings[0].starts_with("a: the preset is 7.0 dB from it: expected strokes on one"), "{warnings:?}");
+        assert!(warnings[1].starts_with("b: the preset is 8.0 dB from it: expected the sound of such"), "{warnings:?}");
+        assert!(far(&[7.0, 8.0], false)[1].contains("expected a dry stroke"));
     }
 }

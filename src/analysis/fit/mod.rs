@@ -17,6 +17,7 @@ mod course;
 mod doubts;
 mod draft;
 mod drift;
+mod excerpt;
 mod held;
 mod improve;
 mod layers;
@@ -59,9 +60,6 @@ use take::Prepared;
 /// Share of the work that is done when only the release is left to be fitted.
 const LAST: f64 = 0.98;
 
-/// Distance in dB above which a preset hardly sounds like its recording.
-const FAR_DB: f64 = 6.0;
-
 /// Settings of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -90,8 +88,8 @@ pub struct Fitted {
     pub is_estimated: bool,
     /// Distance of the patch's sound from each recording in dB ([`super::log_mel::distance`]).
     pub distances: Vec<f64>,
-    /// The base take from its onset on, at [`super::log_mel::RATE`], a list per channel. Takes beyond full scale are brought to it,
-    /// all by the same gain.
+    /// The base take from its onset on, at [`super::log_mel::RATE`], a list per channel. If a take goes beyond the threshold of the
+    /// limiter, all are softer by the same gain, in which they are fitted.
     pub recording: Vec<Vec<f32>>,
     /// The same note played by the patch, left and right.
     pub played: [Vec<f32>; 2],
@@ -132,8 +130,9 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     if takes.is_empty() {
         return Err(Error::value("recordings", "there are none: expected at least one"));
     }
-    let gain = doubts::gain_to_full_scale(takes);
-    let mut prepared: Vec<Prepared> = takes.iter().map(|take| Prepared::new(take, gain)).collect::<Result<_>>()?;
+    let (excerpts, gain) = excerpt::of_takes(takes)?;
+    let prepare = |(take, excerpt)| Prepared::new(take, excerpt, gain);
+    let mut prepared: Vec<Prepared> = takes.iter().zip(&excerpts).map(prepare).collect::<Result<_>>()?;
     // Tuning a body takes about as long as a take.
     let count = takes.len() as f64 + if settings.family == Family::Table { 0.0 } else { 1.0 };
     let mut tell = |share: f64| progress(LAST * share);
@@ -176,6 +175,8 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         let (key, velocity) = (layer.key(), layer.draft.velocity);
         rms(&audition.mean(patch, Played { key, velocity, frames: take::LEVEL_FRAMES, let_go: None }))
     });
+    // From here on, what is measured is what a player hears: the limiter is on.
+    let mut heard = Audition::with_limiter();
     let (mut patch, mut release) = (patch, None);
     if let Some(ending) = &take.ending {
         let (damped, found) =
@@ -183,7 +184,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
         // What falls by itself, or comes back, is nearer without.
         let mut distance = |patch: &Patch, let_go| {
             let note = Played { key, velocity: draft.velocity, frames: ending.mean.len(), let_go };
-            log_mel::distance(&audition.mean(patch, note), &ending.mean)
+            log_mel::distance(&heard.mean(patch, note), &ending.mean)
         };
         if distance(&damped, Some(found.frames())) <= distance(&patch, None) {
             (patch, release) = (damped, Some(found));
@@ -191,31 +192,24 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     }
     let (_, whole) = take.whole();
     let let_go = release.map(|release| release.frames());
-    let mut audition = Audition::with_limiter();
-    let played = audition.play(&patch, Played { key, velocity: draft.velocity, frames: whole.len(), let_go });
+    let played = heard.play(&patch, Played { key, velocity: draft.velocity, frames: whole.len(), let_go });
     let distance = |(index, (layer, take)): (usize, (&Layer, &Prepared))| {
         let key = layer.key();
         let (_, whole) = take.whole();
         let own = take.ending.as_ref().map(|ending| ending.release);
         let let_go = if index == base { release } else { own }.map(|release| release.frames());
         let note = Played { key, velocity: take.velocity, frames: whole.len(), let_go };
-        log_mel::distance(&audition.mean(&patch, note), whole)
+        log_mel::distance(&heard.mean(&patch, note), whole)
     };
     let distances: Vec<f64> = layers.iter().zip(&prepared).enumerate().map(distance).collect();
     let mut warnings: Vec<String> = prepared.iter().flat_map(|take| take.warnings.clone()).collect();
+    warnings.extend(doubts::softer(takes, gain));
     warnings.extend(doubts::of_takes(takes, &layers));
     if draft.partials.iter().all(|partial| !partial.struck) {
         let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
         warnings.push(format!("{}: {message}", takes[base].name));
     }
-    let expected = match explained {
-        None => "expected a dry stroke that rings, no speech, vibrato or phrase",
-        Some(_) => "expected the sound of such a body alone; a table of modes comes nearer",
-    };
-    let far = takes.iter().zip(&distances).filter(|(_, distance)| **distance > FAR_DB);
-    warnings.extend(
-        far.map(|(take, distance)| format!("{}: the preset is {distance:.1} dB from it: {expected}", take.name)),
-    );
+    warnings.extend(doubts::of_distances(takes, &distances, base, explained.is_some()));
     if !progress(1.0) {
         return Err(Error::Interrupted);
     }

@@ -3,11 +3,12 @@
 use crate::dsp::pitch::SweepEnvelope;
 use crate::engine::Lfo;
 use crate::params::Shape;
+use crate::sound::bodies::LN_1000;
 use libm::{exp, pow, sin};
 use std::f64::consts::PI;
 
-/// ln 10⁶: in a T60, the energy falls by e to the power of this.
-pub(super) const LN_120_DB: f64 = 13.815_510_557_964_274;
+/// In a T60, the energy falls to e to the power of minus this.
+pub(super) const ENERGY_PER_T60: f64 = 2.0 * LN_1000;
 
 /// The movement of the pitch after the strike: a sweep and a vibrato.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,8 +114,8 @@ impl Oscillator {
 /// Factor by which a sweep raises a mode at the mean time of the mode's energy, relative to its final pitch. `t60` in
 /// seconds.
 pub(super) fn speed(sweep: &Sweep, t60: f64) -> f64 {
-    // The mean time of an energy that falls so is the time in which it falls by a factor of e.
-    speed_at(sweep, t60 / LN_120_DB)
+    // The mean time of an exponential decay is the time in which it falls to 1/e.
+    speed_at(sweep, t60 / ENERGY_PER_T60)
 }
 
 /// Factor by which a sweep raises all modes `time` seconds after the strike, relative to their final pitch.

@@ -26,7 +26,7 @@ const FEWEST: usize = 27;
 const COMPARED: usize = 50;
 /// Least ratio of the slopes after and before a release: otherwise it is the sound's own decay.
 const STEEPER: f64 = 4.0;
-/// The same if the modes that were found before it say so, too.
+/// The same if the modes that were found before it say so, too. The dampers of Tubular Bells C5 (1.7 and 1.9) were missed with 2.
 const STEEPER_THAN_MODES: f64 = 1.4;
 /// Seconds before the tuned part of a release that are compared, too.
 const BEFORE: f64 = 0.1;
@@ -195,12 +195,11 @@ mod tests {
 
     #[test]
     fn a_damper_is_measured_where_it_is_steeper_than_what_comes_before() {
-        for damper in [0.2, 1.0] {
-            let found = Release::of_damped(&sound(6.0, 0.9, damper, |_| 1.0), 0.9).unwrap();
+        for (own, damper) in [(6.0, 0.2), (6.0, 1.0), (3.8, 2.2)] {
+            let found = Release::of_damped(&sound(own, 0.9, damper, |_| 1.0), 0.9).unwrap();
             assert!((0.7 * damper..1.4 * damper).contains(&found.t60), "{damper} s: {found:?}");
         }
-        // A long fall with a damper that is not much faster.
-        assert!(Release::of_damped(&sound(3.8, 0.9, 2.2, |_| 1.0), 0.9).is_some());
+        assert_eq!(Release::of_damped(&sound(2.64, 0.9, 2.2, |_| 1.0), 0.9), None);
         assert_eq!(Release::of_damped(&sound(1.0, 9.0, 1.0, |_| 1.0), 0.9), None);
         assert_eq!(Release::of_damped(&sound(6.0, 9.0, 1.0, |_| 1.0), 1.9), None);
     }

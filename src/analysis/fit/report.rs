@@ -27,7 +27,7 @@ pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
     let [left, right] = &fitted.played;
     let renders =
         [[first, last], [left, right]].map(|[left, right]| Render { left, right, sample_rate: fitted.sample_rate() });
-    let ranges = Some(Ranges::of(&renders));
+    let ranges = Ranges::of(&renders);
     let figure = |title, render, modes| {
         Ok(data_link("image/png", &SoundFigure { title, render, modes, ranges, cell: 1 }.bytes("png")?))
     };

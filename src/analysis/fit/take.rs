@@ -1,8 +1,9 @@
 //! A recording to fit, with its key and velocity, and the preparation of its samples.
 
 use super::bursts;
+use super::excerpt::{AUDIBLE, BLOCK, LONGEST};
 use super::release::Release;
-use crate::analysis::level::{mono, offset, rms};
+use crate::analysis::level::{mono, rms};
 use crate::analysis::log_mel::RATE;
 use crate::error::{Error, Result};
 use crate::io::sound_file::{Recording, resampled};
@@ -22,19 +23,11 @@ pub struct Take {
 
 /// Velocity of a take of unknown velocity, the same as that of `render`.
 pub const VELOCITY: f64 = 100.0;
-/// Longest stretch in seconds that is fitted.
-const LONGEST: f64 = 12.0;
-/// Seconds before the onset and after the longest stretch that are kept, since resampling needs both sides of a sample.
-const BEFORE: f64 = 0.05;
-const AFTER: f64 = 0.1;
 /// Shortest stretch in seconds that is fitted.
 pub(super) const SHORTEST: f64 = 0.03;
 /// Lowest peak of a sound that is not silent: −80 dBFS.
 const SILENCE: f64 = 1e-4;
-/// The onset is the first sample above this share of the peak.
-const AUDIBLE: f32 = 0.01;
-/// Seconds per block of levels, and the level relative to the loudest below which the sound is over: −64 dB.
-const BLOCK: f64 = 0.03;
+/// Level relative to the loudest below which the sound is over: −64 dB.
 const OVER: f64 = 6e-4;
 /// Level relative to the loudest at which a sound has risen: −3 dB.
 const RISEN: f64 = 0.7;
@@ -94,18 +87,17 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares a take times a gain.
+    /// Prepares a take, of which `excerpt` is the part to fit, times a gain.
     ///
     /// # Errors
-    /// [`Error::Format`] for silence, sounds that are too short, and samples that are not finite.
-    pub(super) fn new(take: &Take, gain: f64) -> Result<Self> {
+    /// [`Error::Format`] for silence and sounds that are too short.
+    pub(super) fn new(take: &Take, excerpt: &Recording, gain: f64) -> Result<Self> {
         let wrong = |message: &str| Err(Error::format(&take.name, message));
-        take.recording.check_finite(&take.name)?;
-        // The rest is never used, so that little of a long recording is kept.
-        let channels = resampled(&first_seconds(&take.recording, gain), RATE)?.channels;
+        let mut channels = resampled(excerpt, RATE)?.channels;
+        channels.iter_mut().flatten().for_each(|sample| *sample *= gain as f32);
         let middle = mono(&channels);
         let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
-        if f64::from(peak) < SILENCE {
+        if f64::from(peak) < SILENCE * gain {
             return wrong("it is silent, or a constant: expected a strike above −80 dBFS");
         }
         let onset = middle.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0);
@@ -223,29 +215,9 @@ fn again(levels: &[f64], loudest: f64) -> Option<f64> {
     Some(next as f64 * BLOCK)
 }
 
-/// A recording times a gain, from shortly before its onset on, as long as is needed, without a constant; one channel or two.
-fn first_seconds(recording: &Recording, gain: f64) -> Recording {
-    let mut channels = match recording.channels.len() {
-        0..=2 => recording.channels.clone(),
-        _ => vec![mono(&recording.channels)],
-    };
-    for channel in &mut channels {
-        let constant = offset(channel, (BLOCK * f64::from(recording.sample_rate)) as usize);
-        channel.iter_mut().for_each(|sample| *sample = (*sample - constant as f32) * gain as f32);
-    }
-    let middle = mono(&channels);
-    let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
-    let onset = middle.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0);
-    let frames = |seconds: f64| (seconds * f64::from(recording.sample_rate)) as usize;
-    let kept = onset.saturating_sub(frames(BEFORE))..middle.len().min(onset + frames(LONGEST + AFTER));
-    if kept.len() < middle.len() {
-        channels.iter_mut().for_each(|channel| *channel = channel[kept.clone()].to_vec());
-    }
-    Recording { sample_rate: recording.sample_rate, channels, encoding: String::new(), warnings: Vec::new() }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::excerpt;
     use super::*;
     use std::f64::consts::TAU;
 
@@ -253,7 +225,9 @@ pub(super) mod tests {
     pub(crate) fn prepared(samples: Vec<f32>, sample_rate: u32) -> Prepared {
         let recording =
             Recording { sample_rate, channels: vec![samples], encoding: String::new(), warnings: Vec::new() };
-        Prepared::new(&Take { name: "a.wav".to_owned(), recording, key: None, velocity: VELOCITY }, 1.0).unwrap()
+        let takes = [Take { name: "a.wav".to_owned(), recording, key: None, velocity: VELOCITY }];
+        let (excerpts, gain) = excerpt::of_takes(&takes).unwrap();
+        Prepared::new(&takes[0], &excerpts[0], gain).unwrap()
     }
 
     fn samples(seconds: f64, rate: u32, at: impl Fn(f64) -> f64) -> Vec<f32> {
@@ -270,10 +244,6 @@ pub(super) mod tests {
         // Of a short strike followed by silence, only the strike is kept.
         let short = prepared(samples(600.0, RATE_OF_FILE, ringing(0.5)), RATE_OF_FILE);
         assert!((0.4..0.7).contains(&short.seconds()) && short.warnings.is_empty(), "{:?}", short.warnings);
-        let late = samples(600.0, RATE_OF_FILE, |t| if t < 300.0 { 0.0 } else { ringing(100.0)(t - 300.0) });
-        let late = Recording { sample_rate: 8000, channels: vec![late], encoding: String::new(), warnings: Vec::new() };
-        let kept = first_seconds(&late, 1.0);
-        assert!(kept.channels[0].len() < 13 * RATE_OF_FILE as usize, "{}", kept.channels[0].len());
     }
 
     #[test]

@@ -30,7 +30,7 @@ const FALLS: f64 = 4.0;
 const ROUNDS: usize = 12;
 /// Energy of a block, relative to the loudest one, below which it is silent.
 const FAINTEST: f64 = 1e-9;
-/// Median of the errors, relative to that of the prediction before, above which it does not improve any more.
+/// Median of a prediction's errors, relative to that of the prediction before, above which predictions do not improve any more.
 const SETTLED: f64 = 0.8;
 /// Samples whose products are added up at a time.
 const ROWS: usize = 1024;
@@ -60,7 +60,7 @@ pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
     let mut weights: Vec<f64> = levels.iter().map(|level| 1.0 / level).collect();
     let (mut work, mut before) = (None, f64::INFINITY);
     for _ in 0..ROUNDS {
-        let Some(errors) = errors(samples, |n| weights[(n / block).min(blocks - 1)]) else { return 0 };
+        let Some(errors) = errors(samples, |n| weights[(n / block).min(blocks - 1)]) else { break };
         let errors = energies(&errors);
         let mut later: Vec<f64> = (latest..blocks).map(|index| errors[index] / levels[index]).collect();
         let middle = later.len() / 2;
@@ -106,33 +106,18 @@ fn errors(samples: &[f64], weight: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::driven;
     use super::*;
 
-    /// Two modes that noise drives for `len` samples.
-    fn driven(len: usize) -> Vec<f64> {
-        let mut state = 1_u32;
-        let (mut sound, mut before) = (vec![0.0; 12_000], [[0.0; 2]; 2]);
-        for (n, sample) in sound.iter_mut().enumerate() {
-            state ^= state << 13;
-            state ^= state >> 17;
-            state ^= state << 5;
-            let force = if n < len { f64::from(state) / f64::from(u32::MAX) - 0.5 } else { 0.0 };
-            for (mode, (theta, radius)) in before.iter_mut().zip([(0.05, 0.9995), (0.21, 0.999)]) {
-                let next = force + 2.0 * radius * libm::cos(theta) * mode[0] - radius * radius * mode[1];
-                *mode = [next, mode[0]];
-                *sample += next;
-            }
-        }
-        sound
-    }
+    const MODES: [(f64, f64); 2] = [(0.05, 0.9995), (0.21, 0.999)];
 
     #[test]
     fn a_burst_of_noise_is_waited_for_and_a_strike_is_not() {
         for len in [100, 500, 1000] {
-            let found = let_go(&driven(len), 48_000.0);
+            let found = let_go(&driven(&MODES, len, 12_000), 48_000.0);
             assert!((len..len + 72).contains(&found), "{len}: {found}");
         }
-        let free: Vec<f64> = driven(500).split_off(600);
+        let free: Vec<f64> = driven(&MODES, 500, 12_000).split_off(600);
         assert!(let_go(&free, 48_000.0) < 48, "{}", let_go(&free, 48_000.0));
     }
 }

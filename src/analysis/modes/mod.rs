@@ -24,7 +24,7 @@ mod strikes;
 pub use common::{Common, common};
 pub use mode::{Group, Kind, Mode, Strike, Uncertainty};
 
-use super::level::{dbfs, mean_of, offset};
+use super::level::{dbfs, energy, mean_of, offset};
 use crate::error::{Error, Result};
 use fit::Fit;
 use groups::groups;
@@ -32,7 +32,7 @@ use libm::{log10, sqrt};
 use plausible::{AUDIBLE, Limits};
 use pole::{LN_60_DB, add};
 use std::f64::consts::{LN_10, PI};
-use strikes::{BLOCK, SHORTEST, Stretch, strikes};
+use strikes::{BLOCK, Stretch, strikes};
 
 /// Settings of an analysis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,10 +159,8 @@ fn search(
     let samples = &sound[stretch.start..stretch.end];
     let peak = sound[stretch.onset..stretch.end].iter().fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
     let limits = Limits { peak, late: (stretch.start - stretch.onset) as f64, sample_rate };
-    let shortest = (SHORTEST * sample_rate) as usize;
-    let dampers = damping::dampers(samples, sample_rate).into_iter().filter(|damper| damper.from >= shortest);
     let mut begun = 0.0;
-    for damper in dampers {
+    for damper in damping::dampers(samples, sample_rate) {
         let part = 0.5 * (1.0 - begun);
         let told = &mut |share| progress(begun + part * share);
         let found = search::find(&samples[..damper.from], sample_rate, most_modes, &limits, told)?;
@@ -273,9 +271,7 @@ fn strike(found: &search::Found, fits: &[Option<Fit>], sound: &[f64], stretch: &
         groups: groups(&modes),
         modes,
         residual_db: 10.0
-            * log10(
-                (damping::energy(&residual, 0.0) / damping::energy(samples, found.fit.constant).max(1e-300)).max(1e-30),
-            ),
+            * log10((energy(&residual, 0.0) / energy(samples, found.fit.constant).max(1e-300)).max(1e-30)),
         samples: single(samples),
         residual: single(&residual),
         fitted_from: stretch.start as f64 / sample_rate,

@@ -29,7 +29,7 @@ const ABOVE_NOISE: f64 = 1.03;
 const STEADY: f64 = 1.122;
 const STEADY_BLOCKS: usize = 12;
 /// Shortest stretch in seconds in which modes are searched for.
-pub(super) const SHORTEST: f64 = 0.03;
+const SHORTEST: f64 = 0.03;
 
 /// A strike, in frames of the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]

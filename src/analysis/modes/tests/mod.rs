@@ -37,6 +37,22 @@ impl Chance {
     }
 }
 
+/// Samples of modes that noise drives for the first `len` of them. A mode is its angle per sample and its factor.
+pub(super) fn driven(modes: &[(f64, f64)], len: usize, all: usize) -> Vec<f64> {
+    let mut chance = Chance(1);
+    let mut before = vec![[0.0; 2]; modes.len()];
+    let sample = |n: usize| {
+        let force = if n < len { chance.uniform() - 0.5 } else { 0.0 };
+        let next = |(mode, (theta, radius)): (&mut [f64; 2], &(f64, f64))| {
+            let next = force + 2.0 * radius * cos(*theta) * mode[0] - radius * radius * mode[1];
+            *mode = [next, mode[0]];
+            next
+        };
+        before.iter_mut().zip(modes).map(next).sum()
+    };
+    (0..all).map(sample).collect()
+}
+
 /// Random modes from 60 Hz to 14 kHz, T60 0.03 to 10 s, levels over 60 dB, no two nearer than the wider one's bandwidth
 /// and 1 Hz; a quarter of them with a neighbour at about that distance.
 fn body(count: usize, chance: &mut Chance) -> Vec<Known> {

@@ -27,11 +27,11 @@ fn played(preset: &Preset, key: u8) -> Vec<Vec<f32>> {
     // Modes cannot explain noise, so leave it out.
     let is_struck = STRUCK.iter().any(|(name, _)| *name == preset.name);
     let noise = if is_struck { -60.0 } else { preset.patch.get(Param::NoiseLevel) };
-    played_by(&preset.patch.clone().with(Param::NoiseLevel, noise), key, [HELD, SECONDS])
+    played_by(&preset.patch.clone().with(Param::NoiseLevel, noise), key, HELD, SECONDS)
 }
 
-/// The sound of a key that is held for the first of two times in seconds, up to the second.
-fn played_by(patch: &Patch, key: u8, [held, seconds]: [f64; 2]) -> Vec<Vec<f32>> {
+/// So many seconds of a key that is held for some of them.
+fn played_by(patch: &Patch, key: u8, held: f64, seconds: f64) -> Vec<Vec<f32>> {
     let mut ensemble = Ensemble::new(RATE, 1, patch, &[]);
     let (frames, off) = ((seconds * RATE) as usize, (held * RATE) as usize);
     let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
@@ -96,8 +96,8 @@ const LEFT_DB: f64 = -80.0;
 
 #[test]
 fn other_gains_find_the_same_sound() {
-    // Where the noise of the mallet counted as a part of what rings, the fits were different at each gain.
-    let sound = played_by(&Preset::find("Marimba").unwrap().patch, 60, [HELD, SECONDS]);
+    // With the noise of the mallet, which is no part of what rings.
+    let sound = played_by(&Preset::find("Marimba").unwrap().patch, 60, HELD, SECONDS);
     let left_db = |gain: &f32| {
         let louder = |channel: &Vec<f32>| channel.iter().map(|sample| gain * sample).collect();
         let channels: Vec<Vec<f32>> = sound.iter().map(louder).collect();
@@ -111,13 +111,13 @@ fn other_gains_find_the_same_sound() {
 #[test]
 fn a_bell_that_falls_for_long_is_damped_where_its_key_is_let_go() {
     let damped = |held: &f64| {
-        let sound = played_by(&Preset::find("Tubular Bells").unwrap().patch, 72, [*held, held + 3.0]);
+        let sound = played_by(&Preset::find("Tubular Bells").unwrap().patch, 72, *held, held + 3.0);
         let strike = modes(&sound, RATE, &Settings::default(), &mut |_| true).unwrap().strikes.remove(0);
         (strike.damped, strike.residual_db)
     };
     let found: Vec<_> = [1.0, 3.0].par_iter().map(damped).collect();
-    let is_before = |(held, found): (f64, &(Option<f64>, f64))| {
-        found.0.is_some_and(|seconds| (0.7 * held..held).contains(&seconds)) && found.1 < -90.0
+    let is_before = |(held, (damped, left_db)): (f64, &(Option<f64>, f64))| {
+        damped.is_some_and(|seconds| (0.7 * held..held).contains(&seconds)) && *left_db < -90.0
     };
     assert!([1.0, 3.0].into_iter().zip(&found).all(is_before), "{found:?}");
 }
