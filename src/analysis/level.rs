@@ -29,6 +29,21 @@ pub fn mono<C: AsRef<[f32]>>(channels: &[C]) -> Vec<f32> {
     mean_of(channels).into_iter().map(|sample| sample as f32).collect()
 }
 
+/// Share of the energy of unrelated channels below which the mean of channels has lost what they hold.
+const CANCELLED: f64 = 0.1;
+
+/// The loudest of some channels whose mean all but cancels; none if it does not.
+pub fn cancelling(channels: &[Vec<f32>]) -> Option<usize> {
+    let of_channel =
+        |channel: &Vec<f32>| channel.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
+    let of_mean = energy(&mean_of(channels), 0.0);
+    let energies: Vec<f64> = channels.iter().map(of_channel).collect();
+    // The mean of channels that have nothing in common has this energy.
+    let unrelated = energies.iter().sum::<f64>() / (channels.len() * channels.len()).max(1) as f64;
+    let loudest = (0..channels.len()).max_by(|a, b| energies[*a].total_cmp(&energies[*b]));
+    loudest.filter(|_| channels.len() > 1 && of_mean < CANCELLED * unrelated)
+}
+
 /// Sum of the squares of samples about a constant.
 pub fn energy(samples: &[f64], constant: f64) -> f64 {
     samples.iter().map(|sample| (sample - constant) * (sample - constant)).sum()

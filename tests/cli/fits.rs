@@ -23,7 +23,7 @@ fn a_recording_becomes_a_preset_that_plays() {
     let sandbox = Sandbox::new();
     sandbox.write("bar.wav", wav(&bar(440.0, 1.0)));
     let said = String::from_utf8(sandbox.succeeds("fit bar.wav -o bar.toml --report bar.html --modes 12")).unwrap();
-    assert!(said.starts_with("Key estimated as A4 (440 Hz)"), "{said}");
+    assert!(said.starts_with("Key estimated as A4 (440.00 Hz)"), "{said}");
     let preset = String::from_utf8(sandbox.read("bar.toml")).unwrap();
     assert!(preset.contains("name = \"bar\"") && preset.contains("Fitted to bar.wav."), "{preset}");
     let page = String::from_utf8(sandbox.read("bar.html")).unwrap();

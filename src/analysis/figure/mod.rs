@@ -78,22 +78,24 @@ impl<'a> Picture for Sheet<'a> {
         let (_, body) = area.split_vertically(46);
         let (upper, lower) =
             body.split_vertically(if self.against.is_some() { height * 11 / 20 } else { height * 2 / 5 });
-        // Two sounds are compared with both channels in one strip.
-        let both = |render: &Render<'a>| -> Vec<Trace<'a>> {
-            channels(render).into_iter().map(|(name, samples, colour)| Trace { name, samples, colour }).collect()
+        let sound = |label: &'static str, render: &Render<'a>| -> Vec<(&'static str, Trace<'a>)> {
+            channels([render.left, render.right])
+                .into_iter()
+                .map(|(name, samples, colour)| (label, Trace { name, samples, colour }))
+                .collect()
         };
-        let alone = |(label, samples, colour)| (label, vec![Trace { name: "", samples, colour }]);
-        let strips: Vec<(&str, Vec<Trace>)> = match &self.against {
-            Some(expected) => vec![
-                ("expected", both(expected)),
-                ("actual", both(&self.render)),
-                alone(("difference", &self.middle[..], BLUE)),
-            ],
-            None => channels(&self.render).into_iter().map(alone).collect(),
+        let strips: Vec<(&str, Trace)> = match &self.against {
+            Some(expected) => {
+                let difference = Trace { name: "mean", samples: &self.middle, colour: BLUE };
+                [sound("expected", expected), sound("actual", &self.render), vec![("difference", difference)]].concat()
+            }
+            None => sound("sound", &self.render),
         };
-        for ((label, traces), area) in strips.iter().zip(upper.split_evenly((strips.len(), 1))) {
-            let range = waveform_range(traces.iter().map(|trace| trace.samples));
-            waveform(&area, traces, self.sample_rate, label, range)?;
+        let compared =
+            waveform_range(strips.iter().filter(|(label, _)| *label != "difference").map(|(_, trace)| trace.samples));
+        for ((label, trace), area) in strips.iter().zip(upper.split_evenly((strips.len(), 1))) {
+            let range = if *label == "difference" { waveform_range([trace.samples]) } else { compared };
+            waveform(&area, trace, self.middle.len(), self.sample_rate, label, range)?;
         }
         let top_level = top_level(&self.middle, self.sample_rate);
         spectrogram_panel(&lower, &self.middle, self.sample_rate, self.cell, top_level)

@@ -1,6 +1,5 @@
 //! The parts that figures are made of: a waveform over time, a spectrogram over time, a scale of colours.
 
-use super::Render;
 use crate::analysis::spectrum::spectrogram;
 use crate::figure::colour::{BLUE, GRID, INK, VERMILLION, viridis};
 use crate::figure::{Area, Drawn, envelope::envelope, text};
@@ -17,25 +16,19 @@ const LEFT_MARGIN: u32 = 14;
 /// Width in pixels to the right of every panel, which a spectrogram uses for its scale of colours.
 pub(super) const RIGHT_MARGIN: u32 = 110;
 
-/// What a render's waveforms show: each channel with its name and colour, or one if both are the same.
-pub(super) fn channels<'a>(render: &Render<'a>) -> Vec<(&'static str, &'a [f32], RGBColor)> {
-    if render.left == render.right {
-        vec![("both", render.left, BLUE)]
-    } else {
-        vec![("left", render.left, BLUE), ("right", render.right, VERMILLION)]
-    }
+/// What the waveforms of a stereo sound show: each channel with its name and colour, or one if both are the same.
+pub(super) fn channels([left, right]: [&[f32]; 2]) -> Vec<(&'static str, &[f32], RGBColor)> {
+    if left == right { vec![("both", left, BLUE)] } else { vec![("left", left, BLUE), ("right", right, VERMILLION)] }
 }
 
 /// A signal in a waveform panel.
+#[derive(Clone, Copy)]
 pub(super) struct Trace<'a> {
     /// Its name in the right margin; may be empty.
     pub(super) name: &'a str,
     pub(super) samples: &'a [f32],
     pub(super) colour: RGBColor,
 }
-
-/// Opacity of traces, if there are several: each is seen through the others.
-const SEEN_THROUGH: f64 = 0.6;
 
 /// Half the range of a waveform's axis that shows some signals.
 pub(super) fn waveform_range<'a>(signals: impl IntoIterator<Item = &'a [f32]>) -> f64 {
@@ -44,16 +37,17 @@ pub(super) fn waveform_range<'a>(signals: impl IntoIterator<Item = &'a [f32]>) -
     if peak > 0.0 { 1.08 * peak } else { 1.0 }
 }
 
-/// Draws signals over one another, with `label` at the vertical axis, which reaches from `-range` to `range`. Wherever several
-/// samples share a pixel, the trace spans all of them.
+/// Draws a signal over the time of so many frames, with `label` at the vertical axis, which reaches from `-range` to `range`. Wherever several samples share a pixel,
+/// the trace spans all of them.
 pub(super) fn waveform<B: DrawingBackend>(
     area: &Area<B>,
-    traces: &[Trace],
+    Trace { name, samples, colour }: &Trace,
+    frames: usize,
     sample_rate: f64,
     label: &str,
     range: f64,
 ) -> Drawn<B> {
-    let seconds = traces.iter().map(|trace| trace.samples.len()).max().unwrap_or(0).max(2) as f64 / sample_rate;
+    let seconds = frames.max(2) as f64 / sample_rate;
     let (width, height) = area.dim_in_pixel();
     let mut chart = ChartBuilder::on(area)
         .margin_right(RIGHT_MARGIN)
@@ -77,14 +71,10 @@ pub(super) fn waveform<B: DrawingBackend>(
         .y_desc(label)
         .draw()?;
     let (columns, _) = chart.plotting_area().dim_in_pixel();
-    for (index, Trace { name, samples, colour }) in traces.iter().enumerate() {
-        let share = samples.len() as f64 / (seconds * sample_rate);
-        let points = envelope(samples, sample_rate, (f64::from(columns) * share) as usize);
-        let opacity = if traces.len() > 1 { SEEN_THROUGH } else { 1.0 };
-        chart.draw_series(LineSeries::new(points, colour.mix(opacity).stroke_width(1)))?;
-        let corner = ((width - RIGHT_MARGIN + 18) as i32, 12 + 22 * index as i32);
-        area.draw_text(name, &text(16).color(colour), corner)?;
-    }
+    let share = samples.len() as f64 / (seconds * sample_rate);
+    let points = envelope(samples, sample_rate, (f64::from(columns) * share) as usize);
+    chart.draw_series(LineSeries::new(points, colour.stroke_width(1)))?;
+    area.draw_text(name, &text(16).color(colour), ((width - RIGHT_MARGIN + 18) as i32, 12))?;
     Ok(())
 }
 

@@ -108,10 +108,10 @@ impl Picture for SoundFigure<'_> {
         let (upper, rest) = body.split_vertically(self.waveforms());
         let (middle, lower) = rest.split_vertically(SPECTROGRAM);
         let Render { left, right, sample_rate } = self.render;
-        let strips = channels(&self.render);
-        for ((label, samples, colour), strip) in strips.iter().zip(upper.split_evenly((strips.len(), 1))) {
-            let trace = Trace { name: "", samples, colour: *colour };
-            waveform(&strip, &[trace], sample_rate, label, self.ranges.waveform)?;
+        let strips = channels([left, right]);
+        for ((name, samples, colour), strip) in strips.iter().zip(upper.split_evenly((strips.len(), 1))) {
+            let trace = Trace { name, samples, colour: *colour };
+            waveform(&strip, &trace, samples.len(), sample_rate, "sound", self.ranges.waveform)?;
         }
         spectrogram_panel(&middle, &mono(&[left, right]), sample_rate, self.cell, self.ranges.top_level)?;
         if self.modes.is_empty() { Ok(()) } else { self.draw_modes(&lower) }
@@ -121,7 +121,7 @@ impl Picture for SoundFigure<'_> {
 impl SoundFigure<'_> {
     /// Height in pixels of the waveforms.
     fn waveforms(&self) -> u32 {
-        WAVEFORM * channels(&self.render).len() as u32
+        WAVEFORM * channels([self.render.left, self.render.right]).len() as u32
     }
 
     fn draw_modes<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {

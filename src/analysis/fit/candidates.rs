@@ -3,8 +3,8 @@
 use super::draft::{Draft, Noise, Partial};
 use super::drift::Drift;
 use super::movement::Sweep;
+use super::prepared::{Prepared, SHORTEST, SLOW};
 use super::start::{Found, MOST_BEFORE_DB, Source};
-use super::take::{Prepared, SHORTEST, SLOW};
 use super::{bursts, held, noise, start, sway, sweep};
 use crate::analysis::log_mel::RATE;
 use crate::error::{Error, Result};
@@ -183,7 +183,7 @@ fn residual_db((_, strike): &Found) -> f64 {
 mod tests {
     use super::super::bursts::tests::since_burst;
     use super::super::correct;
-    use super::super::take::tests::prepared;
+    use super::super::prepared::tests::prepared;
     use super::*;
     use crate::dsp::random;
     use std::f64::consts::TAU;

@@ -2,8 +2,10 @@
 
 use super::layers::{Layer, SAME_KEY};
 use super::pitch::{key_name, wrong_key};
+use super::prepared::Prepared;
 use super::take::Take;
 use crate::analysis::level::dbfs;
+use crate::analysis::modes::Strike;
 
 /// Distance below which two velocities of 0–1 are the same.
 const SAME_VELOCITY: f64 = 0.5 / 127.0;
@@ -41,6 +43,16 @@ pub(super) fn of_takes(takes: &[Take], layers: &[Layer]) -> Vec<String> {
         ))
     });
     wrong.chain(twice).collect()
+}
+
+/// Residual of a strike in dB below which its tones are believed.
+const EXPLAINED_DB: f64 = -20.0;
+
+/// A warning of a tone, such as hum, that goes on while a stroke falls.
+pub(super) fn hum(take: &Take, prepared: &Prepared, strike: &Strike) -> Option<String> {
+    let tone = strike.steady.first().filter(|_| !prepared.is_held && strike.residual_db < EXPLAINED_DB)?;
+    let frequency = tone.frequency;
+    Some(format!("{}: a tone of {frequency:.2} Hz does not decay, and the preset plays it: expected no hum", take.name))
 }
 
 /// Distance in dB above which a preset hardly sounds like its recording.

@@ -5,9 +5,9 @@
 //! differs from the others. Without the drift, the sound is a sum of modes.
 
 use super::movement::Oscillator;
+use super::prepared::SLOW;
 use super::resample::Reader;
 use super::sway;
-use super::take::SLOW;
 use super::tones::{HOP, Tone, tones};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::Strike;

@@ -17,7 +17,6 @@ mod course;
 mod doubts;
 mod draft;
 mod drift;
-mod excerpt;
 mod held;
 mod improve;
 mod layers;
@@ -26,6 +25,7 @@ mod movement;
 mod names;
 mod noise;
 mod pitch;
+mod prepared;
 mod refine;
 mod release;
 #[cfg(feature = "analysis")]
@@ -55,7 +55,7 @@ use crate::preset::{Guide, Preset};
 use audition::{Audition, Played};
 use draft::MOST_MODES;
 use layers::Layer;
-use take::Prepared;
+use prepared::Prepared;
 
 /// Share of the work that is done when only the release is left to be fitted.
 const LAST: f64 = 0.98;
@@ -130,7 +130,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     if takes.is_empty() {
         return Err(Error::value("recordings", "there are none: expected at least one"));
     }
-    let (excerpts, gain) = excerpt::of_takes(takes)?;
+    let (excerpts, gain) = take::excerpts(takes)?;
     let prepare = |(take, excerpt)| Prepared::new(take, excerpt, gain);
     let mut prepared: Vec<Prepared> = takes.iter().zip(&excerpts).map(prepare).collect::<Result<_>>()?;
     // Tuning a body takes about as long as a take.
@@ -173,7 +173,7 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     let patch = layers::route(patch, &layers, base);
     let patch = layers::route_gain(patch, &layers, base, &mut |patch, layer| {
         let (key, velocity) = (layer.key(), layer.draft.velocity);
-        rms(&audition.mean(patch, Played { key, velocity, frames: take::LEVEL_FRAMES, let_go: None }))
+        rms(&audition.mean(patch, Played { key, velocity, frames: prepared::LEVEL_FRAMES, let_go: None }))
     });
     // From here on, what is measured is what a player hears: the limiter is on.
     let mut heard = Audition::with_limiter();
@@ -205,6 +205,9 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     let mut warnings: Vec<String> = prepared.iter().flat_map(|take| take.warnings.clone()).collect();
     warnings.extend(doubts::softer(takes, gain));
     warnings.extend(doubts::of_takes(takes, &layers));
+    let strikes = takes.iter().zip(&prepared).zip(&fits);
+    warnings
+        .extend(strikes.filter_map(|((take, prepared), (_, strike))| doubts::hum(take, prepared, strike.as_ref()?)));
     if draft.partials.iter().all(|partial| !partial.struck) {
         let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
         warnings.push(format!("{}: {message}", takes[base].name));

@@ -3,9 +3,9 @@
 use super::bed::{self, Lines};
 use super::draft::{Draft, Noise};
 use super::movement::Sweep;
+use super::prepared::Prepared;
 use super::refine::{Listener, NEAR_DB};
 use super::sweep;
-use super::take::Prepared;
 use crate::analysis::log_mel::{BANDS, LogMel, MelBands, RATE, time};
 use crate::error::Result;
 
@@ -114,7 +114,7 @@ mod tests {
     use super::super::audition::{Audition, Played};
     use super::super::correct;
     use super::super::draft::Partial;
-    use super::super::take::tests::prepared;
+    use super::super::prepared::tests::prepared;
     use super::*;
 
     /// A draft of noise through forty modes, and what it sounds like.

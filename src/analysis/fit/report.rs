@@ -37,7 +37,7 @@ pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
     Ok(fill(PAGE, |name| match name {
         "style" => STYLE.to_owned(),
         "title" => escaped(title),
-        "summary" => escaped(&fitted.summary()),
+        "summary" => escaped(&format!("{}{}", fitted.summary(), others(fitted))),
         "warnings" => fitted.warnings.iter().map(|warning| format!("<p>Warning: {}</p>\n", escaped(warning))).collect(),
         "recording" => data_link("audio/wav", &wav([first, last], fitted.sample_rate() as u32)),
         "preset" => data_link("audio/wav", &wav([left, right], fitted.sample_rate() as u32)),
@@ -48,13 +48,32 @@ pub fn html(fitted: &Fitted, title: &str) -> Result<String> {
     }))
 }
 
+/// What the page does not show: the distances of several takes, of which it shows one.
+fn others(fitted: &Fitted) -> String {
+    if fitted.distances.len() == 1 {
+        return String::new();
+    }
+    let distances: Vec<String> = fitted.distances.iter().map(|distance| format!("{distance:.2}")).collect();
+    format!(
+        " This is recording {} of {}; the preset is {} dB from them, in their order.",
+        fitted.base + 1,
+        distances.len(),
+        distances.join(", ")
+    )
+}
+
 fn note(fitted: &Fitted, modes: &[DrawnMode]) -> String {
     let mut text = "Modes of the recording with the nearest ones of the preset.".to_owned();
     match &fitted.strike {
         Some(strike) => text += &format!(" They leave {:.1} dB of the recording unexplained", strike.residual_db),
         None => text += " The recording has none",
     }
-    text + &format!("; the preset's other modes ({} in all) fill up its bands.", modes.len())
+    match modes.iter().filter(|mode| mode.is_noisy).count() {
+        0 => text + ".",
+        noisy => {
+            text + &format!("; {noisy} of the preset's {} modes are moved by noise and fill up its bands.", modes.len())
+        }
+    }
 }
 
 /// A line for each mode and tone, by rising frequency.

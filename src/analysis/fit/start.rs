@@ -2,7 +2,7 @@
 
 use super::draft::{A4, Draft, MOST_MODES, Noise, Partial, SHORTEST_T60, longest_t60};
 use super::movement::Sweep;
-use super::take::Prepared;
+use super::prepared::Prepared;
 use super::{pitch, sweep};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::{self, Mode, Strike};

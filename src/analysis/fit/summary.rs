@@ -26,10 +26,12 @@ impl Fitted {
         let noisy = self.patch.modes.as_slice().iter().filter(|mode| mode.strike < 0.5).count();
         let struck = self.patch.modes.as_slice().len() - noisy;
         let key = if self.is_estimated { "estimated as " } else { "" };
+        // A key that was estimated is played as it was recorded with this frequency.
+        let frequency = frequency_from_key(self.key, A4);
         let mut text = format!(
             "Key {key}{} ({} Hz), {struck} modes that are struck and {noisy} that noise moves, {:.2} dB from the recording.",
             self.key_name(),
-            measured(frequency_from_key(self.key, A4)),
+            if self.is_estimated { format!("{frequency:.2}") } else { measured(frequency) },
             self.distances[self.base],
         );
         if let Some(release) = self.release {

@@ -3,7 +3,7 @@
 use super::course;
 use super::draft::MOST_OSCILLATORS;
 use super::movement::{Oscillator, Sweep};
-use super::take::Prepared;
+use super::prepared::Prepared;
 use crate::analysis::level::{dbfs, rms};
 use crate::analysis::log_mel::RATE;
 use crate::error::Result;
@@ -257,7 +257,7 @@ mod tests {
     use super::super::audition::{Audition, Played};
     use super::super::correct;
     use super::super::draft::{Draft, Partial};
-    use super::super::take::tests::prepared;
+    use super::super::prepared::tests::prepared;
     use super::*;
 
     #[test]

@@ -261,11 +261,8 @@ mod tests {
 
     #[test]
     fn in_noise_a_damper_must_take_more() {
-        let few =
-            [(0.05, -50.0, true), (0.05, -42.0, true), (0.05, -30.0, false), (2.0, -120.0, true), (2.0, -42.0, false)];
-        for (damper, noise_db, is_found) in few {
-            assert_eq!(found(in_noise(damped(damper), noise_db)).is_some(), is_found, "{damper} s, {noise_db} dB");
-        }
+        let found = [-42.0, -30.0].map(|db| found(in_noise(damped(0.05), db)).is_some());
+        assert_eq!(found, [true, false]);
     }
 
     #[test]

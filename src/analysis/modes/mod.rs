@@ -24,7 +24,7 @@ mod strikes;
 pub use common::{Common, common};
 pub use mode::{Group, Kind, Mode, Strike, Uncertainty};
 
-use super::level::{dbfs, energy, mean_of, offset};
+use super::level::{cancelling, dbfs, energy, mean_of, offset};
 use crate::error::{Error, Result};
 use fit::Fit;
 use groups::groups;
@@ -64,8 +64,6 @@ pub struct Analysis {
 
 /// Lowest peak of a recording that is not silent: −100 dBFS.
 const SILENCE: f64 = 1e-5;
-/// Share of the energy of unrelated channels below which the mean of channels has lost what they hold.
-const CANCELLED: f64 = 0.1;
 /// T60 in seconds above which a tone does not decay, and standard deviations by which its decay must differ from 0.
 const ENDLESS: f64 = 2000.0;
 const DEVIATIONS: f64 = 2.0;
@@ -176,18 +174,12 @@ fn search(
 
 /// The mean of the channels, or the loudest channel if they almost cancel.
 fn mono(channels: &[Vec<f32>], warnings: &mut Vec<String>) -> Vec<f64> {
-    let mean = mean_of(channels);
-    let energy = |channel: &Vec<f32>| channel.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
-    let loudest = channels.iter().enumerate().max_by(|a, b| energy(a.1).total_cmp(&energy(b.1)));
-    let of_mean: f64 = mean.iter().map(|sample| sample * sample).sum();
-    // The mean of channels that have nothing in common has this energy.
-    let unrelated = channels.iter().map(energy).sum::<f64>() / (channels.len() * channels.len()) as f64;
-    match loudest {
-        Some((index, channel)) if of_mean < CANCELLED * unrelated && channels.len() > 1 => {
+    match cancelling(channels) {
+        Some(index) => {
             warnings.push(format!("the channels all but cancel: channel {} alone was taken apart", index + 1));
-            channel.iter().map(|sample| f64::from(*sample)).collect()
+            channels[index].iter().map(|sample| f64::from(*sample)).collect()
         }
-        _ => mean,
+        None => mean_of(channels),
     }
 }
 
