@@ -111,10 +111,13 @@ fn noise_and_sounds_that_do_not_decay_are_warned_of() {
     sandbox.write("noise.wav", wav(&burst.collect::<Vec<_>>()));
     sandbox.write("steady.wav", wav(second));
     sandbox.write("loud.wav", wav(&bar(440.0, 6.0)));
+    let hum = |(n, sample): (usize, f32)| sample + 0.003 * libm::sinf(TAU as f32 * 50.0 * n as f32 / 44_100.0);
+    sandbox.write("hum.wav", wav(&bar(440.0, 1.0).into_iter().enumerate().map(hum).collect::<Vec<_>>()));
     for (file, warning) in [
         ("noise", ""),
         ("steady", "steady.wav: the sound does not decay: expected something that is struck"),
         ("loud", "loud.wav: it is fitted 1"),
+        ("hum", "hum.wav: a tone of 50.00 Hz does not decay, and the preset plays it: expected no hum"),
     ] {
         let output = sandbox.sprung(&format!("fit {file}.wav -o {file}.toml --modes 48")).assert().success();
         let said = String::from_utf8(output.get_output().stderr.clone()).unwrap();
