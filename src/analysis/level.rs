@@ -13,8 +13,7 @@ pub fn peak(samples: &[f32]) -> f64 {
 
 /// Root of the mean square; 0 for no samples.
 pub fn rms(samples: &[f32]) -> f64 {
-    let energy: f64 = samples.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum();
-    sqrt(energy / samples.len().max(1) as f64)
+    sqrt(energy(samples, 0.0) / samples.len().max(1) as f64)
 }
 
 /// The mean of some channels. It is as long as the shortest of them.
@@ -34,19 +33,20 @@ const CANCELLED: f64 = 0.1;
 
 /// The loudest of some channels whose mean all but cancels; none if it does not.
 pub fn cancelling(channels: &[Vec<f32>]) -> Option<usize> {
-    let of_channel =
-        |channel: &Vec<f32>| channel.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
-    let of_mean = energy(&mean_of(channels), 0.0);
-    let energies: Vec<f64> = channels.iter().map(of_channel).collect();
+    if channels.len() < 2 {
+        return None;
+    }
+    let energies: Vec<f64> = channels.iter().map(|channel| energy(channel, 0.0)).collect();
     // The mean of channels that have nothing in common has this energy.
-    let unrelated = energies.iter().sum::<f64>() / (channels.len() * channels.len()).max(1) as f64;
+    let unrelated = energies.iter().sum::<f64>() / (channels.len() * channels.len()) as f64;
     let loudest = (0..channels.len()).max_by(|a, b| energies[*a].total_cmp(&energies[*b]));
-    loudest.filter(|_| channels.len() > 1 && of_mean < CANCELLED * unrelated)
+    loudest.filter(|_| energy(&mean_of(channels), 0.0) < CANCELLED * unrelated)
 }
 
 /// Sum of the squares of samples about a constant.
-pub fn energy(samples: &[f64], constant: f64) -> f64 {
-    samples.iter().map(|sample| (sample - constant) * (sample - constant)).sum()
+pub fn energy<S: Copy + Into<f64>>(samples: &[S], constant: f64) -> f64 {
+    let distance = |sample: &S| (*sample).into() - constant;
+    samples.iter().map(|sample| distance(sample) * distance(sample)).sum()
 }
 
 /// Mean; 0 for no samples.

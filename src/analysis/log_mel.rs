@@ -152,11 +152,15 @@ impl LogMel {
     }
 }
 
+/// The onset: the first sample above 1 % of the peak.
+pub(super) fn onset(samples: &[f32]) -> usize {
+    let peak = samples.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
+    samples.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0)
+}
+
 /// The samples from the onset on, which is the first sample above 1 % of the peak.
 pub fn from_onset(samples: &[f32]) -> &[f32] {
-    let peak = samples.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
-    let onset = samples.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0);
-    &samples[onset..]
+    &samples[onset(samples)..]
 }
 
 /// Distance in dB of two sounds at [`RATE`], each from its onset on: see [`LogMel::distance`].

@@ -67,7 +67,7 @@ impl<'a> Sheet<'a> {
     }
 }
 
-impl<'a> Picture for Sheet<'a> {
+impl Picture for Sheet<'_> {
     fn size(&self) -> (u32, u32) {
         (1600, 900)
     }
@@ -78,24 +78,21 @@ impl<'a> Picture for Sheet<'a> {
         let (_, body) = area.split_vertically(46);
         let (upper, lower) =
             body.split_vertically(if self.against.is_some() { height * 11 / 20 } else { height * 2 / 5 });
-        let sound = |label: &'static str, render: &Render<'a>| -> Vec<(&'static str, Trace<'a>)> {
-            channels([render.left, render.right])
-                .into_iter()
-                .map(|(name, samples, colour)| (label, Trace { name, samples, colour }))
-                .collect()
+        let sounds = match self.against {
+            Some(expected) => vec![("expected", expected), ("actual", self.render)],
+            None => vec![("sound", self.render)],
         };
-        let strips: Vec<(&str, Trace)> = match &self.against {
-            Some(expected) => {
-                let difference = Trace { name: "mean", samples: &self.middle, colour: BLUE };
-                [sound("expected", expected), sound("actual", &self.render), vec![("difference", difference)]].concat()
-            }
-            None => sound("sound", &self.render),
-        };
-        let compared =
-            waveform_range(strips.iter().filter(|(label, _)| *label != "difference").map(|(_, trace)| trace.samples));
-        for ((label, trace), area) in strips.iter().zip(upper.split_evenly((strips.len(), 1))) {
-            let range = if *label == "difference" { waveform_range([trace.samples]) } else { compared };
-            waveform(&area, trace, self.middle.len(), self.sample_rate, label, range)?;
+        let compared = waveform_range(sounds.iter().flat_map(|(_, render)| [render.left, render.right]));
+        let mut strips = Vec::new();
+        for (label, Render { left, right, .. }) in sounds {
+            strips.extend(channels([left, right]).into_iter().map(|trace| (label, trace, compared)));
+        }
+        if self.against.is_some() {
+            let difference = Trace { name: "mean", samples: &self.middle, colour: BLUE };
+            strips.push(("difference", difference, waveform_range([&self.middle[..]])));
+        }
+        for ((label, trace, range), area) in strips.iter().zip(upper.split_evenly((strips.len(), 1))) {
+            waveform(&area, trace, self.middle.len(), self.sample_rate, label, *range)?;
         }
         let top_level = top_level(&self.middle, self.sample_rate);
         spectrogram_panel(&lower, &self.middle, self.sample_rate, self.cell, top_level)

@@ -9,6 +9,8 @@ use plotters::prelude::*;
 
 /// Range in dB that the colours of a spectrogram span, down from [`top_level`].
 const SPAN_DB: f64 = 100.0;
+/// Lowest level at which the colours end, as of silence.
+pub(super) const QUIETEST_DB: f64 = -160.0;
 /// Width in pixels to the left of every panel's axis, so that time axes line up.
 const LABEL_WIDTH: u32 = 84;
 /// Space in pixels around the labels at the left edge, whose letters reach a little beyond their area.
@@ -16,18 +18,22 @@ const LEFT_MARGIN: u32 = 14;
 /// Width in pixels to the right of every panel, which a spectrogram uses for its scale of colours.
 pub(super) const RIGHT_MARGIN: u32 = 110;
 
-/// What the waveforms of a stereo sound show: each channel with its name and colour, or one if both are the same.
-pub(super) fn channels([left, right]: [&[f32]; 2]) -> Vec<(&'static str, &[f32], RGBColor)> {
-    if left == right { vec![("both", left, BLUE)] } else { vec![("left", left, BLUE), ("right", right, VERMILLION)] }
-}
-
 /// A signal in a waveform panel.
-#[derive(Clone, Copy)]
 pub(super) struct Trace<'a> {
     /// Its name in the right margin; may be empty.
     pub(super) name: &'a str,
     pub(super) samples: &'a [f32],
     pub(super) colour: RGBColor,
+}
+
+/// What the waveforms of a stereo sound show: each channel, or one if both are the same.
+pub(super) fn channels<'a>([left, right]: [&'a [f32]; 2]) -> Vec<Trace<'a>> {
+    let trace = |name, samples, colour| Trace { name, samples, colour };
+    if left == right {
+        vec![trace("both", left, BLUE)]
+    } else {
+        vec![trace("left", left, BLUE), trace("right", right, VERMILLION)]
+    }
 }
 
 /// Half the range of a waveform's axis that shows some signals.
@@ -37,8 +43,8 @@ pub(super) fn waveform_range<'a>(signals: impl IntoIterator<Item = &'a [f32]>) -
     if peak > 0.0 { 1.08 * peak } else { 1.0 }
 }
 
-/// Draws a signal over the time of so many frames, with `label` at the vertical axis, which reaches from `-range` to `range`. Wherever several samples share a pixel,
-/// the trace spans all of them.
+/// Draws a signal over the time of so many frames, with `label` at the vertical axis, which reaches from `-range` to `range`.
+/// Wherever several samples share a pixel, the trace spans all of them.
 pub(super) fn waveform<B: DrawingBackend>(
     area: &Area<B>,
     Trace { name, samples, colour }: &Trace,
@@ -86,7 +92,7 @@ fn length(sample_rate: f64) -> usize {
 /// The level in dB at which the colours of a signal's spectrogram end: that of its loudest bin, rounded up to ten.
 pub(super) fn top_level(samples: &[f32], sample_rate: f64) -> f64 {
     let grams = spectrogram(samples, sample_rate, length(sample_rate), length(sample_rate) / 8);
-    10.0 * (grams.columns.iter().flatten().copied().fold(-160.0, f64::max) / 10.0).ceil()
+    10.0 * (grams.columns.iter().flatten().copied().fold(QUIETEST_DB, f64::max) / 10.0).ceil()
 }
 
 /// Draws a signal's spectrogram, 30 Hz (or less, at low rates) to Nyquist on a logarithmic axis, in cells of `cell`

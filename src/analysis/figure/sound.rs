@@ -1,7 +1,7 @@
 //! Draws a sound: its waveform, its spectrogram, and its modes, if they are known.
 
 use super::Render;
-use super::panel::{Trace, channels, spectrogram_panel, top_level, waveform, waveform_range};
+use super::panel::{QUIETEST_DB, channels, spectrogram_panel, top_level, waveform, waveform_range};
 use crate::analysis::level::mono;
 use crate::figure::colour::{BLUE, INK, VERMILLION};
 use crate::figure::panel::{Axis, Panel, Stroke, line};
@@ -68,7 +68,7 @@ impl Ranges {
         let level = |render: &Render| top_level(&mono(&[render.left, render.right]), render.sample_rate);
         Self {
             waveform: waveform_range(renders.iter().flat_map(|render| [render.left, render.right])),
-            top_level: renders.iter().map(level).fold(-160.0, f64::max),
+            top_level: renders.iter().map(level).fold(QUIETEST_DB, f64::max),
         }
     }
 }
@@ -99,19 +99,19 @@ impl SoundFigure<'_> {
 
 impl Picture for SoundFigure<'_> {
     fn size(&self) -> (u32, u32) {
-        (1600, 46 + self.waveforms() + SPECTROGRAM + if self.modes.is_empty() { 0 } else { MODES })
+        let waveforms = WAVEFORM * channels([self.render.left, self.render.right]).len() as u32;
+        (1600, 46 + waveforms + SPECTROGRAM + if self.modes.is_empty() { 0 } else { MODES })
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
         area.draw_text(self.title, &text(24), (20, 14))?;
         let (_, body) = area.split_vertically(46);
-        let (upper, rest) = body.split_vertically(self.waveforms());
-        let (middle, lower) = rest.split_vertically(SPECTROGRAM);
         let Render { left, right, sample_rate } = self.render;
-        let strips = channels([left, right]);
-        for ((name, samples, colour), strip) in strips.iter().zip(upper.split_evenly((strips.len(), 1))) {
-            let trace = Trace { name, samples, colour: *colour };
-            waveform(&strip, &trace, samples.len(), sample_rate, "sound", self.ranges.waveform)?;
+        let traces = channels([left, right]);
+        let (upper, rest) = body.split_vertically(WAVEFORM * traces.len() as u32);
+        let (middle, lower) = rest.split_vertically(SPECTROGRAM);
+        for (trace, strip) in traces.iter().zip(upper.split_evenly((traces.len(), 1))) {
+            waveform(&strip, trace, left.len(), sample_rate, "sound", self.ranges.waveform)?;
         }
         spectrogram_panel(&middle, &mono(&[left, right]), sample_rate, self.cell, self.ranges.top_level)?;
         if self.modes.is_empty() { Ok(()) } else { self.draw_modes(&lower) }
@@ -119,11 +119,6 @@ impl Picture for SoundFigure<'_> {
 }
 
 impl SoundFigure<'_> {
-    /// Height in pixels of the waveforms.
-    fn waveforms(&self) -> u32 {
-        WAVEFORM * channels([self.render.left, self.render.right]).len() as u32
-    }
-
     fn draw_modes<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
         let (width, _) = area.dim_in_pixel();
         let (plots, key) = area.split_horizontally(width - REMARKS);

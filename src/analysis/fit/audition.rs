@@ -41,12 +41,12 @@ impl Audition {
 
     /// The first frames of a note, left and right.
     pub(super) fn play(&mut self, patch: &Patch, Played { key, velocity, frames, let_go }: Played) -> [Vec<f32>; 2] {
-        let mut patch = patch.clone();
-        if !self.has_limiter {
-            patch.set(Param::Limiter, Limiter::Off.value());
-        }
         // `set_patch` moves parameters smoothly to their new values; the reset makes the patch the present one at once.
-        self.synth.set_patch(&patch);
+        if self.has_limiter {
+            self.synth.set_patch(patch);
+        } else {
+            self.synth.set_patch(&patch.clone().with(Param::Limiter, Limiter::Off.value()));
+        }
         self.synth.reset();
         let nearest = key.round().clamp(0.0, 127.0);
         let on = EventKind::NoteOn {

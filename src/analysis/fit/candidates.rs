@@ -7,7 +7,7 @@ use super::prepared::{Prepared, SHORTEST, SLOW};
 use super::start::{Found, MOST_BEFORE_DB, Source};
 use super::{bursts, held, noise, start, sway, sweep};
 use crate::analysis::log_mel::RATE;
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 /// Residual of the modes in dB above which noise alone may explain the sound better.
 const NOISE_DB: f64 = -10.0;
@@ -159,7 +159,7 @@ fn echoed(take: &Prepared, row: Noise, most: usize, tell: &mut dyn FnMut(f64) ->
 
 /// Drafts of a sound that oscillators move: the modes of the sound without that; none if it does not move regularly.
 fn swayed(take: &Prepared, most: usize, tell: &mut dyn FnMut(f64) -> bool) -> Result<Vec<Found>> {
-    let (oscillators, swept) = sway::find(take, &mut || if tell(0.0) { Ok(()) } else { Err(Error::Interrupted) })?;
+    let (oscillators, swept) = sway::find(take, &mut || tell(0.0))?;
     if oscillators.is_empty() {
         return Ok(Vec::new());
     }

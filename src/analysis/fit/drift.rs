@@ -83,7 +83,7 @@ impl Drift {
     }
 
     /// The tremolo that explains the level best, if it explains most of it.
-    pub(super) fn tremolo(&self, tell: &mut dyn FnMut() -> Result<()>) -> Result<Option<Oscillator>> {
+    pub(super) fn tremolo(&self, tell: &mut dyn FnMut() -> bool) -> Result<Option<Oscillator>> {
         let point = |n: usize| [(n * HOP) as f64 / f64::from(RATE), 20.0 / LN_10 * self.level[n], 1.0];
         let found = sway::tremolo((self.rise..self.level.len()).map(point).collect(), tell)?;
         Ok(found.filter(|tremolo| tremolo.db.abs() > LEAST_TREMOLO_DB))
@@ -266,7 +266,7 @@ mod tests {
         let pitches = drift.pitches();
         let (moves, off) = (rms(&|n| at(n)[0]), rms(&|n| pitches[n].1 - at(n)[0]));
         assert!(off < 0.2 * moves, "{off} of {moves} semitones");
-        let tremolo = drift.tremolo(&mut || Ok(())).unwrap().unwrap();
+        let tremolo = drift.tremolo(&mut || true).unwrap().unwrap();
         let depth = 20.0 / LN_10 * 0.2;
         let is_found = (tremolo.rate - 6.0).abs() < 0.1
             && (tremolo.db - depth).abs() < 0.25 * depth
@@ -283,7 +283,7 @@ mod tests {
                 chance as f32 / u32::MAX as f32 - 0.5
             })
             .collect();
-        assert!(Drift::of(&noise, 0.0).is_none_or(|drift| drift.tremolo(&mut || Ok(())).unwrap().is_none()));
+        assert!(Drift::of(&noise, 0.0).is_none_or(|drift| drift.tremolo(&mut || true).unwrap().is_none()));
         assert!(Drift::of(&[0.0; 8192], 0.0).is_none());
     }
 }

@@ -9,7 +9,7 @@ use super::start::{self, Found, Source};
 use super::tones::{HOP, Tone, tones};
 use crate::analysis::log_mel::RATE;
 use crate::analysis::modes::{Mode, Strike};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use libm::{cos, exp, log, pow, sin};
 use std::f64::consts::TAU;
 
@@ -67,8 +67,7 @@ pub(super) fn draft(
     let mut draft = start::from(take, Some(&strike), &Source { swept, late: 0.0, struck: true }, true);
     let still = drift.removed_from(&take.mean);
     if known.is_none() {
-        let mut go_on = || if tell(1.0) { Ok(()) } else { Err(Error::Interrupted) };
-        draft.oscillators = drift.tremolo(&mut go_on)?.into_iter().collect();
+        draft.oscillators = drift.tremolo(&mut || tell(1.0))?.into_iter().collect();
     }
     let pairs = compared(&still[from.min(still.len())..], &unexplained(&still, usize::MAX, &strike, from));
     let with_steady = |all: bool| {

@@ -2,9 +2,9 @@
 
 use super::bursts;
 use super::release::Release;
-use super::take::{AUDIBLE, BLOCK, LONGEST, Take};
-use crate::analysis::level::{mono, rms};
-use crate::analysis::log_mel::RATE;
+use super::take::{BLOCK, LONGEST, Take};
+use crate::analysis::level::{mono, peak, rms};
+use crate::analysis::log_mel::{RATE, onset};
 use crate::error::{Error, Result};
 use crate::io::sound_file::{Recording, resampled};
 
@@ -81,11 +81,10 @@ impl Prepared {
         let mut channels = resampled(excerpt, RATE)?.channels;
         channels.iter_mut().flatten().for_each(|sample| *sample *= gain as f32);
         let middle = mono(&channels);
-        let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
-        if f64::from(peak) < SILENCE * gain {
+        if peak(&middle) < SILENCE * gain {
             return wrong("it is silent, or a constant: expected a strike above −80 dBFS");
         }
-        let onset = middle.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0);
+        let onset = onset(&middle);
         let block = (BLOCK * f64::from(RATE)) as usize;
         let levels: Vec<f64> = middle[onset..].chunks(block).map(rms).collect();
         let loudest = levels.iter().copied().fold(0.0, f64::max);
@@ -177,7 +176,7 @@ impl Prepared {
     }
 
     pub(super) fn peak(&self) -> f64 {
-        self.mean.iter().fold(0.0, |peak, sample| f64::from(sample.abs()).max(peak))
+        peak(&self.mean)
     }
 
     /// Its length.

@@ -6,7 +6,7 @@ use super::movement::{Oscillator, Sweep};
 use super::prepared::Prepared;
 use crate::analysis::level::{dbfs, rms};
 use crate::analysis::log_mel::RATE;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::params::Shape;
 use nalgebra::{DMatrix, DVector};
 
@@ -150,12 +150,14 @@ impl Course {
     }
 
     /// Adds the oscillator that explains most of the rest, if that is worth it.
-    fn add(&mut self, tell: &mut dyn FnMut() -> Result<()>) -> Result<bool> {
+    fn add(&mut self, tell: &mut dyn FnMut() -> bool) -> Result<bool> {
         let seconds = self.seconds();
         let count = ((self.fastest * seconds - FEWEST_CYCLES) / STEP).max(0.0) as usize;
         let mut best: (f64, Option<Oscillator>) = (0.0, None);
         for rate in (0..count).map(|n| (FEWEST_CYCLES + STEP * n as f64) / seconds) {
-            tell()?;
+            if !tell() {
+                return Err(Error::Interrupted);
+            }
             for (shape, phases) in SHAPES {
                 for phase in (0..phases).map(|n| n as f64 / PHASES) {
                     let oscillator = Oscillator { shape, rate, phase, semitones: 0.0, db: 0.0 };
@@ -190,7 +192,7 @@ impl Course {
     }
 
     /// Adds oscillators, and tells whether all of them explain most of the course.
-    fn explain(&mut self, tell: &mut dyn FnMut() -> Result<()>) -> Result<bool> {
+    fn explain(&mut self, tell: &mut dyn FnMut() -> bool) -> Result<bool> {
         while self.oscillators.len() < MOST_OSCILLATORS && self.left() > LITTLE * self.squares && self.add(tell)? {}
         Ok(self.left() < (1.0 - WORTH_ALL) * self.squares)
     }
@@ -198,7 +200,7 @@ impl Course {
 
 /// The oscillators that move a sound, and the sweep of its pitch beside them; none if they do not explain most of its movement.
 /// `tell` is called often, and ends the search by an error.
-pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> Result<()>) -> Result<(Vec<Oscillator>, Sweep)> {
+pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> bool) -> Result<(Vec<Oscillator>, Sweep)> {
     let pitches = course::pitches(&take.mean);
     let mut pitch = Course::new(pitches.clone(), false, Vec::new());
     let mut swept = Sweep::NONE;
@@ -233,7 +235,7 @@ pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> Result<()>) -> Res
 
 /// The tremolo that explains a course of levels of tones in dB best, if it explains most of it. `tell` is called often, and ends the
 /// search by an error.
-pub(super) fn tremolo(levels: Vec<Point>, tell: &mut dyn FnMut() -> Result<()>) -> Result<Option<Oscillator>> {
+pub(super) fn tremolo(levels: Vec<Point>, tell: &mut dyn FnMut() -> bool) -> Result<Option<Oscillator>> {
     let mut level = Course { fastest: FASTEST_OF_TONES, ..Course::new(levels, true, Vec::new()) };
     let is_found = level.points.len() >= FEWEST && level.add(tell)? && level.left() < (1.0 - WORTH_ALL) * level.squares;
     let tremolo = level.oscillators.first().zip(level.factors.first());
@@ -269,7 +271,7 @@ mod tests {
         let value = |t: f64| -20.0 - 3.0 * t + known.iter().map(|known| known.db * known.at(t)).sum::<f64>();
         let points = (0..800).map(|n| 0.0025 * f64::from(n)).map(|t| [t, value(t), 1.0]).collect();
         let mut course = Course::new(points, true, Vec::new());
-        assert!(course.explain(&mut || Ok(())).unwrap());
+        assert!(course.explain(&mut || true).unwrap());
         assert_eq!(course.oscillators.len(), 2);
         for ((found, factor), known) in course.oscillators.iter().zip(&course.factors).zip(&known) {
             let off = libm::remainder(found.phase - known.phase, 1.0).abs();
@@ -293,7 +295,7 @@ mod tests {
         };
         let note = Played { key: 69.0, velocity: draft.velocity, frames: 2 * RATE as usize, let_go: None };
         let samples = Audition::new().mean(&draft.patch(), note);
-        let (found, _) = find(&prepared(samples, RATE), &mut || Ok(())).unwrap();
+        let (found, _) = find(&prepared(samples, RATE), &mut || true).unwrap();
         let near = |known: &Oscillator| {
             found.iter().any(|found| {
                 let off = libm::remainder(found.phase - known.phase, 1.0).abs();
@@ -308,6 +310,6 @@ mod tests {
     #[test]
     fn a_steady_fall_has_no_oscillator() {
         let points = (0..300).map(|n| [0.003 * f64::from(n), -0.1 * f64::from(n), 1.0]).collect();
-        assert_eq!(tremolo(points, &mut || Ok(())).unwrap(), None);
+        assert_eq!(tremolo(points, &mut || true).unwrap(), None);
     }
 }

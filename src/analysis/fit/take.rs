@@ -1,6 +1,7 @@
 //! A recording to fit, with its key and velocity, and the part of it that is used.
 
 use crate::analysis::level::{cancelling, mono, offset, peak};
+use crate::analysis::log_mel::onset;
 use crate::dsp::limiter::THRESHOLD;
 use crate::error::Result;
 use crate::io::sound_file::Recording;
@@ -25,8 +26,6 @@ pub(super) const LONGEST: f64 = 12.0;
 /// Seconds before the onset and after the longest stretch that are kept, since resampling needs both sides of a sample.
 const BEFORE: f64 = 0.05;
 const AFTER: f64 = 0.1;
-/// The onset is the first sample above this share of the peak.
-pub(super) const AUDIBLE: f32 = 0.01;
 /// Seconds per block of levels.
 pub(super) const BLOCK: f64 = 0.03;
 
@@ -58,8 +57,7 @@ fn excerpt(recording: &Recording) -> Recording {
         channel.iter_mut().for_each(|sample| *sample -= constant as f32);
     }
     let middle = mono(&channels);
-    let peak = middle.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
-    let onset = middle.iter().position(|sample| sample.abs() > AUDIBLE * peak).unwrap_or(0);
+    let onset = onset(&middle);
     let frames = |seconds: f64| (seconds * f64::from(recording.sample_rate)) as usize;
     let kept = onset.saturating_sub(frames(BEFORE))..middle.len().min(onset + frames(LONGEST + AFTER));
     if kept.len() < middle.len() {

@@ -125,8 +125,7 @@ pub(super) fn dampers(samples: &[f64], sample_rate: f64) -> Vec<Damper> {
 /// Where the samples seem to be damped most clearly, if they do.
 fn damped_from(samples: &[f64], sample_rate: f64) -> Option<Damper> {
     let step = ((STEP * sample_rate) as usize).max(1);
-    let energies: Vec<f64> =
-        samples.chunks_exact(step).map(|block| block.iter().map(|x| x * x).sum::<f64>() / step as f64).collect();
+    let energies: Vec<f64> = samples.chunks_exact(step).map(|block| energy(block, 0.0) / step as f64).collect();
     let level = |blocks: &[f64]| 10.0 * log10((blocks.iter().sum::<f64>() / SMOOTH as f64).max(1e-30));
     let mut levels: Vec<f64> = energies.windows(SMOOTH).map(level).collect();
     let loudest = levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -200,9 +199,8 @@ fn differs(fit: &Fit, samples: &[f64], range: Range<usize>, most_left: f64) -> b
         add(&mut expected, *pole, *amplitude * pole.power(range.start), 1.0);
     }
     let left: Vec<f64> = after.iter().zip(&expected).map(|(sample, expected)| sample - expected).collect();
-    let [left, after, expected] = [(&left[..], 0.0), (after, fit.constant), (&expected[..], fit.constant)]
-        .map(|(sound, constant)| energy(sound, constant));
-    left > UNEXPLAINED * expected && after < most_left * expected
+    let of_expected = energy(&expected, fit.constant);
+    energy(&left, 0.0) > UNEXPLAINED * of_expected && energy(after, fit.constant) < most_left * of_expected
 }
 
 #[cfg(test)]
