@@ -193,7 +193,11 @@ fn what_is_no_recording_of_a_strike_says_so_and_changes_nothing() {
     let files = [
         ("text.wav", b"Not a sound at all.".to_vec(), "text.wav: this is not a sound file: expected WAV"),
         ("empty.flac", Vec::new(), "empty.flac: the file is empty: expected a sound file"),
-        ("silence.wav", wav(&[0.0; 9600]), "silence.wav: it is silent, or a constant: expected a strike above −80 dBFS"),
+        (
+            "silence.wav",
+            wav(&[0.0; 9600]),
+            "silence.wav: it is silent, or a constant: expected a strike above −80 dBFS",
+        ),
         ("short.wav", wav(&strike(440.0, 0.02, 1.0)), "short.wav: it is shorter than 30 ms: expected a strike"),
         ("cut.wav", wav(&strike(440.0, 0.1, 1.0))[..40].to_vec(), "cut.wav: "),
     ];
