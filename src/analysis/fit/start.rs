@@ -60,8 +60,8 @@ pub(super) fn draft(
     let still: Vec<Vec<f32>> = take.channels.iter().map(still).collect();
     let strike = strike(&still, most_modes, progress)?;
     // In a held sound many modes can stand for one whose pitch moves; with their measured phases they would cancel, so all
-    // start as sines. So do modes that were measured later than the onset.
-    let has_phases = !take.is_held && source.late == 0.0;
+    // start as sines. After a slow rise, modes that beat must do so as they do there.
+    let has_phases = !take.is_held || source.late > 0.0;
     Ok((from(take, strike.as_ref(), &source, has_phases), strike))
 }
 
@@ -102,7 +102,8 @@ pub(super) fn from(take: &Prepared, strike: Option<&Strike>, source: &Source, ha
         let kept: Vec<&Mode> = kept.into_iter().filter(|mode| mode.level_db > loudest - FAINT_DB).collect();
         let after = strike.fitted_from - strike.onset;
         let amplitudes: Vec<f64> = kept.iter().map(|mode| at_onset(mode, after)).collect();
-        let delay = delay(&kept, &amplitudes);
+        // Modes of noise have no phases. Those of a strike keep theirs, whose turns back to the onset are known.
+        let delay = if late > 0.0 && struck { -(late + strike.onset) } else { delay(&kept, &amplitudes) };
         let struck_so = |(mode, amplitude): (&&Mode, &f64)| {
             let partial = partial(mode, *amplitude, delay);
             let partial = Partial { t60: partial.t60.min(longest), ..partial };
@@ -166,6 +167,7 @@ fn partial(mode: &Mode, amplitude: f64, delay: f64) -> Partial {
 
 #[cfg(test)]
 mod tests {
+    use super::super::prepared::tests::prepared;
     use super::*;
     use crate::analysis::modes::Uncertainty;
 
@@ -186,6 +188,23 @@ mod tests {
             let expected = [sin(phase), cos(phase)].map(|part| 0.5 * part);
             assert!((0..2).all(|n| fabs(played[n] - expected[n]) < 1e-12), "{phase}: {known:?}");
             assert_eq!(partial(&mode(1.0), 0.5, 0.0).phase, 0.0);
+        }
+    }
+
+    #[test]
+    fn tones_found_after_a_slow_rise_beat_as_they_do_there() {
+        let late = 0.4;
+        let beating = |t: f64| 0.2 * sin(2.0 * PI * 440.0 * t) + 0.2 * cos(2.0 * PI * 443.0 * t);
+        let seconds = |n: usize| n as f64 / f64::from(RATE);
+        let sound = |n: usize| ((seconds(n) / (0.8 * late)).min(1.0) * beating(seconds(n))) as f32;
+        let take = prepared((0..RATE as usize).map(sound).collect(), RATE);
+        let source = Source { swept: Sweep::NONE, late, struck: true };
+        let (draft, _) = draft(&take, source, 16, &mut |_| true).unwrap();
+        for n in (RATE as usize / 2..take.mean.len()).step_by(100) {
+            let of =
+                |partial: &Partial| partial.amplitude * sin(2.0 * PI * partial.frequency * seconds(n) + partial.phase);
+            let played: f64 = draft.partials.iter().map(of).sum();
+            assert!(fabs(played - f64::from(take.mean[n])) < 0.01, "{n}: {played}");
         }
     }
 }
