@@ -18,6 +18,8 @@ const WORTH_A_BED: f64 = 0.02;
 /// Share of its length for which a sound rises that is not held by a key, and seconds of a fall from which the search for it begins.
 const MOSTLY: f64 = 0.6;
 const FALL: f64 = 0.1;
+/// How often such a swell is found.
+const SWELLS: usize = 3;
 /// Share of the work on a draft of noise in which that is shaped.
 const SHAPED: f64 = 0.4;
 /// Seeds of the pans of the modes of two beds.
@@ -85,8 +87,12 @@ pub(super) fn fallen(
         is_held: false,
         ..draft.clone()
     };
-    listener.choose_swell(&mut other)?;
-    let distance = listener.correct(&mut other, ROUNDS)?;
+    let mut distance = f64::INFINITY;
+    // The best swell depends on the levels, and these on the swell.
+    for _ in 0..SWELLS {
+        listener.choose_swell(&mut other)?;
+        distance = listener.correct(&mut other, ROUNDS)?;
+    }
     Ok((distance < let_go).then_some((whole, other)))
 }
 
