@@ -5,8 +5,9 @@ use crate::sound::bodies::DEFAULT_FREQUENCY;
 use crate::units::{key_from_frequency, note_name};
 use libm::{fabs, log2, sqrt};
 
-/// Lowest and highest pitch in Hz.
-const RANGE: (f64, f64) = (25.0, 6000.0);
+/// Pitches in Hz. Tones above the first range make no melody (Attneave & Olson 1971) and add nothing to the pitch of a lower one, so
+/// they count only where there are no others.
+const RANGES: [(f64, f64); 2] = [(25.0, 4200.0), (4200.0, 6000.0)];
 /// Distance in cents below which a partial counts as a harmonic.
 const NEAR: f64 = 35.0;
 /// Highest harmonic that counts.
@@ -27,28 +28,31 @@ const NEIGHBOUR: f64 = 700.0;
 const CONTRADICTS: f64 = 60.0;
 const CONFUSED: [f64; 6] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0];
 
-/// The weight of a mode in hearing. It grows with the T60 up to 0.6 s.
+/// The weight of a mode in hearing. It grows with the T60 up to 5 s: a glockenspiel's lowest mode is soft, and rings longest.
 fn weight(partial: &Partial) -> f64 {
-    fabs(partial.amplitude) * sqrt(partial.t60.min(0.6))
+    fabs(partial.amplitude) * sqrt(partial.t60.min(5.0))
 }
 
 /// The frequency in Hz that is heard as the pitch: that of the mode that is strongest together with its harmonics. A
-/// bar or a bell has the pitch of one mode, and a string that of its lowest. Without modes, as in noise, it is
+/// bar or a bell has the pitch of one mode, and a string that of its lowest. Without modes that have a pitch, as in noise, it is
 /// [`DEFAULT_FREQUENCY`].
 pub(super) fn estimate(partials: &[Partial]) -> f64 {
-    let score = |candidate: &Partial| {
-        let mut sum = weight(candidate);
-        for other in partials.iter().filter(|other| other.frequency > 1.5 * candidate.frequency) {
-            let ratio = other.frequency / candidate.frequency;
-            let harmonic = ratio.round();
-            if harmonic <= HARMONICS && fabs(1200.0 * log2(ratio / harmonic)) < NEAR {
-                sum += SERIES * weight(other) / sqrt(harmonic);
+    let strongest = |(lowest, highest): &(f64, f64)| {
+        let heard = || partials.iter().filter(|partial| (*lowest..=*highest).contains(&partial.frequency));
+        let score = |candidate: &Partial| {
+            let mut sum = weight(candidate);
+            for other in heard().filter(|other| other.frequency > 1.5 * candidate.frequency) {
+                let ratio = other.frequency / candidate.frequency;
+                let harmonic = ratio.round();
+                if harmonic <= HARMONICS && fabs(1200.0 * log2(ratio / harmonic)) < NEAR {
+                    sum += SERIES * weight(other) / sqrt(harmonic);
+                }
             }
-        }
-        sum
+            sum
+        };
+        heard().max_by(|a, b| score(a).total_cmp(&score(b)))
     };
-    let heard = partials.iter().filter(|partial| (RANGE.0..=RANGE.1).contains(&partial.frequency));
-    heard.max_by(|a, b| score(a).total_cmp(&score(b))).map_or(DEFAULT_FREQUENCY, |partial| partial.frequency)
+    RANGES.iter().find_map(strongest).map_or(DEFAULT_FREQUENCY, |partial| partial.frequency)
 }
 
 /// A warning of a key that is not the pitch that is heard.
@@ -113,6 +117,10 @@ mod tests {
         assert_eq!(estimate(&string), 110.0);
         let marimba = partials(&[(261.6, 0.5, 0.8), (1046.0, 0.3, 0.2), (2600.0, 0.2, 0.05), (90.0, 0.02, 0.05)]);
         assert_eq!(estimate(&marimba), 261.6);
+        let glockenspiel =
+            partials(&[(523.0, 0.011, 4.9), (2826.0, 0.02, 1.2), (4671.5, 0.058, 1.5), (6975.0, 0.031, 1.2)]);
+        assert_eq!(estimate(&glockenspiel), 523.0);
+        assert_eq!(estimate(&glockenspiel[2..]), 4671.5);
         assert_eq!(estimate(&[]), DEFAULT_FREQUENCY);
     }
 
