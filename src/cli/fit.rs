@@ -44,7 +44,7 @@ pub(super) struct Args {
         value_parser = quantity::whole::<u16>(1..=256))]
     modes: u16,
     /// Name of the preset [default: that of the output]
-    #[arg(long)]
+    #[arg(long, value_parser = clap::builder::NonEmptyStringValueParser::new())]
     name: Option<String>,
     /// Write a page with both sounds, what they look like, and their modes
     #[arg(long, value_name = "OUT.html")]
