@@ -44,7 +44,7 @@ pub(super) struct Args {
         value_parser = quantity::whole::<u16>(1..=256))]
     modes: u16,
     /// Name of the preset [default: that of the output]
-    #[arg(long, value_parser = clap::builder::NonEmptyStringValueParser::new())]
+    #[arg(long, value_parser = no_blank)]
     name: Option<String>,
     /// Write a page with both sounds, what they look like, and their modes
     #[arg(long, value_name = "OUT.html")]
@@ -148,6 +148,11 @@ fn parts(argument: &Path) -> Result<(PathBuf, Option<String>, Option<u8>)> {
 
 fn file_name(name: &str) -> String {
     Path::new(name).file_name().map_or(name.to_owned(), |name| name.to_string_lossy().into_owned())
+}
+
+/// A name that can be seen.
+fn no_blank(name: &str) -> std::result::Result<String, String> {
+    if name.trim().is_empty() { Err("it is blank: expected a name".to_owned()) } else { Ok(name.to_owned()) }
 }
 
 /// The preset's name: the one in `--name`, or that of the output file.

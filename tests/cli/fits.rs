@@ -131,6 +131,14 @@ fn noise_and_sounds_that_do_not_decay_are_warned_of() {
 }
 
 #[test]
+fn a_fit_needs_a_name_that_can_be_seen() {
+    let sandbox = Sandbox::new();
+    let blank = sandbox.sprung("fit bar.wav -o bar.toml").args(["--name", " "]).assert().failure().get_output().clone();
+    let said = String::from_utf8(blank.stderr).unwrap();
+    assert!(said.contains("--name") && said.contains("expected a name"), "{said}");
+}
+
+#[test]
 fn sounds_are_drawn() {
     let sandbox = Sandbox::new();
     sandbox.succeeds("render --preset Marimba --note C4 --length 0.2 -o a.wav --figure a.svg");

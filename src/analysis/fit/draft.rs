@@ -141,7 +141,8 @@ impl Partial {
         60.0 * seconds / self.t60
     }
 
-    /// A partial measured so many seconds after the onset, with the level that it had there, but at most `most_db` above.
+    /// A partial measured so many seconds after the onset, with the level that it had there, but at most `most_db` above. Its phase
+    /// stays as it is.
     pub(super) fn earlier(&self, seconds: f64, most_db: f64) -> Self {
         let before = self.fallen_db(seconds).min(most_db);
         Self { amplitude: self.amplitude * pow(10.0, before / 20.0), ..*self }

@@ -18,8 +18,9 @@ const WORTH_A_BED: f64 = 0.02;
 /// Share of its length for which a sound rises that is not held by a key, and seconds of a fall from which the search for it begins.
 const MOSTLY: f64 = 0.6;
 const FALL: f64 = 0.1;
-/// How often such a swell is found.
-const SWELLS: usize = 3;
+/// Most rounds in which the swell and the levels are found in turn, and reduction of the distance in dB for which there is another one.
+const SWELL_ROUNDS: usize = 3;
+const WORTH_A_ROUND: f64 = 0.01;
 /// Share of the work on a draft of noise in which that is shaped.
 const SHAPED: f64 = 0.4;
 /// Seeds of the pans of the modes of two beds.
@@ -89,9 +90,13 @@ pub(super) fn fallen(
     };
     let mut distance = f64::INFINITY;
     // The best swell depends on the levels, and these on the swell.
-    for _ in 0..SWELLS {
+    for _ in 0..SWELL_ROUNDS {
+        let before = distance;
         listener.choose_swell(&mut other)?;
         distance = listener.correct(&mut other, ROUNDS)?;
+        if distance > before - WORTH_A_ROUND {
+            break;
+        }
     }
     Ok((distance < let_go).then_some((whole, other)))
 }

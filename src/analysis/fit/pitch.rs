@@ -5,9 +5,10 @@ use crate::sound::bodies::DEFAULT_FREQUENCY;
 use crate::units::{key_from_frequency, note_name};
 use libm::{fabs, log2, sqrt};
 
-/// Pitches in Hz. Tones above the first range make no melody (Attneave & Olson 1971) and add nothing to the pitch of a lower one, so
-/// they count only where there are no others.
+/// Ranges of pitch in Hz: that of melodies, whose end is the piano's highest key (4186 Hz), and above. Tones of the second one add
+/// nothing to the pitch of a lower one, which is heard if it is at least this share as strong.
 const RANGES: [(f64, f64); 2] = [(25.0, 4200.0), (4200.0, 6000.0)];
+const HEARD_BELOW: f64 = 0.1;
 /// Distance in cents below which a partial counts as a harmonic.
 const NEAR: f64 = 35.0;
 /// Highest harmonic that counts.
@@ -28,17 +29,20 @@ const NEIGHBOUR: f64 = 700.0;
 const CONTRADICTS: f64 = 60.0;
 const CONFUSED: [f64; 6] = [1.0, 2.0, 3.0, 4.0, 6.0, 8.0];
 
-/// The weight of a mode in hearing. It grows with the T60 up to 5 s: a glockenspiel's lowest mode is soft, and rings longest.
+/// T60 in seconds up to which longer modes have more weight: a glockenspiel's lowest one is soft, and rings for 5 s.
+const LONG: f64 = 5.0;
+
+/// The weight of a mode in hearing.
 fn weight(partial: &Partial) -> f64 {
-    fabs(partial.amplitude) * sqrt(partial.t60.min(5.0))
+    fabs(partial.amplitude) * sqrt(partial.t60.min(LONG))
 }
 
 /// The frequency in Hz that is heard as the pitch: that of the mode that is strongest together with its harmonics. A
-/// bar or a bell has the pitch of one mode, and a string that of its lowest. Without modes that have a pitch, as in noise, it is
-/// [`DEFAULT_FREQUENCY`].
+/// bar or a bell has the pitch of one mode, and a string that of its lowest. Low tones go before those above 4200 Hz. Without modes
+/// that have a pitch, as in noise, it is [`DEFAULT_FREQUENCY`].
 pub(super) fn estimate(partials: &[Partial]) -> f64 {
-    let strongest = |(lowest, highest): &(f64, f64)| {
-        let heard = || partials.iter().filter(|partial| (*lowest..=*highest).contains(&partial.frequency));
+    let [melodic, high] = RANGES.map(|(lowest, highest)| {
+        let heard = || partials.iter().filter(|partial| (lowest..=highest).contains(&partial.frequency));
         let score = |candidate: &Partial| {
             let mut sum = weight(candidate);
             for other in heard().filter(|other| other.frequency > 1.5 * candidate.frequency) {
@@ -50,9 +54,10 @@ pub(super) fn estimate(partials: &[Partial]) -> f64 {
             }
             sum
         };
-        heard().max_by(|a, b| score(a).total_cmp(&score(b)))
-    };
-    RANGES.iter().find_map(strongest).map_or(DEFAULT_FREQUENCY, |partial| partial.frequency)
+        let scores = heard().map(|partial| (score(partial), partial.frequency));
+        scores.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, DEFAULT_FREQUENCY))
+    });
+    if melodic.0 < HEARD_BELOW * high.0 { high.1 } else { melodic.1 }
 }
 
 /// A warning of a key that is not the pitch that is heard.
@@ -120,7 +125,9 @@ mod tests {
         let glockenspiel =
             partials(&[(523.0, 0.011, 4.9), (2826.0, 0.02, 1.2), (4671.5, 0.058, 1.5), (6975.0, 0.031, 1.2)]);
         assert_eq!(estimate(&glockenspiel), 523.0);
-        assert_eq!(estimate(&glockenspiel[2..]), 4671.5);
+        // A trace of hum is not the pitch.
+        let high = partials(&[(50.0, 0.0005, 600.0), (4300.0, 0.3, 1.0)]);
+        assert_eq!((estimate(&glockenspiel[2..]), estimate(&high)), (4671.5, 4300.0));
         assert_eq!(estimate(&[]), DEFAULT_FREQUENCY);
     }
 

@@ -59,8 +59,8 @@ pub(super) fn draft(
     };
     let still: Vec<Vec<f32>> = take.channels.iter().map(still).collect();
     let strike = strike(&still, most_modes, progress)?;
-    // In a held sound many modes can stand for one whose pitch moves; with their measured phases they would cancel, so all
-    // start as sines. After a slow rise, modes that beat must do so as they do there.
+    // In a held sound many modes can stand for one whose pitch moves. They would cancel with their measured phases once their levels
+    // are corrected, so all start as sines. But modes that are searched for after a slow rise are there for the beats that begin then.
     let has_phases = !take.is_held || source.late > 0.0;
     Ok((from(take, strike.as_ref(), &source, has_phases), strike))
 }
@@ -84,7 +84,7 @@ pub(super) fn strike(
     }
 }
 
-/// The draft of a strike's modes, with the phases in which they were found or as sines.
+/// The draft of a strike's modes, with their phases at the onset or as sines.
 pub(super) fn from(take: &Prepared, strike: Option<&Strike>, source: &Source, has_phases: bool) -> Draft {
     let Source { swept, late, struck } = *source;
     let peak = 20.0 * libm::log10(take.peak());
@@ -102,14 +102,19 @@ pub(super) fn from(take: &Prepared, strike: Option<&Strike>, source: &Source, ha
         let kept: Vec<&Mode> = kept.into_iter().filter(|mode| mode.level_db > loudest - FAINT_DB).collect();
         let after = strike.fitted_from - strike.onset;
         let amplitudes: Vec<f64> = kept.iter().map(|mode| at_onset(mode, after)).collect();
-        // Modes of noise have no phases. Those of a strike keep theirs, whose turns back to the onset are known.
-        let delay = if late > 0.0 && struck { -(late + strike.onset) } else { delay(&kept, &amplitudes) };
+        // A strike's modes that were searched for later are turned back to the onset. Those found at the onset are moved to where most
+        // start as sines, since nobody hears a shift of all. Noise has no phases.
+        let (shift, before) = if late > 0.0 && struck {
+            (-(late + strike.onset), late + strike.onset)
+        } else {
+            (delay(&kept, &amplitudes), late)
+        };
         let struck_so = |(mode, amplitude): (&&Mode, &f64)| {
-            let partial = partial(mode, *amplitude, delay);
+            let partial = partial(mode, *amplitude, shift);
             let partial = Partial { t60: partial.t60.min(longest), ..partial };
             let phase = if has_phases && struck { partial.phase } else { 0.0 };
             let most = if struck { MOST_OF_A_SWELL_DB } else { MOST_BEFORE_DB };
-            Partial { phase, struck, ..partial }.earlier(late, most)
+            Partial { phase, struck, ..partial }.earlier(before, most)
         };
         partials.extend(kept.iter().zip(&amplitudes).map(struck_so));
     }
@@ -149,8 +154,9 @@ fn delay(modes: &[&Mode], amplitudes: &[f64]) -> f64 {
     times.max_by(|a, b| aligned(*a).total_cmp(&aligned(*b))).unwrap_or(0.0)
 }
 
-fn partial(mode: &Mode, amplitude: f64, delay: f64) -> Partial {
-    let turned = mode.phase + 2.0 * PI * mode.frequency * delay;
+/// A mode of this amplitude, turned to its phase so many seconds later.
+fn partial(mode: &Mode, amplitude: f64, later: f64) -> Partial {
+    let turned = mode.phase + 2.0 * PI * mode.frequency * later;
     let sign = if cos(turned) < 0.0 { -1.0 } else { 1.0 };
     // A mode of uncertain phase starts as a sine.
     let phase = if mode.uncertainty.phase < SURE_PHASE { asin(sin(turned) * sign) } else { 0.0 };
@@ -194,15 +200,19 @@ mod tests {
     #[test]
     fn tones_found_after_a_slow_rise_beat_as_they_do_there() {
         let late = 0.4;
-        let beating = |t: f64| 0.2 * sin(2.0 * PI * 440.0 * t) + 0.2 * cos(2.0 * PI * 443.0 * t);
+        let beating = |t: f64| {
+            0.2 * libm::exp(-0.5 * t) * sin(2.0 * PI * 440.0 * t) + 0.2 * libm::exp(-t) * cos(2.0 * PI * 443.0 * t)
+        };
         let seconds = |n: usize| n as f64 / f64::from(RATE);
         let sound = |n: usize| ((seconds(n) / (0.8 * late)).min(1.0) * beating(seconds(n))) as f32;
         let take = prepared((0..RATE as usize).map(sound).collect(), RATE);
         let source = Source { swept: Sweep::NONE, late, struck: true };
         let (draft, _) = draft(&take, source, 16, &mut |_| true).unwrap();
         for n in (RATE as usize / 2..take.mean.len()).step_by(100) {
-            let of =
-                |partial: &Partial| partial.amplitude * sin(2.0 * PI * partial.frequency * seconds(n) + partial.phase);
+            let of = |partial: &Partial| {
+                let fall = pow(0.001, seconds(n) / partial.t60);
+                partial.amplitude * fall * sin(2.0 * PI * partial.frequency * seconds(n) + partial.phase)
+            };
             let played: f64 = draft.partials.iter().map(of).sum();
             assert!(fabs(played - f64::from(take.mean[n])) < 0.01, "{n}: {played}");
         }

@@ -105,6 +105,9 @@ pub(crate) fn fit(
     most_modes: usize,
 ) -> PyResult<(String, Vec<f64>)> {
     check_most_modes(most_modes, 256)?;
+    if name.trim().is_empty() {
+        return Err(told("name: it is blank: expected a name".to_owned()));
+    }
     let family = Family::ALL.iter().find(|(name, _)| *name == body).map(|(_, family)| *family);
     let family = family.ok_or_else(|| {
         let expected: Vec<&str> = Family::ALL.iter().map(|(name, _)| *name).collect();
@@ -125,9 +128,7 @@ pub(crate) fn fit(
         }
         let settings = FitSettings { most_modes, family };
         let fitted = fitted_to(&takes, &settings, &mut |_| check_signals().is_ok())?;
-        let names: Vec<&str> = takes.iter().map(|take| take.name.as_str()).collect();
-        let comment = format!("Fitted to {}.", names.join(", "));
-        Ok((fitted.preset(&name, &comment).to_toml(), fitted.distances, fitted.warnings))
+        Ok((fitted.named(&name, &takes).to_toml(), fitted.distances, fitted.warnings))
     });
     let (preset, distances, doubts) = fitted.map_err(raised)?;
     warnings.extend(doubts);

@@ -142,9 +142,11 @@ def test_recordings_are_taken_apart_and_compared(tmp_path: Path) -> None:
 
 def test_a_recording_becomes_a_patch() -> None:
     sound = sprung.render("Kalimba", "C5", length=0.5, tail="none", mono=True)
-    patch = sprung.fit(sound, note="C5", name="Again", most_modes=4)
+    patch = sprung.fit(sound, note="C5", name=" Again ", most_modes=4)
     assert patch.name == "Again" and 1 <= len(patch.modes) <= 4
     assert np.any(patch.render("C5", length=0.05, tail="none") != 0)
+    with pytest.raises(sprung.Error, match="name: it is blank"):
+        sprung.fit(sound, note="C5", name=" ")
 
 
 def test_a_batch_is_that_of_the_command(tmp_path: Path) -> None:
