@@ -1,8 +1,8 @@
 //! Warnings of recordings and of what was made of them.
 
+use super::draft::{Draft, Partial};
 use super::layers::{Layer, SAME_KEY};
 use super::pitch::{key_name, wrong_key};
-use super::prepared::Prepared;
 use super::take::Take;
 use crate::analysis::level::dbfs;
 use crate::analysis::modes::Strike;
@@ -47,11 +47,23 @@ pub(super) fn of_takes(takes: &[Take], layers: &[Layer]) -> Vec<String> {
 
 /// Residual of a strike in dB below which its tones are believed.
 const EXPLAINED_DB: f64 = -20.0;
+/// Distance in Hz from a tone and T60 in seconds of a mode that plays hum, and its least amplitude relative to the loudest mode: −60 dB.
+const NEAR: f64 = 1.0;
+const ENDLESS: f64 = 20.0;
+const HEARD: f64 = 1e-3;
 
-/// A warning of a tone, such as hum, that goes on while a stroke falls.
-pub(super) fn hum(take: &Take, prepared: &Prepared, strike: &Strike) -> Option<String> {
-    let tone = strike.steady.first().filter(|_| !prepared.is_held && strike.residual_db < EXPLAINED_DB)?;
-    let frequency = tone.frequency;
+/// A warning of a tone, such as hum, that goes on while a stroke falls, and that a mode of the draft plays.
+pub(super) fn hum(take: &Take, draft: &Draft, strike: &Strike) -> Option<String> {
+    if draft.is_held || strike.residual_db > EXPLAINED_DB {
+        return None;
+    }
+    let amplitude = |partial: &Partial| partial.amplitude.abs();
+    let loudest = draft.partials.iter().map(amplitude).fold(0.0, f64::max);
+    let plays = |frequency: f64| {
+        let mut lasting = draft.partials.iter().filter(|partial| partial.struck && partial.t60 > ENDLESS);
+        lasting.any(|partial| (partial.frequency - frequency).abs() < NEAR && amplitude(partial) > HEARD * loudest)
+    };
+    let frequency = strike.steady.iter().map(|tone| tone.frequency).find(|frequency| plays(*frequency))?;
     Some(format!("{}: a tone of {frequency:.2} Hz does not decay, and the preset plays it: expected no hum", take.name))
 }
 
@@ -75,9 +87,9 @@ pub(super) fn of_distances(takes: &[Take], distances: &[f64], base: usize, has_b
 #[cfg(test)]
 mod tests {
     use super::super::correct::tests::draft;
-    use super::super::draft::Draft;
     use super::super::take::VELOCITY;
     use super::*;
+    use crate::analysis::modes::{Mode, Uncertainty};
     use crate::io::sound_file::Recording;
 
     fn take(name: &str) -> Take {
@@ -94,6 +106,40 @@ mod tests {
         let doubts = of_takes(&takes, &layers);
         assert!(doubts[0].starts_with("c: it has the key and velocity of a (") && doubts.len() == 1, "{doubts:?}");
         assert_eq!(of_takes(&takes[..2], &layers[..2]), [""; 0]);
+    }
+
+    #[test]
+    fn hum_is_told_if_a_mode_plays_it() {
+        let tone = |frequency: f64| Mode {
+            frequency,
+            t60: 2000.0,
+            level_db: -50.0,
+            phase: 0.0,
+            uncertainty: Uncertainty { frequency: 0.0, t60: 0.0, level_db: 0.0, phase: 0.0 },
+            snr_db: 40.0,
+            channels: Vec::new(),
+        };
+        let strike = Strike {
+            onset: 0.0,
+            damped: None,
+            seconds: 1.0,
+            steady: vec![tone(50.0), tone(100.0)],
+            groups: Vec::new(),
+            modes: Vec::new(),
+            residual_db: -60.0,
+            samples: Vec::new(),
+            residual: Vec::new(),
+            fitted_from: 0.0,
+        };
+        let mode = |frequency, t60, amplitude| Partial { frequency, t60, amplitude, ..draft([0.5; 2]).partials[0] };
+        let told = |hum| {
+            let partials = vec![mode(440.0, 1.0, 0.5), hum];
+            super::hum(&take("a"), &Draft { partials, ..draft([0.5; 2]) }, &strike)
+        };
+        assert!(told(mode(100.1, 60.0, 0.01)).unwrap().starts_with("a: a tone of 100.00 Hz does not decay"));
+        for other in [mode(100.1, 3.7, 0.01), mode(100.1, 60.0, 1e-4), mode(103.0, 60.0, 0.01)] {
+            assert_eq!(told(other), None);
+        }
     }
 
     #[test]

@@ -205,12 +205,12 @@ pub fn fit(takes: &[Take], settings: &Settings, progress: &mut dyn FnMut(f64) ->
     let mut warnings: Vec<String> = prepared.iter().flat_map(|take| take.warnings.clone()).collect();
     warnings.extend(doubts::softer(takes, gain));
     warnings.extend(doubts::of_takes(takes, &layers));
-    let strikes = takes.iter().zip(&prepared).zip(&fits);
-    warnings
-        .extend(strikes.filter_map(|((take, prepared), (_, strike))| doubts::hum(take, prepared, strike.as_ref()?)));
+    let each = takes.iter().zip(&fits);
+    warnings.extend(each.filter_map(|(take, (draft, strike))| doubts::hum(take, draft, strike.as_ref()?)));
     if draft.partials.iter().all(|partial| !partial.struck) {
-        let message = "no mode rings in it: it was fitted as noise, and its pitch is a guess";
-        warnings.push(format!("{}: {message}", takes[base].name));
+        let guess = if take.key.is_none() { ", and its pitch is a guess" } else { "" };
+        let message = "it was fitted as noise, as no mode that is struck comes nearer";
+        warnings.push(format!("{}: {message}{guess}", takes[base].name));
     }
     warnings.extend(doubts::of_distances(takes, &distances, base, explained.is_some()));
     if !progress(1.0) {

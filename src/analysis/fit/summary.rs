@@ -4,6 +4,7 @@ use super::draft::A4;
 use super::pitch::key_name;
 use super::{Fitted, Take};
 use crate::preset::Preset;
+use crate::text::counted;
 use crate::text::number::measured;
 use crate::units::frequency_from_key;
 use std::path::Path;
@@ -29,9 +30,10 @@ impl Fitted {
         // A key that was estimated is played as it was recorded with this frequency.
         let frequency = frequency_from_key(self.key, A4);
         let mut text = format!(
-            "Key {key}{} ({} Hz), {struck} modes that are struck and {noisy} that noise moves, {:.2} dB from the recording.",
+            "Key {key}{} ({} Hz), {} struck and {noisy} moved by noise, {:.2} dB from the recording.",
             self.key_name(),
             if self.is_estimated { format!("{frequency:.2}") } else { measured(frequency) },
+            counted(struck, "mode"),
             self.distances[self.base],
         );
         if let Some(release) = self.release {
