@@ -74,8 +74,10 @@ impl Picture for ModesFigure<'_> {
             chart.draw_series([Circle::new(at(0.0), size, BLUE.filled())])?;
         }
         let remarks = [
-            (BLUE, "the spectrum"),
+            (BLUE, "spectrum of the whole:"),
+            (BLUE, "brief modes vanish in it"),
             (VERMILLION, "what is left of it"),
+            (INK, ""),
             (INK, "circles: levels of"),
             (INK, "modes at the onset"),
             (INK, ""),
