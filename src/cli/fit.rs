@@ -155,10 +155,10 @@ fn no_blank(name: &str) -> std::result::Result<String, String> {
     if name.trim().is_empty() { Err("it is blank: expected a name".to_owned()) } else { Ok(name.to_owned()) }
 }
 
-/// The preset's name: the one in `--name`, or that of the output file.
+/// The preset's name: the one in `--name`, or that of the output file. Stdout has none.
 fn name(args: &Args) -> String {
     let stem = args.output.file_stem().and_then(OsStr::to_str).filter(|stem| *stem != "-");
-    args.name.as_deref().or(stem).unwrap_or("Fitted").to_owned()
+    args.name.as_deref().or(stem).unwrap_or_default().to_owned()
 }
 
 fn text(takes: &[Take], fitted: &Fitted) -> String {

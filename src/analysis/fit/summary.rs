@@ -13,13 +13,14 @@ use std::path::Path;
 const LONGEST_NAME: usize = 60;
 
 impl Fitted {
-    /// The preset that was fitted to these takes. Its name has no space around it, and is cut off if it is too long. Its
-    /// comment names the takes by their file names, without folders. Allocates.
+    /// The preset that was fitted to these takes. Its name has no space around it, is cut off if it is too long, and `Fitted`
+    /// if it is blank. Its comment names the takes by their file names, without folders. Allocates.
     pub fn named(&self, name: &str, takes: &[Take]) -> Preset {
         let name = name.replace(char::is_control, " ");
         let name: String = name.trim().chars().take(LONGEST_NAME).collect();
+        let name = if name.is_empty() { "Fitted" } else { name.trim_end() };
         let files: Vec<String> = takes.iter().map(|take| file_name(&take.name)).collect();
-        self.preset(name.trim_end(), &format!("Fitted to {}.\n{}", files.join(", "), self.summary()))
+        self.preset(name, &format!("Fitted to {}.\n{}", files.join(", "), self.summary()))
     }
 
     /// The result of the fit, in a few sentences.
