@@ -12,7 +12,7 @@ pub fn peak(samples: &[f32]) -> f64 {
 }
 
 /// Root of the mean square; 0 for no samples.
-pub fn rms(samples: &[f32]) -> f64 {
+pub fn rms<S: Copy + Into<f64>>(samples: &[S]) -> f64 {
     sqrt(energy(samples, 0.0) / samples.len().max(1) as f64)
 }
 
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!((peak(&square), rms(&square), dc(&square)), (0.5, 0.5, 0.0));
         let step = [0.0, 0.25, 0.25, 0.25];
         assert_eq!((peak(&step), dc(&step)), (0.25, 0.1875));
-        assert_eq!((peak(&[]), rms(&[]), dc(&[])), (0.0, 0.0, 0.0));
+        assert_eq!((peak(&[]), rms::<f32>(&[]), dc(&[])), (0.0, 0.0, 0.0));
         assert_eq!((offset(&[0.9, 0.1, 0.1, 0.1, 0.1], 2), offset::<f64>(&[], 2)), (0.1, 0.0));
         assert_eq!(offset(&[0.9, 0.11, 0.1, 0.09, 0.1, 0.1, 0.1], 1), 0.1);
         // Blocks of a sound that swings slowly do not agree on a constant.

@@ -49,7 +49,7 @@ pub(super) fn of_takes(takes: &[Take], layers: &[Layer]) -> Vec<String> {
 const EXPLAINED_DB: f64 = -20.0;
 /// Distance in Hz from a tone and T60 in seconds of a mode that plays hum, and its least amplitude relative to the loudest mode: −60 dB.
 const NEAR: f64 = 1.0;
-const ENDLESS: f64 = 20.0;
+const LASTS: f64 = 20.0;
 const HEARD: f64 = 1e-3;
 
 /// A warning of a tone, such as hum, that goes on while a stroke falls, and that a mode of the draft plays.
@@ -60,7 +60,7 @@ pub(super) fn hum(take: &Take, draft: &Draft, strike: &Strike) -> Option<String>
     let amplitude = |partial: &Partial| partial.amplitude.abs();
     let loudest = draft.partials.iter().map(amplitude).fold(0.0, f64::max);
     let plays = |frequency: f64| {
-        let mut lasting = draft.partials.iter().filter(|partial| partial.struck && partial.t60 > ENDLESS);
+        let mut lasting = draft.partials.iter().filter(|partial| partial.struck && partial.t60 > LASTS);
         lasting.any(|partial| (partial.frequency - frequency).abs() < NEAR && amplitude(partial) > HEARD * loudest)
     };
     let frequency = strike.steady.iter().map(|tone| tone.frequency).find(|frequency| plays(*frequency))?;
@@ -87,9 +87,10 @@ pub(super) fn of_distances(takes: &[Take], distances: &[f64], base: usize, has_b
 #[cfg(test)]
 mod tests {
     use super::super::correct::tests::draft;
+    use super::super::start::tests::mode;
     use super::super::take::VELOCITY;
     use super::*;
-    use crate::analysis::modes::{Mode, Uncertainty};
+    use crate::analysis::modes::Mode;
     use crate::io::sound_file::Recording;
 
     fn take(name: &str) -> Take {
@@ -110,20 +111,11 @@ mod tests {
 
     #[test]
     fn hum_is_told_if_a_mode_plays_it() {
-        let tone = |frequency: f64| Mode {
-            frequency,
-            t60: 2000.0,
-            level_db: -50.0,
-            phase: 0.0,
-            uncertainty: Uncertainty { frequency: 0.0, t60: 0.0, level_db: 0.0, phase: 0.0 },
-            snr_db: 40.0,
-            channels: Vec::new(),
-        };
         let strike = Strike {
             onset: 0.0,
             damped: None,
             seconds: 1.0,
-            steady: vec![tone(50.0), tone(100.0)],
+            steady: [50.0, 100.0].map(|frequency| Mode { frequency, ..mode(0.0, 0.1) }).to_vec(),
             groups: Vec::new(),
             modes: Vec::new(),
             residual_db: -60.0,
@@ -131,13 +123,13 @@ mod tests {
             residual: Vec::new(),
             fitted_from: 0.0,
         };
-        let mode = |frequency, t60, amplitude| Partial { frequency, t60, amplitude, ..draft([0.5; 2]).partials[0] };
+        let partial = |frequency, t60, amplitude| Partial { frequency, t60, amplitude, ..draft([0.5; 2]).partials[0] };
         let told = |hum| {
-            let partials = vec![mode(440.0, 1.0, 0.5), hum];
+            let partials = vec![partial(440.0, 1.0, 0.5), hum];
             super::hum(&take("a"), &Draft { partials, ..draft([0.5; 2]) }, &strike)
         };
-        assert!(told(mode(100.1, 60.0, 0.01)).unwrap().starts_with("a: a tone of 100.00 Hz does not decay"));
-        for other in [mode(100.1, 3.7, 0.01), mode(100.1, 60.0, 1e-4), mode(103.0, 60.0, 0.01)] {
+        assert!(told(partial(100.1, 60.0, 0.01)).unwrap().starts_with("a: a tone of 100.00 Hz does not decay"));
+        for other in [partial(100.1, 3.7, 0.01), partial(100.1, 60.0, 1e-4), partial(103.0, 60.0, 0.01)] {
             assert_eq!(told(other), None);
         }
     }

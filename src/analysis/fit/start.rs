@@ -172,28 +172,32 @@ fn partial(mode: &Mode, amplitude: f64, later: f64) -> Partial {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::prepared::tests::prepared;
     use super::*;
     use crate::analysis::modes::Uncertainty;
 
+    /// A mode of 440 Hz with this phase and its uncertainty.
+    pub(crate) fn mode(phase: f64, uncertainty: f64) -> Mode {
+        Mode {
+            frequency: 440.0,
+            t60: 1.0,
+            level_db: 0.0,
+            phase,
+            uncertainty: Uncertainty { frequency: 0.01, t60: 0.01, level_db: 0.1, phase: uncertainty },
+            snr_db: 40.0,
+            channels: Vec::new(),
+        }
+    }
+
     #[test]
     fn modes_keep_their_phases_if_these_are_known() {
         for phase in [-3.0, -1.0, 0.0, 1.0, 2.5] {
-            let mode = |uncertainty| Mode {
-                frequency: 440.0,
-                t60: 1.0,
-                level_db: 0.0,
-                phase,
-                uncertainty: Uncertainty { frequency: 0.01, t60: 0.01, level_db: 0.1, phase: uncertainty },
-                snr_db: 40.0,
-                channels: Vec::new(),
-            };
-            let known = partial(&mode(0.1), 0.5, 0.0);
+            let known = partial(&mode(phase, 0.1), 0.5, 0.0);
             let played = [sin(known.phase), cos(known.phase)].map(|part| known.amplitude * part);
             let expected = [sin(phase), cos(phase)].map(|part| 0.5 * part);
             assert!((0..2).all(|n| fabs(played[n] - expected[n]) < 1e-12), "{phase}: {known:?}");
-            assert_eq!(partial(&mode(1.0), 0.5, 0.0).phase, 0.0);
+            assert_eq!(partial(&mode(phase, 1.0), 0.5, 0.0).phase, 0.0);
         }
     }
 

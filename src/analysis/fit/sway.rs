@@ -199,7 +199,7 @@ impl Course {
 }
 
 /// The oscillators that move a sound, and the sweep of its pitch beside them; none if they do not explain most of its movement.
-/// `tell` is called often, and ends the search by an error.
+/// `tell` is called often, and ends the search by returning `false`.
 pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> bool) -> Result<(Vec<Oscillator>, Sweep)> {
     let pitches = course::pitches(&take.mean);
     let mut pitch = Course::new(pitches.clone(), false, Vec::new());
@@ -234,7 +234,7 @@ pub(super) fn find(take: &Prepared, tell: &mut dyn FnMut() -> bool) -> Result<(V
 }
 
 /// The tremolo that explains a course of levels of tones in dB best, if it explains most of it. `tell` is called often, and ends the
-/// search by an error.
+/// search by returning `false`.
 pub(super) fn tremolo(levels: Vec<Point>, tell: &mut dyn FnMut() -> bool) -> Result<Option<Oscillator>> {
     let mut level = Course { fastest: FASTEST_OF_TONES, ..Course::new(levels, true, Vec::new()) };
     let is_found = level.points.len() >= FEWEST && level.add(tell)? && level.left() < (1.0 - WORTH_ALL) * level.squares;

@@ -4,6 +4,7 @@
 //! Makhoul 1975): for `M` modes, of `2M` samples. This is not so while a mallet or a burst of noise drives the modes.
 //! So the exciter still acts wherever the error of the best prediction is much larger than shortly after.
 
+use crate::analysis::level::energy;
 use nalgebra::{Cholesky, DMatrix};
 
 /// Number of samples from which the one before them is predicted.
@@ -46,7 +47,7 @@ pub(super) fn let_go(samples: &[f64], sample_rate: f64) -> usize {
         return 0;
     }
     let energies = |values: &[f64]| -> Vec<f64> {
-        values.chunks_exact(block).map(|block| block.iter().map(|x| x * x).sum::<f64>().max(1e-300)).collect()
+        values.chunks_exact(block).map(|block| energy(block, 0.0).max(1e-300)).collect()
     };
     let sound = energies(&samples[..blocks * block]);
     // After the end of the sound, only rounding errors are left.

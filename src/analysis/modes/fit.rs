@@ -5,6 +5,7 @@
 //! are sums of powers, which have a closed form.
 
 use super::pole::{Ladder, Pole, add, correlations};
+use crate::analysis::level;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use realfft::num_complex::Complex;
 
@@ -160,7 +161,7 @@ pub(super) struct Certainty {
 impl Fit {
     /// The best amplitudes for these poles. `None` if the equations cannot be solved.
     pub(super) fn new(samples: &[f64], poles: Vec<Pole>) -> Option<Self> {
-        let energy: f64 = samples.iter().map(|sample| sample * sample).sum();
+        let energy = level::energy(samples, 0.0);
         let mut all = poles.clone();
         all.push(Pole::CONSTANT);
         let (correlations, gram) = (correlations(samples, &all), Gram::new(&all, samples.len()));

@@ -5,6 +5,7 @@ use super::esprit::Band;
 use super::fit::Fit;
 use super::pole::{LN_60_DB, Pole, add};
 use super::prune::DETECTION;
+use crate::analysis::level;
 use libm::fabs;
 use realfft::num_complex::Complex;
 use std::f64::consts::PI;
@@ -141,7 +142,7 @@ fn band(pole: Pole, len: usize) -> Band {
 
 /// Number of samples after which almost nothing is left of a residual.
 fn heard(residual: &[f64]) -> usize {
-    let energy: f64 = residual.iter().map(|sample| sample * sample).sum();
+    let energy = level::energy(residual, 0.0);
     let mut rest = 0.0;
     let over = residual.iter().rposition(|sample| {
         rest += sample * sample;

@@ -8,6 +8,7 @@ use super::fit::{Certainty, Fit};
 use super::plausible::{Limits, implausible};
 use super::prune::{join, prune};
 use super::resolve::{Where, resolve};
+use crate::analysis::level;
 use crate::error::{Error, Result};
 
 /// Least share of the sound's energy that counts: rounding to single precision leaves as much.
@@ -52,7 +53,7 @@ pub(super) fn find(
         let message = "the equations of its modes cannot be solved: expected something that is struck and rings freely";
         Error::value("sound", message)
     };
-    let energy: f64 = samples.iter().map(|sample| sample * sample).sum();
+    let energy = level::energy(samples, 0.0);
     let least = LEAST_SHARE * energy;
     let planner = Planner::default();
     let pruned = |fit, go_on: &mut dyn FnMut() -> bool| prune(fit, samples, sample_rate, least, &planner, go_on);

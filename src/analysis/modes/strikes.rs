@@ -1,8 +1,7 @@
 //! Finds the strikes of a recording, and how long each can be analysed.
 
 use super::contact::let_go;
-use crate::analysis::level::offset;
-use libm::sqrt;
+use crate::analysis::level::{energy, offset, rms};
 
 /// Seconds of the steps whose energies are compared before and after an onset.
 const STEP: f64 = 0.005;
@@ -74,7 +73,7 @@ pub(super) fn strikes(samples: &[f64], sample_rate: f64, longest: f64) -> Vec<St
 fn onsets(samples: &[f64], sample_rate: f64) -> Vec<usize> {
     let step = ((STEP * sample_rate) as usize).max(1);
     let peak = samples.iter().fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
-    let energies: Vec<f64> = samples.chunks(step).map(|block| block.iter().map(|x| x * x).sum()).collect();
+    let energies: Vec<f64> = samples.chunks(step).map(|block| energy(block, 0.0)).collect();
     let (memory, apart) = ((MEMORY / STEP) as usize, (APART * sample_rate) as usize);
     let least = FAINT * FAINT * peak * peak * step as f64 * 0.1;
     // The level before the recording is unknown.
@@ -121,14 +120,10 @@ fn first_above(samples: &[f64], from: usize, step: usize, swell: usize) -> usize
 /// Where the energy first reaches half of its maximum within the time of contact: soon after, the modes ring freely.
 fn released(samples: &[f64], onset: usize, block: usize, contact: usize) -> usize {
     let end = (onset + contact).min(samples.len());
-    let energies: Vec<f64> = samples[onset..end].chunks(block).map(|block| block.iter().map(|x| x * x).sum()).collect();
+    let energies: Vec<f64> = samples[onset..end].chunks(block).map(|block| energy(block, 0.0)).collect();
     let most = energies.iter().fold(0.0_f64, |most, energy| most.max(*energy));
     let reached = energies.iter().position(|energy| *energy >= 0.5 * most).unwrap_or(0);
     onset + reached * block
-}
-
-fn rms(samples: &[f64]) -> f64 {
-    sqrt(samples.iter().map(|sample| sample * sample).sum::<f64>() / samples.len().max(1) as f64)
 }
 
 /// Level of the background noise; 0 if there is none, as in a strike that decays to the end.
