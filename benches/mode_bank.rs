@@ -66,7 +66,7 @@ fn control(criterion: &mut Criterion) {
         let mut bank = ModeBank::new(48_000.0);
         let mode = ModeSetup { frequency: 1000.0, t60: 1.0, left: 1.0, right: 1.0 };
         group.bench_function(BenchmarkId::new(level.name(), "load"), |bencher| {
-            bencher.iter(|| bank.load([mode; MAX_MODES].into_iter()));
+            bencher.iter(|| bank.load(&[mode; MAX_MODES].into_iter().collect()));
         });
         let StruckBank { mut bank, .. } = StruckBank::new(MAX_MODES, Work::Ringing);
         group.bench_function(BenchmarkId::new(level.name(), "settle"), |bencher| bencher.iter(|| bank.settle()));

@@ -27,6 +27,24 @@ fn render(patch: &Patch, events: &[Event], frames: usize) -> (Vec<f32>, Vec<f32>
 }
 
 #[test]
+fn samples_below_200_dbfs_are_silence() {
+    for (volume, limiter) in [(1e-4, 1.0), (1e-5, 0.0), (1e-10, 1.0), (1e-18, 1.0)] {
+        let patch = Patch::default().with(Param::Limiter, limiter).with(Param::Decay, 5.0);
+        let quiet =
+            event(0, EventKind::Express { notes: Notes::default(), expression: Expression::Volume, value: volume });
+        let events = [on(0, 69, 1.0), quiet];
+        let alone = render(&patch, &events, 9600);
+        let (mut left, mut right) = (vec![0.0; 9600], vec![0.0; 9600]);
+        Ensemble::new(48_000.0, 1, &patch, &[]).process(&events, &mut left, &mut right);
+        for samples in [alone.0, alone.1, left, right] {
+            let lowest = samples.iter().filter(|sample| **sample != 0.0).map(|sample| sample.abs()).fold(1.0, f32::min);
+            assert!(lowest >= 1e-10, "volume {volume}: {lowest}");
+            assert!(volume < 1e-9 || samples.iter().any(|sample| *sample != 0.0), "volume {volume}");
+        }
+    }
+}
+
+#[test]
 fn garbage_in_events_never_comes_out() {
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1e30, 1e30];
     let mut events = vec![];

@@ -2,7 +2,7 @@
 
 use sprung::dsp::CONTROL_FRAMES;
 use sprung::dsp::exciter::{BurstSetup, Drive, Exciter, Stroke};
-use sprung::dsp::mode_bank::{ExcitationGains, MAX_MODES, ModeBank, ModeSetup};
+use sprung::dsp::mode_bank::{ExcitationGains, ExcitationRows, MAX_MODES, ModeBank, ModeSetup};
 
 /// The kinds of work of a bank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,10 +40,9 @@ impl StruckBank {
     pub(crate) fn new(modes: usize, work: Work) -> Self {
         let mut bank = ModeBank::new(48_000.0);
         let mode = |m: usize| ModeSetup { frequency: 100.0 + 310.0 * m as f64, t60: 10_000.0, left: 1.0, right: 1.0 };
-        bank.load((0..modes).map(mode));
-        (0..modes).for_each(|m| {
-            bank.set_excitation_gains(m, ExcitationGains { push: 1.0, noise: 1.0, ..ExcitationGains::default() })
-        });
+        bank.load(&(0..modes).map(mode).collect());
+        let gains = ExcitationGains { push: 1.0, noise: 1.0, ..ExcitationGains::NONE };
+        bank.set_excitation_gains(&ExcitationRows::all(gains));
         let mut strike = Drive::NONE;
         strike.push[0] = 1.0;
         bank.sweep_to(1.0, CONTROL_FRAMES);

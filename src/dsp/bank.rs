@@ -2,7 +2,7 @@
 
 use super::exciter::{Bow, Drive};
 use super::mode_bank::exchange::{BANDS, Band, Exchange};
-use super::mode_bank::{ExcitationGains, MAX_MODES, ModeSetup};
+use super::mode_bank::{ExcitationRows, MAX_MODES, ModeRows};
 use super::{ClassicBank, ModeBank};
 
 /// Selects the formulas that turn pitch and decay into coefficients.
@@ -58,7 +58,7 @@ impl Bank {
     }
 
     /// See [`ModeBank::load`].
-    pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
+    pub fn load(&mut self, modes: &ModeRows) {
         either!(self, bank => bank.load(modes));
     }
 
@@ -73,8 +73,8 @@ impl Bank {
     }
 
     /// See [`ModeBank::set_excitation_gains`].
-    pub fn set_excitation_gains(&mut self, m: usize, gains: ExcitationGains) {
-        either!(self, bank => bank.set_excitation_gains(m, gains));
+    pub fn set_excitation_gains(&mut self, gains: &ExcitationRows) {
+        either!(self, bank => bank.set_excitation_gains(gains));
     }
 
     /// See [`ModeBank::set_bow_weight`]. Does nothing with the original formulas, which have no bow.

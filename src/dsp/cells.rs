@@ -8,7 +8,7 @@ use super::CONTROL_FRAMES;
 use super::bank::{Bank, Law};
 use super::exciter::{Bow, Drive};
 use super::mode_bank::tail::Energies;
-use super::mode_bank::{ExcitationGains, MAX_MODES, ModeSetup};
+use super::mode_bank::{ExcitationRows, MAX_MODES, ModeRows};
 
 /// Maximum number of cells of one voice.
 pub const MAX_CELLS: usize = 8;
@@ -20,7 +20,7 @@ pub struct Cell {
     ratios: [f64; MAX_MODES],
     t60_scales: [f64; MAX_MODES],
     /// Square of each mode's shape at the point of touch, 0–1.
-    touched: [f32; MAX_MODES],
+    touched: [f64; MAX_MODES],
     /// The band of each mode, for [`Cells::climb`].
     bands: [u8; MAX_MODES],
 }
@@ -84,35 +84,35 @@ impl Cells {
         self.cells.iter_mut().map_while(Option::as_deref_mut)
     }
 
-    /// Frequency of each mode as a multiple of the note's frequency. Write these before [`Cells::load`].
-    pub fn ratios_mut(&mut self) -> impl Iterator<Item = &mut f64> {
-        self.iter_mut().flat_map(|cell| &mut cell.ratios)
+    /// Frequency of each mode as a multiple of the note's frequency, a row for each cell. Write these before
+    /// [`Cells::load`].
+    pub fn ratios_mut(&mut self) -> impl Iterator<Item = &mut [f64; MAX_MODES]> {
+        self.iter_mut().map(|cell| &mut cell.ratios)
     }
 
-    /// T60 of each mode as a multiple of the note's decay. Write these before [`Cells::load`].
-    pub fn t60_scales_mut(&mut self) -> impl Iterator<Item = &mut f64> {
-        self.iter_mut().flat_map(|cell| &mut cell.t60_scales)
+    /// T60 of each mode as a multiple of the note's decay, a row for each cell. Write these before [`Cells::load`].
+    pub fn t60_scales_mut(&mut self) -> impl Iterator<Item = &mut [f64; MAX_MODES]> {
+        self.iter_mut().map(|cell| &mut cell.t60_scales)
     }
 
-    /// Square of each mode's shape at the point of touch, 0–1. Only the functions that are passed to
+    /// Square of each mode's shape at the point of touch, 0–1, a row for each cell. Only the functions that are passed to
     /// [`Cells::load`], [`Cells::retune`] and [`Cells::damp`] receive it.
-    pub fn touched_mut(&mut self) -> impl Iterator<Item = &mut f32> {
-        self.iter_mut().flat_map(|cell| &mut cell.touched)
+    pub fn touched_mut(&mut self) -> impl Iterator<Item = &mut [f64; MAX_MODES]> {
+        self.iter_mut().map(|cell| &mut cell.touched)
     }
 
-    /// Fills the cells with modes at rest. `setup` computes each from an item of `modes`, the mode's ratio, its T60 scale, and
-    /// its squared shape at the point of touch. Nothing remains of earlier modes.
+    /// Fills the cells with modes at rest. `setup` computes those of a cell from its part of `modes`, and from the rows of their
+    /// ratios, T60 scales and squared shapes at the point of touch. Nothing remains of earlier modes.
     pub fn load<T>(
         &mut self,
         law: Law,
         sample_rate: f64,
         modes: &[T],
-        setup: impl Fn(&T, f64, f64, f64) -> ModeSetup + Copy,
+        setup: impl Fn(&[T], [&[f64; MAX_MODES]; 3]) -> ModeRows,
     ) {
         for (Cell { bank, ratios, t60_scales, touched, .. }, modes) in self.iter_mut().zip(modes.chunks(MAX_MODES)) {
             bank.set_law(law, sample_rate);
-            let rows = modes.iter().zip(ratios).zip(t60_scales).zip(touched);
-            bank.load(rows.map(|(((mode, ratio), scale), touched)| setup(mode, *ratio, *scale, f64::from(*touched))));
+            bank.load(&setup(modes, [ratios, t60_scales, touched]));
         }
         self.len = self.iter().map(|cell| cell.bank.len()).sum();
     }
@@ -122,7 +122,7 @@ impl Cells {
     pub fn retune(&mut self, tuning: impl Fn(f64, f64, f64) -> (f64, f64) + Copy) {
         for Cell { bank, ratios, t60_scales, touched, .. } in self.iter_mut() {
             let rows = ratios.iter().zip(t60_scales).zip(touched);
-            bank.retune(rows.map(|((ratio, scale), touched)| tuning(*ratio, *scale, f64::from(*touched))));
+            bank.retune(rows.map(|((ratio, scale), touched)| tuning(*ratio, *scale, *touched)));
         }
     }
 
@@ -130,7 +130,7 @@ impl Cells {
     /// squared shape at the point of touch.
     pub fn damp(&mut self, t60: impl Fn(f64, f64) -> f64) {
         for Cell { bank, t60_scales, touched, .. } in self.iter_mut() {
-            (0..bank.len()).for_each(|m| bank.set_t60(m, t60(t60_scales[m], f64::from(touched[m]))));
+            (0..bank.len()).for_each(|m| bank.set_t60(m, t60(t60_scales[m], touched[m])));
         }
     }
 
@@ -144,10 +144,10 @@ impl Cells {
         self.len() == 0
     }
 
-    /// Like [`super::ModeBank::set_excitation_gains`]. Does nothing if there is no mode `m`.
-    pub fn set_excitation_gains(&mut self, m: usize, gains: ExcitationGains) {
-        if let Some(Some(cell)) = self.cells.get_mut(m / MAX_MODES) {
-            cell.bank.set_excitation_gains(m % MAX_MODES, gains);
+    /// Like [`super::ModeBank::set_excitation_gains`], for the modes of a cell. Does nothing if there is no such cell.
+    pub fn set_excitation_gains(&mut self, cell: usize, gains: &ExcitationRows) {
+        if let Some(Some(cell)) = self.cells.get_mut(cell) {
+            cell.bank.set_excitation_gains(gains);
         }
     }
 
@@ -211,7 +211,7 @@ impl Cells {
     pub fn modes(&self) -> impl Iterator<Item = (f64, f64, f64, f64)> {
         self.iter().flat_map(|cell| {
             let energy = |m| f64::from(cell.bank.mass(m).1);
-            let row = move |m| (cell.ratios[m], cell.t60_scales[m], f64::from(cell.touched[m]), energy(m));
+            let row = move |m| (cell.ratios[m], cell.t60_scales[m], cell.touched[m], energy(m));
             (0..cell.bank.len()).map(row)
         })
     }

@@ -2,10 +2,9 @@
 
 use super::coefficients::Coefficients;
 use super::exciter::Drive;
-use super::mode_bank::{ExcitationGains, MAX_MODES, ModeSetup};
+use super::mode_bank::{ExcitationGains, ExcitationRows, MAX_MODES, ModeRows};
 use super::simd::vector::{LANES, Partial, sum_frames};
 use super::{CONTROL_FRAMES, HarmonicOscillator};
-use libm::{cosf, sinf};
 use std::f64::consts::PI;
 
 /// The step is unstable above a certain angle. The angle is kept below this share of it.
@@ -72,7 +71,7 @@ impl Mode {
         push: [0.0; 2],
         pull: [0.0; 2],
         noise: 0.0,
-        gains: ExcitationGains { push: 0.0, pull: 0.0, noise: 0.0, phase: 0.0, turned_noise: false },
+        gains: ExcitationGains::NONE,
         unit_push: 0.0,
         asked: 0.0,
     };
@@ -146,11 +145,8 @@ impl Mode {
     /// Sets how strongly pulse and noise excite the mode.
     fn set_excitation_gains(&mut self, gains: ExcitationGains) {
         self.gains = gains;
+        let [cos, sin] = gains.turn;
         let turned = |velocity: f32, displacement: f32| {
-            if gains.phase == 0.0 {
-                return [velocity * self.unit_push, displacement];
-            }
-            let (sin, cos) = (sinf(gains.phase), cosf(gains.phase));
             [(velocity * cos - displacement * sin) * self.unit_push, displacement * cos + velocity * sin]
         };
         (self.push, self.pull) = (turned(gains.push, 0.0), turned(0.0, gains.pull));
@@ -183,11 +179,11 @@ impl ClassicBank {
     }
 
     /// Like [`super::ModeBank::load`].
-    pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
-        self.len = 0;
-        for (mode, ModeSetup { frequency, t60, left, right }) in self.modes.iter_mut().zip(modes) {
-            *mode = Mode { frequency, t60, left, right, ..Mode::REST };
-            self.len += 1;
+    pub fn load(&mut self, modes: &ModeRows) {
+        let ModeRows { frequency, t60, left, right, len } = modes;
+        self.len = (*len).min(MAX_MODES);
+        for (m, mode) in self.modes[..self.len].iter_mut().enumerate() {
+            *mode = Mode { frequency: frequency[m], t60: t60[m], left: left[m], right: right[m], ..Mode::REST };
         }
         self.retuned = true;
         self.jump_to(1.0);
@@ -204,9 +200,9 @@ impl ClassicBank {
     }
 
     /// Like [`super::ModeBank::set_excitation_gains`].
-    pub fn set_excitation_gains(&mut self, m: usize, gains: ExcitationGains) {
+    pub fn set_excitation_gains(&mut self, gains: &ExcitationRows) {
         self.tune();
-        self.modes[m].set_excitation_gains(gains);
+        self.modes().iter_mut().enumerate().for_each(|(m, mode)| mode.set_excitation_gains(gains.at(m)));
     }
 
     /// Like [`super::ModeBank::nudge`]; as with strikes, the original formulas give a high mode more than `amplitude`.

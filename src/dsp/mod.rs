@@ -16,6 +16,7 @@ pub mod power;
 pub mod ramp;
 pub mod random;
 pub mod real;
+pub(crate) mod series;
 #[allow(unsafe_code)]
 pub mod simd;
 pub mod space;

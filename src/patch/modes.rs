@@ -67,6 +67,8 @@ impl Mode {
 #[derive(Clone, Debug)]
 pub struct ModeTable {
     modes: Arc<[Mode]>,
+    /// Logarithm to base 2 of each mode's ratio.
+    octaves: Arc<[f64]>,
     /// Empty if all phases are 0.
     phases: Arc<[f32]>,
     origin: Option<Arc<str>>,
@@ -103,13 +105,19 @@ impl ModeTable {
     /// Allocates.
     pub fn new(modes: &[Mode]) -> Self {
         let modes = if modes.is_empty() { &[Mode::UNIT] } else { modes };
-        let modes = modes[..modes.len().min(MAX_MODES)].into();
-        Self { modes, phases: Arc::new([]), origin: None, by_key: None }
+        let modes: Arc<[Mode]> = modes[..modes.len().min(MAX_MODES)].into();
+        let octaves = modes.iter().map(|mode| log2(mode.ratio.into())).collect();
+        Self { modes, octaves, phases: Arc::new([]), origin: None, by_key: None }
     }
 
     /// The modes. If there is a table for each key, these are the modes of a middle key.
     pub fn as_slice(&self) -> &[Mode] {
         &self.modes
+    }
+
+    /// The logarithm to base 2 of each mode's ratio, so that a strike can compute powers of the ratios quickly.
+    pub fn octaves(&self) -> &[f64] {
+        &self.octaves
     }
 
     /// The table with a phase in radians for each mode: a strike starts mode `m` as `sin(ωt + phases[m])`. Missing phases

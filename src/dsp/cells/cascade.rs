@@ -14,7 +14,6 @@ use super::Cells;
 use crate::dsp::mode_bank::MAX_MODES;
 use crate::dsp::mode_bank::exchange::{BANDS, Band, Exchange};
 use crate::dsp::random;
-use libm::log2;
 use std::f64::consts::SQRT_2;
 
 /// Strength and speed of the cascade.
@@ -50,13 +49,18 @@ impl Cells {
     /// Sorts the modes into bands of half an octave by their ratios, the lowest first. Call it before [`Cells::climb`],
     /// after [`Cells::load`] and whenever ratios have changed. Real-time safe.
     pub fn sort_into_bands(&mut self) {
-        let ratios = self.iter().flat_map(|cell| &cell.ratios[..cell.bank.len()]);
-        let lowest = ratios.copied().fold(f64::INFINITY, f64::min);
+        // Several minima side by side, so that none waits for the one before.
+        let mut lowest = [f64::INFINITY; 8];
+        for cell in self.iter() {
+            for ratios in cell.ratios[..cell.bank.len()].chunks(lowest.len()) {
+                lowest.iter_mut().zip(ratios).for_each(|(lowest, ratio)| *lowest = lowest.min(*ratio));
+            }
+        }
+        let per_lowest = 1.0 / lowest.into_iter().fold(f64::INFINITY, f64::min);
         for cell in self.iter_mut() {
             let len = cell.bank.len();
             for (band, ratio) in cell.bands.iter_mut().zip(&cell.ratios[..len]) {
-                // A whole number of half octaves; rounding up or down at the edge of a band does not matter.
-                *band = (2.0 * log2(ratio / lowest)).min((BANDS - 1) as f64) as u8;
+                *band = half_octaves((ratio * per_lowest).max(1.0)).min(BANDS as u64 - 1) as u8;
             }
         }
     }
@@ -78,6 +82,15 @@ impl Cells {
             cell.bank.exchange(&cell.bands, &exchange, sign);
         }
     }
+}
+
+/// The whole number of half octaves of a ratio of at least 1. Rounding up or down at the edge of a band does not matter.
+fn half_octaves(ratio: f64) -> u64 {
+    const MANTISSA_BITS: u32 = f64::MANTISSA_DIGITS - 1;
+    let octaves = (ratio.to_bits() >> MANTISSA_BITS) - (1.0_f64.to_bits() >> MANTISSA_BITS);
+    // Of numbers of one octave, the greater one has the greater bits.
+    let is_upper_half = ratio.to_bits() << 12 >= SQRT_2.to_bits() << 12;
+    2 * octaves + u64::from(is_upper_half)
 }
 
 /// Computes the fraction that each band keeps, and the energy that each of its modes receives.

@@ -5,7 +5,7 @@ use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::bank::Law;
 use crate::dsp::cells::Cell;
 use crate::dsp::exciter::Drive;
-use crate::dsp::mode_bank::{ExcitationGains, ModeSetup};
+use crate::dsp::mode_bank::{ExcitationRows, ModeSetup};
 use crate::dsp::random::{key, uniform};
 
 const RATE: f64 = 48_000.0;
@@ -14,11 +14,16 @@ const RATE: f64 = 48_000.0;
 fn struck(ratios: &[f64], amplitudes: &[f32], t60: f64, law: Law) -> Cells {
     let mut cells = Cells::EMPTY;
     (0..Cells::count_for(ratios.len())).for_each(|_| assert!(cells.add(Box::new(Cell::new(RATE))).is_none()));
-    cells.ratios_mut().zip(ratios).for_each(|(to, ratio)| *to = *ratio);
-    let setup = |_: &f64, ratio: f64, _: f64, _: f64| ModeSetup { frequency: 60.0 * ratio, t60, left: 1.0, right: 1.0 };
+    cells.ratios_mut().flatten().zip(ratios).for_each(|(to, ratio)| *to = *ratio);
+    let setup = |modes: &[f64], _: [&[f64; MAX_MODES]; 3]| {
+        let setup = |ratio: &f64| ModeSetup { frequency: 60.0 * ratio, t60, left: 1.0, right: 1.0 };
+        modes.iter().map(setup).collect()
+    };
     cells.load(law, RATE, ratios, setup);
-    for (m, push) in amplitudes.iter().enumerate() {
-        cells.set_excitation_gains(m, ExcitationGains { push: *push, ..ExcitationGains::default() });
+    for (cell, amplitudes) in amplitudes.chunks(MAX_MODES).enumerate() {
+        let mut gains = ExcitationRows::NONE;
+        gains.push[..amplitudes.len()].copy_from_slice(amplitudes);
+        cells.set_excitation_gains(cell, &gains);
     }
     cells.sort_into_bands();
     let mut drive = Drive::NONE;

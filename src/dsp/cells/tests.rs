@@ -1,6 +1,7 @@
 //! Several cells compared with single banks, and used cells compared with new ones.
 
 use super::*;
+use crate::dsp::mode_bank::ModeSetup;
 use crate::dsp::random::{key, uniform};
 
 const RATE: f64 = 48_000.0;
@@ -9,19 +10,24 @@ const RATE: f64 = 48_000.0;
 fn body(cells: &mut Cells, law: Law, modes: usize, seed: u64) {
     let unit = |m: usize, n: u64| f64::from(uniform(key(seed, n), m as u64)) * 0.5 + 0.5;
     let ratios: Vec<f64> = (0..modes).map(|m| 0.5 + 40.0 * unit(m, 0)).collect();
-    cells.ratios_mut().zip(&ratios).for_each(|(to, ratio)| *to = *ratio);
-    cells.t60_scales_mut().take(modes).enumerate().for_each(|(m, to)| *to = 0.05 + unit(m, 1));
+    cells.ratios_mut().flatten().zip(&ratios).for_each(|(to, ratio)| *to = *ratio);
+    cells.t60_scales_mut().flatten().take(modes).enumerate().for_each(|(m, to)| *to = 0.05 + unit(m, 1));
     let pans: Vec<f32> = (0..modes).map(|m| unit(m, 2) as f32).collect();
-    let setup = |pan: &f32, ratio: f64, scale: f64, _: f64| ModeSetup {
-        frequency: 200.0 * ratio,
-        t60: scale,
-        left: *pan,
-        right: 1.0,
+    let setup = |pans: &[f32], [ratios, scales, _]: [&[f64; MAX_MODES]; 3]| {
+        let rows = pans.iter().zip(ratios).zip(scales);
+        let setup = |((pan, ratio), scale): ((&f32, &f64), &f64)| ModeSetup {
+            frequency: 200.0 * ratio,
+            t60: *scale,
+            left: *pan,
+            right: 1.0,
+        };
+        rows.map(setup).collect()
     };
     cells.load(law, RATE, &pans, setup);
-    for m in 0..modes {
-        let gains = ExcitationGains { push: unit(m, 3) as f32, pull: 0.1, ..ExcitationGains::default() };
-        cells.set_excitation_gains(m, gains);
+    for cell in 0..Cells::count_for(modes) {
+        let push = std::array::from_fn(|m| unit(cell * MAX_MODES + m, 3) as f32);
+        let gains = ExcitationRows { push, pull: [0.1; MAX_MODES], ..ExcitationRows::NONE };
+        cells.set_excitation_gains(cell, &gains);
     }
 }
 
@@ -81,8 +87,8 @@ fn many_cells_are_the_sum_of_each_by_itself() {
         // The same modes, but those of the other cells are not excited.
         let mut part = cells(8);
         body(&mut part, Law::Exact, 500, 7);
-        let others = (0..500).filter(|m| m / MAX_MODES != cell);
-        others.for_each(|m| part.set_excitation_gains(m, ExcitationGains::default()));
+        let others = (0..8).filter(|other| *other != cell);
+        others.for_each(|other| part.set_excitation_gains(other, &ExcitationRows::NONE));
         let (samples, energy, _) = play(&mut part, 40);
         sum.iter_mut().zip(samples).for_each(|(sum, bits)| *sum += f64::from(f32::from_bits(bits)));
         energies += energy;

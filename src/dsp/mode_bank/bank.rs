@@ -5,14 +5,13 @@ use super::ring::Ring;
 use super::rows::{Form, Modes, Moving, Output, Row, State, Wide};
 use super::step::Step;
 use super::table::{Build, Table};
-use super::tuning::{Aim, ChordLoss, Settle, Tune, Tuning, UNIT};
-use super::{ExcitationGains, LEAST_LN_RADIUS, MAX_MODES, MOST_LN_RADIUS, ModeSetup};
+use super::tuning::{Aim, ChordLoss, Displace, Settle, Tune, Tuning, UNIT};
+use super::{ExcitationRows, LEAST_LN_RADIUS, MAX_MODES, MOST_LN_RADIUS, ModeRows};
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
 use crate::dsp::exciter::{Bow, Drive};
 use crate::dsp::simd::vector::LANES;
 use crate::dsp::simd::{Instructions, Level};
-use libm::{cosf, sinf};
 
 /// The bank makes tables after free ringing at one pitch for one control tick per this many modes. With few modes, the
 /// tables save the time that they cost within one tick, with 64 modes within about eight.
@@ -47,6 +46,10 @@ pub struct ModeBank {
     retuned: bool,
     /// Whether `tuning` has new T60s that the coefficients do not use yet.
     damped: bool,
+    /// Whether the displaced states in `tuning` are those of the present frequencies and T60s.
+    displaced: bool,
+    /// Whether the coefficients have been computed since the modes were loaded.
+    aimed: bool,
     /// Frames until the next control tick.
     until_tick: usize,
     motion: Motion,
@@ -94,6 +97,8 @@ impl ModeBank {
             ratio: 1.0,
             retuned: false,
             damped: false,
+            displaced: false,
+            aimed: true,
             until_tick: 0,
             motion: Motion::Still { ticks: 0 },
             states: [State::REST; 2],
@@ -112,19 +117,19 @@ impl ModeBank {
         self.instructions.level()
     }
 
-    /// Fills the bank with modes at rest, at a pitch ratio of 1. Modes beyond [`MAX_MODES`] are ignored. Nothing
-    /// remains of what the bank played before: it gives the same bits as a new one.
-    pub fn load(&mut self, modes: impl Iterator<Item = ModeSetup>) {
+    /// Fills the bank with modes at rest, at a pitch ratio of 1. Nothing remains of what the bank played before: it gives the
+    /// same bits as a new one.
+    pub fn load(&mut self, modes: &ModeRows) {
         self.instructions = Instructions::current();
-        (self.len, self.stereo, self.turned_noise, self.faded) = (0, false, false, false);
         // Resets both states, since they swap roles after each tick that is rendered by tables.
         (self.states, self.motion) = ([State::REST; 2], Motion::Still { ticks: 0 });
-        for (m, mode) in modes.take(MAX_MODES).enumerate() {
-            self.len = m + 1;
-            (self.gains[0].0[m], self.gains[1].0[m]) = (mode.left, mode.right);
-            self.stereo |= mode.left != 1.0 || mode.right != 1.0;
-            self.half_angle[m] = 0.5 * angle_from_frequency(mode.frequency, self.sample_rate);
-            self.set_t60(m, mode.t60);
+        self.gains = [Row(modes.left), Row(modes.right)];
+        self.len = modes.len.min(MAX_MODES);
+        self.stereo = modes.left[..self.len].iter().chain(&modes.right[..self.len]).any(|gain| *gain != 1.0);
+        (self.turned_noise, self.faded) = (false, false);
+        for m in 0..self.len {
+            self.half_angle[m] = 0.5 * angle_from_frequency(modes.frequency[m], self.sample_rate);
+            self.ln_radius[m] = ln_radius(modes.t60[m], self.sample_rate);
         }
         [self.modes.left, self.modes.right] = self.gains;
         [self.modes.left_step, self.modes.right_step] = [Row::ZERO; 2];
@@ -137,7 +142,9 @@ impl ModeBank {
             self.tuning.shrink.0[m] = 0.0;
         }
         self.live = self.len;
-        self.jump_to(1.0);
+        (self.ratio, self.until_tick) = (1.0, 0);
+        // The coefficients are computed when they are needed, since a note jumps to its own pitch first.
+        (self.retuned, self.displaced, self.aimed) = (true, false, false);
     }
 
     /// Number of modes.
@@ -150,22 +157,34 @@ impl ModeBank {
         self.len == 0
     }
 
-    /// Sets how strongly the pulse and noise excite mode `m`.
-    pub fn set_excitation_gains(&mut self, m: usize, gains: ExcitationGains) {
-        self.tune();
-        let turned = |x: f32, y: f32| {
-            if gains.phase == 0.0 {
-                return (x, y);
+    /// Sets how strongly the pulse and noise excite the modes.
+    pub fn set_excitation_gains(&mut self, gains: &ExcitationRows) {
+        let ExcitationRows { push, pull, noise, turn: [cos, sin], turned_noise } = gains;
+        let is_plucked = pull[..self.len].iter().any(|pull| *pull != 0.0);
+        if is_plucked && !std::mem::replace(&mut self.displaced, true) {
+            let Self { tuning, ln_radius, half_angle, len, .. } = self;
+            self.instructions.run(Displace { tuning, ln_radius, half_angle, len: *len });
+        }
+        let (Modes { push_x, push_y, pull_x, pull_y, noise_x, noise: noise_y, .. }, tuning) =
+            (&mut self.modes, &self.tuning);
+        for m in 0..self.len {
+            (push_x.0[m], push_y.0[m]) = (push[m] * sin[m], push[m] * cos[m]);
+            (noise_x.0[m], noise_y.0[m]) = (0.0, noise[m]);
+        }
+        if is_plucked {
+            for m in 0..self.len {
+                let (x, y) = (pull[m] * tuning.pull_x.0[m], pull[m] * tuning.pull_y.0[m]);
+                (pull_x.0[m], pull_y.0[m]) = (x * cos[m] + y * sin[m], y * cos[m] - x * sin[m]);
             }
-            let (sin, cos) = (sinf(gains.phase), cosf(gains.phase));
-            (x * cos + y * sin, y * cos - x * sin)
-        };
-        let pulled = turned(gains.pull * self.tuning.pull_x.0[m], gains.pull * self.tuning.pull_y.0[m]);
-        (self.modes.push_x.0[m], self.modes.push_y.0[m]) = turned(0.0, gains.push);
-        (self.modes.pull_x.0[m], self.modes.pull_y.0[m]) = pulled;
-        let noise = if gains.turned_noise { turned(0.0, gains.noise) } else { (0.0, gains.noise) };
-        (self.modes.noise_x.0[m], self.modes.noise.0[m]) = noise;
-        self.turned_noise |= noise.0 != 0.0;
+        } else {
+            (*pull_x, *pull_y) = (Row::ZERO, Row::ZERO);
+        }
+        if *turned_noise {
+            for m in 0..self.len {
+                (noise_x.0[m], noise_y.0[m]) = (noise[m] * sin[m], noise[m] * cos[m]);
+            }
+            self.turned_noise = true;
+        }
     }
 
     /// Adds velocity to mode `m` in the direction in which it moves: its amplitude grows by `amplitude` at most, and the output
@@ -192,8 +211,8 @@ impl ModeBank {
     /// Changes the T60 of mode `m` to `t60` seconds, at once. Follow with [`ModeBank::sweep_to`].
     pub fn set_t60(&mut self, m: usize, t60: f64) {
         self.leave_tables();
-        self.ln_radius[m] = (LN_MINUS_60_DB / (t60 * self.sample_rate)).clamp(LEAST_LN_RADIUS, MOST_LN_RADIUS);
-        self.retuned = true;
+        self.ln_radius[m] = ln_radius(t60, self.sample_rate);
+        (self.retuned, self.displaced) = (true, false);
     }
 
     /// Gives the modes, in their order, new frequencies in Hz and T60s in seconds while they ring. The pitch does not
@@ -218,6 +237,9 @@ impl ModeBank {
     /// the next control tick, when this must be called again.
     pub fn sweep_to(&mut self, ratio: f64, frames: usize) {
         let frames = frames.max(1);
+        if !self.aimed {
+            self.jump_to(self.ratio);
+        }
         let same = ratio == self.ratio && !self.retuned && !self.damped;
         match self.motion {
             Motion::Still { ticks } if same => {
@@ -243,7 +265,7 @@ impl ModeBank {
     pub fn jump_to(&mut self, ratio: f64) {
         self.leave_tables();
         self.tune();
-        (self.ratio, self.until_tick) = (ratio, 0);
+        (self.ratio, self.until_tick, self.aimed) = (ratio, 0, true);
         self.aim(None, [0, 0], None);
     }
 
@@ -407,6 +429,11 @@ impl ModeBank {
         self.live = self.live.next_multiple_of(LANES).min(self.len);
         f64::from(total) * f64::from(UNIT) * f64::from(UNIT)
     }
+}
+
+/// The logarithm of the factor by which the amplitude falls per frame.
+fn ln_radius(t60: f64, sample_rate: f64) -> f64 {
+    (LN_MINUS_60_DB / (t60 * sample_rate)).clamp(LEAST_LN_RADIUS, MOST_LN_RADIUS)
 }
 
 #[cfg(test)]

@@ -44,12 +44,19 @@ impl ModeBank {
     /// Adds the energies of the modes to those of their bands.
     pub(in crate::dsp) fn add_energies(&self, bands: &[u8; MAX_MODES], sums: &mut [Band; BANDS]) {
         let state = &self.states[self.current];
+        // Most modes belong to the same band as the mode before; so the sum stays in a register until the band changes.
+        let (mut place, mut sum) = (0, sums[0]);
         for (m, band) in bands[..self.len].iter().enumerate() {
+            let band = usize::from(*band) % BANDS;
+            if band != place {
+                sums[place] = sum;
+                (place, sum) = (band, sums[band]);
+            }
             let (x, y) = (f64::from(state.x.0[m]), f64::from(state.y.0[m]));
-            let sum = &mut sums[usize::from(*band) % BANDS];
             sum.energy += x * x + y * y;
             sum.modes += 1;
         }
+        sums[place] = sum;
     }
 
     /// The squared amplitude of each mode, without rounding errors of single precision.

@@ -2,7 +2,7 @@
 
 use crate::dsp::CONTROL_FRAMES;
 use crate::dsp::exciter::{Bow, Drive};
-use crate::dsp::mode_bank::{ExcitationGains, MAX_MODES, ModeBank, ModeSetup};
+use crate::dsp::mode_bank::{ExcitationGains, ExcitationRows, MAX_MODES, ModeBank, ModeSetup};
 use crate::dsp::random::{key, uniform};
 
 const RATE: f64 = 48_000.0;
@@ -27,13 +27,13 @@ fn bank(stream: &mut Stream) -> ModeBank {
             ModeSetup { frequency, t60, left: 1.0, right: 0.5 }
         })
         .collect();
-    bank.load(modes.into_iter());
+    bank.load(&modes.into_iter().collect());
     let weights: Vec<f64> = (0..bank.len()).map(|_| 2.0 * stream.next() - 1.0).collect();
     let scale = 1.0 / libm::sqrt(weights.iter().map(|weight| weight * weight).sum::<f64>());
     for (m, weight) in weights.iter().enumerate() {
         bank.set_bow_weight(m, (weight * scale) as f32);
-        bank.set_excitation_gains(m, ExcitationGains { push: 1.0, ..ExcitationGains::default() });
     }
+    bank.set_excitation_gains(&ExcitationRows::all(ExcitationGains { push: 1.0, ..ExcitationGains::NONE }));
     bank
 }
 
@@ -90,7 +90,7 @@ fn friction_pulls_towards_the_speed_of_the_bow() {
 #[test]
 fn a_bowed_mode_rings_for_as_long_as_it_is_bowed() {
     let mut bank = ModeBank::new(RATE);
-    bank.load([ModeSetup { frequency: 440.0, t60: 2.0, left: 1.0, right: 1.0 }].into_iter());
+    bank.load(&[ModeSetup { frequency: 440.0, t60: 2.0, left: 1.0, right: 1.0 }].into_iter().collect());
     bank.set_bow_weight(0, 1.0);
     let bow = Bow { speed: [0.5, 0.0], force: [0.02, 0.0], passed: 0, width: 0.2 };
     let mut rms = vec![];

@@ -49,8 +49,36 @@ pub struct ModeSetup {
     pub right: f32,
 }
 
+/// The modes of a bank, a row for each field of [`ModeSetup`].
+#[derive(Clone, Copy, Debug)]
+pub struct ModeRows {
+    /// As [`ModeSetup::frequency`].
+    pub frequency: [f64; MAX_MODES],
+    /// As [`ModeSetup::t60`].
+    pub t60: [f64; MAX_MODES],
+    /// As [`ModeSetup::left`].
+    pub left: [f32; MAX_MODES],
+    /// As [`ModeSetup::right`].
+    pub right: [f32; MAX_MODES],
+    /// Number of modes, at most [`MAX_MODES`]. Numbers beyond them are not used.
+    pub len: usize,
+}
+
+impl FromIterator<ModeSetup> for ModeRows {
+    /// Modes beyond [`MAX_MODES`] are ignored.
+    fn from_iter<I: IntoIterator<Item = ModeSetup>>(modes: I) -> Self {
+        let (wide, gains) = ([1.0; MAX_MODES], [1.0; MAX_MODES]);
+        let mut rows = Self { frequency: wide, t60: wide, left: gains, right: gains, len: 0 };
+        for (m, mode) in modes.into_iter().take(MAX_MODES).enumerate() {
+            (rows.frequency[m], rows.t60[m]) = (mode.frequency, mode.t60);
+            (rows.left[m], rows.right[m], rows.len) = (mode.left, mode.right, m + 1);
+        }
+        rows
+    }
+}
+
 /// How strongly the pulse and noise excite one mode.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct ExcitationGains {
     /// Amplitude after a pulse of unit area that pushes the mass (a strike).
     pub push: f32,
@@ -58,8 +86,43 @@ pub struct ExcitationGains {
     pub pull: f32,
     /// Expected amplitude after a noise burst of unit force.
     pub noise: f32,
-    /// Phase advance in radians of the response to pulses; the amplitude does not change.
-    pub phase: f32,
-    /// Whether the response to noise has the phase as well, because the phase belongs to the body and not only to a pulse.
+    /// Cosine and sine of the phase advance of the response to pulses; the amplitude does not change.
+    pub turn: [f32; 2],
+}
+
+impl ExcitationGains {
+    /// No excitation.
+    pub const NONE: Self = Self { push: 0.0, pull: 0.0, noise: 0.0, turn: [1.0, 0.0] };
+}
+
+/// The excitation gains of the modes of a bank, a row for each.
+#[derive(Clone, Copy, Debug)]
+pub struct ExcitationRows {
+    /// As [`ExcitationGains::push`].
+    pub push: [f32; MAX_MODES],
+    /// As [`ExcitationGains::pull`].
+    pub pull: [f32; MAX_MODES],
+    /// As [`ExcitationGains::noise`].
+    pub noise: [f32; MAX_MODES],
+    /// As [`ExcitationGains::turn`].
+    pub turn: [[f32; MAX_MODES]; 2],
+    /// Whether the response to noise has the phases as well, because they belong to the body and not only to a pulse.
     pub turned_noise: bool,
+}
+
+impl ExcitationRows {
+    /// No excitation.
+    pub const NONE: Self = Self::all(ExcitationGains::NONE);
+
+    /// The same gains for all modes. Noise has no phase.
+    pub const fn all(ExcitationGains { push, pull, noise, turn: [cos, sin] }: ExcitationGains) -> Self {
+        let [push, pull, noise] = [[push; MAX_MODES], [pull; MAX_MODES], [noise; MAX_MODES]];
+        Self { push, pull, noise, turn: [[cos; MAX_MODES], [sin; MAX_MODES]], turned_noise: false }
+    }
+
+    /// The gains of mode `m`.
+    pub fn at(&self, m: usize) -> ExcitationGains {
+        let Self { push, pull, noise, turn: [cos, sin], .. } = self;
+        ExcitationGains { push: push[m], pull: pull[m], noise: noise[m], turn: [cos[m], sin[m]] }
+    }
 }

@@ -8,7 +8,8 @@
 
 use super::MAX_MODES;
 use super::rows::{Row, Wide};
-use super::tuning::{below_top, expm1_of_radius, sin_to_right_angle};
+use super::tuning::below_top;
+use crate::dsp::series::{expm1_of_radius, sin_to_right_angle};
 use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::Vector;
 

@@ -3,6 +3,7 @@
 use super::MAX_MODES;
 use super::rows::{Modes, Row, State, Wide};
 use crate::dsp::CONTROL_FRAMES;
+use crate::dsp::series::{expm1_of_radius, sin_to_right_angle};
 use crate::dsp::simd::Kernel;
 use crate::dsp::simd::vector::{LANES, Partial, Vector};
 use std::f64::consts::PI;
@@ -24,7 +25,7 @@ pub(super) struct Tuning {
     damped_radius: Wide,
     /// `1 − radius / damped_radius`.
     pub(super) shrink: Row,
-    /// The state of unit amplitude in which the mass is displaced and at rest.
+    /// The state of unit amplitude in which the mass is displaced and at rest; see [`Displace`].
     pub(super) pull_x: Row,
     pub(super) pull_y: Row,
 }
@@ -72,7 +73,27 @@ impl Kernel for Tune<'_> {
             tuning.shrink.0[m] = (1.0 - radius / tuning.damped_radius[m]) as f32;
             tuning.loss.0[m] = loss as f32;
             tuning.half_angle.0[m] = half_angle[m] as f32;
+        }
+    }
+}
 
+/// Computes the state in which each mass is displaced and at rest, after [`Tune`]. Only plucks need it.
+pub(super) struct Displace<'a> {
+    pub(super) tuning: &'a mut Tuning,
+    pub(super) ln_radius: &'a Wide,
+    pub(super) half_angle: &'a Wide,
+    pub(super) len: usize,
+}
+
+impl Kernel for Displace<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self, _: V::Proof) {
+        let Self { tuning, ln_radius, half_angle, len } = self;
+        for m in 0..len.min(MAX_MODES) {
+            let loss = -expm1_of_radius(ln_radius[m]);
+            let radius = 1.0 - loss;
             // A mass displaced by sin θ / ω has unit amplitude; see `Coefficients::energy`. Its displacement one frame
             // later is x (1 − ω²) and also Re z · x + Im z · y, which gives y.
             let half_chord = sin_to_right_angle(below_top(half_angle[m]));
@@ -302,32 +323,6 @@ const REST: f32 = 1e-20;
 pub(super) fn below_top(half_angle: f64) -> f64 {
     let top = 0.5 * TOP_ANGLE;
     if half_angle < top { half_angle } else { top }
-}
-
-/// `r − 1` from `ln r`, for −1.8 ≤ ln r ≤ 0.
-#[inline(always)]
-pub(super) fn expm1_of_radius(ln_radius: f64) -> f64 {
-    // Computed for a quarter of `ln r`; then (1+u)² − 1 = u (2+u), twice. No digits are lost for r close to 1.
-    let y = 0.25 * ln_radius;
-    let mut sum = 1.0;
-    // The series of (e^y − 1)/y. The first omitted term is below 1e−16 of the sum.
-    for n in [13.0, 12.0, 11.0, 10.0, 9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0] {
-        sum = 1.0 + sum * y * (1.0 / n);
-    }
-    let u = sum * y;
-    let u = u * (2.0 + u);
-    u * (2.0 + u)
-}
-
-/// `sin x` for 0 ≤ x ≤ π/2, from its series, with an error below 5e−15.
-#[inline(always)]
-pub(super) fn sin_to_right_angle(x: f64) -> f64 {
-    let x2 = x * x;
-    let mut sum = 1.0;
-    for n in [18.0_f64, 16.0, 14.0, 12.0, 10.0, 8.0, 6.0, 4.0, 2.0] {
-        sum = 1.0 - sum * x2 * (1.0 / (n * (n + 1.0)));
-    }
-    sum * x
 }
 
 /// `sin x` for 0 ≤ x ≤ π/2 in single precision: the series up to x¹¹, with an error below 1.3e−7.

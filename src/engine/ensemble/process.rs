@@ -5,7 +5,7 @@ use super::choke::Playing;
 use super::chunk::Chunk;
 use super::part::Part;
 use crate::engine::Event;
-use crate::engine::synth::part;
+use crate::engine::synth::{part, silence_inaudible};
 use crate::engine::zones::Owners;
 
 /// The end of a chunk, and its reason.
@@ -97,7 +97,8 @@ impl Ensemble {
             if self.gain != 1.0 && (is_heard || rings) {
                 left.iter_mut().chain(&mut *right).for_each(|sample| *sample *= self.gain);
             }
-            self.limiter.process(&chunk, is_heard || rings, [left, right]);
+            self.limiter.process(&chunk, is_heard || rings, [&mut *left, &mut *right]);
+            silence_inaudible(left, right);
             (events, start) = (later, cut.end);
             match cut.cause {
                 Cause::Length if cut.end == frames => break,

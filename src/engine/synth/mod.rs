@@ -21,7 +21,7 @@ use channels::Channels;
 use instruments::{DEFAULT_BEAT_RATE, Instruments};
 use std::sync::Arc;
 
-pub(super) use process::{flush, part};
+pub(super) use process::{flush, part, silence_inaudible};
 
 /// Sample rates that the engine runs at, in Hz.
 pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;

@@ -34,6 +34,7 @@ impl Synth {
         if is_heard || !self.limiter.is_idle() {
             let limiter = self.values().choice::<params::Limiter>(Param::Limiter);
             self.limiter.process(limiter == params::Limiter::On, left, right);
+            silence_inaudible(left, right);
         }
     }
 
@@ -123,6 +124,16 @@ impl Synth {
 /// The samples of an input from `start` up to, but not including, `end`. Shorter if the input ends earlier.
 pub(in crate::engine) fn part(input: &[f32], start: usize, end: usize) -> &[f32] {
     &input[start.min(input.len())..end.min(input.len())]
+}
+
+/// Below this amplitude, −200 dBFS, samples at the output are 0.
+const INAUDIBLE: f32 = 1e-10;
+
+/// Replaces inaudible samples at the output by silence. What follows, be it a host's effect, must not get numbers that are
+/// nearly subnormal. Samples that are not a number stay.
+pub(in crate::engine) fn silence_inaudible(left: &mut [f32], right: &mut [f32]) {
+    let silence = |sample: &mut f32| *sample = if sample.abs() < INAUDIBLE { 0.0 } else { *sample };
+    left.iter_mut().chain(right).for_each(silence);
 }
 
 /// Replaces subnormal numbers in both slices.

@@ -1,13 +1,13 @@
 //! The decay of a note's modes, with the damper and a touch of the body.
 
-use super::values::StruckValues;
+use super::values::{StruckValues, ratios};
 use crate::dsp::cells::Cells;
+use crate::dsp::mode_bank::MAX_MODES;
+use crate::dsp::series::{powers, sines};
 use crate::engine::controls::Controls;
 use crate::engine::damping::Damping;
 use crate::params::{NoteOff, Param};
-use crate::patch::Mode;
-use libm::{pow, sin};
-use std::f64::consts::PI;
+use crate::patch::ModeTable;
 
 /// T60 in seconds under the firmest touch, for a mode whose motion is largest at the point of touch.
 const FIRMEST_TOUCH: f64 = 0.02;
@@ -34,7 +34,7 @@ impl Decay {
     /// Reads decay, tilt and touch from the patch, as modulated at the strike.
     pub(super) fn read(&mut self, values: &StruckValues, controls: &Controls, bank: &mut Cells) {
         let tilt = values.moved(Param::DecayTilt, controls.decay_tilt);
-        let modes = values.modes().as_slice();
+        let modes = values.modes();
         self.set_tilt(tilt, modes, bank);
         let touch = touch_rate(0.01 * values.moved(Param::Touch, 100.0 * controls.touch));
         self.place = None;
@@ -45,21 +45,26 @@ impl Decay {
     }
 
     /// Sets each mode's T60 as a multiple of the decay. With a positive tilt, higher modes decay faster.
-    fn set_tilt(&mut self, tilt: f64, modes: &[Mode], bank: &mut Cells) {
+    fn set_tilt(&mut self, tilt: f64, modes: &ModeTable, bank: &mut Cells) {
         self.tilt = tilt;
-        for (scale, mode) in bank.t60_scales_mut().zip(modes) {
-            let tilted = if tilt == 0.0 { 1.0 } else { pow(mode.ratio.into(), -tilt) };
-            *scale = f64::from(mode.decay) * tilted;
+        let rows = modes.as_slice().chunks(MAX_MODES).zip(modes.octaves().chunks(MAX_MODES));
+        for (scales, (modes, octaves)) in bank.t60_scales_mut().zip(rows) {
+            if tilt == 0.0 {
+                scales.fill(1.0);
+            } else {
+                powers(octaves, -tilt, scales);
+            }
+            scales.iter_mut().zip(modes).for_each(|(scale, mode)| *scale *= f64::from(mode.decay));
         }
     }
 
     /// Sets the squared mode shapes at a point, which is a fraction of the body's length. The shape is a standing wave, as for
     /// pluck and bow.
-    fn set_place(&mut self, place: f64, modes: &[Mode], bank: &mut Cells) {
+    fn set_place(&mut self, place: f64, modes: &ModeTable, bank: &mut Cells) {
         self.place = Some(place);
-        for (touched, mode) in bank.touched_mut().zip(modes) {
-            let shape = sin(PI * place * f64::from(mode.ratio));
-            *touched = (shape * shape) as f32;
+        for (touched, modes) in bank.touched_mut().zip(modes.as_slice().chunks(MAX_MODES)) {
+            sines(&ratios(modes), place, 0.0, touched);
+            touched.iter_mut().for_each(|shape| *shape *= *shape);
         }
     }
 
@@ -84,7 +89,7 @@ impl Decay {
     pub(super) fn control<'a>(
         &mut self,
         controls: &Controls,
-        modes: impl Fn() -> Option<&'a [Mode]>,
+        modes: impl Fn() -> Option<&'a ModeTable>,
         bank: &mut Cells,
     ) -> bool {
         let tilted = if controls.decay_tilt == self.tilt { None } else { modes() };

@@ -146,7 +146,7 @@ impl SynthVoice {
         }
 
         let table = self.table;
-        let modes = || instrument.map(|instrument| instrument.sound.patch().modes.at(table).as_slice());
+        let modes = || instrument.map(|instrument| instrument.sound.patch().modes.at(table));
         if self.decay.control(&self.controls, modes, &mut self.bank) {
             self.energy.forget_end();
         }
@@ -234,8 +234,12 @@ impl SynthVoice {
         self.bank.sweep_to(self.pitch.ratio(), frames);
     }
 
-    /// Measures the remaining energy and puts silent modes to rest, at control ticks.
+    /// Measures the remaining energy and puts silent modes to rest, at control ticks. A note that starts at this tick has no
+    /// energy yet.
     pub(crate) fn settle(&mut self) {
+        if self.fresh {
+            return;
+        }
         self.energy.settle(&mut self.bank, &self.strike, &self.fader);
         self.bloom.climb(&self.controls, self.strike.full_energy(), self.sample_rate, &mut self.bank);
     }

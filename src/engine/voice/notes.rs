@@ -10,7 +10,7 @@ use super::values::{StruckValues, strike_modulators};
 use crate::dsp::bank::Law;
 use crate::dsp::cells::Cell;
 use crate::dsp::fader::Fader;
-use crate::dsp::mode_bank::ModeSetup;
+use crate::dsp::mode_bank::{MAX_MODES, ModeRows};
 use crate::engine::expression::Expressions;
 use crate::engine::gain::pan_gains;
 use crate::engine::instrument::Instrument;
@@ -128,10 +128,15 @@ impl Voice for SynthVoice {
         };
         let (width, spread) = (values.share(Param::Width), unison.position() * values.share(Param::UnisonSpread));
         let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
-        let setup = |mode: &Mode, ratio: f64, scale: f64, touched: f64| {
-            let pan = (f64::from(mode.pan) * width + spread).clamp(-1.0, 1.0);
-            let (left, right) = if pan == 0.0 { (1.0, 1.0) } else { pan_gains((pan * 0.5 + 0.5) as f32) };
-            ModeSetup { frequency: frequency * ratio, t60: damping.t60(scale, touched), left, right }
+        let setup = |modes: &[Mode], [ratios, scales, touched]: [&[f64; MAX_MODES]; 3]| {
+            let frequency = ratios.map(|ratio| frequency * ratio);
+            let t60 = std::array::from_fn(|m| damping.t60(scales[m], touched[m]));
+            let (mut left, mut right) = ([1.0; MAX_MODES], [1.0; MAX_MODES]);
+            for (m, mode) in modes.iter().enumerate() {
+                let pan = (f64::from(mode.pan) * width + spread).clamp(-1.0, 1.0);
+                (left[m], right[m]) = pan_gains((pan * 0.5 + 0.5) as f32);
+            }
+            ModeRows { frequency, t60, left, right, len: modes.len() }
         };
         self.bank.load(law, self.sample_rate, values.modes().as_slice(), setup);
         self.excite(instrument, note);

@@ -4,14 +4,16 @@ use super::clock::Clock;
 use super::key_tracking::KeyTracking;
 use super::values::StruckValues;
 use crate::dsp::cells::Cells;
+use crate::dsp::mode_bank::MAX_MODES;
 use crate::dsp::pitch::{Glide, SweepEnvelope};
+use crate::dsp::series::powers;
 use crate::engine::channel::Wheels;
 use crate::engine::controls::Controls;
 use crate::engine::note::Note;
 use crate::engine::voice_manager::Unison;
 use crate::params::Param;
 use crate::units::{frequency_from_key, ratio_from_semitones};
-use libm::{floor, pow, sin};
+use libm::{floor, sin};
 use std::f64::consts::TAU;
 
 /// The pitch of a voice. Real-time safe.
@@ -70,9 +72,14 @@ impl Pitch {
 
     /// Sets the modes' frequency ratios to those of the note's table.
     pub(super) fn set_ratios(values: &StruckValues, bank: &mut Cells) {
-        let stretch = values.get(Param::Stretch);
-        for (ratio, mode) in bank.ratios_mut().zip(values.modes().as_slice()) {
-            *ratio = if stretch == 1.0 { mode.ratio.into() } else { pow(mode.ratio.into(), stretch) };
+        let (stretch, table) = (values.get(Param::Stretch), values.modes());
+        let rows = table.as_slice().chunks(MAX_MODES).zip(table.octaves().chunks(MAX_MODES));
+        for (ratios, (modes, octaves)) in bank.ratios_mut().zip(rows) {
+            if stretch == 1.0 {
+                ratios.iter_mut().zip(modes).for_each(|(ratio, mode)| *ratio = mode.ratio.into());
+            } else {
+                powers(octaves, stretch, ratios);
+            }
         }
     }
 

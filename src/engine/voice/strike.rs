@@ -2,20 +2,21 @@
 
 use super::bowing::Bowing;
 use super::input::Input;
-use super::values::StruckValues;
+use super::values::{StruckValues, ratios};
 use super::variation::Variation;
-use crate::dsp::cells::Cells;
+use crate::dsp::cells::{Cells, MAX_CELLS};
 use crate::dsp::exciter::{BurstSetup, Decay, Drive, Exciter, Stroke};
-use crate::dsp::mode_bank::ExcitationGains;
+use crate::dsp::mode_bank::{ExcitationRows, MAX_MODES};
 use crate::dsp::random;
+use crate::dsp::series::{powers, sines};
 use crate::engine::gain::exciter_gain;
 use crate::engine::note::Note;
 use crate::engine::voice_manager::Unison;
 use crate::params::{Choice, MalletPulse, NoiseDecay, Param};
-use crate::patch::Mode;
+use crate::patch::ModeTable;
 use crate::sound::contact::{contact_time, hertz};
-use libm::{fabs, pow, sin, sqrt};
-use std::f64::consts::{LOG2_10, PI};
+use libm::{fabs, pow, sqrt};
+use std::f64::consts::{FRAC_1_PI, LOG2_10, PI};
 
 /// Share of the force that remains with the soft pedal.
 const SOFT_FORCE: f64 = 0.6;
@@ -108,37 +109,73 @@ impl Strike {
     /// Computes each mode's excitation gains. Returns the change of the energy that the last strike adds.
     pub(super) fn set_gains(&mut self, values: &StruckValues, bank: &mut Cells) -> f64 {
         let table = values.modes();
-        let modes = table.as_slice();
-        let tilted = tilted(values);
         let [mallet, pluck, burst] = self.forces;
         let [full_mallet, full_pluck, full_burst] = self.full_forces;
-        let place = values.get(Param::PluckPosition) + self.variation.pluck_place;
-        let (width, reach) = (values.share(Param::PluckWidth), values.share(Param::NoiseReach));
-        let noise_gain = exciter_gain(values.get(Param::NoiseLevel));
-        // Levels with phases already include the mode shapes at the point of the strike.
-        let at_place = |ratio: f64| if table.has_phases() { 1.0 } else { sin(PI * place * 0.01 * ratio) };
+        let (reach, noise_gain) = (values.share(Param::NoiseReach), exciter_gain(values.get(Param::NoiseLevel)));
+        let turned_noise = table.has_phases();
         let (mut noisy, mut energy, mut full) = (false, 0.0, 0.0);
-        for (m, mode) in modes.iter().enumerate() {
-            let (level, ratio, strike) = (tilted(mode), f64::from(mode.ratio), f64::from(mode.strike));
-            let level = self.variation.mode_level(m, level);
-            let struck = level * strike;
-            let push = self.variation.at_mallet(ratio, struck);
-            let pull = if pluck > 0.0 { struck * at_place(ratio) * under_finger(width, ratio) } else { 0.0 };
-            let reached = level * (1.0 - strike * (1.0 - reach));
-            let noise = reached * noise_gain;
-            let (phase, turned_noise) = (self.phase + table.phase(m), table.has_phases());
-            let gains =
-                ExcitationGains { push: push as f32, pull: pull as f32, noise: noise as f32, phase, turned_noise };
-            bank.set_excitation_gains(m, gains);
-            noisy |= noise != 0.0;
-            let (pulses, burst) = (fabs(push * mallet) + fabs(pull * pluck), noise * burst);
-            energy += pulses * pulses + burst * burst;
-            let (pulses, burst) = (fabs(push * full_mallet) + fabs(pull * full_pluck), reached * full_burst);
-            full += pulses * pulses + burst * burst;
+        let cells = table.as_slice().chunks(MAX_MODES).zip(tilted_levels(values));
+        for (cell, (modes, mut levels)) in cells.enumerate() {
+            let (first, ratios) = (cell * MAX_MODES, ratios(modes));
+            self.variation.vary(first, &mut levels);
+            let at_mallet = self.variation.at_mallet(&ratios);
+            let at_finger = if pluck > 0.0 { self.at_finger(values, &ratios) } else { [0.0; MAX_MODES] };
+            let mut gains = ExcitationRows { turned_noise, ..ExcitationRows::NONE };
+            if self.phase != 0.0 || table.has_phases() {
+                gains.turn = self.turns(table, first);
+            }
+            // The sums follow in a loop of their own, so that the compiler can use vector instructions in this one.
+            let mut energies = [[0.0; MAX_MODES]; 2];
+            for (m, mode) in modes.iter().enumerate() {
+                let (level, strike) = (levels[m], f64::from(mode.strike));
+                let (push, pull) = (level * strike * at_mallet[m], level * strike * at_finger[m]);
+                let reached = level * (1.0 - strike * (1.0 - reach));
+                let noise = reached * noise_gain;
+                (gains.push[m], gains.pull[m], gains.noise[m]) = (push as f32, pull as f32, noise as f32);
+                let (pulses, burst) = (fabs(push * mallet) + fabs(pull * pluck), noise * burst);
+                energies[0][m] = pulses * pulses + burst * burst;
+                let (pulses, burst) = (fabs(push * full_mallet) + fabs(pull * full_pluck), reached * full_burst);
+                energies[1][m] = pulses * pulses + burst * burst;
+            }
+            noisy |= gains.noise.iter().any(|noise| *noise != 0.0);
+            for m in 0..modes.len() {
+                energy += energies[0][m];
+                full += energies[1][m];
+            }
+            bank.set_excitation_gains(cell, &gains);
         }
         let more = energy - self.energy;
         (self.energy, self.full_energy, self.is_noisy) = (energy, full, noisy);
         more
+    }
+
+    /// The factors of the levels of modes of these ratios at the point of the pluck, under the width of the finger: the mean of
+    /// each mode's shape over it.
+    fn at_finger(&self, values: &StruckValues, ratios: &[f64; MAX_MODES]) -> [f64; MAX_MODES] {
+        let mut shapes = [1.0; MAX_MODES];
+        // Levels with phases already include the mode shapes at the point of the strike.
+        if !values.modes().has_phases() {
+            let place = values.get(Param::PluckPosition) + self.variation.pluck_place;
+            sines(ratios, place * 0.01, 0.0, &mut shapes);
+        }
+        let half_width = 0.5 * values.share(Param::PluckWidth);
+        if half_width > 0.0 {
+            let mut edges = [0.0; MAX_MODES];
+            sines(ratios, half_width, 0.0, &mut edges);
+            let means = edges.iter().zip(ratios).map(|(edge, ratio)| edge / (PI * half_width * ratio));
+            shapes.iter_mut().zip(means).for_each(|(shape, mean)| *shape *= mean);
+        }
+        shapes
+    }
+
+    /// Cosines and sines of the phases of the modes from mode `first` on.
+    fn turns(&self, table: &ModeTable, first: usize) -> [[f32; MAX_MODES]; 2] {
+        let phases: [f64; MAX_MODES] = std::array::from_fn(|m| f64::from(self.phase + table.phase(first + m)));
+        [0.5, 0.0].map(|offset| {
+            let mut row = [0.0; MAX_MODES];
+            sines(&phases, FRAC_1_PI, offset, &mut row);
+            row.map(|value| value as f32)
+        })
     }
 
     /// Reads the strike's parameters and starts the exciters. `frequency` is the note's, in Hz. Returns the energy that the
@@ -210,21 +247,30 @@ impl Strike {
     }
 }
 
-/// Returns a function from a mode to its level with the strike's tilt.
-fn tilted(values: &StruckValues) -> impl Fn(&Mode) -> f64 + use<> {
-    let tilt = values.get(Param::Tilt) / (20.0 / LOG2_10);
-    let tilted = move |mode: &Mode| {
-        let tilt = if tilt == 0.0 { 1.0 } else { pow(f64::from(mode.ratio), tilt) };
-        f64::from(mode.level) * tilt
-    };
-    let mut balance = 1.0;
-    if tilt != 0.0 {
-        let modes = values.modes().as_slice();
-        let plain: f64 = modes.iter().map(|mode| fabs(mode.level.into())).sum();
-        let total: f64 = modes.iter().map(|mode| fabs(tilted(mode))).sum();
-        balance = if total > 0.0 { plain / total } else { 1.0 };
+/// The levels of the modes, a row for each cell, with the strike's tilt: each level is multiplied by a power of the mode's
+/// ratio, and all by a factor that keeps the sum of their magnitudes.
+fn tilted_levels(values: &StruckValues) -> [[f64; MAX_MODES]; MAX_CELLS] {
+    let (table, exponent) = (values.modes(), values.get(Param::Tilt) / (20.0 / LOG2_10));
+    let mut levels = [[0.0; MAX_MODES]; MAX_CELLS];
+    let rows = table.as_slice().chunks(MAX_MODES).zip(table.octaves().chunks(MAX_MODES));
+    if exponent == 0.0 {
+        for (levels, (modes, _)) in levels.iter_mut().zip(rows) {
+            levels.iter_mut().zip(modes).for_each(|(level, mode)| *level = mode.level.into());
+        }
+        return levels;
     }
-    move |mode| tilted(mode) * balance
+    let (mut plain, mut total) = (0.0, 0.0);
+    for (levels, (modes, octaves)) in levels.iter_mut().zip(rows) {
+        powers(octaves, exponent, levels);
+        for (level, mode) in levels.iter_mut().zip(modes) {
+            *level *= f64::from(mode.level);
+            plain += fabs(mode.level.into());
+            total += fabs(*level);
+        }
+    }
+    let balance = if total > 0.0 { plain / total } else { 1.0 };
+    levels.as_flattened_mut().iter_mut().for_each(|level| *level *= balance);
+    levels
 }
 
 /// The greatest amplitude of a nudge of mode `m`, for one of `count` unison voices; 0 if there is no such mode.
@@ -233,14 +279,7 @@ pub(super) fn most_nudged(values: &StruckValues, m: usize, count: usize) -> f64 
     let levels = [Param::MalletLevel, Param::PluckLevel, Param::NoiseLevel].map(level);
     let loudest = levels.into_iter().fold(0.0, f64::max);
     let force = if loudest > 0.0 { loudest } else { 1.0 } / sqrt(count as f64);
-    values.modes().as_slice().get(m).map_or(0.0, |mode| force * fabs(tilted(values)(mode)))
-}
-
-/// Mean of the mode shape over the width of the finger, relative to its centre. `width` is a fraction of the string's
-/// length, `ratio` that of the mode.
-fn under_finger(width: f64, ratio: f64) -> f64 {
-    let half = 0.5 * PI * width * ratio;
-    if half == 0.0 { 1.0 } else { sin(half) / half }
+    tilted_levels(values).as_flattened().get(m).map_or(0.0, |level| force * fabs(*level))
 }
 
 /// Contact time of the mallet in frames, for a speed from 0 to 1 and a note's frequency in Hz.

@@ -1,10 +1,11 @@
 //! The parameter values that a strike reads.
 
+use crate::dsp::mode_bank::MAX_MODES;
 use crate::engine::instrument::Instrument;
 use crate::engine::modulation::{Modulators, Struck};
 use crate::engine::note::Note;
 use crate::params::Param;
-use crate::patch::ModeTable;
+use crate::patch::{Mode, ModeTable};
 
 /// Passes a strike to the modulators. `first` is true for the first strike of the voice.
 pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modulators, note: &Note, first: bool) {
@@ -12,6 +13,13 @@ pub(super) fn strike_modulators(instrument: &Instrument, modulators: &mut Modula
     let struck = Struck { velocity: note.velocity, pitch, seed, serial };
     let Instrument { positions, settings, shared, modulated, .. } = instrument;
     modulators.strike(&struck, positions, settings, shared, |param| modulated.get(param), first);
+}
+
+/// The ratios of the modes of a cell; 0 for those that are missing.
+pub(super) fn ratios(modes: &[Mode]) -> [f64; MAX_MODES] {
+    let mut ratios = [0.0; MAX_MODES];
+    ratios.iter_mut().zip(modes).for_each(|(ratio, mode)| *ratio = mode.ratio.into());
+    ratios
 }
 
 /// The parameter values of one strike: the instrument's, modulated by the voice's routes.

@@ -1,10 +1,11 @@
 //! Random differences between strikes: the point of the strike, the hardness, and the level of each mode.
 
 use super::values::StruckValues;
+use crate::dsp::mode_bank::MAX_MODES;
 use crate::dsp::random;
+use crate::dsp::series::{powers, sines};
 use crate::params::Param;
-use libm::{cos, pow};
-use std::f64::consts::PI;
+use std::f64::consts::LOG2_10;
 
 /// Number of the variation's stream. It differs from the stream of the strike's noise.
 const VARIATION_STREAM: u64 = 0x56_4152_5900;
@@ -45,17 +46,25 @@ impl Variation {
         self.mallet_place += by;
     }
 
-    /// The level that mode `m` has in this strike.
-    pub(super) fn mode_level(&self, m: usize, level: f64) -> f64 {
+    /// Changes the levels of the modes from mode `first` on to those of this strike.
+    pub(super) fn vary(&self, first: usize, levels: &mut [f64; MAX_MODES]) {
         if self.modes_db == 0.0 {
-            return level;
+            return;
         }
-        level * pow(10.0, self.modes_db * f64::from(random::uniform(self.key, m as u64)) / 20.0)
+        let numbers: [f64; MAX_MODES] =
+            std::array::from_fn(|m| f64::from(random::uniform(self.key, (first + m) as u64)));
+        let mut gains = [0.0; MAX_MODES];
+        powers(&numbers, self.modes_db * LOG2_10 / 20.0, &mut gains);
+        levels.iter_mut().zip(gains).for_each(|(level, gain)| *level *= gain);
     }
 
-    /// The level of a mode with the mallet's offset; it is `level` without the offset. It falls with the cosine, as the mode
-    /// shape of a string does around its maximum.
-    pub(super) fn at_mallet(&self, ratio: f64, level: f64) -> f64 {
-        if self.mallet_place == 0.0 { level } else { level * cos(PI * self.mallet_place * ratio) }
+    /// The factors by which the mallet's offset changes the levels of modes of these ratios; 1 without the offset. They fall
+    /// with the cosine, as the mode shape of a string does around its maximum.
+    pub(super) fn at_mallet(&self, ratios: &[f64; MAX_MODES]) -> [f64; MAX_MODES] {
+        let mut factors = [1.0; MAX_MODES];
+        if self.mallet_place != 0.0 {
+            sines(ratios, self.mallet_place, 0.5, &mut factors);
+        }
+        factors
     }
 }

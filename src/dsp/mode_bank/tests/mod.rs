@@ -10,12 +10,14 @@ use std::f64::consts::PI;
 
 const RATE: f64 = 48_000.0;
 
+const PUSHED: ExcitationRows = ExcitationRows::all(ExcitationGains { push: 1.0, ..ExcitationGains::NONE });
+const PULLED: ExcitationRows = ExcitationRows::all(ExcitationGains { pull: 1.0, ..ExcitationGains::NONE });
+
 fn bank_at(sample_rate: f64, modes: &[(f64, f64)]) -> ModeBank {
     let mut bank = ModeBank::new(sample_rate);
     let setup = |(frequency, t60): &(f64, f64)| ModeSetup { frequency: *frequency, t60: *t60, left: 1.0, right: 1.0 };
-    bank.load(modes.iter().map(setup));
-    let gains = ExcitationGains { push: 1.0, ..ExcitationGains::default() };
-    (0..bank.len()).for_each(|m| bank.set_excitation_gains(m, gains));
+    bank.load(&modes.iter().map(setup).collect());
+    bank.set_excitation_gains(&PUSHED);
     bank
 }
 
@@ -66,7 +68,7 @@ fn one_mode_is_the_oscillator() {
                 let mut bank = bank(&[(frequency, t60)]);
                 let mut c = Coefficients::exact(frequency, t60, 1.0, RATE);
                 if pull {
-                    bank.set_excitation_gains(0, ExcitationGains { pull: 1.0, ..ExcitationGains::default() });
+                    bank.set_excitation_gains(&PULLED);
                     c = Coefficients { x0: 1.0 / c.amplitude(1.0, 0.0), v0: 0.0, ..c };
                 }
                 let rendered = run(&mut bank, 48_000, Some(&if pull { pluck() } else { strike() }));
@@ -106,7 +108,9 @@ fn a_nudge_is_a_push_of_one_mode() {
     for (ticks, moves) in [(3, false), (40, false), (41, false), (40, true)] {
         for passed in [0, 5, 31] {
             let mut nudged = bank(&modes);
-            nudged.set_excitation_gains(NUDGED, ExcitationGains::default());
+            let mut gains = PUSHED;
+            gains.push[NUDGED] = 0.0;
+            nudged.set_excitation_gains(&gains);
             run(&mut nudged, 1000 * CONTROL_FRAMES, Some(&strike()));
             nudged.settle();
             assert!(nudged.live <= NUDGED, "the mode is at rest");
@@ -114,10 +118,9 @@ fn a_nudge_is_a_push_of_one_mode() {
             nudged.sweep_to(if moves { 1.1 } else { 1.0 }, CONTROL_FRAMES);
             nudged.render(None, passed);
             let mut pushed = nudged.clone();
-            (0..64).for_each(|m| {
-                let push = if m == NUDGED { 1.0 } else { 0.0 };
-                pushed.set_excitation_gains(m, ExcitationGains { push, ..ExcitationGains::default() });
-            });
+            let mut gains = ExcitationRows::NONE;
+            gains.push[NUDGED] = 1.0;
+            pushed.set_excitation_gains(&gains);
             nudged.nudge(NUDGED, 1.0);
             let left = CONTROL_FRAMES - passed;
             let [mut a, mut b] =
@@ -164,7 +167,9 @@ fn a_mode_at_rest_stays_at_rest_until_it_is_struck() {
         }
         (0..ticks).for_each(|_| tick(&mut bank));
         assert!(matches!(bank.motion, Motion::Tabled { .. }) && bank.live == LANES);
-        (1..64).for_each(|m| bank.set_excitation_gains(m, ExcitationGains::default()));
+        let mut gains = ExcitationRows::NONE;
+        gains.push[0] = 1.0;
+        bank.set_excitation_gains(&gains);
         run(&mut bank, 1, Some(&strike()));
         assert!((1..64).all(|m| bank.mass(m).1 == 0.0), "{ticks} ticks: {:?}", bank.mass(40));
     }
@@ -178,9 +183,8 @@ fn a_bank_that_is_loaded_again_has_forgotten_its_modes() {
     let mut used = bank(&many);
     run(&mut used, 32 * 20, Some(&strike()));
     let setup = |(frequency, t60): &(f64, f64)| ModeSetup { frequency: *frequency, t60: *t60, left: 1.0, right: 1.0 };
-    used.load(few.iter().map(setup));
-    let gains = ExcitationGains { push: 1.0, ..ExcitationGains::default() };
-    (0..used.len()).for_each(|m| used.set_excitation_gains(m, gains));
+    used.load(&few.iter().map(setup).collect());
+    used.set_excitation_gains(&PUSHED);
     let mut fresh = bank(few);
     for _ in 0..3 {
         let [found, expected] = [&mut used, &mut fresh].map(|bank| run(bank, 32 * 20, Some(&strike())));
@@ -237,7 +241,7 @@ fn the_energy_is_that_of_the_amplitudes() {
 fn a_pull_and_a_push_give_the_same_amplitude() {
     for frequency in [50.0, 5000.0, 20_000.0] {
         let mut pulled = bank(&[(frequency, 1.0)]);
-        pulled.set_excitation_gains(0, ExcitationGains { pull: 1.0, ..ExcitationGains::default() });
+        pulled.set_excitation_gains(&PULLED);
         run(&mut pulled, 1, Some(&pluck()));
         assert!((pulled.settle() - 1.0).abs() < 1e-3, "{frequency}: {}", pulled.settle());
     }
@@ -255,8 +259,8 @@ fn a_force_alone_gives_the_bits_of_the_form_that_reads_all() {
                 let mut bank = bank(&modes);
                 let gains = [0, 1, 2].map(|force| if force == alone { 0.5 } else { 0.0 });
                 let [push, pull, noise] = gains;
-                let gains = ExcitationGains { push, pull, noise, phase, turned_noise: false };
-                (0..bank.len()).for_each(|m| bank.set_excitation_gains(m, gains));
+                let turn = [libm::cosf(phase), libm::sinf(phase)];
+                bank.set_excitation_gains(&ExcitationRows::all(ExcitationGains { push, pull, noise, turn }));
                 let mut drive = Drive::NONE;
                 let Drive { push, pull, noise } = &mut drive;
                 for (force, row) in [push, pull, noise].into_iter().enumerate() {
@@ -284,7 +288,9 @@ fn every_force_is_convolved_with_a_turned_response() {
     for which in 0..2 {
         let mut bank = bank(&[(frequency, t60)]);
         let [push, noise] = [0, 1].map(|force| if force == which { 0.5 } else { 0.0 });
-        bank.set_excitation_gains(0, ExcitationGains { push, pull: 0.0, noise, phase, turned_noise: true });
+        let turn = [libm::cosf(phase), libm::sinf(phase)];
+        let gains = ExcitationRows::all(ExcitationGains { push, pull: 0.0, noise, turn });
+        bank.set_excitation_gains(&ExcitationRows { turned_noise: true, ..gains });
         let mut drive = Drive::NONE;
         let Drive { push, noise, .. } = &mut drive;
         [push, noise][which][..9].copy_from_slice(&force);

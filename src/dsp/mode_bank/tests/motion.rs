@@ -109,8 +109,8 @@ fn a_strike_above_the_spectrum_is_heard_when_the_sweep_comes_down() {
 fn modes_fade_at_the_top_of_the_spectrum() {
     for right in [1.0, 0.5] {
         let mut bank = ModeBank::new(RATE);
-        bank.load([ModeSetup { frequency: 12_000.0, t60: 60.0, left: 1.0, right }].into_iter());
-        bank.set_excitation_gains(0, ExcitationGains { push: 1.0, ..ExcitationGains::default() });
+        bank.load(&[ModeSetup { frequency: 12_000.0, t60: 60.0, left: 1.0, right }].into_iter().collect());
+        bank.set_excitation_gains(&PUSHED);
         run(&mut bank, 320, Some(&strike()));
         for (ratio, expected) in [(1.9, 1.0), (1.98, 0.5), (2.0, 0.0), (1.99, 0.25), (1.5, 1.0)] {
             glide(&mut bank, ratio);
