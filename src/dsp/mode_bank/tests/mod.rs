@@ -4,6 +4,7 @@ mod motion;
 
 use super::*;
 use crate::dsp::mode_bank::tuning::TOP_ANGLE;
+use crate::dsp::mode_bank::{ExcitationGains, ModeSetup};
 use crate::dsp::random::{key, uniform};
 use crate::dsp::{Coefficients, HarmonicOscillator};
 use std::f64::consts::PI;
@@ -141,7 +142,7 @@ fn places_behind_the_last_mode_stay_finite() {
     let mut bank = bank(&[(200.0, 0.0005); 64]);
     (0..64).for_each(|m| bank.set_t60(m, 1.0));
     run(&mut bank, CONTROL_FRAMES, Some(&strike()));
-    bank.load(std::iter::once(ModeSetup { frequency: 300.0, t60: 1.0, left: 1.0, right: 1.0 }));
+    bank.load(&std::iter::once(ModeSetup { frequency: 300.0, t60: 1.0, left: 1.0, right: 1.0 }).collect());
     // An event in each frame breaks off each ramp at its beginning.
     for frame in 0..1_000 {
         bank.set_t60(0, if frame % 2 == 0 { 1.0 } else { 1.1 });
