@@ -9,7 +9,7 @@
 //!
 //! **CPU instructions need a proof.** A vector can only be made from a value that detection returns if the CPU has the
 //! instructions. So operations on vectors are safe functions that cannot be misused. A kernel is one generic function
-//! ([`Kernel`]). [`Instructions::run`] is the only place that calls a function compiled for instructions that not every
+//! (`Kernel`). `Instructions::run` is the only place that calls a function compiled for instructions that not every
 //! CPU has.
 //!
 //! What did not work: closures inside kernels. They are not inlined into the function of a level, so they are compiled
@@ -117,7 +117,7 @@ pub(in crate::dsp) trait Kernel {
     type Output;
 
     /// Does the work. Implementations, and all functions that they call, are `#[inline(always)]`: a function that is not inlined
-    /// into a function of [`Instructions::run`] is compiled without the level's instructions, and is several times
+    /// into a function of `Instructions::run` is compiled without the level's instructions, and is several times
     /// slower.
     fn run<V: Vector>(self, proof: V::Proof) -> Self::Output;
 }
