@@ -1,4 +1,7 @@
 //! Converts the wrapper's note events to the engine's events.
+//!
+//! Events are passed on one by one at their frames. The engine's bits do not depend on how frames are divided, so the
+//! shell needs no list of events that could overflow.
 
 use nice_plug::prelude::{NoteEvent, PluginApi};
 use nice_plug_core::midi::{Channel, Key, VoiceID};

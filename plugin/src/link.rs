@@ -1,4 +1,9 @@
 //! Messages between the window and the audio thread, neither of which ever waits for the other.
+//!
+//! The audio thread writes its telemetry only during the second after the window has looked. The window sends notes
+//! through a queue, which the audio thread empties at the first frame of a block and which drops what does not fit.
+//! Only the window and the thread beside it take the locks of `devices`. A knob that the window turns is set first and
+//! then told to the host, because the wrapper's VST3 drops changes while nothing is processed.
 
 use crate::devices::Desk;
 use nice_plug_egui::RepaintNotifier;

@@ -1,4 +1,14 @@
 //! The sound that was loaded last, with exact values and their knob positions, for all threads.
+//!
+//! **Exact values.** Hosts store knob positions, 0–1, in single precision. Two things keep values exact nevertheless.
+//! `ParamInfo::denormalise` gives numbers with about five digits, so that a value that a user types survives the
+//! conversion to a position. And while a knob is at the position of its loaded value, it has this value, bit for bit; a
+//! knob that comes back has the exact value again. So a preset, a kit or a project gives the same bits as `sprung
+//! render`, however the host rounds. Only a position that the host itself sets has the value that its text shows.
+//!
+//! **No waiting.** A writer sets the knobs while it has the slot, so that the audio thread sees knobs and kit that
+//! belong together. A lock-free exchange of pointers was rejected: it needs unsafe code, and does not keep knobs and
+//! kit together. The tests here use threads; `plugin/tests/hosts/realtime.rs` runs it under supervision.
 
 use sprung::params::{PARAM_COUNT, PARAMS, Values};
 use sprung::sound::Kit;

@@ -1,4 +1,9 @@
 //! The description of the instrument for hosts, and the calls that they make.
+//!
+//! One lock in the audio thread cannot be avoided: at the end of each call, the CLAP wrapper checks a channel for a
+//! state from `GuiContext::set_state`, under a mutex. No other thread takes this mutex, because the window does not use
+//! `set_state`, so the audio thread never waits for it. In a host without thread-check, the wrapper also asks for the
+//! id of the current thread, for which Rust allocates once per thread.
 
 use crate::editor::SprungEditor;
 use crate::live::{EVENT_CAPACITY, Live, MAX_VOICES};

@@ -1,6 +1,13 @@
 //! The state that a host stores in its project: the text of the preset or kit, and the knob positions.
 //!
 //! A kit's presets are in the state too: a project must not depend on files that may disappear.
+//!
+//! The state is JSON inside the wrapper's JSON. `filter_state` removes the wrapper's own list of parameters, so that
+//! everything is loaded at once from this text, or nothing if it is no state at all. If a state is newer or damaged,
+//! everything that can be read is loaded, the rest gets its defaults, and the window and the log report what was not
+//! understood. Presets and kits have one reader, which collects errors (`src/preset/complaints.rs`): files and commands
+//! report the first as an error, `sprung presets check` reports all, states are loaded in spite of them.
+//! `plugin/tests/states` has a state of each released version.
 
 use crate::editor::theme::{self, Theme};
 use crate::loaded::{Loaded, positions_of};

@@ -4,6 +4,12 @@
 //! parameters. Values may be drawn at random. Each job makes a file, and a line of the manifest; lines are in the order
 //! of the jobs' numbers. A killed batch can be resumed, and its shards can be rendered on different machines: files and
 //! manifest are the same bytes as without interruption.
+//!
+//! A job is a function of the file of jobs, the seed and its number. Any thread may make any job, and lines wait until
+//! those before them are written; so a manifest is always a beginning of the whole one, whenever its writer is killed.
+//! Resuming reads it beside the jobs and compares. So neither memory nor the bytes depend on the number of jobs,
+//! threads or shards. Tests: `tests/cli/batches.rs` kills batches, cuts manifests and compares shards;
+//! `tests/cli/batches_at_scale.rs` does so with 2,000 sounds, on demand.
 
 mod checks;
 mod draw;

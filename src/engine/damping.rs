@@ -22,6 +22,8 @@ pub(crate) struct Damping {
 impl Damping {
     /// T60 in seconds of a mode whose own T60 is `scale` times the decay: interpolated geometrically towards the damper's.
     /// A touch adds a rate of decay in proportion to `touched`, the square of the mode shape at the point of touch, 0–1.
+    /// So a touch only ever shortens, and a touch in the middle of a string leaves the even partials. It does not depend on the
+    /// damper.
     pub(crate) fn t60(self, scale: f64, touched: f64) -> f64 {
         let untouched = self.untouched(scale);
         let share = untouched * self.touch * touched;

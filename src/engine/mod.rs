@@ -1,6 +1,20 @@
 //! From events to samples: voices, their manager, the synth, and the ensemble of sixteen channels.
 //!
 //! Does not depend on files, the command line or audio devices. Real-time safe once built, except where noted.
+//!
+//! | where | what |
+//! |---|---|
+//! | `event`, `midi`, `channel`, `banks`, `zones` | events; MIDI messages as events; controllers; program changes; MPE |
+//! | `note`, `expression` | a note, its note expressions, how events select notes |
+//! | `controls`, `instrument` | parameter smoothing; one sound of a kit with its present values |
+//! | `modulation/` | routes and their sources, and the host's offsets |
+//! | `voice/`, `damping` | one voice: strikes, pitch, decay, gain, tension, bloom, energy |
+//! | `voice_manager/` | which notes sound, and in which voices: note on and off, mono, pedals, slots, the pool |
+//! | `space/` | the effects after the voices: `dsp::space` with parameters, sleep and tails |
+//! | `synth/` | a kit on sixteen channels |
+//! | `ensemble/` | a synth for each channel, rendered in chunks and mixed |
+//! | `snapshot`, `telemetry`, `scope`, `atomic` | what displays read while the engine plays |
+//! | `voice_state` | a voice and its modes as they are, for labels |
 
 mod atomic;
 pub mod banks;

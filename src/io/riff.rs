@@ -1,4 +1,6 @@
 //! The header of a WAV file: RIFF up to 4 GiB, RF64 for longer files.
+//!
+//! hound makes the chunk `fmt ` and stores the samples, both by its public functions; the sizes are ours.
 
 use super::output::Output;
 use super::wav_format::WavFormat;

@@ -1,4 +1,7 @@
 //! Temporary files of outputs. They are locked while in use, so that files of dead processes can be recognised.
+//!
+//! An output is locked until it has its final name. A file that a killed process has left is not locked, and the next
+//! output in the same folder removes it.
 
 use std::fs::{self, File, OpenOptions};
 use std::io;

@@ -229,15 +229,15 @@ mod tests {
     }
 
     #[test]
-    fn the_readme_has_a_table_of_the_programs() {
-        let readme = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md"));
+    fn the_manual_has_a_table_of_the_programs() {
+        let page = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/manual/midi.md"));
         for first in (0..128).step_by(8) {
             let names: Vec<_> =
                 (first..first + 8).map(|number| Programs::general_midi().sound(number).unwrap()).collect();
             let (from, to, names) = (first + 1, first + 8, names.join(", "));
             let row =
                 |line: &str| line.starts_with(&format!("| {from}–{to} |")) && line.ends_with(&format!("| {names} |"));
-            assert!(readme.lines().any(row), "programs {from} to {to}: {names}");
+            assert!(page.lines().any(row), "programs {from} to {to}: {names}");
         }
     }
 

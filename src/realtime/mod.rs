@@ -2,6 +2,10 @@
 //!
 //! The audio thread owns the [`Player`], or another [`Source`]. Everything that it receives (live events, kits) and
 //! sends (recording, status) goes through queues of fixed size and atomics, so that it never allocates, locks or waits.
+//!
+//! A stream borrows the player and returns it when the stream ends, for whatever reason. A device that comes back gets
+//! the same player, so the song, the sound and the recording continue where they were. `block_clock` says when an event
+//! sounds.
 
 pub mod block_clock;
 pub mod convert;

@@ -1,4 +1,7 @@
 //! Exact labels of a rendering: each note's onset, and the frequency, T60 and level of each of its modes.
+//!
+//! The engine is read while it plays, in pieces that end after a strike has let go. Since the samples do not depend on
+//! blocks, the sound is the same with and without labels.
 
 use super::job::Job;
 use crate::dsp::CONTROL_FRAMES;

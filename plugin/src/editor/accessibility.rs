@@ -1,4 +1,11 @@
 //! Tells screen readers what the window shows and lets them act on it: AccessKit, on Linux by AT-SPI.
+//!
+//! egui describes its widgets to AccessKit, but only while a screen reader listens; an egui plugin passes the
+//! description on to `accesskit_unix`, which speaks AT-SPI and returns requests at the next pass. AccessKit's thread
+//! never ends, and its code must not be unloaded under it: so the plugin's library marks itself as not to be unloaded
+//! (`RTLD_NODELETE`) before the first window starts the thread. Without a D-Bus session there is neither thread nor
+//! mark. `plugin/tests/hosts/screen_reader` reads and turns a knob and presses a button over AT-SPI, and closes the
+//! library each time.
 
 use super::x11::Display;
 use accesskit_unix::Adapter;

@@ -20,6 +20,17 @@
 //! | `variation` | random variations of a sound, with locks |
 //! | `focus`, `accessibility`, `x11` | keyboard focus: the host keeps it, except while the user types; screen readers; the X11 display |
 //! | `shown` | the sound that is shown |
+//!
+//! Widgets draw themselves in egui's shapes. `tests` draws the window without a GPU, by the rules of egui's own shader,
+//! and compares pictures; it also computes the contrast (WCAG 2.2) of each text.
+//!
+//! **Painting on a CPU.** With Mesa's llvmpipe a picture took 46 ms and now takes 23 (debug build, 1100 × 700, a bell
+//! that rings, beside other work). Dithering was a computation for each pixel of a window without gradients. The ground
+//! is the colour with which the window is cleared, and was painted twice over that. At 100 %, heads of modes are two
+//! discs of the font's texture (4 triangles instead of 150), and arcs have half as many corners. `glxgears` in a window
+//! of that size takes 3 ms of CPU per picture on the same machine, without the X server: 17 % of a core at 60 pictures
+//! per second, so no picture of a whole window can cost less. `plugin/tests/hosts/cpu` prints the costs, and fails if a
+//! silent window is drawn.
 
 #[cfg(target_os = "linux")]
 mod accessibility;

@@ -1,11 +1,24 @@
 //! Fits a preset to recordings of a struck sound, which it then plays over the keyboard.
 //!
-//! The sweep of the pitch is found and removed; of a held sound, all drift that its tones have in common. The sound, whose
-//! pitch is now constant, is analysed into modes. Their residual becomes a bed: modes that noise excites. Echoes
-//! are counted, and the tones that stay are found after these. Of a sound that modes explain badly, rows of faster bursts are counted, noise that lasts as long as the sound is shaped, and regular movement becomes that of
-//! low-frequency oscillators. Then each draft is played and compared with the recording, band by band ([`super::log_mel`]), to
-//! correct the mallet's hardness, the rise, fall and length of swells and of noise, levels and decays; the nearest one is the
-//! result.
+//! The sweep of the pitch is found and removed; of a held sound, all drift that its tones have in common. The sound,
+//! whose pitch is now constant, is analysed into modes. Their residual becomes a bed: modes that noise excites. Echoes
+//! are counted, and the tones that stay are found after these. If modes explain a sound badly, rows of faster bursts
+//! are counted, noise that lasts as long as the sound is shaped, and regular movement becomes that of low-frequency
+//! oscillators. Then each draft is played and compared with the recording, band by band ([`super::log_mel`]), to
+//! correct the mallet's hardness, the rise, fall and length of swells and of noise, levels and decays. The nearest
+//! draft is the result.
+//!
+//! | file | does |
+//! |---|---|
+//! | `take`, `names`, `prepared`, `release` | reads a take: its key and velocity, its onset and end, and where its key is let go |
+//! | `pitch`, `tones`, `course`, `sweep`, `drift`, `held`, `resample` | the pitch over time, and the sound without its movement |
+//! | `start`, `bed`, `noise`, `bursts`, `sway`, `movement` | first drafts: modes, noise for the rest, bursts, LFOs |
+//! | `draft`, `audition` | a draft as a patch; plays it |
+//! | `candidates`, `improve`, `refine`, `correct`, `shaping` | the possible drafts, and their corrections by what they sound like |
+//! | `body`, `levels`, `tuned` | a physical model in place of a table of modes |
+//! | `layers` | how the sound follows velocity and key |
+//! | `doubts`, `summary`, `report` | warnings, words and the page that tell the result |
+//! | `simplex` | minimises a function of a few numbers |
 
 mod audition;
 mod bed;

@@ -9,6 +9,14 @@
 //!
 //! A band receives exactly the energy that the band below has lost, and the factor for a mode's state is rounded down. So
 //! the energy of all modes together never rises.
+//!
+//! The cascade ends where the next band has its share (`bloom`) of the energy of the band below: at 100 % all energies
+//! are equal, at 50 % the spectrum falls by 6 dB per octave. Factors are computed in scalar double precision between
+//! ticks, so that the kernels and their tables do not know of the cascade, and all levels have the same bits. Factors
+//! are not smoothed, because their steps are small: a gain that changes by 0.3 % at each tick has sidebands below −55
+//! dB. The sum of all amplitudes can rise, since energy that more modes share is louder if they are in phase. While
+//! energy moves up, tails are computed as if all modes decayed like the slowest one. `cascade_tests` compares the
+//! energies before and after each of 144,000 ticks of random bodies.
 
 use super::Cells;
 use crate::dsp::mode_bank::MAX_MODES;

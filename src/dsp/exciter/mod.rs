@@ -1,4 +1,12 @@
 //! The excitation of the masses: a mallet's force pulse, a pluck, bursts of noise and a bow, in any combination.
+//!
+//! A [`Stroke`] has the areas and lengths of what pushes and what pulls, and a burst of noise. Three forces go to the
+//! bank, and each mode has a gain for each of them. An exciter that is off makes no force, so nothing is computed for
+//! it, and the kernel reads only the forces that are there: one that acts on `y`, one of either kind with noise, or all
+//! three. All kinds of movement share the last form, which is seldom needed for longer than a contact
+//! (`a_force_alone_gives_the_bits_of_the_form_that_reads_all`). The levels of mallet and pluck are in their forces and
+//! the level of noise is in its gains, because presets with one exciter had to keep their bits. Incoming sound is added
+//! to what pushes.
 
 mod bow;
 mod burst;

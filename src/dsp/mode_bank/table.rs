@@ -5,6 +5,9 @@
 //! coordinates, a rounding error of the coefficients is an error of pitch or decay of the same relative size, at every
 //! pitch. Powers of the step's own matrix, in `x` and `v`, had errors of up to 37 % of T60 near half the sample rate,
 //! and still 0.2 % at 22 kHz when the diagonal was stored as a difference from 1.
+//!
+//! With the diagonal stored as an integer and a remainder, the pitch was wrong by 0.017 cents. Here each coefficient is
+//! stored as the sum of two numbers, and T60 is exact to 6e−6 %.
 
 use super::MAX_MODES;
 use super::rows::{Row, Wide};

@@ -9,7 +9,8 @@ use crate::params::Param;
 use crate::sound::Kit;
 
 /// One limiter for the mix of sixteen channels. It is on while any channel that has had a note has a kit that switches
-/// it on. Real-time safe once built.
+/// it on. So a preset that switches the limiter off is respected if its channel plays alone, and a song with several sounds
+/// is limited unless all of them switch it off. Real-time safe once built.
 pub(super) struct MixLimiter {
     limiter: Limiter,
     channels: Channels,

@@ -1,4 +1,11 @@
 //! The space that all channels of an ensemble share, with one send for each channel, set by controller 91.
+//!
+//! In MIDI files every channel has a send to one reverb (controller 91), and none has a reverb of its own. The shared
+//! space hears the channels after their own effects, in channel order. The list of programs defines it, so `--programs
+//! gm` has a plate; `--set space=…` switches it off, since each channel then has a space of its own. The list also sets
+//! the gain of the mix (`Mix::gain`) before the limiter: each sound is levelled to be heard alone, and sixteen of them
+//! add up. A synth alone, and so the plugin, has no shared space, since hosts have sends. Test:
+//! `tests/shared_space.rs`.
 
 use super::chunk::Chunk;
 use super::part::Part;

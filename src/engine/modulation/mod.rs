@@ -4,6 +4,28 @@
 //! `envelope` are the two kinds of source that change with time; `moving` holds those of one voice. `settings` holds
 //! the parameter values that sources and routes use. `modulators` combines them for one voice: at each control tick it
 //! reads the sources and computes the destinations' values.
+//!
+//! At every control tick, each voice with routes reads its sources as they will be at the next tick, adds `amount ·
+//! source` of each route to its destination in knob travel, and passes the values on to pitch, damping and gain. Routes
+//! that modulate amounts or macros are evaluated first; the others keep the order of their places. Parameters that only
+//! a strike uses are modulated at the strike. A voice keeps the routes that it was started with, and follows the
+//! settings of the instrument only as long as the instrument has the voice's patch.
+//!
+//! - Values that all voices share are computed once per tick. A shared oscillator is copied into each voice that
+//!   follows it, so that a voice that outlives its patch can continue alone.
+//! - Oscillators and envelopes store their present and their next state, so that a tick without events computes nothing
+//!   twice.
+//! - A destination is computed again only if a source of one of its routes, an amount or its base value has changed
+//!   since the last tick. A debug build compares every tick with a full computation.
+//! - Sines and powers of two are short series here, accurate to 5e−6 and 3e−7: with those of `libm`, sixteen routes
+//!   cost three times as much (measured once).
+//!
+//! The wheel, pressure, brightness, velocity and the key have effects beyond their plain meaning only through routes. A
+//! new patch has three (`Routes::INITIAL`); presets of older formats get routes that replace their retired parameters
+//! (`preset::migration`). `routed` and `moving` in `cargo bench --bench synth` measure the cost: sixteen routes, three
+//! oscillators and two envelopes on each of 16 voices of 64 modes, all moving, play at 0.82 to 0.86 of the speed of the
+//! same voices without them (AVX2 and AVX-512). Tests: `tests/modulation.rs` has every source and every kind of
+//! destination; `tests/levels.rs`, `tests/blocks.rs` and `tests/storm/` use random routes.
 
 mod bus;
 mod destination;

@@ -3,6 +3,18 @@
 //! A section that is off does not change the signal. A section that is on becomes idle when its content is below −120 dBFS and
 //! its input is silent. [`Space::skip`] then advances it by the frames that pass, with the same result as silent input. So the
 //! output does not depend on the block size, nor on the frame at which the silence is detected.
+//!
+//! Room for bodies is made outside the audio thread, 1 MB per synth: by `Synth::reserve_space`, or when a kit with a
+//! body is set. Without room, bodies stay off. An ensemble makes room for each channel that starts with a body, and for
+//! all channels if one of its programs has a body. Each channel has its own effects, so sixteen channels with a plate
+//! take the time of sixteen plates.
+//!
+//! While an effect sleeps and no voice sounds, the control ticks and the motor of the tremolo continue. Settings move
+//! in 20 ms; while nothing sounds, they apply at once. Level and pan of the voices come before the effects, so the
+//! drive depends on `gain`. Tails are computed from effect to effect: while voices sound, the magnitudes of what they
+//! still send add up to at most their peak times the frames that they have left. The computed tail is an upper bound,
+//! and can be some T60s too long. Tests: `tests/space/` for each effect, `tests/behind_voices.rs` for synths and
+//! ensembles, with every parameter changed during sound and during silence.
 
 mod bodies;
 mod resonant;

@@ -1,4 +1,8 @@
 //! How a synth renders: it splits blocks at events, and the frames between events at control ticks.
+//!
+//! All voices compute their pitches first, then all start their sweeps: 177 instead of 162 × real time, because each
+//! voice waits for the latency of its own exponential and sine. Replacing those of `libm` by series of our own was no
+//! faster, and vibrato even lost a tenth. (Measured once.)
 
 use super::Synth;
 use crate::dsp::CONTROL_FRAMES;

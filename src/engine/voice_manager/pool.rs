@@ -1,4 +1,11 @@
 //! Voices and cells that no note uses: notes take them when they start and give them back when they are over.
+//!
+//! A voice plays a body in cells of 64 modes, one to eight of them ([`crate::dsp::cells`]). Both are reset in place
+//! when a note starts, so nothing that they played before affects the new note, and it makes no difference which ones a
+//! note gets. A `Synth` has its own pool (256 voices, 256 cells); the parts of an `Ensemble` share one (512 and 512).
+//! Three quarters of a pool are for sounding notes, the rest for notes that fade out: 384 notes of 64 modes, or 48 of
+//! 512, in an ensemble. An ensemble takes less than 16 MB. Tests: `dsp::cells::tests`, `tests/pool.rs`,
+//! `tests/memory.rs`.
 
 use super::footprint::Footprint;
 use super::voice::Voice;

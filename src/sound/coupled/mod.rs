@@ -21,6 +21,11 @@
 //! All of this allocates and runs off the audio thread. It uses only additions, multiplications, divisions and square
 //! roots, in a fixed order, so the bits are the same on every machine. The time grows with the square of the number of
 //! modes: about 1.5 ms for 64 + 64, 5 ms for 128 + 128 and 0.1 s for 512 + 512.
+//!
+//! Modes with exactly the same pole are rotated first, so that the joint moves only one of them. A body that drives
+//! another one without feedback (`series`) is also a set of modes, by partial fractions. `tests/coupled_reference.rs`
+//! compares 200 random pairs with eigenproblems solved by SciPy; the tests here check the sum rules, the energy, the
+//! limits without a joint and with a rigid one, and frozen bits.
 
 mod complex;
 mod mode;

@@ -16,6 +16,20 @@
 //! | `tuned`, `response` | the tuning of the body that follows the keys; the effective stiffness of a joint for one mode |
 //! | `across` | a string's second direction |
 //! | `modes`, `table` | the modes of the pair, and the patch's table of them, or one table for each key |
+//!
+//! Each mode has a level and a phase `φ`, and starts as `sin(ωt + φ)`: in the bank, a force `F` with the gain `g` adds
+//! `F g sin φ` to `x` and `F g cos φ` to `y`. So every force is convolved with the response of the pair, noise too
+//! (`every_force_is_convolved_with_a_turned_response`). A form of the kernel (`TURNED` in `mode_bank::step`) lets noise
+//! act on both coordinates; sounds without phases are computed as before. Limits: levels with phases belong to one
+//! place, so a plucked pair is plucked where its body is struck, and `pluck_position` does nothing; `vary_position` and
+//! a bow treat the modes as a string's; the original formulas do not turn noise.
+//!
+//! A body that follows the keys is tuned so that the mode that sets its pitch is exactly right once it is joined
+//! (`tuned`). If the other body has a mode at nearly the same pitch, the two push each other away and there may be no
+//! such tuning; then the body is tuned as if the other one did not move.
+//!
+//! `tests/pair_reference.rs` renders a string on a plate, joined, in series and apart, for three keys, and compares
+//! pitch, T60, level and samples with an eigenproblem solved by SciPy.
 
 mod across;
 mod fields;

@@ -1,4 +1,10 @@
 //! Converts a pair into the mode table of a patch: one for all keys, or one for each.
+//!
+//! Tables for all keys of the range have the same number of modes, and clones of the patch share them. A note-on
+//! selects a table without allocating. A voice that is retuned (mono, legato, glide) takes the table of its new key,
+//! mode by mode in the order of their frequencies. Not done: tables between keys, which would need a match of modes
+//! where they cross. 61 keys of 64 + 64 modes took 90 ms in a release build on a busy machine (143 ms with a second
+//! direction of the string) and 187 KB (measured once).
 
 use super::free::Free;
 use super::link::Link;

@@ -1,8 +1,8 @@
 //! `cargo xtask patch`: writes packages used by the plugin, as on crates.io but with the corrections in this folder.
 //!
 //! The corrections keep the wrapper's VST3 from crashing its host and from leaking file descriptors, make sure that a closed
-//! window is gone, and let the window open the host's menu of a parameter. ARCHITECTURE.md, “Around the wrapper”, describes
-//! each fault as in a bug report.
+//! window is gone, and let the window open the host's menu of a parameter. `plugin/UPSTREAM.md` describes each fault as in a
+//! bug report.
 
 mod baseview;
 mod calls;
@@ -122,8 +122,8 @@ impl Package {
         }
         Err(format!(
             "plugin/Cargo.toml asks for {name} {asked}, and the corrections in xtask/src/patch are for ={version}: look \
-             which of them that version still needs (ARCHITECTURE.md, “Around the wrapper”), then write its number and \
-             the SHA-256 of its source there"
+             which of them that version still needs (plugin/UPSTREAM.md), then write its number and the SHA-256 of its \
+             source there"
         ))
     }
 
