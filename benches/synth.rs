@@ -6,7 +6,9 @@ use chord::{Chord, FRAMES, moving, patch, routed};
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use sprung::dsp::Level;
 use sprung::engine::{Ensemble, Synth};
+use sprung::params::Param;
 use sprung::patch::Patch;
+use sprung::preset::Preset;
 use std::time::{Duration, Instant};
 
 const VOICES: usize = 16;
@@ -15,24 +17,31 @@ fn levels() -> impl Iterator<Item = Level> {
     Level::ALL.into_iter().filter(|level| level.force())
 }
 
-/// Sixteen notes of 64 modes: struck in one block; ringing; with bend, vibrato and sweep; and with sixteen routes as
+/// Sixteen notes of 64 modes, and of factory sounds: struck in one block; ringing; with bend, vibrato and sweep; and with sixteen routes as
 /// well.
 fn chords(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("synth");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(FRAMES as u64));
     for level in levels() {
-        group.bench_function(BenchmarkId::new(level.name(), "note-on"), |bencher| {
-            let mut chord = Chord::new(&patch(VOICES), VOICES);
-            bencher.iter_custom(|iterations| {
-                let struck = |_| {
-                    chord.reset();
-                    let start = Instant::now();
-                    chord.strike();
-                    start.elapsed()
-                };
-                (0..iterations).map(struck).sum()
-            });
+        // The last have the most modes of the factory's sounds, and much that differs from strike to strike.
+        let sounds = ["Grand Piano", "Crash", "Clash Cymbals"].map(|name| {
+            let patch = Preset::find(name).expect("the factory has it").patch.clone();
+            (name, patch.with(Param::Voices, VOICES as f32))
         });
+        for (name, patch) in sounds.into_iter().chain([("note-on", patch(VOICES))]) {
+            group.bench_function(BenchmarkId::new(level.name(), name), |bencher| {
+                let mut chord = Chord::new(&patch, VOICES);
+                bencher.iter_custom(|iterations| {
+                    let struck = |_| {
+                        chord.reset();
+                        let start = Instant::now();
+                        chord.strike();
+                        start.elapsed()
+                    };
+                    (0..iterations).map(struck).sum()
+                });
+            });
+        }
         let works = [
             ("ringing", patch(VOICES), false),
             ("moving", moving(patch(VOICES)), true),

@@ -86,8 +86,11 @@ fn instrument(measured: &Measured, levels: &[Level]) -> String {
     text += &head("", levels.iter().map(|level| level.name().to_owned()));
     let share: Unit = |rate| 64.0 / rate / BLOCK * 100.0;
     let times: Unit = |rate| rate / RATE;
-    let rows: [(&str, &str, Unit); 4] = [
+    let rows: [(&str, &str, Unit); 7] = [
         ("all struck in one block, % of its time", "note-on", share),
+        ("as many of the Grand Piano", "Grand Piano", share),
+        ("of the Crash, of 486 modes", "Crash", share),
+        ("of the Clash Cymbals, of 500 modes", "Clash Cymbals", share),
         ("ringing, × real time", "ringing", times),
         ("bend, vibrato and sweep moving, × real time", "moving", times),
         ("and 16 routes, 3 oscillators and 2 envelopes a voice, × real time", "routed", times),
