@@ -26,6 +26,19 @@ pub(super) use process::{flush, part};
 /// Sample rates that the engine runs at, in Hz.
 pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
 
+/// Returns an error if a sample rate in Hz is not one of [`SAMPLE_RATES`].
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn check_rate(sample_rate: u32) -> Result<(), String> {
+    let (low, high) = SAMPLE_RATES.into_inner();
+    if SAMPLE_RATES.contains(&sample_rate) {
+        Ok(())
+    } else {
+        Err(format!("{sample_rate} is out of range: expected {low} to {high} Hz"))
+    }
+}
+
 /// Size of a synth's own pool: for 64 notes of 64 modes with 64 more that fade, or for 24 notes of 512 modes.
 const POOL: Footprint = Footprint { voices: 256, cells: 256 };
 
