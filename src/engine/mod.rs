@@ -15,6 +15,7 @@ mod instrument;
 pub mod midi;
 mod modulation;
 pub mod note;
+pub(crate) mod pressed;
 pub mod scope;
 pub mod snapshot;
 mod space;
