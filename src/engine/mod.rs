@@ -34,4 +34,4 @@ pub use note::{Note, NoteId, Notes};
 pub use snapshot::{SHOWN_NOTES, Snapshot, SoundingNote};
 pub use synth::Synth;
 pub use telemetry::{Telemetry, TelemetryWriter};
-pub use voice_state::{ModeState, VoiceState};
+pub use voice_state::{ModeState, StrikeState, VoiceState};

@@ -215,7 +215,10 @@ impl Synth {
 
     /// Calls `visit` with each voice that sounds now, in an order that is always the same. Real-time safe if `visit` is.
     pub fn each_voice(&mut self, visit: &mut dyn FnMut(VoiceState<'_>)) {
-        self.manager.active().for_each(|(note, voice)| visit(VoiceState::new(note, voice)));
+        for (note, voice) in self.manager.active() {
+            visit(VoiceState::new(note, voice));
+            voice.forget_ended_strikes();
+        }
     }
 
     /// The largest number of notes that have sounded at once.
