@@ -87,6 +87,11 @@ def test_errors_are_those_of_the_command() -> None:
         sprung.analyze(np.zeros((10, 65)))
 
 
+def test_the_mix_has_a_gain() -> None:
+    loud, soft = [sprung.render("Kick", "C2", length=0.1, tail="none", set={"limiter": "off"}, mix_gain_db=gain) for gain in [0, -12]]
+    assert np.allclose(soft, loud * 10 ** (-12 / 20), atol=1e-6)
+
+
 def test_warnings_are_raised() -> None:
     with pytest.warns(UserWarning, match="silent: their kits have no pad"):
         sprung.render("Acoustic Kit", 0, length=0.01, tail="none")
