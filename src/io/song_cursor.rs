@@ -1,5 +1,4 @@
-//! The position in a song that is being played: it gives each block's events with their frames, and lets go at the end of what
-//! the song leaves down.
+//! The position in a song: each block's events with their frames, and at the end those that let go of what is down.
 
 use super::song::Song;
 use crate::engine::midi::controller::ALL_NOTES_OFF;
