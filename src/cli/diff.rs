@@ -114,7 +114,11 @@ fn on_channels(sound: &Recording, count: usize) -> Cow<'_, [Vec<f32>]> {
 
 /// The distance in dB of the means of both sounds, whose samples are finite, each from its onset on, as `fit` measures it.
 fn mel_distance(expected: &Recording, actual: &Recording) -> Result<f64> {
-    let mean = |sound| -> Result<Vec<f32>> { Ok(mono(&resampled(sound, log_mel::RATE)?.channels)) };
+    let mean = |sound: &Recording| -> Result<Vec<f32>> {
+        let (channels, encoding) = (vec![mono(&sound.channels)], String::new());
+        let mean = Recording { sample_rate: sound.sample_rate, channels, encoding, warnings: Vec::new() };
+        Ok(resampled(&mean, log_mel::RATE)?.channels.remove(0))
+    };
     Ok(log_mel::distance(&mean(expected)?, &mean(actual)?))
 }
 

@@ -25,6 +25,9 @@ pub(super) struct SoundArgs {
     #[arg(long, value_name = "ID=VALUE", value_parser = quantity::setting,
         add = ArgValueCompleter::new(completion::settings))]
     set: Vec<(Param, f32)>,
+    /// Gain of the sum of all sounds before the limiter, -120-120 dB; --set gain would give every preset the same gain
+    #[arg(long, default_value_t = 0.0, value_name = "DB", value_parser = quantity::gain_db, allow_hyphen_values = true)]
+    pub(super) mix_gain_db: f64,
     #[command(flatten)]
     tuning: TuningArgs,
     /// Seed of all randomness, 0-18446744073709551615
@@ -40,6 +43,7 @@ impl SoundArgs {
             channels: self.channel.clone(),
             programs: self.programs.clone(),
             set: self.set.clone(),
+            mix_gain_db: self.mix_gain_db,
             tuning: self.tuning.request(),
         }
     }

@@ -127,6 +127,23 @@ impl Bank {
         either!(self, bank => bank.mass(m))
     }
 
+    /// See [`ModeBank::at_rest`].
+    pub(super) fn at_rest(&self) -> Self {
+        match self {
+            Self::Exact(bank) => Self::Exact(bank.at_rest()),
+            Self::Classic(bank) => Self::Classic(bank.at_rest()),
+        }
+    }
+
+    /// See [`ModeBank::with_state_of`]. The other bank has the same law.
+    pub(super) fn with_state_of(&self, other: &Self) -> Self {
+        match (self, other) {
+            (Self::Exact(bank), Self::Exact(other)) => Self::Exact(bank.with_state_of(other)),
+            (Self::Classic(bank), Self::Classic(other)) => Self::Classic(bank.with_state_of(other)),
+            _ => self.at_rest(),
+        }
+    }
+
     /// See [`ModeBank::settle`].
     pub fn settle(&mut self) -> f64 {
         either!(self, bank => bank.settle())

@@ -14,6 +14,7 @@ use super::mode_bank::{ExcitationRows, MAX_MODES, ModeRows};
 pub const MAX_CELLS: usize = 8;
 
 /// A bank, with the frequency ratio and decay scale of each of its modes.
+#[derive(Clone)]
 pub struct Cell {
     bank: Bank,
     /// Frequency of each mode as a multiple of the note's frequency, and its T60 as a multiple of the note's decay.
@@ -39,7 +40,8 @@ impl Cell {
 }
 
 /// The cells of one voice. Modes are numbered consecutively through all cells, and energies are added up in that order.
-/// Cells are moved between owners, never copied: only [`Cell::new`] allocates, and everything else is real-time safe.
+/// Cells are moved between owners: only [`Cell::new`] and copies allocate, and everything else is real-time safe.
+#[derive(Clone)]
 pub struct Cells {
     cells: [Option<Box<Cell>>; MAX_CELLS],
     /// Number of modes of all cells together.
@@ -82,6 +84,22 @@ impl Cells {
 
     fn iter_mut(&mut self) -> impl Iterator<Item = &mut Cell> {
         self.cells.iter_mut().map_while(Option::as_deref_mut)
+    }
+
+    /// Like [`super::ModeBank::at_rest`]. Allocates.
+    #[must_use]
+    pub fn at_rest(&self) -> Self {
+        let mut copy = self.clone();
+        copy.iter_mut().for_each(|cell| cell.bank = cell.bank.at_rest());
+        copy
+    }
+
+    /// Like [`super::ModeBank::with_state_of`]. Allocates.
+    #[must_use]
+    pub fn with_state_of(&self, other: &Self) -> Self {
+        let mut copy = self.clone();
+        copy.iter_mut().zip(other.iter()).for_each(|(cell, other)| cell.bank = cell.bank.with_state_of(&other.bank));
+        copy
     }
 
     /// Frequency of each mode as a multiple of the note's frequency, a row for each cell. Write these before

@@ -308,6 +308,23 @@ impl ClassicBank {
         (self.modes[m].mass.x, self.modes[m].energy() as f32)
     }
 
+    /// Like [`super::ModeBank::at_rest`].
+    #[must_use]
+    pub fn at_rest(&self) -> Self {
+        let mut copy = self.clone();
+        copy.modes.iter_mut().for_each(|mode| (mode.mass.x, mode.mass.v) = (0.0, 0.0));
+        copy
+    }
+
+    /// Like [`super::ModeBank::with_state_of`].
+    #[must_use]
+    pub fn with_state_of(&self, other: &Self) -> Self {
+        let mut copy = self.clone();
+        let states = copy.modes.iter_mut().zip(&other.modes);
+        states.for_each(|(mode, other)| (mode.mass.x, mode.mass.v) = (other.mass.x, other.mass.v));
+        copy
+    }
+
     /// Like [`super::ModeBank::settle`].
     pub fn settle(&mut self) -> f64 {
         let mut total = 0.0;

@@ -2,7 +2,7 @@
 
 use super::note::Note;
 use super::voice::SynthVoice;
-pub use super::voice::mode_state::ModeState;
+pub use super::voice::mode_state::{ModeState, StrikeState};
 
 /// The state of a sounding voice between two blocks. A display needs a [`Snapshot`](super::Snapshot).
 pub struct VoiceState<'a> {
@@ -28,6 +28,13 @@ impl<'a> VoiceState<'a> {
     /// Whether mallet, pluck or noise still act. Real-time safe.
     pub fn is_being_struck(&self) -> bool {
         self.voice.is_being_struck()
+    }
+
+    /// The strikes on it that overlap with others or were made while it rang, each with what it alone has given the modes. They are
+    /// here until they no longer act, and once more. Empty unless [`Ensemble::tell_strikes_apart`](super::Ensemble::tell_strikes_apart) was called.
+    /// Real-time safe.
+    pub fn strikes(&self) -> impl Iterator<Item = StrikeState<'_>> {
+        self.voice.strikes()
     }
 
     /// Its modes, in the order of the sound's table. Real-time safe.

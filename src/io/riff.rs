@@ -4,6 +4,7 @@
 
 use super::output::Output;
 use super::wav_format::WavFormat;
+use crate::engine::synth::check_rate;
 use crate::error::Error;
 use std::fs::File;
 use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
@@ -25,8 +26,9 @@ impl WavFormat {
     /// Length in bytes of a file with this many frames.
     ///
     /// # Errors
-    /// [`Error::Value`] if a file cannot be that long.
+    /// [`Error::Value`] if a file cannot be that long, or if the rate is not one of the engine's.
     pub fn file_len(&self, frames: u64) -> crate::Result<u64> {
+        check_rate(self.sample_rate).map_err(|message| Error::value("rate", message))?;
         let header_len = header(self, 0).len() as u64;
         let data_len = frames.checked_mul(self.frame_len()).filter(|len| *len < MAX_LEN - header_len);
         let data_len =

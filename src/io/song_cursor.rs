@@ -1,14 +1,22 @@
-//! The position in a song that is being played: it gives each block's events with their frames.
+//! The position in a song: each block's events with their frames, and at the end those that let go of what is down.
 
 use super::song::Song;
-use crate::engine::Event;
+use crate::engine::midi::controller::ALL_NOTES_OFF;
+use crate::engine::pressed::Pressed;
+use crate::engine::{Event, EventKind};
 use std::borrow::Borrow;
 
 /// After the end of a song, silence is checked at multiples of this number of frames: often enough for an exact end,
 /// and at frames that do not depend on the block size.
 pub const SILENCE_INTERVAL: u64 = 64;
 
+/// Most events at the end of a song that let go of keys and pedals: all notes off and three pedals on each channel.
+const MOST_LET_GO: usize = 16 * 4;
+
 /// A position in a song, which may be owned or borrowed. Real-time safe after [`SongCursor::new`].
+///
+/// When the song ends, keys and pedals that it has left down are let go of, as a player's hands and feet would: otherwise an
+/// organ's last key sounds for as long as the organ can.
 #[derive(Clone, Debug)]
 pub struct SongCursor<S> {
     song: S,
@@ -16,13 +24,15 @@ pub struct SongCursor<S> {
     next: usize,
     frame: u64,
     song_frames: u64,
+    /// What the song holds down now.
+    pressed: Pressed,
 }
 
 impl<S: Borrow<Song>> SongCursor<S> {
     /// The start of a song, at a sample rate in Hz.
     pub fn new(song: S, sample_rate: f64) -> Self {
         let song_frames = song.borrow().frames(sample_rate);
-        Self { song, sample_rate, next: 0, frame: 0, song_frames }
+        Self { song, sample_rate, next: 0, frame: 0, song_frames, pressed: Pressed::default() }
     }
 
     /// Frames since the start of the song.
@@ -35,8 +45,8 @@ impl<S: Borrow<Song>> SongCursor<S> {
         self.song_frames
     }
 
-    /// The largest number of events in any block of at most `frames` frames. Takes time in proportion to the number of
-    /// events.
+    /// An upper bound of the number of events in any block of at most `frames` frames. Takes time in proportion to the number
+    /// of events.
     pub fn densest_block(&self, frames: usize) -> usize {
         let events = &self.song.borrow().events;
         let frame = |index: usize| events[index].frame(self.sample_rate);
@@ -47,7 +57,7 @@ impl<S: Borrow<Song>> SongCursor<S> {
             }
             most = most.max(last + 1 - first);
         }
-        most
+        most + if events.is_empty() { 0 } else { MOST_LET_GO }
     }
 
     /// Appends the events of the next `frames` frames to `events`. Allocates only if `events` has not enough room.
@@ -59,20 +69,39 @@ impl<S: Borrow<Song>> SongCursor<S> {
                 break;
             }
             events.push(event.at(at.saturating_sub(self.frame) as u32));
+            self.pressed.follow(event.channel, &event.kind);
             self.next += 1;
+        }
+        if self.song_frames < end && self.next == self.song.borrow().events.len() && !self.pressed.is_none() {
+            self.let_go(events);
         }
         self.frame = end;
     }
 
-    /// Ends the song at the present position.
+    /// Appends events that let go of everything that is down: at the end of the song, but after its last event, and now if that
+    /// has passed.
+    fn let_go(&mut self, events: &mut Vec<Event>) {
+        let last = events.last().map_or(0, |event| event.frame);
+        let frame = last.max(self.song_frames.saturating_sub(self.frame) as u32);
+        for channel in 0..16 {
+            // Not key by key: a monophonic voice would glide from each to the next.
+            let keys = self.pressed.keys(channel).next().map(|_| ALL_NOTES_OFF);
+            for controller in keys.into_iter().chain(self.pressed.pedals(channel)) {
+                events.push(Event { frame, channel, kind: EventKind::Control { controller, value: 0.0 } });
+            }
+        }
+        self.pressed = Pressed::default();
+    }
+
+    /// Ends the song at the present position. The next call of [`SongCursor::advance`] lets go of what is down.
     pub fn halt(&mut self) {
         self.next = self.song.borrow().events.len();
         self.song_frames = self.song_frames.min(self.frame);
     }
 
-    /// Whether the end was reached and all events were returned.
+    /// Whether the end was reached, all events were returned, and nothing is down.
     pub fn is_over(&self) -> bool {
-        self.frame >= self.song_frames && self.next == self.song.borrow().events.len()
+        self.frame >= self.song_frames && self.next == self.song.borrow().events.len() && self.pressed.is_none()
     }
 }
 
@@ -106,7 +135,7 @@ mod tests {
     #[test]
     fn the_densest_block_is_known_and_a_halt_is_an_end() {
         let mut cursor = SongCursor::new(song(), 48_000.0);
-        assert_eq!((cursor.densest_block(4096), cursor.densest_block(48)), (4, 3));
+        assert_eq!((cursor.densest_block(4096), cursor.densest_block(48)), (4 + MOST_LET_GO, 3 + MOST_LET_GO));
         let mut events = Vec::new();
         cursor.advance(50, &mut events);
         cursor.halt();
@@ -114,5 +143,69 @@ mod tests {
         cursor.advance(1000, &mut events);
         assert_eq!(events.len(), 3);
         assert_eq!(SongCursor::new(Song::default(), 48_000.0).densest_block(4096), 0);
+    }
+
+    /// What a song has down at its end, and before: on channels 1, 2, 3 and 16.
+    fn left_down() -> Song {
+        let on = |key| EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
+        let control = |controller| EventKind::Control { controller, value: 1.0 };
+        let events = [
+            (0.0, 0, on(60)),
+            (0.0, 1, control(64)),
+            (0.0, 2, on(60)),
+            (0.0, 15, on(1)),
+            (0.001, 15, on(2)),
+            (0.001, 15, control(66)),
+            (0.001, 15, control(67)),
+            (0.002, 2, EventKind::NoteOff { key: 60, velocity: 0.5, id: None }),
+        ];
+        let events = events.map(|(seconds, channel, kind)| SongEvent { seconds, channel, kind });
+        Song { events: events.to_vec(), seconds: 0.01 }
+    }
+
+    #[test]
+    fn keys_and_pedals_that_are_down_at_the_end_are_let_go_of() {
+        for block in [1, 7, 96, 480, 1000] {
+            let mut cursor = SongCursor::new(left_down(), 48_000.0);
+            let mut found = Vec::new();
+            while !cursor.is_over() {
+                let (start, mut events) = (cursor.frame(), Vec::new());
+                cursor.advance(block, &mut events);
+                assert!(events.len() <= cursor.densest_block(block));
+                found.extend(events.iter().map(|event| (start + u64::from(event.frame), event.channel, event.kind)));
+            }
+            let up = |(channel, controller)| (480, channel, EventKind::Control { controller, value: 0.0 });
+            assert_eq!(found[8..], [(0, 123), (1, 64), (15, 123), (15, 66), (15, 67)].map(up), "{block}");
+        }
+    }
+
+    #[test]
+    fn a_song_that_is_halted_lets_go_of_what_is_down_then() {
+        let mut cursor = SongCursor::new(left_down(), 48_000.0);
+        let mut events = Vec::new();
+        cursor.advance(10, &mut events);
+        cursor.halt();
+        assert!(!cursor.is_over());
+        events.clear();
+        cursor.advance(10, &mut events);
+        assert!(cursor.is_over());
+        let up =
+            |(channel, controller)| Event { frame: 0, channel, kind: EventKind::Control { controller, value: 0.0 } };
+        assert_eq!(events, [(0, 123), (1, 64), (2, 123), (15, 123)].map(up));
+    }
+
+    #[test]
+    fn a_song_that_ends_with_nothing_down_has_no_further_events() {
+        let mut song = left_down();
+        song.events.truncate(1);
+        song.events.push(SongEvent {
+            seconds: 0.01,
+            channel: 0,
+            kind: EventKind::NoteOff { key: 60, velocity: 0.5, id: None },
+        });
+        let mut cursor = SongCursor::new(&song, 48_000.0);
+        let mut events = Vec::new();
+        cursor.advance(1000, &mut events);
+        assert!(cursor.is_over() && events.len() == 2);
     }
 }

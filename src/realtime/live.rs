@@ -3,7 +3,7 @@
 use super::{BlockClock, Stamp};
 use crate::engine::banks::Banks;
 use crate::engine::midi::controller::{ALL_NOTES_OFF, ALL_SOUND_OFF, SOSTENUTO, SUSTAIN};
-use crate::engine::note::{nearest_channel, nearest_key};
+use crate::engine::pressed::Pressed;
 use crate::engine::{Event, EventKind};
 use rtrb::{Consumer, Producer, RingBuffer};
 use std::time::Instant;
@@ -25,9 +25,8 @@ pub struct LiveEvent {
 /// The sending end of a queue. [`LiveSender::send`] is real-time safe.
 pub struct LiveSender {
     queue: Producer<LiveEvent>,
-    /// Keys held by this sender, one bit each; the next field has the channels whose sustain pedal it holds.
-    keys: [u128; 16],
-    pedals: u16,
+    /// The keys and pedals that this sender holds.
+    held: Pressed,
     /// The banks by which program changes select sounds, if they do.
     banks: Option<Banks>,
 }
@@ -48,15 +47,7 @@ impl LiveSender {
         if self.queue.push(event).is_err() {
             return false;
         }
-        let channel = usize::from(nearest_channel(event.channel));
-        let bit = 1 << channel;
-        match event.kind {
-            EventKind::NoteOn { key, .. } => self.keys[channel] |= 1 << nearest_key(key),
-            EventKind::NoteOff { key, .. } => self.keys[channel] &= !(1 << nearest_key(key)),
-            EventKind::Control { controller: SUSTAIN, value } if value >= 0.5 => self.pedals |= bit,
-            EventKind::Control { controller: SUSTAIN, .. } => self.pedals &= !bit,
-            _ => {}
-        }
+        self.held.follow(event.channel, &event.kind);
         true
     }
 
@@ -65,18 +56,17 @@ impl LiveSender {
         self.send(LiveEvent { stamp: Stamp::System(Instant::now()), channel, kind })
     }
 
-    /// Releases the keys and sustain pedals that this sender holds. Returns false if the queue is full: some are then still held.
+    /// Releases the keys and pedals that this sender holds. Returns false if the queue is full: some are then still held.
     pub fn release_held(&mut self) -> bool {
         for channel in 0..16 {
-            let held = self.keys[usize::from(channel)];
-            for key in (0..128).filter(|key| held & (1 << key) != 0) {
+            for key in self.held.keys(channel) {
                 self.send_now(channel, EventKind::NoteOff { key, velocity: 0.5, id: None });
             }
-            if self.pedals & (1 << channel) != 0 {
-                self.send_now(channel, EventKind::Control { controller: SUSTAIN, value: 0.0 });
+            for controller in self.held.pedals(channel) {
+                self.send_now(channel, EventKind::Control { controller, value: 0.0 });
             }
         }
-        self.keys == [0; 16] && self.pedals == 0
+        self.held.is_none()
     }
 
     /// Releases every note and pedal on every channel.
@@ -106,7 +96,7 @@ impl LiveInputs {
         let senders = std::array::from_fn(|_| {
             let (producer, consumer) = RingBuffer::new(CAPACITY);
             inputs.push(consumer);
-            LiveSender { queue: producer, keys: [0; 16], pedals: 0, banks: None }
+            LiveSender { queue: producer, held: Pressed::default(), banks: None }
         });
         (senders, Self(inputs))
     }

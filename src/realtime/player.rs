@@ -258,15 +258,16 @@ mod tests {
 
     #[test]
     fn kits_are_taken_at_the_next_block_and_a_halted_song_ends() {
-        let (mut player, _, mut kits, status) = player(Some(Song::chord(&[60.0], 1.0, 100.0)), &short());
-        assert!(kits.send(0, &Kit::of_patch(&Patch::default().with(Param::Gain, -60.0))));
+        let long = Patch::default().with(Param::Decay, 60.0).with(Param::Release, 0.05);
+        let (mut player, _, mut kits, status) = player(Some(Song::chord(&[60.0], 1.0, 100.0)), &long);
+        assert!(kits.send(0, &Kit::of_patch(&long.clone().with(Param::Gain, -60.0))));
         let mut out = vec![0_i16; 512];
         player.fill(&mut out, 2, now());
         assert!(out.iter().all(|sample| sample.abs() < 40), "the patch is a quiet one");
         assert!(!status.is_song_over());
         status.halt_song();
-        // The key of the halted song is still down, so only its decay ends the note.
-        for _ in 0..10_000 {
+        // The key of the halted song is let go of, so the note ends within a quarter of a second.
+        for _ in 0..SETTINGS.0 / 4 / 256 {
             player.fill(&mut out, 2, now());
         }
         assert!(status.is_song_over() && status.telemetry().is_silent());

@@ -1,7 +1,7 @@
 //! A rendering job with its options, and the result of a rendering.
 
 use crate::dsp::limiter::Work as LimiterWork;
-use crate::engine::synth::SAMPLE_RATES;
+use crate::engine::synth::check_rate;
 use crate::error::{Error, Result};
 use crate::io::Song;
 use crate::io::song;
@@ -26,7 +26,7 @@ pub enum Tail {
 /// Options of a rendering.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Frames per second, within [`SAMPLE_RATES`].
+    /// Frames per second, within [`SAMPLE_RATES`](super::SAMPLE_RATES).
     pub sample_rate: u32,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -98,16 +98,11 @@ impl<'a> Job<'a> {
 impl Options {
     /// Returns an error if an option is out of range.
     pub(super) fn check(&self) -> Result<()> {
-        let range = |name, value: String, low: String, high: String| {
-            Err(Error::value(name, format!("{value} is out of range: expected {low} to {high}")))
-        };
-        if !SAMPLE_RATES.contains(&self.sample_rate) {
-            let (low, high) = SAMPLE_RATES.into_inner();
-            return range("rate", self.sample_rate.to_string(), low.to_string(), high.to_string());
-        }
+        check_rate(self.sample_rate).map_err(|message| Error::value("rate", message))?;
         if !BLOCKS.contains(&self.block) {
             let (low, high) = BLOCKS.into_inner();
-            return range("block", self.block.to_string(), low.to_string(), high.to_string());
+            let message = format!("{} is out of range: expected {low} to {high}", self.block);
+            return Err(Error::value("block", message));
         }
         Ok(())
     }

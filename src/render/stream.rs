@@ -33,6 +33,9 @@ impl Job<'_> {
     ) -> Result<Rendered> {
         self.options.check()?;
         let mut stream = Stream::new(self);
+        if labels.is_some() {
+            stream.ensemble.tell_strikes_apart();
+        }
         let block = || [vec![0.0; self.options.block], vec![0.0; self.options.block]];
         let [mut now, mut next] = [block(), block()];
         let mut fill = |stream: &mut Stream, [left, right]: &mut [Vec<f32>; 2]| match &mut labels {

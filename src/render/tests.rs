@@ -44,6 +44,36 @@ fn lengths_are_exact() {
 }
 
 #[test]
+fn keys_and_pedals_that_are_down_when_a_song_ends_do_not_sound_on() {
+    let patch = Patch::default().with(Param::Decay, 60.0).with(Param::Release, 0.05);
+    let on = EventKind::NoteOn { key: 60, detune: 0.0, velocity: 1.0, id: None };
+    let off = EventKind::NoteOff { key: 60, velocity: 0.5, id: None };
+    let control = |controller| EventKind::Control { controller, value: 1.0 };
+    let release = |kinds: &[EventKind], tail| {
+        let event = |kind: &EventKind| SongEvent { seconds: 0.0, channel: 3, kind: *kind };
+        let song = Song { events: kinds.iter().map(event).collect(), seconds: 0.1 };
+        let mut samples = Vec::new();
+        let sink = |left: &[f32], _: &[f32]| {
+            samples.extend_from_slice(left);
+            Ok(())
+        };
+        Job::new(&song, &Kit::of_patch(&patch), options(48_000, 512, tail)).render(sink).unwrap();
+        samples
+    };
+    for kinds in [&[on][..], &[control(64), on, off], &[on, control(66), off], &[control(67), control(64), on]] {
+        let auto = release(kinds, Tail::Auto);
+        // The release takes 0.05 s for 60 dB.
+        assert!((4800 + 2400..4800 + 9600).contains(&auto.len()), "{kinds:?}: {}", auto.len());
+        assert!(auto[..4800].iter().any(|sample| sample.abs() > 0.1), "{kinds:?}");
+        // The song is the same whatever follows.
+        let timed = release(kinds, Tail::Seconds(0.2));
+        assert!(timed.iter().zip(&auto).all(|(a, b)| a.to_bits() == b.to_bits()), "{kinds:?}");
+        assert!(timed[auto.len()..].iter().all(|sample| *sample == 0.0), "{kinds:?}");
+        assert!(release(kinds, Tail::None) == auto[..4800], "{kinds:?}");
+    }
+}
+
+#[test]
 fn an_auto_tail_ends_in_silence_at_a_frame_that_does_not_depend_on_the_block() {
     let song = Song::chord(&[60.0, 67.5], 1.0, 0.1);
     let (whole, samples) = render(&song, options(48_000, 65_536, Tail::Auto));

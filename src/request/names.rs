@@ -100,6 +100,13 @@ const NAMES: &[Name] = &[
     plain("channel", |request, value| add(&mut request.sound.channels, quantity::channel(value))),
     plain("programs", |request, value| put(&mut request.sound.programs, Ok(value.into()))),
     plain("set", |request, value| add(&mut request.sound.set, quantity::setting(value))),
+    number(
+        "mix_gain_db",
+        |request, value| put(&mut request.sound.mix_gain_db, quantity::gain_db(value)),
+        quantity::gain_db,
+        (-120.0, 120.0),
+        false,
+    ),
     plain("scale", |request, value| put(&mut request.sound.tuning.scale, Ok(Some(value.into())))),
     plain("keymap", |request, value| put(&mut request.sound.tuning.keymap, Ok(Some(value.into())))),
     plain("seed", |request, value| put(&mut request.seed, quantity::whole(0..=u64::MAX)(value))),

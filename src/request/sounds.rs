@@ -28,6 +28,8 @@ pub struct SoundRequest {
     pub programs: OsString,
     /// Parameters to set in every preset used.
     pub set: Vec<(Param, f32)>,
+    /// Gain in dB of the sum of all sounds, before the limiter.
+    pub mix_gain_db: f64,
     /// The tuning of the keys.
     pub tuning: TuningRequest,
 }
@@ -35,7 +37,7 @@ pub struct SoundRequest {
 impl Default for SoundRequest {
     fn default() -> Self {
         let (channels, set, tuning) = (Vec::new(), Vec::new(), TuningRequest::default());
-        Self { preset: None, channels, programs: "gm".into(), set, tuning }
+        Self { preset: None, channels, programs: "gm".into(), set, mix_gain_db: 0.0, tuning }
     }
 }
 
@@ -50,7 +52,7 @@ pub struct Sounds {
     pub programs: Vec<Arc<Kit>>,
     /// The list that the programs come from.
     list: Option<Programs>,
-    /// The mix of a song's channels; with none, they are only added.
+    /// The mix of the channels; with none, they are only added.
     pub mix: Option<Mix>,
     /// The tuning of the keys.
     pub tuning: Tuning,
@@ -124,6 +126,9 @@ impl SoundRequest {
         let mut mix = list.as_ref().filter(|_| has_song).map(|list| list.mix.clone());
         if let Some(mix) = mix.as_mut().filter(|_| sets_space) {
             mix.space.clear();
+        }
+        if self.mix_gain_db != 0.0 {
+            mix.get_or_insert_default().gain += self.mix_gain_db as f32;
         }
         Ok(Sounds { kit, channels, programs, mix, list, tuning: self.tuning.read(inputs)? })
     }

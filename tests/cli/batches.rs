@@ -1,6 +1,8 @@
 //! `sprung batch`: files, manifest, resuming after a kill, shards, and errors in jobs.
 
-use crate::{Sandbox, Wav};
+use crate::{Sandbox, Wav, end, midi, song};
+use midly::MidiMessage;
+use midly::num::u7;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use sprung::preset::Preset;
@@ -44,6 +46,25 @@ pub(crate) fn start(sandbox: &Sandbox, args: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sprung"));
     command.current_dir(sandbox.path("")).args(args.split_whitespace()).stderr(Stdio::null());
     command.spawn().unwrap()
+}
+
+#[test]
+fn two_strikes_of_a_key_in_one_tick_have_a_label_each() {
+    let sandbox = Sandbox::new();
+    let strike = |velocity: u8| midi(0, 0, MidiMessage::NoteOn { key: u7::new(69), vel: u7::new(velocity) });
+    let off = midi(480, 0, MidiMessage::NoteOff { key: u7::new(69), vel: u7::new(64) });
+    sandbox.write("two.mid", song(&[strike(127), strike(20), off, end(0)]));
+    sandbox.write("jobs.jsonl", r#"{"song": "two.mid", "preset": "init", "programs": "none"}"#);
+    sandbox.succeeds("batch jobs.jsonl --out all");
+    let line = &lines(&sandbox, "all/manifest.jsonl")[0];
+    let notes = line["notes"].as_array().unwrap();
+    let number = |value: &Value| value.as_f64().unwrap();
+    assert_eq!(notes.iter().map(|note| number(&note["onset"])).collect::<Vec<_>>(), [0.0, 0.0], "{line}");
+    let [hard, soft] = [127.0, 20.0].map(|velocity: f64| velocity / 127.0);
+    assert!((number(&notes[0]["velocity"]) - hard).abs() < 1e-6 && (number(&notes[1]["velocity"]) - soft).abs() < 1e-6);
+    // The force is the square of the velocity.
+    let [first, second] = [0, 1].map(|note: usize| number(&notes[note]["modes"][0]["level_db"]));
+    assert!((first - second + 40.0 * libm::log10(soft)).abs() < 0.01, "{first} dB, {second} dB");
 }
 
 #[test]

@@ -1,11 +1,67 @@
 //! Listings of the command: presets, parameters, manual pages, completion scripts.
 
 use crate::Sandbox;
-use sprung::params::PARAMS;
+use sprung::params::{PARAMS, Unit};
 #[cfg(target_os = "linux")]
 use sprung::preset::library::Library;
 use sprung::preset::{KitPreset, Preset};
 use std::process::{Command, Stdio};
+
+/// The rows of the manual's tables of parameters: the page, the parameter's id, and the cell with its range and default.
+fn rows_of_the_manual() -> Vec<(String, String, String)> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/manual");
+    let mut rows = Vec::new();
+    for page in std::fs::read_dir(folder).unwrap() {
+        let path = page.unwrap().path();
+        let (text, page) = (std::fs::read_to_string(&path).unwrap(), path.display().to_string());
+        let mut prefix = None;
+        for line in text.lines() {
+            let cells: Vec<&str> = line.trim_matches('|').split(" | ").map(str::trim).collect();
+            let (first, last) = (cells[0], cells[cells.len() - 1]);
+            match prefix {
+                _ if !line.starts_with('|') => prefix = None,
+                // The ids of several sections differ by a prefix, which the head then has.
+                None if last == "range, default" => prefix = Some(first.split('`').nth(1).unwrap_or("")),
+                Some(prefix) if !line.starts_with("|--") => {
+                    let id = first.strip_prefix('`').and_then(|id| id.strip_suffix('`'));
+                    let id = id.unwrap_or_else(|| panic!("{page}: expected one parameter: {line}"));
+                    rows.push((page.clone(), format!("{prefix}{id}"), last.to_owned()));
+                }
+                _ => {}
+            }
+        }
+    }
+    rows
+}
+
+#[test]
+fn the_manual_has_the_ranges_and_defaults_of_the_parameters() {
+    let rows = rows_of_the_manual();
+    assert!(rows.len() > 80, "{}", rows.len());
+    for (page, id, cell) in rows {
+        let info = PARAMS.iter().find(|info| info.id == id).unwrap_or_else(|| panic!("{page}: there is no {id}"));
+        let parse =
+            |text: &str| info.parse(&text.replace('−', "-")).unwrap_or_else(|error| panic!("{page}: {id}: {error}"));
+        // After a semicolon follows advice.
+        let facts = cell.split(';').next().unwrap();
+        if info.unit == Unit::Choice {
+            assert_eq!(parse(facts.trim_matches('`')), info.default, "{page}: {id}: {cell}");
+            continue;
+        }
+        let (range, default) = facts.rsplit_once(", ").unwrap_or_else(|| panic!("{page}: {id}: {cell}"));
+        let [low, high] = match (range.strip_prefix('±'), range.split_once(" to ")) {
+            (Some(most), _) => [format!("−{most}"), most.to_owned()],
+            // Both have the unit of the last.
+            (None, Some((low, high))) if !low.contains(' ') => {
+                [format!("{low} {}", high.split_once(' ').map_or("", |(_, unit)| unit)), high.to_owned()]
+            }
+            (None, Some((low, high))) => [low.to_owned(), high.to_owned()],
+            (None, None) => panic!("{page}: {id}: {cell}"),
+        };
+        let told = [&*low, &*high, default].map(parse);
+        assert_eq!(told, [info.min, info.max, info.default], "{page}: {id}: {cell}");
+    }
+}
 
 #[test]
 fn presets_are_listed_shown_and_checked() {

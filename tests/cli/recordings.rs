@@ -37,6 +37,27 @@ fn a_strike_is_taken_apart_into_its_modes() {
     sandbox.fails("analyze a.wav --figure modes.png", 1, "modes.png: the file exists; add --force to overwrite it");
 }
 
+#[test]
+fn a_rate_that_no_sound_has_is_refused_at_once() {
+    let sandbox = Sandbox::new();
+    sandbox.write("a.wav", wav(&strike(0.5), 44_100));
+    for rate in [1_u32, 4_000_000_000] {
+        let mut bytes = wav(&strike(0.5), 44_100);
+        bytes[24..28].copy_from_slice(&rate.to_le_bytes());
+        sandbox.write("b.wav", bytes);
+        let message = format!("b.wav: its sample rate of {rate} is out of range: expected 1000 to 768000 Hz");
+        for (command, code) in [
+            ("analyze b.wav", 1),
+            ("diff a.wav b.wav", 2),
+            ("diff b.wav a.wav", 2),
+            ("fit b.wav -o b.toml", 1),
+            ("render --note 60 --set input_level=0 --input b.wav -o x.wav", 1),
+        ] {
+            sandbox.fails(command, code, &message);
+        }
+    }
+}
+
 /// Whether a text is JSON. All numbers in it are then finite, because JSON has no NaN and no infinity.
 fn is_json(text: &[u8]) -> bool {
     serde_json::from_slice::<serde_json::Value>(text).is_ok()

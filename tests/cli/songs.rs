@@ -1,6 +1,7 @@
 //! MIDI files that violate the standard, and program changes together with `--preset`.
 
 use crate::{Sandbox, end, midi, note_on, song};
+use midly::num::u7;
 use midly::{MidiMessage, TrackEvent};
 
 /// Runs the command, which must succeed, and returns its stderr.
@@ -89,6 +90,26 @@ fn program_changes_are_told_and_can_be_left_out() {
     for args in ["changes.mid", "changes.mid --programs none"] {
         let told = said(&sandbox, &format!("render {args} {base} out.wav"));
         assert!(!told.contains("warning"), "{told}");
+    }
+}
+
+#[test]
+fn a_song_that_leaves_keys_and_pedals_down_ends_nevertheless() {
+    let sandbox = Sandbox::new();
+    let pedal = |number: u8| midi(0, 0, MidiMessage::Controller { controller: u7::new(number), value: u7::new(127) });
+    let off = midi(100, 0, MidiMessage::NoteOff { key: u7::new(60), vel: u7::new(64) });
+    let organ = midi(0, 0, MidiMessage::ProgramChange { program: u7::new(16) });
+    for (name, events) in [
+        ("key", &[note_on(0, 0, 60)][..]),
+        ("sustain", &[pedal(64), note_on(0, 0, 60), off]),
+        ("sostenuto", &[note_on(0, 0, 60), pedal(66), off]),
+    ] {
+        sandbox.write("in.mid", song(&[&[organ][..], events, &[end(960)]].concat()));
+        let report = sandbox.succeeds("render in.mid --set space=none --rate 8000 --force --json -o out.wav");
+        let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
+        // An organ sounds for minutes while its key is down, and is silent soon after it.
+        let seconds = report["tail_seconds"].as_f64().unwrap();
+        assert!(seconds < 3.0, "{name}: {seconds}");
     }
 }
 

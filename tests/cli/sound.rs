@@ -75,6 +75,38 @@ fn the_limiter_tells_how_much_it_worked() {
 }
 
 #[test]
+fn the_gain_that_the_limiter_advises_keeps_the_balance_and_leaves_it_nothing_to_do() {
+    let sandbox = Sandbox::new();
+    // Two presets whose gains differ by 14 dB, so that one gain for both would change how loud they are beside each other.
+    let program = |channel, number: u8| midi(0, channel, MidiMessage::ProgramChange { program: number.into() });
+    let notes = |channel| (0..6).map(move |n| note_on(0, channel, 40 + 5 * n));
+    let all: Vec<_> =
+        [program(0, 19), program(1, 0)].into_iter().chain(notes(0)).chain(notes(1)).chain([end(480)]).collect();
+    sandbox.write("in.mid", song(&all));
+    for (base, before) in [
+        ("render in.mid --tail none --rate 8000", 18.0),
+        ("render in.mid --programs none --tail none --rate 8000", 12.0),
+        ("render --note C4,E4,G4,C5 --velocity 127 --length 0.5 --tail none --set gain=6 --rate 8000", 0.0),
+    ] {
+        let args = format!("{base} --mix-gain-db {before} --force -o limited.wav");
+        let output = sandbox.sprung(&args).assert().success().get_output().clone();
+        let told = String::from_utf8(output.stderr).unwrap();
+        let advice = told.split_once("avoid it with --mix-gain-db ").and_then(|(_, rest)| rest.split_once(','));
+        let advice: f64 = advice.unwrap_or_else(|| panic!("{base}: {told}")).0.parse().unwrap();
+        let lower = report(&sandbox, &format!("{base} --mix-gain-db {advice} --bits 32f -o lower.wav"));
+        assert_eq!(lower["limiter_reduction_db"], 0.0, "{base}: {advice}");
+        sandbox.succeeds(&format!("{base} --mix-gain-db {before} --set limiter=off --bits 32f --force -o free.wav"));
+        let ratio = sprung::units::gain_from_db(advice - before);
+        let (lower, free) = (sandbox.wav("lower.wav").samples, sandbox.wav("free.wav").samples);
+        assert!(lower.iter().any(|sample| sample.abs() > 0.5), "{base}: not much lower than it must be");
+        assert!(
+            lower.len() == free.len() && lower.iter().zip(&free).all(|(a, b)| (a - ratio * b).abs() < 1e-5),
+            "{base}"
+        );
+    }
+}
+
+#[test]
 fn mono_is_the_mean_of_both_channels() {
     let sandbox = Sandbox::new();
     let base = "render --note A3 --length 0.2 --tail none --preset Vibraphone.toml --bits 32f";

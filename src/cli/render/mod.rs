@@ -148,5 +148,5 @@ pub(super) fn run(args: &Args) -> Result<()> {
         figure.write(|format| figure::draw(&args.note, &title, &job, format))?;
     }
     output.commit()?;
-    report::tell(&report, &target, args.json)
+    report::tell(&report, &target, args.sound.mix_gain_db, args.json)
 }

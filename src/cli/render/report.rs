@@ -6,7 +6,8 @@ use sprung::Result;
 use sprung::io::{SampleFormat, Target};
 use sprung::render::Report;
 
-pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()> {
+/// Tells what came of a rendering whose mix had this gain.
+pub(super) fn tell(report: &Report, target: &Target, mix_gain_db: f64, as_json: bool) -> Result<()> {
     if report.clipped > 0 {
         complain(
             "warning",
@@ -20,9 +21,11 @@ pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()
         complain(
             "note",
             format_args!(
-                "the limiter lowered the sound by up to {:.1} dB, for {:.2} s in all; avoid it with a lower \
-                 --set gain=…, or switch it off with --set limiter=off",
-                report.limiter_reduction_db, report.limiter_seconds
+                "the limiter lowered the sound by up to {:.1} dB, for {:.2} s in all; avoid it with --mix-gain-db {}, which \
+                 keeps the balance, or switch it off with --set limiter=off",
+                report.limiter_reduction_db,
+                report.limiter_seconds,
+                gain_without_limiter(report, mix_gain_db)
             ),
         );
     }
@@ -46,6 +49,12 @@ pub(super) fn tell(report: &Report, target: &Target, as_json: bool) -> Result<()
             Ok(())
         }
     }
+}
+
+/// The gain of the mix in dB, to a tenth, at which the limiter has nothing to do. Its ceiling is below the level at which it
+/// begins, so a mix that is lower by what it took away stays below that level.
+fn gain_without_limiter(report: &Report, mix_gain_db: f64) -> f64 {
+    (((mix_gain_db - report.limiter_reduction_db) * 10.0).floor() / 10.0).max(-120.0)
 }
 
 fn summary(report: &Report, target: &Target) -> String {

@@ -411,6 +411,18 @@ impl ModeBank {
         (x.0[m], x.0[m] * x.0[m] + y.0[m] * y.0[m])
     }
 
+    /// A copy of the bank at rest.
+    #[must_use]
+    pub fn at_rest(&self) -> Self {
+        Self { states: [State::REST; 2], ..self.clone() }
+    }
+
+    /// A copy of the bank with the state of another one, which has as many modes and renders nothing from tables.
+    #[must_use]
+    pub fn with_state_of(&self, other: &Self) -> Self {
+        Self { states: other.states, current: other.current, ..self.clone() }
+    }
+
     /// Frames rendered since the state that [`ModeBank::mass`] returns.
     pub(super) fn frames_since(&self) -> usize {
         if let Motion::Tabled { handed_out } = self.motion { handed_out } else { 0 }

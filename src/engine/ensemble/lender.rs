@@ -56,6 +56,11 @@ impl Lender {
         Self { pool: voices(sample_rate, POOL) }
     }
 
+    /// The voices that no part has.
+    pub(super) fn voices_mut(&mut self) -> impl Iterator<Item = &mut SynthVoice> {
+        self.pool.voices_mut()
+    }
+
     /// An empty pool for one part, with capacity for all voices and cells. Allocates.
     pub(super) fn for_part() -> VoicePool<SynthVoice> {
         VoicePool::empty(POOL)

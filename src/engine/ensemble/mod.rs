@@ -160,6 +160,12 @@ impl Ensemble {
         }
     }
 
+    /// Tells the strikes of notes apart that are struck while they sound ([`VoiceState::strikes`]). To be called before the first
+    /// note. Afterwards [`Ensemble::process`] is not real-time safe: it allocates at such strikes. The output stays the same.
+    pub fn tell_strikes_apart(&mut self) {
+        self.lender.voices_mut().for_each(|voice| voice.tell_strikes_apart());
+    }
+
     /// Amplitude ratio at which the channels are mixed, before the limiter.
     pub fn gain(&self) -> f32 {
         self.gain

@@ -26,6 +26,19 @@ pub(super) use process::{flush, part, silence_inaudible};
 /// Sample rates that the engine runs at, in Hz.
 pub const SAMPLE_RATES: std::ops::RangeInclusive<u32> = 1_000..=768_000;
 
+/// Returns an error if a sample rate in Hz is not one of [`SAMPLE_RATES`].
+///
+/// # Errors
+/// A message that says what would be right.
+pub fn check_rate(sample_rate: u32) -> Result<(), String> {
+    let (low, high) = SAMPLE_RATES.into_inner();
+    if SAMPLE_RATES.contains(&sample_rate) {
+        Ok(())
+    } else {
+        Err(format!("{sample_rate} is out of range: expected {low} to {high} Hz"))
+    }
+}
+
 /// Size of a synth's own pool: for 64 notes of 64 modes with 64 more that fade, or for 24 notes of 512 modes.
 const POOL: Footprint = Footprint { voices: 256, cells: 256 };
 
@@ -202,7 +215,10 @@ impl Synth {
 
     /// Calls `visit` with each voice that sounds now, in an order that is always the same. Real-time safe if `visit` is.
     pub fn each_voice(&mut self, visit: &mut dyn FnMut(VoiceState<'_>)) {
-        self.manager.active().for_each(|(note, voice)| visit(VoiceState::new(note, voice)));
+        for (note, voice) in self.manager.active() {
+            visit(VoiceState::new(note, voice));
+            voice.forget_ended_strikes();
+        }
     }
 
     /// The largest number of notes that have sounded at once.

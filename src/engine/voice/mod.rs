@@ -1,5 +1,6 @@
 //! One voice: the strikes of its note, a bank of modes, and the modulation of their pitch, decay and gain.
 
+mod apart;
 mod bloom;
 mod bowing;
 mod clock;
@@ -27,6 +28,7 @@ use crate::dsp::cells::Cells;
 use crate::dsp::fader::Fader;
 use crate::params::Param;
 use crate::patch::ModeTable;
+use apart::Apart;
 use bloom::Bloom;
 use clock::Clock;
 use decay::Decay;
@@ -81,6 +83,8 @@ pub(crate) struct SynthVoice {
     may_move: bool,
     /// Whether routes of the patch modulate the level of the bow or of the input.
     may_be_driven: bool,
+    /// The strikes told apart, if labels are wanted.
+    apart: Option<Box<Apart>>,
 }
 
 impl SynthVoice {
@@ -111,6 +115,7 @@ impl SynthVoice {
             is_held: false,
             may_move: false,
             may_be_driven: false,
+            apart: None,
         }
     }
 
@@ -271,6 +276,9 @@ impl SynthVoice {
     /// `input` is the incoming sound: empty, or one sample for each frame.
     pub(crate) fn render(&mut self, input: &[f32], left: &mut [f32], right: &mut [f32]) {
         let frames = left.len();
+        if let Some(apart) = &mut self.apart {
+            apart.render(&self.strike, &self.bank, frames);
+        }
         let bow = self.strike.bowing.stroke(frames);
         self.fader.mix(self.bank.render(self.strike.drive(frames, input), bow.as_ref(), frames), [left, right]);
         self.tension.advance(frames);

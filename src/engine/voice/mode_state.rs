@@ -1,6 +1,9 @@
 //! The current state of a voice for displays, and that of its modes for labels.
 
 use super::SynthVoice;
+use super::apart::{Apart, Share};
+use crate::dsp::cells::Cells;
+use crate::engine::note::Note;
 use crate::params::Param;
 
 /// A mode of a sounding voice.
@@ -13,6 +16,29 @@ pub struct ModeState {
     /// Present amplitude at the voice's output, with the root mean square of both sides' gains: before the pan of single modes,
     /// effects, mix and limiter.
     pub amplitude: f64,
+}
+
+/// A strike that overlaps with others, or was made while its voice rang.
+pub struct StrikeState<'a> {
+    voice: &'a SynthVoice,
+    share: &'a Share,
+}
+
+impl StrikeState<'_> {
+    /// Its note.
+    pub fn note(&self) -> &Note {
+        &self.share.note
+    }
+
+    /// Whether its mallet, pluck or noise still act.
+    pub fn is_acting(&self) -> bool {
+        self.share.is_acting(&self.voice.strike)
+    }
+
+    /// The voice's modes, with the amplitudes that this strike alone has given them.
+    pub fn modes(&self) -> impl Iterator<Item = ModeState> {
+        self.voice.states_of(&self.share.modes)
+    }
 }
 
 impl SynthVoice {
@@ -45,13 +71,35 @@ impl SynthVoice {
 
     /// Its modes as they are now.
     pub(crate) fn mode_states(&self) -> impl Iterator<Item = ModeState> {
+        self.states_of(&self.bank)
+    }
+
+    /// The voice's modes as they would be with the amplitudes of `modes`.
+    pub(super) fn states_of<'a>(&self, modes: &'a Cells) -> impl Iterator<Item = ModeState> + use<'a> {
         let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
         let [left, right] = self.fader.now().map(f64::from);
         let power = 0.5 * (left * left + right * right);
-        self.bank.modes().map(move |(ratio, scale, touched, energy)| ModeState {
+        modes.modes().map(move |(ratio, scale, touched, energy)| ModeState {
             frequency: frequency * ratio,
             t60: damping.t60(scale, touched),
             amplitude: libm::sqrt(power * energy),
         })
+    }
+
+    /// From now on, tells strikes apart. Then strikes on sounding notes allocate, and so does rendering while they act.
+    pub(crate) fn tell_strikes_apart(&mut self) {
+        self.apart = Some(Box::new(Apart::NONE));
+    }
+
+    /// The strikes that have modes of their own, in their order.
+    pub(crate) fn strikes(&self) -> impl Iterator<Item = StrikeState<'_>> {
+        let shares = self.apart.iter().flat_map(|apart| &apart.shares);
+        shares.map(|share| StrikeState { voice: self, share })
+    }
+
+    /// Forgets the strikes that no longer act.
+    pub(crate) fn forget_ended_strikes(&mut self) {
+        let Self { apart, strike, .. } = self;
+        apart.iter_mut().for_each(|apart| apart.shares.retain(|share| share.is_acting(strike)));
     }
 }

@@ -140,9 +140,11 @@ impl Voice for SynthVoice {
         };
         self.bank.load(law, self.sample_rate, values.modes().as_slice(), setup);
         self.excite(instrument, note);
+        self.apart.iter_mut().for_each(|apart| apart.begin(note));
     }
 
     fn restrike(&mut self, instrument: &Instrument, note: &Note) {
+        self.apart.iter_mut().for_each(|apart| apart.part(&self.strike, &self.bank));
         let passed = self.clock.since_control();
         if !self.modulators.are_idle() {
             self.modulators.advance(passed);
@@ -151,11 +153,13 @@ impl Voice for SynthVoice {
         }
         self.slide(Some(instrument), note, note.is_legato);
         self.excite(instrument, note);
+        self.apart.iter_mut().for_each(|apart| apart.add(note, &self.strike, &self.bank));
         self.pitch.restart(self.controls.vibrato_rate, passed);
         self.clock.strike();
     }
 
     fn retune(&mut self, instrument: Option<&Instrument>, note: &Note) {
+        self.apart.iter_mut().for_each(|apart| apart.part(&self.strike, &self.bank));
         self.slide(instrument, note, true);
     }
 

@@ -75,6 +75,11 @@ impl Strike {
         (self.bowing, self.input) = (Bowing::OFF, Input::OFF);
     }
 
+    /// The strikes in progress.
+    pub(super) fn exciter(&self) -> &Exciter {
+        &self.exciter
+    }
+
     /// Whether any force is still to come.
     pub(super) fn is_active(&self) -> bool {
         self.exciter.is_active()

@@ -35,6 +35,11 @@ impl<V: Voice> VoicePool<V> {
         Footprint { voices: self.voices.len(), cells: self.cells.len() }
     }
 
+    /// The free voices.
+    pub(in crate::engine) fn voices_mut(&mut self) -> impl Iterator<Item = &mut V> {
+        self.voices.iter_mut().map(|voice| &mut **voice)
+    }
+
     /// Moves up to `some` voices and cells to another pool, which must have room for them.
     pub fn lend(&mut self, other: &mut Self, some: Footprint) {
         move_last(&mut self.voices, &mut other.voices, some.voices);

@@ -1,6 +1,6 @@
 //! Reads AIFF, FLAC, Ogg Vorbis and MP3, which Symphonia decodes.
 
-use super::recording::Recording;
+use super::recording::{Recording, check_layout};
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::{Cursor, ErrorKind, Read, Seek, SeekFrom};
@@ -42,6 +42,8 @@ pub(super) fn read(file: File, name: &str, format: &str) -> Result<Recording> {
     let Some((track, parameters)) = parameters else {
         return Err(Error::format(name, format!("there is no sound in this {format}: expected a track of it")));
     };
+    let channels = parameters.channels.as_ref().map_or(1, |channels| channels.count());
+    check_layout(parameters.sample_rate.unwrap_or(0), channels).map_err(|message| Error::format(name, message))?;
     let mut decoder = symphonia::default::get_codecs()
         .make_audio_decoder(&parameters, &AudioDecoderOptions::default())
         .map_err(wrong)?;

@@ -6,7 +6,7 @@ mod recording;
 mod resample;
 mod wav;
 
-pub use recording::Recording;
+pub use recording::{MOST_CHANNELS, Recording};
 pub use resample::resampled;
 
 use crate::error::{Error, Result};
@@ -21,7 +21,7 @@ const MAGIC_LEN: usize = 12;
 ///
 /// # Errors
 /// [`Error::Io`] if it cannot be read; [`Error::Format`], with what would be right, if it is no sound file, of a format
-/// that is not read, or without a single frame.
+/// that is not read, without a single frame, or as [`Recording::check_layout`].
 pub fn read(mut file: File, name: &str) -> Result<Recording> {
     let failed = |source| Error::io(name, source);
     let mut magic = Vec::with_capacity(MAGIC_LEN);
@@ -38,6 +38,7 @@ pub fn read(mut file: File, name: &str) -> Result<Recording> {
     if recording.frames() == 0 {
         return Err(Error::format(name, "there is no sound in the file: expected at least one frame"));
     }
+    recording.check_layout(name)?;
     Ok(recording)
 }
 

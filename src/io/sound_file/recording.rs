@@ -1,6 +1,11 @@
 //! A sound read from a file: samples, rate, and warnings about faults of the file.
 
+use crate::engine::synth::check_rate;
 use crate::error::{Error, Result};
+
+/// Most channels that a sound can have. What works on a sound takes time and memory for each of its channels, and a file of some
+/// kilobytes can claim to have 65,535 of them.
+pub const MOST_CHANNELS: usize = 64;
 
 /// A sound in memory.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +47,15 @@ impl Recording {
         Ok((0..self.frames()).map(mean).collect())
     }
 
+    /// Returns an error if the rate is not one of the engine's ([`SAMPLE_RATES`](crate::engine::synth::SAMPLE_RATES)), or if there are no channels or more than
+    /// [`MOST_CHANNELS`]. What works on a sound takes time and memory by both. `name` is the file's name in the error.
+    ///
+    /// # Errors
+    /// [`Error::Format`] that says what would be right.
+    pub fn check_layout(&self, name: &str) -> Result<()> {
+        check_layout(self.sample_rate, self.channels.len()).map_err(|message| Error::format(name, message))
+    }
+
     /// Returns an error if a sample is infinite or not a number; `name` is the file's name in the error.
     ///
     /// # Errors
@@ -63,6 +77,15 @@ impl Recording {
         }
         Ok(())
     }
+}
+
+/// Checks a rate in Hz and a number of channels. The error says what would be right.
+pub(super) fn check_layout(sample_rate: u32, channels: usize) -> std::result::Result<(), String> {
+    check_rate(sample_rate).map_err(|message| format!("its sample rate of {message}"))?;
+    if !(1..=MOST_CHANNELS).contains(&channels) {
+        return Err(format!("it has {channels} channels: expected 1 to {MOST_CHANNELS}"));
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Converts a recording to another sample rate.
 
-use super::recording::Recording;
+use super::recording::{Recording, check_layout};
 use crate::error::{Error, Result};
 use rubato::audioadapter::Adapter;
 use rubato::audioadapter_buffers::direct::SequentialSliceOfVecs;
@@ -12,7 +12,7 @@ const CHUNK: usize = 4096;
 /// The recording at `sample_rate`, band-limited to the lower of both rates; unchanged if it has this rate already.
 ///
 /// # Errors
-/// [`Error::Value`] for a rate of 0 or a ratio that cannot be converted.
+/// [`Error::Value`] for rates and numbers of channels that [`Recording::check_layout`] refuses.
 pub fn resampled(recording: &Recording, sample_rate: u32) -> Result<Recording> {
     if sample_rate == recording.sample_rate {
         return Ok(recording.clone());
@@ -21,17 +21,22 @@ pub fn resampled(recording: &Recording, sample_rate: u32) -> Result<Recording> {
         let rates = format!("from {} Hz to {sample_rate} Hz", recording.sample_rate);
         Error::value("sample rate", format!("{rates} cannot be converted: {error}"))
     };
-    let (from, to, count) = (recording.sample_rate as usize, sample_rate as usize, recording.channels.len());
-    // Double precision as in the analysis, so that the program contains only one kind of Fourier transform.
-    let mut resampler = Fft::<f64>::new(from, to, CHUNK, count, FixedSync::Both).map_err(|error| failed(&error))?;
-    let frames = recording.frames();
-    let precise: Vec<Vec<f64>> =
-        recording.channels.iter().map(|channel| channel.iter().map(|sample| f64::from(*sample)).collect()).collect();
-    let input = SequentialSliceOfVecs::new(&precise, count, frames).map_err(|error| failed(&error))?;
-    let output = resampler.process_all(&input, frames, None).map_err(|error| failed(&error))?;
-    let sample = |channel, frame| output.read_sample(channel, frame).unwrap_or(0.0) as f32;
+    for rate in [recording.sample_rate, sample_rate] {
+        check_layout(rate, recording.channels.len()).map_err(|error| failed(&error))?;
+    }
+    let (from, to, frames) = (recording.sample_rate as usize, sample_rate as usize, recording.frames());
+    // Double precision as in the analysis, so that the program contains only one kind of Fourier transform. One channel after
+    // the other: if the rates have no common divisor, the filter has as many taps as the rate has Hz, for each channel.
+    let mut resampler = Fft::<f64>::new(from, to, CHUNK, 1, FixedSync::Both).map_err(|error| failed(&error))?;
     // The last block may contain a frame beyond the end of the sound.
     let len = (frames as f64 * to as f64 / from as f64).round() as usize;
-    let channels = (0..count).map(|channel| (0..len).map(|frame| sample(channel, frame)).collect());
-    Ok(Recording { sample_rate, channels: channels.collect(), ..recording.clone() })
+    let mut convert = |channel: &Vec<f32>| {
+        let precise = [channel.iter().map(|sample| f64::from(*sample)).collect::<Vec<f64>>()];
+        let input = SequentialSliceOfVecs::new(&precise, 1, frames).map_err(|error| failed(&error))?;
+        let output = resampler.process_all(&input, frames, None).map_err(|error| failed(&error))?;
+        Ok((0..len).map(|frame| output.read_sample(0, frame).unwrap_or(0.0) as f32).collect())
+    };
+    let channels = recording.channels.iter().map(&mut convert).collect::<Result<_>>()?;
+    let (encoding, warnings) = (recording.encoding.clone(), recording.warnings.clone());
+    Ok(Recording { sample_rate, channels, encoding, warnings })
 }

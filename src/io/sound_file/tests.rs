@@ -105,7 +105,7 @@ fn what_is_no_sound_is_refused_with_what_would_be_right() {
             "x: there is no sound in the file: expected at least one frame",
         ),
         (wav(7, 1, 8), "x: samples are coded as µ-law: expected PCM or floats"),
-        (wav(1, 0, 16), "x: 0 channels at 8000 Hz: expected at least 1 of each"),
+        (wav(1, 0, 16), "x: it has 0 channels: expected 1 to 64"),
         (
             wav(3, 1, 16),
             "x: samples are floats of 16 bits, 2 bytes a frame of 1 channels: expected integers of 8, 16, 24 or 32 bits, \
@@ -114,6 +114,76 @@ fn what_is_no_sound_is_refused_with_what_would_be_right() {
     ] {
         assert_eq!(parsed(&bytes).unwrap_err().to_string(), message);
     }
+}
+
+/// A WAV of one frame of 8-bit samples.
+fn of_layout(sample_rate: u32, channels: u16) -> Vec<u8> {
+    let mut format = format(1, channels, 8);
+    format[4..8].copy_from_slice(&sample_rate.to_le_bytes());
+    riff(&[chunk(b"fmt ", &format), chunk(b"data", &vec![128; channels.into()])])
+}
+
+#[test]
+fn rates_and_channels_that_nothing_can_work_on_are_refused() {
+    for (rate, channels) in [(1000, 1), (768_000, 1), (8000, 64)] {
+        let found = parsed(&of_layout(rate, channels)).unwrap();
+        assert_eq!((found.sample_rate, found.channels.len()), (rate, channels.into()));
+    }
+    for rate in [0, 1, 999, 768_001, 4_000_000_000] {
+        let message = format!("x: its sample rate of {rate} is out of range: expected 1000 to 768000 Hz");
+        assert_eq!(parsed(&of_layout(rate, 1)).unwrap_err().to_string(), message);
+    }
+    for channels in [65, 65_535] {
+        let message = format!("x: it has {channels} channels: expected 1 to 64");
+        assert_eq!(parsed(&of_layout(8000, channels)).unwrap_err().to_string(), message);
+    }
+}
+
+/// Replaces the checksum of an Ogg file's first page, which is its first 58 bytes.
+#[cfg(feature = "codecs")]
+fn seal(ogg: &mut [u8]) {
+    ogg[22..26].fill(0);
+    let add = |sum: u32, byte: &u8| {
+        let shift = |sum: u32, _| sum << 1 ^ (sum >> 31) * 0x04c1_1db7;
+        (0..8).fold(sum ^ u32::from(*byte) << 24, shift)
+    };
+    let sum = ogg[..58].iter().fold(0, add);
+    ogg[22..26].copy_from_slice(&sum.to_le_bytes());
+}
+
+#[cfg(feature = "codecs")]
+#[test]
+fn rates_of_coded_files_are_checked_too() {
+    // MP3 has only rates from 8 to 48 kHz. An AIFF has its rate as an 80-bit float.
+    let mut aiff = include_bytes!("../../../tests/sounds/tone.aiff").to_vec();
+    let rate = aiff.windows(4).position(|name| name == b"COMM").unwrap() + 16;
+    aiff[rate..rate + 6].copy_from_slice(&[0x40, 0x1e, 0xee, 0x6b, 0x28, 0x00]);
+    let mut ogg = include_bytes!("../../../tests/sounds/tone.ogg").to_vec();
+    seal(&mut ogg);
+    assert!(parsed(&ogg).is_ok(), "the checksum is right");
+    ogg[40..44].copy_from_slice(&4_000_000_000_u32.to_le_bytes());
+    seal(&mut ogg);
+    for (bytes, rate) in [(aiff, 4_000_000_000_u32), (ogg, 4_000_000_000)] {
+        let message = format!("x: its sample rate of {rate} is out of range: expected 1000 to 768000 Hz");
+        assert_eq!(parsed(&bytes).unwrap_err().to_string(), message);
+    }
+}
+
+#[cfg(feature = "batch")]
+#[test]
+fn the_rate_of_a_flac_is_checked_too() {
+    let encoded = |rate: u32| {
+        let mut format = format(1, 1, 16);
+        format[4..8].copy_from_slice(&rate.to_le_bytes());
+        let [mut wav, mut flac] = [(); 2].map(|()| tempfile::tempfile().unwrap());
+        wav.write_all(&riff(&[chunk(b"fmt ", &format), chunk(b"data", &[1; 8192])])).unwrap();
+        crate::io::flac::encode(&mut wav, &mut flac, "x").unwrap();
+        flac.seek(SeekFrom::Start(0)).unwrap();
+        read(flac, "x")
+    };
+    assert_eq!(encoded(1000).unwrap().sample_rate, 1000);
+    let message = "x: its sample rate of 999 is out of range: expected 1000 to 768000 Hz";
+    assert_eq!(encoded(999).unwrap_err().to_string(), message);
 }
 
 #[test]
@@ -185,5 +255,9 @@ fn another_rate_is_the_same_sound() {
     let error = |n: usize| (found.channels[1][n] - sine(48_000.0, n)).abs();
     assert!((2000..46_000).map(error).fold(0.0, f32::max) < 1e-4);
     assert_eq!(resampled(&sound, 44_100).unwrap(), sound);
-    assert!(resampled(&sound, 0).unwrap_err().to_string().contains("sample rate: "));
+    for rate in [0, 999, 768_001, u32::MAX] {
+        let message = resampled(&sound, rate).unwrap_err().to_string();
+        assert!(message.contains("out of range: expected 1000 to 768000 Hz"), "{message}");
+        assert!(resampled(&Recording { sample_rate: rate, ..sound.clone() }, 48_000).is_err());
+    }
 }

@@ -1,6 +1,6 @@
 //! Reads WAV files: RIFF, RF64 and BW64, integers of 8 to 32 bits and floats, complete or cut off.
 
-use super::recording::Recording;
+use super::recording::{Recording, check_layout};
 use crate::error::{Error, Result};
 use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
 
@@ -84,9 +84,7 @@ impl Layout {
         let sample_rate = u32::from_le_bytes([body[4], body[5], body[6], body[7]]);
         // The first two bytes of the sub-format's GUID are its code.
         let code = if code == EXTENSIBLE { word(24).unwrap_or(code) } else { code };
-        if channels == 0 || sample_rate == 0 {
-            return Err(format!("{channels} channels at {sample_rate} Hz: expected at least 1 of each"));
-        }
+        check_layout(sample_rate, channels.into())?;
         let width = usize::from(bits.div_ceil(8));
         let known = match code {
             PCM => (1..=4).contains(&width),

@@ -189,7 +189,7 @@ def render(
     """Renders notes, or a MIDI file, and gives its samples as 32-bit floats.
 
     The options are those of ``sprung render``: ``velocity``, ``length``, ``tail``, ``rate``, ``seed``, ``mono``,
-    ``gain_db``, ``normalize``, ``scale``, ``keymap``, ``input``, ``programs``, ``lenient``.
+    ``gain_db``, ``mix_gain_db``, ``normalize``, ``scale``, ``keymap``, ``input``, ``programs``, ``lenient``.
     """
     with ExitStack() as stack:
         given: dict[str, Any] = dict(options)
@@ -264,7 +264,7 @@ def _name(preset: PresetLike, stack: ExitStack) -> str:
     return path
 
 
-def _sound(sound: SoundLike) -> str | tuple[int, list[list[float]]]:
+def _sound(sound: SoundLike) -> str | tuple[float, list[list[float]]]:
     """A sound as the native module takes it."""
     if isinstance(sound, (str, os.PathLike)):
         return os.fspath(sound)
@@ -273,8 +273,6 @@ def _sound(sound: SoundLike) -> str | tuple[int, list[list[float]]]:
     if frames.dtype.kind != "f" or frames.ndim not in (1, 2):
         what = f"{frames.dtype} of {frames.ndim} dimensions"
         raise Error(f"the array: {what}: expected floats within ±1, as frames or as frames by channels")
-    if not 1 <= rate <= 768_000:
-        raise Error(f"rate: {rate}: expected from 1 to 768000 Hz")
     frames = frames.astype(np.float32)
     channels = [frames] if frames.ndim == 1 else list(frames.T)
-    return int(rate), [channel.tolist() for channel in channels]
+    return float(rate), [channel.tolist() for channel in channels]

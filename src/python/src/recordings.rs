@@ -8,7 +8,7 @@ use sprung::analysis::fit::{Family, Settings as FitSettings, Take, fit as fitted
 use sprung::analysis::modes::{self, Mode, Strike};
 use sprung::io::Inputs;
 use sprung::io::sound_file::Recording;
-use sprung::request::recording;
+use sprung::request::{quantity, recording};
 use sprung::units::parse_key;
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 #[derive(FromPyObject)]
 pub(crate) enum Sound {
     File(PathBuf),
-    Samples(u32, Vec<Vec<f32>>),
+    Samples(f64, Vec<Vec<f32>>),
 }
 
 impl Sound {
@@ -26,9 +26,12 @@ impl Sound {
             Self::File(path) => {
                 recording(Path::new(&path), &mut Inputs::default(), &mut |warning| warnings.push(warning.to_owned()))
             }
-            Self::Samples(sample_rate, channels) => {
+            Self::Samples(rate, channels) => {
                 let (encoding, name) = ("array".to_owned(), "the array");
+                let sample_rate = quantity::rate(&rate.to_string());
+                let sample_rate = sample_rate.map_err(|message| sprung::Error::value("rate", message))?;
                 let sound = Recording { sample_rate, channels, encoding, warnings: Vec::new() };
+                sound.check_layout(name)?;
                 sound.check_finite(name)?;
                 Ok((sound, name.to_owned()))
             }

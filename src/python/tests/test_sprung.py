@@ -80,6 +80,16 @@ def test_errors_are_those_of_the_command() -> None:
     for most_modes in [0, 1001]:
         with pytest.raises(sprung.Error, match=f"most_modes: {most_modes}: expected 1 to 1000"):
             sprung.analyze(np.zeros(4410), most_modes=most_modes)
+    for rate in [-1, 0, 999, 768_001, 4_000_000_000]:
+        with pytest.raises(sprung.Error, match=f"rate: {rate} is out of range: expected 1000 to 768000 Hz"):
+            sprung.analyze((np.zeros(4410), rate))
+    with pytest.raises(sprung.Error, match="it has 65 channels: expected 1 to 64"):
+        sprung.analyze(np.zeros((10, 65)))
+
+
+def test_the_mix_has_a_gain() -> None:
+    loud, soft = [sprung.render("Kick", "C2", length=0.1, tail="none", set={"limiter": "off"}, mix_gain_db=gain) for gain in [0, -12]]
+    assert np.allclose(soft, loud * 10 ** (-12 / 20), atol=1e-6)
 
 
 def test_warnings_are_raised() -> None:
