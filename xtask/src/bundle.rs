@@ -3,6 +3,7 @@
 use crate::files::{copy, replace, write};
 use crate::patch;
 use crate::shell::{cargo, root};
+use crate::symbols;
 use std::path::{Path, PathBuf};
 
 /// A plugin format.
@@ -42,14 +43,18 @@ pub(crate) fn run(release: bool) -> Result<PathBuf, String> {
     // Debug symbols are most of the library's size.
     let (profile, linking) = if release { ("--release", "-- -C strip=symbols") } else { ("", "") };
     patch::run()?;
+    let library = format!("{}sprung_plugin{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let built = root().join("target").join(if release { "release" } else { "debug" });
     let mut build = cargo(&format!(
         "rustc --manifest-path plugin/Cargo.toml --lib --crate-type cdylib --target-dir target {profile} {linking}"
     ));
     if !build.status().map_err(|error| format!("cargo: {error}"))?.success() {
         return Err("the plugin does not build".to_owned());
     }
-    let library = format!("{}sprung_plugin{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    let library = root().join("target").join(if release { "release" } else { "debug" }).join(library);
+    let library = built.join(library);
+    if release {
+        symbols::check(&library)?;
+    }
     let folder = root().join("target/bundled");
     for format in Format::ALL {
         let bundle = folder.join(format.file_name());

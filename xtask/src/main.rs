@@ -16,6 +16,7 @@ mod shell;
 mod skipped;
 mod standalone;
 mod steps;
+mod symbols;
 mod test;
 
 use clap::{Parser, Subcommand};

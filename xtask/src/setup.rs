@@ -1,7 +1,7 @@
 //! `cargo xtask setup`: installs what the test suite needs on the system.
 
 use crate::python;
-use crate::shell::succeeds;
+use crate::shell::{has_standard_library, succeeds};
 use std::path::Path;
 use std::process::Command;
 
@@ -145,6 +145,9 @@ const REQUIREMENTS: &[Requirement] = &[
 /// Components of the Rust toolchain, each with the cargo command that it provides.
 const COMPONENTS: [(&str, &str); 2] = [("rustfmt", "fmt"), ("clippy", "clippy")];
 
+/// Windows, as Rust calls it: the plugin's corrections for it are compiled, not run.
+pub(crate) const WINDOWS: &str = "x86_64-pc-windows-gnu";
+
 impl Requirement {
     fn is_met(&self) -> bool {
         match self.probe {
@@ -177,6 +180,11 @@ pub(crate) fn run() -> Result<(), String> {
                 problems.push(format!("install it with: rustup component add {component}"));
             }
         }
+    }
+    if !has_standard_library(WINDOWS, None) && !succeeds("rustup", &["target", "add", WINDOWS]) {
+        println!(
+            "install it with: rustup target add {WINDOWS}; without it the corrections for Windows are not compiled"
+        );
     }
     let missing: Vec<&Requirement> = REQUIREMENTS.iter().filter(|requirement| !requirement.is_met()).collect();
     for Requirement { package, why, .. } in &missing {

@@ -54,3 +54,13 @@ pub(crate) fn run_to_end(command: &mut Command, what: &str) -> Result<(), String
         Err(error) => Err(format!("{what}: {error}")),
     }
 }
+
+/// Whether a compiler has the standard library of a target.
+pub(crate) fn has_standard_library(triple: &str, rustc: Option<&Path>) -> bool {
+    let output = Command::new(rustc.unwrap_or(Path::new("rustc")))
+        .args(["--print", "target-libdir", "--target", triple])
+        .output();
+    let Some(output) = output.ok().filter(|output| output.status.success()) else { return false };
+    let Ok(folder) = std::fs::read_dir(String::from_utf8_lossy(&output.stdout).trim()) else { return false };
+    folder.flatten().any(|file| file.file_name().to_string_lossy().starts_with("libstd-"))
+}

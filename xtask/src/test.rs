@@ -1,7 +1,7 @@
 //! `cargo xtask test`: runs the whole suite, step by step, and counts what was really run.
 
 use crate::package::Tested;
-use crate::shell::{cargo, run_and_read};
+use crate::shell::{cargo, has_standard_library, run_and_read};
 use crate::steps::{STEPS, Shows, Step};
 use crate::{bundle, package, patch, setup, skipped};
 use std::fmt;
@@ -43,6 +43,7 @@ pub(crate) fn run(strict: bool) -> Result<(), String> {
         Err(message) => failed(&message),
     }));
     outcomes.extend(STEPS.iter().map(|step| timed(step.name, || step.run())));
+    outcomes.push(timed(WINDOWS_STEP, corrections_for_windows));
     outcomes.push(timed("plugin, as bundled", plugin));
     outcomes.push(timed("Python package", python_package));
 
@@ -82,6 +83,22 @@ fn plugin() -> (Count, &'static str) {
         }
         Err(message) => failed(&message),
     }
+}
+
+/// The step that compiles the corrections for Windows.
+const WINDOWS_STEP: &str = "corrections for Windows";
+
+/// Compiles the packages with corrections that no other system compiles.
+fn corrections_for_windows() -> (Count, &'static str) {
+    let target = setup::WINDOWS;
+    if !has_standard_library(target, None) {
+        let skipped = vec![WINDOWS_STEP.to_owned()];
+        return (Count { skipped, ..Count::default() }, " (no standard library for it)");
+    }
+    let check = "check --manifest-path plugin/Cargo.toml --package baseview --package egui-baseview --target";
+    let mut command = cargo(check);
+    command.arg(target);
+    run_command(command, Shows::OneCheck)
 }
 
 /// Runs the tests of the Python package.

@@ -3,7 +3,8 @@
 use nice_plug_egui::Frame;
 
 /// Tracks which window has the keyboard focus. On X11 a focused window gets every key and cannot pass keys on to the
-/// host, so the focus itself is given back.
+/// host, so the focus itself is given back. On Windows the library of the window, as corrected, passes on the keys that
+/// nobody types here.
 #[derive(Default)]
 pub(super) struct Focus {
     #[cfg(target_os = "linux")]
@@ -20,11 +21,12 @@ impl Focus {
                 // Without the focus nothing can be typed, but everything else works.
                 let _ = window.focus();
             }
+            // A window that loses the focus during a drag may lose the drag.
+            _ if is_pressed => {}
             #[cfg(target_os = "linux")]
             (false, false) => drop(self.before.remember(window)),
-            // A window that loses the focus during a drag may lose the drag.
             #[cfg(target_os = "linux")]
-            (false, true) if !is_pressed => drop(self.before.give_back(window)),
+            (false, true) => drop(self.before.give_back(window)),
             _ => {}
         }
     }

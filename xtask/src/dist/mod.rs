@@ -7,6 +7,7 @@ use crate::bundle;
 use crate::files::{copy, remove, replace, write};
 use crate::sha256;
 use crate::shell::{cargo, root, run_to_end, succeeds};
+use crate::symbols;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -66,6 +67,7 @@ fn stage(folder: &Path, no_plugin: bool) -> Result<PathBuf, String> {
     let build = "rustc --release --package sprung --bin sprung -- -C strip=symbols";
     run_to_end(&mut cargo(build), "the command does not build")?;
     let command = root().join("target/release").join(format!("sprung{}", std::env::consts::EXE_SUFFIX));
+    symbols::check(&command)?;
     copy(&command, &stage.join("bin").join(command.file_name().unwrap_or_default()))?;
     run_to_end(Command::new(&command).arg("man").arg(stage.join("man/man1")), "the manual pages")?;
     for (shell, file) in COMPLETIONS {

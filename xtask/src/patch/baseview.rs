@@ -1,9 +1,12 @@
-//! Edits of the library below the wrapper's window: a closed window ends its thread and frees everything it held.
+//! Edits of the library below the wrapper's window: a closed window ends its thread and frees everything it held; on Windows, the
+//! host gets the keys that the window does not use, and a click is no error.
 
 use super::edit::{Edit, edit};
 
 const EGL: &str = "src/wrappers/egl.rs";
 const EVENT_LOOP: &str = "src/platform/x11/event_loop.rs";
+const WIN32_HANDLE: &str = "src/wrappers/win32/window/handle.rs";
+const WIN32_WINDOW: &str = "src/platform/win/window.rs";
 const WINDOW_THREAD: &str = "src/platform/x11/window_thread.rs";
 
 pub(super) const EDITS: &[Edit] = &[
@@ -60,4 +63,50 @@ pub(super) const EDITS: &[Edit] = &[
 use std::mem::ManuallyDrop;
 ",
     ),
+    // Windows: SetFocus returns null if no window had the focus, and also if it fails. What is to tell these apart is the
+    // thread's last error, which it does not always set. So the error of an earlier call was taken for a failure.
+    edit(
+        WIN32_HANDLE,
+        "        let previous = unsafe { SetFocus(self.as_raw()) };
+",
+        "        // SAFETY: This function is always safe to call
+        unsafe { SetLastError(0) };
+        let previous = unsafe { SetFocus(self.as_raw()) };
+",
+    ),
+    // Windows sends keys to the window that has the focus and to no other, and a click gives it to this window. What the
+    // handler answers was dropped, so that the host never heard of a key that the handler had ignored, such as Space for its
+    // transport. Posted, and not sent, the key goes through the host's own loop of messages, where hosts look for shortcuts.
+    edit(
+        WIN32_WINDOW,
+        "            if let Some(event) = opt_event {
+                window_bv.handle_event(Event::Keyboard(event));
+            }
+",
+        "            if let Some(event) = opt_event {
+                let status = window_bv.handle_event(Event::Keyboard(event));
+                if status == EventStatus::Ignored && window.post_to_parent(msg, wparam, lparam) {
+                    // If it were handled here as well, Alt+F4 would ask the host to close twice.
+                    return Some(0);
+                }
+            }
+",
+    ),
+    edit(
+        WIN32_HANDLE,
+        "    pub fn get_focused_window() -> HWND {
+",
+        "    /// Posts a message to the window around this one. Returns false if there is none, or if it takes no message.
+    pub fn post_to_parent(&self, message: u32, wparam: WPARAM, lparam: LPARAM) -> bool {
+        // SAFETY: This type guarantees the HWND is safe to use.
+        let parent = unsafe { GetParent(self.as_raw()) };
+        // Posted to null, a message would go to the thread.
+        // SAFETY: Keyboard messages have no pointers.
+        !parent.is_null() && unsafe { PostMessageW(parent, message, wparam, lparam) } != 0
+    }
+
+    pub fn get_focused_window() -> HWND {
+",
+    ),
+    edit(WIN32_HANDLE, "    DestroyWindow, GetWindowLongPtrW,", "    DestroyWindow, GetParent, GetWindowLongPtrW,"),
 ];

@@ -1,4 +1,5 @@
-//! Edits of the library between the window and egui: it passes on files that are dropped on the window, and three more keys.
+//! Edits of the library between the window and egui: it passes on files that are dropped on the window, and three more keys; a
+//! window that is not given the focus goes on without it.
 
 use super::edit::{Edit, edit};
 
@@ -37,6 +38,10 @@ pub(super) const EDITS: &[Edit] = &[
             baseview::Event::Keyboard(_) => {
 ",
     ),
+    // A click asks for the focus. If that fails, nothing can be typed, but everything else works; a panic, however, would end the
+    // host, since on Windows the system calls this code.
+    edit(WINDOW, "            self.window.focus().unwrap();\n", "            let _ = self.window.focus();\n"),
+    edit(WINDOW, "                    self.window.focus()?;\n", "                    let _ = self.window.focus();\n"),
     // The slash, which searches, and the brackets, which choose the octave, were no keys.
     edit(
         "src/translate.rs",

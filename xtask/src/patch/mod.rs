@@ -1,8 +1,8 @@
 //! `cargo xtask patch`: writes packages used by the plugin, as on crates.io but with the corrections in this folder.
 //!
 //! The corrections keep the wrapper's VST3 from crashing its host and from leaking file descriptors, make sure that a closed
-//! window is gone, and let the window open the host's menu of a parameter. `plugin/UPSTREAM.md` describes each fault as in a
-//! bug report.
+//! window is gone, let the window open the host's menu of a parameter, and on Windows survive a click and let the host hear its
+//! keys. `plugin/UPSTREAM.md` describes each fault as in a bug report.
 
 mod baseview;
 mod calls;

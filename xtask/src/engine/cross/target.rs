@@ -1,7 +1,7 @@
 //! The targets of the program: how it is built and run for each, and what must be installed for that.
 
 use super::stopped::Stopped::{self, Failed, Missing};
-use crate::shell::{cargo, root, run_to_end, succeeds};
+use crate::shell::{cargo, has_standard_library, root, run_to_end, succeeds};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -99,14 +99,4 @@ impl Target {
         command.arg(program);
         Ok(command)
     }
-}
-
-/// Whether a compiler has the standard library of a target.
-fn has_standard_library(triple: &str, rustc: Option<&Path>) -> bool {
-    let output = Command::new(rustc.unwrap_or(Path::new("rustc")))
-        .args(["--print", "target-libdir", "--target", triple])
-        .output();
-    let Some(output) = output.ok().filter(|output| output.status.success()) else { return false };
-    let Ok(folder) = std::fs::read_dir(String::from_utf8_lossy(&output.stdout).trim()) else { return false };
-    folder.flatten().any(|file| file.file_name().to_string_lossy().starts_with("libstd-"))
 }
