@@ -106,7 +106,7 @@ fn main() -> ExitCode {
             what_people_type_is_understood_or_refused
             a_flush_sets_values
             senseless_values_and_unknown_ids_change_nothing_else
-            remote_control_pages_have_every_parameter_once
+            remote_control_pages_begin_with_what_one_turns_first_and_have_every_parameter_once
         }
         Nothing: lifecycle {
             every_rate_and_block_size_plays
