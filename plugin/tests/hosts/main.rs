@@ -24,6 +24,7 @@ mod realtime;
 mod scan;
 mod screen;
 mod screen_reader;
+mod sizes;
 mod song;
 mod standalone;
 mod state;
@@ -85,6 +86,7 @@ fn main() -> ExitCode {
             "screen-reader" => screen_reader::work(),
             "window-cpu" => cpu::work(),
             "window-pixels" => pixels::work(),
+            "sizes-clap" | "sizes-vst3" | "zooms-clap" | "zooms-vst3" | "dots" => sizes::work(&work),
             "window" | "window-keys" | "window-playing" => window::work(&work),
             _ => realtime::work(&work),
         };
@@ -195,6 +197,13 @@ fn main() -> ExitCode {
         }
         Screen: pixels {
             the_real_window_has_the_pixels_of_the_accepted_picture
+        }
+        Screen: sizes {
+            every_opening_is_whole_at_every_zoom_and_scale_in_clap
+            every_opening_is_whole_at_every_zoom_and_scale_in_vst3
+            a_zoom_that_is_chosen_stays_in_clap
+            a_zoom_that_is_chosen_stays_in_vst3
+            a_screen_with_dense_dots_has_a_whole_window
         }
         Screen: cpu {
             a_silent_window_draws_nothing
