@@ -17,7 +17,7 @@ use super::motion::Motion;
 use super::pages::{self, Pages};
 use super::piano::Piano;
 use super::shown::Shown;
-use super::status::Load;
+use super::status::{Load, StatusLine};
 use super::theme::Theme;
 use super::{extent, fonts, learn, status};
 use crate::params::SprungParams;
@@ -77,6 +77,7 @@ pub(super) struct Window {
     /// The theme that was last applied to egui's own widgets.
     applied: Option<Theme>,
     message: String,
+    line: StatusLine,
 }
 
 impl Window {
@@ -112,6 +113,7 @@ impl Window {
             loads,
             applied: None,
             message: String::new(),
+            line: StatusLine::default(),
         }
     }
 
@@ -176,8 +178,9 @@ impl Window {
         }
         match self.over {
             Some(Over::Browser) => {
-                if let Some(message) = self.browser.show(ui, layout.page(), &mut controls) {
+                if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
                     self.message = message;
+                    self.over = self.over.filter(|_| !is_done);
                 }
             }
             Some(Over::Manual) => {
@@ -231,7 +234,7 @@ impl Window {
         let sample_rate = params.link().sample_rate();
         let load = self.load.share(ui.input(|input| input.time), telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
-        status::show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
+        self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
         let search = (searches && self.over != Some(Over::Browser)).then_some(Wish::Browse);
         if let Some(wish) = wish.or(search) {
             self.grant(wish, ui, host);

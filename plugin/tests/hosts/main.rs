@@ -14,6 +14,7 @@ mod growth;
 mod host;
 mod host_menu;
 mod lifecycle;
+mod minutes;
 mod notes;
 mod parameters;
 mod patches;
@@ -216,6 +217,9 @@ fn main() -> ExitCode {
             a_broken_state_is_set_aside
             what_is_missing_is_said
             a_slash_searches
+        }
+        Program: minutes {
+            the_first_five_minutes
         }
         Program: devices {
             another_device_is_chosen_while_it_plays

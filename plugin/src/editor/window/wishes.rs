@@ -1,6 +1,7 @@
 //! The user's requests, carried out.
 
 use super::{Over, Window};
+use crate::editor::browser::Aim;
 use crate::editor::extent;
 use crate::editor::files::{load, neighbour};
 use crate::editor::header::Wish;
@@ -51,7 +52,7 @@ impl Window {
                 let closes = self.over == Some(Over::Browser) && wish == Wish::Browse;
                 self.over = (!closes).then_some(Over::Browser);
                 self.message.clear();
-                self.browser.open(&self.params.name());
+                self.browser.open(&self.params.name(), if wish == Wish::Save { Aim::Save } else { Aim::Find });
             }
             Wish::Undo => self.go_back(History::undo, host),
             Wish::Redo => self.go_back(History::redo, host),
