@@ -37,6 +37,9 @@ mod wishes;
 /// Time between two repaints while something moves.
 const FRAME: Duration = Duration::from_millis(16);
 
+/// Longest time in seconds by which moving pictures go on in one pass: after a pause they go on where they were.
+const LONGEST: f32 = 0.25;
+
 /// The view that is shown in place of modes and parameters.
 #[derive(Clone, Copy, PartialEq)]
 enum Over {
@@ -72,6 +75,8 @@ pub(super) struct Window {
     /// The context of a real window, and the zoom that it has, or will have with the first pass.
     context: Option<egui::Context>,
     zoom: f32,
+    /// The time of the last pass.
+    now: f64,
     /// How many states the host had loaded when the window last looked.
     loads: u64,
     /// The theme that was last applied to egui's own widgets.
@@ -110,6 +115,7 @@ impl Window {
             is_b: false,
             context: None,
             zoom,
+            now: 0.0,
             loads,
             applied: None,
             message: String::new(),
@@ -142,7 +148,9 @@ impl Window {
         let telemetry = &params.link().telemetry;
         let (snapshot, is_silent) = (telemetry.snapshot(), telemetry.is_silent());
         let energies: Vec<f32> = snapshot.masses.iter().map(|mass| if is_silent { 0.0 } else { mass.energy }).collect();
-        let levels = self.meter.levels(telemetry.take_peaks(), ui.input(|input| input.stable_dt));
+        let now = ui.input(|input| input.time);
+        let seconds = ((now - std::mem::replace(&mut self.now, now)) as f32).clamp(0.0, LONGEST);
+        let levels = self.meter.levels(telemetry.take_peaks(), seconds);
         if !is_silent || self.meter.is_moving() {
             ui.ctx().request_repaint_after(FRAME);
         }
@@ -156,6 +164,7 @@ impl Window {
             hands: &mut self.hands,
             history: &mut self.history,
             hint: &mut hint,
+            seconds,
             notes: &notes,
         };
         let header = Header {
@@ -216,7 +225,7 @@ impl Window {
         if let Some(message) = self.fitting.show(ui, layout.modes, &mut controls) {
             self.message = message;
         }
-        self.browser.follow_time(ui.input(|input| input.time), &controls);
+        self.browser.follow_time(now, &controls);
         self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);
         // In a plugin, the computer's keyboard belongs to the host.
         let is_alone = host.plugin_api() == PluginApi::Standalone;
@@ -232,7 +241,7 @@ impl Window {
         let message = if self.message.is_empty() { complaints() } else { self.message.clone() };
         let message = complaint.unwrap_or(message);
         let sample_rate = params.link().sample_rate();
-        let load = self.load.share(ui.input(|input| input.time), telemetry, sample_rate);
+        let load = self.load.share(now, telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
         self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
         let search = (searches && self.over != Some(Over::Browser)).then_some(Wish::Browse);
