@@ -2,6 +2,7 @@
 
 #![allow(unsafe_code, reason = "the wrapper takes parameters as pointers and has no safe way to set several at once")]
 
+use crate::editor::extent::Extent;
 use crate::link::Link;
 use crate::loaded::{Loaded, Slot};
 use crate::state::{self, Read, State, View};
@@ -115,6 +116,8 @@ struct Kept {
     loaded: Arc<Loaded>,
     /// All sounds that the audio thread may still refer to, including the last one.
     may_sound: Shelf<Loaded>,
+    /// How many states the host has loaded.
+    loads: u64,
 }
 
 /// The state that the threads of one instance share: parameters, the loaded sound, and the rest.
@@ -122,6 +125,7 @@ pub(crate) struct SprungParams {
     knobs: Vec<Knob>,
     slot: Slot,
     link: Link,
+    extent: Extent,
     /// Locked while something is loaded or the whole state is read; never by the audio thread.
     kept: Mutex<Kept>,
 }
@@ -135,8 +139,9 @@ impl Default for SprungParams {
         knobs.iter().zip(positions).for_each(|(knob, position)| knob.turn(position));
         let may_sound = Shelf::default();
         may_sound.keep(&loaded);
-        let kept = Kept { playable, view, complaints: Arc::new([]), loaded: loaded.clone(), may_sound };
-        Self { knobs, slot: Slot::new(loaded), link: Link::default(), kept: Mutex::new(kept) }
+        let kept = Kept { playable, view, complaints: Arc::new([]), loaded: loaded.clone(), may_sound, loads: 0 };
+        let (link, extent) = (Link::default(), Extent::default());
+        Self { knobs, slot: Slot::new(loaded), link, extent, kept: Mutex::new(kept) }
     }
 }
 
@@ -149,6 +154,11 @@ impl SprungParams {
     /// The channels between the window and the audio thread.
     pub(crate) fn link(&self) -> &Link {
         &self.link
+    }
+
+    /// The size of the window in pixels.
+    pub(crate) fn extent(&self) -> &Extent {
+        &self.extent
     }
 
     fn kept(&self) -> MutexGuard<'_, Kept> {
@@ -183,13 +193,23 @@ impl SprungParams {
         self.kept().complaints.clone()
     }
 
+    /// How many states the host has loaded. Not for the audio thread.
+    pub(crate) fn loads(&self) -> u64 {
+        self.kept().loads
+    }
+
     /// Loads a sound, its knob positions and the rest at once. Not for the audio thread: it computes the sound, and
     /// frees sounds that are no longer played. Does not notify the host. Returns the loaded sound.
+    ///
+    /// An open window stays as it is: it must not change under the user's hands when the host steps through sounds or
+    /// takes something back.
     pub(crate) fn load(&self, Read { state, complaints }: Read) -> Arc<Loaded> {
         let loaded = Arc::new(state.loaded());
         let mut kept = self.kept();
         kept.playable = state.playable;
-        kept.view = state.view;
+        if !self.extent.is_open() {
+            kept.view = state.view;
+        }
         kept.complaints = complaints.into();
         kept.loaded = loaded.clone();
         kept.may_sound.keep(&loaded);
@@ -252,78 +272,10 @@ unsafe impl Params for SprungParams {
                 .iter()
                 .for_each(|complaint| nice_warn!("a state was not understood as a whole: {complaint}"));
             self.load(read);
+            self.kept().loads += 1;
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use sprung::params::Param as Row;
-
-    #[test]
-    fn the_host_sees_the_table() {
-        let params = SprungParams::default();
-        assert_eq!((params.knobs().len(), params.param_map().len()), (PARAM_COUNT, PARAM_COUNT));
-        for ((info, knob), (id, _, section)) in PARAMS.iter().zip(params.knobs()).zip(params.param_map()) {
-            assert_eq!((id.as_str(), section.as_str()), (info.id, info.section));
-            let (name, steps, modulated) = match knob {
-                Knob::Continuous(knob) => (knob.name(), knob.step_count(), knob.poly_modulation_id()),
-                Knob::Stepped(knob) => (knob.name(), knob.step_count(), knob.poly_modulation_id()),
-            };
-            assert_eq!(name, info.name);
-            let stepped = matches!(info.unit, Unit::Count | Unit::Choice);
-            assert_eq!(steps, stepped.then_some((info.max - info.min) as usize), "{id}");
-            let smoothed = matches!(info.change, Change::Smoothed(_));
-            assert_eq!(modulated, smoothed.then_some(info.param as u32), "{id}");
-            assert_eq!(knob.position(), info.normalise(info.default) as f32, "{id}");
-        }
-    }
-
-    #[test]
-    fn a_knob_is_turned_whatever_modulates_it() {
-        let params = SprungParams::default();
-        for row in [Row::Gain, Row::VibratoSync] {
-            let knob = &params.knobs()[row as usize];
-            for (offset, position) in [(1.0, 1.0), (1.0, 0.0), (-1.0, 1.0), (0.5, 0.0), (0.0, 1.0)] {
-                // SAFETY: as the wrapper does while a host modulates.
-                unsafe {
-                    match knob {
-                        Knob::Continuous(knob) => knob._internal_modulate_value(offset),
-                        Knob::Stepped(knob) => knob._internal_modulate_value(offset),
-                    }
-                };
-                knob.turn(position);
-                assert_eq!(knob.position(), position, "{row:?} modulated by {offset}");
-            }
-        }
-    }
-
-    #[test]
-    fn text_is_read_and_written_as_everywhere() {
-        let params = SprungParams::default();
-        for (row, text, shown) in [
-            (Row::Decay, "250 ms", "250 ms"),
-            (Row::Decay, "1.5", "1.5 s"),
-            (Row::Tuning, "A4", "440 Hz"),
-            (Row::Gain, "-12 dB", "-12 dB"),
-            (Row::MalletPulse, "Contact", "contact"),
-            (Row::Voices, "8", "8"),
-        ] {
-            let position = match &params.knobs()[row as usize] {
-                Knob::Continuous(knob) => knob.string_to_normalized_value(text).unwrap(),
-                Knob::Stepped(knob) => knob.string_to_normalized_value(text).unwrap(),
-            };
-            let written = match &params.knobs()[row as usize] {
-                Knob::Continuous(knob) => knob.normalized_value_to_string(position, true),
-                Knob::Stepped(knob) => knob.normalized_value_to_string(position, true),
-            };
-            assert_eq!(written, shown, "{text}");
-            params.knobs()[row as usize].turn(position);
-            assert_eq!(params.state().values.get(row), row.info().parse(text).unwrap(), "{text}");
-        }
-        let Knob::Continuous(gain) = &params.knobs()[Row::Gain as usize] else { panic!("gain is continuous") };
-        assert_eq!(gain.string_to_normalized_value("loud"), None);
-        assert_eq!(gain.string_to_normalized_value("99 dB"), None);
-    }
-}
+mod tests;

@@ -10,7 +10,7 @@ use crate::live::{EVENT_CAPACITY, Live, MAX_VOICES};
 use crate::params::{Knob, SprungParams};
 use crate::state;
 use nice_plug::prelude::*;
-use sprung::params::PARAMS;
+use sprung::params::{PARAMS, Param};
 use sprung::units::mono_from_stereo;
 use std::sync::Arc;
 
@@ -32,6 +32,19 @@ const fn layout(name: &'static str, channels: u32, inputs: &'static [std::num::N
         names: PortNames { layout: Some(name), aux_inputs: &["Exciter in"], ..PortNames::const_default() },
     }
 }
+
+/// The first page of a hardware controller, in the order of its eight knobs. The macros come first, because nearly every
+/// factory sound has three, for what one would turn in it first; the others act in sounds without macros too.
+const FIRST: [Param; 8] = [
+    Param::Macro1,
+    Param::Macro2,
+    Param::Macro3,
+    Param::Decay,
+    Param::Release,
+    Param::Tilt,
+    Param::SpaceMix,
+    Param::Gain,
+];
 
 const STEREO_IN: &[std::num::NonZeroU32] = &[new_nonzero_u32(2)];
 
@@ -128,10 +141,10 @@ impl ClapPlugin for Sprung {
         Some(PolyModulationConfig { max_voice_capacity: MAX_VOICES, supports_overlapping_voices: true });
 
     fn remote_controls(&self, context: &mut impl RemoteControlsContext) {
-        for rows in PARAMS.chunk_by(|a, b| a.section == b.section) {
-            context.add_section(rows[0].section, |section| {
-                section.add_page(rows[0].section, |page| {
-                    for knob in rows.iter().map(|info| &self.params.knobs()[info.param as usize]) {
+        let mut add = |name: &str, params: &mut dyn Iterator<Item = Param>| {
+            context.add_section(name, |section| {
+                section.add_page(name, |page| {
+                    for knob in params.map(|param| &self.params.knobs()[param as usize]) {
                         match knob {
                             Knob::Continuous(knob) => page.add_param(knob),
                             Knob::Stepped(knob) => page.add_param(knob),
@@ -139,6 +152,13 @@ impl ClapPlugin for Sprung {
                     }
                 });
             });
+        };
+        add("Essentials", &mut FIRST.into_iter());
+        // What a sound's author has put on macros comes before what the engine has.
+        let mut sections: Vec<_> = PARAMS.chunk_by(|a, b| a.section == b.section).collect();
+        sections.sort_by_key(|rows| rows[0].section != "Macros");
+        for rows in sections {
+            add(rows[0].section, &mut rows.iter().map(|info| info.param));
         }
     }
 }

@@ -78,7 +78,7 @@ impl BodyView {
                 loaded = drag.loaded.clone();
             }
         }
-        let amplitudes = self.advance(ui, &shape, energies);
+        let amplitudes = self.advance(controls.seconds, &shape, energies);
         let reach = shape.form.reach(rect);
         let soft = |value: f32| reach * value / (1.0 + value * value).sqrt();
         let moved: Vec<f32> = shape.displacements(&amplitudes).into_iter().map(soft).collect();
@@ -89,8 +89,8 @@ impl BodyView {
         caption
     }
 
-    /// Advances the phases by one pass, and returns the amplitude of each mode as a share of the greatest.
-    fn advance(&mut self, ui: &Ui, shape: &BodyShape, energies: &[f32]) -> Vec<f32> {
+    /// Advances the phases by some seconds, and returns the amplitude of each mode as a share of the greatest.
+    fn advance(&mut self, seconds: f32, shape: &BodyShape, energies: &[f32]) -> Vec<f32> {
         let total = energies.iter().sum::<f32>().sqrt();
         if total <= 1e-6 {
             self.greatest = 0.0;
@@ -99,7 +99,7 @@ impl BodyView {
         }
         self.greatest = self.greatest.max(total);
         self.angles.resize(shape.speeds.len(), 0.0);
-        let turned = TAU * TURNS * ui.input(|input| input.stable_dt.min(0.1));
+        let turned = TAU * TURNS * seconds;
         for (angle, speed) in self.angles.iter_mut().zip(&shape.speeds) {
             *angle = (*angle + turned * speed) % TAU;
         }

@@ -3,15 +3,13 @@
 use super::audition::Audition;
 use super::buttons::{Look, button};
 use super::controls::Controls;
-use super::details::Details;
+use super::details::{Details, Said};
 use super::files::read;
 use super::sounds::{Shelf, Sounds};
 use super::star;
-use super::text::{line, name_field};
+use super::text::{line, name_field, take_over};
 use super::theme::{GAP, PADDING, Palette, SMALL, TEXT, font};
 use crate::link::Link;
-use egui::text::{CCursor, CCursorRange};
-use egui::text_edit::TextEditState;
 use egui::{Align2, Id, Key, Rect, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
 use sprung::preset::catalogue::Listed;
 use sprung::preset::library::Library;
@@ -21,6 +19,13 @@ use std::sync::Arc;
 const ROW: f32 = 22.0;
 /// Width of the list of shelves, and of the details of a sound.
 const SIDE: [f32; 2] = [112.0, 250.0];
+
+/// What the browser is opened for.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Aim {
+    Find,
+    Save,
+}
 
 /// The browser's state.
 pub(super) struct Browser {
@@ -32,7 +37,8 @@ pub(super) struct Browser {
     details: Details,
     /// The key that plays the sound being tried.
     audition: Audition,
-    is_new: bool,
+    /// Whether the search takes the focus when it is shown next.
+    searches: bool,
 }
 
 impl Browser {
@@ -45,7 +51,7 @@ impl Browser {
             words: String::new(),
             details: Details::default(),
             audition: Audition::default(),
-            is_new: true,
+            searches: false,
         }
     }
 
@@ -59,15 +65,18 @@ impl Browser {
         self.sounds = None;
     }
 
-    /// Prepares for being shown, with the name of the loaded sound.
-    pub(super) fn open(&mut self, name: &str) {
+    /// Prepares for being shown, with the name of the loaded sound: for finding another one, or for saving this one.
+    pub(super) fn open(&mut self, name: &str, aim: Aim) {
         self.details.open(name);
-        self.is_new = true;
+        match aim {
+            Aim::Find => self.searches = true,
+            Aim::Save => self.details.take_name(),
+        }
         self.sounds = None;
     }
 
-    /// Shows the browser. Returns a message.
-    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> Option<String> {
+    /// Shows the browser. Returns a message, and whether the user is done here.
+    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> Option<(String, bool)> {
         let palette = controls.palette;
         let mut sounds = self.sounds.take().unwrap_or_else(|| Sounds::read(self.library.clone()));
         palette.paint_panel(ui.painter(), rect);
@@ -86,7 +95,7 @@ impl Browser {
         let mut message = None;
         let present = controls.params.name();
         let (search, rows) = list.split_top_bottom_at_y(list.top() + 28.0);
-        let asks = self.search(ui, search);
+        let asks = self.search(ui, search, palette);
         let found = sounds.find(self.shelf, &self.words);
         let chosen = match asks {
             Ask::Nothing => None,
@@ -108,11 +117,14 @@ impl Browser {
         }
         let shown = found.iter().find(|sound| sound.name() == controls.params.name());
         let said = self.details.show(ui, details, shown.map(Arc::as_ref), &sounds, controls);
-        let is_stale = said.as_ref().is_some_and(|(_, is_stale)| *is_stale);
+        let is_stale = said.as_ref().is_some_and(|said| said.is_stale);
         let broken =
             sounds.broken.first().map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
         self.sounds = (!is_stale).then_some(sounds);
-        said.map(|(message, _)| message).or(message).or(broken)
+        match said {
+            Some(Said { message, is_done, .. }) => Some((message, is_done)),
+            None => message.or(broken).map(|message| (message, false)),
+        }
     }
 
     /// Releases the key of the tried sound when its time is over.
@@ -133,8 +145,9 @@ impl Browser {
                 let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 2.0), Sense::hover());
                 let name = shelf.name();
                 let look = if shelf == self.shelf { Look::On } else { Look::Off };
-                if button(ui, row, &name, &format!("Show {name}"), look, palette).clicked() {
-                    self.shelf = shelf;
+                if button(ui, row, &name, &format!("Show {name}"), look, palette).clicked() && self.shelf != shelf {
+                    // All of the shelf is shown: words of another search would hide most of it.
+                    (self.shelf, self.words) = (shelf, String::new());
                 }
                 if matches!(shelf, Shelf::Kits) {
                     ui.add_space(6.0);
@@ -143,18 +156,20 @@ impl Browser {
         });
     }
 
-    fn search(&mut self, ui: &mut Ui, rect: Rect) -> Ask {
+    fn search(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) -> Ask {
         let field = search_field();
+        let rect = rect.with_max_y(rect.top() + 22.0);
+        let clear = rect.with_min_x(rect.right() - rect.height());
+        let rest = if self.words.is_empty() { rect } else { rect.with_max_x(clear.left() - 4.0) };
         let edit = TextEdit::singleline(&mut self.words).id(field).hint_text("Search, or a file’s whole path");
-        let response = ui.put(rect.with_max_y(rect.top() + 22.0), edit.font(font(TEXT)).margin(vec2(6.0, 3.0)));
+        let response = ui.put(rest, edit.font(font(TEXT)).margin(vec2(6.0, 3.0)));
         name_field(&response, "Search", &self.words);
-        if std::mem::take(&mut self.is_new) {
-            response.request_focus();
-            // Typed text replaces the words of the last search.
-            let mut state = TextEditState::load(ui.ctx(), field).unwrap_or_default();
-            let all = CCursorRange::two(CCursor::default(), CCursor::new(self.words.chars().count()));
-            state.cursor.set_char_range(Some(all));
-            state.store(ui.ctx(), field);
+        if rest != rect && button(ui, clear, "×", "Clear the search", Look::Plain, palette).clicked() {
+            self.words.clear();
+            self.searches = true;
+        }
+        if std::mem::take(&mut self.searches) {
+            take_over(ui, field, &self.words);
         }
         let pressed = |key| ui.input(|input| input.key_pressed(key));
         if response.lost_focus() && pressed(Key::Enter) && self.words.ends_with(".toml") {

@@ -58,6 +58,8 @@ pub(super) struct Controls<'a> {
     pub(super) hands: &'a mut Hands,
     pub(super) history: &'a mut History,
     pub(super) hint: &'a mut Option<Hint>,
+    /// Seconds since the last pass, as they really passed: egui's own number is a guess unless a pass was asked for at once.
+    pub(super) seconds: f32,
     /// The notes that sound, the newest first.
     pub(super) notes: &'a [SoundingNote],
 }

@@ -3,13 +3,28 @@
 use super::buttons::{Look, button};
 use super::controls::{Controls, Hint};
 use super::sounds::Sounds;
-use super::text::{line, name_field, paragraph};
+use super::text::{line, name_field, paragraph, take_over};
 use super::theme::{SMALL, TEXT, TITLE_HEIGHT, font};
-use egui::{Align2, Id, Rect, TextEdit, Ui, pos2, vec2};
+use egui::{Align2, Id, Key, Rect, TextEdit, Ui, pos2, vec2};
 use sprung::preset::catalogue::Listed;
 use sprung::preset::library::Library;
 use sprung::preset::{Playable, Preset};
 use sprung::units::note_name;
+
+/// What became of a request of the user's.
+pub(super) struct Said {
+    pub(super) message: String,
+    /// Whether the list of sounds has changed.
+    pub(super) is_stale: bool,
+    /// Whether that was all the user had wanted here.
+    pub(super) is_done: bool,
+}
+
+impl Said {
+    fn new(message: impl ToString, is_stale: bool) -> Self {
+        Self { message: message.to_string(), is_stale, is_done: false }
+    }
+}
 
 /// The state of the text field.
 #[derive(Default)]
@@ -18,15 +33,22 @@ pub(super) struct Details {
     pub(super) name: String,
     /// A name whose file is replaced if the user saves again.
     confirm: Option<String>,
+    /// Whether the field takes the focus when it is shown next.
+    takes_name: bool,
 }
 
 impl Details {
     /// Resets the field to the name of the loaded sound.
     pub(super) fn open(&mut self, name: &str) {
-        (self.name, self.confirm) = (name.to_owned(), None);
+        *self = Self { name: name.to_owned(), ..Self::default() };
     }
 
-    /// Shows the details of a sound and the buttons for it. Returns a message, and whether the list has changed.
+    /// Gives the field the focus when it is shown next.
+    pub(super) fn take_name(&mut self) {
+        self.takes_name = true;
+    }
+
+    /// Shows the details of a sound and the buttons for it.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -34,7 +56,7 @@ impl Details {
         shown: Option<&Listed>,
         sounds: &Sounds,
         controls: &mut Controls,
-    ) -> Option<(String, bool)> {
+    ) -> Option<Said> {
         let palette = controls.palette;
         let mut top = rect.top();
         if let Some(sound) = shown {
@@ -67,9 +89,14 @@ impl Details {
         }
         let field =
             Rect::from_min_max(pos2(rect.left(), rect.bottom() - 54.0), pos2(rect.right(), rect.bottom() - 30.0));
-        let edit = TextEdit::singleline(&mut self.name).id(Id::unique("save name")).hint_text("a name");
+        let id = Id::unique("save name");
+        let edit = TextEdit::singleline(&mut self.name).id(id).hint_text("a name");
         let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
         name_field(&response, "Name to save under", &self.name);
+        if std::mem::take(&mut self.takes_name) {
+            take_over(ui, id, &self.name);
+        }
+        let enters = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         let wide = (rect.width() - 8.0) / 3.0;
         let save = Rect::from_min_size(pos2(rect.left(), rect.bottom() - 24.0), vec2(wide, 24.0));
         let rename = save.translate(vec2(wide + 4.0, 0.0));
@@ -81,8 +108,11 @@ impl Details {
             let folder = sounds.library.as_ref().map(|library| library.presets_folder().display().to_string());
             *controls.hint = Hint::new("Save", folder.unwrap_or_default());
         }
-        if response.clicked() {
-            return Some(self.save(sounds, controls));
+        if enters || response.clicked() {
+            let said = self.save(sounds, controls);
+            // Enter is pressed again, or the name is corrected.
+            self.takes_name = enters && !said.is_stale;
+            return Some(Said { is_done: enters && said.is_stale, ..said });
         }
         let look = if own.is_some() { Look::Plain } else { Look::Disabled };
         if button(ui, rename, "Rename", "Give your sound this name", look, palette).clicked()
@@ -94,60 +124,60 @@ impl Details {
             && let (Some(path), Some(library)) = (own.and_then(|own| own.path.as_ref()), &sounds.library)
         {
             return Some(match library.discard(path) {
-                Ok(place) => (format!("moved to {}", place.display()), true),
-                Err(error) => (error.to_string(), false),
+                Ok(place) => Said::new(format!("moved to {}", place.display()), true),
+                Err(error) => Said::new(error, false),
             });
         }
         None
     }
 
     /// Renames a file of the user's. If the sound is a favourite, it stays one under the new name.
-    fn rename(&mut self, own: &Listed, library: &Library, controls: &Controls) -> (String, bool) {
+    fn rename(&mut self, own: &Listed, library: &Library, controls: &Controls) -> Said {
         let name = self.name.trim().to_owned();
-        let Some(path) = &own.path else { return (String::new(), false) };
+        let Some(path) = &own.path else { return Said::new("", false) };
         match library.rename(path, &name) {
             Ok(path) => {
                 let names = match library.favourites() {
                     Ok(names) => names,
-                    Err(error) => return (format!("renamed, but its star may be lost: {error}"), true),
+                    Err(error) => return Said::new(format!("renamed, but its star may be lost: {error}"), true),
                 };
                 if names.contains(own.name()) {
                     // In this order, since the new name may be the old one.
                     let moved =
                         library.set_favourite(own.name(), false).and_then(|()| library.set_favourite(&name, true));
                     if let Err(error) = moved {
-                        return (error.to_string(), true);
+                        return Said::new(error, true);
                     }
                 }
                 if controls.params.name() == own.name() {
                     controls.params.rename(name);
                 }
-                (format!("renamed {}", path.display()), true)
+                Said::new(format!("renamed {}", path.display()), true)
             }
-            Err(error) => (error.to_string(), false),
+            Err(error) => Said::new(error, false),
         }
     }
 
-    fn save(&mut self, sounds: &Sounds, controls: &mut Controls) -> (String, bool) {
+    fn save(&mut self, sounds: &Sounds, controls: &mut Controls) -> Said {
         let name = self.name.trim().to_owned();
         let replace = self.confirm.take().is_some_and(|confirmed| confirmed == name);
         let Some(library) = &sounds.library else {
-            return ("the system does not say where your data is kept".to_owned(), false);
+            return Said::new("the system does not say where your data is kept", false);
         };
         let Playable::Preset(preset) = controls.params.state().playable else {
-            return ("a kit is kept in the project with its presets: only single presets are saved".to_owned(), false);
+            return Said::new("a kit is kept in the project with its presets: only single presets are saved", false);
         };
         match library.save(&Preset { name: name.clone(), ..preset }, replace) {
             Ok(path) => {
                 controls.params.rename(name);
                 controls.history.saved();
-                (format!("saved {}", path.display()), true)
+                Said::new(format!("saved {}", path.display()), true)
             }
             Err(sprung::Error::Exists { path }) => {
                 self.confirm = Some(name);
-                (format!("{path} exists; press Replace to write over it"), false)
+                Said::new(format!("{path} exists; Enter again, or Replace, writes over it"), false)
             }
-            Err(error) => (error.to_string(), false),
+            Err(error) => Said::new(error, false),
         }
     }
 }

@@ -105,7 +105,10 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Cont
             wish = Some(asks);
         }
     }
-    wish = wish.or(view_menu(ui, next(52.0), header.view, palette));
+    // A host that refuses a larger window leaves little room at a large zoom: the way back stays within reach.
+    let view = next(52.0);
+    let view = view.translate(vec2((rect.right() - view.right()).min(0.0), 0.0));
+    wish = wish.or(view_menu(ui, view, header.view, palette));
     let meter = Rect::from_min_max(pos2(left + GAP, rect.top()), rect.max);
     if meter.width() >= 40.0 {
         meter::paint(ui.painter(), meter.with_min_x(meter.left().max(meter.right() - 150.0)), header.levels, palette);

@@ -5,10 +5,11 @@ use super::knob_face::{self, Face};
 use super::knob_menu;
 use super::routes::Ring;
 use super::text::line;
-use super::theme::{KNOB, SMALL};
+use super::theme::{KNOB, Palette, SMALL};
 use super::typing::{type_value, typed};
 use egui::accesskit::{Action, ActionData};
-use egui::{Align2, CursorIcon, Event, EventFilter, Id, Key, Rect, Response, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, CursorIcon, Event, EventFilter, Id, Key, Painter, Rect, Response, Sense, Stroke, Ui};
+use egui::{WidgetInfo, pos2, vec2};
 use sprung::params::{ParamInfo, Unit};
 
 /// Mouse movement for the whole travel of a knob, in pixels.
@@ -104,6 +105,13 @@ pub(super) fn show(
     if !typed(ui, parts.value, id(info).with("field"), info, controls) {
         line(ui.painter(), parts.value, Align2::CENTER_CENTER, &text, SMALL, colour);
     }
+}
+
+/// Shows an empty cell for a knob, under the title `name`.
+pub(super) fn show_none(painter: &Painter, cell: Rect, name: &str, palette: &Palette) {
+    let parts = Parts::of(cell);
+    painter.circle_stroke(parts.face.center(), KNOB / 2.0 - 3.0, Stroke::new(1.0, palette.line));
+    line(painter, parts.name, Align2::CENTER_CENTER, name, SMALL, palette.muted);
 }
 
 fn drag(ui: &Ui, response: &mut Response, info: &'static ParamInfo, controls: &mut Controls) {

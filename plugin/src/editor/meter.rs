@@ -18,7 +18,7 @@ impl Meter {
     pub(super) fn levels(&mut self, peaks: [f32; 2], seconds: f32) -> [f32; 2] {
         for (level, peak) in self.0.iter_mut().zip(peaks) {
             let db = db_from_gain(f64::from(peak)) as f32;
-            *level = (*level - FALL * seconds.clamp(0.0, 0.1)).max((db / RANGE + 1.0).clamp(0.0, 1.2));
+            *level = (*level - FALL * seconds).max((db / RANGE + 1.0).clamp(0.0, 1.2));
         }
         self.0
     }

@@ -3,7 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | `window` | an open window: what it shows, and the user's requests |
-//! | `theme`, `fonts`, `layout` | colours and sizes; the fonts; the places of the parts |
+//! | `theme`, `fonts`, `layout`, `extent` | colours and sizes; the fonts; the places of the parts; the size that hosts are told |
 //! | `controls`, `gestures`, `history`, `learn` | the context of every widget; changes that hosts see; undo and redo; MIDI learn |
 //! | `header`, `sections`, `routes`, `curves`, `outlines`, `status` | the parts of the window; menus of routes; small pictures in sections |
 //! | `modes`, `modes_face`, `mode_drag`, `mode_axes`, `mode_table`, `snap` | the modes: changes by the user, their picture, a drag in progress, the axes, their table, series of ratios |
@@ -51,6 +51,7 @@ mod details;
 mod devices_page;
 mod disc;
 mod drops;
+pub(crate) mod extent;
 mod files;
 mod fitting;
 mod focus;
@@ -112,29 +113,19 @@ use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint
 use nice_plug_egui::{EguiEditorHandle, EguiEditorState, EguiNiceSettings, create_egui_editor};
 use sprung::preset::library::Library;
 use std::error::Error;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use theme::LEAST_SIZE;
 use window::Window;
 
 /// Opens windows. Each opens in the size of the last one.
 pub struct SprungEditor {
     params: Arc<SprungParams>,
-    /// The wrapper's editor state of the last window.
-    last: Mutex<Arc<EguiEditorState>>,
 }
 
 impl SprungEditor {
     pub(crate) fn new(params: Arc<SprungParams>) -> Self {
-        let last = Mutex::new(state(&params));
-        Self { params, last }
+        Self { params }
     }
-}
-
-/// The wrapper's editor state for a new window, in the stored size.
-fn state(params: &SprungParams) -> Arc<EguiEditorState> {
-    let view = params.view();
-    let [width, height] = view.size.map(|side| side as f32);
-    EguiEditorState::from_size(LogicalSize { width, height }, view.zoom as f32 / 100.0)
 }
 
 #[cfg(feature = "standalone")]
@@ -159,8 +150,11 @@ impl Editor for SprungEditor {
         gui_context: GuiContext,
         host: Option<HostMethods>,
     ) -> Result<SpawnedEditor<Self::Handle>, Box<dyn Error>> {
-        let state = state(&self.params);
-        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = state.clone();
+        let view = self.params.view();
+        let [width, height] = view.size.map(|side| side as f32);
+        let state = EguiEditorState::from_size(LogicalSize { width, height }, extent::factor(view));
+        // The size that the host was told is at this scale, so the window must open with it too.
+        let scale_factor = self.params.extent().tell(fallback_scale_factor);
         // The window has no gradients that would need dithering, which costs time for each pixel.
         let graphics = GraphicsConfig { dithering: false, ..GraphicsConfig::default() };
         let settings = EguiNiceSettings::new().with_tile("Sprung").with_resize_hint(self.resize_hint());
@@ -172,14 +166,15 @@ impl Editor for SprungEditor {
             Window::new(self.params.clone(), Library::of_user()),
         )
         .ok_or("the window cannot be made")?
-        .spawn(parent, wait_for_parent, fallback_scale_factor, gui_context, host)
+        .spawn(parent, wait_for_parent, scale_factor, gui_context, host)
     }
 
     fn size(&self) -> NativeSize<u32> {
-        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let state = if last.is_open() { last } else { state(&self.params) };
-        let LogicalSize { width, height } = state.logical_size();
-        NativeSize::from_logical_or_physical(LogicalSize::new(width.into(), height.into()), state.physical_size())
+        self.params.extent().size(self.params.view())
+    }
+
+    fn scale_factor_suggested(&self, scale_factor: f64) {
+        self.params.extent().tell(Some(scale_factor));
     }
 
     fn resize_hint(&self) -> ResizeHint {

@@ -10,13 +10,17 @@ use egui::{Align2, CursorIcon, Id, Painter, Pos2, Rect, Role, Sense, Stroke, Ui,
 use sprung::engine::SoundingNote;
 use std::collections::VecDeque;
 use std::f32::consts::TAU;
+use std::time::Duration;
 
 /// Turns per second on the phase plane: slow motion, since the eye cannot follow the true motion.
 const TURNS: f32 = 1.0;
-/// Number of points in the trail.
-const TRAIL: usize = 420;
+/// Length of the trail, in turns, and the points of a turn.
+const TRAIL: f32 = 1.75;
+const POINTS: f32 = 240.0;
 /// The smallest amplitude that is heard when the mass is released.
 const LEAST: f32 = 0.03;
+/// Time between two pictures while the trail grows shorter.
+const FRAME: Duration = Duration::from_millis(16);
 /// Longest time from the release to the sound, in seconds.
 const WAIT: f32 = 0.3;
 
@@ -24,8 +28,10 @@ const WAIT: f32 = 0.3;
 pub(super) struct Phase {
     /// In radians.
     angle: f32,
-    /// Points of the unit disk, the newest one at the end.
-    trail: VecDeque<Pos2>,
+    /// Points of the unit disk, the newest one at the end, each with the turns from the one before.
+    trail: VecDeque<(Pos2, f32)>,
+    /// The radius of the newest point.
+    radius: f32,
     /// The greatest energy since the mass was at rest.
     greatest: f32,
     /// The radius that shows the greatest energy: 1, or how far the mass was pulled.
@@ -39,7 +45,8 @@ pub(super) struct Phase {
 
 impl Default for Phase {
     fn default() -> Self {
-        Self { angle: 0.0, trail: VecDeque::new(), greatest: 0.0, full: 1.0, waiting: None, mode: 0, pulled: None }
+        let trail = VecDeque::new();
+        Self { angle: 0.0, trail, radius: 0.0, greatest: 0.0, full: 1.0, waiting: None, mode: 0, pulled: None }
     }
 }
 
@@ -61,7 +68,10 @@ impl Phase {
     ) -> String {
         let (centre, radius) = (rect.center(), rect.width().min(rect.height()) / 2.0 - 4.0);
         self.pull(ui, rect, radius, shown, audition, controls);
-        self.advance(ui, energies, selected);
+        self.advance(energies, selected, controls.seconds);
+        if !self.trail.is_empty() {
+            ui.ctx().request_repaint_after(FRAME);
+        }
         self.paint(ui.painter(), rect, (centre, radius), controls.palette);
         match self.pulled {
             Some(pulled) => format!("mode {}, pulled by {:.0} %", self.mode + 1, amplitude(pulled) * 100.0),
@@ -112,8 +122,8 @@ impl Phase {
         ui.ctx().request_repaint();
     }
 
-    /// Advances the mass by one pass.
-    fn advance(&mut self, ui: &Ui, energies: &[f32], selected: Option<usize>) {
+    /// Advances the mass by some seconds.
+    fn advance(&mut self, energies: &[f32], selected: Option<usize>, seconds: f32) {
         let energy = |mode: usize| energies.get(mode).copied().unwrap_or(0.0);
         let loudest = (0..energies.len()).max_by(|a, b| energy(*a).total_cmp(&energy(*b))).unwrap_or(0);
         let mode = selected.filter(|mode| *mode < energies.len()).unwrap_or(loudest);
@@ -126,12 +136,11 @@ impl Phase {
         let now = energy(self.mode);
         if now <= 1e-12 {
             // The sound takes a moment to come; if it does not, nothing plays.
-            self.waiting =
-                self.waiting.map(|passed| passed + ui.input(|input| input.stable_dt)).filter(|passed| *passed < WAIT);
+            self.waiting = self.waiting.map(|passed| passed + seconds).filter(|passed| *passed < WAIT);
             if self.waiting.is_none() {
                 (self.greatest, self.full) = (0.0, 1.0);
             }
-            self.trail.pop_front();
+            self.shorten(self.trail_turns() - TURNS * seconds);
             return;
         }
         self.waiting = None;
@@ -142,15 +151,33 @@ impl Phase {
             self.greatest = now;
         }
         let radius = self.full * (now / self.greatest).sqrt();
-        let turned = TAU * TURNS * ui.input(|input| input.stable_dt.min(0.1));
-        // Points between two passes, so that the trail is round.
-        for step in 1..=4 {
-            let along = Vec2::angled(-self.angle - turned * step as f32 / 4.0);
-            self.trail.push_back((along * radius).to_pos2());
+        let before = if self.trail.is_empty() { radius } else { self.radius };
+        let turns = TURNS * seconds;
+        // Points between two passes, so that the trail is as round and as long at any number of pictures a second.
+        let steps = (turns * POINTS).round().max(1.0) as u16;
+        for step in 1..=steps {
+            let share = f32::from(step) / f32::from(steps);
+            let along = Vec2::angled(-self.angle - TAU * turns * share);
+            let point = along * egui::lerp(before..=radius, share);
+            self.trail.push_back((point.to_pos2(), turns / f32::from(steps)));
         }
-        self.angle = (self.angle + turned) % TAU;
-        while self.trail.len() > TRAIL {
-            self.trail.pop_front();
+        self.radius = radius;
+        self.angle = (self.angle + TAU * turns) % TAU;
+        self.shorten(TRAIL);
+    }
+
+    /// The length of the trail in turns.
+    fn trail_turns(&self) -> f32 {
+        self.trail.iter().map(|(_, turns)| turns).sum()
+    }
+
+    /// Shortens the trail from its old end to this many turns.
+    fn shorten(&mut self, turns: f32) {
+        let mut excess = self.trail_turns() - turns;
+        while excess > 1e-4
+            && let Some((_, oldest)) = self.trail.pop_front()
+        {
+            excess -= oldest;
         }
     }
 
@@ -161,7 +188,7 @@ impl Phase {
         painter.circle_stroke(centre, radius, grid);
         line(painter, rect.translate(vec2(-2.0, -8.0)), Align2::RIGHT_CENTER, "x", SMALL, palette.muted);
         line(painter, rect.translate(vec2(8.0, 0.0)), Align2::CENTER_TOP, "v", SMALL, palette.muted);
-        let place = |point: &Pos2| centre + point.to_vec2() * radius;
+        let place = |(point, _): &(Pos2, f32)| centre + point.to_vec2() * radius;
         let points: Vec<Pos2> = self.trail.iter().map(place).collect();
         let count = points.len().max(1) as f32;
         for (number, pair) in points.windows(2).enumerate() {
@@ -183,4 +210,47 @@ impl Phase {
 /// The amplitude of a mass that was pulled this far.
 fn amplitude(pulled: Vec2) -> f32 {
     pulled.length().min(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a mass that decays leaves behind in three seconds, at this many pictures a second.
+    fn trail(rate: u16) -> Phase {
+        let mut phase = Phase::default();
+        let (mut energy, seconds) = (1.0, 1.0 / f32::from(rate));
+        for _ in 0..3 * rate {
+            phase.advance(&[energy], None, seconds);
+            energy -= energy * seconds;
+        }
+        phase
+    }
+
+    #[test]
+    fn the_trail_is_a_smooth_spiral_of_the_same_length_at_any_number_of_pictures_a_second() {
+        for rate in [4, 7, 12, 30, 60, 144] {
+            let phase = trail(rate);
+            let turns = phase.trail_turns();
+            assert!((TRAIL - 0.01..=TRAIL + 0.01).contains(&turns), "{rate}: {turns} turns");
+            let points: Vec<Vec2> = phase.trail.iter().map(|(point, _)| point.to_vec2()).collect();
+            for pair in points.windows(2) {
+                let angle = (-pair[1].angle() + pair[0].angle()).rem_euclid(TAU);
+                assert!(angle < 1.6 * TAU / POINTS, "{rate}: a corner of {angle}");
+                let shrinks = pair[0].length() - pair[1].length();
+                assert!((-1e-6..0.004).contains(&shrinks), "{rate}: a step of {shrinks}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_trail_is_gone_soon_after_the_sound() {
+        for rate in [4, 60] {
+            let mut phase = trail(rate);
+            for _ in 0..2 * rate {
+                phase.advance(&[0.0], None, 1.0 / f32::from(rate));
+            }
+            assert!(phase.trail.is_empty(), "{rate}");
+        }
+    }
 }

@@ -143,15 +143,20 @@ fn destinations(ui: &mut Ui) -> Option<Param> {
     chosen
 }
 
-/// Sets or removes a route, and optionally sets its amount.
+/// Sets or removes a route, and optionally sets its amount. A new route never takes what a former one has left in its place.
 pub(super) fn change(place: usize, route: Option<Route>, amount: Option<f32>, controls: &mut Controls) {
     let state = controls.params.state();
     let Playable::Preset(mut preset) = state.playable else { return };
     controls.history.begin(controls.params);
     let patch: &mut Patch = &mut preset.patch;
+    let param = amount_param(place);
+    let amount = match (patch.routes.get(place), route) {
+        (_, None) => Some(param.info().default),
+        (None, Some(_)) => amount.or(Some(AMOUNT)),
+        (Some(_), Some(_)) => amount,
+    };
     patch.routes.set(place, route);
     let mut positions = state.positions;
-    let param = amount_param(place);
     if let Some(amount) = amount {
         patch.set(param, amount);
         positions[param as usize] = positions_of(&patch.values)[param as usize];

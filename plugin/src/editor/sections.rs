@@ -108,7 +108,11 @@ pub(super) fn show(
                 match place_of_amount(info.param) {
                     Some(place) => {
                         let name = routes::name(place, &patch.routes, guide);
-                        knob::show(ui, cell, info, &name, &ring, controls);
+                        // The amount of a free place means nothing.
+                        match patch.routes.get(place) {
+                            Some(_) => knob::show(ui, cell, info, &name, &ring, controls),
+                            None => knob::show_none(ui.painter(), cell, &name, palette),
+                        }
                         if is_editable {
                             routes::show(ui, knob::name_rect(cell), place, &patch.routes, guide, controls);
                         }

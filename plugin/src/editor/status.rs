@@ -49,8 +49,35 @@ pub(super) fn engine(voices: u32, load: Option<f64>, sample_rate: u32) -> String
     }
 }
 
-/// Shows the line. A message stays until the next one; a hint hides it while the pointer is over the widget.
-pub(super) fn show(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, right: &str, palette: &Palette) {
+/// The line. A message stays until the next one; a hint hides it while the pointer is over the widget, but only once the
+/// pointer has moved: what a click or a key has led to must be seen where the pointer rests.
+#[derive(Default)]
+pub(super) struct StatusLine {
+    message: String,
+    is_news: bool,
+}
+
+impl StatusLine {
+    pub(super) fn show(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        hint: Option<&Hint>,
+        message: &str,
+        right: &str,
+        palette: &Palette,
+    ) {
+        let has_moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO || input.pointer.any_pressed());
+        self.is_news &= !has_moved;
+        if self.message != message {
+            message.clone_into(&mut self.message);
+            self.is_news = !message.is_empty();
+        }
+        paint(ui, rect, hint.filter(|_| !self.is_news), message, right, palette);
+    }
+}
+
+fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, right: &str, palette: &Palette) {
     let painter = ui.painter();
     let right_width = width(painter, right, SMALL);
     line(painter, rect, Align2::RIGHT_CENTER, right, SMALL, palette.muted);

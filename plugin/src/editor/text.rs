@@ -1,8 +1,9 @@
 //! Lines of text. A line that does not fit is drawn smaller and, if that is not enough, cut off.
 
 use super::theme::font;
-use egui::text::{LayoutJob, TextWrapping};
-use egui::{Align2, Color32, Painter, Rect, Response, WidgetInfo};
+use egui::text::{CCursor, CCursorRange, LayoutJob, TextWrapping};
+use egui::text_edit::TextEditState;
+use egui::{Align2, Color32, Id, Painter, Rect, Response, Ui, WidgetInfo};
 
 /// Factors for the size of text that would be too wide: the first with which it fits, or else the last.
 const SHRINK: [f32; 3] = [1.0, 0.9, 0.82];
@@ -31,6 +32,15 @@ pub(super) fn paragraph(painter: &Painter, rect: Rect, text: &str, size: f32, co
     let height = galley.size().y;
     painter.with_clip_rect(rect.intersect(painter.clip_rect())).galley(rect.min, galley, colour);
     height
+}
+
+/// Gives a text field the focus, with its text selected, so that what is typed replaces it.
+pub(super) fn take_over(ui: &Ui, field: Id, text: &str) {
+    ui.memory_mut(|memory| memory.request_focus(field));
+    let mut state = TextEditState::load(ui.ctx(), field).unwrap_or_default();
+    let end = CCursor::new(text.chars().count());
+    state.cursor.set_char_range(Some(CCursorRange::two(CCursor::default(), end)));
+    state.store(ui.ctx(), field);
 }
 
 /// Sets the name and content of a text field for accessibility.

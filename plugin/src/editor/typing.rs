@@ -1,7 +1,7 @@
 //! The field in which a parameter's value is typed.
 
 use super::controls::{Controls, Typing};
-use super::text::name_field;
+use super::text::{name_field, take_over};
 use super::theme::{SMALL, font};
 use egui::{Align2, Id, Key, Rect, TextEdit, Ui, vec2};
 use sprung::params::ParamInfo;
@@ -26,8 +26,7 @@ pub(super) fn typed(ui: &mut Ui, rect: Rect, field: Id, info: &'static ParamInfo
     name_field(&response, info.name, &typing.text);
     if !typing.is_open {
         typing.is_open = true;
-        response.request_focus();
-        select_all(ui, field, &typing.text);
+        take_over(ui, field, &typing.text);
     } else if response.lost_focus() {
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             return true;
@@ -48,12 +47,4 @@ pub(super) fn typed(ui: &mut Ui, rect: Rect, field: Id, info: &'static ParamInfo
     }
     controls.hands.typing = Some(typing);
     true
-}
-
-fn select_all(ui: &Ui, field: Id, text: &str) {
-    use egui::text::{CCursor, CCursorRange};
-    let mut state = egui::text_edit::TextEditState::load(ui.ctx(), field).unwrap_or_default();
-    let end = CCursor::new(text.chars().count());
-    state.cursor.set_char_range(Some(CCursorRange::two(CCursor::default(), end)));
-    state.store(ui.ctx(), field);
 }

@@ -3,11 +3,11 @@
 use super::browser::Browser;
 use super::controls::{Controls, Hands};
 use super::drops;
-use super::files::{load, neighbour, summary};
+use super::files::summary;
 use super::fitting::Fitting;
 use super::focus::Focus;
 use super::header::{self, Header, Wish};
-use super::history::{History, restore};
+use super::history::History;
 use super::key_piano::KeyPiano;
 use super::layout::Layout;
 use super::manual::Manual;
@@ -17,16 +17,14 @@ use super::motion::Motion;
 use super::pages::{self, Pages};
 use super::piano::Piano;
 use super::shown::Shown;
-use super::status::Load;
+use super::status::{Load, StatusLine};
 use super::theme::Theme;
-use super::variation::{Asked, Variation};
-use super::{fonts, learn, status};
+use super::{extent, fonts, learn, status};
 use crate::params::SprungParams;
 use crate::state::State;
 use egui::{Key, Ui};
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::preset::Playable;
 use sprung::preset::library::Library;
 use std::collections::BTreeSet;
 use std::hash::{BuildHasher as _, RandomState};
@@ -34,9 +32,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 mod shell;
+mod wishes;
 
 /// Time between two repaints while something moves.
 const FRAME: Duration = Duration::from_millis(16);
+
+/// Longest time in seconds by which moving pictures go on in one pass: after a pause they go on where they were.
+const LONGEST: f32 = 0.25;
 
 /// The view that is shown in place of modes and parameters.
 #[derive(Clone, Copy, PartialEq)]
@@ -70,15 +72,24 @@ pub(super) struct Window {
     /// The other one of the two versions of the sound, and whether it is changed ([`History::is_changed`]).
     other: Option<(State, bool)>,
     is_b: bool,
+    /// The context of a real window, and the zoom that it has, or will have with the first pass.
+    context: Option<egui::Context>,
+    zoom: f32,
+    /// The time of the last pass.
+    now: f64,
+    /// How many states the host had loaded when the window last looked.
+    loads: u64,
     /// The theme that was last applied to egui's own widgets.
     applied: Option<Theme>,
     message: String,
+    line: StatusLine,
 }
 
 impl Window {
     /// A window that stores the user's sounds in a library; `None` if the system names no folder for user data.
     pub(super) fn new(params: Arc<SprungParams>, library: Option<Library>) -> Self {
         let shown = Shown::new(&params);
+        let (zoom, loads) = (extent::factor(params.view()), params.loads());
         Self {
             params,
             host: None,
@@ -102,8 +113,13 @@ impl Window {
             over: None,
             other: None,
             is_b: false,
+            context: None,
+            zoom,
+            now: 0.0,
+            loads,
             applied: None,
             message: String::new(),
+            line: StatusLine::default(),
         }
     }
 
@@ -126,12 +142,15 @@ impl Window {
         }
         let palette = view.theme.palette();
         self.shown.refresh(&params);
+        self.follow_loads();
         let window = ui.ctx().content_rect();
         let layout = Layout::of(window);
         let telemetry = &params.link().telemetry;
         let (snapshot, is_silent) = (telemetry.snapshot(), telemetry.is_silent());
         let energies: Vec<f32> = snapshot.masses.iter().map(|mass| if is_silent { 0.0 } else { mass.energy }).collect();
-        let levels = self.meter.levels(telemetry.take_peaks(), ui.input(|input| input.stable_dt));
+        let now = ui.input(|input| input.time);
+        let seconds = ((now - std::mem::replace(&mut self.now, now)) as f32).clamp(0.0, LONGEST);
+        let levels = self.meter.levels(telemetry.take_peaks(), seconds);
         if !is_silent || self.meter.is_moving() {
             ui.ctx().request_repaint_after(FRAME);
         }
@@ -145,6 +164,7 @@ impl Window {
             hands: &mut self.hands,
             history: &mut self.history,
             hint: &mut hint,
+            seconds,
             notes: &notes,
         };
         let header = Header {
@@ -167,8 +187,9 @@ impl Window {
         }
         match self.over {
             Some(Over::Browser) => {
-                if let Some(message) = self.browser.show(ui, layout.page(), &mut controls) {
+                if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
                     self.message = message;
+                    self.over = self.over.filter(|_| !is_done);
                 }
             }
             Some(Over::Manual) => {
@@ -204,7 +225,7 @@ impl Window {
         if let Some(message) = self.fitting.show(ui, layout.modes, &mut controls) {
             self.message = message;
         }
-        self.browser.follow_time(ui.input(|input| input.time), &controls);
+        self.browser.follow_time(now, &controls);
         self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);
         // In a plugin, the computer's keyboard belongs to the host.
         let is_alone = host.plugin_api() == PluginApi::Standalone;
@@ -220,83 +241,22 @@ impl Window {
         let message = if self.message.is_empty() { complaints() } else { self.message.clone() };
         let message = complaint.unwrap_or(message);
         let sample_rate = params.link().sample_rate();
-        let load = self.load.share(ui.input(|input| input.time), telemetry, sample_rate);
+        let load = self.load.share(now, telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
-        status::show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
+        self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
         let search = (searches && self.over != Some(Over::Browser)).then_some(Wish::Browse);
         if let Some(wish) = wish.or(search) {
             self.grant(wish, ui, host);
         }
     }
 
-    /// Loads the factory sound at this distance in the list.
-    fn step(&mut self, places: isize, host: &GuiContext) {
-        let Some(preset) = neighbour(&self.params.name(), places) else { return };
-        self.history.load(Playable::Preset(preset.clone()), &self.params, host);
-    }
-
-    /// Replaces the sound by a random variation.
-    fn vary(&mut self, variation: Variation, host: &GuiContext) {
-        let Playable::Preset(preset) = self.params.state().playable else {
-            self.message = "a kit’s sounds cannot be varied together: load one of them".to_owned();
-            return;
-        };
-        self.seed = self.seed.wrapping_add(1);
-        match variation.of(&preset, self.seed, &self.locked) {
-            Some(varied) => {
-                self.message.clear();
-                self.history.begin(&self.params);
-                load(Playable::Preset(varied), &self.params, host);
-                self.history.end(variation.name(), &self.params);
-            }
-            None => self.message = "every variation that was tried is silent: unlock more sections".to_owned(),
-        }
-    }
-
-    /// Undoes or redoes a step, which may exchange the two versions.
-    fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
-        let now = (self.params.state(), self.history.is_changed());
-        if go(&mut self.history, &self.params, host) {
-            self.other = Some(now);
-            self.is_b = !self.is_b;
-        }
-    }
-
-    fn grant(&mut self, wish: Wish, ui: &Ui, host: &GuiContext) {
-        match wish {
-            Wish::Browse | Wish::Save => {
-                let closes = self.over == Some(Over::Browser) && wish == Wish::Browse;
-                self.over = (!closes).then_some(Over::Browser);
-                self.message.clear();
-                self.browser.open(&self.params.name());
-            }
-            Wish::Undo => self.go_back(History::undo, host),
-            Wish::Redo => self.go_back(History::redo, host),
-            Wish::Zoom(zoom) => {
-                self.params.set_view(|view| view.zoom = zoom);
-                ui.ctx().set_zoom_factor(zoom as f32 / 100.0);
-            }
-            Wish::Theme(theme) => self.params.set_view(|view| view.theme = theme),
-            Wish::Step(places) => self.step(places, host),
-            Wish::Swap => {
-                self.history.begin(&self.params);
-                let now = (self.params.state(), self.history.is_changed());
-                let mut is_changed = now.1;
-                if let Some((other, other_is_changed)) = self.other.replace(now) {
-                    restore(other, &self.params, host);
-                    is_changed = other_is_changed;
-                }
-                self.is_b = !self.is_b;
-                let name = if self.is_b { "version B" } else { "version A" };
-                self.history.end_swap(name, is_changed, &self.params);
-            }
-            Wish::Variation(Asked::Lock(section)) => {
-                if !self.locked.remove(section) {
-                    self.locked.insert(section);
-                }
-            }
-            Wish::Variation(Asked::Vary(variation)) => self.vary(variation, host),
-            Wish::Copy => self.other = Some((self.params.state(), self.history.is_changed())),
+    /// Begins anew after the host has loaded a state: steps and versions of the sound before it would bring that sound
+    /// back into a project that the host believes to be another.
+    fn follow_loads(&mut self) {
+        let loads = self.params.loads();
+        if std::mem::replace(&mut self.loads, loads) != loads {
+            (self.history, self.other, self.is_b) = (History::default(), None, false);
+            self.message.clear();
         }
     }
 }

@@ -1,9 +1,10 @@
-//! The X11 display that the window is on: its focus, and the window's place.
+//! The X11 display that the window is on: its focus, its scale, and the window's place.
 
 use nice_plug_egui::baseview::WindowContext;
 use raw_window_handle::{HasWindowHandle as _, RawWindowHandle};
 use x11rb::CURRENT_TIME;
 use x11rb::protocol::xproto::{ConnectionExt as _, InputFocus};
+use x11rb::resource_manager::new_from_default;
 use x11rb::rust_connection::RustConnection;
 
 /// A connection to the display of its own, made when it is first needed.
@@ -44,6 +45,14 @@ impl Display {
         let [left, top] = [place.dst_x, place.dst_y].map(f64::from);
         Some([left, top, left + f64::from(size.width), top + f64::from(size.height)])
     }
+}
+
+/// The scale that the screen says of itself, as the library that makes the window reads it.
+pub(super) fn scale() -> Option<f64> {
+    let (connection, _) = x11rb::connect(None).ok()?;
+    let resources = new_from_default(&connection).ok()?;
+    let density: u32 = resources.get_value("Xft.dpi", "").ok()??;
+    Some(f64::from(density) / 96.0)
 }
 
 /// The window's X11 id.

@@ -14,6 +14,7 @@ mod growth;
 mod host;
 mod host_menu;
 mod lifecycle;
+mod minutes;
 mod notes;
 mod parameters;
 mod patches;
@@ -24,6 +25,7 @@ mod realtime;
 mod scan;
 mod screen;
 mod screen_reader;
+mod sizes;
 mod song;
 mod standalone;
 mod state;
@@ -85,6 +87,7 @@ fn main() -> ExitCode {
             "screen-reader" => screen_reader::work(),
             "window-cpu" => cpu::work(),
             "window-pixels" => pixels::work(),
+            "sizes-clap" | "sizes-vst3" | "zooms-clap" | "zooms-vst3" | "dots" => sizes::work(&work),
             "window" | "window-keys" | "window-playing" => window::work(&work),
             _ => realtime::work(&work),
         };
@@ -106,7 +109,7 @@ fn main() -> ExitCode {
             what_people_type_is_understood_or_refused
             a_flush_sets_values
             senseless_values_and_unknown_ids_change_nothing_else
-            remote_control_pages_have_every_parameter_once
+            remote_control_pages_begin_with_what_one_turns_first_and_have_every_parameter_once
         }
         Nothing: lifecycle {
             every_rate_and_block_size_plays
@@ -196,6 +199,13 @@ fn main() -> ExitCode {
         Screen: pixels {
             the_real_window_has_the_pixels_of_the_accepted_picture
         }
+        Screen: sizes {
+            every_opening_is_whole_at_every_zoom_and_scale_in_clap
+            every_opening_is_whole_at_every_zoom_and_scale_in_vst3
+            a_zoom_that_is_chosen_stays_in_clap
+            a_zoom_that_is_chosen_stays_in_vst3
+            a_screen_with_dense_dots_has_a_whole_window
+        }
         Screen: cpu {
             a_silent_window_draws_nothing
         }
@@ -207,6 +217,9 @@ fn main() -> ExitCode {
             a_broken_state_is_set_aside
             what_is_missing_is_said
             a_slash_searches
+        }
+        Program: minutes {
+            the_first_five_minutes
         }
         Program: devices {
             another_device_is_chosen_while_it_plays

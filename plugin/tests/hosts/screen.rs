@@ -10,10 +10,11 @@ use x11rb::protocol::Event;
 use x11rb::protocol::damage::{ConnectionExt as _, ReportLevel};
 use x11rb::protocol::xproto::{
     AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, CreateWindowAux, EventMask, ImageFormat,
-    InputFocus, MapState, WindowClass,
+    InputFocus, MapState, PropMode, WindowClass,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
+use x11rb::wrapper::ConnectionExt as _;
 
 /// Libraries that the plugin's window loads when it opens.
 const LIBRARIES: [&CStr; 3] = [c"libEGL.so.1", c"libX11-xcb.so.1", c"libxkbcommon-x11.so.0"];
@@ -48,13 +49,18 @@ pub(crate) struct Screen {
 impl Screen {
     /// Starts Xvfb on a free display.
     pub(crate) fn new() -> Self {
+        Self::of([1_280, 800])
+    }
+
+    /// As [`Screen::new`], with this width and height.
+    pub(crate) fn of([width, height]: [u32; 2]) -> Self {
         let mut server = Command::new("Xvfb")
             .args([
                 "-displayfd",
                 "1",
                 "-screen",
                 "0",
-                "1280x800x24",
+                &format!("{width}x{height}x24"),
                 "+extension",
                 "GLX",
                 "-nolisten",
@@ -236,12 +242,25 @@ impl Onlooker {
         self.connection.configure_window(window, &size).unwrap().check().unwrap();
     }
 
+    /// Sets the resources of the screen, such as `Xft.dpi`.
+    pub(crate) fn set_resources(&self, text: &str) {
+        let (property, kind) = (AtomEnum::RESOURCE_MANAGER, AtomEnum::STRING);
+        let set = self.connection.change_property8(PropMode::REPLACE, self.root, property, kind, text.as_bytes());
+        set.unwrap().check().unwrap();
+    }
+
     /// Presses a key and lets it go, by its number on the keyboard.
     pub(crate) fn press_key(&self, key: u8) {
+        self.press_keys(&[key]);
+    }
+
+    /// Presses keys in this order, and lets them go in the opposite order.
+    pub(crate) fn press_keys(&self, keys: &[u8]) {
         const PRESS: u8 = 2;
         const RELEASE: u8 = 3;
-        for kind in [PRESS, RELEASE] {
-            self.connection.xtest_fake_input(kind, key, 0, self.root, 0, 0, 0).unwrap();
+        let (down, up) = (keys.iter().map(|key| (PRESS, key)), keys.iter().rev().map(|key| (RELEASE, key)));
+        for (kind, key) in down.chain(up) {
+            self.connection.xtest_fake_input(kind, *key, 0, self.root, 0, 0, 0).unwrap();
         }
         self.connection.flush().unwrap();
     }

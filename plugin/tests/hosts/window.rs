@@ -28,7 +28,12 @@ pub(crate) fn keys_go_to_the_host_unless_somebody_types() {
 /// Does a piece of work in a process of its own, with a screen, and returns what it prints.
 #[track_caller]
 pub(crate) fn on_a_screen(work: &str) -> String {
-    let screen = Screen::new();
+    on_this_screen(&Screen::new(), work)
+}
+
+/// As [`on_a_screen`], on a given screen.
+#[track_caller]
+pub(crate) fn on_this_screen(screen: &Screen, work: &str) -> String {
     let mut command = command(work);
     command.env("DISPLAY", &screen.display);
     succeeds(command)
@@ -174,14 +179,23 @@ pub(crate) struct Editor<'a> {
 
 impl<'a> Editor<'a> {
     /// Opens the window in the same way as a host.
-    #[allow(unsafe_code)]
     pub(crate) fn open(instance: &mut Instance, parent: &'a Parent) -> Self {
+        Self::open_at(None, instance, parent)
+    }
+
+    /// As [`Editor::open`]; a host that has a scale tells it, and makes its own window as large as the plugin says.
+    #[allow(unsafe_code)]
+    pub(crate) fn open_at(scale: Option<f64>, instance: &mut Instance, parent: &'a Parent) -> Self {
         let handle = instance.clack.plugin_handle();
         let gui: PluginGui = handle.get_extension().expect("there is a window");
         let configuration = GuiConfiguration { api_type: GuiApiType::X11, is_floating: false };
         assert!(gui.is_api_supported(&handle, configuration));
         gui.create(&handle, configuration).expect("the window can be made");
+        if let Some(scale) = scale {
+            gui.set_scale(&handle, scale).expect("it takes a scale");
+        }
         let size = gui.get_size(&handle).expect("it has a size");
+        parent.onlooker.resize(parent.window, [size.width, size.height]);
         assert!((100..4_000).contains(&size.width) && (100..4_000).contains(&size.height), "{size:?}");
         // SAFETY: the parent outlives the editor, which borrows it.
         unsafe { gui.set_parent(&handle, Window::from_x11_handle(parent.window.into())) }.expect("it takes a parent");
@@ -197,7 +211,8 @@ impl<'a> Editor<'a> {
         self.gui.destroy(&handle);
     }
 
-    fn size(&self, instance: &mut Instance) -> [u32; 2] {
+    /// Width and height as the host is told.
+    pub(crate) fn size(&self, instance: &mut Instance) -> [u32; 2] {
         let size = self.gui.get_size(&instance.clack.plugin_handle()).expect("it has a size");
         [size.width, size.height]
     }

@@ -1,8 +1,8 @@
 //! `cargo xtask patch`: writes packages used by the plugin, as on crates.io but with the corrections in this folder.
 //!
 //! The corrections keep the wrapper's VST3 from crashing its host and from leaking file descriptors, make sure that a closed
-//! window is gone, let the window open the host's menu of a parameter, and on Windows survive a click and let the host hear its
-//! keys. `plugin/UPSTREAM.md` describes each fault as in a bug report.
+//! window is gone, give the window the host's scale, let it open the host's menu of a parameter, and on Windows survive a click
+//! and let the host hear its keys. `plugin/UPSTREAM.md` describes each fault as in a bug report.
 
 mod baseview;
 mod calls;
@@ -11,6 +11,7 @@ mod edit;
 mod egui_baseview;
 mod menu;
 mod run_loop;
+mod size;
 mod window;
 mod worker;
 
@@ -36,19 +37,19 @@ const PACKAGES: [Package; 4] = [
         name: "nice-plug",
         version: "0.4.2",
         source: "391d811e2293b24ebd2b8fa589194d71b32ae003415a61e5ba6222c7abcb7961",
-        edits: &[worker::EDITS, window::EDITS, run_loop::EDITS, calls::EDITS, menu::EDITS],
+        edits: &[worker::EDITS, window::EDITS, run_loop::EDITS, calls::EDITS, menu::EDITS, size::EDITS],
     },
     Package {
         name: "nice-plug-core",
         version: "0.4.2",
         source: "ec16c3484f27d64d405e43f1ef5b392a16f8453117d92288c033821e4bd5efe5",
-        edits: &[menu::INTERFACE],
+        edits: &[menu::INTERFACE, size::INTERFACE],
     },
     Package {
         name: "baseview",
         version: "0.4.2",
         source: "010bdeb0ca653a1a2568e52137b4496548ec0fa7d74594a03f04c3e864603840",
-        edits: &[baseview::EDITS],
+        edits: &[baseview::EDITS, size::WINDOW],
     },
     Package {
         name: "egui-baseview",

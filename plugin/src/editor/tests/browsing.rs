@@ -99,6 +99,75 @@ fn a_sound_is_saved_under_a_name_found_again_and_thrown_away() {
 }
 
 #[test]
+fn save_is_a_name_and_enter() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    let library = Library::at(stage.folder.path());
+    let names = |library: &Library| -> Vec<String> {
+        library.entries().iter().map(|entry| entry.path.file_name().unwrap().to_string_lossy().into_owned()).collect()
+    };
+    for from_the_browser in [false, true] {
+        if from_the_browser {
+            stage.button("Browse");
+        }
+        stage.button("Save");
+        // What is there is selected: typed text replaces it.
+        let name = if from_the_browser { "Hall" } else { "Glass" };
+        stage.type_text(name);
+        stage.harness.key_press(Key::Enter);
+        stage.harness.run_steps(3);
+        assert_eq!(stage.params.name(), name);
+        assert!(stage.harness.query_by_label("Search").is_none(), "that was all");
+        stage.harness.get_by_label_contains(&format!("saved {}", library.presets_folder().display()));
+    }
+    assert_eq!(names(&library), ["glass.toml", "hall.toml"]);
+    // A name that is taken is only written over by a second Enter.
+    stage.button("Save");
+    stage.type_text("Glass");
+    stage.harness.key_press(Key::Enter);
+    stage.harness.run_steps(3);
+    stage.harness.get_by_label_contains("glass.toml exists; Enter again");
+    assert_eq!(stage.params.name(), "Hall");
+    stage.harness.key_press(Key::Enter);
+    stage.harness.run_steps(3);
+    stage.harness.get_by_label_contains("saved ");
+    assert_eq!((stage.params.name().as_str(), names(&library).len()), ("Glass", 2));
+    // Escape saves nothing, and a name that is none is refused where it can be corrected.
+    stage.button("Save");
+    stage.type_text("Other");
+    stage.harness.key_press(Key::Escape);
+    stage.harness.run_steps(3);
+    assert!(stage.harness.query_by_label("Search").is_none() && names(&library).len() == 2);
+    stage.button("Save");
+    stage.type_text(" ");
+    stage.harness.key_press(Key::Enter);
+    stage.harness.run_steps(3);
+    assert!(stage.harness.get_by_role_and_label(Role::TextInput, "Name to save under").is_focused());
+    assert_eq!((stage.params.name().as_str(), names(&library).len()), ("Glass", 2));
+}
+
+#[test]
+fn a_family_is_shown_whole_and_a_search_can_be_cleared() {
+    let mut stage = stage("Marimba", SIZE, 1.0, Theme::Dark);
+    let is_listed = |stage: &Stage, name: &str| stage.harness.query_by_role_and_label(Role::ListItem, name).is_some();
+    stage.button("Browse");
+    assert!(stage.harness.query_by_label("Clear the search").is_none(), "there is nothing to clear");
+    stage.type_text("church bell");
+    assert!(is_listed(&stage, "Church Bell"));
+    stage.button("Show Mallet");
+    assert!(is_listed(&stage, "Marimba"), "the words of the other search are gone");
+    stage.harness.get_by_role_and_label(Role::TextInput, "Search").click();
+    stage.harness.run_steps(2);
+    stage.type_text("glass");
+    assert!(is_listed(&stage, "Glass Marimba") && !is_listed(&stage, "Marimba"), "words search in the family");
+    stage.button("Show Mallet");
+    assert!(!is_listed(&stage, "Marimba"), "it is shown already");
+    stage.button("Clear the search");
+    assert!(is_listed(&stage, "Marimba"));
+    stage.type_text("vibraphone");
+    assert!(is_listed(&stage, "Vibraphone") && !is_listed(&stage, "Marimba"), "and what is typed then is searched");
+}
+
+#[test]
 fn a_sound_is_marked_while_it_differs_from_what_was_loaded_or_saved() {
     let (params, context) = (SprungParams::default(), FakeHost::default());
     let context = Arc::new(context).context();

@@ -6,7 +6,7 @@ use crate::editor::theme::{SIZE, Theme};
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Role, pos2, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use sprung::params::Param;
-use sprung::patch::routes::{Source, amount_param};
+use sprung::patch::routes::{MAX_ROUTES, Source, amount_param};
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Stage {
@@ -215,6 +215,38 @@ fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
         stage.button("Undo");
     }
     assert_eq!(stage.params.state(), before.0);
+}
+
+#[test]
+fn a_free_place_shows_no_amount_and_leaves_none_to_its_next_route() {
+    let mut stage = Stage::new();
+    stage.harness.get_by_role_and_label(Role::Tab, "Routes").click();
+    stage.harness.run_steps(3);
+    let routes = |stage: &Stage| stage.params.loaded().kit.sounds()[0].patch().routes;
+    let has_knob = |stage: &Stage, place: usize| {
+        let name = amount_param(place).info().name;
+        assert_eq!(
+            stage.harness.query_by_role_and_label(Role::Slider, name).is_some(),
+            stage.harness.query_by_label(&format!("Type {name}")).is_some()
+        );
+        stage.harness.query_by_role_and_label(Role::Slider, name).is_some()
+    };
+    for place in 0..MAX_ROUTES {
+        assert_eq!(has_knob(&stage, place), routes(&stage).get(place).is_some(), "route {}", place + 1);
+    }
+    // The last three have routes, and so amounts, in a new patch, but not in this sound.
+    let place = MAX_ROUTES - 3;
+    let param = amount_param(place);
+    assert!(routes(&stage).get(place).is_none() && stage.value(param) != 0.0);
+    stage.button(&format!("Route {0}: {0}: free", place + 1));
+    stage.button("Source");
+    stage.button("lfo2");
+    assert!(routes(&stage).get(place).is_some_and(|route| route.source == Source::Lfo2) && has_knob(&stage, place));
+    assert_eq!(stage.value(param), 25.0, "as of every new route");
+    stage.harness.get_by_label_contains(&format!("Route {}: lfo2", place + 1)).click();
+    stage.harness.run_steps(3);
+    stage.button("Remove");
+    assert!(!has_knob(&stage, place) && stage.value(param) == param.info().default);
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod fake_host;
 mod fitted;
 mod gestures;
 mod learning;
+mod loading;
 mod mode_edits;
 mod moving;
 mod paging;

@@ -14,14 +14,15 @@ use nice_plug_egui::{Frame, KeyCapture, NiceEguiApp};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 impl NiceEguiApp for Window {
-    fn build(&mut self, context: egui::Context, host: GuiContext, _: &mut Frame) -> Result<(), HandlerError> {
+    fn build(&mut self, context: egui::Context, host: GuiContext, frame: &mut Frame) -> Result<(), HandlerError> {
         #[cfg(target_os = "linux")]
         {
             let is_library = host.plugin_api() != PluginApi::Standalone;
             accessibility::connect(&context, self.params.link().repaint.clone(), is_library);
         }
         self.open(host);
-        context.set_zoom_factor(self.params.view().zoom as f32 / 100.0);
+        self.params.extent().set(frame.baseview_window().size());
+        self.context = Some(context);
         Ok(())
     }
 
@@ -45,10 +46,21 @@ impl NiceEguiApp for Window {
     }
 
     fn resized(&mut self, size: WindowSize) {
+        let Some(context) = &self.context else { return };
+        // Before the first pass, egui has not applied the zoom yet, and this size comes without it.
+        let scale_factor = size.scale_factor / f64::from(context.zoom_factor());
+        self.params.extent().set(WindowSize { scale_factor, ..size });
         let [least, most] = WINDOW_RANGE;
-        let side = |side: f64| (side.round() as u32).clamp(least, most);
-        let size = [side(size.logical.width), side(size.logical.height)];
+        let side = |side: u32| {
+            let logical = f64::from(side) / (scale_factor * f64::from(self.zoom));
+            (logical.round() as u32).clamp(least, most)
+        };
+        let size = [side(size.physical.width), side(size.physical.height)];
         self.params.set_view(|view: &mut View| view.size = size);
+    }
+
+    fn zoom_factor_changed(&mut self, zoom: f32) {
+        self.zoom = zoom;
     }
 }
 
@@ -62,6 +74,7 @@ fn ground(theme: Theme) -> Rgba {
 impl Drop for Window {
     fn drop(&mut self) {
         let link = self.params.link();
+        self.params.extent().close();
         self.piano.release(link);
         self.key_piano.release(link);
         self.browser.release(link);

@@ -10,6 +10,7 @@ use clack_extensions::thread_check::{HostThreadCheck, HostThreadCheckImpl};
 use clack_extensions::voice_info::{HostVoiceInfo, HostVoiceInfoImpl};
 use clack_host::prelude::*;
 use std::cell::{Cell, RefCell};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::thread::ThreadId;
 
@@ -42,6 +43,10 @@ pub(crate) struct Calls {
     pub(crate) restarts: AtomicU32,
     /// Number of requested parameter flushes.
     pub(crate) flushes: AtomicU32,
+    /// The last size that was requested for the window.
+    pub(crate) resize: Mutex<Option<[u32; 2]>>,
+    /// Whether the host keeps its window as it is.
+    pub(crate) refuses_sizes: AtomicBool,
 }
 
 impl Calls {
@@ -53,6 +58,8 @@ impl Calls {
             callback: AtomicBool::new(false),
             restarts: AtomicU32::new(0),
             flushes: AtomicU32::new(0),
+            resize: Mutex::new(None),
+            refuses_sizes: AtomicBool::new(false),
         }
     }
 }
@@ -139,7 +146,11 @@ impl HostVoiceInfoImpl for MainThreadCalls {
 impl HostGuiImpl for Calls {
     fn resize_hints_changed(&self) {}
 
-    fn request_resize(&self, _size: GuiSize) -> Result<(), HostError> {
+    fn request_resize(&self, size: GuiSize) -> Result<(), HostError> {
+        *self.resize.lock().unwrap() = Some([size.width, size.height]);
+        if self.refuses_sizes.load(Ordering::Relaxed) {
+            return Err(HostError::Message("this host resizes nothing"));
+        }
         Ok(())
     }
 

@@ -71,6 +71,16 @@ impl Instance {
         self.clack.access_shared_handler(|calls| calls.flushes.swap(0, Ordering::Relaxed))
     }
 
+    /// The size that the plugin has requested for its window since the last call of this method.
+    pub(crate) fn requested_size(&self) -> Option<[u32; 2]> {
+        self.clack.access_shared_handler(|calls| calls.resize.lock().unwrap().take())
+    }
+
+    /// From now on, the host refuses to resize its window.
+    pub(crate) fn refuse_sizes(&self) {
+        self.clack.access_shared_handler(|calls| calls.refuses_sizes.store(true, Ordering::Relaxed));
+    }
+
     /// Number of rescans of parameter values that the plugin has requested since the last call of this method.
     pub(crate) fn rescans(&self) -> u32 {
         self.clack.access_handler(|calls| calls.rescans.take())

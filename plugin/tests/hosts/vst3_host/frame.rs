@@ -1,13 +1,13 @@
 //! The frame around a plugin's window in the host: with a run loop that counts its handlers, or without one.
 
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use vst3::Steinberg::Linux::{
     FileDescriptor, IEventHandler, IEventHandlerTrait, IRunLoop, IRunLoopTrait, ITimerHandler, TimerInterval,
 };
 use vst3::Steinberg::{
-    IPlugFrame, IPlugFrameTrait, IPlugView, IPlugViewTrait, ViewRect, kInvalidArgument, kNotImplemented, kResultOk,
-    tresult,
+    IPlugFrame, IPlugFrameTrait, IPlugView, IPlugViewTrait, ViewRect, kInvalidArgument, kNotImplemented, kResultFalse,
+    kResultOk, tresult,
 };
 use vst3::{Class, ComPtr, ComRef};
 
@@ -17,6 +17,10 @@ pub(crate) struct Frame {
     handlers: Mutex<Vec<(ComPtr<IEventHandler>, FileDescriptor)>>,
     registered: AtomicUsize,
     handled: AtomicUsize,
+    /// The last size that a view has requested.
+    resize: Mutex<Option<[u32; 2]>>,
+    /// Whether the host keeps its window as it is.
+    refuses_sizes: AtomicBool,
 }
 
 impl Class for Frame {
@@ -32,6 +36,16 @@ impl Frame {
     /// How often handlers have been called.
     pub(crate) fn handled(&self) -> usize {
         self.handled.load(Ordering::Relaxed)
+    }
+
+    /// From now on, the host refuses to resize its window.
+    pub(crate) fn refuse_sizes(&self) {
+        self.refuses_sizes.store(true, Ordering::Relaxed);
+    }
+
+    /// The size that a view has requested since the last call of this method.
+    pub(crate) fn requested_size(&self) -> Option<[u32; 2]> {
+        self.resize.lock().unwrap().take()
     }
 
     /// Calls the handlers whose file descriptors become readable within this many milliseconds.
@@ -84,6 +98,12 @@ impl IRunLoopTrait for Frame {
 
 impl IPlugFrameTrait for Frame {
     unsafe fn resizeView(&self, view: *mut IPlugView, size: *mut ViewRect) -> tresult {
+        // SAFETY: the plugin passes a size that lives until the call returns.
+        let ViewRect { left, top, right, bottom } = unsafe { *size };
+        *self.resize.lock().unwrap() = Some([right - left, bottom - top].map(|side| side as u32));
+        if self.refuses_sizes.load(Ordering::Relaxed) {
+            return kResultFalse;
+        }
         // SAFETY: the same conditions as for the caller.
         unsafe { resize(view, size) }
     }

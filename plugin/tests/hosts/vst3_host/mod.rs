@@ -22,8 +22,8 @@ use vst3::Steinberg::Vst::{
     SymbolicSampleSizes_,
 };
 use vst3::Steinberg::{
-    IBStream, IPlugFrame, IPlugView, IPlugViewTrait, IPluginBaseTrait, IPluginFactory, IPluginFactoryTrait,
-    kPlatformTypeX11EmbedWindowID, kResultOk,
+    IBStream, IPlugFrame, IPlugView, IPlugViewContentScaleSupport, IPlugViewContentScaleSupportTrait, IPlugViewTrait,
+    IPluginBaseTrait, IPluginFactory, IPluginFactoryTrait, ViewRect, kPlatformTypeX11EmbedWindowID, kResultOk,
 };
 use vst3::{ComPtr, ComWrapper, Interface};
 
@@ -194,16 +194,17 @@ impl Vst3 {
         stream.bytes()
     }
 
+    /// The view of the plugin's window, which is not open yet.
+    pub(crate) fn view(&self) -> View {
+        // SAFETY: the call has no preconditions; the caller owns the view.
+        View(unsafe { ComPtr::from_raw(self.controller.createView(c"editor".as_ptr())) }.expect("a view"))
+    }
+
     /// Opens the plugin's window inside a window of the host.
     pub(crate) fn open_window(&self, frame: &ComPtr<IPlugFrame>, parent: u32) -> View {
-        // SAFETY: frame and parent outlive the view; the calls are in the order that the format requires.
-        unsafe {
-            let view = ComPtr::from_raw(self.controller.createView(c"editor".as_ptr())).expect("a view");
-            assert_eq!(view.setFrame(frame.as_ptr()), kResultOk);
-            let parent = parent as usize as *mut c_void;
-            assert_eq!(view.attached(parent, kPlatformTypeX11EmbedWindowID), kResultOk, "the window opens");
-            View(view)
-        }
+        let view = self.view();
+        view.attach(frame, parent);
+        view
     }
 }
 
@@ -221,6 +222,31 @@ impl Drop for Vst3 {
 pub(crate) struct View(ComPtr<IPlugView>);
 
 impl View {
+    /// Opens the window inside a window of the host.
+    pub(crate) fn attach(&self, frame: &ComPtr<IPlugFrame>, parent: u32) {
+        // SAFETY: frame and parent outlive the view; the calls are in the order that the format requires.
+        unsafe {
+            assert_eq!(self.0.setFrame(frame.as_ptr()), kResultOk);
+            let parent = parent as usize as *mut c_void;
+            assert_eq!(self.0.attached(parent, kPlatformTypeX11EmbedWindowID), kResultOk, "the window opens");
+        }
+    }
+
+    /// Tells the host's scale.
+    pub(crate) fn set_scale(&self, scale: f32) {
+        let scaled = self.0.cast::<IPlugViewContentScaleSupport>().expect("it takes scales");
+        // SAFETY: the call has no preconditions.
+        assert_eq!(unsafe { scaled.setContentScaleFactor(scale) }, kResultOk, "it takes this scale");
+    }
+
+    /// Width and height as the host is told.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        let mut size = ViewRect { left: 0, top: 0, right: 0, bottom: 0 };
+        // SAFETY: the size lives until the call returns.
+        assert_eq!(unsafe { self.0.getSize(&raw mut size) }, kResultOk);
+        [size.right - size.left, size.bottom - size.top].map(|side| side as u32)
+    }
+
     /// Closes the window as most hosts do.
     pub(crate) fn close(self) {
         // SAFETY: the calls are in the order that the format requires.
