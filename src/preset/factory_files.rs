@@ -9,8 +9,8 @@ macro_rules! embed {
     };
 }
 
-/// The presets, in folders by family.
-pub(super) const PRESETS: &[(&str, &str)] = embed! { "presets":
+/// The presets, in folders by family. Statics, because the texts of a constant are stored again wherever it is compiled in.
+pub(super) static PRESETS: &[(&str, &str)] = embed! { "presets":
     "init"
     "kick/click-kick"
     "kick/concert-bass-drum"
@@ -264,7 +264,7 @@ pub(super) const PRESETS: &[(&str, &str)] = embed! { "presets":
 };
 
 /// The kits.
-pub(super) const KITS: &[(&str, &str)] = embed! { "kits":
+pub(super) static KITS: &[(&str, &str)] = embed! { "kits":
     "acoustic-kit"
     "brush-kit"
     "electronic-kit"

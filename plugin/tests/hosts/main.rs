@@ -97,6 +97,7 @@ fn main() -> ExitCode {
             the_descriptor_is_complete
             no_other_plugin_is_made
             all_symbols_are_found_at_once
+            factory_presets_are_in_the_library_once
             one_stereo_output_comes_first_and_every_layout_is_valid
             notes_come_in_by_clap_and_midi
             latency_voices_and_rendering_are_told

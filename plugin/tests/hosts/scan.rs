@@ -66,6 +66,16 @@ pub(crate) fn all_symbols_are_found_at_once() {
     assert!(!entry.is_null(), "it has no clap_entry");
 }
 
+/// They are 3 MB. A constant's texts may be stored several times.
+pub(crate) fn factory_presets_are_in_the_library_once() {
+    let library = std::fs::read(bundle::clap()).unwrap();
+    for name in ["hat/pedal-hat", "bass/fingered-bass", "wind/piccolo"] {
+        let path = format!("{}/../assets/presets/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        assert_eq!(library.windows(text.len()).filter(|bytes| *bytes == text).count(), 1, "{name}");
+    }
+}
+
 pub(crate) fn one_stereo_output_comes_first_and_every_layout_is_valid() {
     let mut instance = Instance::new();
     let (configs, names) = {
