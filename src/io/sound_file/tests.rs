@@ -175,6 +175,7 @@ fn the_rate_of_a_flac_is_checked_too() {
     let encoded = |rate: u32| {
         let mut format = format(1, 1, 16);
         format[4..8].copy_from_slice(&rate.to_le_bytes());
+        format[8..12].copy_from_slice(&(2 * rate).to_le_bytes());
         let [mut wav, mut flac] = [(); 2].map(|()| tempfile::tempfile().unwrap());
         wav.write_all(&riff(&[chunk(b"fmt ", &format), chunk(b"data", &[1; 8192])])).unwrap();
         crate::io::flac::encode(&mut wav, &mut flac, "x").unwrap();
