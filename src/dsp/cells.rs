@@ -21,7 +21,7 @@ pub struct Cell {
     ratios: [f64; MAX_MODES],
     t60_scales: [f64; MAX_MODES],
     /// Square of each mode's shape at the point of touch, 0–1.
-    touched: [f64; MAX_MODES],
+    touched: [f32; MAX_MODES],
     /// The band of each mode, for [`Cells::climb`].
     bands: [u8; MAX_MODES],
 }
@@ -115,7 +115,7 @@ impl Cells {
 
     /// Square of each mode's shape at the point of touch, 0–1, a row for each cell. Only the functions that are passed to
     /// [`Cells::load`], [`Cells::retune`] and [`Cells::damp`] receive it.
-    pub fn touched_mut(&mut self) -> impl Iterator<Item = &mut [f64; MAX_MODES]> {
+    pub fn touched_mut(&mut self) -> impl Iterator<Item = &mut [f32; MAX_MODES]> {
         self.iter_mut().map(|cell| &mut cell.touched)
     }
 
@@ -130,7 +130,7 @@ impl Cells {
     ) {
         for (Cell { bank, ratios, t60_scales, touched, .. }, modes) in self.iter_mut().zip(modes.chunks(MAX_MODES)) {
             bank.set_law(law, sample_rate);
-            bank.load(&setup(modes, [ratios, t60_scales, touched]));
+            bank.load(&setup(modes, [ratios, t60_scales, &touched.map(f64::from)]));
         }
         self.len = self.iter().map(|cell| cell.bank.len()).sum();
     }
@@ -140,7 +140,7 @@ impl Cells {
     pub fn retune(&mut self, tuning: impl Fn(f64, f64, f64) -> (f64, f64) + Copy) {
         for Cell { bank, ratios, t60_scales, touched, .. } in self.iter_mut() {
             let rows = ratios.iter().zip(t60_scales).zip(touched);
-            bank.retune(rows.map(|((ratio, scale), touched)| tuning(*ratio, *scale, *touched)));
+            bank.retune(rows.map(|((ratio, scale), touched)| tuning(*ratio, *scale, f64::from(*touched))));
         }
     }
 
@@ -148,7 +148,7 @@ impl Cells {
     /// squared shape at the point of touch.
     pub fn damp(&mut self, t60: impl Fn(f64, f64) -> f64) {
         for Cell { bank, t60_scales, touched, .. } in self.iter_mut() {
-            (0..bank.len()).for_each(|m| bank.set_t60(m, t60(t60_scales[m], touched[m])));
+            (0..bank.len()).for_each(|m| bank.set_t60(m, t60(t60_scales[m], f64::from(touched[m]))));
         }
     }
 
@@ -229,7 +229,7 @@ impl Cells {
     pub fn modes(&self) -> impl Iterator<Item = (f64, f64, f64, f64)> {
         self.iter().flat_map(|cell| {
             let energy = |m| f64::from(cell.bank.mass(m).1);
-            let row = move |m| (cell.ratios[m], cell.t60_scales[m], cell.touched[m], energy(m));
+            let row = move |m| (cell.ratios[m], cell.t60_scales[m], f64::from(cell.touched[m]), energy(m));
             (0..cell.bank.len()).map(row)
         })
     }

@@ -63,8 +63,9 @@ impl Decay {
     fn set_place(&mut self, place: f64, modes: &ModeTable, bank: &mut Cells) {
         self.place = Some(place);
         for (touched, modes) in bank.touched_mut().zip(modes.as_slice().chunks(MAX_MODES)) {
-            sines(&ratios(modes), place, 0.0, touched);
-            touched.iter_mut().for_each(|shape| *shape *= *shape);
+            let mut shapes = [0.0; MAX_MODES];
+            sines(&ratios(modes), place, 0.0, &mut shapes);
+            touched.iter_mut().zip(shapes).for_each(|(touched, shape)| *touched = (shape * shape) as f32);
         }
     }
 

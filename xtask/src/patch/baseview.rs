@@ -1,5 +1,4 @@
-//! Edits of the library below the wrapper's window: a closed window ends its thread and frees everything it held; on Windows, the
-//! host gets the keys that the window does not use, and a click is no error.
+//! Edits of the library below the wrapper's window, so that a closed window frees everything, and hosts on Windows get their keys.
 
 use super::edit::{Edit, edit};
 

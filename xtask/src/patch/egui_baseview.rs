@@ -1,5 +1,4 @@
-//! Edits of the library between the window and egui: it passes on files that are dropped on the window, and three more keys; a
-//! window that is not given the focus goes on without it.
+//! Edits of the library between the window and egui: files that are dropped, three more keys, and a window without the focus.
 
 use super::edit::{Edit, edit};
 
