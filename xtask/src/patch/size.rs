@@ -1,5 +1,4 @@
-//! Edits of the window's size: the host's scale is heard before the window opens, the window opens with it, and a size that the host
-//! refuses is given up.
+//! Edits of the window's size: it opens with the scale that the host has told before, and gives up a size that the host refuses.
 
 use super::edit::{Edit, INNER, VIEW, edit};
 
