@@ -95,6 +95,7 @@ struct Clap<'a> {
     parent: &'a Parent,
     instance: Instance,
     editor: Option<Editor<'a>>,
+    is_slow: bool,
     refuses_sizes: bool,
 }
 
@@ -102,13 +103,16 @@ impl<'a> Clap<'a> {
     fn new(parent: &'a Parent, size: [u32; 2], zoom: u32) -> Self {
         let mut instance = Instance::new();
         assert!(instance.load(&state(size, zoom)));
-        Self { parent, instance, editor: None, refuses_sizes: false }
+        Self { parent, instance, editor: None, is_slow: false, refuses_sizes: false }
     }
 }
 
 impl Host for Clap<'_> {
     fn open(&mut self, scale: Option<f64>) {
-        self.editor = Some(Editor::open_at(scale, &mut self.instance, self.parent));
+        // Every second host is slow: the window wants to draw before it is shown.
+        self.is_slow = !self.is_slow;
+        let pause = Duration::from_millis(if self.is_slow { 60 } else { 0 });
+        self.editor = Some(Editor::open_at(scale, pause, &mut self.instance, self.parent));
     }
 
     fn close(&mut self) {

@@ -180,12 +180,13 @@ pub(crate) struct Editor<'a> {
 impl<'a> Editor<'a> {
     /// Opens the window in the same way as a host.
     pub(crate) fn open(instance: &mut Instance, parent: &'a Parent) -> Self {
-        Self::open_at(None, instance, parent)
+        Self::open_at(None, Duration::ZERO, instance, parent)
     }
 
-    /// As [`Editor::open`]; a host that has a scale tells it, and makes its own window as large as the plugin says.
+    /// As [`Editor::open`]; a host that has a scale tells it, makes its own window as large as the plugin says, and waits
+    /// before it shows the plugin's.
     #[allow(unsafe_code)]
-    pub(crate) fn open_at(scale: Option<f64>, instance: &mut Instance, parent: &'a Parent) -> Self {
+    pub(crate) fn open_at(scale: Option<f64>, pause: Duration, instance: &mut Instance, parent: &'a Parent) -> Self {
         let handle = instance.clack.plugin_handle();
         let gui: PluginGui = handle.get_extension().expect("there is a window");
         let configuration = GuiConfiguration { api_type: GuiApiType::X11, is_floating: false };
@@ -199,6 +200,8 @@ impl<'a> Editor<'a> {
         assert!((100..4_000).contains(&size.width) && (100..4_000).contains(&size.height), "{size:?}");
         // SAFETY: the parent outlives the editor, which borrows it.
         unsafe { gui.set_parent(&handle, Window::from_x11_handle(parent.window.into())) }.expect("it takes a parent");
+        // Longer than the plugin's timer takes, as in a busy host: the window wants to draw before it is shown.
+        std::thread::sleep(pause);
         // Not every plugin needs this call, but no plugin may fail because of it.
         let _ = gui.show(&handle);
         Self { parent, gui }

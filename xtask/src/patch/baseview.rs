@@ -1,9 +1,10 @@
-//! Edits of the library below the wrapper's window, so that a closed window frees everything, and hosts on Windows get their keys.
+//! Edits of the library below the wrapper's window: windows are drawn and end whole, and hosts on Windows get their keys.
 
 use super::edit::{Edit, edit};
 
 const EGL: &str = "src/wrappers/egl.rs";
 const EVENT_LOOP: &str = "src/platform/x11/event_loop.rs";
+const PRESENT: &str = "src/platform/x11/present.rs";
 const WIN32_HANDLE: &str = "src/wrappers/win32/window/handle.rs";
 const WIN32_WINDOW: &str = "src/platform/win/window.rs";
 const WINDOW_THREAD: &str = "src/platform/x11/window_thread.rs";
@@ -37,6 +38,57 @@ pub(super) const EDITS: &[Edit] = &[
             return;
         }
 
+",
+    ),
+    // A window asks the screen for the moment to draw, and asks again only after an answer. It listens for answers from when it is
+    // mapped. If it asked before, because the host takes longer to show it than the first timer takes, the answer was lost, and the
+    // window stayed empty.
+    edit(
+        PRESENT,
+        "    draw_now: bool,
+    last_requested_serial",
+        "    draw_now: bool,
+    hears_answers: bool,
+    last_requested_serial",
+    ),
+    edit(
+        PRESENT,
+        "Self { draw_now: false, last_requested_serial: None, last_received_present: None }",
+        "Self {
+            draw_now: false,
+            hears_answers: false,
+            last_requested_serial: None,
+            last_received_present: None,
+        }",
+    ),
+    edit(
+        PRESENT,
+        "    pub fn handle_window_mapped(
+        &self, shared",
+        "    pub fn handle_window_mapped(
+        &mut self, shared",
+    ),
+    edit(
+        PRESENT,
+        "        if window.present_supported() && window.present_select_input()? {
+",
+        "        if window.present_supported() && window.present_select_input()? {
+            self.hears_answers = true;
+",
+    ),
+    edit(
+        PRESENT,
+        "        if !shared.present_notify_requested.get() {
+            return Ok(());
+        }
+",
+        "        if !shared.present_notify_requested.get() {
+            return Ok(());
+        }
+
+        if window.present_supported() && !self.hears_answers {
+            return Ok(());
+        }
 ",
     ),
     // libEGL keeps data for every thread that uses it. In libglvnd 1.6, the function that frees this data when a thread
