@@ -143,10 +143,9 @@ impl Strike {
                 energies[1][m] = pulses * pulses + burst * burst;
             }
             noisy |= gains.noise.iter().any(|noise| *noise != 0.0);
-            for m in 0..modes.len() {
-                energy += energies[0][m];
-                full += energies[1][m];
-            }
+            let [own, whole] = energies.each_ref().map(|row| &row[..modes.len()]);
+            energy = own.iter().fold(energy, |sum, mode| sum + mode);
+            full = whole.iter().fold(full, |sum, mode| sum + mode);
             bank.set_excitation_gains(cell, &gains);
         }
         let more = energy - self.energy;

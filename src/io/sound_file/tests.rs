@@ -144,8 +144,8 @@ fn rates_and_channels_that_nothing_can_work_on_are_refused() {
 fn seal(ogg: &mut [u8]) {
     ogg[22..26].fill(0);
     let add = |sum: u32, byte: &u8| {
-        let shift = |sum: u32, _| sum << 1 ^ (sum >> 31) * 0x04c1_1db7;
-        (0..8).fold(sum ^ u32::from(*byte) << 24, shift)
+        let shift = |sum: u32, _| (sum << 1) ^ ((sum >> 31) * 0x04c1_1db7);
+        (0..8).fold(sum ^ (u32::from(*byte) << 24), shift)
     };
     let sum = ogg[..58].iter().fold(0, add);
     ogg[22..26].copy_from_slice(&sum.to_le_bytes());
