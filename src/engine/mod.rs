@@ -5,10 +5,11 @@
 //! | where | what |
 //! |---|---|
 //! | `event`, `midi`, `channel`, `banks`, `zones` | events; MIDI messages as events; controllers; program changes; MPE |
+//! | `pressed` | the keys and pedals that a stream of events holds down |
 //! | `note`, `expression` | a note, its note expressions, how events select notes |
 //! | `controls`, `instrument` | parameter smoothing; one sound of a kit with its present values |
 //! | `modulation/` | routes and their sources, and the host's offsets |
-//! | `voice/`, `damping` | one voice: strikes, pitch, decay, gain, tension, bloom, energy |
+//! | `voice/`, `damping` | one voice: strikes, pitch, decay, gain, tension, bloom, energy; its strikes apart, for labels |
 //! | `voice_manager/` | which notes sound, and in which voices: note on and off, mono, pedals, slots, the pool |
 //! | `space/` | the effects after the voices: `dsp::space` with parameters, sleep and tails |
 //! | `synth/` | a kit on sixteen channels |

@@ -5,13 +5,16 @@ use std::path::Path;
 /// The type of a section with the symbols that the loader does not need (ELF: `SHT_SYMTAB`).
 const SYMBOLS: u32 = 2;
 
-/// Checks a program or library. Only ELF files are looked into.
+/// Checks a program or library. Only 64-bit ELF files, little-endian, are looked into.
 ///
 /// # Errors
 /// If it cannot be read, or was not stripped; the message has the sections.
 pub(crate) fn check(path: &Path) -> Result<(), String> {
     let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let found = for_debuggers(&bytes).unwrap_or_default();
+    if !bytes.starts_with(b"\x7fELF\x02\x01") {
+        return Ok(());
+    }
+    let found = for_debuggers(&bytes).ok_or_else(|| format!("{}: its sections cannot be read", path.display()))?;
     if found.is_empty() {
         return Ok(());
     }
@@ -22,24 +25,21 @@ pub(crate) fn check(path: &Path) -> Result<(), String> {
     ))
 }
 
-/// The sections of a 64-bit ELF file, little-endian, that only debuggers read; `None` if it is no such file.
+/// The sections of a 64-bit ELF file, little-endian, that only debuggers read; `None` if it is damaged.
 fn for_debuggers(bytes: &[u8]) -> Option<Vec<String>> {
-    if !bytes.starts_with(b"\x7fELF\x02\x01") {
-        return None;
-    }
     let number = |at: usize, size: usize| -> Option<usize> {
         let digits = bytes.get(at..at.checked_add(size)?)?;
         Some(digits.iter().rev().fold(0, |number, digit| number << 8 | usize::from(*digit)))
     };
     let (table, entry, count) = (number(0x28, 8)?, number(0x3a, 2)?, number(0x3c, 2)?);
     let section = |index: usize| table.checked_add(index * entry);
-    let names = number(section(number(0x3e, 2)?)? + 0x18, 8)?;
+    let names = number(section(number(0x3e, 2)?)?.checked_add(0x18)?, 8)?;
     let mut found = Vec::new();
     for index in 0..count {
         let section = section(index)?;
         let name = bytes.get(names.checked_add(number(section, 4)?)?..)?.split(|byte| *byte == 0).next()?;
         let name = String::from_utf8_lossy(name).into_owned();
-        if number(section + 4, 4)? == SYMBOLS as usize || name.starts_with(".debug_") {
+        if number(section.checked_add(4)?, 4)? == SYMBOLS as usize || name.starts_with(".debug_") {
             found.push(name);
         }
     }

@@ -7,6 +7,10 @@ use crate::params::SprungParams;
 use nice_plug_core::context::gui::GuiContext;
 use sprung::engine::SoundingNote;
 use sprung::params::{PARAMS, ParamInfo};
+use std::time::Duration;
+
+/// Time between two repaints while something moves.
+pub(super) const FRAME: Duration = Duration::from_millis(16);
 
 /// Text that is being typed instead of a parameter's value.
 pub(super) struct Typing {

@@ -1,7 +1,7 @@
 //! The phase plane: one mass in slow motion, which the user can pull and release.
 
 use super::audition::Audition;
-use super::controls::{Controls, Hint};
+use super::controls::{Controls, FRAME, Hint};
 use super::shown::Shown;
 use super::text::line;
 use super::theme::{Palette, SMALL};
@@ -10,7 +10,6 @@ use egui::{Align2, CursorIcon, Id, Painter, Pos2, Rect, Role, Sense, Stroke, Ui,
 use sprung::engine::SoundingNote;
 use std::collections::VecDeque;
 use std::f32::consts::TAU;
-use std::time::Duration;
 
 /// Turns per second on the phase plane: slow motion, since the eye cannot follow the true motion.
 const TURNS: f32 = 1.0;
@@ -19,8 +18,6 @@ const TRAIL: f32 = 1.75;
 const POINTS: f32 = 240.0;
 /// The smallest amplitude that is heard when the mass is released.
 const LEAST: f32 = 0.03;
-/// Time between two pictures while the trail grows shorter.
-const FRAME: Duration = Duration::from_millis(16);
 /// Longest time from the release to the sound, in seconds.
 const WAIT: f32 = 0.3;
 

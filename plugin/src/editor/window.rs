@@ -1,7 +1,7 @@
 //! The contents of the window.
 
 use super::browser::Browser;
-use super::controls::{Controls, Hands};
+use super::controls::{Controls, FRAME, Hands};
 use super::drops;
 use super::files::summary;
 use super::fitting::Fitting;
@@ -29,13 +29,9 @@ use sprung::preset::library::Library;
 use std::collections::BTreeSet;
 use std::hash::{BuildHasher as _, RandomState};
 use std::sync::Arc;
-use std::time::Duration;
 
 mod shell;
 mod wishes;
-
-/// Time between two repaints while something moves.
-const FRAME: Duration = Duration::from_millis(16);
 
 /// Longest time in seconds by which moving pictures go on in one pass: after a pause they go on where they were.
 const LONGEST: f32 = 0.25;

@@ -10,6 +10,15 @@ use crate::dsp::random::{key, uniform};
 
 const RATE: f64 = 48_000.0;
 
+#[test]
+fn half_octaves_are_counted() {
+    for (ratio, count) in [(1.0, 0), (1.41, 0), (SQRT_2, 1), (1.99, 1), (2.0, 2), (2.9, 3), (1000.0, 19), (1024.0, 20)]
+    {
+        assert_eq!(half_octaves(ratio), count, "{ratio}");
+    }
+    assert!(half_octaves(f64::INFINITY) > BANDS as u64);
+}
+
 /// A body of modes with these ratios and amplitudes, struck.
 fn struck(ratios: &[f64], amplitudes: &[f32], t60: f64, law: Law) -> Cells {
     let mut cells = Cells::EMPTY;

@@ -87,22 +87,22 @@ impl Exciter {
         self.frames_left
     }
 
-    /// The number of the strike that was started last.
+    /// The slot of the strike that was started last.
     pub fn newest(&self) -> usize {
         (self.next + OVERLAPPING - 1) % OVERLAPPING
     }
 
-    /// Whether any force of the strike with this number is still to come.
-    pub fn is_acting(&self, number: usize) -> bool {
-        self.blows[number].frames_left() > 0
+    /// Whether any force of the strike in this slot is still to come.
+    pub fn is_acting(&self, slot: usize) -> bool {
+        self.blows[slot].frames_left() > 0
     }
 
-    /// A copy in which only the strike with this number is in progress.
+    /// A copy in which only the strike in this slot is in progress.
     #[must_use]
-    pub fn only(&self, number: usize) -> Self {
+    pub fn only(&self, slot: usize) -> Self {
         let mut blows = [Blow::REST; OVERLAPPING];
-        blows[number] = self.blows[number];
-        Self { blows, next: self.next, frames_left: blows[number].frames_left() }
+        blows[slot] = self.blows[slot];
+        Self { blows, next: self.next, frames_left: blows[slot].frames_left() }
     }
 
     /// Writes the forces of the next `frames` frames, at most [`CONTROL_FRAMES`], and advances by them.

@@ -420,7 +420,10 @@ impl ModeBank {
     /// A copy of the bank with the state of another one, which has as many modes and renders nothing from tables.
     #[must_use]
     pub fn with_state_of(&self, other: &Self) -> Self {
-        Self { states: other.states, current: other.current, ..self.clone() }
+        // In a tick that is rendered by tables, this bank's state is that of the tick's start, and the other's that of this frame.
+        let motion =
+            if matches!(self.motion, Motion::Tabled { .. }) { Motion::Still { ticks: 0 } } else { self.motion };
+        Self { states: other.states, current: other.current, motion, ..self.clone() }
     }
 
     /// Frames rendered since the state that [`ModeBank::mass`] returns.

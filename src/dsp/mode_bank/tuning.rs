@@ -77,7 +77,8 @@ impl Kernel for Tune<'_> {
     }
 }
 
-/// Computes the state in which each mass is displaced and at rest, after [`Tune`]. Only plucks need it.
+/// Computes the state of unit amplitude in which each mass is displaced and at rest. Only plucks need it, so it is no part of
+/// [`Tune`].
 pub(super) struct Displace<'a> {
     pub(super) tuning: &'a mut Tuning,
     pub(super) ln_radius: &'a Wide,

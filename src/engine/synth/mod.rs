@@ -213,7 +213,8 @@ impl Synth {
         self.manager.sounding_voices().for_each(|(note, voice)| snapshot.add(note, voice));
     }
 
-    /// Calls `visit` with each voice that sounds now, in an order that is always the same. Real-time safe if `visit` is.
+    /// Calls `visit` with each voice that sounds now, in an order that is always the same. Real-time safe if `visit` is and
+    /// strikes are not told apart; else it forgets those that have ended, which frees memory.
     pub fn each_voice(&mut self, visit: &mut dyn FnMut(VoiceState<'_>)) {
         for (note, voice) in self.manager.active() {
             visit(VoiceState::new(note, voice));

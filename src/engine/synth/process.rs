@@ -133,8 +133,8 @@ pub(in crate::engine) fn part(input: &[f32], start: usize, end: usize) -> &[f32]
 /// Below this amplitude, −200 dBFS, samples at the output are 0.
 const INAUDIBLE: f32 = 1e-10;
 
-/// Replaces inaudible samples at the output by silence. What follows, be it a host's effect, must not get numbers that are
-/// nearly subnormal. Samples that are not a number stay.
+/// Replaces inaudible samples at the output by silence, so that no host's effect comes to compute with subnormal numbers. Samples
+/// that are not a number stay.
 pub(in crate::engine) fn silence_inaudible(left: &mut [f32], right: &mut [f32]) {
     let silence = |sample: &mut f32| *sample = if sample.abs() < INAUDIBLE { 0.0 } else { *sample };
     left.iter_mut().chain(right).for_each(silence);

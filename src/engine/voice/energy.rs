@@ -33,7 +33,7 @@ pub(super) struct Energy {
 impl Energy {
     /// The energy of a voice at rest.
     pub(super) const NONE: Self =
-        Self { pending: 0.0, measured: 0.0, until_measured: MEASURING_TICKS, interval: MEASURING_TICKS, end: None };
+        Self { pending: 0.0, measured: 0.0, until_measured: 0, interval: MEASURING_TICKS, end: None };
 
     /// Adds to the energy that the strike has still to add. `more` may be negative.
     pub(super) fn expect(&mut self, more: f64) {

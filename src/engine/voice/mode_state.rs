@@ -75,7 +75,7 @@ impl SynthVoice {
     }
 
     /// The voice's modes as they would be with the amplitudes of `modes`.
-    pub(super) fn states_of<'a>(&self, modes: &'a Cells) -> impl Iterator<Item = ModeState> + use<'a> {
+    fn states_of<'a>(&self, modes: &'a Cells) -> impl Iterator<Item = ModeState> + use<'a> {
         let (frequency, damping) = (self.pitch.frequency(), self.decay.damping);
         let [left, right] = self.fader.now().map(f64::from);
         let power = 0.5 * (left * left + right * right);

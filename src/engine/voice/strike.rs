@@ -126,7 +126,7 @@ impl Strike {
             let at_mallet = self.variation.at_mallet(&ratios);
             let at_finger = if pluck > 0.0 { self.at_finger(values, &ratios) } else { [0.0; MAX_MODES] };
             let mut gains = ExcitationRows { turned_noise, ..ExcitationRows::NONE };
-            if self.phase != 0.0 || table.has_phases() {
+            if self.phase != 0.0 || turned_noise {
                 gains.turn = self.turns(table, first);
             }
             // The sums follow in a loop of their own, so that the compiler can use vector instructions in this one.

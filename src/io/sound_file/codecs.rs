@@ -43,7 +43,10 @@ pub(super) fn read(file: File, name: &str, format: &str) -> Result<Recording> {
         return Err(Error::format(name, format!("there is no sound in this {format}: expected a track of it")));
     };
     let channels = parameters.channels.as_ref().map_or(1, |channels| channels.count());
-    check_layout(parameters.sample_rate.unwrap_or(0), channels).map_err(|message| Error::format(name, message))?;
+    // Some containers leave the rate to the sound itself; `super::read` checks it again.
+    if let Some(rate) = parameters.sample_rate {
+        check_layout(rate, channels).map_err(|message| Error::format(name, message))?;
+    }
     let mut decoder = symphonia::default::get_codecs()
         .make_audio_decoder(&parameters, &AudioDecoderOptions::default())
         .map_err(wrong)?;

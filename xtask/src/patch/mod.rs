@@ -1,8 +1,9 @@
 //! `cargo xtask patch`: writes packages used by the plugin, as on crates.io but with the corrections in this folder.
 //!
 //! The corrections keep the wrapper's VST3 from crashing its host and from leaking file descriptors, make sure that a closed
-//! window is gone, give the window the host's scale, let it open the host's menu of a parameter, and on Windows survive a click
-//! and let the host hear its keys. `plugin/UPSTREAM.md` describes each fault as in a bug report.
+//! window is gone and one that is shown late is drawn, give the window the host's scale, pass on dropped files and three more keys,
+//! and let the window open the host's menu of a parameter. On Windows they keep a click from ending the host, and pass on the keys
+//! that nobody types. `plugin/UPSTREAM.md` describes each fault as in a bug report.
 
 mod baseview;
 mod calls;

@@ -280,6 +280,26 @@ fn a_force_alone_gives_the_bits_of_the_form_that_reads_all() {
     }
 }
 
+/// Also in the middle of a tick for which the bank has tables.
+#[test]
+fn a_copy_with_another_state_goes_on_from_it() {
+    for ticks in [1, 40] {
+        let mut whole = bank(&[(440.0, 1.0)]);
+        run(&mut whole, ticks * CONTROL_FRAMES, Some(&strike()));
+        let mut part = whole.with_state_of(&whole);
+        for frames in [5, CONTROL_FRAMES - 5, 7] {
+            if frames == 5 || frames == 7 {
+                whole.sweep_to(1.0, CONTROL_FRAMES);
+            }
+            part = whole.with_state_of(&part);
+            let expected = whole.render(None, frames)[0].to_vec();
+            let found = part.render(Some(&Drive::NONE), frames)[0];
+            let worst = expected.iter().zip(found).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(worst < 1e-5, "{ticks} ticks, {frames} frames: {worst}");
+        }
+    }
+}
+
 /// A phase turns the response to each sample of a force, so the output is the force convolved with `sin(nθ + φ)`.
 #[test]
 fn every_force_is_convolved_with_a_turned_response() {
