@@ -44,6 +44,24 @@ fn samples_below_200_dbfs_are_silence() {
     }
 }
 
+/// Control ticks come every 32 frames. A note that begins at one sweeps through its first tick like any other.
+#[test]
+fn a_sweep_is_the_same_wherever_a_note_begins() {
+    const FRAMES: usize = 4800;
+    for (name, most_db) in [("High Q", -20.0), ("Zap", -60.0), ("Electronic Kick", -75.0)] {
+        let patch = &Preset::find(name).unwrap().patch;
+        let played = |at: usize| render(patch, &[on(at as u32, 60, 0.8)], at + FRAMES).0.split_off(at);
+        let energy =
+            |samples: &[f32]| samples.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
+        let between = played(31);
+        for at in [0, 8, 32] {
+            let difference: Vec<f32> = played(at).iter().zip(&between).map(|(one, other)| one - other).collect();
+            let db = 10.0 * libm::log10(energy(&difference) / energy(&between));
+            assert!(db < most_db, "{name} at frame {at}: {db} dB");
+        }
+    }
+}
+
 #[test]
 fn garbage_in_events_never_comes_out() {
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1e30, 1e30];
