@@ -35,13 +35,13 @@ def params() -> list[dict[str, Any]]:
 
 def render(options: list[tuple[str, str]]) -> tuple[npt.NDArray[np.float32], int]: ...
 def analyze(
-    sound: str | tuple[int, list[list[float]]], most_modes: int, all_strikes: bool
+    sound: str | tuple[float, list[list[float]]], most_modes: int, all_strikes: bool
 ) -> list[dict[str, Any]]: ...
 def fit(
-    sounds: list[tuple[str | tuple[int, list[list[float]]], str | None, float]], name: str, body: str, most_modes: int
+    sounds: list[tuple[str | tuple[float, list[list[float]]], str | None, float]], name: str, body: str, most_modes: int
 ) -> tuple[str, list[float]]: ...
 def diff(
-    expected: str | tuple[int, list[list[float]]], actual: str | tuple[int, list[list[float]]]
+    expected: str | tuple[float, list[list[float]]], actual: str | tuple[float, list[list[float]]]
 ) -> dict[str, Any] | None: ...
 def batch(
     jobs: str,
