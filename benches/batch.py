@@ -119,7 +119,7 @@ def write_preset(sprung: str, path: Path) -> None:
     """Writes the sound as a preset for VST3 hosts: the plugin's state, in the format's own file."""
     text = subprocess.run([sprung, "presets", "show", str(JOB["preset"])], check=True, capture_output=True, text=True).stdout
     version = subprocess.run([sprung, "--version"], check=True, capture_output=True, text=True).stdout.split()[-1]
-    own = json.dumps({"format": 2, "preset": text, "seed": JOB["seed"], "window": [880, 640]})
+    own = json.dumps({"format": 1, "preset": text, "seed": JOB["seed"], "window": [880, 640]})
     state = json.dumps({"version": version, "params": {}, "fields": {"sprung": own}}).encode()
     start, size = 48, len(state)
     parts = struct.pack("<4sI4sQQ", b"List", 1, b"Comp", start, size)

@@ -60,7 +60,7 @@ fn factory(name: &str) -> Patch {
 fn drums() -> KitPreset {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/kits/acoustic-kit.toml");
     let mut open = |path: &Path| File::open(path).map_err(|source| Error::io(path.display().to_string(), source));
-    match Playable::read(&path, &mut open, &mut |_, _| {}).unwrap() {
+    match Playable::read(&path, &mut open).unwrap() {
         Playable::Kit(kit) => kit,
         Playable::Preset(_) => panic!("a kit"),
     }

@@ -14,17 +14,16 @@ use crate::loaded::{Loaded, positions_of};
 use nice_plug::prelude::{PluginState, nice_error};
 use serde::Serialize;
 use serde_json::{Map, Value};
-use sprung::params::retired::Retired;
 use sprung::params::{PARAM_COUNT, PARAMS, Param, Unit, Values};
 use sprung::patch::Patch;
-use sprung::preset::{Guide, Playable, Preset, Replaced};
+use sprung::preset::{Guide, Playable, Preset};
 use std::collections::BTreeMap;
 
 /// The wrapper's name for the state.
 pub(crate) const FIELD: &str = "sprung";
 
-/// The state format that is written. Format 1, which had no kits, is read too.
-const FORMAT: u64 = 2;
+/// The state format that is read and written.
+const FORMAT: u64 = 1;
 
 /// The keys of a state.
 const KEYS: [&str; 10] =
@@ -165,14 +164,17 @@ impl State {
         let saved: Map<String, Value> =
             serde_json::from_str(json).map_err(|error| format!("not a state of Sprung: {error}"))?;
         let mut complaints = vec![];
-        match &saved.get("format").unwrap_or(&Value::Null) {
-            Value::Number(format) if format.as_u64().is_some_and(|format| (1..=FORMAT).contains(&format)) => {}
-            other => complaints.push(format!("state format {other} is unknown: this version reads 1 to {FORMAT}")),
+        let format = saved.get("format").unwrap_or(&Value::Null);
+        match format.as_u64() {
+            Some(FORMAT) => {}
+            Some(newer) if newer > FORMAT => {
+                complaints.push(format!("state format {newer} is of a newer version: this one reads {FORMAT}"));
+            }
+            _ => complaints.push(format!("state format {format} is unknown: this version reads {FORMAT}")),
         }
         let unknown = saved.keys().filter(|key| !KEYS.contains(&key.as_str()));
         complaints.extend(unknown.map(|key| format!("unknown key ‘{key}’")));
-        let mut rebased = vec![];
-        let playable = read_playable(&saved, &mut complaints, &mut rebased)?;
+        let playable = read_playable(&saved, &mut complaints)?;
         let seed = match saved.get("seed") {
             None => Some(0),
             Some(seed) => seed.as_u64().or_else(|| {
@@ -196,9 +198,7 @@ impl State {
             if !(0.0..=1.0).contains(&position) || matches!(info.unit, Unit::Count | Unit::Choice) {
                 let complaint = format!("{position} is not a position of that knob: expected 0 to 1");
                 complaints.push(format!("positions.{}: {complaint}", info.id));
-            } else if !rebased.contains(&param) {
-                // A route that replaces a retired parameter may have given this one a new base value: then the knob
-                // stays at that value.
+            } else {
                 state.positions[param as usize] = position;
             }
         }
@@ -212,19 +212,13 @@ fn changes(now: impl Fn(Param) -> f32, before: impl Fn(Param) -> f32) -> BTreeMa
     changed.map(|info| (info.id, now(info.param))).collect()
 }
 
-/// The preset or kit of a state. If a route that replaces a retired parameter changes a parameter's base value, the
-/// parameter is added to `rebased`.
-fn read_playable(
-    saved: &Map<String, Value>,
-    complaints: &mut Vec<String>,
-    rebased: &mut Vec<Param>,
-) -> Result<Playable, String> {
+/// The preset or kit of a state.
+fn read_playable(saved: &Map<String, Value>, complaints: &mut Vec<String>) -> Result<Playable, String> {
     let text = |key: &str| saved.get(key).and_then(Value::as_str);
-    let mut replaced: Vec<Replaced> = vec![];
     let mut of_sounds = vec![];
     let (playable, lines) = match (text("preset"), text("kit")) {
         (Some(preset), _) => {
-            let read = Preset::parse_lenient(preset, "the state's preset", &mut |one| replaced.push(one));
+            let read = Preset::parse_lenient(preset, "the state's preset");
             read.map(|(preset, lines)| (Playable::Preset(preset), lines))
         }
         (None, Some(kit)) => {
@@ -232,20 +226,17 @@ fn read_playable(
                 let Some(text) = saved.get("sounds").and_then(|sounds| sounds.get(name)).and_then(Value::as_str) else {
                     return Preset::find(name).cloned();
                 };
-                let mut replaced = vec![];
-                let (preset, lines) = Preset::parse_lenient(text, name, &mut |one| replaced.push(one.to_string()))?;
-                of_sounds.extend(lines.into_iter().chain(replaced).map(|line| format!("‘{name}’: {line}")));
+                let (preset, lines) = Preset::parse_lenient(text, name)?;
+                of_sounds.extend(lines.into_iter().map(|line| format!("‘{name}’: {line}")));
                 Ok(preset)
             };
-            Playable::parse_lenient(kit, "the state's kit", &mut find, &mut |one| replaced.push(one))
+            Playable::parse_lenient(kit, "the state's kit", &mut find)
         }
         (None, None) => return Err("not a state of Sprung: there is neither a preset nor a kit".to_owned()),
     }
     .map_err(|error| error.to_string())?;
     complaints.extend(lines);
     complaints.extend(of_sounds);
-    complaints.extend(replaced.iter().map(Replaced::to_string));
-    rebased.extend(replaced.iter().filter_map(|replaced| replaced.rebased));
     Ok(playable)
 }
 
@@ -279,7 +270,7 @@ fn read_view(saved: &Map<String, Value>, complaints: &mut Vec<String>) -> View {
     view
 }
 
-/// The numbers by parameter id in a part of the state. Retired parameters are ignored: routes have replaced them.
+/// The numbers by parameter id in a part of the state.
 fn numbers(saved: &Map<String, Value>, key: &str, complaints: &mut Vec<String>) -> Vec<(Param, f32)> {
     let numbers = match saved.get(key) {
         None => return Vec::new(),
@@ -290,7 +281,7 @@ fn numbers(saved: &Map<String, Value>, key: &str, complaints: &mut Vec<String>) 
         }
     };
     let mut read = vec![];
-    for (id, number) in numbers.iter().filter(|(id, _)| Retired::from_id(id).is_none()) {
+    for (id, number) in numbers {
         match (Param::from_id(id), number.as_f64()) {
             (None, _) => complaints.push(format!("{key}: there is no parameter ‘{id}’")),
             (Some(_), None) => complaints.push(format!("{key}.{id}: expected a number, found {number}")),

@@ -82,7 +82,7 @@ pub(super) fn run(args: &Args) -> Result<()> {
     let (reading, settings) = (args.reading.request(), args.sound.request());
     let mut song = args.song.as_deref().map(|path| reading.read(path, &mut inputs, &mut warn)).transpose()?;
     // Keyboards may select any program at any time.
-    let sounds = settings.load(song.as_mut(), true, &mut inputs, &mut warn)?;
+    let sounds = settings.load(song.as_mut(), true, &mut inputs)?;
     if let Some(song) = &song {
         settings.warn(song, &sounds, &mut warn);
     }

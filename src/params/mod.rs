@@ -1,8 +1,7 @@
 //! The parameter table: every parameter's id, name, unit, range, curve, default and smoothing, defined once.
 //!
 //! The engine, the command, preset files, the documentation and any plugin shell derive from [`PARAMS`].
-//! Ids are part of every saved preset and song: a test pins them. The id of a removed parameter is kept in [`retired`]
-//! and never used again.
+//! Ids are part of every saved preset and song: a test pins them.
 
 /// The unit of a parameter's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,7 +89,6 @@ mod lfo;
 mod macros;
 mod output;
 mod pitch;
-pub mod retired;
 mod routes;
 mod space;
 mod text;

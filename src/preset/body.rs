@@ -73,7 +73,7 @@ mod tests {
     use crate::sound::bodies::{FIELDS, MATERIALS, Model};
 
     fn parse(body: &str) -> crate::Result<Preset> {
-        Preset::parse(&format!("format = 2\nname = \"a\"\n{body}"), "x")
+        Preset::parse(&format!("format = 1\nname = \"a\"\n{body}"), "x")
     }
 
     #[test]

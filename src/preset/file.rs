@@ -3,12 +3,10 @@
 use super::about::{About, about_to_toml};
 use super::complaints::Complaints;
 use super::guide::Guide;
-use super::migration::{self, Replaced};
 use super::value::{check_keys, param_value, table, unexpected};
 use super::{FORMAT_VERSION, Preset};
-use super::{body, mode_list, one_exciter, routes, tuning};
+use super::{body, mode_list, routes, tuning};
 use crate::error::Error;
-use crate::params::retired::RETIRED;
 use crate::params::{PARAMS, Param, ParamInfo, Unit};
 use crate::patch::Patch;
 use std::fmt::Write;
@@ -23,70 +21,42 @@ fn known_keys() -> Vec<&'static str> {
 }
 
 /// Reads as much of a preset as possible. Returns an error only if the text is no preset at all.
-pub(super) fn parse(
-    text: &str,
-    origin: &str,
-    complaints: &mut Complaints,
-    replaced: &mut dyn FnMut(Replaced),
-) -> crate::Result<Preset> {
-    read(&table(text, origin)?, complaints, replaced).map_err(|message| Error::format(origin, message))
+pub(super) fn parse(text: &str, origin: &str, complaints: &mut Complaints) -> crate::Result<Preset> {
+    read(&table(text, origin)?, complaints).map_err(|message| Error::format(origin, message))
 }
 
-pub(super) fn read(
-    table: &Table,
-    complaints: &mut Complaints,
-    replaced: &mut dyn FnMut(Replaced),
-) -> Result<Preset, String> {
+pub(super) fn read(table: &Table, complaints: &mut Complaints) -> Result<Preset, String> {
     if table.contains_key("kit") {
         return Err(format!("this is a kit: expected a preset, which begins with format = {FORMAT_VERSION}"));
     }
     // The version comes first, since keys may have another meaning in a file of a newer version.
-    let format = match table.get("format") {
-        Some(Value::Integer(format @ 1..=FORMAT_VERSION)) => *format,
+    match table.get("format") {
+        Some(Value::Integer(FORMAT_VERSION)) => {}
         Some(Value::Integer(newer)) if *newer > FORMAT_VERSION => {
-            complaints
-                .add(format!("format {newer} is of a newer version: this one reads up to format = {FORMAT_VERSION}"));
-            FORMAT_VERSION
+            complaints.add(format!("format {newer} is of a newer version: this one reads format = {FORMAT_VERSION}"));
         }
-        Some(other) => {
-            return Err(format!("format {other} is unknown: this version reads format = 1 to {FORMAT_VERSION}"));
-        }
+        Some(other) => return Err(format!("format {other} is unknown: this version reads format = {FORMAT_VERSION}")),
         None => return Err(format!("there is no ‘format’: expected format = {FORMAT_VERSION}")),
-    };
-    let levelled = (format < one_exciter::FIRST_WITH_LEVELS).then(|| one_exciter::with_levels(table, complaints));
-    let table = levelled.as_ref().unwrap_or(table);
+    }
     check_keys(table, "", &known_keys(), complaints);
     let About { name, author, tags, comment } = About::read(table, complaints);
-    let mut params = match table.get("params") {
-        Some(Value::Table(params)) => params.clone(),
-        None => Table::new(),
-        Some(other) => {
-            complaints.add(unexpected("params", "a table [params]", other));
-            Table::new()
-        }
-    };
-    let is_old = format < migration::FIRST_WITH_ROUTES_INSTEAD;
     let mut patch = Patch::default();
-    let retired = if is_old { Some(migration::take(&mut params, &mut patch, complaints)) } else { None };
-    read_params(&params, &mut patch, complaints);
+    match table.get("params") {
+        Some(Value::Table(params)) => read_params(params, &mut patch, complaints),
+        None => {}
+        Some(other) => complaints.add(unexpected("params", "a table [params]", other)),
+    }
     patch.modes = mode_list::read(table.get("modes"), complaints);
     body::read(table, &mut patch, complaints);
     routes::read(table, &mut patch, complaints);
-    if let Some(retired) = retired {
-        migration::migrate(&retired, &params, &mut patch, replaced);
-    }
     let tuning = tuning::read(table, complaints);
     let guide = Guide::read(table, complaints);
     Ok(Preset { name, author, tags, comment, guide, patch, tuning })
 }
 
 fn read_params(params: &Table, patch: &mut Patch, complaints: &mut Complaints) {
-    let mut params = params.clone();
-    for retired in RETIRED.iter().filter(|retired| params.remove(retired.id()).is_some()) {
-        complaints.add(format!("params.{}: {}", retired.id(), retired.message()));
-    }
-    check_keys(&params, "params.", &PARAMS.iter().map(|info| info.id).collect::<Vec<_>>(), complaints);
-    for (id, value) in &params {
+    check_keys(params, "params.", &PARAMS.iter().map(|info| info.id).collect::<Vec<_>>(), complaints);
+    for (id, value) in params {
         if let Some(param) = Param::from_id(id)
             && let Some(value) = complaints.take(&format!("params.{id}: "), param_value(param.info(), value))
         {
@@ -147,13 +117,12 @@ mod tests {
     #[test]
     fn numbers_and_texts_are_read_in_the_unit_of_the_table() {
         let text = "format = 1\nname = \"a\"\ntags = [\"b\"]\nmodes = [{ ratio = 2, level = -0.5 }]\n\
-                    [params]\ndecay = \"250 ms\"\ngain = -3\nexciter = \"pluck\"\nfine = 1.5";
+                    [params]\ndecay = \"250 ms\"\ngain = -3\nmode = \"mono\"\nfine = 1.5";
         let preset = read_text(text).unwrap();
         let mut expected = Patch::default()
             .with(Param::Decay, 0.25)
             .with(Param::Gain, -3.0)
-            .with(Param::MalletLevel, -60.0)
-            .with(Param::PluckLevel, 0.0)
+            .with(Param::Mode, 1.0)
             .with(Param::Fine, 1.5);
         expected.modes = ModeTable::new(&[Mode { ratio: 2.0, level: -0.5, ..Mode::UNIT }]);
         assert_eq!(preset.patch, expected);
@@ -198,10 +167,10 @@ mod tests {
     #[test]
     fn the_version_comes_before_all_else() {
         for (text, expected) in [
-            ("format = 5\nwarp = 1", "x: format 5 is of a newer version: this one reads up to format = 4"),
-            ("format = 0", "x: format 0 is unknown: this version reads format = 1 to 4"),
-            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1 to 4"),
-            ("name = \"a\"", "x: there is no ‘format’: expected format = 4"),
+            ("format = 2\nwarp = 1", "x: format 2 is of a newer version: this one reads format = 1"),
+            ("format = 0", "x: format 0 is unknown: this version reads format = 1"),
+            ("format = \"1\"", "x: format \"1\" is unknown: this version reads format = 1"),
+            ("name = \"a\"", "x: there is no ‘format’: expected format = 1"),
             ("format = 1", "x: there is no ‘name’: expected name = \"…\""),
         ] {
             assert_eq!(read_text(text).unwrap_err().to_string(), expected);

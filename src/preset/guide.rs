@@ -173,7 +173,7 @@ mod tests {
     use super::*;
 
     fn guide(lines: &str) -> crate::Result<Guide> {
-        Preset::parse(&format!("format = 4\nname = \"a\"\n{lines}"), "x").map(|preset| preset.guide)
+        Preset::parse(&format!("format = 1\nname = \"a\"\n{lines}"), "x").map(|preset| preset.guide)
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::complaints::Complaints;
 use super::file::{self, write_value};
 use super::kit::{KIT_VERSION, KitPreset, Playable};
 use super::value::{check_keys, param_value, read_params, table, unexpected};
-use super::{MAX_FILE_SIZE, Preset, Replaced};
+use super::{MAX_FILE_SIZE, Preset};
 use crate::error::Error;
 use crate::params::Param;
 use crate::sound::Pad;
@@ -20,20 +20,14 @@ const PAD_KEYS: [&str; 7] = ["key", "name", "sound", "pitch", "gain", "pan", "ch
 type Find<'a> = &'a mut dyn FnMut(&str) -> crate::Result<Preset>;
 
 /// Reads as much of a preset or kit as possible. Returns an error only if the text is neither.
-pub(super) fn parse(
-    text: &str,
-    origin: &str,
-    find: Find,
-    complaints: &mut Complaints,
-    replaced: &mut dyn FnMut(Replaced),
-) -> crate::Result<Playable> {
+pub(super) fn parse(text: &str, origin: &str, find: Find, complaints: &mut Complaints) -> crate::Result<Playable> {
     if text.len() as u64 > MAX_FILE_SIZE {
         return Err(Error::format(origin, "too large for a kit: expected at most 1 MiB of TOML"));
     }
     let table = table(text, origin)?;
     let read = match table.get("kit") {
         None if table.contains_key("keys") => Err(format!("there is no ‘kit’: expected kit = {KIT_VERSION}")),
-        None => file::read(&table, complaints, replaced).map(Playable::Preset),
+        None => file::read(&table, complaints).map(Playable::Preset),
         Some(version) => read(&table, version, find, complaints).map(Playable::Kit),
     };
     read.map_err(|message| Error::format(origin, message))
@@ -282,7 +276,7 @@ mod tests {
             ("kit = 2", "x: kit 2 is of a newer version: this one reads kit = 1"),
             ("kit = \"a\"", "x: kit \"a\" is unknown: this version reads kit = 1"),
             ("kit = 1\nname = ", "x:2:8: not valid TOML: "),
-            ("name = \"a\"", "x: there is no ‘format’: expected format = 4"),
+            ("name = \"a\"", "x: there is no ‘format’: expected format = 1"),
             ("name = \"a\"\n[[keys]]", "x: there is no ‘kit’: expected kit = 1"),
         ] {
             let error = parse(text).unwrap_err().to_string();

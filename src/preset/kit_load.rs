@@ -2,7 +2,7 @@
 
 use super::complaints::Complaints;
 use super::kit::{KitPreset, Playable};
-use super::{Preset, Replaced, kit_file, load};
+use super::{Preset, kit_file, load};
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::path::{Component, Path};
@@ -15,19 +15,14 @@ impl KitPreset {
 }
 
 impl Playable {
-    /// Reads the preset or kit file at `path`. `open` opens it and the preset files that a kit names. `replaced` is
-    /// called with each retired parameter in any of them and the name of its file.
+    /// Reads the preset or kit file at `path`. `open` opens it and the preset files that a kit names.
     ///
     /// # Errors
     /// As [`Preset::load`]. For a kit, [`Error::Format`] also names the place in the kit. Preset files of a kit must be
     /// in the kit's folder or below it: other paths, and links that lead outside, are rejected before they are opened.
-    pub fn read(
-        path: &Path,
-        open: &mut dyn FnMut(&Path) -> Result<File>,
-        replaced: &mut dyn FnMut(&str, Replaced),
-    ) -> Result<Self> {
+    pub fn read(path: &Path, open: &mut dyn FnMut(&Path) -> Result<File>) -> Result<Self> {
         let mut complaints = Complaints::default();
-        let playable = Self::read_on(path, open, &mut complaints, replaced)?;
+        let playable = Self::read_on(path, open, &mut complaints)?;
         complaints.into_first(&path.display().to_string()).map(|()| playable)
     }
 
@@ -36,30 +31,17 @@ impl Playable {
     ///
     /// # Errors
     /// As [`Playable::read`], for a file that cannot be opened, is not TOML, or is neither a preset nor a kit.
-    pub fn read_lenient(
-        path: &Path,
-        open: &mut dyn FnMut(&Path) -> Result<File>,
-        replaced: &mut dyn FnMut(&str, Replaced),
-    ) -> Result<(Self, Vec<String>)> {
+    pub fn read_lenient(path: &Path, open: &mut dyn FnMut(&Path) -> Result<File>) -> Result<(Self, Vec<String>)> {
         let mut complaints = Complaints::default();
-        let playable = Self::read_on(path, open, &mut complaints, replaced)?;
+        let playable = Self::read_on(path, open, &mut complaints)?;
         Ok((playable, complaints.into_lines()))
     }
 
-    fn read_on(
-        path: &Path,
-        open: &mut dyn FnMut(&Path) -> Result<File>,
-        complaints: &mut Complaints,
-        replaced: &mut dyn FnMut(&str, Replaced),
-    ) -> Result<Self> {
+    fn read_on(path: &Path, open: &mut dyn FnMut(&Path) -> Result<File>, complaints: &mut Complaints) -> Result<Self> {
         let origin = path.display().to_string();
         let text = load::text(open(path)?, &origin)?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut told = vec![];
-        let mut find = |name: &str| preset_of_kit(name, folder, open, replaced);
-        let playable = kit_file::parse(&text, &origin, &mut find, complaints, &mut |one| told.push(one));
-        told.into_iter().for_each(|one| replaced(&origin, one));
-        playable
+        kit_file::parse(&text, &origin, &mut |name| preset_of_kit(name, folder, open), complaints)
     }
 
     /// Reads a preset or kit from a text. `origin` names the text in errors. `preset` finds the presets that a kit
@@ -69,12 +51,11 @@ impl Playable {
     /// [`Error::Format`] as [`Preset::parse`], and if a preset that a kit names cannot be found.
     pub fn parse(text: &str, origin: &str, preset: &mut dyn FnMut(&str) -> Result<Preset>) -> Result<Self> {
         let mut complaints = Complaints::default();
-        let playable = kit_file::parse(text, origin, preset, &mut complaints, &mut |_| {})?;
+        let playable = kit_file::parse(text, origin, preset, &mut complaints)?;
         complaints.into_first(origin).map(|()| playable)
     }
 
-    /// As [`Playable::parse`], but reads as much as possible, as [`Playable::read_lenient`] does. `replaced` is called
-    /// with each retired parameter in a preset.
+    /// As [`Playable::parse`], but reads as much as possible, as [`Playable::read_lenient`] does.
     ///
     /// # Errors
     /// [`Error::Format`] for a text that is not TOML, or is neither a preset nor a kit.
@@ -82,10 +63,9 @@ impl Playable {
         text: &str,
         origin: &str,
         preset: &mut dyn FnMut(&str) -> Result<Preset>,
-        replaced: &mut dyn FnMut(Replaced),
     ) -> Result<(Self, Vec<String>)> {
         let mut complaints = Complaints::default();
-        let playable = kit_file::parse(text, origin, preset, &mut complaints, replaced)?;
+        let playable = kit_file::parse(text, origin, preset, &mut complaints)?;
         Ok((playable, complaints.into_lines()))
     }
 
@@ -104,12 +84,7 @@ pub fn is_file_name(name: &Path) -> bool {
 }
 
 /// The preset with this name for a kit in `folder`: a file there if the name is a file name, otherwise a factory preset.
-fn preset_of_kit(
-    name: &str,
-    folder: &Path,
-    open: &mut dyn FnMut(&Path) -> Result<File>,
-    replaced: &mut dyn FnMut(&str, Replaced),
-) -> Result<Preset> {
+fn preset_of_kit(name: &str, folder: &Path, open: &mut dyn FnMut(&Path) -> Result<File>) -> Result<Preset> {
     let relative = Path::new(name);
     if !is_file_name(relative) {
         return Preset::find(name).cloned();
@@ -129,7 +104,7 @@ fn preset_of_kit(
     }
     let origin = folder.join(relative).display().to_string();
     let text = load::text(open(&path)?, &origin)?;
-    Preset::parse_old(&text, &origin, &mut |one| replaced(&origin, one))
+    Preset::parse(&text, &origin)
 }
 
 #[cfg(test)]
@@ -139,7 +114,7 @@ mod tests {
 
     fn load(path: &Path) -> Result<Playable> {
         let mut open = |path: &Path| File::open(path).map_err(|source| Error::io(path.display().to_string(), source));
-        Playable::read(path, &mut open, &mut |_, _| {})
+        Playable::read(path, &mut open)
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The user's own presets and kits, as files in a folder of the user's data, and the list of favourites.
 
 use super::about::MAX_LABEL;
-use super::{Playable, Preset, Replaced, is_file_name};
+use super::{Playable, Preset, is_file_name};
 use crate::error::{Error, Result};
 use crate::text::slug;
 use std::collections::BTreeSet;
@@ -217,7 +217,7 @@ fn data_folder(variable: &dyn Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
 /// Reads a preset or kit file.
 fn read(path: &Path) -> Result<Playable> {
     let mut open = |path: &Path| File::open(path).map_err(|source| Error::io(path.display().to_string(), source));
-    Playable::read(path, &mut open, &mut |_: &str, _: Replaced| {})
+    Playable::read(path, &mut open)
 }
 
 /// The text of a preset's file. The preset's name must be neither that of a factory sound nor a file name.

@@ -1,7 +1,7 @@
 //! Reads presets from texts and files, and writes them.
 
 use super::complaints::Complaints;
-use super::{Preset, Replaced, file};
+use super::{Preset, file};
 use crate::error::{Error, Result};
 use std::io::Read;
 use std::path::Path;
@@ -13,30 +13,22 @@ impl Preset {
     /// Reads a preset. `origin` names the text in errors: a path, or another source.
     ///
     /// # Errors
-    /// [`Error::Format`] if it is not a preset of a format up to [`FORMAT_VERSION`](super::FORMAT_VERSION), a key is
+    /// [`Error::Format`] if it is not a preset of the format [`FORMAT_VERSION`](super::FORMAT_VERSION), a key is
     /// unknown, or a value is out of range. The error names the key and what would be right.
     pub fn parse(text: &str, origin: &str) -> Result<Self> {
-        Self::parse_old(text, origin, &mut |_| {})
-    }
-
-    /// As [`Preset::parse`]. `replaced` is called with each retired parameter in the preset.
-    ///
-    /// # Errors
-    /// As [`Preset::parse`].
-    pub fn parse_old(text: &str, origin: &str, replaced: &mut dyn FnMut(Replaced)) -> Result<Self> {
         let mut complaints = Complaints::default();
-        let preset = file::parse(text, origin, &mut complaints, replaced)?;
+        let preset = file::parse(text, origin, &mut complaints)?;
         complaints.into_first(origin).map(|()| preset)
     }
 
-    /// As [`Preset::parse_old`], but reads as much as possible. Unreadable parts get their default values; each is
+    /// As [`Preset::parse`], but reads as much as possible. Unreadable parts get their default values; each is
     /// described in one line of the returned list.
     ///
     /// # Errors
     /// [`Error::Format`] for a text that is not TOML or not a preset.
-    pub fn parse_lenient(text: &str, origin: &str, replaced: &mut dyn FnMut(Replaced)) -> Result<(Self, Vec<String>)> {
+    pub fn parse_lenient(text: &str, origin: &str) -> Result<(Self, Vec<String>)> {
         let mut complaints = Complaints::default();
-        let preset = file::parse(text, origin, &mut complaints, replaced)?;
+        let preset = file::parse(text, origin, &mut complaints)?;
         Ok((preset, complaints.into_lines()))
     }
 
@@ -107,8 +99,8 @@ mod tests {
         let text = "format = 9\nname = \"a\"\nwarp = 1\ntags = [\"x\", 2]\n\
             modes = [{ ratio = 2, level = 9, pan = 0.5 }, { level = 1 }, { ratio = -1 }, 3]\n\
             routes = [{ source = \"lfo9\", to = \"tune\" }, { source = \"lfo1\", to = \"tune\", amount = 5 }]\n\
-            [params]\ndecay = 2\ngain = 99\nxylophone = 1\ndecay_key = 3\n";
-        let (preset, complaints) = Preset::parse_lenient(text, "x", &mut |_| panic!("of the present format")).unwrap();
+            [params]\ndecay = 2\ngain = 99\nxylophone = 1\n";
+        let (preset, complaints) = Preset::parse_lenient(text, "x").unwrap();
         let mut patch = Patch::default().with(Param::Decay, 2.0);
         patch.modes = ModeTable::new(&[Mode { ratio: 2.0, pan: 0.5, ..Mode::UNIT }]);
         patch.routes = Routes::NONE;
@@ -119,7 +111,6 @@ mod tests {
             "format 9 is of a newer version",
             "unknown key ‘warp’",
             "tags[1]: expected a text",
-            "params.decay_key: ‘decay_key’ is retired",
             "unknown key ‘params.xylophone’",
             "params.gain: 99 is out of range",
             "modes[0].level: 9 is out of range",
@@ -133,7 +124,7 @@ mod tests {
         let strict = Preset::parse(text, "x").unwrap_err().to_string();
         assert_eq!(strict, format!("x: {}", complaints[0]), "a strict one tells the first");
         for none in ["= =", "", "format = \"1\"", "kit = 1"] {
-            assert!(Preset::parse_lenient(none, "x", &mut |_| {}).is_err(), "{none}");
+            assert!(Preset::parse_lenient(none, "x").is_err(), "{none}");
         }
     }
 }

@@ -15,9 +15,7 @@ mod kit_file;
 mod kit_load;
 pub mod library;
 mod load;
-mod migration;
 mod mode_list;
-mod one_exciter;
 mod pair;
 mod phrase;
 mod programs;
@@ -34,15 +32,13 @@ pub use guide::{Family, Guide};
 pub use kit::{KIT_VERSION, KitPreset, Playable};
 pub use kit_load::is_file_name;
 pub use load::MAX_FILE_SIZE;
-pub use migration::Replaced;
 pub use pair::{LINK_KINDS, modes_of_pair, pair_of_modes};
 pub use phrase::{Phrase, PhraseNote};
 pub use programs::Programs;
 pub use tuning::OwnTuning;
 
-/// The preset format that is written. Older formats are read too: format 1 had no routes, formats 1 and 2 had
-/// parameters that routes replace ([`crate::params::retired`]), and in formats 1 to 3 a sound had only one exciter.
-pub const FORMAT_VERSION: i64 = 4;
+/// The preset format version that is read and written.
+pub const FORMAT_VERSION: i64 = 1;
 
 /// A patch with name, author, tags and comment.
 #[derive(Clone, Debug, PartialEq)]

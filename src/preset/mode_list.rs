@@ -101,7 +101,7 @@ mod tests {
     use std::f32::consts::PI;
 
     fn parse(modes: &str) -> crate::Result<Preset> {
-        Preset::parse(&format!("format = 4\nname = \"a\"\n{modes}"), "x")
+        Preset::parse(&format!("format = 1\nname = \"a\"\n{modes}"), "x")
     }
 
     #[test]

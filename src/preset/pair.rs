@@ -119,7 +119,7 @@ mod tests {
     use crate::sound::bodies::Point;
 
     fn parse(bodies: &str) -> crate::Result<Preset> {
-        Preset::parse(&format!("format = 4\nname = \"a\"\n{bodies}"), "x")
+        Preset::parse(&format!("format = 1\nname = \"a\"\n{bodies}"), "x")
     }
 
     const GUITAR: &str = "[body]\nmodel = \"string\"\ncount = 8\n[second]\nmodel = \"plate\"\ncount = 6\n\

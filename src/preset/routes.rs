@@ -14,9 +14,6 @@ const KEYS: [&str; 6] = ["source", "to", "amount", "response", "scale", "place"]
 pub(super) fn read(file: &Table, patch: &mut Patch, complaints: &mut Complaints) {
     let routes = match file.get("routes") {
         None => return,
-        Some(_) if file.get("format") == Some(&Value::Integer(1)) => {
-            return complaints.add("routes: a preset of format 1 has none: expected format = 4");
-        }
         Some(Value::Array(routes)) => routes,
         Some(other) => {
             return complaints.add(unexpected("routes", "a list of routes, [{ source = …, to = … }, …]", other));

@@ -87,7 +87,7 @@ mod tests {
     const KEYMAP: &str = "0\n0\n127\n60\n69\n432.\n0\n";
 
     fn preset(tuning: &str) -> Result<Preset> {
-        Preset::parse(&format!("format = 3\nname = \"a\"\n{tuning}"), "x")
+        Preset::parse(&format!("format = 1\nname = \"a\"\n{tuning}"), "x")
     }
 
     #[test]

@@ -8,17 +8,13 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Loads the preset or kit with this name: a file if it looks like a file name, otherwise a factory sound, otherwise
-/// one of the user's own, whose file then counts as an input. `warn` is called for each retired parameter that was
-/// replaced.
+/// one of the user's own, whose file then counts as an input.
 ///
 /// # Errors
 /// As [`Playable::read`], and [`Error::Value`](crate::Error::Value) for a name that no sound has.
-pub fn playable(name: &OsStr, inputs: &mut Inputs, warn: &mut dyn FnMut(&str)) -> Result<Playable> {
+pub fn playable(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
     let path = Path::new(name);
-    let mut read = |path: &Path| {
-        let mut replaced = |origin: &str, replaced| warn(&format!("{origin}: {replaced}"));
-        Playable::read(path, &mut |path| inputs.open(path), &mut replaced)
-    };
+    let mut read = |path: &Path| Playable::read(path, &mut |path| inputs.open(path));
     let is_other_file = path.extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("toml"));
     let other_file = || {
         let message = format!("‘{}’ is no preset file: expected a name that ends in .toml", path.display());

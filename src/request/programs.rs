@@ -54,10 +54,9 @@ pub(super) fn kits(
     wanted: impl Fn(u8) -> bool,
     kit: impl Fn(Playable) -> Arc<Kit>,
     inputs: &mut Inputs,
-    warn: &mut dyn FnMut(&str),
 ) -> Result<Vec<Option<Arc<Kit>>>> {
     let load = |name: &str| {
-        let loaded = playable(OsStr::new(name), inputs, warn);
+        let loaded = playable(OsStr::new(name), inputs);
         loaded.map(&kit).map_err(|error| Error::value(&programs.name, error.to_string()))
     };
     programs.kits(wanted, load)

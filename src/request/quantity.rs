@@ -3,7 +3,6 @@
 //! Every error is a message that says what would be right.
 
 use crate::io::SampleFormat;
-use crate::params::retired::Retired;
 use crate::params::{PARAMS, Param};
 use crate::render::{Level, SAMPLE_RATES, Tail};
 use crate::units::{split_quantity, with_decimal_point};
@@ -172,8 +171,7 @@ pub fn channel(text: &str) -> Result<(u8, String), String> {
 pub fn setting(text: &str) -> Result<(Param, f32), String> {
     let (id, value) = text.split_once('=').ok_or("expected ID=VALUE, as in decay=0.5")?;
     let id = id.trim();
-    let retired = || Retired::from_id(id).map(Retired::message);
-    let param = Param::from_id(id).ok_or_else(|| retired().unwrap_or_else(|| no_parameter(id)))?;
+    let param = Param::from_id(id).ok_or_else(|| no_parameter(id))?;
     if let Some((first, rest)) = value.split_once(',')
         && rest.contains('=')
     {
@@ -232,10 +230,6 @@ mod tests {
     #[test]
     fn wrong_quantities_say_what_would_be_right() {
         for (result, expected) in [
-            (
-                setting("hardness_velocity=50").err(),
-                "‘hardness_velocity’ is retired: a route from velocity to hardness replaces it",
-            ),
             (seconds("-1").err(), "-1 is out of range: expected 0 to 86400 s"),
             (seconds("nan").err(), "‘nan’ is not a number: expected 0 to 86400 s"),
             (seconds("1 dB").err(), "‘1 dB’ is not a number: expected 0 to 86400 s"),

@@ -126,7 +126,7 @@ impl Request {
             Some(path) => Some(self.reading.read(path, inputs, warn)?),
             None => None,
         };
-        let sounds = self.sound.load(song.as_mut(), false, inputs, warn)?;
+        let sounds = self.sound.load(song.as_mut(), false, inputs)?;
         let song = match song {
             Some(song) => song,
             None => self.chord(&sounds.kit)?,

@@ -72,18 +72,12 @@ impl Sounds {
 
 impl SoundRequest {
     /// Loads the presets and kits, sets the parameters of all sounds, and reads the tuning. Program changes of the
-    /// `song` are changed to the numbers of their kits. Without a song, all programs are loaded if it `is_live`. `warn`
-    /// is called for each warning. Allocates, and reads files.
+    /// `song` are changed to the numbers of their kits. Without a song, all programs are loaded if it `is_live`.
+    /// Allocates, and reads files.
     ///
     /// # Errors
     /// [`Error::Io`] and [`Error::Format`] for files that cannot be read, [`Error::Value`] for unknown names.
-    pub fn load(
-        &self,
-        song: Option<&mut Song>,
-        is_live: bool,
-        inputs: &mut Inputs,
-        warn: &mut dyn FnMut(&str),
-    ) -> Result<Sounds> {
+    pub fn load(&self, song: Option<&mut Song>, is_live: bool, inputs: &mut Inputs) -> Result<Sounds> {
         let list = if song.is_some() || is_live { programs::list(&self.programs, inputs)? } else { None };
         let has_drums = song.as_ref().is_none_or(|song| song.events.iter().any(|event| event.channel == DRUM_CHANNEL));
         let (is_free, has_song) = (self.preset.is_none(), song.is_some());
@@ -104,12 +98,12 @@ impl SoundRequest {
         let wanted = |number| used.as_ref().is_none_or(|used: &BTreeSet<u8>| used.contains(&number));
         let made = match &list {
             None => Vec::new(),
-            Some(list) => programs::kits(list, wanted, |playable| self.kit(playable), inputs, warn)?,
+            Some(list) => programs::kits(list, wanted, |playable| self.kit(playable), inputs)?,
         };
         let program = |number: u8| made.get(usize::from(number)).cloned().flatten();
         let kit = match program(0).filter(|_| starts_with_first) {
             Some(first) => first,
-            None => self.kit(playable(self.preset.as_deref().unwrap_or(OsStr::new("init")), inputs, warn)?),
+            None => self.kit(playable(self.preset.as_deref().unwrap_or(OsStr::new("init")), inputs)?),
         };
         let mut channels = Vec::with_capacity(self.channels.len() + 1);
         for (channel, name) in &self.channels {
@@ -117,7 +111,7 @@ impl SoundRequest {
                 let message = format!("channel {} is there twice: expected each channel once", channel + 1);
                 return Err(Error::value("--channel", message));
             }
-            channels.push((*channel, self.kit(playable(OsStr::new(name), inputs, warn)?)));
+            channels.push((*channel, self.kit(playable(OsStr::new(name), inputs)?)));
         }
         channels.extend(program(MELODIC).filter(|_| starts_with_drums).map(|drums| (DRUM_CHANNEL, drums)));
         let programs = made.into_iter().map(|made| made.unwrap_or_else(|| kit.clone())).collect();
@@ -147,7 +141,7 @@ impl SoundRequest {
             names.extend((0..=u8::MAX).filter_map(|number| list.name_of(number)).map(OsString::from));
         }
         for name in names {
-            drop(playable(&name, &mut inputs, &mut |_| {}));
+            drop(playable(&name, &mut inputs));
         }
         inputs
     }

@@ -134,20 +134,6 @@ fn kits_are_shown_and_checked() {
 }
 
 #[test]
-fn retired_parameters_of_older_presets_are_warned_of() {
-    let sandbox = Sandbox::new();
-    sandbox.write("old.toml", "format = 2\nname = \"a\"\n[params]\ndecay_key = 30\n");
-    let output = sandbox.sprung("presets show old.toml").assert().success();
-    let stderr = String::from_utf8(output.get_output().stderr.clone()).unwrap();
-    assert!(
-        stderr.contains("warning: old.toml: ‘decay_key’ is retired: a route from key to decay replaces it"),
-        "{stderr}"
-    );
-    let shown = String::from_utf8(output.get_output().stdout.clone()).unwrap();
-    assert!(shown.contains("source = \"key\", to = \"decay\""), "{shown}");
-}
-
-#[test]
 fn parameters_are_listed_in_every_form() {
     let sandbox = Sandbox::new();
     let json: serde_json::Value = serde_json::from_slice(&sandbox.succeeds("params --json")).unwrap();

@@ -90,8 +90,8 @@ impl Kind {
     ];
 }
 
-/// The parameters in the order of their numbers in kept cases. New ones are added at the end; a retired one is replaced by the
-/// parameter that a route now moves. The limiter is missing, because it would hide sounds above the bound.
+/// The parameters in the order of their numbers in kept cases. New ones are added at the end; one that was removed is replaced by
+/// another. The limiter is missing, because it would hide sounds above the bound.
 pub(crate) const PARAM_IDS: &str = "mallet_pulse mallet_hardness mallet_hardness pluck_position noise_level noise_time velocity decay \
     release note_off decay decay_tilt tilt stretch width coefficients tune fine tuning key_track sweep sweep_time \
     sweep_curve sweep vibrato vibrato_rate vibrato_delay vibrato_sync glide bend_range vibrato \

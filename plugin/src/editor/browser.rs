@@ -264,10 +264,10 @@ impl Browser {
 
     fn load_file(&mut self, controls: &mut Controls) -> String {
         match read(self.words.trim()) {
-            Ok((playable, remarks)) => {
+            Ok(playable) => {
                 self.details.open(playable.name());
                 controls.history.load(playable, controls.params, controls.host);
-                [vec![format!("loaded {}", self.words.trim())], remarks].concat().join("; ")
+                format!("loaded {}", self.words.trim())
             }
             Err(message) => message,
         }

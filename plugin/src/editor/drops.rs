@@ -42,7 +42,7 @@ fn is_own(path: &Path, library: &Library) -> bool {
 
 /// Loads a preset or kit. A preset from elsewhere is copied to the user's folder, if there is one.
 fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
-    let (playable, remarks) = match files::read(&path.display().to_string()) {
+    let playable = match files::read(&path.display().to_string()) {
         Ok(read) => read,
         Err(message) => return message,
     };
@@ -61,5 +61,5 @@ fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Str
         (preset, _) => (preset, format!("loaded {}", path.display())),
     };
     controls.history.load(playable, controls.params, controls.host);
-    [vec![said], remarks].concat().join("; ")
+    said
 }

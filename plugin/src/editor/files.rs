@@ -4,7 +4,7 @@ use super::gestures;
 use crate::params::SprungParams;
 use crate::state::State;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::preset::{Playable, Preset, Replaced};
+use sprung::preset::{Playable, Preset};
 use std::fs::File;
 use std::path::Path;
 
@@ -29,13 +29,10 @@ pub(super) fn neighbour(name: &str, places: isize) -> Option<&'static Preset> {
     all.get((place as isize + places).rem_euclid(all.len() as isize) as usize)
 }
 
-/// Reads a preset or kit file. Returns it with a remark about each retired parameter in it.
-pub(super) fn read(path: &str) -> Result<(Playable, Vec<String>), String> {
+/// Reads a preset or kit file.
+pub(super) fn read(path: &str) -> Result<Playable, String> {
     let mut open = |path: &Path| open(path, &path.display().to_string(), "a preset, kit, scale or mapping");
-    let mut remarks = vec![];
-    let mut remark = |_: &str, replaced: Replaced| remarks.push(replaced.to_string());
-    let read = check(path).and_then(|path| Playable::read(path, &mut open, &mut remark));
-    read.map(|playable| (playable, remarks)).map_err(|error| error.to_string())
+    check(path).and_then(|path| Playable::read(path, &mut open)).map_err(|error| error.to_string())
 }
 
 /// Opens a file, and nothing else: opening a pipe would block the window.
@@ -73,7 +70,7 @@ mod tests {
     fn kits_are_read_and_what_was_not_understood_is_told_in_a_line() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/kits/acoustic-kit.toml");
         let path = std::fs::canonicalize(path).unwrap().display().to_string();
-        assert!(matches!(read(&path), Ok((Playable::Kit(_), _))));
+        assert!(matches!(read(&path), Ok(Playable::Kit(_))));
         let lines = ["a", "b", "c"].map(str::to_owned);
         assert_eq!(summary(&[]), None);
         assert_eq!(summary(&lines[..1]).as_deref(), Some("Not all of the project’s state was understood: a"));

@@ -80,7 +80,7 @@ fn a_kit_is_kept_with_its_presets() {
 
     let mut saved: Map<String, Value> = serde_json::from_str(&json).unwrap();
     saved["sounds"].as_object_mut().unwrap().remove("mine.toml");
-    saved["sounds"]["Kick"] = "format = 4\nname = \"Kick\"\n[params]\ngain = 99".into();
+    saved["sounds"]["Kick"] = "format = 1\nname = \"Kick\"\n[params]\ngain = 99".into();
     saved["values"]["mode"] = 7.into();
     let Read { state, complaints } = State::parse(&serde_json::to_string(&saved).unwrap()).unwrap();
     let Playable::Kit(kit) = &state.playable else { panic!("a kit") };
@@ -110,8 +110,8 @@ fn what_is_no_state_at_all_says_why_and_changes_nothing() {
         ("[]".to_owned(), "not a state of Sprung"),
         ("{}".to_owned(), "not a state of Sprung: there is neither a preset nor a kit"),
         (change(&json, "\"preset\":", "\"present\":"), "not a state of Sprung: there is neither"),
-        (change(&json, "format = 4", "format = "), "the state's preset:"),
-        (change(&json, "format = 4", "fermat = 4"), "the state's preset: there is no ‘format’"),
+        (change(&json, "format = 1", "format = "), "the state's preset:"),
+        (change(&json, "format = 1", "fermat = 4"), "the state's preset: there is no ‘format’"),
     ] {
         let error = State::parse(&bad).unwrap_err();
         assert!(error.starts_with(why), "{error}");
@@ -141,8 +141,8 @@ fn what_can_be_read_is_taken_over_and_the_rest_is_told() {
     let knob = || State { positions: positions_of(&odd().values), ..odd() };
     let default = Param::Decay.info().default;
     for (from, to, expected, why) in [
-        ("\"format\":2", "\"format\":3", odd(), "state format 3 is unknown: this version reads 1 to 2"),
-        ("{\"format\":2,", "{", odd(), "state format null is unknown"),
+        ("\"format\":1", "\"format\":2", odd(), "state format 2 is of a newer version: this one reads 1"),
+        ("{\"format\":1,", "{", odd(), "state format null is unknown"),
         ("\"seed\":42", "\"seed\":-1", State { seed: 0, ..odd() }, "seed: -1 is none"),
         ("\"seed\":42", "\"sead\":42", State { seed: 0, ..odd() }, "unknown key ‘sead’"),
         ("[1000,500]", "[1000,0]", sized(VIEW.size), "window: [1000,0] is out of range: expected two"),
@@ -164,10 +164,9 @@ fn what_can_be_read_is_taken_over_and_the_rest_is_told() {
         ("\"gain\":0.12345678", "\"gain\":null", knob(), "positions.gain: expected a number, found null"),
         ("\"gain\":0.12345678", "\"mode\":0.5", knob(), "positions.mode: 0.5 is not a position of that knob"),
         ("\"gain\":0.12345678", "\"gian\":0.5", knob(), "positions: there is no parameter ‘gian’"),
-        ("format = 4", "format = 9", odd(), "format 9 is of a newer version"),
+        ("format = 1", "format = 9", odd(), "format 9 is of a newer version"),
         ("decay = 0.12345679", "decay = nan", with(Param::Decay, default), "params.decay: NaN is out of range"),
         ("decay = 0.12345679", "decya = 1", with(Param::Decay, default), "unknown key ‘params.decya’"),
-        ("fine = -0.1", "fine = -0.1\\ndecay_key = 3", odd(), "params.decay_key: ‘decay_key’ is retired"),
     ] {
         let params = SprungParams::default();
         let mut state = wrapped(&SprungParams::default());
@@ -186,10 +185,10 @@ fn what_can_be_read_is_taken_over_and_the_rest_is_told() {
 fn parameters_that_a_state_does_not_name_have_their_defaults() {
     let params = SprungParams::default();
     params.load(odd().into());
-    let old = r#"{"format":1,"preset":"format = 1\nname = \"Old\"\n[params]\ngain = -3","window":[880,640]}"#;
-    params.deserialize_fields(&fields(old.to_owned()));
+    let short = r#"{"format":1,"preset":"format = 1\nname = \"Short\"\n[params]\ngain = -3","window":[880,640]}"#;
+    params.deserialize_fields(&fields(short.to_owned()));
     let patch = Patch::default().with(Param::Gain, -3.0);
-    let (name, author, tags, comment) = ("Old".to_owned(), String::new(), Vec::new(), String::new());
+    let (name, author, tags, comment) = ("Short".to_owned(), String::new(), Vec::new(), String::new());
     let preset = Preset { name, author, tags, comment, guide: Guide::default(), patch, tuning: None };
     assert_eq!(params.state(), State::new(Playable::Preset(preset), 0, View { size: [880, 640], ..VIEW }));
     assert!(params.complaints().is_empty());

@@ -26,7 +26,7 @@ pub(crate) fn work() -> ExitCode {
     parent.onlooker.point([1_279, 799]);
     let mut instance = Instance::new();
     let preset = Preset::find("Church Bell").unwrap().to_toml();
-    let own = serde_json::json!({ "format": 2, "preset": preset, "seed": 0, "window": [1_100, 700] });
+    let own = serde_json::json!({ "format": 1, "preset": preset, "seed": 0, "window": [1_100, 700] });
     assert!(instance.load(&enclosed(&own.to_string())));
     let Player { mut instance, mut audio } = instance.play(48_000.0, 480);
     let (stop, strike) = (AtomicBool::new(false), AtomicBool::new(false));

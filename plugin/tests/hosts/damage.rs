@@ -42,7 +42,7 @@ fn states_in_part(saved: &[u8], patch: &Patch) -> Vec<(&'static str, Vec<u8>, Pa
         (enclosed(&own.to_string()), patch.clone())
     };
     let preset = |modes: &str, params: &str| {
-        let text = format!("format = 4\nname = \"Broken\"\nmodes = [{modes}]\n\n[params]\ndecay = 2.5\n{params}\n");
+        let text = format!("format = 1\nname = \"Broken\"\nmodes = [{modes}]\n\n[params]\ndecay = 2.5\n{params}\n");
         let mut rest = Patch::default().with(Param::Decay, 2.5);
         if modes.matches("ratio = 2").count() > 0 {
             rest.modes = ModeTable::new(&vec![Mode { ratio: 2.0, ..Mode::UNIT }; modes.matches("ratio = 2").count()]);

@@ -44,7 +44,7 @@ pub(crate) fn state(patch: &Patch) -> Vec<u8> {
 
 /// The state that contains the text of a preset file.
 pub(crate) fn state_of_text(preset: &str) -> Vec<u8> {
-    let own = serde_json::json!({ "format": 2, "preset": preset, "seed": 0, "window": [880, 640] });
+    let own = serde_json::json!({ "format": 1, "preset": preset, "seed": 0, "window": [880, 640] });
     enclosed(&own.to_string())
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn state_of_text(preset: &str) -> Vec<u8> {
 pub(crate) fn drums() -> Playable {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/kits/acoustic-kit.toml");
     let mut open = |path: &Path| Ok(File::open(path).expect("the file is there"));
-    Playable::read(&path, &mut open, &mut |_, _| {}).unwrap()
+    Playable::read(&path, &mut open).unwrap()
 }
 
 /// The state that contains a kit and its presets.
@@ -61,7 +61,7 @@ pub(crate) fn state_of_kit(kit: &Playable) -> Vec<u8> {
     let sounds = preset.sounds.iter().map(|(name, preset)| (name.clone(), preset.to_toml().into())).collect();
     let sounds = serde_json::Value::Object(sounds);
     let own = serde_json::json!(
-        { "format": 2, "kit": kit.to_toml(), "sounds": sounds, "seed": 0, "window": [880, 640] }
+        { "format": 1, "kit": kit.to_toml(), "sounds": sounds, "seed": 0, "window": [880, 640] }
     );
     enclosed(&own.to_string())
 }

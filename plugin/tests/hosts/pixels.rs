@@ -34,7 +34,7 @@ pub(crate) fn work() -> ExitCode {
     parent.onlooker.point([1_279, 799]);
     let mut instance = Instance::new();
     let preset = Preset::find("Marimba").unwrap().to_toml();
-    let own = serde_json::json!({ "format": 2, "preset": preset, "seed": 0, "window": [width, height] });
+    let own = serde_json::json!({ "format": 1, "preset": preset, "seed": 0, "window": [width, height] });
     assert!(instance.load(&enclosed(&own.to_string())));
     let editor = Editor::open(&mut instance, &parent);
     let start = Instant::now();

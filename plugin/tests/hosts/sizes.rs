@@ -87,7 +87,7 @@ trait Host {
 /// The state with a window of this size and zoom.
 fn state(size: [u32; 2], zoom: u32) -> Vec<u8> {
     let preset = Preset::find("Marimba").unwrap().to_toml();
-    let own = serde_json::json!({ "format": 2, "preset": preset, "seed": 0, "window": size, "zoom": zoom });
+    let own = serde_json::json!({ "format": 1, "preset": preset, "seed": 0, "window": size, "zoom": zoom });
     enclosed(&own.to_string())
 }
 

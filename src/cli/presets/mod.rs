@@ -7,13 +7,13 @@ mod select;
 use crate::cli::completion;
 use crate::cli::figure;
 use crate::cli::recording::FigureArgs;
-use crate::cli::terminal::{self, complain, print};
+use crate::cli::terminal::{complain, print};
 use clap::Subcommand;
 use clap_complete::ArgValueCompleter;
 use sprung::analysis::figure::sound::modes_of;
 use sprung::io::{Inputs, Song};
 use sprung::params::Param;
-use sprung::preset::{Playable, Replaced};
+use sprung::preset::Playable;
 use sprung::render::{Job, Options, Tail};
 use sprung::text::printable;
 use sprung::units::{frequency_from_key, note_name};
@@ -78,7 +78,7 @@ pub(in crate::cli) fn run(args: &Args) -> Result<()> {
 
 /// Loads the preset or kit that the user names.
 fn load(name: &OsStr, inputs: &mut Inputs) -> Result<Playable> {
-    sprung::request::playable(name, inputs, &mut terminal::warn)
+    sprung::request::playable(name, inputs)
 }
 
 /// Velocity of the note with which a preset is drawn, and its length in seconds.
@@ -104,14 +104,10 @@ fn drawn(playable: &Playable, format: &str) -> Result<Vec<u8>> {
     figure::drawn(&Job::new(&song, &kit, options), &format!("{}: {}", preset.name, note_name(home)), &modes, format)
 }
 
-fn warn(origin: &str, replaced: Replaced) {
-    complain("warning", format_args!("{origin}: {replaced}"));
-}
-
 fn check(files: &[PathBuf]) -> Result<()> {
     let (mut wrong, mut inputs) = (0, Inputs::default());
     for path in files {
-        let read = Playable::read_lenient(path, &mut |path| inputs.open(path), &mut warn);
+        let read = Playable::read_lenient(path, &mut |path| inputs.open(path));
         inputs.check_stdout()?;
         let complaints = match read {
             Ok((playable, complaints)) if complaints.is_empty() => {

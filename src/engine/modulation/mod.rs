@@ -21,8 +21,7 @@
 //!   cost three times as much (measured once).
 //!
 //! The wheel, pressure, brightness, velocity and the key have effects beyond their plain meaning only through routes. A
-//! new patch has three (`Routes::INITIAL`); presets of older formats get routes that replace their retired parameters
-//! (`preset::migration`). `routed` and `moving` in `cargo bench --bench synth` measure the cost: sixteen routes, three
+//! new patch has three (`Routes::INITIAL`). `routed` and `moving` in `cargo bench --bench synth` measure the cost: sixteen routes, three
 //! oscillators and two envelopes on each of 16 voices of 64 modes, all moving, play at 0.82 to 0.86 of the speed of the
 //! same voices without them (AVX2 and AVX-512). Tests: `tests/modulation.rs` has every source and every kind of
 //! destination; `tests/levels.rs`, `tests/blocks.rs` and `tests/storm/` use random routes.

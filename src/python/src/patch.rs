@@ -1,6 +1,6 @@
 //! Patches, and the lists of presets and parameters.
 
-use crate::failure::{Error, raised, told, warn};
+use crate::failure::{Error, raised, told};
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -30,12 +30,8 @@ fn param(id: &str) -> PyResult<Param> {
 impl NativePatch {
     /// Loads the factory preset, the user's own preset, or the preset file of this name.
     #[new]
-    fn new(py: Python<'_>, name: &str) -> PyResult<Self> {
-        let mut warnings = Vec::new();
-        let found =
-            playable(OsStr::new(name), &mut Inputs::default(), &mut |warning| warnings.push(warning.to_owned()));
-        warn(py, &warnings)?;
-        match found.map_err(raised)? {
+    fn new(name: &str) -> PyResult<Self> {
+        match playable(OsStr::new(name), &mut Inputs::default()).map_err(raised)? {
             Playable::Preset(preset) => Ok(Self(preset)),
             Playable::Kit(kit) => Err(told(format!("‘{}’ is a kit: expected a preset", kit.name))),
         }
