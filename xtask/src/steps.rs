@@ -157,18 +157,6 @@ pub(crate) const STEPS: &[Step] = &[
         shows: Shows::OneCheck,
     },
     Step {
-        name: "emulation, format",
-        arguments: "fmt --manifest-path benches/fused/Cargo.toml --check",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "emulation, lint",
-        arguments: "clippy --manifest-path benches/fused/Cargo.toml -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
         name: "plugin, documentation",
         arguments: "doc --manifest-path plugin/Cargo.toml --no-deps --all-features",
         environment: &[DENY],
