@@ -13,8 +13,6 @@ mod level;
 #[cfg(feature = "engine")]
 mod measure;
 #[cfg(feature = "engine")]
-mod songs;
-#[cfg(feature = "engine")]
 mod web;
 
 use clap::Subcommand;
@@ -77,12 +75,6 @@ pub(crate) enum Chore {
     },
     /// Measure the factory's presets and write the results to assets/measures/results.md.
     Measure,
-    /// Write the demo songs to assets/midi.
-    Songs {
-        /// Write nothing; fail if the files are not what would be written.
-        #[arg(long)]
-        check: bool,
-    },
 }
 
 /// Does a chore.
@@ -105,7 +97,6 @@ pub(crate) fn run(chore: &Chore) -> Result<(), String> {
         }
         Chore::Level { write } => level::run(*write),
         Chore::Measure => measure::run(),
-        Chore::Songs { check } => songs::run(*check),
     }
 }
 
