@@ -22,7 +22,7 @@
 //! A note, rendered:
 //!
 //! ```
-//! use sprung::engine::{Event, EventKind, Synth};
+//! use sprung::engine::{Event, Synth};
 //! use sprung::params::Param;
 //! use sprung::preset::Preset;
 //!
@@ -31,9 +31,8 @@
 //! let mut synth = Synth::new(48_000.0, 0);
 //! synth.set_patch(&kick.patch.clone().with(Param::Gain, -9.0));
 //!
-//! let on = EventKind::NoteOn { key: 36, detune: 0.0, velocity: 0.8, id: None };
 //! let (mut left, mut right) = ([0.0; 480], [0.0; 480]);
-//! synth.process(&[Event { frame: 100, channel: 0, kind: on }], &mut left, &mut right);
+//! synth.process(&[Event::note_on(100, 36, 0.8)], &mut left, &mut right);
 //!
 //! assert!(left[..100].iter().all(|sample| *sample == 0.0), "events fall on their frame");
 //! assert!(left[100..].iter().any(|sample| sample.abs() > 0.01));

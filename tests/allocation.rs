@@ -81,8 +81,8 @@ fn processing_does_not_allocate() {
     let mut large = Patch::default().with(Param::Decay, 10.0);
     large.modes = ModeTable::new(&[Mode::UNIT; MAX_MODES]);
     let mut ensemble = Ensemble::new(48_000.0, 1, &large, &[]);
-    let kind = |n: u32| EventKind::NoteOn { key: (n % 90) as u8, detune: 0.0, velocity: 0.5, id: None };
-    let notes: Vec<_> = (0..200).map(|n| Event { frame: n * 2, channel: (n % 16) as u8, kind: kind(n) }).collect();
+    let note = |n: u32| Event { channel: (n % 16) as u8, ..Event::note_on(n * 2, (n % 90) as u8, 0.5) };
+    let notes: Vec<_> = (0..200).map(note).collect();
     assert_no_alloc(|| (0..4).for_each(|_| ensemble.process(&notes, &mut left, &mut right)));
     assert_eq!(violation_count(), 0, "allocations on the audio thread");
 }
@@ -129,9 +129,8 @@ fn kits_come_and_go_without_allocating_or_freeing() {
         most = shelf.collect().max(most);
         let sent = [kit];
         let channel = (n % 16) as u8;
-        let strike = EventKind::NoteOn { key: (20 + n * 7 % 90) as u8, detune: 0.0, velocity: 0.8, id: None };
         let events = [
-            Event { frame: 3, channel, kind: strike },
+            Event { channel, ..Event::note_on(3, (20 + n * 7 % 90) as u8, 0.8) },
             Event { frame: 20, channel: (n / 3 % 16) as u8, kind: EventKind::Program((n % 4) as u8) },
         ];
         let [kit] = &sent;

@@ -4,7 +4,7 @@ mod bodies;
 
 use bodies::{Line, body, groups, lines};
 use sprung::analysis::modes::{Mode, Settings, modes};
-use sprung::engine::{Event, EventKind, Synth};
+use sprung::engine::{Event, Synth};
 use sprung::params::{MalletPulse, Param};
 use sprung::patch::Patch;
 use sprung::patch::routes::Routes;
@@ -71,8 +71,7 @@ fn render(group: &[Line], key: u8) -> Vec<f32> {
     let mut synth = Synth::new(RATE, 1);
     synth.set_patch(&patch);
     let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
-    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
-    synth.process(&[Event { frame: 0, channel: 0, kind }], &mut left, &mut right);
+    synth.process(&[Event::note_on(0, key, 1.0)], &mut left, &mut right);
     left
 }
 

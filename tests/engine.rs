@@ -10,14 +10,6 @@ fn event(frame: u32, kind: EventKind) -> Event {
     Event { frame, channel: 0, kind }
 }
 
-fn on(frame: u32, key: u8, velocity: f32) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })
-}
-
-fn off(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: None })
-}
-
 fn render(patch: &Patch, events: &[Event], frames: usize) -> (Vec<f32>, Vec<f32>) {
     let mut synth = Synth::new(48_000.0, 1);
     synth.set_patch(patch);
@@ -32,7 +24,7 @@ fn samples_below_200_dbfs_are_silence() {
         let patch = Patch::default().with(Param::Limiter, limiter).with(Param::Decay, 5.0);
         let quiet =
             event(0, EventKind::Express { notes: Notes::default(), expression: Expression::Volume, value: volume });
-        let events = [on(0, 69, 1.0), quiet];
+        let events = [Event::note_on(0, 69, 1.0), quiet];
         let alone = render(&patch, &events, 9600);
         let (mut left, mut right) = (vec![0.0; 9600], vec![0.0; 9600]);
         Ensemble::new(48_000.0, 1, &patch, &[]).process(&events, &mut left, &mut right);
@@ -50,7 +42,7 @@ fn a_sweep_is_the_same_wherever_a_note_begins() {
     const FRAMES: usize = 4800;
     for (name, most_db) in [("High Q", -20.0), ("Zap", -60.0), ("Electronic Kick", -75.0)] {
         let patch = &Preset::find(name).unwrap().patch;
-        let played = |at: usize| render(patch, &[on(at as u32, 60, 0.8)], at + FRAMES).0.split_off(at);
+        let played = |at: usize| render(patch, &[Event::note_on(at as u32, 60, 0.8)], at + FRAMES).0.split_off(at);
         let energy =
             |samples: &[f32]| samples.iter().map(|sample| f64::from(*sample) * f64::from(*sample)).sum::<f64>();
         let between = played(31);
@@ -69,7 +61,7 @@ fn garbage_in_events_never_comes_out() {
     for (n, value) in bad.into_iter().enumerate() {
         let frame = n as u32 * 500;
         events.push(event(frame, EventKind::NoteOn { key: 255, detune: value, velocity: value, id: None }));
-        events.push(on(frame, 60, 1.0));
+        events.push(Event::note_on(frame, 60, 1.0));
         for kind in [
             EventKind::PitchBend(value),
             EventKind::ChannelPressure(value),
@@ -99,18 +91,18 @@ fn garbage_in_events_never_comes_out() {
 
 #[test]
 fn events_beyond_the_block_are_taken_at_its_last_frame() {
-    let late = render(&Patch::default(), &[on(479, 60, 1.0)], 480);
+    let late = render(&Patch::default(), &[Event::note_on(479, 60, 1.0)], 480);
     let mut synth = Synth::new(48_000.0, 1);
     synth.set_patch(&Patch::default());
     let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
-    synth.process(&[on(9999, 60, 1.0)], &mut left, &mut right);
+    synth.process(&[Event::note_on(9999, 60, 1.0)], &mut left, &mut right);
     assert_eq!((left, right), late);
 }
 
 #[test]
 fn a_note_starts_at_its_frame() {
     for frame in [0, 1, 31, 32, 33, 400] {
-        let (left, _) = render(&Patch::default(), &[on(frame, 60, 1.0)], 480);
+        let (left, _) = render(&Patch::default(), &[Event::note_on(frame, 60, 1.0)], 480);
         assert_eq!(left.iter().position(|sample| *sample != 0.0), Some(frame as usize));
     }
 }
@@ -119,7 +111,12 @@ fn a_note_starts_at_its_frame() {
 fn reset_and_prepare_bring_back_the_beginning() {
     let patch =
         Patch::default().with(Param::MalletLevel, -60.0).with(Param::NoiseReach, 100.0).with(Param::Vibrato, 50.0);
-    let events = [on(10, 60, 1.0), on(700, 64, 0.4), off(900, 60), event(950, EventKind::PitchBend(0.5))];
+    let events = [
+        Event::note_on(10, 60, 1.0),
+        Event::note_on(700, 64, 0.4),
+        Event::note_off(900, 60),
+        event(950, EventKind::PitchBend(0.5)),
+    ];
     let mut synth = Synth::new(48_000.0, 1);
     synth.set_patch(&patch);
     let mut first = [vec![0.0; 4800], vec![0.0; 4800]];
@@ -145,7 +142,7 @@ fn a_synth_falls_silent_by_itself_and_stays_silent() {
     let mut synth = Synth::new(48_000.0, 1);
     synth.set_patch(&patch);
     let (mut left, mut right) = (vec![0.0; 48_000], vec![0.0; 48_000]);
-    synth.process(&[on(0, 60, 1.0)], &mut left, &mut right);
+    synth.process(&[Event::note_on(0, 60, 1.0)], &mut left, &mut right);
     assert!(synth.is_silent());
     let end = left.iter().rposition(|sample| *sample != 0.0).unwrap();
     // The gain lowers the peak by 6 dB; from there, −120 dBFS is two T60s of 4,800 frames away.
@@ -160,7 +157,7 @@ fn every_rate_and_block_size_plays_in_tune() {
         let frames = rate as usize;
         let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
         synth.process(&[], &mut [], &mut []);
-        synth.handle(&on(0, 69, 1.0));
+        synth.handle(&Event::note_on(0, 69, 1.0));
         synth.process(&[], &mut [], &mut []);
         for (left, right) in left.chunks_mut(65_536).zip(right.chunks_mut(65_536)) {
             synth.process(&[], left, right);
@@ -175,7 +172,7 @@ fn a_sample_rate_out_of_range_is_brought_into_it() {
     for rate in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e9] {
         let mut synth = Synth::new(rate, 1);
         let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
-        synth.process(&[on(0, 69, 1.0)], &mut left, &mut right);
+        synth.process(&[Event::note_on(0, 69, 1.0)], &mut left, &mut right);
         assert!(left.iter().all(|sample| sample.is_finite()) && left[100] != 0.0, "{rate}");
     }
 }
@@ -184,10 +181,10 @@ fn a_sample_rate_out_of_range_is_brought_into_it() {
 fn a_block_of_no_frames_brings_its_events() {
     let mut ensemble = Ensemble::new(48_000.0, 1, &Patch::default(), &[]);
     let (mut left, mut right) = (vec![0.0; 480], vec![0.0; 480]);
-    ensemble.process(&[on(0, 60, 1.0)], &mut [], &mut []);
+    ensemble.process(&[Event::note_on(0, 60, 1.0)], &mut [], &mut []);
     ensemble.process(&[], &mut left, &mut right);
     assert!(left.iter().any(|sample| sample.abs() > 0.1));
-    ensemble.process(&[off(0, 60)], &mut [], &mut []);
+    ensemble.process(&[Event::note_off(0, 60)], &mut [], &mut []);
     (0..100).for_each(|_| ensemble.process(&[], &mut left, &mut right));
     assert!(ensemble.is_silent());
 }
@@ -205,7 +202,7 @@ fn periods(samples: &[f32]) -> usize {
 fn a_monophonic_voice_plays_every_note_as_a_new_one_would() {
     let tone = |mode: f32, coefficients: f32, keys: &[u8]| {
         let patch = Patch::default().with(Param::Mode, mode).with(Param::Coefficients, coefficients);
-        let events: Vec<Event> = (0..).zip(keys).map(|(n, key)| on(n * 4800, *key, 1.0)).collect();
+        let events: Vec<Event> = (0..).zip(keys).map(|(n, key)| Event::note_on(n * 4800, *key, 1.0)).collect();
         let (left, _) = render(&patch, &events, 4800 * (keys.len() + 9));
         periods(&left[4800 * (keys.len() - 1) + 64..][..38_400])
     };
@@ -223,7 +220,7 @@ fn a_monophonic_voice_plays_every_note_as_a_new_one_would() {
 #[test]
 fn a_changed_patch_is_heard_by_a_note_that_strikes_again() {
     let tuning = event(24_000, EventKind::Param { param: Param::Tuning, value: 480.0 });
-    let events = [on(0, 69, 1.0), tuning, on(24_000, 69, 1.0)];
+    let events = [Event::note_on(0, 69, 1.0), tuning, Event::note_on(24_000, 69, 1.0)];
     let (left, _) = render(&Patch::default(), &events, 72_064);
     assert!(periods(&left[..24_000]).abs_diff(220) <= 1);
     assert!(periods(&left[24_064..]).abs_diff(480) <= 1, "{}", periods(&left[24_064..]));
@@ -232,8 +229,8 @@ fn a_changed_patch_is_heard_by_a_note_that_strikes_again() {
 #[test]
 fn a_touch_takes_nothing_from_the_stroke_before() {
     let soft = Patch::default().with(Param::MalletPulse, 1.0).with(Param::MalletHardness, 0.0);
-    let (alone, _) = render(&soft, &[on(0, 48, 1.0)], 9600);
-    let (touched, _) = render(&soft, &[on(0, 48, 1.0), on(240, 48, 0.01)], 9600);
+    let (alone, _) = render(&soft, &[Event::note_on(0, 48, 1.0)], 9600);
+    let (touched, _) = render(&soft, &[Event::note_on(0, 48, 1.0), Event::note_on(240, 48, 0.01)], 9600);
     assert!(rms(&touched) > 0.99 * rms(&alone), "{} {}", rms(&touched), rms(&alone));
 }
 
@@ -246,8 +243,8 @@ fn pressure_belongs_to_its_key() {
         100.0,
     );
     let pressed = event(4800, EventKind::PolyPressure { key: 57, pressure: 1.0 });
-    let (plain, _) = render(&legato, &[on(0, 57, 1.0), on(4900, 64, 1.0)], 48_000);
-    let (left, _) = render(&legato, &[on(0, 57, 1.0), pressed, on(4900, 64, 1.0)], 48_000);
+    let (plain, _) = render(&legato, &[Event::note_on(0, 57, 1.0), Event::note_on(4900, 64, 1.0)], 48_000);
+    let (left, _) = render(&legato, &[Event::note_on(0, 57, 1.0), pressed, Event::note_on(4900, 64, 1.0)], 48_000);
     assert!(rms(&left[24_000..]) > 0.7 * rms(&plain[24_000..]));
 }
 
@@ -255,7 +252,7 @@ fn pressure_belongs_to_its_key() {
 fn a_sweep_from_beyond_the_spectrum_arrives() {
     let zap = Patch::default().with(Param::Sweep, 60.0).with(Param::SweepTime, 0.05).with(Param::Decay, 2.0);
     for (key, periods_expected) in [(60, 262), (84, 1047), (108, 4186)] {
-        let (left, _) = render(&zap, &[on(0, key, 1.0)], 57_600);
+        let (left, _) = render(&zap, &[Event::note_on(0, key, 1.0)], 57_600);
         assert!(periods(&left[9600..]).abs_diff(periods_expected) <= 2, "{key}: {}", periods(&left[9600..]));
         assert!(rms(&left[9600..14_400]) > 0.1, "{key}: {}", rms(&left[9600..14_400]));
     }
@@ -275,9 +272,9 @@ fn a_voice_returns_to_a_held_key_in_its_own_patch() {
             let mut synth = Synth::new(48_000.0, 1);
             synth.set_patch(&patch);
             let (mut left, mut right) = (vec![0.0; 9_600], vec![0.0; 9_600]);
-            synth.process(&[on(0, 60, 1.0), on(4_800, 64, 1.0)], &mut left, &mut right);
+            synth.process(&[Event::note_on(0, 60, 1.0), Event::note_on(4_800, 64, 1.0)], &mut left, &mut right);
             program.iter().for_each(|program| synth.set_patch(program));
-            synth.process(&[off(0, 64)], &mut left, &mut right);
+            synth.process(&[Event::note_off(0, 64)], &mut left, &mut right);
             left
         });
         assert_eq!(periods(&kept), 52, "mode {mode}: 261.6 Hz for a fifth of a second");
@@ -295,14 +292,14 @@ fn values_set_at_once_have_no_slopes() {
         let mut synth = Synth::new(48_000.0, 1);
         synth.set_patch(&patch);
         synth.handle(&event(0, EventKind::Modulate { id: None, param: Param::Tune, offset: 0.1 }));
-        played(&mut synth, &[on(9600, 60, 0.8)])
+        played(&mut synth, &[Event::note_on(9600, 60, 0.8)])
     };
     let mut synth = Synth::new(48_000.0, 1);
     synth.handle(&event(0, EventKind::Modulate { id: None, param: Param::Tune, offset: 0.1 }));
     synth.process(&[], &mut [0.0; 9600], &mut [0.0; 9600]);
     synth.set_values(&values);
     assert_eq!(synth.values(), &values);
-    let found = played(&mut synth, &[on(0, 60, 0.8)]);
+    let found = played(&mut synth, &[Event::note_on(0, 60, 0.8)]);
     assert!(expected[9600..14_400].iter().any(|sample| *sample != 0.0));
     assert_eq!(found[..4800], expected[9600..14_400]);
 }

@@ -53,7 +53,7 @@ fn brightness(sound: &[f32]) -> f64 {
 }
 
 fn strike(velocity: f32) -> Event {
-    event(0, EventKind::NoteOn { key: 60, detune: 0.0, velocity, id: None })
+    Event::note_on(0, 60, velocity)
 }
 
 const OFF: f32 = -60.0;

@@ -203,8 +203,7 @@ fn mpe_members_bend_by_48_semitones_and_their_master_bends_all() {
     // The master channel's pedal holds the notes of its members until the zone is dissolved.
     let dissolve = control(0, 6, 0);
     let pedal = |events: &[Event]| {
-        let off = EventKind::NoteOff { key: 57, velocity: 0.5, id: None };
-        let off = Event { frame: 4800, channel: 1, kind: off };
+        let off = Event { channel: 1, ..Event::note_off(4800, 57) };
         let all: Vec<_> = zone.iter().chain(events).chain(&[on(0, 1, 57, -1), off]).copied().collect();
         peak(&render(&sine().with(Param::Release, 0.01), &all, RATE)[0][24_000..])
     };

@@ -29,10 +29,6 @@ fn mass(t60: f32) -> Patch {
     Patch::default().with(Param::Decay, t60).with(Param::Gain, 0.0).with(Param::Limiter, 0.0)
 }
 
-fn strike(frame: u32, key: u8, velocity: f32) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })
-}
-
 fn set(frame: u32, param: Param, value: f32) -> Event {
     event(frame, EventKind::Param { param, value })
 }
@@ -61,7 +57,7 @@ fn tension_raises_the_pitch_by_the_law_and_it_falls_back() {
     let mut failures = vec![];
     for (tension, velocity) in [(0.5_f32, 1.0), (3.0, 1.0), (3.0, 0.7), (3.0, 0.3), (12.0, 0.9)] {
         let patch = mass(20.0).with(Param::Tension, tension);
-        let sound = render(&patch, &[strike(0, 57, velocity)], 0.6);
+        let sound = render(&patch, &[Event::note_on(0, 57, velocity)], 0.6);
         let amplitude = f64::from(velocity) * f64::from(velocity);
         let guess = 220.0 * libm::exp2(law(tension.into(), amplitude) / 1200.0);
         let found = pitches(&sound, 0.01, 20.0, guess);
@@ -78,7 +74,7 @@ fn tension_raises_the_pitch_by_the_law_and_it_falls_back() {
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
     // A sound that has decayed is at its pitch.
-    let sound = render(&mass(0.3).with(Param::Tension, 7.0), &[strike(0, 57, 1.0)], 0.4);
+    let sound = render(&mass(0.3).with(Param::Tension, 7.0), &[Event::note_on(0, 57, 1.0)], 0.4);
     let (last, _) = pitches(&sound, 0.3, 0.3, 220.0)[2];
     assert!(last.abs() < 0.05, "{last}");
 }
@@ -87,7 +83,7 @@ fn tension_raises_the_pitch_by_the_law_and_it_falls_back() {
 fn a_route_moves_tension() {
     let patch = mass(20.0).with_route(3, Source::Wheel, Param::Tension, 50.0);
     let wheel = event(4800, EventKind::Control { controller: 1, value: 1.0 });
-    let sound = render(&patch.with(Param::Vibrato, 0.0), &[strike(0, 57, 1.0), wheel], 0.4);
+    let sound = render(&patch.with(Param::Vibrato, 0.0), &[Event::note_on(0, 57, 1.0), wheel], 0.4);
     let cents = |start| pitches(&sound, start, 20.0, 220.0).first().map(|found| found.0);
     assert!(cents(0.02).is_some_and(|cents| cents.abs() < 0.1), "{:?}", cents(0.02));
     let sounds_high = fit(&sound[14_400..19_200], RATE, 430.0, 20.0).expect("a sinusoid").frequency;
@@ -99,7 +95,7 @@ fn a_route_moves_tension() {
 #[test]
 fn a_second_strike_bends_the_pitch_without_a_click() {
     for moment in (9_600..9_600 + 64).step_by(7) {
-        let events = [strike(0, 57, 0.6), strike(moment, 57, 1.0)];
+        let events = [Event::note_on(0, 57, 0.6), Event::note_on(moment, 57, 1.0)];
         let sound = render(&mass(5.0).with(Param::Tension, 12.0), &events, 0.5);
         let steepest = sound.windows(2).map(|pair| f64::from((pair[1] - pair[0]).abs())).fold(0.0, f64::max);
         let most = 0.36 + 1.0;
@@ -138,7 +134,7 @@ fn gong() -> Patch {
 fn a_hard_stroke_blooms_for_some_tenths_of_a_second_and_a_soft_one_does_not() {
     let patch = gong().with(Param::Bloom, 70.0).with(Param::BloomTime, 0.3);
     let centroids = |velocity| {
-        let sound = render(&patch, &[strike(0, 45, velocity)], 1.0);
+        let sound = render(&patch, &[Event::note_on(0, 45, velocity)], 1.0);
         [0.03, 0.15, 0.3, 0.5].map(|start| centroid(&sound, start, 0.1))
     };
     let hard = centroids(1.0);
@@ -155,7 +151,7 @@ fn a_blooming_voice_ends_within_its_tail() {
     let mut synth = Synth::new(RATE, 1);
     synth.set_patch(&patch);
     let (mut left, mut right) = ([0.0; CONTROL_FRAMES], [0.0; CONTROL_FRAMES]);
-    synth.process(&[strike(0, 45, 1.0)], &mut left, &mut right);
+    synth.process(&[Event::note_on(0, 45, 1.0)], &mut left, &mut right);
     let (mut frames, mut ends) = (0_u64, vec![]);
     while !synth.is_silent() {
         if frames.is_multiple_of(64 * CONTROL_FRAMES as u64) {
@@ -193,9 +189,9 @@ fn string() -> Patch {
 
 #[test]
 fn a_touch_in_the_middle_kills_odd_partials_and_leaves_even_ones() {
-    let free = render(&string(), &[strike(0, 57, 1.0)], 0.8);
-    let touched = render(&string(), &[strike(0, 57, 1.0), set(9_600, Param::Touch, 100.0)], 0.8);
-    let born = render(&string().with(Param::Touch, 100.0), &[strike(0, 57, 1.0)], 0.8);
+    let free = render(&string(), &[Event::note_on(0, 57, 1.0)], 0.8);
+    let touched = render(&string(), &[Event::note_on(0, 57, 1.0), set(9_600, Param::Touch, 100.0)], 0.8);
+    let born = render(&string().with(Param::Touch, 100.0), &[Event::note_on(0, 57, 1.0)], 0.8);
     for sound in [touched, born] {
         for n in 1..=8_u8 {
             let [before, after] = [&free, &sound].map(|sound| level(sound, 220.0 * f64::from(n), 0.6));
@@ -212,7 +208,7 @@ fn a_touch_in_the_middle_kills_odd_partials_and_leaves_even_ones() {
 #[test]
 fn a_touch_follows_its_place_and_pressure() {
     let fall = |patch: &Patch, events: &[Event], n: u8| {
-        let sound = render(patch, &[&[strike(0, 57, 1.0)], events].concat(), 0.6);
+        let sound = render(patch, &[&[Event::note_on(0, 57, 1.0)], events].concat(), 0.6);
         level(&sound, 220.0 * f64::from(n), 0.1) - level(&sound, 220.0 * f64::from(n), 0.45)
     };
     let free = fall(&string(), &[], 3);
@@ -236,14 +232,15 @@ fn a_touch_follows_its_place_and_pressure() {
 #[test]
 fn touching_and_blooming_does_not_click() {
     let jump = |sound: &[f32]| sound.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
-    let free = jump(&render(&string(), &[strike(0, 57, 1.0)], 0.4)[4_800..]);
+    let free = jump(&render(&string(), &[Event::note_on(0, 57, 1.0)], 0.4)[4_800..]);
     for moment in (4_900..5_000).step_by(9) {
-        let events = [strike(0, 57, 1.0), set(moment, Param::Touch, 100.0), set(moment + 900, Param::Touch, 0.0)];
+        let events =
+            [Event::note_on(0, 57, 1.0), set(moment, Param::Touch, 100.0), set(moment + 900, Param::Touch, 0.0)];
         let touched = jump(&render(&string(), &events, 0.4)[4_800..]);
         assert!(touched <= free + 0.001, "{touched} instead of {free}");
     }
     // High modes that have bloomed have large steps; at the moment when bloom is switched on, no step is larger.
-    let events = [strike(0, 45, 1.0), set(9_600, Param::Bloom, 100.0)];
+    let events = [Event::note_on(0, 45, 1.0), set(9_600, Param::Bloom, 100.0)];
     let sound = render(&gong().with(Param::Bloom, 0.0), &events, 1.0);
     let (start, later) = (jump(&sound[9_500..11_000]), jump(&sound[11_000..]));
     assert!(start <= later, "{start} and then {later}");
@@ -255,12 +252,16 @@ fn off_is_off() {
     for preset in [Preset::find("Gong"), Preset::find("Low Tom"), Preset::find("Plucked String")] {
         let patch = preset.expect("a factory preset").patch.clone();
         let patch = &patch.with(Param::Tension, 0.0).with(Param::Bloom, 0.0).with(Param::Touch, 0.0);
-        let plain = render(patch, &[strike(0, 57, 1.0)], 0.5);
+        let plain = render(patch, &[Event::note_on(0, 57, 1.0)], 0.5);
         let moved = patch.clone().with(Param::BloomTime, 0.1).with(Param::TouchPosition, 17.0);
-        assert_eq!(render(&moved, &[strike(0, 57, 1.0)], 0.5), plain);
+        assert_eq!(render(&moved, &[Event::note_on(0, 57, 1.0)], 0.5), plain);
         for (param, value) in [(Param::Tension, 3.0), (Param::Bloom, 50.0), (Param::Touch, 50.0)] {
-            assert_ne!(render(&moved.clone().with(param, value), &[strike(0, 57, 1.0)], 0.5), plain, "{param:?}");
+            assert_ne!(
+                render(&moved.clone().with(param, value), &[Event::note_on(0, 57, 1.0)], 0.5),
+                plain,
+                "{param:?}"
+            );
         }
     }
-    assert_eq!(render(&mass(1.0), &[on(0, 57)], 0.1), render(&mass(1.0), &[strike(0, 57, 1.0)], 0.1));
+    assert_eq!(render(&mass(1.0), &[on(0, 57)], 0.1), render(&mass(1.0), &[Event::note_on(0, 57, 1.0)], 0.1));
 }

@@ -17,14 +17,6 @@ fn event(frame: u32, kind: EventKind) -> Event {
     Event { frame, channel: 0, kind }
 }
 
-fn off(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: None })
-}
-
-fn on(frame: u32, key: u8, velocity: f32) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })
-}
-
 type Sides = [Vec<u32>; 2];
 
 fn synth(kit: &Arc<Kit>) -> Synth {
@@ -79,7 +71,7 @@ fn each_of_128_keys_plays_its_own_sound_at_its_own_pitch_bit_for_bit() {
     let kit = kit(&patches, pads);
     let mut silent = 0;
     for (key, patch) in patches.iter().enumerate() {
-        let strike = |key: u8| [on(7, key, 0.8), off(300, key), on(400, key, 0.5)];
+        let strike = |key: u8| [Event::note_on(7, key, 0.8), Event::note_off(300, key), Event::note_on(400, key, 0.5)];
         let expected = play(&mut synth(&Kit::of_patch(patch)), &strike(pitch(key) as u8), 960);
         assert!(play(&mut synth(&kit), &strike(key as u8), 960) == expected, "key {key}");
         silent += usize::from(!sounds(&expected));
@@ -94,11 +86,11 @@ fn a_kit_of_one_is_its_patch_bit_for_bit() {
             let param = &PARAMS[(n as usize * 31) % PARAMS.len()];
             let at = |kind| event(n * 100, kind);
             [
-                on(n * 100, 40 + (n * 7 % 40) as u8, 0.7),
+                Event::note_on(n * 100, 40 + (n * 7 % 40) as u8, 0.7),
                 at(EventKind::Param { param: param.param, value: param.denormalise(f64::from(n) / 40.0) }),
                 at(EventKind::Modulate { id: None, param: param.param, offset: 0.01 * n as f32 }),
                 at(EventKind::PitchBend(0.02 * n as f32)),
-                off(n * 100 + 50, 40 + (n * 7 % 40) as u8),
+                Event::note_off(n * 100 + 50, 40 + (n * 7 % 40) as u8),
             ]
         })
         .collect();
@@ -136,11 +128,20 @@ fn a_parameter_moves_each_sound_by_the_same_knob_travel() {
         play(&mut kit, &[set(-20.0)], 4800);
         let mut alone = synth(&Kit::of_patch(&moved));
         play(&mut alone, &[], 4800);
-        assert!(play(&mut kit, &[on(0, key, 1.0)], 960) == play(&mut alone, &[on(0, key, 1.0)], 960), "key {key}");
+        assert!(
+            play(&mut kit, &[Event::note_on(0, key, 1.0)], 960)
+                == play(&mut alone, &[Event::note_on(0, key, 1.0)], 960),
+            "key {key}"
+        );
         play(&mut kit, &[set(gain.default), event(0, EventKind::Silence { notes: Default::default() })], 9600);
         let mut alone = synth(&Kit::of_patch(patch));
-        play(&mut alone, &[on(0, key, 1.0), event(0, EventKind::Silence { notes: Default::default() })], 14_400 + 960);
-        let [mut back, mut expected] = [&mut kit, &mut alone].map(|synth| play(synth, &[on(0, key, 1.0)], 960));
+        play(
+            &mut alone,
+            &[Event::note_on(0, key, 1.0), event(0, EventKind::Silence { notes: Default::default() })],
+            14_400 + 960,
+        );
+        let [mut back, mut expected] =
+            [&mut kit, &mut alone].map(|synth| play(synth, &[Event::note_on(0, key, 1.0)], 960));
         // Later notes of the seed have different noise, so only the level is compared, which is not random.
         let peak = |sides: &mut Sides| sides[0].iter().map(|bits| f32::from_bits(*bits).abs()).fold(0.0, f32::max);
         let (back, expected) = (peak(&mut back), peak(&mut expected));
@@ -148,7 +149,7 @@ fn a_parameter_moves_each_sound_by_the_same_knob_travel() {
     }
     let mut kit = synth(&kit(&patches, pads));
     kit.handle(&event(0, EventKind::Param { param: Param::Voices, value: 1.0 }));
-    play(&mut kit, &[on(0, 36, 1.0), on(10, 37, 1.0)], 100);
+    play(&mut kit, &[Event::note_on(0, 36, 1.0), Event::note_on(10, 37, 1.0)], 100);
     assert_eq!(kit.voices_used(), 1, "the number of voices is the kit's");
 }
 
@@ -162,7 +163,7 @@ fn pads_have_their_gain_and_position() {
     ]);
     let kit = kit(&[patch], pads);
     let peaks = |key| {
-        let sides = play(&mut synth(&kit), &[on(0, key, 1.0)], 960);
+        let sides = play(&mut synth(&kit), &[Event::note_on(0, key, 1.0)], 960);
         sides.map(|side| side.into_iter().map(|bits| f32::from_bits(bits).abs()).fold(0.0, f32::max))
     };
     let [plain, quiet, left] = [60, 61, 62].map(peaks);
@@ -174,7 +175,7 @@ fn pads_have_their_gain_and_position() {
 fn a_key_without_a_pad_is_silent_and_its_note_ends_at_once() {
     let kit = kit(&[factory("Kick"), factory("Snare")], on_keys(&[(36, Pad::of(0)), (38, Pad::of(1))]));
     let mut synth = synth(&kit);
-    assert!(!sounds(&play(&mut synth, &[on(0, 37, 1.0)], 480)));
+    assert!(!sounds(&play(&mut synth, &[Event::note_on(0, 37, 1.0)], 480)));
     assert_eq!(synth.ended().iter().map(|note| note.key).collect::<Vec<_>>(), [37]);
     assert!(synth.is_silent());
 }
@@ -190,12 +191,12 @@ fn a_sound_s_own_tuning_goes_before_that_of_the_instrument() {
     let alone = |tuning: &Tuning, key| {
         let mut synth = synth(&Kit::of_patch(&patch));
         synth.set_tuning(tuning);
-        play(&mut synth, &[on(0, key, 1.0)], 960)
+        play(&mut synth, &[Event::note_on(0, key, 1.0)], 960)
     };
     for (key, expected) in [(61, alone(&own, 61)), (62, alone(&tuning, 62))] {
         let mut synth = synth(&mixed);
         synth.set_tuning(&tuning);
-        assert!(play(&mut synth, &[on(0, key, 1.0)], 960) == expected, "key {key}");
+        assert!(play(&mut synth, &[Event::note_on(0, key, 1.0)], 960) == expected, "key {key}");
     }
 }
 
@@ -223,7 +224,7 @@ fn pads_of_a_group_choke_each_other_across_keys_sounds_and_channels() {
     ] {
         for channel in [0, 9] {
             let mut ensemble = Ensemble::of_kits(RATE, 1, &kit, vec![]);
-            let events = [on(0, first, 1.0), Event { channel, ..on(2000, second, 1.0) }];
+            let events = [Event::note_on(0, first, 1.0), Event { channel, ..Event::note_on(2000, second, 1.0) }];
             let (mut left, mut right) = (vec![0.0; 9600], vec![0.0; 9600]);
             ensemble.process(&events, &mut left, &mut right);
             let voices = ensemble.snapshot().voices;
@@ -235,7 +236,7 @@ fn pads_of_a_group_choke_each_other_across_keys_sounds_and_channels() {
 
 /// Notes on several keys and channels that ring on for long.
 fn chord() -> Vec<Event> {
-    (0..12).map(|n| Event { channel: (n % 3) as u8, ..on(10 + 20 * n, 40 + 5 * n as u8, 0.8) }).collect()
+    (0..12).map(|n| Event { channel: (n % 3) as u8, ..Event::note_on(10 + 20 * n, 40 + 5 * n as u8, 0.8) }).collect()
 }
 
 fn swapped_kits() -> [Arc<Kit>; 3] {
@@ -281,7 +282,7 @@ fn swaps_give_the_same_bits_in_any_blocks() {
             let kind = EventKind::Program((n / 4 % 3) as u8);
             [
                 Event { channel, ..event(frame, kind) },
-                Event { channel, ..on(frame, 35 + (n * 7 % 30) as u8, 0.6) },
+                Event { channel, ..Event::note_on(frame, 35 + (n * 7 % 30) as u8, 0.6) },
                 Event {
                     channel,
                     ..event(frame + 9, EventKind::Param { param: Param::Decay, value: 0.2 + 0.01 * n as f32 })
@@ -313,10 +314,10 @@ fn the_drums_all_sound_and_their_hats_choke_each_other() {
     assert!(preset.pads.len() > 15);
     let kit = preset.kit();
     for (key, pad) in &preset.pads {
-        let sides = play(&mut synth(&kit), &[on(0, *key, 1.0)], 4800);
+        let sides = play(&mut synth(&kit), &[Event::note_on(0, *key, 1.0)], 4800);
         assert!(sounds(&sides), "{}", pad.name);
     }
     let mut hats = synth(&kit);
-    play(&mut hats, &[on(0, 46, 1.0), off(100, 46), on(4800, 42, 1.0)], 9600);
+    play(&mut hats, &[Event::note_on(0, 46, 1.0), Event::note_off(100, 46), Event::note_on(4800, 42, 1.0)], 9600);
     assert_eq!(hats.ended().iter().map(|note| note.key).collect::<Vec<_>>(), [46]);
 }

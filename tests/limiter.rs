@@ -183,8 +183,7 @@ fn the_gain_falls_at_once_holds_and_rises_without_haste() {
 }
 
 fn chord(velocity: f32) -> Vec<Event> {
-    let note = |key| EventKind::NoteOn { key, detune: 0.0, velocity, id: None };
-    [60, 64, 67, 72].map(|key| Event { frame: 0, channel: 0, kind: note(key) }).to_vec()
+    [60, 64, 67, 72].map(|key| Event::note_on(0, key, velocity)).to_vec()
 }
 
 fn play(rate: u32, patch: &Patch, events: &[Event], seconds: f64) -> Stereo {
@@ -247,10 +246,8 @@ fn a_rendered_chord_stays_below_full_scale_and_tells_how_much_was_lowered() {
 fn sixty_four_voices_at_once_stay_below_full_scale() {
     for name in ["init", "Church Bell", "Snare", "Open Hat", "Triangle", "Sub Bass", "Gong"] {
         let patch = Preset::find(name).unwrap().patch.clone().with(Param::Voices, 64.0).with(Param::Gain, 12.0);
-        let note = |key| EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
         for spread in [0, 37] {
-            let events: Vec<Event> =
-                (0..64).map(|n| Event { frame: n * spread, channel: 0, kind: note(32 + n as u8) }).collect();
+            let events: Vec<Event> = (0..64).map(|n| Event::note_on(n * spread, 32 + n as u8, 1.0)).collect();
             for rate in [22_050, 48_000, 96_000] {
                 let peak = true_peak(rate, &play(rate, &patch, &events, 0.5));
                 assert!(peak <= HIGHEST, "{name} at {rate} Hz: {peak:.2} dBFS");
@@ -267,8 +264,7 @@ fn ensemble(programs: &[Patch], events: &[Event], frames: usize) -> Stereo {
 }
 
 fn channels(range: std::ops::Range<u8>) -> Vec<Event> {
-    let note = |channel| EventKind::NoteOn { key: 48 + channel, detune: 0.0, velocity: 1.0, id: None };
-    range.map(|channel| Event { frame: 0, channel, kind: note(channel) }).collect()
+    range.map(|channel| Event { channel, ..Event::note_on(0, 48 + channel, 1.0) }).collect()
 }
 
 #[test]

@@ -12,11 +12,11 @@ fn event(frame: u32, kind: EventKind) -> Event {
 }
 
 fn on(frame: u32, key: u8, velocity: f32) -> Event {
-    event(frame, EventKind::NoteOn { key, detune: 0.0, velocity, id: None })
+    Event::note_on(frame, key, velocity)
 }
 
 fn off(frame: u32, key: u8) -> Event {
-    event(frame, EventKind::NoteOff { key, velocity: 0.5, id: None })
+    Event::note_off(frame, key)
 }
 
 fn control(frame: u32, controller: u8, value: f32) -> Event {

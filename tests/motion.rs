@@ -89,11 +89,10 @@ fn glides(sample_rate: f64, t60: f64, key: f64, octaves: f64) -> Motion {
     let seconds = (0.25 * t60).max(2.0 / FASTEST) as f32;
     let way = libm::ceil(f64::from(seconds) * sample_rate) as usize + TICK;
     let to = key + 12.0 * octaves;
-    let off = EventKind::NoteOff { key: libm::round(to) as u8, velocity: 0.5, id: None };
     Motion {
         name: format!("glides of {octaves} octaves in {seconds} s and back"),
         patch: Patch::default().with(Param::Glide, seconds).with(Param::Mode, 2.0),
-        events: vec![on(0, to), event(way, off)],
+        events: vec![on(0, to), Event::note_off(way as u32, libm::round(to) as u8)],
         frames: 2 * way,
         mean_ratio: None,
     }

@@ -30,8 +30,7 @@ fn nudge(frame: u32, mode: u16, amplitude: f32) -> Event {
 
 /// A note in which only a nudged mode moves.
 fn alone(frame: u32, mode: u16, amplitude: f32) -> [Event; 2] {
-    let kind = EventKind::NoteOn { key: 60, detune: 0.0, velocity: 0.0, id: None };
-    [event(frame, kind), nudge(frame, mode, amplitude)]
+    [Event::note_on(frame, 60, 0.0), nudge(frame, mode, amplitude)]
 }
 
 /// A synth after `frames` frames, and its output to the left.

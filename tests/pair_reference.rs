@@ -1,6 +1,6 @@
 //! Compares rendered pairs of bodies with a dense eigenproblem solved by SciPy, made by `pairs/scipy_reference.py`.
 
-use sprung::engine::{Event, EventKind, Synth};
+use sprung::engine::{Event, Synth};
 use sprung::params::{MalletPulse, Param};
 use sprung::patch::{ModeTable, Patch};
 use sprung::sound::bodies::{Body, Model};
@@ -70,8 +70,7 @@ fn render(modes: ModeTable, decay: f64, key: u8) -> Vec<f32> {
     let mut synth = Synth::new(RATE, 1);
     synth.set_kit(&Kit::single(String::new(), Arc::new(Sound::new(patch))));
     let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
-    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
-    synth.process(&[Event { frame: 0, channel: 0, kind }], &mut left, &mut right);
+    synth.process(&[Event::note_on(0, key, 1.0)], &mut left, &mut right);
     left
 }
 

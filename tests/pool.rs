@@ -25,7 +25,7 @@ fn patch(modes: usize) -> Patch {
 }
 
 fn on(frame: u32, channel: u8, key: u8, velocity: f32) -> Event {
-    Event { frame, channel, kind: EventKind::NoteOn { key, detune: 0.0, velocity, id: None } }
+    Event { channel, ..Event::note_on(frame, key, velocity) }
 }
 
 /// More and more notes on all channels, with programs of other sizes, choke groups and some releases.
@@ -143,8 +143,7 @@ fn a_voice_of_512_modes_is_the_sum_of_eight_of_64() {
         synth.set_patch(patch);
         let (mut left, mut right) = (vec![0.0; FRAMES], vec![0.0; FRAMES]);
         let bend = Event { frame: 3_000, channel: 0, kind: EventKind::PitchBend(0.5) };
-        let off = Event { frame: 9_000, channel: 0, kind: EventKind::NoteOff { key: 45, velocity: 0.5, id: None } };
-        synth.process(&[on(100, 0, 45, 0.8), bend, off], &mut left, &mut right);
+        synth.process(&[Event::note_on(100, 45, 0.8), bend, Event::note_off(9_000, 45)], &mut left, &mut right);
         left
     };
     let together = play(&whole);

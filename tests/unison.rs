@@ -8,7 +8,7 @@ const RATE: f64 = 48_000.0;
 const FRAMES: usize = 48_000;
 
 fn on(frame: u32, key: u8) -> Event {
-    Event { frame, channel: 0, kind: EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None } }
+    Event::note_on(frame, key, 1.0)
 }
 
 fn synth(patch: &Patch) -> Synth {
@@ -115,9 +115,8 @@ fn period(samples: &[f32], at: usize) -> f64 {
 
 #[test]
 fn slides_last_as_long_as_they_are_told() {
-    let off = Event { frame: 4_000, channel: 0, kind: EventKind::NoteOff { key: 69, velocity: 0.5, id: None } };
     let legato = [on(0, 69), on(9_600, 93)];
-    let apart = [on(0, 69), off, on(9_600, 93)];
+    let apart = [on(0, 69), Event::note_off(4_000, 69), on(9_600, 93)];
     let patch = patch().with(Param::Mode, 1.0).with(Param::Glide, 0.25).with(Param::Release, 5.0);
     let choice = |param: Param, name: &str| param.info().parse(name).unwrap();
     let only = patch.clone().with(Param::GlideWhen, choice(Param::GlideWhen, "legato"));

@@ -55,12 +55,7 @@ impl Chord {
     pub(crate) fn new(patch: &Patch, voices: usize) -> Self {
         let mut synth = Synth::new(48_000.0, 1);
         synth.set_patch(patch);
-        let strike = |voice: usize| {
-            let key = (36 + voice % 64) as u8;
-            let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
-            Event { frame: 0, channel: 0, kind }
-        };
-        let strikes = (0..voices).map(strike).collect();
+        let strikes = (0..voices).map(|voice| Event::note_on(0, (36 + voice % 64) as u8, 1.0)).collect();
         let mut chord = Self { synth, strikes, left: [0.0; FRAMES], right: [0.0; FRAMES], frames: 0 };
         chord.strike();
         assert_eq!(chord.synth.voices_used(), voices);

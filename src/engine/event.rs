@@ -15,6 +15,29 @@ pub struct Event {
     pub kind: EventKind,
 }
 
+impl Event {
+    /// A key of channel 0 goes down with a velocity of 0–1: exactly its tuned pitch, without an identifier.
+    ///
+    /// ```
+    /// use sprung::engine::{Event, Synth};
+    ///
+    /// let mut synth = Synth::new(48_000.0, 0);
+    /// let (mut left, mut right) = ([0.0; 480], [0.0; 480]);
+    /// synth.process(&[Event::note_on(0, 60, 0.8), Event::note_off(240, 60)], &mut left, &mut right);
+    /// // On another channel:
+    /// let drum = Event { channel: 9, ..Event::note_on(0, 36, 1.0) };
+    /// synth.process(&[drum], &mut left, &mut right);
+    /// ```
+    pub fn note_on(frame: u32, key: u8, velocity: f32) -> Self {
+        Self { frame, channel: 0, kind: EventKind::NoteOn { key, detune: 0.0, velocity, id: None } }
+    }
+
+    /// A key of channel 0 goes up, with the velocity of controllers that send none: ends all notes on the key.
+    pub fn note_off(frame: u32, key: u8) -> Self {
+        Self { frame, channel: 0, kind: EventKind::NoteOff { key, velocity: 0.5, id: None } }
+    }
+}
+
 /// The kind of an event. Values out of range are clamped where they are used, keys and channels too; NaN counts as
 /// zero. A controller, program or choke group that does not exist changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -106,9 +106,8 @@ mod tests {
         let patch = Patch { modes: ModeTable::new(&[Mode::UNIT, quiet]), ..Patch::default() };
         let mut ensemble = Ensemble::new(48_000.0, 0, &patch, &[]);
         assert_eq!(ensemble.snapshot(), Snapshot::default());
-        let strike = EventKind::NoteOn { key: 69, detune: 0.0, velocity: 1.0, id: None };
         let (mut left, mut right) = ([0.0; 27], [0.0; 27]);
-        let events = [0, 3].map(|channel| Event { frame: 0, channel, kind: strike });
+        let events = [0, 3].map(|channel| Event { channel, ..Event::note_on(0, 69, 1.0) });
         ensemble.process(&events, &mut left, &mut right);
         let snapshot = ensemble.snapshot();
         assert_eq!(snapshot.voices, 2);
@@ -139,8 +138,8 @@ mod tests {
         let mut ensemble = Ensemble::new(48_000.0, 0, &patch, &[]);
         let (mut left, mut right) = ([0.0; 480], [0.0; 480]);
         for (key, velocity) in [(60, 0.5), (90, 0.25)] {
-            let kind = EventKind::NoteOn { key, detune: 0.0, velocity, id: None };
-            ensemble.process(&[Event { frame: 0, channel: 2, kind }], &mut left, &mut right);
+            let strike = Event { channel: 2, ..Event::note_on(0, key, velocity) };
+            ensemble.process(&[strike], &mut left, &mut right);
         }
         let wheel = EventKind::Control { controller: 1, value: 1.0 };
         ensemble.process(&[Event { frame: 0, channel: 2, kind: wheel }], &mut left, &mut right);
@@ -166,8 +165,7 @@ mod tests {
         let mut ensemble = Ensemble::new(48_000.0, 0, &Patch::default(), &[]);
         let (mut left, mut right) = ([0.0; 64], [0.0; 64]);
         for key in 40..40 + SHOWN_NOTES as u8 + 4 {
-            let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
-            ensemble.process(&[Event { frame: 0, channel: 0, kind }], &mut left, &mut right);
+            ensemble.process(&[Event::note_on(0, key, 1.0)], &mut left, &mut right);
         }
         let keys = ensemble.snapshot().notes.map(|note| note.map_or(0, |note| note.key));
         let expected: [u8; SHOWN_NOTES] = std::array::from_fn(|place| 59 - place as u8);

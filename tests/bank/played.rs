@@ -1,7 +1,7 @@
 //! Renders notes of presets and measures them.
 
 use sprung::analysis::spectrum::{Spectrum, peaks, spectrum};
-use sprung::engine::{Event, EventKind, Synth};
+use sprung::engine::{Event, Synth};
 use sprung::preset::Preset;
 use sprung::units::mono_from_stereo;
 
@@ -9,11 +9,11 @@ pub(crate) const RATE: f64 = 48_000.0;
 
 /// A note-on with this velocity, from 1 to 127, or a note-off if there is none.
 pub(crate) fn event(seconds: f64, key: u8, velocity: Option<f32>) -> Event {
-    let kind = match velocity {
-        Some(velocity) => EventKind::NoteOn { key, detune: 0.0, velocity: velocity / 127.0, id: None },
-        None => EventKind::NoteOff { key, velocity: 0.5, id: None },
-    };
-    Event { frame: (seconds * RATE) as u32, channel: 0, kind }
+    let frame = (seconds * RATE) as u32;
+    match velocity {
+        Some(velocity) => Event::note_on(frame, key, velocity / 127.0),
+        None => Event::note_off(frame, key),
+    }
 }
 
 /// The mean of both channels of a note struck with `velocity`, 1–127, and held for `held` seconds.

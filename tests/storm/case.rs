@@ -216,8 +216,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Case {
                 let (count, step, interval) = (1 + u32::from(b & 31), b >> 5, 1 + u32::from(c));
                 for n in 0..count {
                     let key = a.wrapping_add(n as u8 * step);
-                    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
-                    events.push(Event { frame: now + n * interval, channel: 0, kind });
+                    events.push(Event::note_on(now + n * interval, key, 1.0));
                 }
                 now += (count - 1) * interval;
             }

@@ -15,7 +15,7 @@ fn on(channel: u8, key: u8, id: i32) -> Event {
 }
 
 fn off(channel: u8, key: u8) -> Event {
-    Event { frame: 0, channel, kind: EventKind::NoteOff { key, velocity: 0.5, id: None } }
+    Event { channel, ..Event::note_off(0, key) }
 }
 
 /// A quarter of a second of the left channel.

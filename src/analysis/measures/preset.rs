@@ -69,18 +69,16 @@ impl Player {
         let mut synth = Synth::new(RATE.into(), 0);
         synth.set_kit(&self.kit);
         synth.reset();
-        let event = |seconds: f64, kind| Event { frame: samples(seconds) as u32, channel: 0, kind };
-        let on = |key, velocity: u8| {
-            let velocity = f32::from(velocity) / 127.0;
-            EventKind::NoteOn { key, detune: 0.0, velocity, id: None }
-        };
+        let frame = |seconds: f64| samples(seconds) as u32;
+        let on = |seconds, key, velocity: u8| Event::note_on(frame(seconds), key, f32::from(velocity) / 127.0);
         let mut events = Vec::new();
         if before {
             let key = keys.first().map_or(60, |key| if *key < 120 { key + 6 } else { key - 6 });
-            events.extend([event(0.0, on(key, 1)), event(0.01, EventKind::Silence { notes: Notes::default() })]);
+            let silence = EventKind::Silence { notes: Notes::default() };
+            events.extend([on(0.0, key, 1), Event { frame: frame(0.01), channel: 0, kind: silence }]);
         }
-        events.extend(keys.iter().map(|key| event(start, on(*key, velocity))));
-        let off = |key: &u8| event(start + held, EventKind::NoteOff { key: *key, velocity: 0.5, id: None });
+        events.extend(keys.iter().map(|key| on(start, *key, velocity)));
+        let off = |key: &u8| Event::note_off(frame(start + held), *key);
         events.extend(keys.iter().map(off).filter(|off| (off.frame as usize) < samples(seconds)));
         let [mut left, mut right] = [0, 1].map(|_| vec![0.0; samples(seconds)]);
         synth.process(&events, &mut left, &mut right);

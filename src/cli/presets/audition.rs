@@ -185,12 +185,8 @@ fn speed(kit: &Arc<Kit>) -> f64 {
     synth.reset();
     let keys: Vec<u8> = (0..128).filter(|key| kit.pad(*key).is_some()).collect();
     let from = keys.iter().position(|key| *key >= 48).unwrap_or(0).min(keys.len().saturating_sub(VOICES.into()));
-    let on = |key: &u8| Event {
-        frame: 0,
-        channel: 0,
-        kind: EventKind::NoteOn { key: *key, detune: 0.0, velocity: 0.8, id: None },
-    };
-    let events: Vec<_> = keys[from..].iter().take(VOICES.into()).map(on).collect();
+    let struck = keys[from..].iter().take(VOICES.into());
+    let events: Vec<_> = struck.map(|key| Event::note_on(0, *key, 0.8)).collect();
     let [mut left, mut right] = [0, 1].map(|_| vec![0.0; (TIMED_SECONDS * f64::from(RATE)) as usize]);
     let start = Instant::now();
     synth.process(&events, &mut left, &mut right);

@@ -9,12 +9,11 @@ use crate::sound::Kit;
 const FRAMES: usize = 480;
 
 fn on(channel: u8, key: u8) -> Event {
-    let kind = EventKind::NoteOn { key, detune: 0.0, velocity: 1.0, id: None };
-    Event { frame: 20, channel, kind }
+    Event { channel, ..Event::note_on(20, key, 1.0) }
 }
 
 fn off(channel: u8, key: u8) -> Event {
-    Event { frame: 0, channel, kind: EventKind::NoteOff { key, velocity: 0.5, id: None } }
+    Event { channel, ..Event::note_off(0, key) }
 }
 
 /// The output of a synth and of an ensemble for the same events, each event in a block of its own.

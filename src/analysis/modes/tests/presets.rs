@@ -1,7 +1,7 @@
 //! Tests with rendered factory presets of all kinds, with a release in the sound: struck, swept, bowed and noisy ones.
 
 use super::*;
-use crate::engine::{Ensemble, Event, EventKind};
+use crate::engine::{Ensemble, Event};
 use crate::params::Param;
 use crate::patch::Patch;
 use crate::preset::Preset;
@@ -35,11 +35,8 @@ fn played_by(patch: &Patch, key: u8, held: f64, seconds: f64) -> Vec<Vec<f32>> {
     let mut ensemble = Ensemble::new(RATE, 1, patch, &[]);
     let (frames, off) = ((seconds * RATE) as usize, (held * RATE) as usize);
     let (mut left, mut right) = (vec![0.0; frames], vec![0.0; frames]);
-    let event = |kind| [Event { frame: 0, channel: 0, kind }];
-    let on = EventKind::NoteOn { key, detune: 0.0, velocity: 0.8, id: None };
-    ensemble.process(&event(on), &mut left[..off], &mut right[..off]);
-    let up = EventKind::NoteOff { key, velocity: 0.5, id: None };
-    ensemble.process(&event(up), &mut left[off..], &mut right[off..]);
+    ensemble.process(&[Event::note_on(0, key, 0.8)], &mut left[..off], &mut right[..off]);
+    ensemble.process(&[Event::note_off(0, key)], &mut left[off..], &mut right[off..]);
     vec![left, right]
 }
 
