@@ -23,11 +23,6 @@ pub struct Coefficients {
     pub v0: f64,
 }
 
-/// Amplitude ratio per sample of a decay by 60 dB in `t60` seconds. 1 if `t60` is infinite.
-pub fn radius_from_t60(t60: f64, sample_rate: f64) -> f64 {
-    exp(LN_MINUS_60_DB / (t60 * sample_rate))
-}
-
 /// Angle per sample of a frequency in Hz.
 pub fn angle_from_frequency(frequency: f64, sample_rate: f64) -> f64 {
     TAU * frequency / sample_rate

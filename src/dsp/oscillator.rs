@@ -96,8 +96,12 @@ impl<T: Real> HarmonicOscillator<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dsp::coefficients::{angle_from_frequency, radius_from_t60};
-    use libm::{pow, sin};
+    use crate::dsp::coefficients::{LN_MINUS_60_DB, angle_from_frequency};
+    use libm::{exp, pow, sin};
+
+    fn radius_from_t60(t60: f64) -> f64 {
+        exp(LN_MINUS_60_DB / (t60 * 48_000.0))
+    }
 
     #[test]
     fn the_step_is_the_damped_sinusoid_asked_for() {
@@ -105,7 +109,7 @@ mod tests {
             let coefficients = Coefficients::exact(frequency, t60, 0.8, 48_000.0);
             let mut reference = HarmonicOscillator::<f64>::new(&coefficients);
             let mut audio = HarmonicOscillator::<f32>::new(&coefficients);
-            let (theta, radius) = (angle_from_frequency(frequency, 48_000.0), radius_from_t60(t60, 48_000.0));
+            let (theta, radius) = (angle_from_frequency(frequency, 48_000.0), radius_from_t60(t60));
             for n in 1..=(t60 * 48_000.0) as i32 {
                 let expected = 0.8 * pow(radius, n.into()) * sin(f64::from(n) * theta);
                 assert!((reference.step() - expected).abs() < 1e-9, "{frequency} Hz, frame {n}");
@@ -128,7 +132,7 @@ mod tests {
     #[test]
     fn amplitude_is_the_envelope_at_any_phase() {
         let mut mass = HarmonicOscillator::<f64>::new(&Coefficients::exact(997.0, 0.2, 0.5, 48_000.0));
-        let radius = radius_from_t60(0.2, 48_000.0);
+        let radius = radius_from_t60(0.2);
         for n in 1..2000 {
             mass.step();
             assert!((mass.amplitude() / (0.5 * pow(radius, n.into())) - 1.0).abs() < 1e-9);

@@ -1,7 +1,6 @@
 //! A body: a model with its size or pitch, its material, and everything else that determines its modes.
 
-use super::mass;
-use super::material::{LN_1000, Loss, Material};
+use super::material::Material;
 use super::model::Model;
 use super::partial::Point;
 use super::size::Size;
@@ -100,15 +99,6 @@ impl Body {
             modes,
             seed: 0,
         }
-    }
-
-    /// A mass in kg with a damper in N·s/m on a spring in N/m; `None` if it does not ring.
-    pub fn from_spring(mass: f64, damping: f64, stiffness: f64) -> Option<Self> {
-        let (frequency, t60) = mass::ringing(mass, damping, stiffness)?;
-        let mut body = Self::new(Model::Mass);
-        body.pitch = Pitch::Frequency(frequency);
-        body.material.loss = Loss { b0: LN_1000 / t60, b1: 0.0, power: 1.0 };
-        Some(body)
     }
 
     /// Its size, if its frequency follows from the size.

@@ -53,7 +53,6 @@ mod tube;
 pub use bed::{Bed, BedKind};
 pub use body::{Body, DEFAULT_FREQUENCY, Pitch, RATIO_RANGE, T60_RANGE};
 pub use fields::{FIELDS, Field, MAX_MODES};
-pub use mass::ringing;
 pub use material::{LN_1000, Loss, MATERIALS, Material};
 pub use model::{CustomMode, Model};
 pub use modes::BodyMode;
