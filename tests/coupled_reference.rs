@@ -1,24 +1,23 @@
 //! Compares joined bodies with a dense eigenproblem solved by SciPy, made by `coupled/scipy_reference.py`.
 
+use sprung::dsp::random;
 use sprung::sound::coupled::{BodyMode, CoupledMode, Joint, joined};
 use std::collections::BTreeMap;
 
 const NUMBERS: &str = include_str!("coupled/scipy_reference.csv");
 
-/// SplitMix64, as in the script.
-struct Chance(u64);
+/// A seed, and how many of its numbers were drawn: those of SplitMix64, as in the script.
+struct Chance(u64, u64);
 
 impl Chance {
     fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        self.1 += 1;
+        random::bits(self.0, self.1)
     }
 
     fn real(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / 9_007_199_254_740_992.0
+        self.1 += 1;
+        random::unit(self.0, self.1)
     }
 
     fn below(&mut self, bound: u64) -> u64 {
@@ -28,7 +27,7 @@ impl Chance {
 
 /// The bodies and the joint of a case, created in the same order as by `pair` in the script.
 fn pair(case: u64) -> ([Vec<BodyMode>; 2], Joint) {
-    let mut chance = Chance(case);
+    let mut chance = Chance(case, 0);
     let mut size = || {
         let bound = 1 + chance.below(64);
         1 + chance.below(bound)

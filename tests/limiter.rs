@@ -5,6 +5,7 @@
 use ebur128::{EbuR128, Mode};
 use proptest::prelude::*;
 use sprung::dsp::Limiter;
+use sprung::dsp::random::uniform;
 use sprung::engine::{Ensemble, Event, EventKind, Synth};
 use sprung::io::Song;
 use sprung::params::Param;
@@ -58,11 +59,8 @@ fn scaled([left, right]: &Stereo, gain: f64) -> Stereo {
 }
 
 /// Random numbers from −1 to 1.
-fn noise(mut state: u64) -> impl Iterator<Item = f64> {
-    std::iter::repeat_with(move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    })
+fn noise(seed: u64) -> impl Iterator<Item = f64> {
+    (0..).map(move |n| uniform(seed, n).into())
 }
 
 const FRAMES: usize = 4800;

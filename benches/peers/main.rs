@@ -14,6 +14,7 @@ use fundsp::buffer::BufferArray;
 use fundsp::numeric_array::typenum::{U1, U8};
 use fundsp::{F32x, Float, Frame};
 use sprung::dsp::Level;
+use sprung::dsp::random::uniform;
 use std::hint::black_box;
 use std::time::Duration;
 use struck::{StruckBank, Work};
@@ -27,11 +28,7 @@ fn frequency(m: usize) -> f32 {
 
 /// An input signal for the filters.
 fn noise() -> [f32; FRAMES] {
-    let mut turn = 1_u32;
-    black_box([(); FRAMES].map(|()| {
-        turn = turn.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        turn as f32 / u32::MAX as f32 - 0.5
-    }))
+    black_box(std::array::from_fn(|n| 0.5 * uniform(1, n as u64)))
 }
 
 /// All filters, as banks of eight biquads in a vector.

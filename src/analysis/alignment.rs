@@ -103,17 +103,11 @@ fn best_shift(first: &[Vec<f32>], second: &[Vec<f32>], start: usize) -> isize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dsp::random::uniform;
 
-    /// Uniform numbers from −0.5 to 0.5 (Marsaglia's xorshift, 2003).
+    /// Uniform numbers from −0.5 to 0.5.
     fn noise(len: usize) -> Vec<f32> {
-        let mut state = 0x9e37_79b9_u32;
-        let mut next = || {
-            state ^= state << 13;
-            state ^= state >> 17;
-            state ^= state << 5;
-            (state >> 8) as f32 / 16_777_216.0 - 0.5
-        };
-        (0..len).map(|_| next()).collect()
+        (0..len as u64).map(|n| 0.5 * uniform(1, n)).collect()
     }
 
     #[test]

@@ -180,9 +180,10 @@ pub fn hexadecimal(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dsp::random::uniform;
 
     fn noise(len: usize) -> Vec<f32> {
-        (0..len as u32).map(|n| (n.wrapping_mul(2_654_435_761) >> 8) as f32 / 16_777_216.0 - 0.5).collect()
+        (0..len as u64).map(|n| 0.5 * uniform(1, n)).collect()
     }
 
     #[test]

@@ -14,15 +14,19 @@ pub fn key(seed: u64, serial: u64) -> u64 {
     mix(mix(seed.wrapping_add(GOLDEN_RATIO)).wrapping_add(serial.wrapping_mul(GOLDEN_RATIO)))
 }
 
+/// The 64 bits of the `n`-th number of a stream. From 1 on, these are the numbers of SplitMix64 with `key` as its seed.
+pub fn bits(key: u64, n: u64) -> u64 {
+    mix(key.wrapping_add(n.wrapping_mul(GOLDEN_RATIO)))
+}
+
 /// The `n`-th number of a stream: uniform in [−1, 1), a multiple of 2⁻²³, mean 0, variance 1/3.
 pub fn uniform(key: u64, n: u64) -> f32 {
-    let bits = mix(key.wrapping_add(n.wrapping_mul(GOLDEN_RATIO))) >> 40;
-    bits as f32 * (1.0 / 8_388_608.0) - 1.0
+    (bits(key, n) >> 40) as f32 * (1.0 / 8_388_608.0) - 1.0
 }
 
 /// The `n`-th number of a stream with more digits: uniform in [0, 1), a multiple of 2⁻⁵³.
 pub fn unit(key: u64, n: u64) -> f64 {
-    (mix(key.wrapping_add(n.wrapping_mul(GOLDEN_RATIO))) >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+    (bits(key, n) >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Recordings that tests make.
 
+use sprung::dsp::random::uniform;
+
 /// A WAV of interleaved floats.
 pub(crate) fn wav(samples: &[f32], sample_rate: u32, channels: u16) -> Vec<u8> {
     let spec = hound::WavSpec { channels, sample_rate, bits_per_sample: 32, sample_format: hound::SampleFormat::Float };
@@ -10,14 +12,7 @@ pub(crate) fn wav(samples: &[f32], sample_rate: u32, channels: u16) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// Noise from −0.5 to 0.5 (Marsaglia's xorshift, 2003).
+/// Noise from −0.5 to 0.5.
 pub(crate) fn noise(len: usize) -> Vec<f32> {
-    let mut state = 1_u32;
-    let mut next = || {
-        state ^= state << 13;
-        state ^= state >> 17;
-        state ^= state << 5;
-        state as f32 / u32::MAX as f32 - 0.5
-    };
-    (0..len).map(|_| next()).collect()
+    (0..len as u64).map(|n| 0.5 * uniform(1, n)).collect()
 }
