@@ -24,8 +24,8 @@
 //! new patch has three (`Routes::INITIAL`); presets of older formats get routes that replace their retired parameters
 //! (`preset::migration`). `routed` and `moving` in `cargo bench --bench synth` measure the cost: sixteen routes, three
 //! oscillators and two envelopes on each of 16 voices of 64 modes, all moving, play at 0.82 to 0.86 of the speed of the
-//! same voices without them (AVX2 and AVX-512). Tests: `tests/modulation.rs` has every source and every kind of
-//! destination; `tests/levels.rs`, `tests/blocks.rs` and `tests/storm/` use random routes.
+//! same voices without them (AVX2 and AVX-512). Tests: `tests/engine/modulation.rs` has every source and every kind of
+//! destination; `tests/levels/`, `tests/engine/blocks.rs` and `tests/engine/storm/` use random routes.
 
 mod bus;
 mod destination;
