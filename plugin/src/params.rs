@@ -2,7 +2,7 @@
 
 #![allow(unsafe_code, reason = "the wrapper takes parameters as pointers and has no safe way to set several at once")]
 
-use crate::editor::extent::Extent;
+use crate::editor::host::extent::Extent;
 use crate::link::Link;
 use crate::loaded::{Loaded, Slot};
 use crate::state::{self, Read, State, View};

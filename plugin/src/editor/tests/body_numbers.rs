@@ -2,7 +2,7 @@
 
 use super::pictures::{Stage, compare_page, finish, stage};
 use super::sounding::Band;
-use crate::editor::made::Made;
+use crate::editor::body::origin::Made;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use egui::{Event, Key, Modifiers, PointerButton, Role, vec2};
@@ -176,7 +176,7 @@ fn the_first_five_minutes() {
     assert_eq!(found.values.get(Param::SpaceMix), 40.0);
     assert_eq!(stage.made().body().map(|body| (body.model.id(), body.material.id)), Some(("marimba", "glass")));
     let path = Library::at(stage.folder.path()).entries()[0].path.clone();
-    let (Playable::Preset(saved), _) = crate::editor::files::read(path.to_str().unwrap()).unwrap() else {
+    let (Playable::Preset(saved), _) = crate::editor::controls::files::read(path.to_str().unwrap()).unwrap() else {
         panic!("a kit")
     };
     let Playable::Preset(made) = made.playable else { panic!("a kit") };

@@ -4,9 +4,8 @@ use super::dropped::Dropped;
 use super::fake_host::Said;
 use super::pictures::{Stage, compare, finish, stage};
 use super::renderer::Renderer;
-use crate::editor::fitting::{Face, paint};
-use crate::editor::fonts;
-use crate::editor::theme::{SIZE, Theme};
+use crate::editor::drops::fitting::{Face, paint};
+use crate::editor::theme::{SIZE, Theme, install_fonts};
 use crate::state::State;
 use egui::{Role, vec2};
 use egui_kittest::Harness;
@@ -115,7 +114,7 @@ fn pictures_of_the_panel_are_as_accepted() {
         let mut is_new = true;
         let show = move |ui: &mut egui::Ui| {
             if std::mem::take(&mut is_new) {
-                fonts::install(ui.ctx());
+                install_fonts(ui.ctx());
                 theme.apply(ui.ctx());
             }
             let window = ui.ctx().content_rect();

@@ -2,7 +2,7 @@
 
 use super::fake_host::Said;
 use super::sounding::Band;
-use crate::editor::mode_axes::Axes;
+use crate::editor::modes::axes::Axes;
 use crate::editor::theme::{SIZE, Theme};
 use crate::link::Touch;
 use crate::state::State;

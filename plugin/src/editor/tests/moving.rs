@@ -3,8 +3,8 @@
 use super::fake_host::Said;
 use super::pictures::{compare, finish};
 use super::sounding::Band;
-use crate::editor::body_form::Form;
-use crate::editor::made::Made;
+use crate::editor::body::form::Form;
+use crate::editor::body::origin::Made;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use egui::{Event, Pos2, vec2};

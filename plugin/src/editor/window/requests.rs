@@ -1,0 +1,86 @@
+//! The user's requests, carried out.
+
+use super::header::Wish;
+use super::variation::{Asked, Variation};
+use super::{Over, Window};
+use crate::editor::browser::Aim;
+use crate::editor::controls::files::{load, neighbour};
+use crate::editor::controls::history::{History, restore};
+use crate::editor::host::extent;
+use crate::params::SprungParams;
+use egui::Ui;
+use nice_plug_core::context::gui::GuiContext;
+use sprung::preset::Playable;
+
+impl Window {
+    /// Loads the factory sound at this distance in the list.
+    fn step(&mut self, places: isize, host: &GuiContext) {
+        let Some(preset) = neighbour(&self.params.name(), places) else { return };
+        self.history.load(Playable::Preset(preset.clone()), &self.params, host);
+    }
+
+    /// Replaces the sound by a random variation.
+    fn vary(&mut self, variation: Variation, host: &GuiContext) {
+        let Playable::Preset(preset) = self.params.state().playable else {
+            self.message = "a kit’s sounds cannot be varied together: load one of them".to_owned();
+            return;
+        };
+        self.seed = self.seed.wrapping_add(1);
+        match variation.of(&preset, self.seed, &self.locked) {
+            Some(varied) => {
+                self.message.clear();
+                self.history.begin(&self.params);
+                load(Playable::Preset(varied), &self.params, host);
+                self.history.end(variation.name(), &self.params);
+            }
+            None => self.message = "every variation that was tried is silent: unlock more sections".to_owned(),
+        }
+    }
+
+    /// Undoes or redoes a step, which may exchange the two versions.
+    fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
+        let now = (self.params.state(), self.history.is_changed());
+        if go(&mut self.history, &self.params, host) {
+            self.other = Some(now);
+            self.is_b = !self.is_b;
+        }
+    }
+
+    pub(super) fn grant(&mut self, wish: Wish, ui: &Ui, host: &GuiContext) {
+        match wish {
+            Wish::Browse | Wish::Save => {
+                let closes = self.over == Some(Over::Browser) && wish == Wish::Browse;
+                self.over = (!closes).then_some(Over::Browser);
+                self.message.clear();
+                self.browser.open(&self.params.name(), if wish == Wish::Save { Aim::Save } else { Aim::Find });
+            }
+            Wish::Undo => self.go_back(History::undo, host),
+            Wish::Redo => self.go_back(History::redo, host),
+            Wish::Zoom(zoom) => {
+                self.params.set_view(|view| view.zoom = zoom);
+                ui.ctx().set_zoom_factor(extent::factor(self.params.view()));
+            }
+            Wish::Theme(theme) => self.params.set_view(|view| view.theme = theme),
+            Wish::Step(places) => self.step(places, host),
+            Wish::Swap => {
+                self.history.begin(&self.params);
+                let now = (self.params.state(), self.history.is_changed());
+                let mut is_changed = now.1;
+                if let Some((other, other_is_changed)) = self.other.replace(now) {
+                    restore(other, &self.params, host);
+                    is_changed = other_is_changed;
+                }
+                self.is_b = !self.is_b;
+                let name = if self.is_b { "version B" } else { "version A" };
+                self.history.end_swap(name, is_changed, &self.params);
+            }
+            Wish::Variation(Asked::Lock(section)) => {
+                if !self.locked.remove(section) {
+                    self.locked.insert(section);
+                }
+            }
+            Wish::Variation(Asked::Vary(variation)) => self.vary(variation, host),
+            Wish::Copy => self.other = Some((self.params.state(), self.history.is_changed())),
+        }
+    }
+}
