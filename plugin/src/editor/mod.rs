@@ -90,7 +90,7 @@ impl Editor for SprungEditor {
         let [width, height] = view.size.map(|side| side as f32);
         let state = EguiEditorState::from_size(LogicalSize { width, height }, extent::factor(view));
         // The size that the host was told is at this scale, so the window must open with it too.
-        let scale_factor = self.params.extent().tell(fallback_scale_factor);
+        let scale_factor = self.params.extent().set_scale(fallback_scale_factor);
         // The window has no gradients that would need dithering, which costs time for each pixel.
         let graphics = GraphicsConfig { dithering: false, ..GraphicsConfig::default() };
         let settings = EguiNiceSettings::new().with_tile("Sprung").with_resize_hint(self.resize_hint());
@@ -110,7 +110,7 @@ impl Editor for SprungEditor {
     }
 
     fn scale_factor_suggested(&self, scale_factor: f64) {
-        self.params.extent().tell(Some(scale_factor));
+        self.params.extent().set_scale(Some(scale_factor));
     }
 
     fn resize_hint(&self) -> ResizeHint {

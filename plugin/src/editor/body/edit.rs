@@ -1,6 +1,6 @@
 //! A change of a body in progress: the sound is made again at intervals while a number is dragged; all is one undo step.
 
-use super::origin::Made;
+use super::origin::Origin;
 use crate::editor::controls::Controls;
 use crate::editor::controls::gestures::{Gestures, touch};
 use crate::loaded::Loaded;
@@ -14,9 +14,9 @@ const CHANGES: f64 = 0.06;
 
 /// A change of a body in progress.
 pub(super) struct BodyEdit {
-    made: Made,
+    origin: Origin,
     /// The last body whose sound could be made, and the description of the change up to then.
-    good: (Made, String),
+    good: (Origin, String),
     is_new: bool,
     /// The description of the change, for the name of the undo step.
     what: String,
@@ -31,16 +31,16 @@ pub(super) struct BodyEdit {
 
 impl BodyEdit {
     /// Begins to change the body from which the modes of `loaded` are made.
-    pub(super) fn begin(made: &Made, loaded: &Arc<Loaded>, controls: &mut Controls) -> Self {
+    pub(super) fn begin(origin: &Origin, loaded: &Arc<Loaded>, controls: &mut Controls) -> Self {
         controls.release();
         controls.history.begin(controls.params);
         let decay = f64::from(controls.value(Param::Decay.info()));
         Self {
-            made: made.clone(),
-            good: (made.clone(), String::new()),
+            origin: origin.clone(),
+            good: (origin.clone(), String::new()),
             is_new: false,
             what: String::new(),
-            decay: made.t60().map_or(1.0, |t60| decay / t60),
+            decay: origin.t60().map_or(1.0, |t60| decay / t60),
             position: controls.params.knobs()[Param::Decay as usize].position(),
             next: 0.0,
             loaded: loaded.clone(),
@@ -52,13 +52,13 @@ impl BodyEdit {
         Arc::ptr_eq(&self.loaded, loaded)
     }
 
-    pub(super) fn made(&self) -> &Made {
-        &self.made
+    pub(super) fn origin(&self) -> &Origin {
+        &self.origin
     }
 
     /// Sets the body from which the sound is made next.
-    pub(super) fn change(&mut self, made: Made, what: String) {
-        (self.made, self.what, self.is_new) = (made, what, true);
+    pub(super) fn change(&mut self, origin: Origin, what: String) {
+        (self.origin, self.what, self.is_new) = (origin, what, true);
     }
 
     /// Makes the sound again if it is time. The error says why it cannot be made; the last body that worked is kept.
@@ -68,22 +68,22 @@ impl BodyEdit {
         }
         self.is_new = false;
         let start = Instant::now();
-        let modes = match self.made.modes() {
+        let modes = match self.origin.modes() {
             Ok(Some(modes)) => modes,
             Ok(None) => return Ok(()),
             Err(message) => {
-                (self.made, self.what) = self.good.clone();
+                (self.origin, self.what) = self.good.clone();
                 self.next = now + rest(start);
                 return Err(message);
             }
         };
-        self.good = (self.made.clone(), self.what.clone());
+        self.good = (self.origin.clone(), self.what.clone());
         let mut state = controls.params.state();
         let Playable::Preset(preset) = &mut state.playable else { return Ok(()) };
         preset.patch.modes = modes;
         // The modes' decays are relative to the parameter *Decay*.
         let decay = Param::Decay.info();
-        let value = decay.clamp((self.decay * self.made.t60().unwrap_or(1.0)) as f32);
+        let value = decay.clamp((self.decay * self.origin.t60().unwrap_or(1.0)) as f32);
         if value != state.values.get(Param::Decay) {
             preset.patch.set(Param::Decay, value);
             state.values.set(Param::Decay, value);

@@ -1,6 +1,6 @@
 //! The numbers of bodies and of their joint on the page of the body: names, values with units, and help texts.
 
-use super::origin::Made;
+use super::origin::Origin;
 use sprung::sound::bodies::{Body, FIELDS};
 use sprung::sound::pairs::LINK_FIELDS;
 
@@ -72,30 +72,30 @@ const HELP: [(&str, &str); 41] = [
 ];
 
 impl Part {
-    pub(super) fn body(self, made: &Made) -> Option<&Body> {
+    pub(super) fn body(self, origin: &Origin) -> Option<&Body> {
         match self {
-            Self::First => made.body(),
-            Self::Second => made.pair().map(|pair| &pair.second),
+            Self::First => origin.body(),
+            Self::Second => origin.pair().map(|pair| &pair.second),
             Self::Joint => None,
         }
     }
 
-    pub(super) fn body_mut(self, made: &mut Made) -> Option<&mut Body> {
+    pub(super) fn body_mut(self, origin: &mut Origin) -> Option<&mut Body> {
         match self {
-            Self::First => made.body_mut(),
-            Self::Second => made.pair_mut().map(|pair| &mut pair.second),
+            Self::First => origin.body_mut(),
+            Self::Second => origin.pair_mut().map(|pair| &mut pair.second),
             Self::Joint => None,
         }
     }
 
     /// Its numbers, in the order of the tables.
-    pub(super) fn numbers(self, made: &Made) -> Vec<Number> {
+    pub(super) fn numbers(self, origin: &Origin) -> Vec<Number> {
         let number = |name, unit, range, value: Option<f64>| value.map(|value| Number { name, unit, range, value });
-        match (self.body(made), made.pair()) {
+        match (self.body(origin), origin.pair()) {
             (Some(body), _) => FIELDS
                 .iter()
                 // A single body has no joint.
-                .filter(|field| made.pair().is_some() || !field.name.starts_with("joint"))
+                .filter(|field| origin.pair().is_some() || !field.name.starts_with("joint"))
                 .filter_map(|field| number(field.name, field.unit, [field.min, field.max], (field.get)(body)))
                 .collect(),
             (None, Some(pair)) => LINK_FIELDS
@@ -107,12 +107,12 @@ impl Part {
     }
 
     /// Sets the number of this name. The lowest and the highest key of a joint push each other.
-    pub(super) fn set(self, made: &mut Made, name: &str, value: f64) {
-        if let Some(body) = self.body_mut(made) {
+    pub(super) fn set(self, origin: &mut Origin, name: &str, value: f64) {
+        if let Some(body) = self.body_mut(origin) {
             if let Some(field) = FIELDS.iter().find(|field| field.name == name) {
                 (field.set)(body, field.clamp(value));
             }
-        } else if let Some(pair) = made.pair_mut()
+        } else if let Some(pair) = origin.pair_mut()
             && let Some(field) = LINK_FIELDS.iter().find(|field| field.name == name)
         {
             (field.set)(pair, value.clamp(field.min, field.max));
@@ -211,12 +211,12 @@ mod tests {
             assert!(names().any(|known| known == name), "{name}");
         }
         for (_, model) in Model::ALL {
-            let mut made = Made::FromBody(Box::new(Body::new(model.clone())));
-            for number in Part::First.numbers(&made) {
+            let mut origin = Origin::FromBody(Box::new(Body::new(model.clone())));
+            for number in Part::First.numbers(&origin) {
                 let [min, max] = number.range;
                 let value = ((min + max) / 2.0).floor().max(min);
-                Part::First.set(&mut made, number.name, value);
-                let now = Part::First.numbers(&made).into_iter().find(|now| now.name == number.name);
+                Part::First.set(&mut origin, number.name, value);
+                let now = Part::First.numbers(&origin).into_iter().find(|now| now.name == number.name);
                 assert_eq!(now.map(|now| now.value), Some(value), "{}", number.name);
             }
         }

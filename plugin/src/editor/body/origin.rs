@@ -7,13 +7,13 @@ use sprung::sound::pairs::{Link, Pair};
 
 /// The origin of a sound's modes.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Made {
+pub(crate) enum Origin {
     FromBody(Box<Body>),
     FromPair(Box<Pair>),
     Table,
 }
 
-impl Made {
+impl Origin {
     pub(crate) fn of(modes: &ModeTable) -> Self {
         match (body_of_modes(modes), pair_of_modes(modes)) {
             (_, Some(pair)) => Self::FromPair(Box::new(pair)),
@@ -39,7 +39,7 @@ impl Made {
         }
     }
 
-    /// Like [`Made::body`], to be changed.
+    /// Like [`Origin::body`], to be changed.
     pub(super) fn body_mut(&mut self) -> Option<&mut Body> {
         match self {
             Self::FromBody(body) => Some(body),
@@ -56,7 +56,7 @@ impl Made {
         }
     }
 
-    /// Like [`Made::pair`], to be changed.
+    /// Like [`Origin::pair`], to be changed.
     pub(super) fn pair_mut(&mut self) -> Option<&mut Pair> {
         match self {
             Self::FromPair(pair) => Some(pair),

@@ -2,7 +2,7 @@
 
 use super::edit::BodyEdit;
 use super::numbers::{Number, Part, written};
-use super::origin::{Made, model_name};
+use super::origin::{Origin, model_name};
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::Audition;
@@ -37,7 +37,7 @@ const TABLE: &str = "a table of modes";
 pub(crate) struct BodyPage {
     part: Part,
     /// The loaded sound, and the body from which its modes are made.
-    read: Option<(Arc<Loaded>, Made)>,
+    read: Option<(Arc<Loaded>, Origin)>,
     edit: Option<BodyEdit>,
     audition: Audition,
 }
@@ -75,15 +75,15 @@ impl BodyPage {
         if let Some(rest) = self.audition.rest(now) {
             ui.ctx().request_repaint_after(Duration::from_secs_f64(rest));
         }
-        let made = self.made(shown);
-        if made.pair().is_none() && self.part == Part::Joint || made == Made::Table {
+        let origin = self.origin(shown);
+        if origin.pair().is_none() && self.part == Part::Joint || origin == Origin::Table {
             self.part = Part::First;
         }
         let side = inner.with_max_x(inner.left() + SIDE);
         let mut message = None;
-        if let Some((changed, what)) = self.side(ui, side, &made, controls) {
+        if let Some((changed, what)) = self.side(ui, side, &origin, controls) {
             self.leave(controls);
-            let mut edit = BodyEdit::begin(&made, shown.loaded(), controls);
+            let mut edit = BodyEdit::begin(&origin, shown.loaded(), controls);
             edit.change(changed, what);
             message = edit.end(controls).err();
             self.audition.strike(
@@ -93,28 +93,28 @@ impl BodyPage {
                 controls.params.link(),
             );
         } else {
-            message = self.numbers(ui, inner.with_min_x(side.right() + GAP), &made, shown, controls).or(message);
+            message = self.numbers(ui, inner.with_min_x(side.right() + GAP), &origin, shown, controls).or(message);
         }
         message
     }
 
     /// The body to show: while a number is dragged, the one that is being changed.
-    fn made(&mut self, shown: &Shown) -> Made {
+    fn origin(&mut self, shown: &Shown) -> Origin {
         if let Some(edit) = &self.edit {
-            return edit.made().clone();
+            return edit.origin().clone();
         }
         match &self.read {
-            Some((loaded, made)) if Arc::ptr_eq(loaded, shown.loaded()) => made.clone(),
+            Some((loaded, origin)) if Arc::ptr_eq(loaded, shown.loaded()) => origin.clone(),
             _ => {
-                let made = Made::of(&shown.patch().modes);
-                self.read = Some((shown.loaded().clone(), made.clone()));
-                made
+                let origin = Origin::of(&shown.patch().modes);
+                self.read = Some((shown.loaded().clone(), origin.clone()));
+                origin
             }
         }
     }
 
     /// Shows which body is edited, its model and its material. Returns the changed body and the name of the undo step.
-    fn side(&mut self, ui: &Ui, rect: Rect, made: &Made, controls: &mut Controls) -> Option<(Made, String)> {
+    fn side(&mut self, ui: &Ui, rect: Rect, origin: &Origin, controls: &mut Controls) -> Option<(Origin, String)> {
         let row =
             |place: usize| Rect::from_min_size(rect.min + vec2(0.0, place as f32 * ROW), vec2(rect.width(), ROW - 4.0));
         let palette = controls.palette;
@@ -122,7 +122,8 @@ impl BodyPage {
         for (place, (name, part)) in parts.into_iter().enumerate() {
             let width = (rect.width() - 8.0) / 3.0;
             let at = Rect::from_min_size(row(0).min + vec2(place as f32 * (width + 4.0), 0.0), vec2(width, ROW - 4.0));
-            let is_there = part == Part::First || made.pair().is_some() || part == Part::Second && *made != Made::Table;
+            let is_there =
+                part == Part::First || origin.pair().is_some() || part == Part::Second && *origin != Origin::Table;
             let look = match (is_there, part == self.part) {
                 (false, _) => Look::Disabled,
                 (true, true) => Look::On,
@@ -148,15 +149,15 @@ impl BodyPage {
             let field = Field { id: Id::unique(("body", title)), name: &name, value, is_default: true };
             field.show(ui, row(place).with_min_x(rect.left() + NAMES), &names, palette).1
         };
-        if let Some(pair) = made.pair().filter(|_| self.part == Part::Joint) {
+        if let Some(pair) = origin.pair().filter(|_| self.part == Part::Joint) {
             let names: Vec<String> = LINK_KINDS.iter().map(|(kind, _)| (*kind).to_owned()).collect();
             let same = |link: &_| std::mem::discriminant(link) == std::mem::discriminant(&pair.link);
             let now = LINK_KINDS.iter().find(|(_, link)| same(link)).map_or("", |(kind, _)| *kind);
             let picked = field(1, "Kind", now, &names)?;
             let (kind, link) = LINK_KINDS[picked];
-            return Some((made.linked(link), format!("joint {kind}")));
+            return Some((origin.linked(link), format!("joint {kind}")));
         }
-        let body = self.part.body(made);
+        let body = self.part.body(origin);
         let is_first = self.part == Part::First;
         let none = if is_first { TABLE } else { NONE };
         let first = if is_first { None } else { Some(NONE.to_owned()) };
@@ -165,19 +166,19 @@ impl BodyPage {
         let now = body.map_or(none.to_owned(), |body| model_name(body.model.id()));
         if let Some(picked) = field(1, "Model", &now, &names) {
             let model = Model::ALL.iter().find(|(id, _)| model_name(id) == names[picked]).map(|(_, model)| model);
-            return Some((made.with_model(!is_first, model), format!("model {}", names[picked])));
+            return Some((origin.with_model(!is_first, model), format!("model {}", names[picked])));
         }
         let body = body?;
         let names: Vec<String> = MATERIALS.iter().map(|material| material.id.replace('_', " ")).collect();
         if let Some(picked) = field(2, "Material", &body.material.id.replace('_', " "), &names) {
-            let mut changed = made.clone();
+            let mut changed = origin.clone();
             self.part.body_mut(&mut changed)?.material = MATERIALS[picked];
             return Some((changed, format!("material {}", names[picked])));
         }
-        if made.pair().is_some() {
+        if origin.pair().is_some() {
             let look = if body.follows_key { Look::On } else { Look::Off };
             if button(ui, row(3), "Follows the keys", "The body follows the keys", look, palette).clicked() {
-                let mut changed = made.clone();
+                let mut changed = origin.clone();
                 let body = self.part.body_mut(&mut changed)?;
                 body.follows_key = !body.follows_key;
                 let what = if body.follows_key { "body follows the keys" } else { "body keeps its pitch" };
@@ -192,11 +193,11 @@ impl BodyPage {
         &mut self,
         ui: &mut Ui,
         rect: Rect,
-        made: &Made,
+        origin: &Origin,
         shown: &Shown,
         controls: &mut Controls,
     ) -> Option<String> {
-        let numbers = self.part.numbers(made);
+        let numbers = self.part.numbers(origin);
         if numbers.is_empty() {
             let text = if self.part == Part::Second {
                 "One body sounds. Choose a model, and a second one stands beside it; their joint says how they act on each other."
@@ -219,10 +220,10 @@ impl BodyPage {
                 let (response, value) = show(ui, Rect::from_min_size(corner, cell), number, controls);
                 is_held |= response.dragged() || response.has_focus();
                 if response.changed() && value != number.value {
-                    let mut changed = self.edit.as_ref().map_or(made, BodyEdit::made).clone();
+                    let mut changed = self.edit.as_ref().map_or(origin, BodyEdit::origin).clone();
                     self.part.set(&mut changed, number.name, value);
                     let what = format!("{} {}", number.title(), written(value, number.unit));
-                    let edit = self.edit.get_or_insert_with(|| BodyEdit::begin(made, shown.loaded(), controls));
+                    let edit = self.edit.get_or_insert_with(|| BodyEdit::begin(origin, shown.loaded(), controls));
                     edit.change(changed, what);
                 }
             }

@@ -1,7 +1,7 @@
 //! The body that is drawn for a sound: its form, and each mode's shape on it.
 
 use super::form::Form;
-use super::origin::{Made, model_name};
+use super::origin::{Origin, model_name};
 use sprung::patch::ModeTable;
 use sprung::preset::Family;
 use sprung::sound::bodies::{Body, Model, Point};
@@ -15,7 +15,7 @@ const NEAR: [f64; 2] = [0.6, 5.0];
 
 /// A body to draw.
 pub(super) struct BodyShape {
-    pub(super) made: Made,
+    pub(super) origin: Origin,
     pub(super) form: Form,
     pub(super) points: Vec<Point>,
     /// For each mode of the sound, its shape at the points; none if the mode belongs to a body that is not drawn.
@@ -44,14 +44,14 @@ fn model_of(family: Option<Family>) -> (&'static str, Model) {
 impl BodyShape {
     /// The body of a sound of this family. This is slow: it computes the shapes of all modes.
     pub(super) fn of(modes: &ModeTable, family: Option<Family>) -> Self {
-        let made = Made::of(modes).with_places();
-        let (body, near, caption) = match &made {
-            Made::FromBody(body) => ((**body).clone(), NEAR[0], model_name(body.model.id())),
-            Made::FromPair(pair) => {
+        let origin = Origin::of(modes).with_places();
+        let (body, near, caption) = match &origin {
+            Origin::FromBody(body) => ((**body).clone(), NEAR[0], model_name(body.model.id())),
+            Origin::FromPair(pair) => {
                 let caption = format!("{}, joined to a second body", model_name(pair.first.model.id()));
                 (pair.first.clone(), NEAR[0], caption)
             }
-            Made::Table => {
+            Origin::Table => {
                 let (id, model) = model_of(family);
                 (Body::new(model), NEAR[1], format!("a table of modes, drawn as a {}", model_name(id)))
             }
@@ -76,7 +76,7 @@ impl BodyShape {
             let best = (0..found.len()).min_by(|a, b| far(a).total_cmp(&far(b))).filter(|best| far(best) <= near);
             // In a table with other ratios than the model's, the first mode gets the shape of the model's first mode,
             // and so on.
-            let by_order = (made == Made::Table).then_some(place % found.len().max(1));
+            let by_order = (origin == Origin::Table).then_some(place % found.len().max(1));
             best.or(by_order).and_then(|best| found.get(best)).map(|(_, shape)| shape.clone())
         };
         let modes = &modes.as_slice()[..modes.as_slice().len().min(DRAWN[0])];
@@ -84,7 +84,7 @@ impl BodyShape {
         // High modes at their true speed would be a blur.
         let speeds = modes.iter().map(|mode| (mode.ratio / lowest).sqrt().min(6.0)).collect();
         let shapes = modes.iter().map(|mode| mode.ratio).enumerate().map(shape).collect();
-        Self { made, form, points, shapes, speeds, caption }
+        Self { origin, form, points, shapes, speeds, caption }
     }
 
     /// The displacement of each point, for the amplitudes of the modes.

@@ -3,7 +3,7 @@
 use super::edit::rest;
 use super::face;
 use super::form::Form;
-use super::origin::Made;
+use super::origin::Origin;
 use super::shape::BodyShape;
 use crate::editor::controls::gestures::touch;
 use crate::editor::controls::shown::Shown;
@@ -143,7 +143,7 @@ impl BodyView {
         let drag_point = drag.point;
         if (is_over || now >= drag.next) && drag.written != Some(drag.point) {
             let start = std::time::Instant::now();
-            write(drag.point, &mut shape.made, controls);
+            write(drag.point, &mut shape.origin, controls);
             drag.next = now + rest(start);
             drag.written = Some(drag.point);
             drag.loaded = controls.params.loaded();
@@ -151,7 +151,7 @@ impl BodyView {
         if is_over {
             self.drag = None;
             audition.release(controls.params.link());
-            if shape.made == Made::Table {
+            if shape.origin == Origin::Table {
                 controls.release();
             } else {
                 controls.history.end(describe(drag_point, shape), controls.params);
@@ -175,7 +175,7 @@ fn exciter(controls: &Controls) -> Option<Param> {
 /// Where the sound is struck; none if the place is unknown or cannot be changed.
 fn strike(shape: &BodyShape, shown: &Shown, controls: &Controls) -> Option<Point> {
     shown.preset()?;
-    match shape.made.body() {
+    match shape.origin.body() {
         Some(body) => Some(body.strike),
         None if shape.form == Form::Line => {
             Some(Point { x: f64::from(controls.value(exciter(controls)?.info())) / 100.0, y: 0.0 })
@@ -188,7 +188,7 @@ fn strike(shape: &BodyShape, shown: &Shown, controls: &Controls) -> Option<Point
 fn confined(point: Point, shape: &BodyShape) -> Point {
     let rounded = |share: f64| (share * 1000.0).round() / 1000.0;
     let point = Point { x: rounded(point.x), y: rounded(point.y) };
-    match (shape.made.body(), shape.form) {
+    match (shape.origin.body(), shape.form) {
         // On a string, the place is counted from the nearer end.
         (None, _) => Point { x: point.x.min(1.0 - point.x).clamp(0.01, 0.5), y: 0.0 },
         (Some(body), Form::Line) => Point { y: body.strike.y, ..point },
@@ -208,17 +208,17 @@ fn describe(point: Point, shape: &BodyShape) -> String {
 }
 
 /// Changes the place of the strike in the sound.
-fn write(point: Point, made: &mut Made, controls: &mut Controls) {
-    if let Some(body) = made.body_mut() {
+fn write(point: Point, origin: &mut Origin, controls: &mut Controls) {
+    if let Some(body) = origin.body_mut() {
         body.strike = point;
     }
-    if *made == Made::Table {
+    if *origin == Origin::Table {
         if let Some(param) = exciter(controls) {
             controls.turn(param.info(), param.info().normalise(100.0 * point.x as f32));
         }
         return;
     }
-    let Ok(Some(modes)) = made.modes() else { return };
+    let Ok(Some(modes)) = origin.modes() else { return };
     let mut state = controls.params.state();
     let Playable::Preset(preset) = &mut state.playable else { return };
     preset.patch.modes = modes;

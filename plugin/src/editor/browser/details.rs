@@ -12,7 +12,7 @@ use sprung::preset::{Playable, Preset};
 use sprung::units::note_name;
 
 /// What became of a request of the user's.
-pub(super) struct Said {
+pub(super) struct Outcome {
     pub(super) message: String,
     /// Whether the list of sounds has changed.
     pub(super) is_stale: bool,
@@ -20,7 +20,7 @@ pub(super) struct Said {
     pub(super) is_done: bool,
 }
 
-impl Said {
+impl Outcome {
     fn new(message: impl ToString, is_stale: bool) -> Self {
         Self { message: message.to_string(), is_stale, is_done: false }
     }
@@ -56,7 +56,7 @@ impl Details {
         shown: Option<&Listed>,
         sounds: &Sounds,
         controls: &mut Controls,
-    ) -> Option<Said> {
+    ) -> Option<Outcome> {
         let palette = controls.palette;
         let mut top = rect.top();
         if let Some(sound) = shown {
@@ -109,10 +109,10 @@ impl Details {
             *controls.hint = Hint::new("Save", folder.unwrap_or_default());
         }
         if enters || response.clicked() {
-            let said = self.save(sounds, controls);
+            let outcome = self.save(sounds, controls);
             // Enter is pressed again, or the name is corrected.
-            self.takes_name = enters && !said.is_stale;
-            return Some(Said { is_done: enters && said.is_stale, ..said });
+            self.takes_name = enters && !outcome.is_stale;
+            return Some(Outcome { is_done: enters && outcome.is_stale, ..outcome });
         }
         let look = if own.is_some() { Look::Plain } else { Look::Disabled };
         if button(ui, rename, "Rename", "Give your sound this name", look, palette).clicked()
@@ -124,60 +124,60 @@ impl Details {
             && let (Some(path), Some(library)) = (own.and_then(|own| own.path.as_ref()), &sounds.library)
         {
             return Some(match library.discard(path) {
-                Ok(place) => Said::new(format!("moved to {}", place.display()), true),
-                Err(error) => Said::new(error, false),
+                Ok(place) => Outcome::new(format!("moved to {}", place.display()), true),
+                Err(error) => Outcome::new(error, false),
             });
         }
         None
     }
 
     /// Renames a file of the user's. If the sound is a favourite, it stays one under the new name.
-    fn rename(&mut self, own: &Listed, library: &Library, controls: &Controls) -> Said {
+    fn rename(&mut self, own: &Listed, library: &Library, controls: &Controls) -> Outcome {
         let name = self.name.trim().to_owned();
-        let Some(path) = &own.path else { return Said::new("", false) };
+        let Some(path) = &own.path else { return Outcome::new("", false) };
         match library.rename(path, &name) {
             Ok(path) => {
                 let names = match library.favourites() {
                     Ok(names) => names,
-                    Err(error) => return Said::new(format!("renamed, but its star may be lost: {error}"), true),
+                    Err(error) => return Outcome::new(format!("renamed, but its star may be lost: {error}"), true),
                 };
                 if names.contains(own.name()) {
                     // In this order, since the new name may be the old one.
                     let moved =
                         library.set_favourite(own.name(), false).and_then(|()| library.set_favourite(&name, true));
                     if let Err(error) = moved {
-                        return Said::new(error, true);
+                        return Outcome::new(error, true);
                     }
                 }
                 if controls.params.name() == own.name() {
                     controls.params.rename(name);
                 }
-                Said::new(format!("renamed {}", path.display()), true)
+                Outcome::new(format!("renamed {}", path.display()), true)
             }
-            Err(error) => Said::new(error, false),
+            Err(error) => Outcome::new(error, false),
         }
     }
 
-    fn save(&mut self, sounds: &Sounds, controls: &mut Controls) -> Said {
+    fn save(&mut self, sounds: &Sounds, controls: &mut Controls) -> Outcome {
         let name = self.name.trim().to_owned();
         let replace = self.confirm.take().is_some_and(|confirmed| confirmed == name);
         let Some(library) = &sounds.library else {
-            return Said::new("the system does not say where your data is kept", false);
+            return Outcome::new("the system does not say where your data is kept", false);
         };
         let Playable::Preset(preset) = controls.params.state().playable else {
-            return Said::new("a kit is kept in the project with its presets: only single presets are saved", false);
+            return Outcome::new("a kit is kept in the project with its presets: only single presets are saved", false);
         };
         match library.save(&Preset { name: name.clone(), ..preset }, replace) {
             Ok(path) => {
                 controls.params.rename(name);
                 controls.history.saved();
-                Said::new(format!("saved {}", path.display()), true)
+                Outcome::new(format!("saved {}", path.display()), true)
             }
             Err(sprung::Error::Exists { path }) => {
                 self.confirm = Some(name);
-                Said::new(format!("{path} exists; Enter again, or Replace, writes over it"), false)
+                Outcome::new(format!("{path} exists; Enter again, or Replace, writes over it"), false)
             }
-            Err(error) => Said::new(error, false),
+            Err(error) => Outcome::new(error, false),
         }
     }
 }

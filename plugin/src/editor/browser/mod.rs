@@ -11,16 +11,16 @@ use crate::editor::theme::{GAP, PADDING, Palette, SMALL, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
 use crate::editor::widgets::text::{line, name_field, take_over};
 use crate::link::Link;
-use details::{Details, Said};
+use details::{Details, Outcome};
 use egui::{Align2, Id, Key, Rect, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
-use sounds::{Shelf, Sounds};
+use sounds::{Category, Sounds};
 use sprung::preset::catalogue::Listed;
 use sprung::preset::library::Library;
 use sprung::preset::{Guide, Playable};
 use std::sync::Arc;
 
 const ROW: f32 = 22.0;
-/// Width of the list of shelves, and of the details of a sound.
+/// Width of the list of categories, and of the details of a sound.
 const SIDE: [f32; 2] = [112.0, 250.0];
 
 /// What the browser is opened for.
@@ -35,7 +35,7 @@ pub(super) struct Browser {
     /// Read when the browser is first opened.
     sounds: Option<Sounds>,
     library: Option<Library>,
-    shelf: Shelf,
+    category: Category,
     words: String,
     details: Details,
     /// The key that plays the sound being tried.
@@ -50,7 +50,7 @@ impl Browser {
         Self {
             sounds: None,
             library,
-            shelf: Shelf::All,
+            category: Category::All,
             words: String::new(),
             details: Details::default(),
             audition: Audition::default(),
@@ -85,31 +85,31 @@ impl Browser {
         palette.paint_panel(ui.painter(), rect);
         let inner = rect.shrink(PADDING);
         let details_width = if rect.width() < 900.0 { 190.0 } else { SIDE[1] };
-        let shelves = Rect::from_min_max(inner.min, pos2(inner.left() + SIDE[0], inner.bottom()));
+        let categories = Rect::from_min_max(inner.min, pos2(inner.left() + SIDE[0], inner.bottom()));
         let details = Rect::from_min_max(pos2(inner.right() - details_width, inner.top()), inner.max);
         let list = Rect::from_min_max(
-            pos2(shelves.right() + 2.0 * GAP, inner.top()),
+            pos2(categories.right() + 2.0 * GAP, inner.top()),
             pos2(details.left() - 2.0 * GAP, inner.bottom()),
         );
-        for x in [shelves.right() + GAP, details.left() - GAP] {
+        for x in [categories.right() + GAP, details.left() - GAP] {
             ui.painter().vline(ui.painter().round_to_pixel_center(x), inner.y_range(), Stroke::new(1.0, palette.line));
         }
-        self.shelves(ui, shelves, palette);
+        self.categories(ui, categories, palette);
         let mut message = None;
         let present = controls.params.name();
         let (search, rows) = list.split_top_bottom_at_y(list.top() + 28.0);
-        let asks = self.search(ui, search, palette);
-        let found = sounds.find(self.shelf, &self.words);
-        let chosen = match asks {
-            Ask::Nothing => None,
+        let command = self.search(ui, search, palette);
+        let found = sounds.find(self.category, &self.words);
+        let chosen = match command {
+            Command::Nothing => None,
             // While another field has the focus, the arrow keys belong to that field.
-            Ask::Step(_) if !has_arrows(ui, found.len()) => None,
-            Ask::Step(places) => {
+            Command::Step(_) if !has_arrows(ui, found.len()) => None,
+            Command::Step(places) => {
                 let place = found.iter().position(|sound| sound.name() == present);
                 let next = place.map_or(0, |place| place as isize + places);
                 usize::try_from(next).ok().filter(|next| *next < found.len())
             }
-            Ask::File => {
+            Command::File => {
                 message = Some(self.load_file(controls));
                 None
             }
@@ -119,13 +119,13 @@ impl Browser {
             self.try_out(ui, sound, controls);
         }
         let shown = found.iter().find(|sound| sound.name() == controls.params.name());
-        let said = self.details.show(ui, details, shown.map(Arc::as_ref), &sounds, controls);
-        let is_stale = said.as_ref().is_some_and(|said| said.is_stale);
+        let outcome = self.details.show(ui, details, shown.map(Arc::as_ref), &sounds, controls);
+        let is_stale = outcome.as_ref().is_some_and(|outcome| outcome.is_stale);
         let broken =
             sounds.broken.first().map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
         self.sounds = (!is_stale).then_some(sounds);
-        match said {
-            Some(Said { message, is_done, .. }) => Some((message, is_done)),
+        match outcome {
+            Some(Outcome { message, is_done, .. }) => Some((message, is_done)),
             None => message.or(broken).map(|message| (message, false)),
         }
     }
@@ -140,26 +140,27 @@ impl Browser {
         self.audition.release(link);
     }
 
-    fn shelves(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) {
-        let mut inner = ui.new_child(UiBuilder::new().id_salt("shelves").max_rect(rect));
-        ScrollArea::vertical().id_salt("shelves").auto_shrink(false).show(&mut inner, |ui| {
+    fn categories(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) {
+        let mut inner = ui.new_child(UiBuilder::new().id_salt("categories").max_rect(rect));
+        ScrollArea::vertical().id_salt("categories").auto_shrink(false).show(&mut inner, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            for shelf in Shelf::all() {
+            for category in Category::all() {
                 let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 2.0), Sense::hover());
-                let name = shelf.name();
-                let look = if shelf == self.shelf { Look::On } else { Look::Off };
-                if button(ui, row, &name, &format!("Show {name}"), look, palette).clicked() && self.shelf != shelf {
-                    // All of the shelf is shown: words of another search would hide most of it.
-                    (self.shelf, self.words) = (shelf, String::new());
+                let name = category.name();
+                let look = if category == self.category { Look::On } else { Look::Off };
+                if button(ui, row, &name, &format!("Show {name}"), look, palette).clicked() && self.category != category
+                {
+                    // All of the category is shown: words of another search would hide most of it.
+                    (self.category, self.words) = (category, String::new());
                 }
-                if matches!(shelf, Shelf::Kits) {
+                if matches!(category, Category::Kits) {
                     ui.add_space(6.0);
                 }
             }
         });
     }
 
-    fn search(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) -> Ask {
+    fn search(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) -> Command {
         let field = search_field();
         let rect = rect.with_max_y(rect.top() + 22.0);
         let clear = rect.with_min_x(rect.right() - rect.height());
@@ -176,12 +177,12 @@ impl Browser {
         }
         let pressed = |key| ui.input(|input| input.key_pressed(key));
         if response.lost_focus() && pressed(Key::Enter) && self.words.ends_with(".toml") {
-            return Ask::File;
+            return Command::File;
         }
         match (pressed(Key::ArrowDown), pressed(Key::ArrowUp)) {
-            (true, false) => Ask::Step(1),
-            (false, true) => Ask::Step(-1),
-            _ => Ask::Nothing,
+            (true, false) => Command::Step(1),
+            (false, true) => Command::Step(-1),
+            _ => Command::Nothing,
         }
     }
 
@@ -294,7 +295,7 @@ fn has_arrows(ui: &Ui, rows: usize) -> bool {
 }
 
 /// A request made with the search field's keys.
-enum Ask {
+enum Command {
     Nothing,
     /// Load the sound at this distance in the list.
     Step(isize),

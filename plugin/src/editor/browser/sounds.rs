@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// A category of sounds in the browser.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum Shelf {
+pub(super) enum Category {
     #[default]
     All,
     Favourites,
@@ -17,8 +17,8 @@ pub(super) enum Shelf {
     Family(Family),
 }
 
-impl Shelf {
-    /// All shelves in their order.
+impl Category {
+    /// All categories in their order.
     pub(super) fn all() -> impl Iterator<Item = Self> {
         let families = Family::ALL.iter().map(|family| Self::Family(*family));
         [Self::All, Self::Favourites, Self::Own, Self::Kits].into_iter().chain(families)
@@ -65,14 +65,14 @@ impl Sounds {
         self.favourites.contains(sound.name())
     }
 
-    /// The sounds of a shelf that contain all words; those with the words in their names come first.
-    pub(super) fn find(&self, shelf: Shelf, words: &str) -> Vec<Arc<Listed>> {
-        let is_on = |sound: &Listed| match shelf {
-            Shelf::All => true,
-            Shelf::Favourites => self.is_favourite(sound),
-            Shelf::Own => sound.path.is_some(),
-            Shelf::Kits => matches!(sound.playable, Playable::Kit(_)),
-            Shelf::Family(wanted) => sound.family() == Some(wanted),
+    /// The sounds of a category that contain all words; those with the words in their names come first.
+    pub(super) fn find(&self, category: Category, words: &str) -> Vec<Arc<Listed>> {
+        let is_on = |sound: &Listed| match category {
+            Category::All => true,
+            Category::Favourites => self.is_favourite(sound),
+            Category::Own => sound.path.is_some(),
+            Category::Kits => matches!(sound.playable, Playable::Kit(_)),
+            Category::Family(wanted) => sound.family() == Some(wanted),
         };
         let mut found = self.catalogue.find(words);
         found.retain(|sound| is_on(sound));
@@ -96,25 +96,25 @@ mod tests {
     use sprung::preset::Preset;
 
     #[test]
-    fn sounds_are_found_by_shelf_words_and_favourites() {
+    fn sounds_are_found_by_category_words_and_favourites() {
         let folder = tempfile::tempdir().unwrap();
         let library = Library::at(folder.path());
         let own = Preset { name: "My Glass".to_owned(), ..Preset::find("Marimba").unwrap().clone() };
         library.save(&own, false).unwrap();
         std::fs::write(library.presets_folder().join("broken.toml"), "x").unwrap();
         let mut sounds = Sounds::read(Some(library.clone()));
-        let names = |sounds: &Sounds, shelf, words: &str| -> Vec<String> {
-            sounds.find(shelf, words).iter().map(|sound| sound.name().to_owned()).collect()
+        let names = |sounds: &Sounds, category, words: &str| -> Vec<String> {
+            sounds.find(category, words).iter().map(|sound| sound.name().to_owned()).collect()
         };
-        assert_eq!(names(&sounds, Shelf::Own, ""), ["My Glass"]);
-        assert_eq!(names(&sounds, Shelf::All, "MY glass"), ["My Glass"]);
-        assert!(names(&sounds, Shelf::Family(Family::Mallet), "").contains(&"Marimba".to_owned()));
-        assert!(names(&sounds, Shelf::Family(Family::Kick), "marimba").is_empty());
-        assert!(names(&sounds, Shelf::Kits, "").contains(&"Acoustic Kit".to_owned()));
-        assert!(names(&sounds, Shelf::Favourites, "").is_empty());
+        assert_eq!(names(&sounds, Category::Own, ""), ["My Glass"]);
+        assert_eq!(names(&sounds, Category::All, "MY glass"), ["My Glass"]);
+        assert!(names(&sounds, Category::Family(Family::Mallet), "").contains(&"Marimba".to_owned()));
+        assert!(names(&sounds, Category::Family(Family::Kick), "marimba").is_empty());
+        assert!(names(&sounds, Category::Kits, "").contains(&"Acoustic Kit".to_owned()));
+        assert!(names(&sounds, Category::Favourites, "").is_empty());
         assert_eq!(sounds.set_favourite("Marimba", true), None);
-        assert_eq!(names(&sounds, Shelf::Favourites, ""), ["Marimba"]);
-        assert_eq!(names(&Sounds::read(Some(library)), Shelf::Favourites, ""), ["Marimba"]);
+        assert_eq!(names(&sounds, Category::Favourites, ""), ["Marimba"]);
+        assert_eq!(names(&Sounds::read(Some(library)), Category::Favourites, ""), ["Marimba"]);
         assert_eq!(sounds.broken.len(), 1);
     }
 }

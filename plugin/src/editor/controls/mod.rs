@@ -33,12 +33,12 @@ pub(super) struct Learning {
     /// The number of controller movements at the last check.
     pub(super) seen: u64,
     /// Whether the user has been asked to move a controller.
-    pub(super) is_told: bool,
+    pub(super) is_prompted: bool,
 }
 
 /// The user's actions on parameters in progress.
 #[derive(Default)]
-pub(super) struct Hands {
+pub(super) struct Interaction {
     pub(super) gestures: Gestures,
     /// Position of the dragged knob, more precise than the knob's own.
     pub(super) dragged: f64,
@@ -64,7 +64,7 @@ pub(super) struct Controls<'a> {
     pub(super) params: &'a SprungParams,
     pub(super) host: &'a GuiContext,
     pub(super) palette: &'static Palette,
-    pub(super) hands: &'a mut Hands,
+    pub(super) interaction: &'a mut Interaction,
     pub(super) history: &'a mut History,
     pub(super) hint: &'a mut Option<Hint>,
     /// Seconds since the last pass, as they really passed: egui's own number is a guess unless a pass was asked for at once.
@@ -95,17 +95,17 @@ impl Controls<'_> {
     /// Moves a knob; [`Controls::release`] ends the gesture.
     pub(super) fn turn(&mut self, info: &ParamInfo, position: f64) {
         let index = info.param as usize;
-        if self.hands.gestures.moving() != Some(index) {
+        if self.interaction.gestures.moving() != Some(index) {
             self.release();
             self.history.begin(self.params);
         }
-        self.hands.gestures.turn(self.params, self.host, index, position as f32);
+        self.interaction.gestures.turn(self.params, self.host, index, position as f32);
     }
 
     /// Ends a knob's gesture, if there is one.
     pub(super) fn release(&mut self) {
-        let Some(index) = self.hands.gestures.moving() else { return };
-        self.hands.gestures.end(self.params, self.host);
+        let Some(index) = self.interaction.gestures.moving() else { return };
+        self.interaction.gestures.end(self.params, self.host);
         let info = &PARAMS[index];
         self.history.end(format!("{} {}", info.name, self.text(info)), self.params);
     }

@@ -53,7 +53,7 @@ impl Fitting {
                     controls.history.begin(controls.params);
                     files::load(Playable::Preset(done.preset), controls.params, controls.host);
                     controls.history.end(format!("Fit {name}"), controls.params);
-                    done.said
+                    done.message
                 }
                 Err(message) => message,
             });

@@ -50,20 +50,20 @@ fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> Str
         Ok(read) => read,
         Err(message) => return message,
     };
-    let (playable, said) = match (playable, library) {
+    let (playable, message) = match (playable, library) {
         (Playable::Preset(_), Some(library)) if !is_own(path, library) => match library.import(path) {
             Ok((preset, place)) => {
-                let said = format!("imported as “{}”, {}", preset.name, place.display());
-                (Playable::Preset(preset), said)
+                let message = format!("imported as “{}”, {}", preset.name, place.display());
+                (Playable::Preset(preset), message)
             }
             Err(error) => return error.to_string(),
         },
         (Playable::Kit(kit), _) => {
-            let said = format!("loaded {}; a kit’s file stays where it is", path.display());
-            (Playable::Kit(kit), said)
+            let message = format!("loaded {}; a kit’s file stays where it is", path.display());
+            (Playable::Kit(kit), message)
         }
         (preset, _) => (preset, format!("loaded {}", path.display())),
     };
     controls.history.load(playable, controls.params, controls.host);
-    [vec![said], remarks].concat().join("; ")
+    [vec![message], remarks].concat().join("; ")
 }

@@ -20,7 +20,7 @@ const STEPS: f64 = 1000.0;
 pub(super) struct Done {
     pub(super) preset: Preset,
     /// Warnings, and a summary of the sound.
-    pub(super) said: String,
+    pub(super) message: String,
 }
 
 /// State shared by both threads.
@@ -51,8 +51,8 @@ impl Work {
             [first, more @ ..] => format!("{} and {} more", file_name(first), more.len()),
         };
         let shared = Arc::new(Shared::default());
-        let told = shared.clone();
-        let worker = Builder::new().name("sprung fit".to_owned()).spawn(move || fitted(&paths, &told));
+        let progress = shared.clone();
+        let worker = Builder::new().name("sprung fit".to_owned()).spawn(move || fitted(&paths, &progress));
         match worker {
             Ok(worker) => Ok(Self { name, shared, worker: Some(worker) }),
             Err(error) => Err(format!("{name} cannot be fitted: {error}")),
@@ -98,27 +98,27 @@ impl Drop for Work {
 }
 
 fn fitted(paths: &[PathBuf], shared: &Shared) -> Result<Done> {
-    let mut said = Vec::new();
+    let mut remarks = Vec::new();
     let mut takes = Vec::new();
     for path in paths {
         if shared.is_cancelled.load(Ordering::Relaxed) {
             return Err(Error::Interrupted);
         }
         let take = read(path)?;
-        said.extend(take.recording.warnings.iter().map(|warning| format!("{}: {warning}", take.name)));
+        remarks.extend(take.recording.warnings.iter().map(|warning| format!("{}: {warning}", take.name)));
         takes.push(take);
     }
     if let Some(velocities) = take_velocities_from_names(&mut takes) {
-        said.push(format!("velocities {velocities} by the names"));
+        remarks.push(format!("velocities {velocities} by the names"));
     }
     let fitted = fit(&takes, &Settings::default(), &mut |share| {
         shared.steps.store((share * STEPS) as u32, Ordering::Relaxed);
         !shared.is_cancelled.load(Ordering::Relaxed)
     })?;
-    said.extend(fitted.warnings.iter().cloned());
-    said.push(fitted.summary());
+    remarks.extend(fitted.warnings.iter().cloned());
+    remarks.push(fitted.summary());
     let stem = paths.first().and_then(|path| path.file_stem()).unwrap_or_default().to_string_lossy();
-    Ok(Done { preset: fitted.named(&stem, &takes), said: said.join("; ") })
+    Ok(Done { preset: fitted.named(&stem, &takes), message: remarks.join("; ") })
 }
 
 fn read(path: &Path) -> Result<Take> {

@@ -30,7 +30,7 @@ impl Extent {
     }
 
     /// The host has told this scale. Returns the scale with which a window opens, if one is known.
-    pub(crate) fn tell(&self, scale: Option<f64>) -> Option<f64> {
+    pub(crate) fn set_scale(&self, scale: Option<f64>) -> Option<f64> {
         let mut known = self.known();
         known.scale = scale.or(known.scale);
         known.scale

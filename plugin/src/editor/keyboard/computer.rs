@@ -38,20 +38,20 @@ const OCTAVE: u8 = 4;
 const VELOCITY: f32 = 0.75;
 
 /// The keys of the computer that are held, and the notes that they play.
-pub(crate) struct KeyPiano {
+pub(crate) struct ComputerKeyboard {
     octave: u8,
     held: Vec<(Key, u8)>,
     /// Keys released in the last pass. X11 repeats a held key by releasing and pressing it again.
     lifted: Vec<Key>,
 }
 
-impl Default for KeyPiano {
+impl Default for ComputerKeyboard {
     fn default() -> Self {
         Self { octave: OCTAVE, held: vec![], lifted: vec![] }
     }
 }
 
-impl KeyPiano {
+impl ComputerKeyboard {
     /// Plays the pressed keys, unless the user types text. Returns a message for the user.
     pub(crate) fn follow(&mut self, ui: &Ui, link: &Link) -> Option<String> {
         let (modifiers, is_focused) = ui.input(|input| (input.modifiers, input.focused));
@@ -118,16 +118,16 @@ mod tests {
     fn keys_play_repeat_without_a_strike_and_go_up() {
         let (link, context) = (Link::default(), egui::Context::default());
         let mut touches = link.connect(48_000.0);
-        let mut piano = KeyPiano::default();
+        let mut piano = ComputerKeyboard::default();
         let mut pass = |keys: &[(Key, bool)]| {
             let event = |&(key, pressed): &(Key, bool)| {
                 let modifiers = Modifiers::NONE;
                 Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }
             };
             let input = RawInput { events: keys.iter().map(event).collect(), ..RawInput::default() };
-            let mut said = None;
-            context.run_ui(input, |ui| said = piano.follow(ui, &link)).textures_delta.clear();
-            (std::iter::from_fn(|| touches.pop().ok()).collect::<Vec<_>>(), said)
+            let mut message = None;
+            context.run_ui(input, |ui| message = piano.follow(ui, &link)).textures_delta.clear();
+            (std::iter::from_fn(|| touches.pop().ok()).collect::<Vec<_>>(), message)
         };
         let down = |key| Touch::Down { key, velocity: VELOCITY };
         assert_eq!(pass(&[(Key::Z, true), (Key::Q, true)]).0, [down(60), down(72)]);

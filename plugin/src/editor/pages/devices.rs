@@ -56,8 +56,8 @@ pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
     let palette = controls.palette;
     palette.paint_panel(ui.painter(), rect);
     let inner = rect.shrink(PADDING);
-    let desk = &controls.params.link().desk;
-    let devices = desk.look();
+    let devices = &controls.params.link().devices;
+    let devices = devices.look();
     let share = (inner.width() - 2.0 * GAP) / (COLUMNS[0] + COLUMNS[1]);
     let [wide, narrow] = COLUMNS.map(|width| (width * share).min(width));
     let row = |column: usize, place: usize| {
@@ -66,22 +66,22 @@ pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
         Rect::from_min_size(pos2(left, inner.top() + place as f32 * ROW), size)
     };
     let chosen = &devices.chosen;
-    let mut wish = chosen.clone();
+    let mut request = chosen.clone();
     if let Some((host, device)) = outputs(&devices).show(ui, row(0, 0), OUTPUT, controls) {
         // Another device may not support the same sample rates and block sizes.
-        wish = Chosen { host, device, midi_in: chosen.midi_in.clone(), ..Chosen::default() };
+        request = Chosen { host, device, midi_in: chosen.midi_in.clone(), ..Chosen::default() };
     }
     if let Some(port) = ports(&devices).show(ui, row(0, 1), PORTS, controls) {
-        wish.midi_in = port;
+        request.midi_in = port;
     }
     if let Some(rate) = rates(&devices).show(ui, row(1, 0), RATE, controls) {
-        wish.rate = rate;
+        request.rate = rate;
     }
     if let Some(buffer) = blocks(&devices).show(ui, row(1, 1), BLOCK, controls) {
-        wish.buffer = buffer;
+        request.buffer = buffer;
     }
-    if wish != *chosen {
-        controls.params.link().desk.ask(wish);
+    if request != *chosen {
+        controls.params.link().devices.request(request);
     }
     let mut below = inner.with_min_y(inner.top() + 2.0 * ROW);
     let playing = if devices.playing.is_empty() { "…".to_owned() } else { format!("Playing on {}", devices.playing) };

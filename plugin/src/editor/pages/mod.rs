@@ -34,7 +34,7 @@ const WIDE: f32 = 840.0;
 const SECTIONS: f32 = 344.0;
 
 /// A request of the user's.
-pub(super) enum Asked {
+pub(super) enum Request {
     Manual,
     /// Show this message.
     Say(String),
@@ -81,8 +81,8 @@ impl Pages {
         shown: &Shown,
         (down, voices): (u128, u32),
         controls: &mut Controls,
-    ) -> Option<Asked> {
-        let asked = self.tabs(ui, layout.tabs, controls);
+    ) -> Option<Request> {
+        let request = self.tabs(ui, layout.tabs, controls);
         let (rect, page) = (layout.sections, self.page);
         let rest = page.checked_sub(sections::pages().count());
         match rest {
@@ -99,22 +99,22 @@ impl Pages {
                 if let Some(right) = right {
                     voices::show(ui.painter(), right, voices, controls);
                 }
-                asked
+                request
             }
-            Some(0) => self.body.show(ui, rect, shown, controls).map(Asked::Say).or(asked),
+            Some(0) => self.body.show(ui, rect, shown, controls).map(Request::Say).or(request),
             Some(1) => {
                 kit::show(ui, rect, &mut self.kit, shown, down, controls);
-                asked
+                request
             }
             Some(3) => {
                 devices::show(ui, rect, controls);
-                asked
+                request
             }
-            Some(_) => self.tuning.show(ui, rect, shown, down, controls).map(Asked::Say).or(asked),
+            Some(_) => self.tuning.show(ui, rect, shown, down, controls).map(Request::Say).or(request),
         }
     }
 
-    fn tabs(&mut self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Asked> {
+    fn tabs(&mut self, ui: &Ui, rect: Rect, controls: &mut Controls) -> Option<Request> {
         let mut left = rect.left();
         let gap = if rect.width() < 700.0 { GAP } else { 2.0 * GAP };
         let is_alone = controls.host.plugin_api() == PluginApi::Standalone;
@@ -133,7 +133,7 @@ impl Pages {
             *controls.hint =
                 crate::editor::controls::Hint::new("Manual", format!("What this page does: {}", self.topic()));
         }
-        response.clicked().then_some(Asked::Manual)
+        response.clicked().then_some(Request::Manual)
     }
 }
 

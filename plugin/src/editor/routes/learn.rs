@@ -16,22 +16,22 @@ const LEAST: f32 = 0.05;
 /// Waits for the next movement of a controller.
 pub(crate) fn begin(info: &'static ParamInfo, controls: &mut Controls) {
     let (seen, _) = controls.params.link().telemetry.moved();
-    controls.hands.learning = Some(Learning { info, seen, is_told: false });
+    controls.interaction.learning = Some(Learning { info, seen, is_prompted: false });
 }
 
 /// Checks whether a controller was moved, and makes a route from it. Returns a message.
 pub(crate) fn follow(ui: &Ui, controls: &mut Controls) -> Option<String> {
-    let learning = controls.hands.learning.as_mut()?;
+    let learning = controls.interaction.learning.as_mut()?;
     let info = learning.info;
     if ui.input(|input| input.key_pressed(Key::Escape)) {
-        controls.hands.learning = None;
+        controls.interaction.learning = None;
         return Some("nothing was learnt".to_owned());
     }
     ui.ctx().request_repaint_after(PAUSE);
     let (count, moved) = controls.params.link().telemetry.moved();
     if count == std::mem::replace(&mut learning.seen, count) {
-        let is_told = std::mem::replace(&mut learning.is_told, true);
-        return (!is_told).then(|| {
+        let is_prompted = std::mem::replace(&mut learning.is_prompted, true);
+        return (!is_prompted).then(|| {
             let sources = "wheel, pitch wheel, pressure, breath, expression or controller 74";
             format!("{}: move what is to modulate it ({sources}); Escape gives up", info.name)
         });
@@ -43,7 +43,7 @@ pub(crate) fn follow(ui: &Ui, controls: &mut Controls) -> Option<String> {
              pitch wheel or pressure"
         ));
     };
-    controls.hands.learning = None;
+    controls.interaction.learning = None;
     Some(learn(source, info, controls))
 }
 

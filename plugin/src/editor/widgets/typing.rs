@@ -10,13 +10,13 @@ use sprung::params::ParamInfo;
 pub(super) fn type_value(info: &'static ParamInfo, controls: &mut Controls) {
     let text = controls.text(info);
     let index = info.param as usize;
-    controls.hands.typing = Some(Typing { index, text, is_open: false, complaint: None });
+    controls.interaction.typing = Some(Typing { index, text, is_open: false, complaint: None });
 }
 
 /// Shows the field for a value while one is typed. Enter sets the value, Escape keeps the old one.
 /// Returns whether one is typed.
 pub(super) fn typed(ui: &mut Ui, rect: Rect, field: Id, info: &'static ParamInfo, controls: &mut Controls) -> bool {
-    let Some(mut typing) = controls.hands.typing.take_if(|typing| typing.index == info.param as usize) else {
+    let Some(mut typing) = controls.interaction.typing.take_if(|typing| typing.index == info.param as usize) else {
         return false;
     };
     let edit = TextEdit::singleline(&mut typing.text).id(field).font(font(SMALL)).margin(vec2(2.0, 0.0));
@@ -45,6 +45,6 @@ pub(super) fn typed(ui: &mut Ui, rect: Rect, field: Id, info: &'static ParamInfo
             }
         }
     }
-    controls.hands.typing = Some(typing);
+    controls.interaction.typing = Some(typing);
     true
 }

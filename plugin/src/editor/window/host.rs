@@ -76,13 +76,13 @@ impl Drop for Window {
         let link = self.params.link();
         self.params.extent().close();
         self.piano.release(link);
-        self.key_piano.release(link);
+        self.computer_keyboard.release(link);
         self.browser.release(link);
         self.modes.release(link);
         self.motion.release(link);
         self.pages.release(link);
         if let Some(host) = self.host.take() {
-            let end = || self.hands.gestures.end(&self.params, &host);
+            let end = || self.interaction.gestures.end(&self.params, &host);
             // The wrapper panics if the plugin itself is being dropped; then the host no longer waits for the gesture's
             // end.
             let _ = catch_unwind(AssertUnwindSafe(end));

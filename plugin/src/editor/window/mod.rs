@@ -11,13 +11,13 @@ use crate::editor::browser::Browser;
 use crate::editor::controls::files::summary;
 use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
-use crate::editor::controls::{Controls, FRAME, Hands};
+use crate::editor::controls::{Controls, FRAME, Interaction};
 use crate::editor::displays::Motion;
 use crate::editor::drops;
 use crate::editor::drops::fitting::Fitting;
 use crate::editor::host::extent;
 use crate::editor::host::focus::Focus;
-use crate::editor::keyboard::computer::KeyPiano;
+use crate::editor::keyboard::computer::ComputerKeyboard;
 use crate::editor::keyboard::piano::Piano;
 use crate::editor::manual::Manual;
 use crate::editor::modes::ModesView;
@@ -28,7 +28,7 @@ use crate::editor::theme::{Theme, install_fonts};
 use crate::params::SprungParams;
 use crate::state::State;
 use egui::{Key, Ui};
-use header::{Header, Wish};
+use header::{Header, Request};
 use meter::Meter;
 use nice_plug_core::context::PluginApi;
 use nice_plug_core::context::gui::GuiContext;
@@ -52,14 +52,14 @@ enum Over {
 pub(super) struct Window {
     params: Arc<SprungParams>,
     host: Option<GuiContext>,
-    hands: Hands,
+    interaction: Interaction,
     history: History,
     shown: Shown,
     browser: Browser,
     modes: ModesView,
     motion: Motion,
     piano: Piano,
-    key_piano: KeyPiano,
+    computer_keyboard: ComputerKeyboard,
     meter: Meter,
     load: Load,
     /// Sections that variations leave as they are, and the seed of the next one.
@@ -94,14 +94,14 @@ impl Window {
         Self {
             params,
             host: None,
-            hands: Hands::default(),
+            interaction: Interaction::default(),
             history: History::default(),
             shown,
             browser: Browser::new(library),
             modes: ModesView::default(),
             motion: Motion::default(),
             piano: Piano::default(),
-            key_piano: KeyPiano::default(),
+            computer_keyboard: ComputerKeyboard::default(),
             meter: Meter::default(),
             load: Load::default(),
             locked: BTreeSet::new(),
@@ -162,7 +162,7 @@ impl Window {
             params: &params,
             host,
             palette,
-            hands: &mut self.hands,
+            interaction: &mut self.interaction,
             history: &mut self.history,
             hint: &mut hint,
             seconds,
@@ -178,7 +178,7 @@ impl Window {
             locked: &self.locked,
             levels,
         };
-        let wish = header::show(ui, layout.header, &header, &mut controls);
+        let request = header::show(ui, layout.header, &header, &mut controls);
         let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));
         let voices = if is_silent { 0 } else { snapshot.voices };
         if self.over.is_some() {
@@ -202,11 +202,11 @@ impl Window {
                 self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
                 self.motion.show(ui, layout.motion, &self.shown, (&energies, self.modes.selected()), &mut controls);
                 match self.pages.show(ui, &layout, &self.shown, (down, voices), &mut controls) {
-                    Some(pages::Asked::Manual) => {
+                    Some(pages::Request::Manual) => {
                         self.manual.open(self.pages.topic());
                         self.over = Some(Over::Manual);
                     }
-                    Some(pages::Asked::Say(message)) => self.message = message,
+                    Some(pages::Request::Say(message)) => self.message = message,
                     None => {}
                 }
             }
@@ -232,12 +232,12 @@ impl Window {
         let is_alone = host.plugin_api() == PluginApi::Standalone;
         let is_typing = ui.ctx().egui_wants_keyboard_input();
         let searches = is_alone && !is_typing && ui.input(|input| input.key_pressed(Key::Slash));
-        let played = is_alone.then(|| self.key_piano.follow(ui, params.link())).flatten();
+        let played = is_alone.then(|| self.computer_keyboard.follow(ui, params.link())).flatten();
         let learnt = learn::follow(ui, &mut controls);
-        if let Some(news) = learnt.or_else(|| params.link().take_news()).or(played) {
-            self.message = news;
+        if let Some(messages) = learnt.or_else(|| params.link().take_messages()).or(played) {
+            self.message = messages;
         }
-        let complaint = controls.hands.typing.as_ref().and_then(|typing| typing.complaint.clone());
+        let complaint = controls.interaction.typing.as_ref().and_then(|typing| typing.complaint.clone());
         let complaints = || summary(&params.complaints()).unwrap_or_default();
         let message = if self.message.is_empty() { complaints() } else { self.message.clone() };
         let message = complaint.unwrap_or(message);
@@ -245,9 +245,9 @@ impl Window {
         let load = self.load.share(now, telemetry, sample_rate);
         let engine = status::engine(voices, load, sample_rate);
         self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
-        let search = (searches && self.over != Some(Over::Browser)).then_some(Wish::Browse);
-        if let Some(wish) = wish.or(search) {
-            self.grant(wish, ui, host);
+        let search = (searches && self.over != Some(Over::Browser)).then_some(Request::Browse);
+        if let Some(request) = request.or(search) {
+            self.carry_out(request, ui, host);
         }
     }
 

@@ -1,7 +1,7 @@
 //! The user's requests, carried out.
 
-use super::header::Wish;
-use super::variation::{Asked, Variation};
+use super::header::Request;
+use super::variation::{Variation, VariationRequest};
 use super::{Over, Window};
 use crate::editor::browser::Aim;
 use crate::editor::controls::files::{load, neighbour};
@@ -46,23 +46,23 @@ impl Window {
         }
     }
 
-    pub(super) fn grant(&mut self, wish: Wish, ui: &Ui, host: &GuiContext) {
-        match wish {
-            Wish::Browse | Wish::Save => {
-                let closes = self.over == Some(Over::Browser) && wish == Wish::Browse;
+    pub(super) fn carry_out(&mut self, request: Request, ui: &Ui, host: &GuiContext) {
+        match request {
+            Request::Browse | Request::Save => {
+                let closes = self.over == Some(Over::Browser) && request == Request::Browse;
                 self.over = (!closes).then_some(Over::Browser);
                 self.message.clear();
-                self.browser.open(&self.params.name(), if wish == Wish::Save { Aim::Save } else { Aim::Find });
+                self.browser.open(&self.params.name(), if request == Request::Save { Aim::Save } else { Aim::Find });
             }
-            Wish::Undo => self.go_back(History::undo, host),
-            Wish::Redo => self.go_back(History::redo, host),
-            Wish::Zoom(zoom) => {
+            Request::Undo => self.go_back(History::undo, host),
+            Request::Redo => self.go_back(History::redo, host),
+            Request::Zoom(zoom) => {
                 self.params.set_view(|view| view.zoom = zoom);
                 ui.ctx().set_zoom_factor(extent::factor(self.params.view()));
             }
-            Wish::Theme(theme) => self.params.set_view(|view| view.theme = theme),
-            Wish::Step(places) => self.step(places, host),
-            Wish::Swap => {
+            Request::Theme(theme) => self.params.set_view(|view| view.theme = theme),
+            Request::Step(places) => self.step(places, host),
+            Request::Swap => {
                 self.history.begin(&self.params);
                 let now = (self.params.state(), self.history.is_changed());
                 let mut is_changed = now.1;
@@ -74,13 +74,13 @@ impl Window {
                 let name = if self.is_b { "version B" } else { "version A" };
                 self.history.end_swap(name, is_changed, &self.params);
             }
-            Wish::Variation(Asked::Lock(section)) => {
+            Request::Variation(VariationRequest::Lock(section)) => {
                 if !self.locked.remove(section) {
                     self.locked.insert(section);
                 }
             }
-            Wish::Variation(Asked::Vary(variation)) => self.vary(variation, host),
-            Wish::Copy => self.other = Some((self.params.state(), self.history.is_changed())),
+            Request::Variation(VariationRequest::Vary(variation)) => self.vary(variation, host),
+            Request::Copy => self.other = Some((self.params.state(), self.history.is_changed())),
         }
     }
 }

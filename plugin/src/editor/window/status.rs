@@ -54,7 +54,7 @@ pub(super) fn engine(voices: u32, load: Option<f64>, sample_rate: u32) -> String
 #[derive(Default)]
 pub(super) struct StatusLine {
     message: String,
-    is_news: bool,
+    is_unread: bool,
 }
 
 impl StatusLine {
@@ -68,12 +68,12 @@ impl StatusLine {
         palette: &Palette,
     ) {
         let has_moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO || input.pointer.any_pressed());
-        self.is_news &= !has_moved;
+        self.is_unread &= !has_moved;
         if self.message != message {
             message.clone_into(&mut self.message);
-            self.is_news = !message.is_empty();
+            self.is_unread = !message.is_empty();
         }
-        paint(ui, rect, hint.filter(|_| !self.is_news), message, right, palette);
+        paint(ui, rect, hint.filter(|_| !self.is_unread), message, right, palette);
     }
 }
 

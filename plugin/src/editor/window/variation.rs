@@ -9,7 +9,7 @@ use sprung::units::db_from_gain;
 use std::collections::BTreeSet;
 
 /// Sections that define how the instrument is played, or that belong to routes: they are never varied.
-const KEPT: [&str; 6] = ["Input", "Macros", "Routes", "Voices", "Control", "Output"];
+const FIXED: [&str; 6] = ["Input", "Macros", "Routes", "Voices", "Control", "Output"];
 /// Mean level below which a sound counts as silent, in decibels.
 const SILENCE: f64 = -70.0;
 /// Number of attempts before giving up.
@@ -37,7 +37,7 @@ impl Numbers {
 
 /// The sections that can be varied.
 pub(super) fn sections() -> impl Iterator<Item = &'static [ParamInfo]> {
-    PARAMS.chunk_by(|a, b| a.section == b.section).filter(|rows| !KEPT.contains(&rows[0].section))
+    PARAMS.chunk_by(|a, b| a.section == b.section).filter(|rows| !FIXED.contains(&rows[0].section))
 }
 
 impl Variation {
@@ -117,18 +117,18 @@ fn level(patch: &Patch, key: u8) -> f64 {
 
 /// A request made with the menu of variations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Asked {
+pub(super) enum VariationRequest {
     Vary(Variation),
     /// Lock a section, or unlock it if it is locked.
     Lock(&'static str),
 }
 
 /// The menu of variations and locks.
-pub(super) fn menu(ui: &mut Ui, locked: &BTreeSet<&'static str>) -> Option<Asked> {
+pub(super) fn menu(ui: &mut Ui, locked: &BTreeSet<&'static str>) -> Option<VariationRequest> {
     let mut asked = None;
     for variation in [Variation::Mutate, Variation::Randomise] {
         if ui.button(variation.name()).clicked() {
-            asked = Some(Asked::Vary(variation));
+            asked = Some(VariationRequest::Vary(variation));
             ui.close();
         }
     }
@@ -137,7 +137,7 @@ pub(super) fn menu(ui: &mut Ui, locked: &BTreeSet<&'static str>) -> Option<Asked
     for section in sections().map(|section| section[0].section) {
         let mut is_locked = locked.contains(section);
         if ui.checkbox(&mut is_locked, format!("Lock {section}")).clicked() {
-            asked = Some(Asked::Lock(section));
+            asked = Some(VariationRequest::Lock(section));
         }
     }
     asked
@@ -161,7 +161,7 @@ mod tests {
                 for info in PARAMS.iter().filter(|info| info.param != Param::Gain) {
                     let value = varied.patch.get(info.param);
                     assert_eq!(info.check(value), Ok(value), "{variation:?} {seed}: {}", info.id);
-                    if locked.contains(info.section) || KEPT.contains(&info.section) {
+                    if locked.contains(info.section) || FIXED.contains(&info.section) {
                         assert_eq!(value, preset.patch.get(info.param), "{variation:?} {seed}: {}", info.id);
                     }
                 }

@@ -119,20 +119,20 @@ pub(crate) fn show_none(painter: &Painter, cell: Rect, name: &str, palette: &Pal
 fn drag(ui: &Ui, response: &mut Response, info: &'static ParamInfo, controls: &mut Controls) {
     let index = info.param as usize;
     if response.drag_started() {
-        controls.hands.dragged = f64::from(controls.params.knobs()[index].position());
+        controls.interaction.dragged = f64::from(controls.params.knobs()[index].position());
     }
     if response.dragged() {
         let moved = response.drag_delta();
         let fine = if ui.input(|input| input.modifiers.shift) { FINE } else { 1.0 };
-        let dragged = controls.hands.dragged + f64::from((moved.x - moved.y) / TRAVEL) * fine;
-        controls.hands.dragged = dragged.clamp(0.0, 1.0);
-        let position = rounded(info, controls.hands.dragged);
+        let dragged = controls.interaction.dragged + f64::from((moved.x - moved.y) / TRAVEL) * fine;
+        controls.interaction.dragged = dragged.clamp(0.0, 1.0);
+        let position = rounded(info, controls.interaction.dragged);
         if moved != egui::Vec2::ZERO && position as f32 != controls.params.knobs()[index].position() {
             controls.turn(info, position);
         }
         ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
     }
-    if response.drag_stopped() && controls.hands.gestures.moving() == Some(index) {
+    if response.drag_stopped() && controls.interaction.gestures.moving() == Some(index) {
         controls.release();
     }
 }

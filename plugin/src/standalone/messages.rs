@@ -4,15 +4,15 @@ use crate::params::SprungParams;
 use sprung::text::printable;
 
 /// Prints a line on stderr; errors of printing are ignored.
-pub(super) fn complain(line: &str) {
+pub(super) fn print(line: &str) {
     use std::io::Write as _;
     let _ = writeln!(std::io::stderr(), "{}", printable(line));
 }
 
 /// Shows messages on stderr and in the window.
-pub(super) fn tell(params: &SprungParams, news: impl IntoIterator<Item = String>) {
-    for line in news {
-        complain(&format!("sprung: {line}"));
-        params.link().tell(line);
+pub(super) fn report(params: &SprungParams, messages: impl IntoIterator<Item = String>) {
+    for line in messages {
+        print(&format!("sprung: {line}"));
+        params.link().report(line);
     }
 }

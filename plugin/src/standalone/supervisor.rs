@@ -1,9 +1,9 @@
 //! Follows devices and ports, and saves the state, while the window is open.
 
 use super::chosen::{choice, plain};
-use super::kept::Kept;
+use super::messages::{print, report};
 use super::player::WindowPlayer;
-use super::told::{complain, tell};
+use super::store::Store;
 use crate::devices::{Chosen, Devices, Output};
 use crate::params::SprungParams;
 use sprung::realtime::{LiveSender, MidiIn, Session, device, midi_ports};
@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 const POLL: Duration = Duration::from_millis(50);
 
 /// Time between two checks for changes to save.
-const KEEP: Duration = Duration::from_secs(5);
+const SAVE: Duration = Duration::from_secs(5);
 
 /// Time between two searches for devices, while the window shows them.
 const SEARCH: Duration = Duration::from_secs(3);
@@ -24,9 +24,9 @@ const SEARCH: Duration = Duration::from_secs(3);
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Follows devices and ports, and saves the state, while the window is open. Runs on its own thread.
-pub(super) struct Keeper {
+pub(super) struct Supervisor {
     pub(super) params: Arc<SprungParams>,
-    pub(super) kept: Kept,
+    pub(super) store: Store,
     pub(super) session: Session<WindowPlayer>,
     pub(super) closing: LiveSender,
     /// Whether the window is closed.
@@ -34,36 +34,36 @@ pub(super) struct Keeper {
     pub(super) chosen: Chosen,
 }
 
-impl Keeper {
+impl Supervisor {
     /// Runs until the window is closed. `midi` sends the events of MIDI ports to the audio thread.
     pub(super) fn run(mut self, midi: LiveSender) -> Result<(), String> {
         device::silence_library();
         let mut midi = Some(self.listen(midi));
         let mut asked: Option<Instant> = None;
-        let mut keep_at = Instant::now() + KEEP;
+        let mut save_at = Instant::now() + SAVE;
         let mut search_at = Instant::now();
         // A problem with the file is reported once.
-        let mut told = None;
+        let mut reported = None;
         while !self.is_closed.load(Relaxed) {
-            tell(&self.params, self.session.poll());
-            tell(&self.params, midi.iter_mut().flat_map(MidiIn::poll).collect::<Vec<_>>());
+            report(&self.params, self.session.poll());
+            report(&self.params, midi.iter_mut().flat_map(MidiIn::poll).collect::<Vec<_>>());
             let params = self.params.clone();
-            let desk = &params.link().desk;
-            if let Some(wish) = desk.take_wish() {
-                self.change(wish, &mut midi);
+            let devices = &params.link().devices;
+            if let Some(request) = devices.take_request() {
+                self.change(request, &mut midi);
                 search_at = Instant::now();
             }
-            if Instant::now() >= search_at && desk.was_watched() {
-                desk.show(self.devices());
+            if Instant::now() >= search_at && devices.was_watched() {
+                devices.show(self.devices());
                 params.link().repaint.request_repaint();
                 search_at = Instant::now() + SEARCH;
             }
-            if Instant::now() > keep_at {
-                keep_at = Instant::now() + KEEP;
-                let problem = self.kept.keep_what_changed(&self.params).err();
-                if problem != told {
-                    tell(&self.params, problem.clone());
-                    told = problem;
+            if Instant::now() > save_at {
+                save_at = Instant::now() + SAVE;
+                let problem = self.store.save_if_changed(&self.params).err();
+                if problem != reported {
+                    report(&self.params, problem.clone());
+                    reported = problem;
                 }
             }
             if self.params.link().is_closing() && asked.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
@@ -74,15 +74,15 @@ impl Keeper {
         drop(midi);
         // The state is written before the fade: if the user starts the program again at once, the file is complete and
         // unlocked.
-        let ended = self.kept.keep(&self.params);
-        drop(self.kept);
+        let ended = self.store.save(&self.params);
+        drop(self.store);
         if !self.session.finish(&mut self.closing) {
-            complain("warning: the sound device does not answer; left it behind");
+            print("warning: the sound device does not answer; left it behind");
         }
         if !self.is_closed.load(Relaxed) {
             // The window's thread still waits for its window, which does not close.
             if let Err(error) = &ended {
-                complain(&format!("error: {error}"));
+                print(&format!("error: {error}"));
             }
             std::process::exit(ended.is_err().into());
         }
@@ -95,35 +95,35 @@ impl Keeper {
     }
 
     /// Plays on the requested device. If that fails, everything stays as it was.
-    fn change(&mut self, mut wish: Chosen, midi: &mut Option<MidiIn>) {
+    fn change(&mut self, mut request: Chosen, midi: &mut Option<MidiIn>) {
         let was_jack = self.session.is_jack();
-        if choice(&wish) != choice(&self.chosen) {
-            let changed = self.session.change(choice(&wish), WindowPlayer::set_sample_rate);
-            let said = match &changed {
+        if choice(&request) != choice(&self.chosen) {
+            let changed = self.session.change(choice(&request), WindowPlayer::set_sample_rate);
+            let message = match &changed {
                 Ok(()) => format!("playing on {}", self.session.description()),
                 Err(error) if self.session.is_playing() => {
                     format!("{}; still on {}", plain(error), self.session.description())
                 }
                 Err(error) => format!("{}; waiting for {}", plain(error), self.session.description()),
             };
-            tell(&self.params, Some(said));
+            report(&self.params, Some(message));
             if changed.is_err() {
                 return;
             }
         }
         let is_other_system = was_jack != self.session.is_jack();
         // The ports have other names on the other system.
-        if is_other_system && wish.midi_in.as_deref() != Some("none") {
-            wish.midi_in = None;
+        if is_other_system && request.midi_in.as_deref() != Some("none") {
+            request.midi_in = None;
         }
-        let is_other_port = wish.midi_in != self.chosen.midi_in || is_other_system;
-        self.chosen = wish;
+        let is_other_port = request.midi_in != self.chosen.midi_in || is_other_system;
+        self.chosen = request;
         if is_other_port {
             *midi = midi.take().and_then(MidiIn::into_sender).map(|sender| self.listen(sender));
             let is_lost = midi.is_none().then(|| "MIDI does not answer: start the program again to hear it".to_owned());
-            tell(&self.params, is_lost);
+            report(&self.params, is_lost);
         }
-        tell(&self.params, self.kept.keep_chosen(&self.chosen).err());
+        report(&self.params, self.store.save_devices(&self.chosen).err());
     }
 
     /// The present devices and ports.
@@ -147,7 +147,7 @@ fn lasting(name: &str) -> &str {
     let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
     let are_numbers =
         |last: &str| last.split_once(':').is_some_and(|(client, port)| is_number(client) && is_number(port));
-    name.rsplit_once(' ').filter(|(_, last)| are_numbers(last)).map_or(name, |(kept, _)| kept)
+    name.rsplit_once(' ').filter(|(_, last)| are_numbers(last)).map_or(name, |(stable, _)| stable)
 }
 
 #[cfg(test)]
@@ -156,13 +156,13 @@ mod tests {
 
     #[test]
     fn ports_keep_their_names_when_they_are_plugged_in_again() {
-        for (name, kept) in [
+        for (name, stable) in [
             ("Keystation 49:Keystation 49 MIDI 1 24:0", "Keystation 49:Keystation 49 MIDI 1"),
             ("Midi Through", "Midi Through"),
             ("Synth 1:2a", "Synth 1:2a"),
             ("", ""),
         ] {
-            assert_eq!(lasting(name), kept);
+            assert_eq!(lasting(name), stable);
         }
     }
 }

@@ -14,21 +14,21 @@ use std::sync::Arc;
 const NAME: &str = "standalone.json";
 
 /// The file of the state; none if the system names no folder for it.
-pub(super) struct Kept {
+pub(super) struct Store {
     file: Option<PathBuf>,
     /// Whether this program may write the files: no other program does, and nothing in them would be lost.
-    is_ours: bool,
+    may_write: bool,
     /// The state in the file, if it was read completely or written by this program.
     last: Option<State>,
     /// An open lock file, which tells other programs that this one writes the state.
     lock: Option<File>,
 }
 
-impl Kept {
+impl Store {
     /// The files of this user.
     pub(super) fn of_user() -> Self {
         let file = folder(&|name| std::env::var_os(name)).map(|folder| folder.join(NAME));
-        Self { file, is_ours: true, last: None, lock: None }
+        Self { file, may_write: true, last: None, lock: None }
     }
 
     /// Loads the state of the last run. Returns a message for the user. A file that is not understood completely is set
@@ -36,12 +36,12 @@ impl Kept {
     pub(super) fn restore(&mut self, params: &SprungParams) -> Option<String> {
         let file = self.file.clone()?;
         let is_taken = self.claim(&file);
-        self.is_ours = !is_taken;
+        self.may_write = !is_taken;
         let taken = "another Sprung is open and keeps its state: what is changed in this one is not kept".to_owned();
-        let told = self.read(&file, params);
-        match told {
-            Some(told) if is_taken => Some(format!("{taken}; {told}")),
-            told => told.or(is_taken.then_some(taken)),
+        let message = self.read(&file, params);
+        match message {
+            Some(message) if is_taken => Some(format!("{taken}; {message}")),
+            message => message.or(is_taken.then_some(taken)),
         }
     }
 
@@ -64,7 +64,7 @@ impl Kept {
             Err(error) if error.kind() == ErrorKind::NotFound => return None,
             Err(error) => {
                 // A file that cannot be read must not be overwritten.
-                self.is_ours = false;
+                self.may_write = false;
                 let stays = "it stays as it is, and what is changed now is not kept";
                 return Some(format!("{}: cannot be read: {error}; {stays}", file.display()));
             }
@@ -83,14 +83,14 @@ impl Kept {
 
     /// Sets a file aside that is not understood, if this program may. Returns a message for the user.
     fn not_understood(&mut self, file: &Path, complaint: &str) -> String {
-        if !self.is_ours {
+        if !self.may_write {
             return format!("{}: {complaint}", file.display());
         }
         let aside = match set_aside(file) {
             Ok(aside) => format!("it is kept as {}", aside.display()),
             Err(error) => {
                 // A file that cannot be moved must not be overwritten.
-                self.is_ours = false;
+                self.may_write = false;
                 format!("it stays, and nothing else is kept this time: {error}")
             }
         };
@@ -98,13 +98,13 @@ impl Kept {
     }
 
     /// Writes the state if it has changed since the last time.
-    pub(super) fn keep_what_changed(&mut self, params: &Arc<SprungParams>) -> Result<(), String> {
-        if self.last.as_ref() == Some(&params.state()) { Ok(()) } else { self.keep(params) }
+    pub(super) fn save_if_changed(&mut self, params: &Arc<SprungParams>) -> Result<(), String> {
+        if self.last.as_ref() == Some(&params.state()) { Ok(()) } else { self.save(params) }
     }
 
     /// Writes the state. The file is replaced only when the new one is completely on disk.
-    pub(super) fn keep(&mut self, params: &SprungParams) -> Result<(), String> {
-        let Some(file) = self.file.as_ref().filter(|_| self.is_ours) else { return Ok(()) };
+    pub(super) fn save(&mut self, params: &SprungParams) -> Result<(), String> {
+        let Some(file) = self.file.as_ref().filter(|_| self.may_write) else { return Ok(()) };
         let state = params.state();
         write(file, &state.to_json()).map_err(|error| format!("the state cannot be kept: {error}"))?;
         self.last = Some(state);
@@ -123,15 +123,15 @@ impl Kept {
             },
             Err(error) if error.kind() == ErrorKind::NotFound => Default::default(),
             Err(error) => {
-                self.is_ours = false;
+                self.may_write = false;
                 (Chosen::default(), Some(format!("{}: cannot be read: {error}", file.display())))
             }
         }
     }
 
     /// Writes the choice of devices.
-    pub(super) fn keep_chosen(&self, chosen: &Chosen) -> Result<(), String> {
-        let Some(file) = self.devices().filter(|_| self.is_ours) else { return Ok(()) };
+    pub(super) fn save_devices(&self, chosen: &Chosen) -> Result<(), String> {
+        let Some(file) = self.devices().filter(|_| self.may_write) else { return Ok(()) };
         let written = serde_json::to_string(chosen).map_err(|error| error.to_string());
         let written = written.and_then(|text| write(&file, &(text + "\n")).map_err(|error| error.to_string()));
         written.map_err(|error| format!("the choice of devices cannot be kept: {error}"))
@@ -188,8 +188,8 @@ mod tests {
     use crate::state::VIEW;
     use sprung::preset::Playable;
 
-    fn kept(folder: &Path) -> Kept {
-        Kept { file: Some(folder.join("sprung").join(NAME)), is_ours: true, last: None, lock: None }
+    fn store(folder: &Path) -> Store {
+        Store { file: Some(folder.join("sprung").join(NAME)), may_write: true, last: None, lock: None }
     }
 
     fn marimba() -> Arc<SprungParams> {
@@ -203,17 +203,17 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (params, empty) = (marimba(), SprungParams::default());
         params.set_view(|view| view.zoom = 150);
-        assert_eq!(kept(folder.path()).restore(&empty), None, "there is nothing yet");
-        let mut writer = kept(folder.path());
-        writer.keep_what_changed(&params).unwrap();
-        assert_eq!(kept(folder.path()).restore(&empty), None);
+        assert_eq!(store(folder.path()).restore(&empty), None, "there is nothing yet");
+        let mut writer = store(folder.path());
+        writer.save_if_changed(&params).unwrap();
+        assert_eq!(store(folder.path()).restore(&empty), None);
         assert_eq!(empty.state(), params.state());
         let file = folder.path().join("sprung").join(NAME);
         std::fs::remove_file(&file).unwrap();
-        writer.keep_what_changed(&params).unwrap();
+        writer.save_if_changed(&params).unwrap();
         assert!(!file.exists(), "what has not changed is not written again");
         params.set_view(|view| view.zoom = 75);
-        writer.keep_what_changed(&params).unwrap();
+        writer.save_if_changed(&params).unwrap();
         assert!(file.exists());
     }
 
@@ -226,9 +226,9 @@ mod tests {
         for (number, text) in [(1, &b"{\"preset\": 1"[..]), (2, b"\xff\xfe"), (3, newer.as_bytes())] {
             std::fs::write(&file, text).unwrap();
             let params = SprungParams::default();
-            let said = kept(folder.path()).restore(&params).unwrap();
+            let message = store(folder.path()).restore(&params).unwrap();
             let aside = file.with_file_name(format!("standalone.not-understood-{number}.json"));
-            assert!(said.contains(NAME) && said.contains(aside.to_str().unwrap()), "{said}");
+            assert!(message.contains(NAME) && message.contains(aside.to_str().unwrap()), "{message}");
             assert_eq!(std::fs::read(&aside).unwrap(), text, "nothing of it is lost");
             assert!(!file.exists());
             assert_eq!(params.name() == "Marimba", number == 3, "what can be read of a newer state is taken over");
@@ -238,23 +238,26 @@ mod tests {
     #[test]
     fn one_program_at_a_time_keeps_its_state() {
         let folder = tempfile::tempdir().unwrap();
-        let (mut first, mut second) = (kept(folder.path()), kept(folder.path()));
-        first.keep(&marimba()).unwrap();
+        let (mut first, mut second) = (store(folder.path()), store(folder.path()));
+        first.save(&marimba()).unwrap();
         assert_eq!(first.restore(&SprungParams::default()), None);
         let params = SprungParams::default();
-        let said = second.restore(&params).unwrap();
-        assert!(said.starts_with("another Sprung is open") && params.name() == "Marimba", "it begins with it: {said}");
+        let message = second.restore(&params).unwrap();
+        assert!(
+            message.starts_with("another Sprung is open") && params.name() == "Marimba",
+            "it begins with it: {message}"
+        );
         let file = folder.path().join("sprung").join(NAME);
         let before = std::fs::read(&file).unwrap();
-        second.keep(&SprungParams::default()).unwrap();
+        second.save(&SprungParams::default()).unwrap();
         let chosen = Chosen { rate: Some(96_000), ..Chosen::default() };
-        first.keep_chosen(&chosen).unwrap();
+        first.save_devices(&chosen).unwrap();
         assert_eq!(second.chosen(), (chosen.clone(), None));
-        second.keep_chosen(&Chosen { rate: Some(44_100), ..Chosen::default() }).unwrap();
+        second.save_devices(&Chosen { rate: Some(44_100), ..Chosen::default() }).unwrap();
         assert_eq!(std::fs::read(&file).unwrap(), before, "and leaves it as it is");
         assert_eq!(first.chosen(), (chosen, None));
         drop(first);
-        assert_eq!(kept(folder.path()).restore(&params), None, "the next one may");
+        assert_eq!(store(folder.path()).restore(&params), None, "the next one may");
     }
 
     #[test]
@@ -263,24 +266,24 @@ mod tests {
         // A folder of that name can be opened, but not read as a file.
         let file = folder.path().join("sprung").join(NAME);
         std::fs::create_dir_all(&file).unwrap();
-        let (mut kept, params) = (kept(folder.path()), SprungParams::default());
-        let said = kept.restore(&params).unwrap();
-        assert!(said.contains("cannot be read") && !said.contains("kept as"), "{said}");
-        kept.keep(&params).unwrap();
+        let (mut store, params) = (store(folder.path()), SprungParams::default());
+        let message = store.restore(&params).unwrap();
+        assert!(message.contains("cannot be read") && !message.contains("kept as"), "{message}");
+        store.save(&params).unwrap();
         assert!(file.is_dir());
     }
 
     #[test]
     fn the_choice_of_devices_comes_back() {
         let folder = tempfile::tempdir().unwrap();
-        let mut kept = kept(folder.path());
-        assert_eq!(kept.chosen(), (Chosen::default(), None));
+        let mut store = store(folder.path());
+        assert_eq!(store.chosen(), (Chosen::default(), None));
         let chosen = Chosen { host: Some("jack".to_owned()), rate: Some(96_000), ..Chosen::default() };
-        kept.keep_chosen(&chosen).unwrap();
-        assert_eq!(kept.chosen(), (chosen, None));
+        store.save_devices(&chosen).unwrap();
+        assert_eq!(store.chosen(), (chosen, None));
         std::fs::write(folder.path().join("sprung/devices.json"), "{\"speed\": 1}").unwrap();
-        let (chosen, said) = kept.chosen();
-        assert!(chosen == Chosen::default() && said.is_some_and(|said| said.contains("devices.json")));
+        let (chosen, message) = store.chosen();
+        assert!(chosen == Chosen::default() && message.is_some_and(|message| message.contains("devices.json")));
         let aside = folder.path().join("sprung/devices.not-understood-1.json");
         assert_eq!(std::fs::read_to_string(aside).unwrap(), "{\"speed\": 1}", "nothing of it is lost");
     }
