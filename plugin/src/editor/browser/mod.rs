@@ -1,25 +1,25 @@
 //! The browser: finds sounds, plays them, keeps favourites, and saves sounds under a name.
 
 mod details;
+mod list;
 mod sounds;
-mod star;
 
 use crate::editor::controls::Controls;
 use crate::editor::controls::files::read;
 use crate::editor::keyboard::audition::Audition;
-use crate::editor::theme::{GAP, PADDING, Palette, SMALL, TEXT, font};
+use crate::editor::theme::{GAP, PADDING, Palette, TEXT, font};
 use crate::editor::widgets::buttons::{Look, button};
-use crate::editor::widgets::text::{line, name_field, take_over};
+use crate::editor::widgets::text::{name_field, take_over};
 use crate::link::Link;
 use details::{Details, Outcome};
-use egui::{Align2, Id, Key, Rect, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use egui::{Id, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, pos2, vec2};
+use list::{List, ROW, row};
 use sounds::{Category, Sounds};
 use sprung::preset::catalogue::Listed;
 use sprung::preset::library::Library;
 use sprung::preset::{Guide, Playable};
 use std::sync::Arc;
 
-const ROW: f32 = 22.0;
 /// Width of the list of categories, and of the details of a sound.
 const SIDE: [f32; 2] = [112.0, 250.0];
 
@@ -114,8 +114,12 @@ impl Browser {
                 None
             }
         };
-        let clicked = self.rows(ui, rows, &found, &present, chosen, &mut sounds, &mut message, palette);
-        if let Some(sound) = chosen.or(clicked).and_then(|place| found.get(place)) {
+        let list = List { found: &found, present: &present, chosen };
+        let clicked = list.show(ui, rows, &sounds, palette);
+        if let Some(sound) = clicked.star.and_then(|place| found.get(place)) {
+            message = sounds.set_favourite(sound.name(), !sounds.is_favourite(sound)).or(message);
+        }
+        if let Some(sound) = chosen.or(clicked.sound).and_then(|place| found.get(place)) {
             self.try_out(ui, sound, controls);
         }
         let shown = found.iter().find(|sound| sound.name() == controls.params.name());
@@ -186,75 +190,6 @@ impl Browser {
         }
     }
 
-    /// Shows the sounds. Returns the one that was clicked.
-    #[allow(clippy::too_many_arguments, reason = "a part of one function")]
-    fn rows(
-        &self,
-        ui: &mut Ui,
-        rect: Rect,
-        found: &[Arc<Listed>],
-        present: &str,
-        chosen: Option<usize>,
-        sounds: &mut Sounds,
-        message: &mut Option<String>,
-        palette: &Palette,
-    ) -> Option<usize> {
-        let mut clicked = None;
-        let columns = ((rect.width() / 210.0) as usize).max(1);
-        let mut inner = ui.new_child(UiBuilder::new().id_salt("sounds").max_rect(rect));
-        if found.is_empty() {
-            line(
-                ui.painter(),
-                rect.with_max_y(rect.top() + 24.0),
-                Align2::LEFT_CENTER,
-                "Nothing has these words.",
-                TEXT,
-                palette.muted,
-            );
-        }
-        ScrollArea::vertical().id_salt("sounds").auto_shrink(false).show(&mut inner, |ui| {
-            let rows = found.len().div_ceil(columns);
-            let width = ui.available_width();
-            let (area, _) = ui.allocate_exact_size(vec2(width, rows as f32 * ROW), Sense::hover());
-            for (place, sound) in found.iter().enumerate() {
-                let size = vec2(width / columns as f32, ROW);
-                let corner = area.min + vec2((place % columns) as f32 * size.x, (place / columns) as f32 * size.y);
-                let cell = Rect::from_min_size(corner, size).shrink2(vec2(2.0, 1.0));
-                if chosen == Some(place) {
-                    ui.scroll_to_rect(cell.expand(ROW), None);
-                }
-                if !ui.is_rect_visible(cell) {
-                    continue;
-                }
-                let star = Rect::from_min_size(cell.min, vec2(20.0, cell.height()));
-                let response = ui.interact(cell.with_min_x(star.right()), row(place), Sense::click());
-                let is_on = sound.name() == present;
-                response.widget_info(|| WidgetInfo::selected(Role::ListItem, true, is_on, sound.name()));
-                if response.clicked() {
-                    clicked = Some(place);
-                }
-                if is_on || response.hovered() {
-                    ui.painter().rect_filled(cell, 3.0, palette.raised);
-                }
-                let is_favourite = sounds.is_favourite(sound);
-                if star::show(ui, star, place, sound.name(), is_favourite, palette) {
-                    *message = sounds.set_favourite(sound.name(), !is_favourite).or(message.take());
-                }
-                let colour = if is_on { palette.accent_text } else { palette.text };
-                let name = cell.with_min_x(star.right() + 2.0);
-                let name = line(ui.painter(), name, Align2::LEFT_CENTER, sound.name(), TEXT, colour);
-                let rest = Rect::from_min_max(pos2(name.right() + 8.0, cell.top()), cell.max - vec2(4.0, 0.0));
-                let what = if sound.path.is_some() {
-                    "yours"
-                } else {
-                    sound.playable.tags().first().map_or("", String::as_str)
-                };
-                line(ui.painter(), rest, Align2::RIGHT_CENTER, what, SMALL, palette.muted);
-            }
-        });
-        clicked
-    }
-
     /// Loads a sound and plays it on the key that suits it best.
     fn try_out(&mut self, ui: &Ui, sound: &Listed, controls: &mut Controls) {
         controls.history.load(sound.playable.clone(), controls.params, controls.host);
@@ -280,11 +215,6 @@ impl Browser {
 
 fn search_field() -> Id {
     Id::unique("search")
-}
-
-/// The row of a sound in the list.
-fn row(place: usize) -> Id {
-    Id::unique(("sound", place))
 }
 
 /// Whether the arrow keys belong to the list with so many rows: true if the list or the search has the focus, or
