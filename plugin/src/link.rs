@@ -6,12 +6,13 @@
 //! then told to the host, because the wrapper's VST3 drops changes while nothing is processed.
 
 use crate::devices::DeviceLink;
+use crate::lock::lock;
 use nice_plug_egui::RepaintNotifier;
 use rtrb::{Consumer, Producer, RingBuffer};
 use sprung::engine::{EventKind, Telemetry};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// How many touches can wait for the audio thread. Half of the space is reserved for releases of keys.
 const WAITING: usize = 64;
@@ -75,13 +76,13 @@ impl Link {
     pub(crate) fn connect(&self, sample_rate: f64) -> Consumer<Touch> {
         let (producer, consumer) = RingBuffer::new(WAITING);
         self.sample_rate.store(sample_rate.round() as u32, Relaxed);
-        *self.touches.lock().unwrap_or_else(PoisonError::into_inner) = Some(producer);
+        *lock(&self.touches) = Some(producer);
         consumer
     }
 
     /// Plays a note. Without an audio thread nothing happens. Not for the audio thread.
     pub(crate) fn play(&self, touch: Touch) {
-        if let Some(producer) = &mut *self.touches.lock().unwrap_or_else(PoisonError::into_inner) {
+        if let Some(producer) = &mut *lock(&self.touches) {
             // Each key that goes down must be able to go up: only half of the space is used for anything else.
             if matches!(touch, Touch::Up { .. }) || producer.slots() > WAITING / 2 {
                 let _ = producer.push(touch);
@@ -104,7 +105,7 @@ impl Link {
     /// Sends the window a message for the user. Not for the audio thread.
     #[cfg(feature = "standalone")]
     pub(crate) fn report(&self, message: String) {
-        let mut waiting = self.messages.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut waiting = lock(&self.messages);
         // If nothing reads the messages, the newest ones are kept.
         if waiting.len() == MESSAGES {
             waiting.remove(0);
@@ -116,7 +117,7 @@ impl Link {
 
     /// The messages since the last call, joined to one line.
     pub(crate) fn take_messages(&self) -> Option<String> {
-        let messages = std::mem::take(&mut *self.messages.lock().unwrap_or_else(PoisonError::into_inner));
+        let messages = std::mem::take(&mut *lock(&self.messages));
         (!messages.is_empty()).then(|| messages.join("; "))
     }
 

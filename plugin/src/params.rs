@@ -5,6 +5,7 @@
 use crate::editor::host::extent::Extent;
 use crate::link::Link;
 use crate::loaded::{Loaded, Slot};
+use crate::lock::lock;
 use crate::state::{self, Read, State, View};
 use nice_plug::prelude::*;
 use nice_plug_core::params::InternalParamMut;
@@ -14,7 +15,7 @@ use sprung::preset::Playable;
 use sprung::sound::Shelf;
 use std::array::from_fn;
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// A host's parameter.
 pub(crate) enum Knob {
@@ -162,7 +163,7 @@ impl SprungParams {
     }
 
     fn locked(&self) -> MutexGuard<'_, Locked> {
-        self.locked.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.locked)
     }
 
     /// The name of the preset or kit. Not for the audio thread.

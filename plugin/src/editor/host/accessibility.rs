@@ -8,6 +8,7 @@
 //! library each time.
 
 use super::x11::Display;
+use crate::lock::lock;
 use accesskit_unix::Adapter;
 use egui::accesskit::{ActionHandler, ActionRequest, ActivationHandler, DeactivationHandler, Rect, TreeUpdate};
 use egui::{Context, Event, FullOutput, RawInput};
@@ -16,7 +17,7 @@ use nice_plug_egui::baseview::WindowContext;
 use std::ffi::c_void;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// What screen readers ask for, from the thread that talks to them.
 struct Requests {
@@ -53,7 +54,7 @@ impl DeactivationHandler for Listener {
 
 impl ActionHandler for Listener {
     fn do_action(&mut self, request: ActionRequest) {
-        self.0.actions.lock().unwrap_or_else(PoisonError::into_inner).push(request);
+        lock(&self.0.actions).push(request);
         self.0.repaint.request_repaint();
     }
 }
@@ -106,7 +107,7 @@ impl egui::Plugin for Accessibility {
             if is_listening { context.enable_accesskit() } else { context.disable_accesskit() }
         }
         // The lock is not held while AccessKit is called: its thread may hold one of its own, and wait for this one.
-        let actions = std::mem::take(&mut *self.requests.actions.lock().unwrap_or_else(PoisonError::into_inner));
+        let actions = std::mem::take(&mut *lock(&self.requests.actions));
         input.events.extend(actions.into_iter().map(Event::AccessKitActionRequest));
         if input.focused != self.has_focus {
             self.has_focus = input.focused;

@@ -2,10 +2,11 @@
 
 #[cfg(target_os = "linux")]
 use super::x11;
+use crate::lock::lock;
 use crate::state::View;
 use nice_plug_core::editor::dpi::{LogicalSize, NativeSize, PhysicalSize, Size};
 use nice_plug_egui::baseview::WindowSize;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
 
 /// What is known of the window's size, by the editor and by its window.
 #[derive(Default)]
@@ -26,7 +27,7 @@ pub(crate) fn factor(view: View) -> f32 {
 
 impl Extent {
     fn known(&self) -> MutexGuard<'_, Known> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.0)
     }
 
     /// The host has told this scale. Returns the scale with which a window opens, if one is known.
