@@ -94,7 +94,7 @@ fn start(args: Args) -> Result<(), String> {
         let playable = Playable::find(name).map_err(|error| error.to_string())?;
         params.load(State::new(playable, 0, params.view()).into());
     }
-    let (last, message) = store.chosen();
+    let (last, message) = store.saved_devices();
     report(&params, message);
     let given =
         Chosen { host: args.host, device: args.device, rate: args.rate, buffer: args.buffer, midi_in: args.midi_in };

@@ -112,8 +112,8 @@ impl Store {
     }
 
     /// The choice of devices of the last run, and a message for the user.
-    pub(super) fn chosen(&mut self) -> (Chosen, Option<String>) {
-        let Some(file) = self.devices() else { return Default::default() };
+    pub(super) fn saved_devices(&mut self) -> (Chosen, Option<String>) {
+        let Some(file) = self.devices_file() else { return Default::default() };
         match std::fs::read(&file) {
             Ok(bytes) => match serde_json::from_slice(&bytes) {
                 Ok(chosen) => (chosen, None),
@@ -131,7 +131,7 @@ impl Store {
 
     /// Writes the choice of devices.
     pub(super) fn save_devices(&self, chosen: &Chosen) -> Result<(), String> {
-        let Some(file) = self.devices().filter(|_| self.may_write) else { return Ok(()) };
+        let Some(file) = self.devices_file().filter(|_| self.may_write) else { return Ok(()) };
         let written = serde_json::to_string(chosen).map_err(|error| error.to_string());
         let written = written.and_then(|text| write(&file, &(text + "\n")).map_err(|error| error.to_string()));
         written.map_err(|error| format!("the choice of devices cannot be kept: {error}"))
@@ -139,7 +139,7 @@ impl Store {
 
     /// The file of the choice of devices, beside that of the state. It is separate, since the state has the same form
     /// as in a host's project.
-    fn devices(&self) -> Option<PathBuf> {
+    fn devices_file(&self) -> Option<PathBuf> {
         self.file.as_ref().map(|file| file.with_file_name("devices.json"))
     }
 }
@@ -252,10 +252,10 @@ mod tests {
         second.save(&SprungParams::default()).unwrap();
         let chosen = Chosen { rate: Some(96_000), ..Chosen::default() };
         first.save_devices(&chosen).unwrap();
-        assert_eq!(second.chosen(), (chosen.clone(), None));
+        assert_eq!(second.saved_devices(), (chosen.clone(), None));
         second.save_devices(&Chosen { rate: Some(44_100), ..Chosen::default() }).unwrap();
         assert_eq!(std::fs::read(&file).unwrap(), before, "and leaves it as it is");
-        assert_eq!(first.chosen(), (chosen, None));
+        assert_eq!(first.saved_devices(), (chosen, None));
         drop(first);
         assert_eq!(store(folder.path()).restore(&params), None, "the next one may");
     }
@@ -277,12 +277,12 @@ mod tests {
     fn the_choice_of_devices_comes_back() {
         let folder = tempfile::tempdir().unwrap();
         let mut store = store(folder.path());
-        assert_eq!(store.chosen(), (Chosen::default(), None));
+        assert_eq!(store.saved_devices(), (Chosen::default(), None));
         let chosen = Chosen { host: Some("jack".to_owned()), rate: Some(96_000), ..Chosen::default() };
         store.save_devices(&chosen).unwrap();
-        assert_eq!(store.chosen(), (chosen, None));
+        assert_eq!(store.saved_devices(), (chosen, None));
         std::fs::write(folder.path().join("sprung/devices.json"), "{\"speed\": 1}").unwrap();
-        let (chosen, message) = store.chosen();
+        let (chosen, message) = store.saved_devices();
         assert!(chosen == Chosen::default() && message.is_some_and(|message| message.contains("devices.json")));
         let aside = folder.path().join("sprung/devices.not-understood-1.json");
         assert_eq!(std::fs::read_to_string(aside).unwrap(), "{\"speed\": 1}", "nothing of it is lost");
