@@ -56,8 +56,7 @@ pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
     let palette = controls.palette;
     palette.paint_panel(ui.painter(), rect);
     let inner = rect.shrink(PADDING);
-    let devices = &controls.params.link().devices;
-    let devices = devices.look();
+    let devices = controls.params.link().devices.look();
     let share = (inner.width() - 2.0 * GAP) / (COLUMNS[0] + COLUMNS[1]);
     let [wide, narrow] = COLUMNS.map(|width| (width * share).min(width));
     let row = |column: usize, place: usize| {
@@ -74,10 +73,12 @@ pub(super) fn show(ui: &Ui, rect: Rect, controls: &mut Controls) {
     if let Some(port) = ports(&devices).show(ui, row(0, 1), PORTS, controls) {
         request.midi_in = port;
     }
-    if let Some(rate) = rates(&devices).show(ui, row(1, 0), RATE, controls) {
+    let rates = numbers("48000 Hz, or the device’s", &devices.rates, chosen.rate, "Hz");
+    if let Some(rate) = rates.show(ui, row(1, 0), RATE, controls) {
         request.rate = rate;
     }
-    if let Some(buffer) = blocks(&devices).show(ui, row(1, 1), BLOCK, controls) {
+    let blocks = numbers("256 frames, or the nearest", &BLOCKS, chosen.buffer, "frames");
+    if let Some(buffer) = blocks.show(ui, row(1, 1), BLOCK, controls) {
         request.buffer = buffer;
     }
     if request != *chosen {
@@ -127,18 +128,10 @@ fn ports(devices: &Devices) -> Choices<Option<String>> {
     Choices::new(fixed.into_iter().chain(ports).collect(), &chosen, missing)
 }
 
-fn rates(devices: &Devices) -> Choices<Option<u32>> {
-    let written = |rate: u32| format!("{rate} Hz");
-    let rates = devices.rates.iter().map(|rate| (written(*rate), Some(*rate)));
-    let first = ("48000 Hz, or the device’s".to_owned(), None);
-    let chosen = devices.chosen.rate;
-    Choices::new(std::iter::once(first).chain(rates).collect(), &chosen, || written(chosen.unwrap_or(0)))
-}
-
-fn blocks(devices: &Devices) -> Choices<Option<u32>> {
-    let written = |frames: u32| format!("{frames} frames");
-    let blocks = BLOCKS.map(|frames| (written(frames), Some(frames)));
-    let first = ("256 frames, or the nearest".to_owned(), None);
-    let chosen = devices.chosen.buffer;
-    Choices::new(std::iter::once(first).chain(blocks).collect(), &chosen, || written(chosen.unwrap_or(0)))
+/// Numbers to choose from, after a name for the program's own choice.
+fn numbers(own: &str, all: &[u32], chosen: Option<u32>, unit: &str) -> Choices<Option<u32>> {
+    let written = |number: u32| format!("{number} {unit}");
+    let numbers = all.iter().map(|number| (written(*number), Some(*number)));
+    let all = std::iter::once((own.to_owned(), None)).chain(numbers).collect();
+    Choices::new(all, &chosen, || written(chosen.unwrap_or(0)))
 }

@@ -84,24 +84,19 @@ pub(super) fn show(
             palette.paint_panel(ui.painter(), panel);
             let title = Rect::from_min_size(panel.min + vec2(PADDING, 2.0), vec2(size.x - PADDING, TITLE_HEIGHT - 2.0));
             line(ui.painter(), title, Align2::LEFT_CENTER, &section[0].section.to_uppercase(), SMALL, palette.muted);
-            // A picture in the last row, if it has room for one.
+            // A picture in the last row if it has room for one, otherwise a small one beside the title.
             let free = (columns(section) - section.len() % columns(section)) % columns(section);
-            if free > 0 {
+            let picture = if free > 0 {
                 let row = panel.top() + TITLE_HEIGHT + (section.len() / columns(section)) as f32 * CELL_HEIGHT;
                 let left = panel.right() - PADDING - free as f32 * cell_width;
                 let place = Rect::from_min_size(pos2(left, row), vec2(free as f32 * cell_width, KNOB + 14.0));
-                curves::paint(ui.painter(), place.shrink2(vec2(6.0, 2.0)), section, controls);
+                place.shrink2(vec2(6.0, 2.0))
             } else {
-                // Otherwise a small one beside the title.
                 let width = (0.45 * size.x).min(76.0);
                 let corner = panel.right_top() + vec2(-width - PADDING, 4.0);
-                curves::paint(
-                    ui.painter(),
-                    Rect::from_min_size(corner, vec2(width, TITLE_HEIGHT - 6.0)),
-                    section,
-                    controls,
-                );
-            }
+                Rect::from_min_size(corner, vec2(width, TITLE_HEIGHT - 6.0))
+            };
+            curves::paint(ui.painter(), picture, section, controls);
             for (place, info) in section.iter().enumerate() {
                 let (column, row) = (place % columns(section), place / columns(section));
                 let offset = vec2(column as f32 * cell_width, row as f32 * CELL_HEIGHT);
