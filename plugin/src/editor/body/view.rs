@@ -9,10 +9,10 @@ use crate::editor::controls::gestures::touch;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, Hint};
 use crate::editor::keyboard::audition::Audition;
+use crate::editor::modes::table::replace;
 use crate::loaded::Loaded;
 use egui::{CursorIcon, Id, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
 use sprung::params::Param;
-use sprung::preset::Playable;
 use sprung::sound::bodies::Point;
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -218,9 +218,7 @@ fn write(point: Point, origin: &mut Origin, controls: &mut Controls) {
         }
         return;
     }
-    let Ok(Some(modes)) = origin.modes() else { return };
-    let mut state = controls.params.state();
-    let Playable::Preset(preset) = &mut state.playable else { return };
-    preset.patch.modes = modes;
-    controls.params.load(state.into());
+    if let Ok(Some(modes)) = origin.modes() {
+        replace(modes, controls);
+    }
 }

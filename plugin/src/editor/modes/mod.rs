@@ -4,7 +4,7 @@ pub(super) mod axes;
 mod drag;
 mod face;
 mod snap;
-mod table;
+pub(super) mod table;
 
 use crate::editor::controls::gestures::touch;
 use crate::editor::controls::shown::Shown;
@@ -22,7 +22,7 @@ use egui::{
 use face::Face;
 use snap::Snap;
 use sprung::params::Param;
-use sprung::patch::{MAX_MODES, Mode, Patch};
+use sprung::patch::{MAX_MODES, Mode, ModeTable, Patch};
 use table::{clamped, phases, replace};
 
 /// Greatest distance from a mode's circle at which it can be grabbed, in pixels.
@@ -148,7 +148,7 @@ impl ModesView {
             let to = ui.input(|input| input.pointer.interact_pos());
             drag.follow(Step { to, by: delta, is_fine: modifiers.shift }, axes, self.snap);
             if let Some(modes) = drag.due(now, is_over)
-                && let Some(loaded) = replace(modes, &phases(&patch.modes), controls)
+                && let Some(loaded) = replace(ModeTable::new(modes).with_phases(&phases(&patch.modes)), controls)
             {
                 drag.set_loaded(loaded);
             }
@@ -200,7 +200,7 @@ impl ModesView {
         };
         self.selected = None;
         controls.history.begin(controls.params);
-        replace(&modes, &phases, controls);
+        replace(ModeTable::new(&modes).with_phases(&phases), controls);
         controls.history.end(name, controls.params);
         touch(controls.params, controls.host);
         true

@@ -17,12 +17,10 @@ pub(super) fn phases(table: &ModeTable) -> Vec<f32> {
     (0..modes).map(|mode| table.phase(mode)).collect()
 }
 
-/// Replaces the sound's table of modes, with a phase for each mode or none. Returns the loaded sound; nothing for a
-/// kit.
-pub(super) fn replace(modes: &[Mode], phases: &[f32], controls: &Controls) -> Option<Arc<Loaded>> {
+/// Replaces the sound's table of modes; the knobs stay where they are. Returns the loaded sound; nothing for a kit.
+pub(crate) fn replace(table: ModeTable, controls: &Controls) -> Option<Arc<Loaded>> {
     let mut state = controls.params.state();
     let Playable::Preset(preset) = &mut state.playable else { return None };
-    preset.patch.modes = ModeTable::new(modes).with_phases(phases);
-    // The knobs stay where they are.
+    preset.patch.modes = table;
     Some(controls.params.load(state.into()))
 }
