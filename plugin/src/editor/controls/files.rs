@@ -4,29 +4,14 @@ use super::gestures;
 use crate::params::SprungParams;
 use crate::state::State;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::preset::{Playable, Preset, Replaced};
+use sprung::preset::{Playable, Replaced};
 use std::fs::File;
 use std::path::Path;
-
-/// A message if the last state that was loaded was not understood completely: the first complaint, and the number of
-/// the others.
-pub(crate) fn summary(complaints: &[String]) -> Option<String> {
-    let [first, rest @ ..] = complaints else { return None };
-    let rest = if rest.is_empty() { String::new() } else { format!(" (and {} more)", rest.len()) };
-    Some(format!("Not all of the project’s state was understood: {first}{rest}"))
-}
 
 /// Loads a preset or kit, and tells the host the new knob positions.
 pub(crate) fn load(playable: Playable, params: &SprungParams, host: &GuiContext) {
     let State { seed, view, .. } = params.state();
     gestures::load(State::new(playable, seed, view), params, host);
-}
-
-/// The factory sound at this distance from the named one, in the order of the list.
-pub(crate) fn neighbour(name: &str, places: isize) -> Option<&'static Preset> {
-    let all = Preset::factory();
-    let place = all.iter().position(|preset| preset.name == name).unwrap_or(0);
-    all.get((place as isize + places).rem_euclid(all.len() as isize) as usize)
 }
 
 /// Reads a preset or kit file. Returns it with a remark about each retired parameter in it.
@@ -70,13 +55,9 @@ mod tests {
     }
 
     #[test]
-    fn kits_are_read_and_what_was_not_understood_is_told_in_a_line() {
+    fn kits_are_read() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/kits/acoustic-kit.toml");
         let path = std::fs::canonicalize(path).unwrap().display().to_string();
         assert!(matches!(read(&path), Ok((Playable::Kit(_), _))));
-        let lines = ["a", "b", "c"].map(str::to_owned);
-        assert_eq!(summary(&[]), None);
-        assert_eq!(summary(&lines[..1]).as_deref(), Some("Not all of the project’s state was understood: a"));
-        assert!(summary(&lines).unwrap().ends_with(": a (and 2 more)"));
     }
 }

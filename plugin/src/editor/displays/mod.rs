@@ -38,7 +38,7 @@ const PICTURES: [(Picture, &str, f32); 4] = [
 
 /// The state of the pictures.
 #[derive(Default)]
-pub(super) struct Motion {
+pub(super) struct Displays {
     picture: Picture,
     phase: Phase,
     body: BodyView,
@@ -47,7 +47,7 @@ pub(super) struct Motion {
     audition: Audition,
 }
 
-impl Motion {
+impl Displays {
     /// Drops the user's action in a picture.
     pub(super) fn cancel(&mut self, controls: &mut Controls) {
         self.phase.cancel();

@@ -8,7 +8,7 @@ use egui::{Rect, pos2};
 pub(crate) struct Layout {
     pub(crate) header: Rect,
     pub(crate) modes: Rect,
-    pub(crate) motion: Rect,
+    pub(crate) displays: Rect,
     pub(crate) tabs: Rect,
     pub(crate) sections: Rect,
     pub(crate) piano: Rect,
@@ -16,7 +16,7 @@ pub(crate) struct Layout {
 }
 
 /// The height of sections with this many rows of knobs.
-pub(super) fn section_height(rows: usize) -> f32 {
+fn section_height(rows: usize) -> f32 {
     TITLE_HEIGHT + rows as f32 * CELL_HEIGHT + PADDING
 }
 
@@ -43,8 +43,8 @@ impl Layout {
         bottom = tabs.top() - GAP / 2.0;
         let split = inner.left() + ((inner.width() - GAP) * 0.65).round();
         let modes = Rect::from_min_max(pos2(inner.left(), top), pos2(split, bottom));
-        let motion = Rect::from_min_max(pos2(split + GAP, top), pos2(inner.right(), bottom));
-        Self { header, modes, motion, tabs, sections, piano, status }
+        let displays = Rect::from_min_max(pos2(split + GAP, top), pos2(inner.right(), bottom));
+        Self { header, modes, displays, tabs, sections, piano, status }
     }
 
     /// The area between header and piano, for a page such as the browser.
@@ -64,8 +64,8 @@ mod tests {
         for [width, height] in [LEAST_SIZE, SIZE, [2000, 400], [640, 1600], [2600, 1600]] {
             let window = Rect::from_min_size(pos2(0.0, 0.0), vec2(width as f32, height as f32));
             let layout = Layout::of(window);
-            let Layout { header, modes, motion, tabs, sections, piano, status } = layout;
-            let parts = [header, modes, motion, tabs, sections, piano, status];
+            let Layout { header, modes, displays, tabs, sections, piano, status } = layout;
+            let parts = [header, modes, displays, tabs, sections, piano, status];
             for (place, part) in parts.iter().enumerate() {
                 assert!(window.contains_rect(*part), "{width} × {height}: part {place} {part:?}");
                 assert!(part.width() > 100.0 && part.height() >= 18.0, "{width} × {height}: part {place} {part:?}");

@@ -79,7 +79,7 @@ impl Drop for Window {
         self.computer_keyboard.release(link);
         self.browser.release(link);
         self.modes.release(link);
-        self.motion.release(link);
+        self.displays.release(link);
         self.pages.release(link);
         if let Some(host) = self.host.take() {
             let end = || self.interaction.gestures.end(&self.params, &host);

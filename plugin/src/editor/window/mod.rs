@@ -8,11 +8,10 @@ mod status;
 mod variation;
 
 use crate::editor::browser::Browser;
-use crate::editor::controls::files::summary;
 use crate::editor::controls::history::History;
 use crate::editor::controls::shown::Shown;
 use crate::editor::controls::{Controls, FRAME, Interaction};
-use crate::editor::displays::Motion;
+use crate::editor::displays::Displays;
 use crate::editor::drops;
 use crate::editor::drops::fitting::Fitting;
 use crate::editor::host::extent;
@@ -57,7 +56,7 @@ pub(super) struct Window {
     shown: Shown,
     browser: Browser,
     modes: ModesView,
-    motion: Motion,
+    displays: Displays,
     piano: Piano,
     computer_keyboard: ComputerKeyboard,
     meter: Meter,
@@ -99,7 +98,7 @@ impl Window {
             shown,
             browser: Browser::new(library),
             modes: ModesView::default(),
-            motion: Motion::default(),
+            displays: Displays::default(),
             piano: Piano::default(),
             computer_keyboard: ComputerKeyboard::default(),
             meter: Meter::default(),
@@ -183,7 +182,7 @@ impl Window {
         let voices = if is_silent { 0 } else { snapshot.voices };
         if self.over.is_some() {
             self.modes.cancel(&mut controls);
-            self.motion.cancel(&mut controls);
+            self.displays.cancel(&mut controls);
             self.pages.leave(&mut controls);
         }
         match self.over {
@@ -200,7 +199,7 @@ impl Window {
             }
             None => {
                 self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
-                self.motion.show(ui, layout.motion, &self.shown, (&energies, self.modes.selected()), &mut controls);
+                self.displays.show(ui, layout.displays, &self.shown, (&energies, self.modes.selected()), &mut controls);
                 match self.pages.show(ui, &layout, &self.shown, (down, voices), &mut controls) {
                     Some(pages::Request::Manual) => {
                         self.manual.open(self.pages.topic());
@@ -238,7 +237,7 @@ impl Window {
             self.message = messages;
         }
         let complaint = controls.interaction.typing.as_ref().and_then(|typing| typing.complaint.clone());
-        let complaints = || summary(&params.complaints()).unwrap_or_default();
+        let complaints = || status::summary(&params.complaints()).unwrap_or_default();
         let message = if self.message.is_empty() { complaints() } else { self.message.clone() };
         let message = complaint.unwrap_or(message);
         let sample_rate = params.link().sample_rate();

@@ -4,19 +4,21 @@ use super::header::Request;
 use super::variation::{Variation, VariationRequest};
 use super::{Over, Window};
 use crate::editor::browser::Aim;
-use crate::editor::controls::files::{load, neighbour};
+use crate::editor::controls::files::load;
 use crate::editor::controls::history::{History, restore};
 use crate::editor::host::extent;
 use crate::params::SprungParams;
 use egui::Ui;
 use nice_plug_core::context::gui::GuiContext;
-use sprung::preset::Playable;
+use sprung::preset::{Playable, Preset};
 
 impl Window {
     /// Loads the factory sound at this distance in the list.
     fn step(&mut self, places: isize, host: &GuiContext) {
-        let Some(preset) = neighbour(&self.params.name(), places) else { return };
-        self.history.load(Playable::Preset(preset.clone()), &self.params, host);
+        let (all, name) = (Preset::factory(), self.params.name());
+        let place = all.iter().position(|preset| preset.name == name).unwrap_or(0) as isize + places;
+        let preset = all[place.rem_euclid(all.len() as isize) as usize].clone();
+        self.history.load(Playable::Preset(preset), &self.params, host);
     }
 
     /// Replaces the sound by a random variation.

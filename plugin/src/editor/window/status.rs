@@ -49,6 +49,14 @@ pub(super) fn engine(voices: u32, load: Option<f64>, sample_rate: u32) -> String
     }
 }
 
+/// A message if the last state that was loaded was not understood completely: the first complaint, and the number of
+/// the others.
+pub(super) fn summary(complaints: &[String]) -> Option<String> {
+    let [first, rest @ ..] = complaints else { return None };
+    let rest = if rest.is_empty() { String::new() } else { format!(" (and {} more)", rest.len()) };
+    Some(format!("Not all of the project’s state was understood: {first}{rest}"))
+}
+
 /// The line. A message stays until the next one; a hint hides it while the pointer is over the widget, but only once the
 /// pointer has moved: what a click or a key has led to must be seen where the pointer rests.
 #[derive(Default)]
@@ -123,5 +131,13 @@ mod tests {
         assert_eq!(load.share(0.9, &telemetry, 48_000), Some(share));
         assert!((load.share(1.0, &telemetry, 48_000).unwrap() - 0.1).abs() < 1e-6);
         assert_eq!(load.share(2.0, &telemetry, 48_000), None, "nothing was played");
+    }
+
+    #[test]
+    fn complaints_are_summed_up_in_a_line() {
+        let lines = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!(summary(&[]), None);
+        assert_eq!(summary(&lines[..1]).as_deref(), Some("Not all of the project’s state was understood: a"));
+        assert!(summary(&lines).unwrap().ends_with(": a (and 2 more)"));
     }
 }

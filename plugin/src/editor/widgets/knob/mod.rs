@@ -143,7 +143,7 @@ fn rounded(info: &ParamInfo, position: f64) -> f64 {
 }
 
 /// Moves a knob by a number of steps, as one gesture.
-pub(super) fn step(info: &'static ParamInfo, steps: f64, controls: &mut Controls) {
+fn step(info: &'static ParamInfo, steps: f64, controls: &mut Controls) {
     let position = f64::from(controls.params.knobs()[info.param as usize].position());
     let wanted = match info.unit {
         Unit::Count | Unit::Choice => {
