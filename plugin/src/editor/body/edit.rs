@@ -41,7 +41,7 @@ impl BodyEdit {
             is_new: false,
             what: String::new(),
             decay: origin.t60().map_or(1.0, |t60| decay / t60),
-            position: controls.params.knobs()[Param::Decay as usize].position(),
+            position: controls.position(Param::Decay.info()),
             next: 0.0,
             loaded: loaded.clone(),
         }
@@ -98,7 +98,7 @@ impl BodyEdit {
     pub(super) fn end(mut self, controls: &mut Controls) -> Result<(), String> {
         let result = self.write(f64::INFINITY, controls);
         controls.history.end(self.what, controls.params);
-        let position = controls.params.knobs()[Param::Decay as usize].position();
+        let position = controls.position(Param::Decay.info());
         if position.to_bits() == self.position.to_bits() {
             touch(controls.params, controls.host);
         } else {

@@ -74,10 +74,14 @@ pub(super) struct Controls<'a> {
 }
 
 impl Controls<'_> {
+    /// The position of a parameter's knob.
+    pub(super) fn position(&self, info: &ParamInfo) -> f32 {
+        self.params.knobs()[info.param as usize].position()
+    }
+
     /// The value of a parameter.
     pub(super) fn value(&self, info: &ParamInfo) -> f32 {
-        let index = info.param as usize;
-        self.params.loaded().value(index, self.params.knobs()[index].position())
+        self.params.loaded().value(info.param as usize, self.position(info))
     }
 
     /// The value of a parameter as text.

@@ -61,7 +61,7 @@ fn learn(source: Source, info: &'static ParamInfo, controls: &mut Controls) -> S
     let Some(place) = (0..MAX_ROUTES).find(|place| routes.get(*place).is_none()) else {
         return "all sixteen routes are taken".to_owned();
     };
-    let position = controls.params.knobs()[info.param as usize].position();
+    let position = controls.position(info);
     let travel = if 1.0 - position >= LEAST { 1.0 - position } else { -position };
     change(place, Some(Route::linear(source, info.param)), Some((100.0 * travel).round()), controls);
     format!("{name} modulates {}: route {}", info.name, place + 1)

@@ -40,7 +40,7 @@ pub(super) struct Ring {
 
 impl Ring {
     pub(super) fn of(info: &ParamInfo, routes: &Routes, controls: &Controls) -> Self {
-        let position = controls.params.knobs()[info.param as usize].position();
+        let position = controls.position(info);
         let range = |(place, route): (usize, Route)| {
             let amount = controls.value(amount_param(place).info()) / 100.0;
             let goes_back = route.source.is_bipolar() || route.scale.is_some_and(Source::is_bipolar);

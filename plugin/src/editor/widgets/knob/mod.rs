@@ -62,7 +62,6 @@ pub(crate) fn show(
     controls: &mut Controls,
 ) {
     let parts = Parts::of(cell);
-    let index = info.param as usize;
     let mut response = ui.interact(cell.with_max_y(parts.value.top()), id(info), Sense::click_and_drag());
     let value_response =
         ui.interact(parts.value, id(info).with("value"), Sense::click()).on_hover_cursor(CursorIcon::Text);
@@ -79,7 +78,6 @@ pub(crate) fn show(
     }
     response.context_menu(|ui| menu::show(ui, info, controls));
 
-    let knob = &controls.params.knobs()[index];
     let text = controls.text(info);
     response.widget_info(|| {
         let mut about = WidgetInfo::slider(true, f64::from(controls.value(info)), info.name);
@@ -94,9 +92,9 @@ pub(crate) fn show(
     }
     let palette = controls.palette;
     let face = Face {
-        position: knob.position(),
+        position: controls.position(info),
         origin: info.normalise(info.default) as f32,
-        offset: knob.offset(),
+        offset: controls.params.knobs()[info.param as usize].offset(),
         ring,
         is_hovered,
         is_focused: response.has_focus(),
@@ -119,7 +117,7 @@ pub(crate) fn show_none(painter: &Painter, cell: Rect, name: &str, palette: &Pal
 fn drag(ui: &Ui, response: &mut Response, info: &'static ParamInfo, controls: &mut Controls) {
     let index = info.param as usize;
     if response.drag_started() {
-        controls.interaction.dragged = f64::from(controls.params.knobs()[index].position());
+        controls.interaction.dragged = f64::from(controls.position(info));
     }
     if response.dragged() {
         let moved = response.drag_delta();
@@ -127,7 +125,7 @@ fn drag(ui: &Ui, response: &mut Response, info: &'static ParamInfo, controls: &m
         let dragged = controls.interaction.dragged + f64::from((moved.x - moved.y) / TRAVEL) * fine;
         controls.interaction.dragged = dragged.clamp(0.0, 1.0);
         let position = rounded(info, controls.interaction.dragged);
-        if moved != egui::Vec2::ZERO && position as f32 != controls.params.knobs()[index].position() {
+        if moved != egui::Vec2::ZERO && position as f32 != controls.position(info) {
             controls.turn(info, position);
         }
         ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
@@ -144,7 +142,7 @@ fn rounded(info: &ParamInfo, position: f64) -> f64 {
 
 /// Moves a knob by a number of steps, as one gesture.
 fn step(info: &'static ParamInfo, steps: f64, controls: &mut Controls) {
-    let position = f64::from(controls.params.knobs()[info.param as usize].position());
+    let position = f64::from(controls.position(info));
     let wanted = match info.unit {
         Unit::Count | Unit::Choice => {
             let whole = if steps > 0.0 { steps.ceil() } else { steps.floor() };
