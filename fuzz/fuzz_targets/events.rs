@@ -1,22 +1,22 @@
 //! Any patch and any stream of events: nothing panics, all that comes out is finite and within what the strikes bring.
 //!
-//! The case, its bound and the comparison are those of `tests/storm`, which also replays this target's kept corpus.
+//! The case, its bound and the comparison are those of `tests/engine/storm`, which also replays this target's kept corpus.
 
 #![no_main]
 
-#[path = "../../tests/storm/bound.rs"]
+#[path = "../../tests/engine/storm/bound.rs"]
 mod bound;
-#[path = "../../tests/storm/case.rs"]
+#[path = "../../tests/engine/storm/case.rs"]
 mod case;
-#[path = "../../tests/storm/check.rs"]
+#[path = "../../tests/engine/storm/check.rs"]
 mod check;
-#[path = "../../tests/storm/gains.rs"]
+#[path = "../../tests/engine/storm/gains.rs"]
 mod gains;
-#[path = "../../tests/storm/heard_by.rs"]
+#[path = "../../tests/engine/storm/heard_by.rs"]
 mod heard_by;
-#[path = "../../tests/storm/noise.rs"]
+#[path = "../../tests/engine/storm/noise.rs"]
 mod noise;
-#[path = "../../tests/storm/reach.rs"]
+#[path = "../../tests/engine/storm/reach.rs"]
 mod reach;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {

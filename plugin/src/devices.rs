@@ -1,9 +1,10 @@
 //! Audio devices, sample rates and MIDI ports of the standalone program, for its window; a host chooses its own.
 
+use crate::lock::lock;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// The user's choices. A field without a value leaves the choice to the program.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -48,44 +49,44 @@ pub(crate) struct Devices {
 /// Exchange between the program and the window: the program publishes the devices, the window requests a choice.
 /// Neither waits for the other's work.
 #[derive(Default)]
-pub(crate) struct Desk {
+pub(crate) struct DeviceLink {
     shown: Mutex<Arc<Devices>>,
-    wish: Mutex<Option<Chosen>>,
+    request: Mutex<Option<Chosen>>,
     is_watched: AtomicBool,
 }
 
-impl Desk {
+impl DeviceLink {
     /// For the window: the devices and ports. As long as the window calls this, the program keeps the list up to date.
     pub(crate) fn look(&self) -> Arc<Devices> {
         self.is_watched.store(true, Relaxed);
-        self.shown.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        lock(&self.shown).clone()
     }
 
     /// For the window: requests another choice. It is shown as chosen at once, since the next request is based on it.
-    pub(crate) fn ask(&self, wish: Chosen) {
-        let mut waiting = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
-        Arc::make_mut(&mut *self.shown.lock().unwrap_or_else(PoisonError::into_inner)).chosen = wish.clone();
-        *waiting = Some(wish);
+    pub(crate) fn request(&self, request: Chosen) {
+        let mut waiting = lock(&self.request);
+        Arc::make_mut(&mut *lock(&self.shown)).chosen = request.clone();
+        *waiting = Some(request);
     }
 }
 
 #[cfg(any(feature = "standalone", test))]
-impl Desk {
+impl DeviceLink {
     /// For the program: publishes the devices and ports. A request that still waits stays shown as chosen.
     pub(crate) fn show(&self, mut devices: Devices) {
-        let waiting = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(wish) = &*waiting {
-            devices.chosen = wish.clone();
+        let waiting = lock(&self.request);
+        if let Some(request) = &*waiting {
+            devices.chosen = request.clone();
         }
-        *self.shown.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(devices);
+        *lock(&self.shown) = Arc::new(devices);
     }
 
     /// For the program: the window's request since the last call.
-    pub(crate) fn take_wish(&self) -> Option<Chosen> {
-        self.wish.lock().unwrap_or_else(PoisonError::into_inner).take()
+    pub(crate) fn take_request(&self) -> Option<Chosen> {
+        lock(&self.request).take()
     }
 
-    /// For the program: whether the window has called [`Desk::look`] since the last call.
+    /// For the program: whether the window has called [`DeviceLink::look`] since the last call.
     pub(crate) fn was_watched(&self) -> bool {
         self.is_watched.swap(false, Relaxed)
     }

@@ -7,6 +7,7 @@
 //! | `loaded` | the loaded sound with exact values, and how the audio thread gets it without waiting |
 //! | `live` | the audio thread: follows parameters, passes events on, renders |
 //! | `link` | messages between the window and the audio thread |
+//! | `lock` | locks whose holder may have panicked |
 //! | `devices` | the standalone program's devices and ports, as its window chooses them |
 //! | `events` | converts the wrapper's note events to the engine's |
 //! | `tail` | how long the sound continues |
@@ -24,6 +25,7 @@ mod export;
 mod link;
 mod live;
 mod loaded;
+mod lock;
 mod params;
 mod plugin;
 #[cfg(feature = "standalone")]

@@ -5,20 +5,21 @@
 //! Only the window and the thread beside it take the locks of `devices`. A knob that the window turns is set first and
 //! then told to the host, because the wrapper's VST3 drops changes while nothing is processed.
 
-use crate::devices::Desk;
+use crate::devices::DeviceLink;
+use crate::lock::lock;
 use nice_plug_egui::RepaintNotifier;
 use rtrb::{Consumer, Producer, RingBuffer};
 use sprung::engine::{EventKind, Telemetry};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// How many touches can wait for the audio thread. Half of the space is reserved for releases of keys.
 const WAITING: usize = 64;
 
 /// How many messages can wait for the window.
 #[cfg(feature = "standalone")]
-const NEWS: usize = 16;
+const MESSAGES: usize = 16;
 
 /// A note played in the window. It is neither part of the state nor of a host's rendering to a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,9 +65,9 @@ pub(crate) struct Link {
     /// To the standalone program's window: a request to close.
     closing: AtomicBool,
     /// To the standalone program's window: messages about devices and ports, the oldest first.
-    news: Mutex<Vec<String>>,
+    messages: Mutex<Vec<String>>,
     /// Between the standalone program and its window: the devices and ports.
-    pub(crate) desk: Desk,
+    pub(crate) devices: DeviceLink,
 }
 
 impl Link {
@@ -75,13 +76,13 @@ impl Link {
     pub(crate) fn connect(&self, sample_rate: f64) -> Consumer<Touch> {
         let (producer, consumer) = RingBuffer::new(WAITING);
         self.sample_rate.store(sample_rate.round() as u32, Relaxed);
-        *self.touches.lock().unwrap_or_else(PoisonError::into_inner) = Some(producer);
+        *lock(&self.touches) = Some(producer);
         consumer
     }
 
     /// Plays a note. Without an audio thread nothing happens. Not for the audio thread.
     pub(crate) fn play(&self, touch: Touch) {
-        if let Some(producer) = &mut *self.touches.lock().unwrap_or_else(PoisonError::into_inner) {
+        if let Some(producer) = &mut *lock(&self.touches) {
             // Each key that goes down must be able to go up: only half of the space is used for anything else.
             if matches!(touch, Touch::Up { .. }) || producer.slots() > WAITING / 2 {
                 let _ = producer.push(touch);
@@ -103,21 +104,21 @@ impl Link {
 
     /// Sends the window a message for the user. Not for the audio thread.
     #[cfg(feature = "standalone")]
-    pub(crate) fn tell(&self, news: String) {
-        let mut waiting = self.news.lock().unwrap_or_else(PoisonError::into_inner);
+    pub(crate) fn report(&self, message: String) {
+        let mut waiting = lock(&self.messages);
         // If nothing reads the messages, the newest ones are kept.
-        if waiting.len() == NEWS {
+        if waiting.len() == MESSAGES {
             waiting.remove(0);
         }
-        waiting.push(news);
+        waiting.push(message);
         drop(waiting);
         self.repaint.request_repaint();
     }
 
     /// The messages since the last call, joined to one line.
-    pub(crate) fn take_news(&self) -> Option<String> {
-        let news = std::mem::take(&mut *self.news.lock().unwrap_or_else(PoisonError::into_inner));
-        (!news.is_empty()).then(|| news.join("; "))
+    pub(crate) fn take_messages(&self) -> Option<String> {
+        let messages = std::mem::take(&mut *lock(&self.messages));
+        (!messages.is_empty()).then(|| messages.join("; "))
     }
 
     /// The sample rate in Hz; 0 before the first one is known.
@@ -154,13 +155,13 @@ mod tests {
 
     #[cfg(feature = "standalone")]
     #[test]
-    fn news_wait_for_the_window_and_none_replaces_another() {
+    fn messages_wait_for_the_window_and_none_replaces_another() {
         let link = Link::default();
-        link.tell("one".to_owned());
-        link.tell("two".to_owned());
-        assert_eq!((link.take_news(), link.take_news()), (Some("one; two".to_owned()), None));
-        (0..2 * NEWS).for_each(|line| link.tell(line.to_string()));
-        let news = link.take_news().unwrap();
-        assert!(news.starts_with("16; 17") && news.ends_with("; 31"), "the newest: {news}");
+        link.report("one".to_owned());
+        link.report("two".to_owned());
+        assert_eq!((link.take_messages(), link.take_messages()), (Some("one; two".to_owned()), None));
+        (0..2 * MESSAGES).for_each(|line| link.report(line.to_string()));
+        let messages = link.take_messages().unwrap();
+        assert!(messages.starts_with("16; 17") && messages.ends_with("; 31"), "the newest: {messages}");
     }
 }

@@ -42,7 +42,7 @@ pub(crate) struct Live {
     voices: u32,
     tail: Tail,
     /// Number of the synth's ended notes that have been reported to the host.
-    told: usize,
+    reported: usize,
     /// Events that the wrapper delivered too early, with the part of the block before their own.
     early: Vec<NoteEvent<()>>,
     /// Buffers for the instrument's stereo output if the host has only one channel for it.
@@ -73,7 +73,7 @@ impl Live {
             tempo: None,
             voices: 0,
             tail: Tail::new(offline),
-            told: 0,
+            reported: 0,
             early: Vec::with_capacity(EVENT_CAPACITY),
             stereo: [[0.0; MONO_FRAMES]; 2],
             touches: params.link().connect(sample_rate),
@@ -89,7 +89,7 @@ impl Live {
     pub(crate) fn reset(&mut self, params: &SprungParams) {
         self.follow(params);
         self.synth.reset();
-        (self.offsets, self.tempo, self.told) = ([0.0; PARAM_COUNT], None, 0);
+        (self.offsets, self.tempo, self.reported) = ([0.0; PARAM_COUNT], None, 0);
         self.early.clear();
         self.telemetry.release_keys();
     }
@@ -97,13 +97,13 @@ impl Live {
     /// Applies changes of the sound, of the knobs, and of the modulation of the whole instrument. While another thread
     /// is writing them, nothing changes until the next block.
     fn follow(&mut self, params: &SprungParams) {
-        let Some(Look { positions, offsets, news }) = params.look(&self.loaded) else { return };
+        let Some(Look { positions, offsets, new_sound }) = params.look(&self.loaded) else { return };
         let before = std::mem::replace(&mut self.positions, positions);
         let moved = |index: usize| positions[index].to_bits() != before[index].to_bits();
         // While nothing sounds, values change without smoothing, so that values set before playing apply from the first
         // note on. The same holds for a new kit, which does not sound yet.
-        let at_once = news.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
-        if let Some(loaded) = news {
+        let at_once = new_sound.is_some() || (self.synth.is_silent() && (0..PARAM_COUNT).any(moved));
+        if let Some(loaded) = new_sound {
             self.synth.set_seed(loaded.seed);
             self.synth.set_kit(&loaded.kit);
             // Assigned last: until here, the previous `loaded` has kept the previous kit alive.
@@ -171,7 +171,7 @@ impl Live {
         self.follow_tempo(context.transport().tempo);
         self.follow_touches();
         // A change of the play mode may have ended notes that were waiting for a key.
-        self.tell(0, context);
+        self.report_ended(0, context);
         let voices = self.synth.values().get(Param::Voices) as u32;
         if voices != self.voices {
             self.voices = voices;
@@ -244,7 +244,7 @@ impl Live {
     ) {
         if let Some((channel, kind)) = translate(event, context.plugin_api()) {
             self.handle(channel, kind);
-            self.tell(frame, context);
+            self.report_ended(frame, context);
         }
     }
 
@@ -266,8 +266,8 @@ impl Live {
                 let (left, right) = (&mut left[frames.clone()], &mut right[frames]);
                 self.synth.process_with_input(&[], input, left, right);
                 note_sound(&mut self.telemetry, &self.synth, left, right);
-                self.told = 0;
-                self.tell(last, context);
+                self.reported = 0;
+                self.report_ended(last, context);
             }
             [mono] => {
                 let inputs = input.chunks(MONO_FRAMES).chain(std::iter::repeat(&[][..]));
@@ -279,8 +279,8 @@ impl Live {
                     for ((mono, left), right) in part.iter_mut().zip(left).zip(right) {
                         *mono = mono_from_stereo(*left, *right);
                     }
-                    self.told = 0;
-                    self.tell(last, context);
+                    self.reported = 0;
+                    self.report_ended(last, context);
                 }
             }
             [] => {}
@@ -288,9 +288,9 @@ impl Live {
     }
 
     /// Reports to the host, at a frame of the block, the notes that have ended since the last report.
-    fn tell<P: Plugin<SysExMessage = ()>>(&mut self, frame: usize, context: &mut impl ProcessContext<P>) {
+    fn report_ended<P: Plugin<SysExMessage = ()>>(&mut self, frame: usize, context: &mut impl ProcessContext<P>) {
         let ended = self.synth.ended();
-        for note in ended.get(self.told..).unwrap_or_default() {
+        for note in ended.get(self.reported..).unwrap_or_default() {
             let voice_id = note.id.map_or(VoiceID::Wildcard, |id| VoiceID::ID(id.number()));
             // An error means that the host accepts no events, or no more of them: it is ignored.
             let _ = context.try_send_event(NoteEvent::VoiceTerminated {
@@ -300,7 +300,7 @@ impl Live {
                 key: Key::Number(note.key),
             });
         }
-        self.told = ended.len();
+        self.reported = ended.len();
     }
 }
 

@@ -2,9 +2,10 @@
 
 #![allow(unsafe_code, reason = "the wrapper takes parameters as pointers and has no safe way to set several at once")]
 
-use crate::editor::extent::Extent;
+use crate::editor::host::extent::Extent;
 use crate::link::Link;
 use crate::loaded::{Loaded, Slot};
+use crate::lock::lock;
 use crate::state::{self, Read, State, View};
 use nice_plug::prelude::*;
 use nice_plug_core::params::InternalParamMut;
@@ -14,7 +15,7 @@ use sprung::preset::Playable;
 use sprung::sound::Shelf;
 use std::array::from_fn;
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// A host's parameter.
 pub(crate) enum Knob {
@@ -101,11 +102,11 @@ pub(crate) struct Look {
     /// Offsets of the knobs by modulation of the whole instrument.
     pub(crate) offsets: [f32; PARAM_COUNT],
     /// The sound, if a new one was loaded.
-    pub(crate) news: Option<Arc<Loaded>>,
+    pub(crate) new_sound: Option<Arc<Loaded>>,
 }
 
 /// State that the audio thread does not use, behind a mutex.
-struct Kept {
+struct Locked {
     /// The preset or kit as it was loaded.
     playable: Playable,
     /// Size, zoom and theme of the window.
@@ -127,7 +128,7 @@ pub(crate) struct SprungParams {
     link: Link,
     extent: Extent,
     /// Locked while something is loaded or the whole state is read; never by the audio thread.
-    kept: Mutex<Kept>,
+    locked: Mutex<Locked>,
 }
 
 impl Default for SprungParams {
@@ -139,9 +140,9 @@ impl Default for SprungParams {
         knobs.iter().zip(positions).for_each(|(knob, position)| knob.turn(position));
         let may_sound = Shelf::default();
         may_sound.keep(&loaded);
-        let kept = Kept { playable, view, complaints: Arc::new([]), loaded: loaded.clone(), may_sound, loads: 0 };
+        let locked = Locked { playable, view, complaints: Arc::new([]), loaded: loaded.clone(), may_sound, loads: 0 };
         let (link, extent) = (Link::default(), Extent::default());
-        Self { knobs, slot: Slot::new(loaded), link, extent, kept: Mutex::new(kept) }
+        Self { knobs, slot: Slot::new(loaded), link, extent, locked: Mutex::new(locked) }
     }
 }
 
@@ -161,18 +162,18 @@ impl SprungParams {
         &self.extent
     }
 
-    fn kept(&self) -> MutexGuard<'_, Kept> {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    fn locked(&self) -> MutexGuard<'_, Locked> {
+        lock(&self.locked)
     }
 
     /// The name of the preset or kit. Not for the audio thread.
     pub(crate) fn name(&self) -> String {
-        self.kept().playable.name().to_owned()
+        self.locked().playable.name().to_owned()
     }
 
     /// Renames the preset or kit. Not for the audio thread.
     pub(crate) fn rename(&self, name: String) {
-        match &mut self.kept().playable {
+        match &mut self.locked().playable {
             Playable::Preset(preset) => preset.name = name,
             Playable::Kit(kit) => kit.name = name,
         }
@@ -180,22 +181,22 @@ impl SprungParams {
 
     /// Size, zoom and theme of the window. Not for the audio thread.
     pub(crate) fn view(&self) -> View {
-        self.kept().view
+        self.locked().view
     }
 
     /// Changes size, zoom or theme of the window. Not for the audio thread.
     pub(crate) fn set_view(&self, change: impl FnOnce(&mut View)) {
-        change(&mut self.kept().view);
+        change(&mut self.locked().view);
     }
 
     /// The parts of the last state that were not understood, one line each. Not for the audio thread.
     pub(crate) fn complaints(&self) -> Arc<[String]> {
-        self.kept().complaints.clone()
+        self.locked().complaints.clone()
     }
 
     /// How many states the host has loaded. Not for the audio thread.
     pub(crate) fn loads(&self) -> u64 {
-        self.kept().loads
+        self.locked().loads
     }
 
     /// Loads a sound, its knob positions and the rest at once. Not for the audio thread: it computes the sound, and
@@ -205,38 +206,38 @@ impl SprungParams {
     /// takes something back.
     pub(crate) fn load(&self, Read { state, complaints }: Read) -> Arc<Loaded> {
         let loaded = Arc::new(state.loaded());
-        let mut kept = self.kept();
-        kept.playable = state.playable;
+        let mut locked = self.locked();
+        locked.playable = state.playable;
         if !self.extent.is_open() {
-            kept.view = state.view;
+            locked.view = state.view;
         }
-        kept.complaints = complaints.into();
-        kept.loaded = loaded.clone();
-        kept.may_sound.keep(&loaded);
+        locked.complaints = complaints.into();
+        locked.loaded = loaded.clone();
+        locked.may_sound.keep(&loaded);
         self.slot.put(loaded.clone(), || {
             for (knob, position) in self.knobs.iter().zip(state.positions) {
                 knob.turn(position);
             }
         });
-        kept.may_sound.collect();
+        locked.may_sound.collect();
         loaded
     }
 
     /// The whole present state. Not for the audio thread.
     pub(crate) fn state(&self) -> State {
-        let kept = self.kept();
+        let locked = self.locked();
         let positions: [f32; PARAM_COUNT] = from_fn(|index| self.knobs[index].position());
-        let values = kept.loaded.values_at(&positions);
-        let mut playable = kept.playable.clone();
+        let values = locked.loaded.values_at(&positions);
+        let mut playable = locked.playable.clone();
         if let Playable::Preset(preset) = &mut playable {
             preset.patch.values = values;
         }
-        State { playable, values, positions, seed: kept.loaded.seed, view: kept.view }
+        State { playable, values, positions, seed: locked.loaded.seed, view: locked.view }
     }
 
     /// The sound that was loaded last. Not for the audio thread.
     pub(crate) fn loaded(&self) -> Arc<Loaded> {
-        self.kept().loaded.clone()
+        self.locked().loaded.clone()
     }
 
     /// The knob positions, their offsets, and the sound if it differs from `known`. `None` while another thread is
@@ -245,7 +246,7 @@ impl SprungParams {
         self.slot.read(|loaded| Look {
             positions: from_fn(|index| self.knobs[index].position()),
             offsets: from_fn(|index| self.knobs[index].offset()),
-            news: (!Arc::ptr_eq(known, loaded)).then(|| loaded.clone()),
+            new_sound: (!Arc::ptr_eq(known, loaded)).then(|| loaded.clone()),
         })
     }
 }
@@ -272,7 +273,7 @@ unsafe impl Params for SprungParams {
                 .iter()
                 .for_each(|complaint| nice_warn!("a state was not understood as a whole: {complaint}"));
             self.load(read);
-            self.kept().loads += 1;
+            self.locked().loads += 1;
         }
     }
 }

@@ -10,7 +10,7 @@
 //! alone have a true peak of +0.9 dBFS. By `ebur128`, which interpolates with the same kernel: white noise at full
 //! scale up to +0.6 dBFS; a tone at full scale and a quarter of the sample rate −0.21 dBFS; chords and 64 voices of the
 //! presets below −0.3 dBFS. Latency would solve this, but every player would wait 0.2 to 1.5 ms longer. Test:
-//! `tests/limiter.rs`.
+//! `tests/engine/limiter.rs`.
 
 use super::simd::vector::Vector;
 use super::simd::{Instructions, Kernel};

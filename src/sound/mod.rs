@@ -2,11 +2,11 @@
 //!
 //! While a new sound is made, a live host continues to play the old one. `Synth::set_kit` switches to the new kit at
 //! one frame, and later notes play it. Sounding notes continue unchanged, because a voice has its own modes, ratios,
-//! decay and routes, and keeps its last controls: nothing is retuned and nothing clicks. `tests/kits.rs` compares the
+//! decay and routes, and keeps its last controls: nothing is retuned and nothing clicks. `tests/engine/kits.rs` compares the
 //! bits of sounding notes with and without 300 changes of kit.
 //!
 //! Instruments drop their references to sounds before the synth drops its reference to the kit, which also refers to
-//! each of them; so only the reference to the kit must be kept on a [`Shelf`]. `tests/allocation.rs` exchanges a
+//! each of them; so only the reference to the kit must be kept on a [`Shelf`]. `tests/engine/allocation.rs` exchanges a
 //! thousand kits per second, each made and dropped meanwhile.
 //!
 //! The parameters of a kit of several sounds start at the defaults: each sound's value is as far from its own value, in

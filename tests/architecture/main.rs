@@ -70,13 +70,15 @@ const CRATES: &[&str] = &[
     "src/web/src/lib.rs",
     "xtask/src/main.rs",
     "benches/peers/main.rs",
+    "tests/analysis/main.rs",
     "tests/architecture/main.rs",
     "tests/cli/main.rs",
     "tests/cross/src/main.rs",
+    "tests/engine/main.rs",
     "tests/golden/main.rs",
+    "tests/lab/main.rs",
+    "tests/levels/main.rs",
     "tests/realtime/main.rs",
-    "tests/space/main.rs",
-    "tests/storm/main.rs",
 ];
 
 fn project() -> &'static Path {

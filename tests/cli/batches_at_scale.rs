@@ -25,7 +25,7 @@ fn digest(sandbox: &Sandbox, folder: &str) -> String {
 }
 
 #[test]
-#[ignore = "it takes minutes: ‘cargo test --release --test cli -- --ignored --nocapture at_scale’ runs it"]
+#[ignore = "takes minutes"]
 fn killed_ten_times_or_in_four_shards_it_is_the_same() {
     let sandbox = Sandbox::new();
     sandbox.write("jobs.jsonl", JOBS);

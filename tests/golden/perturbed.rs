@@ -19,8 +19,8 @@ fn store(folder: &tempfile::TempDir) -> Store {
 fn a_pitch_off_by_a_millionth_is_noticed() {
     let folder = tempfile::tempdir().unwrap();
     let store = store(&folder);
-    assert_eq!(check(&store, &init()), Ok(()));
-    let error = check(&store, &init().out_of_tune(SLIGHTLY)).unwrap_err();
+    assert_eq!(check(&store, &init(), &[WHOLE]), Ok(()));
+    let error = check(&store, &init().out_of_tune(SLIGHTLY), &[WHOLE]).unwrap_err();
     assert!(error.contains(INIT) && error.contains("first differing frame"), "{error}");
 }
 
@@ -50,7 +50,7 @@ fn a_missing_digest_fails_and_a_stale_one_is_found() {
     let store = store(&folder);
     let mut other = init();
     other.name = "unheard-of".to_owned();
-    let error = check(&store, &other).unwrap_err();
+    let error = check(&store, &other, &[WHOLE]).unwrap_err();
     assert!(error.contains("there is no ") && error.contains("cargo xtask bless unheard-of"), "{error}");
     assert_eq!(store.stale(&[INIT.to_owned()].into()), Vec::<std::path::PathBuf>::new());
     assert_eq!(store.stale(&["unheard-of".to_owned()].into()).len(), 2);

@@ -26,7 +26,7 @@ fn song(path: &Path) -> Score {
     let mut song = Song::parse(&bytes, stem).unwrap_or_else(|error| panic!("{error}"));
     song.select_by_bank();
     let score = Score::new(format!("song-{stem}"), Patch::default(), song.seconds + TAIL);
-    // Only one block size: a plate is slow, and `tests/blocks.rs` plays blocks of all sizes.
+    // Only one block size: a plate is slow, and `tests/engine/blocks.rs` plays blocks of all sizes.
     let score =
         score.in_blocks(&[480]).with_kits(Programs::factory_kits()).with_mix(Programs::general_midi().mix.clone());
     song.events.iter().fold(score, |score, event| score.then(event.seconds, event.channel, event.kind))

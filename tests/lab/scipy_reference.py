@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes scipy_reference.csv beside this script: SciPy's numbers for the motions that tests/lab_reference.rs compares.
+"""Writes scipy_reference.csv beside this script: SciPy's numbers for the motions that tests/lab/reference.rs compares.
 
     pip install scipy && python3 tests/lab/scipy_reference.py
 

@@ -107,7 +107,8 @@ fn assert_same_bits(found: &[f32], expected: &[f32]) {
     assert!(found[expected.len()..].iter().all(|sample| *sample == 0.0), "silence after the end");
 }
 
-pub(crate) fn a_song_reaches_the_device_and_the_recording_with_the_bits_of_render() {
+#[test]
+fn a_song_reaches_the_device_and_the_recording_with_the_bits_of_render() {
     for buffer in ["64", "1000"] {
         let device = Device::new(false);
         device.sandbox.write("tune.mid", tune());
@@ -128,7 +129,8 @@ pub(crate) fn a_song_reaches_the_device_and_the_recording_with_the_bits_of_rende
     }
 }
 
-pub(crate) fn integers_are_the_rounded_floats() {
+#[test]
+fn integers_are_the_rounded_floats() {
     let device = Device::new(true);
     device.sandbox.write("tune.mid", tune());
     device.sandbox.succeeds("render tune.mid --bits 32f -o expected.wav");
@@ -142,7 +144,8 @@ pub(crate) fn integers_are_the_rounded_floats() {
     assert_eq!(differing, None, "the first sample that differs");
 }
 
-pub(crate) fn an_interrupt_releases_the_notes_and_completes_the_recording() {
+#[test]
+fn an_interrupt_releases_the_notes_and_completes_the_recording() {
     let device = Device::new(false);
     device.sandbox.write("long.mid", song(&[(0, 100_000, 60), (480, 100_000, 67)]));
     let arguments = "play long.mid --midi-in none --record take.wav --set decay=\"60s\" --set release=\"200ms\"";
@@ -157,7 +160,8 @@ pub(crate) fn an_interrupt_releases_the_notes_and_completes_the_recording() {
     assert_same_bits(&recorded, &floats(&device.reader.join().unwrap()));
 }
 
-pub(crate) fn a_full_disk_ends_the_recording_and_keeps_it() {
+#[test]
+fn a_full_disk_ends_the_recording_and_keeps_it() {
     let device = Device::new(false);
     device.sandbox.write("tune.mid", tune());
     device.sandbox.succeeds("render tune.mid --bits 32f -o expected.wav");
@@ -173,7 +177,8 @@ pub(crate) fn a_full_disk_ends_the_recording_and_keeps_it() {
     assert_same_bits(&floats(&device.reader.join().unwrap()), &expected);
 }
 
-pub(crate) fn what_cannot_be_played_on_says_what_can() {
+#[test]
+fn what_cannot_be_played_on_says_what_can() {
     let sandbox = Sandbox::new();
     let slave = "slave { pcm { type null }\n rate 44100\n channels 2\n format S16_LE }";
     sandbox.write(

@@ -145,7 +145,9 @@ fn frequency(samples: &[f32]) -> f64 {
     (crossings.len() - 1) as f64 * RATE as f64 / (crossings[crossings.len() - 1] - crossings[0])
 }
 
-pub(crate) fn live_notes_are_in_time_and_in_tune() {
+#[test]
+#[ignore = "waits for seconds to pass"]
+fn live_notes_are_in_time_and_in_tune() {
     with_own_server("live_notes_are_in_time_and_in_tune", |name| {
         let _server = Server::start(name);
         let sandbox = Sandbox::new();
@@ -182,7 +184,9 @@ pub(crate) fn live_notes_are_in_time_and_in_tune() {
     });
 }
 
-pub(crate) fn a_server_that_ends_is_waited_for() {
+#[test]
+#[ignore = "waits for seconds to pass"]
+fn a_server_that_ends_is_waited_for() {
     with_own_server("a_server_that_ends_is_waited_for", |name| {
         let server = Server::start(name);
         let sandbox = Sandbox::new();
@@ -206,7 +210,9 @@ pub(crate) fn a_server_that_ends_is_waited_for() {
     });
 }
 
-pub(crate) fn what_the_server_cannot_do_is_refused() {
+#[test]
+#[ignore = "waits for seconds to pass"]
+fn what_the_server_cannot_do_is_refused() {
     with_own_server("what_the_server_cannot_do_is_refused", |name| {
         let refused = |arguments: &str, expected: &str| {
             let output = sprung(arguments).output().unwrap();

@@ -19,7 +19,7 @@ pub(crate) fn run(case: Option<&str>) -> Result<(), String> {
     }
     let mut blessing = cargo(GOLDEN);
     blessing.env("SPRUNG_BLESS", case.unwrap_or("all"));
-    blessing.args(["--", "--exact", "every_case_sounds_as_accepted_at_every_block_size"]);
+    blessing.args(["--", "--exact", "every_case_sounds_as_accepted_in_blocks"]);
     bless(blessing, || cargo(GOLDEN))
 }
 

@@ -3,6 +3,7 @@
 mod batch_table;
 mod bless;
 mod bundle;
+mod count;
 mod dist;
 mod engine;
 mod files;
@@ -13,7 +14,6 @@ mod python;
 mod setup;
 mod sha256;
 mod shell;
-mod skipped;
 mod standalone;
 mod steps;
 mod symbols;
@@ -22,6 +22,7 @@ mod test;
 use clap::{Parser, Subcommand};
 use install::Scope;
 use std::process::ExitCode;
+use steps::Suite;
 
 /// The project's chores.
 #[derive(Parser)]
@@ -34,13 +35,9 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Chore {
     /// Find what the test suite needs on this system, and install it where that is possible.
-    Setup,
-    /// Run the whole test suite, setup included.
-    Test {
-        /// Fail if a test is skipped that any machine can run. So it is wherever the environment variable CI is set.
-        #[arg(long)]
-        strict: bool,
-    },
+    Setup(Extent),
+    /// Run the tests that protect every commit, setup included.
+    Test(Extent),
     /// Put the plugin's wrapper, with our corrections, where cargo finds it in the folder `plugin`. Other chores do it too.
     Patch,
     /// Build the plugin and put Sprung.clap and Sprung.vst3 into target/bundled.
@@ -87,6 +84,19 @@ enum Chore {
 }
 
 #[derive(clap::Args)]
+struct Extent {
+    /// Everything, also what takes long or waits for time to pass.
+    #[arg(long)]
+    all: bool,
+}
+
+impl Extent {
+    fn suite(&self) -> Suite {
+        if self.all { Suite::All } else { Suite::Commit }
+    }
+}
+
+#[derive(clap::Args)]
 struct Place {
     /// For this user alone (the default).
     #[arg(long)]
@@ -104,8 +114,8 @@ impl Place {
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().chore {
-        Chore::Setup => setup::run(),
-        Chore::Test { strict } => test::run(strict || skipped::in_ci()),
+        Chore::Setup(extent) => setup::run(extent.suite()),
+        Chore::Test(extent) => test::run(extent.suite()),
         Chore::Patch => patch::run().map(drop),
         Chore::Bundle { release } => bundle::run(release).map(drop),
         Chore::Install(place) => install::install(place.scope()),

@@ -1,36 +1,17 @@
 //! Builds the Python package, and runs its tests in the virtual environment under the target directory.
 
-use crate::shell::{cargo, root, run_and_read, succeeds};
-use std::path::PathBuf;
+use crate::count::Count;
+use crate::shell::{cargo, root, run_and_read, run_to_end};
 use std::process::Command;
 
-/// The environment's interpreter, if it has what the tests need.
-fn python() -> Option<PathBuf> {
+/// Builds the package into its folder and runs its tests, with a command that is built from the same sources. The check of types
+/// counts as one.
+pub(crate) fn test() -> Result<Count, String> {
     let python = root().join("target/python/bin/python");
-    let modules = "import mypy, numpy, pytest";
-    succeeds(&python.to_string_lossy(), &["-c", modules]).then_some(python)
-}
-
-/// The result of the package's tests.
-pub(crate) enum Tested {
-    /// They cannot run here.
-    Skipped,
-    /// How many have passed and failed; the check of types counts as one.
-    Ran { passed: usize, failed: usize },
-}
-
-/// Builds the package into its folder and runs its tests, with a command that is built from the same sources.
-pub(crate) fn test() -> Result<Tested, String> {
-    let Some(python) = python() else { return Ok(Tested::Skipped) };
-    let built = |arguments: &str| match run_and_read(cargo(arguments))? {
-        (true, _) => Ok(()),
-        (false, _) => Err(format!("‘cargo {arguments}’ failed")),
-    };
-    // As the suite's own step has built it already: without the tests, crates of both would get fewer features, and all be
-    // compiled again.
-    built("test --workspace --all-features --test cli --no-run")?;
-    built("build --manifest-path src/python/Cargo.toml --features pyo3/extension-module")?;
     let folder = root().join("src/python");
+    // With the features that the tests of the other packages have, so that the library is not compiled again.
+    let mut build = cargo("build --workspace --all-features");
+    run_to_end(build.env("PYO3_BUILD_EXTENSION_MODULE", "1"), "the package does not build")?;
     let (library, module) = (root().join("target/debug/lib_sprung.so"), folder.join("sprung/_sprung.abi3.so"));
     std::fs::copy(&library, &module).map_err(|error| format!("{}: {error}", library.display()))?;
 
@@ -42,10 +23,9 @@ pub(crate) fn test() -> Result<Tested, String> {
     };
     let (typed, _) = run(&["-m", "mypy"])?;
     let (succeeded, lines) = run(&["-m", "pytest", "-q", "-p", "no:cacheprovider"])?;
-    let (mut passed, mut failed) = lines.last().map_or((0, 0), |line| counts(line));
-    failed += usize::from(!succeeded && failed == 0) + usize::from(!typed);
-    passed += usize::from(typed);
-    Ok(Tested::Ran { passed, failed })
+    let (passed, failed) = lines.last().map_or((0, 0), |line| counts(line));
+    let failed = failed + usize::from(!succeeded && failed == 0) + usize::from(!typed);
+    Ok(Count { passed: passed + usize::from(typed), failed, skipped: 0 })
 }
 
 /// The tests that passed, and those that failed or could not start, in the last line of pytest.

@@ -2,6 +2,7 @@
 
 use crate::python;
 use crate::shell::{has_standard_library, succeeds};
+use crate::steps::Suite;
 use std::path::Path;
 use std::process::Command;
 
@@ -31,12 +32,13 @@ struct Requirement {
     /// Debian package that contains it.
     package: &'static str,
     why: &'static str,
-    /// Whether the suite fails without it. If not, the tests that need it are reported as ignored.
-    essential: bool,
+    /// The shortest suite that needs it.
+    suite: Suite,
 }
 
 const WINDOW: &str = "the plugin's window loads it";
 const DAWDREAMER: &str = "dawdreamer loads it";
+const RECORDINGS: &str = "recordings of real instruments, to which presets are fitted";
 const SCREEN_READER: &str = "a bus on which the plugin's window is read as by a screen reader";
 
 const REQUIREMENTS: &[Requirement] = &[
@@ -44,101 +46,114 @@ const REQUIREMENTS: &[Requirement] = &[
         probe: Probe::Program("c++"),
         package: "g++",
         why: "compiles the original listing, which the classic coefficients are compared with",
-        essential: true,
+        suite: Suite::Commit,
     },
     Requirement {
         probe: Probe::Program("chromium"),
         package: "chromium",
         why: "opens the lab's reports and clicks in them",
-        essential: false,
+        suite: Suite::Commit,
     },
     Requirement {
         probe: Probe::Program("pkg-config"),
         package: "pkg-config",
         why: "finds the sound libraries that the feature realtime is built with",
-        essential: true,
+        suite: Suite::Commit,
     },
     Requirement {
         probe: Probe::Library("alsa"),
         package: "libasound2-dev",
         why: "sound cards and MIDI ports, for the feature realtime",
-        essential: true,
+        suite: Suite::Commit,
     },
     Requirement {
         probe: Probe::Library("jack"),
         package: "libjack-jackd2-dev",
         why: "JACK servers, for the feature realtime",
-        essential: true,
+        suite: Suite::Commit,
     },
     Requirement {
         probe: Probe::Program("jackd"),
         package: "jackd2",
         why: "a sound server without a sound card, to play live notes on",
-        essential: false,
+        suite: Suite::All,
     },
     Requirement {
         probe: Probe::ShortProgram("tmux"),
         package: "tmux",
         why: "a terminal to drive the view of sprung play in",
-        essential: false,
+        suite: Suite::All,
     },
     Requirement {
         probe: Probe::Program("cc"),
         package: "gcc",
         why: "compiles the probe that watches the plugin's audio thread",
-        essential: true,
+        suite: Suite::Commit,
     },
     Requirement {
         probe: Probe::OnPath("Xvfb"),
         package: "xvfb",
         why: "a screen that nobody looks at, for the plugin's window",
-        essential: false,
+        suite: Suite::All,
     },
-    Requirement { probe: Probe::Shared("libEGL.so.1"), package: "libegl1", why: WINDOW, essential: false },
-    Requirement { probe: Probe::Shared("libX11-xcb.so.1"), package: "libx11-xcb1", why: WINDOW, essential: false },
+    Requirement { probe: Probe::Shared("libEGL.so.1"), package: "libegl1", why: WINDOW, suite: Suite::All },
+    Requirement { probe: Probe::Shared("libX11-xcb.so.1"), package: "libx11-xcb1", why: WINDOW, suite: Suite::All },
     Requirement {
         probe: Probe::Shared("libxkbcommon-x11.so.0"),
         package: "libxkbcommon-x11-0",
         why: WINDOW,
-        essential: false,
+        suite: Suite::All,
     },
     Requirement {
         probe: Probe::Driver("swrast_dri.so"),
         package: "libgl1-mesa-dri",
         why: "draws the plugin's window without a graphics card",
-        essential: false,
+        suite: Suite::All,
     },
-    Requirement { probe: Probe::OnPath("dbus-daemon"), package: "dbus", why: SCREEN_READER, essential: false },
+    Requirement { probe: Probe::OnPath("dbus-daemon"), package: "dbus", why: SCREEN_READER, suite: Suite::All },
     Requirement {
         probe: Probe::File("/usr/libexec/at-spi-bus-launcher"),
         package: "at-spi2-core",
         why: SCREEN_READER,
-        essential: false,
+        suite: Suite::All,
     },
     Requirement {
         probe: Probe::Modules("ensurepip, venv"),
         package: "python3-venv",
         why: "pedalboard and dawdreamer, VST3 hosts that Python drives",
-        essential: false,
+        suite: Suite::Commit,
     },
-    Requirement { probe: Probe::Shared("libGL.so.1"), package: "libgl1", why: DAWDREAMER, essential: false },
+    Requirement { probe: Probe::Shared("libGL.so.1"), package: "libgl1", why: DAWDREAMER, suite: Suite::Commit },
     Requirement {
         probe: Probe::Shared("libglib-2.0.so.0"),
         package: "libglib2.0-0",
         why: DAWDREAMER,
-        essential: false,
+        suite: Suite::Commit,
     },
     Requirement {
         probe: Probe::Shared("libatomic.so.1"),
         package: "libatomic1",
         why: "pedalboard loads it",
-        essential: false,
+        suite: Suite::Commit,
     },
     Requirement {
         probe: Probe::Program("valgrind"),
         package: "valgrind",
         why: "counts instructions, so that speed is watched on busy machines",
-        essential: false,
+        suite: Suite::All,
+    },
+    Requirement { probe: Probe::OnPath("fluidsynth"), package: "fluidsynth", why: RECORDINGS, suite: Suite::All },
+    Requirement {
+        probe: Probe::File("/usr/share/sounds/sf2/FluidR3_GM.sf2"),
+        package: "fluid-soundfont-gm",
+        why: RECORDINGS,
+        suite: Suite::All,
+    },
+    Requirement {
+        probe: Probe::File("/usr/share/hydrogen/data/drumkits/ForzeeStereo/drumkit.xml"),
+        package: "hydrogen-drumkits",
+        why: RECORDINGS,
+        suite: Suite::All,
     },
 ];
 
@@ -170,8 +185,8 @@ impl Requirement {
     }
 }
 
-/// Installs what is missing, or tells the user how to install it.
-pub(crate) fn run() -> Result<(), String> {
+/// Installs what a suite needs, or tells the user how to install it.
+pub(crate) fn run(suite: Suite) -> Result<(), String> {
     let mut problems = Vec::new();
     for (component, command) in COMPONENTS {
         if !succeeds("cargo", &[command, "--version"]) {
@@ -181,35 +196,34 @@ pub(crate) fn run() -> Result<(), String> {
             }
         }
     }
-    if !has_standard_library(WINDOWS, None) && !succeeds("rustup", &["target", "add", WINDOWS]) {
-        println!(
-            "install it with: rustup target add {WINDOWS}; without it the corrections for Windows are not compiled"
-        );
+    if suite == Suite::All {
+        if !has_standard_library(WINDOWS, None) && !succeeds("rustup", &["target", "add", WINDOWS]) {
+            problems.push(format!("install it with: rustup target add {WINDOWS}"));
+        }
+        if !succeeds("cargo", &["hack", "--version"]) && !succeeds("cargo", &["install", "--locked", "cargo-hack"]) {
+            problems.push("install it with: cargo install --locked cargo-hack".to_owned());
+        }
     }
-    let missing: Vec<&Requirement> = REQUIREMENTS.iter().filter(|requirement| !requirement.is_met()).collect();
+    let is_missing = |requirement: &&Requirement| {
+        (requirement.suite == Suite::Commit || suite == Suite::All) && !requirement.is_met()
+    };
+    let missing: Vec<&Requirement> = REQUIREMENTS.iter().filter(is_missing).collect();
     for Requirement { package, why, .. } in &missing {
         println!("missing: {package}: {why}");
     }
     if !missing.is_empty() {
         let packages: Vec<&str> = missing.iter().map(|requirement| requirement.package).collect();
         let installed = install(&packages);
-        for Requirement { package, essential, .. } in missing.iter().filter(|requirement| !requirement.is_met()) {
-            let problem = match &installed {
+        problems.extend(missing.iter().filter(|requirement| !requirement.is_met()).map(
+            |Requirement { package, .. }| match &installed {
                 Ok(()) => format!("{package} is installed, but what it should bring is not there"),
                 Err(by_hand) => format!("{package} is missing; {by_hand}"),
-            };
-            if *essential {
-                problems.push(problem);
-            } else {
-                println!("{problem}; without it some tests are ignored");
-            }
-        }
+            },
+        ));
     }
-    if let Err(message) = python::install() {
-        println!("{message}; without it some tests are ignored");
-    }
+    problems.extend(python::install().err());
     if problems.is_empty() {
-        println!("all that the test suite cannot do without is there");
+        println!("all that the tests need is there");
         return Ok(());
     }
     Err(problems.join("\n"))

@@ -1,171 +1,89 @@
-//! The steps of `cargo xtask test` that are commands of cargo.
+//! The suites of `cargo xtask test`, and their steps that are commands of cargo.
 
-/// How to count what a step has run, from its output.
+use crate::count::Shows;
+
+/// What is run.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Shows {
-    /// Only success or failure, which counts as one check.
-    OneCheck,
-    /// The test harness's `test result:` lines.
-    Tests,
-    /// Criterion's `Success` lines.
-    Benches,
+pub(crate) enum Suite {
+    /// What protects every commit, in minutes and however busy the machine is.
+    Commit,
+    /// Everything, also what takes long or waits for time to pass.
+    All,
 }
 
-/// A command of cargo, and how to judge it.
+/// Commands of cargo, and how to judge them.
 pub(crate) struct Step {
     pub(crate) name: &'static str,
-    pub(crate) arguments: &'static str,
+    pub(crate) commands: &'static [&'static str],
     pub(crate) environment: &'static [(&'static str, &'static str)],
     pub(crate) shows: Shows,
 }
 
-const DENY: (&str, &str) = ("RUSTDOCFLAGS", "-D warnings");
+/// A step that counts as one check, and needs nothing of the environment.
+const fn check(name: &'static str, commands: &'static [&'static str]) -> Step {
+    Step { name, commands, environment: &[], shows: Shows::OneCheck }
+}
 
-pub(crate) const STEPS: &[Step] = &[
-    Step { name: "format", arguments: "fmt --all --check", environment: &[], shows: Shows::OneCheck },
+/// A step that runs tests.
+const fn tests(name: &'static str, commands: &'static [&'static str]) -> Step {
+    Step { name, commands, environment: &[], shows: Shows::Tests }
+}
+
+/// What every commit is checked for before its tests run.
+pub(crate) const CHECKS: &[Step] = &[
+    check("format", &["fmt --all --check", "fmt --manifest-path plugin/Cargo.toml --check"]),
+    check(
+        "lint",
+        &[
+            "clippy --workspace --all-targets --all-features -- -D warnings",
+            "clippy --manifest-path plugin/Cargo.toml --all-targets --all-features -- -D warnings",
+        ],
+    ),
+];
+
+/// The examples in the documentation, which nextest does not run.
+pub(crate) const EXAMPLES: Step = tests("examples", &["test --doc --workspace --all-features"]);
+
+/// What takes longer than a commit should wait for.
+pub(crate) const LONG: &[Step] = &[
+    check(
+        "features",
+        &[
+            "hack clippy --package sprung --each-feature --all-targets -- -D warnings",
+            "clippy --package xtask --all-targets -- -D warnings",
+            "clippy --manifest-path plugin/Cargo.toml -- -D warnings",
+        ],
+    ),
     Step {
-        name: "lint, all features",
-        arguments: "clippy --workspace --all-targets --all-features -- -D warnings",
-        environment: &[],
+        name: "documentation",
+        commands: &[
+            "doc --workspace --no-deps --all-features",
+            "doc --manifest-path plugin/Cargo.toml --no-deps --all-features",
+        ],
+        environment: &[("RUSTDOCFLAGS", "-D warnings")],
         shows: Shows::OneCheck,
     },
-    Step {
-        name: "lint, default features",
-        arguments: "clippy --package sprung --all-targets -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "lint, no features",
-        arguments: "clippy --package sprung --all-targets --no-default-features -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "lint, chores",
-        arguments: "clippy --package xtask --all-targets -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "tests",
-        arguments: "test --workspace --all-features --no-fail-fast",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "golden, release",
-        arguments: "test --release --package sprung --no-default-features --features analysis --test golden",
-        environment: &[],
-        shows: Shows::Tests,
-    },
+    tests(
+        "golden, not optimised",
+        &["test --config profile.dev.opt-level=0 --config profile.dev.package.sprung.opt-level=0 --package sprung \
+           --no-default-features --features analysis --test golden --target-dir target/plain"],
+    ),
+    tests(
+        "golden, release",
+        &["test --release --package sprung --no-default-features --features analysis --test golden"],
+    ),
     Step {
         name: "golden, this CPU",
-        arguments: "test --release --package sprung --no-default-features --features analysis --test golden \
-            --target-dir target/native",
+        commands: &["test --release --package sprung --no-default-features --features analysis --test golden \
+                     --target-dir target/native"],
         environment: &[("RUSTFLAGS", "-C target-cpu=native")],
         shows: Shows::Tests,
     },
     Step {
-        name: "storms, release",
-        arguments: "test --release --package sprung --no-default-features --features analysis --test storm",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "fit, release",
-        arguments: "test --release --package sprung --no-default-features --features analysis --test fit",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "bank, release",
-        arguments: "test --release --package sprung --no-default-features --features analysis --test bank",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "documentation",
-        arguments: "doc --workspace --no-deps --all-features",
-        environment: &[DENY],
-        shows: Shows::OneCheck,
-    },
-    Step {
         name: "benches run",
-        arguments: "test --package sprung --all-features --benches",
+        commands: &["test --package sprung --all-features --benches"],
         environment: &[],
         shows: Shows::Benches,
     },
-    Step {
-        name: "plugin, format",
-        arguments: "fmt --manifest-path plugin/Cargo.toml --check",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "plugin, lint",
-        arguments: "clippy --manifest-path plugin/Cargo.toml --all-targets --all-features -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "plugin, lint as bundled",
-        arguments: "clippy --manifest-path plugin/Cargo.toml -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "Python, format",
-        arguments: "fmt --manifest-path src/python/Cargo.toml --check",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "Python, lint",
-        arguments: "clippy --manifest-path src/python/Cargo.toml -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "browser, format",
-        arguments: "fmt --manifest-path src/web/Cargo.toml --check",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "browser, lint",
-        arguments: "clippy --manifest-path src/web/Cargo.toml --all-targets -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "browser, tests",
-        arguments: "test --manifest-path src/web/Cargo.toml",
-        environment: &[],
-        shows: Shows::Tests,
-    },
-    Step {
-        name: "other CPUs, format",
-        arguments: "fmt --manifest-path tests/cross/Cargo.toml --check",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "other CPUs, lint",
-        arguments: "clippy --manifest-path tests/cross/Cargo.toml --all-targets -- -D warnings",
-        environment: &[],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "plugin, documentation",
-        arguments: "doc --manifest-path plugin/Cargo.toml --no-deps --all-features",
-        environment: &[DENY],
-        shows: Shows::OneCheck,
-    },
-    Step {
-        name: "instructions",
-        arguments: "run --release --package xtask --features engine -- callgrind",
-        environment: &[],
-        shows: Shows::Tests,
-    },
+    tests("instructions", &["xtask callgrind"]),
 ];

@@ -1,25 +1,16 @@
 //! The plugin's window.
 //!
-//! | module | holds |
+//! | folder | what one sees there |
 //! |---|---|
-//! | `window` | an open window: what it shows, and the user's requests |
-//! | `theme`, `fonts`, `layout`, `extent` | colours and sizes; the fonts; the places of the parts; the size that hosts are told |
-//! | `controls`, `gestures`, `history`, `learn` | the context of every widget; changes that hosts see; undo and redo; MIDI learn |
-//! | `header`, `sections`, `routes`, `curves`, `outlines`, `status` | the parts of the window; menus of routes; small pictures in sections |
-//! | `modes`, `modes_face`, `mode_drag`, `mode_axes`, `mode_table`, `snap` | the modes: changes by the user, their picture, a drag in progress, the axes, their table, series of ratios |
-//! | `motion`, `phase`, `scope`, `spectrum`, `ringing` | moving pictures: the phase plane; waveform and spectrum; the decay of the modes |
-//! | `body_view`, `body_face`, `body_shape`, `body_form` | the moving body: changes by the user, its picture, the shapes of its modes, its form |
-//! | `body_page`, `body_numbers`, `body_edit`, `made` | the page of the body; its numbers; a change in progress; the body from which the modes are made |
-//! | `audition` | a key that the window plays by itself, so that the user hears a change |
-//! | `piano`, `key_piano`, `held_key`, `meter` | the piano keyboard; the computer's keyboard as one; the key that the mouse holds; levels |
-//! | `pages`, `kit_page`, `tuning_page`, `voices_panel`, `devices_page`, `key_grid` | the tabs and their pages: a kit's keys, the tuning, the voices, the program's devices; all keys as a grid |
-//! | `manual`, `manual_text` | the manual over the window; its pages split into blocks |
-//! | `drops`, `recordings`, `fitting` | files dropped on the window; fitting recordings in the background; its progress |
-//! | `browser`, `details`, `star`, `sounds`, `files` | the page on which the user finds and saves sounds; the list of sounds; reading files |
-//! | `knob`, `knob_face`, `knob_menu`, `typing`, `choice`, `buttons`, `text`, `disc` | widgets and their painting |
-//! | `variation` | random variations of a sound, with locks |
-//! | `focus`, `accessibility`, `x11` | keyboard focus: the host keeps it, except while the user types; screen readers; the X11 display |
-//! | `shown` | the sound that is shown |
+//! | `window` | the whole: header, status line, and what they ask for |
+//! | `theme` | colours, sizes and fonts; the places of the parts |
+//! | `modes`, `displays`, `body` | the upper half: the modes, moving pictures, the moving body; also the body's page |
+//! | `pages`, `routes` | the lower half: tabs, sections of parameters, kit, tuning, devices; routes and MIDI learn |
+//! | `keyboard` | the piano, and whatever else plays a key |
+//! | `browser`, `manual`, `drops` | over the window: sounds to find and save, the manual, fits of dropped recordings |
+//! | `widgets` | what all of these are made of |
+//! | `controls` | not seen: what widgets share, changes that hosts see, undo, the sound that is shown |
+//! | `host` | not seen: the window's size, focus and screen readers at its host |
 //!
 //! Widgets draw themselves in egui's shapes. `tests` draws the window without a GPU, by the rules of egui's own shader,
 //! and compares pictures; it also computes the contrast (WCAG 2.2) of each text.
@@ -32,81 +23,26 @@
 //! per second, so no picture of a whole window can cost less. `plugin/tests/hosts/cpu` prints the costs, and fails if a
 //! silent window is drawn.
 
-#[cfg(target_os = "linux")]
-mod accessibility;
-mod audition;
-mod body_edit;
-mod body_face;
-mod body_form;
-mod body_numbers;
-mod body_page;
-mod body_shape;
-mod body_view;
+mod body;
 mod browser;
-mod buttons;
-mod choice;
 mod controls;
-mod curves;
-mod details;
-mod devices_page;
-mod disc;
+mod displays;
 mod drops;
-pub(crate) mod extent;
-mod files;
-mod fitting;
-mod focus;
-mod fonts;
-mod gestures;
-mod header;
-mod held_key;
-mod history;
-mod key_grid;
-mod key_piano;
-mod kit_page;
-mod knob;
-mod knob_face;
-mod knob_menu;
-mod layout;
-mod learn;
-mod made;
+pub(crate) mod host;
+mod keyboard;
 mod manual;
-mod manual_text;
-mod meter;
-mod mode_axes;
-mod mode_drag;
-mod mode_table;
 mod modes;
-mod modes_face;
-mod motion;
-mod outlines;
 mod pages;
-mod phase;
-mod piano;
-mod recordings;
-mod ringing;
 mod routes;
-mod scope;
-mod sections;
-mod shown;
-mod snap;
-mod sounds;
-mod spectrum;
-mod star;
-mod status;
 #[cfg(test)]
 mod tests;
-mod text;
 pub(crate) mod theme;
-mod tuning_page;
-mod typing;
-mod variation;
-mod voices_panel;
+mod widgets;
 mod window;
-#[cfg(target_os = "linux")]
-mod x11;
 
 use crate::params::SprungParams;
 use egui_baseview::GraphicsConfig;
+use host::extent;
 use nice_plug_core::context::gui::GuiContext;
 use nice_plug_core::editor::dpi::{LogicalSize, NativeSize};
 use nice_plug_core::editor::{Editor, HostMethods, ParentWindowHandle, ResizeHint, SpawnedEditor};
@@ -154,7 +90,7 @@ impl Editor for SprungEditor {
         let [width, height] = view.size.map(|side| side as f32);
         let state = EguiEditorState::from_size(LogicalSize { width, height }, extent::factor(view));
         // The size that the host was told is at this scale, so the window must open with it too.
-        let scale_factor = self.params.extent().tell(fallback_scale_factor);
+        let scale_factor = self.params.extent().set_scale(fallback_scale_factor);
         // The window has no gradients that would need dithering, which costs time for each pixel.
         let graphics = GraphicsConfig { dithering: false, ..GraphicsConfig::default() };
         let settings = EguiNiceSettings::new().with_tile("Sprung").with_resize_hint(self.resize_hint());
@@ -174,7 +110,7 @@ impl Editor for SprungEditor {
     }
 
     fn scale_factor_suggested(&self, scale_factor: f64) {
-        self.params.extent().tell(Some(scale_factor));
+        self.params.extent().set_scale(Some(scale_factor));
     }
 
     fn resize_hint(&self) -> ResizeHint {

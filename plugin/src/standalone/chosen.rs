@@ -39,8 +39,8 @@ pub(super) fn choice(Chosen { host, device, rate, buffer, .. }: &Chosen) -> Choi
 /// itself.
 pub(super) fn plain(error: &sprung::Error) -> String {
     let error = error.to_string();
-    let said = error.split("; ‘--list’").next().unwrap_or(&error);
-    said.trim_start_matches("--").trim_end_matches('.').to_owned()
+    let message = error.split("; ‘--list’").next().unwrap_or(&error);
+    message.trim_start_matches("--").trim_end_matches('.').to_owned()
 }
 
 #[cfg(test)]
@@ -50,8 +50,8 @@ mod tests {
     #[test]
     fn a_device_that_was_given_must_be_there() {
         let tape = Chosen { host: Some("tape".to_owned()), ..Chosen::default() };
-        let said = find(tape, Chosen::default(), |_| unreachable!()).err().unwrap();
-        assert!(said.contains("no ‘tape’ here"), "{said}");
+        let message = find(tape, Chosen::default(), |_| unreachable!()).err().unwrap();
+        assert!(message.contains("no ‘tape’ here"), "{message}");
     }
 
     #[test]

@@ -5,18 +5,18 @@
 //! | `player` | the audio thread |
 //! | `chosen` | the choice of the device: from the command line or from the last run |
 //! | `host` | the window's host in this program |
-//! | `keeper` | follows devices and ports, and saves the state |
-//! | `kept` | the files of the state and of the choice of devices |
+//! | `supervisor` | follows devices and ports, and saves the state |
+//! | `store` | the files of the state and of the choice of devices |
 //! | `signals` | Ctrl-C |
-//! | `told` | messages for the user |
+//! | `messages` | messages for the user |
 
 mod chosen;
 mod host;
-mod keeper;
-mod kept;
+mod messages;
 mod player;
 mod signals;
-mod told;
+mod store;
+mod supervisor;
 
 use crate::devices::Chosen;
 use crate::editor::SprungEditor;
@@ -25,15 +25,15 @@ use crate::state::State;
 use chosen::{choice, find};
 use clap::Parser;
 use host::Alone;
-use keeper::Keeper;
-use kept::Kept;
+use messages::{print, report};
 use player::WindowPlayer;
 use sprung::preset::Playable;
 use sprung::realtime::{LiveInputs, Session, Status, device, midi_ports};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use told::{complain, tell};
+use store::Store;
+use supervisor::Supervisor;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -74,7 +74,7 @@ pub fn run() -> ExitCode {
     match start(Args::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            complain(&format!("error: {error}"));
+            print(&format!("error: {error}"));
             ExitCode::FAILURE
         }
     }
@@ -88,32 +88,33 @@ fn start(args: Args) -> Result<(), String> {
         return std::io::stdout().write_all(text.as_bytes()).map_err(|error| format!("stdout: {error}"));
     }
     let params = Arc::new(SprungParams::default());
-    let mut kept = Kept::of_user();
-    tell(&params, kept.restore(&params));
+    let mut store = Store::of_user();
+    report(&params, store.restore(&params));
     if let Some(name) = &args.sound {
         let playable = Playable::find(name).map_err(|error| error.to_string())?;
         params.load(State::new(playable, 0, params.view()).into());
     }
-    let (last, said) = kept.chosen();
-    tell(&params, said);
+    let (last, message) = store.saved_devices();
+    report(&params, message);
     let given =
         Chosen { host: args.host, device: args.device, rate: args.rate, buffer: args.buffer, midi_in: args.midi_in };
-    let (chosen, found) = find(given, last, |said| tell(&params, Some(said)))?;
+    let (chosen, found) = find(given, last, |message| report(&params, Some(message)))?;
     let status = Arc::new(Status::of(params.link().telemetry.clone()));
     let ([midi, closing], inputs) = LiveInputs::new();
     let player = WindowPlayer::new(found.sample_rate(), params.clone(), inputs, status.clone());
     let session = Session::start(&found, choice(&chosen), player, status).map_err(|error| error.to_string())?;
-    complain(&format!("sprung: playing on {}", session.description()));
+    print(&format!("sprung: playing on {}", session.description()));
     signals::catch({
         let params = params.clone();
         move || params.link().close()
     })?;
     let is_closed = Arc::new(AtomicBool::new(false));
-    let keeper = Keeper { params: params.clone(), kept, session, closing, is_closed: is_closed.clone(), chosen };
-    let keeper = std::thread::spawn(move || keeper.run(midi));
+    let supervisor =
+        Supervisor { params: params.clone(), store, session, closing, is_closed: is_closed.clone(), chosen };
+    let supervisor = std::thread::spawn(move || supervisor.run(midi));
     let closed = SprungEditor::new(params).run(Alone::context());
     is_closed.store(true, Relaxed);
-    let ended = keeper.join().map_err(|_| "the thread that looks after the device has failed".to_owned())?;
+    let ended = supervisor.join().map_err(|_| "the thread that looks after the device has failed".to_owned())?;
     closed.map_err(|error| format!("the window cannot be shown: {error}"))?;
     ended
 }

@@ -22,8 +22,8 @@ const LINES: std::ops::Range<i16> = 415..570;
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The devices on which the program has said that it plays, and whether one was refused.
-fn heard(said: &Path) -> (Vec<String>, bool) {
-    let text = std::fs::read_to_string(said).unwrap();
+fn heard(stderr: &Path) -> (Vec<String>, bool) {
+    let text = std::fs::read_to_string(stderr).unwrap();
     let playing = text.lines().filter_map(|line| line.split_once("playing on ")).map(|(_, name)| name.to_owned());
     (playing.collect(), text.contains("; still on "))
 }
@@ -33,7 +33,7 @@ pub(crate) fn another_device_is_chosen_while_it_plays() {
     let config = stand.folder.path().join("asound.conf");
     std::fs::write(&config, ALSA).unwrap();
     stand.alsa = Some(config);
-    let (mut running, said) = stand.start(&["Marimba"]);
+    let (mut running, stderr) = stand.start(&["Marimba"]);
     let click = |place| {
         stand.onlooker.drag_slowly(place, place);
         std::thread::sleep(Duration::from_millis(250));
@@ -41,8 +41,8 @@ pub(crate) fn another_device_is_chosen_while_it_plays() {
     let start = Instant::now();
     let mut lines = LINES.step_by(10).cycle();
     let is_alsa = |name: &String| name.contains("ALSA");
-    while !matches!(heard(&said), (playing, true) if playing.iter().any(is_alsa)) {
-        let text = std::fs::read_to_string(&said).unwrap();
+    while !matches!(heard(&stderr), (playing, true) if playing.iter().any(is_alsa)) {
+        let text = std::fs::read_to_string(&stderr).unwrap();
         assert!(start.elapsed() < PATIENCE, "no other device, or none that is refused: {text}");
         click(TAB);
         click(FIELD);
@@ -51,12 +51,12 @@ pub(crate) fn another_device_is_chosen_while_it_plays() {
     running.interrupt();
     assert_eq!(running.ends().code(), Some(0));
     // Read again, because the program may have followed the last click only after the loop looked.
-    let (playing, _) = heard(&said);
+    let (playing, _) = heard(&stderr);
     assert!(playing[0].contains("JACK") && playing[1..].iter().any(is_alsa), "{playing:?}");
-    let kept = std::fs::read_to_string(stand.state().with_file_name("devices.json")).unwrap();
+    let saved = std::fs::read_to_string(stand.state().with_file_name("devices.json")).unwrap();
     // Without options, the last choice holds.
-    let (mut running, said) = stand.start_with(&[], &["--midi-in", "none"]);
-    assert_eq!(heard(&said).0.first(), playing.last(), "{kept}");
+    let (mut running, stderr) = stand.start_with(&[], &["--midi-in", "none"]);
+    assert_eq!(heard(&stderr).0.first(), playing.last(), "{saved}");
     running.interrupt();
     assert_eq!(running.ends().code(), Some(0));
 }

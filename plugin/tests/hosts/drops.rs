@@ -43,12 +43,12 @@ pub(crate) fn a_recording_that_is_dropped_on_the_real_window_becomes_the_sound()
     assert!(!drag(&[stand.folder.path().join("nowhere.wav")]), "a file that is not there is not taken");
     assert!(drag(&[file]), "the window takes the recording");
     let start = Instant::now();
-    let kept = || stand.state().is_file().then(|| preset(&stand.state()));
-    while !kept().is_some_and(|preset| preset.contains("Stab 100% für Übung")) {
-        assert!(start.elapsed() < PATIENCE, "it became no sound: {:?}", kept());
+    let saved = || stand.state().is_file().then(|| preset(&stand.state()));
+    while !saved().is_some_and(|preset| preset.contains("Stab 100% für Übung")) {
+        assert!(start.elapsed() < PATIENCE, "it became no sound: {:?}", saved());
         std::thread::sleep(Duration::from_millis(100));
     }
-    let sound = sprung::preset::Preset::parse(&kept().unwrap(), "the kept state").unwrap();
+    let sound = sprung::preset::Preset::parse(&saved().unwrap(), "the saved state").unwrap();
     assert_eq!(sound.guide.home, 69, "the recording’s pitch");
     drop(running);
 }

@@ -56,6 +56,11 @@ enum Needs {
 }
 
 impl Needs {
+    /// Whether tests with these needs wait for time to pass: what is on a screen comes when it comes.
+    fn wait(self) -> bool {
+        !matches!(self, Needs::Nothing | Needs::Python)
+    }
+
     /// The first need that is missing on this machine; `None` if all are met.
     fn missing(self) -> Option<String> {
         static SCREEN: LazyLock<Option<String>> = LazyLock::new(screen::missing);
@@ -250,15 +255,14 @@ fn main() -> ExitCode {
         }
     };
     let trial = |(name, needs, test): (&str, Needs, fn())| {
-        let missing = needs.missing();
-        if let Some(missing) = &missing {
-            println!("{name} is ignored: it needs {missing}, which ‘cargo xtask setup’ installs");
-        }
-        let run = move || {
-            test();
-            Ok(())
+        let run = move || match needs.missing() {
+            Some(missing) => Err(format!("it needs {missing}, which ‘cargo xtask setup --all’ installs").into()),
+            None => {
+                test();
+                Ok(())
+            }
         };
-        Trial::test(name, run).with_ignored_flag(missing.is_some())
+        Trial::test(name, run).with_ignored_flag(needs.wait())
     };
     let conclusion = libtest_mimic::run(&Arguments::from_args(), trials.into_iter().map(trial).collect());
     host::bundle::remove();

@@ -93,7 +93,7 @@ pub(crate) fn the_first_five_minutes() {
     let stand = Stand::new("minutes");
     let now = || {
         let text = stand.state().is_file().then(|| preset(&stand.state()))?;
-        Preset::parse(&text, "the kept state").ok()
+        Preset::parse(&text, "the saved state").ok()
     };
     let is = |so: &dyn Fn(&Preset) -> bool| now().is_some_and(|preset| so(&preset));
     let find = |words: &'static str| {

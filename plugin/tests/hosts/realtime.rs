@@ -130,10 +130,10 @@ fn play_under_watch(parent: Option<Parent>) -> ExitCode {
 }
 
 fn seen() -> bool {
-    static TOLD: AtomicBool = AtomicBool::new(false);
-    let seen = !TOLD.load(Ordering::Relaxed) && probe(c"sprung_watch_offences")() > 0;
-    TOLD.fetch_or(seen, Ordering::Relaxed);
-    TOLD.load(Ordering::Relaxed)
+    static REPORTED: AtomicBool = AtomicBool::new(false);
+    let seen = !REPORTED.load(Ordering::Relaxed) && probe(c"sprung_watch_offences")() > 0;
+    REPORTED.fetch_or(seen, Ordering::Relaxed);
+    REPORTED.load(Ordering::Relaxed)
 }
 
 /// Blocks with every kind of event: stealing, re-striking, expressions, automation, modulation, MIDI, tempo.

@@ -74,7 +74,7 @@ trait Host {
     fn open(&mut self, scale: Option<f64>);
     fn close(&mut self);
     /// Width and height as the host is told.
-    fn told(&mut self) -> [u32; 2];
+    fn reported(&mut self) -> [u32; 2];
     /// Does what the plugin has asked for. Returns the size if it asked for one.
     fn turn(&mut self) -> Option<[u32; 2]>;
     /// From now on, the host refuses to resize its window.
@@ -119,7 +119,7 @@ impl Host for Clap<'_> {
         self.editor.take().unwrap().close(&mut self.instance);
     }
 
-    fn told(&mut self) -> [u32; 2] {
+    fn reported(&mut self) -> [u32; 2] {
         self.editor.as_ref().unwrap().size(&mut self.instance)
     }
 
@@ -183,7 +183,7 @@ impl Host for OwnVst3<'_> {
         self.view.take().unwrap().close();
     }
 
-    fn told(&mut self) -> [u32; 2] {
+    fn reported(&mut self) -> [u32; 2] {
         self.view.as_ref().unwrap().size()
     }
 
@@ -300,13 +300,13 @@ fn scaled(size: [u32; 2], factor: f64) -> [u32; 2] {
 fn is_whole(host: &mut dyn Host, expected: [u32; 2], factor: f64, what: &str) {
     // Nothing may be under the pointer.
     host.parent().onlooker.point([SCREEN[0] as i16 - 1, SCREEN[1] as i16 - 1]);
-    assert_eq!(host.told(), expected, "{what}: the size as the host is told");
+    assert_eq!(host.reported(), expected, "{what}: the size as the host is told");
     wait_until(&format!("{what}: a whole window of {expected:?}"), || {
         host.turn();
         let Parent { onlooker, window, .. } = host.parent();
         onlooker.size(onlooker.innermost(*window)) == expected && ends_with_its_panels(onlooker, expected, factor)
     });
-    assert_eq!(host.told(), expected, "{what}: the size as the host is told afterwards");
+    assert_eq!(host.reported(), expected, "{what}: the size as the host is told afterwards");
 }
 
 /// Whether nothing is cut off: beyond the panels, the margins on the right and at the bottom are empty.

@@ -120,12 +120,12 @@ impl Stand {
     /// As [`Stand::start`], with options instead of those for the server.
     #[track_caller]
     pub(crate) fn start_with(&self, options: &[&str], arguments: &[&str]) -> (Running, PathBuf) {
-        let said = self.folder.path().join("stderr");
+        let stderr = self.folder.path().join("stderr");
         let mut command = self.command(options);
-        let running = Running(command.args(arguments).stderr(File::create(&said).unwrap()).spawn().unwrap());
+        let running = Running(command.args(arguments).stderr(File::create(&stderr).unwrap()).spawn().unwrap());
         wait_until("the window", || self.onlooker.find("Sprung").is_some());
         wait_until("a picture", || self.onlooker.sees_a_picture(600, 400));
-        (running, said)
+        (running, stderr)
     }
 }
 
@@ -137,9 +137,9 @@ pub(crate) fn preset(file: &Path) -> String {
 
 pub(crate) fn it_keeps_its_state_whatever_ends_it() {
     let stand = Stand::new("state");
-    let (mut running, said) = stand.start(&["Church Bell"]);
-    let said = std::fs::read_to_string(said).unwrap();
-    assert!(said.contains("playing on JACK") && said.contains("44100 Hz"), "the rate is the device's: {said}");
+    let (mut running, stderr) = stand.start(&["Church Bell"]);
+    let stderr = std::fs::read_to_string(stderr).unwrap();
+    assert!(stderr.contains("playing on JACK") && stderr.contains("44100 Hz"), "the rate is the device's: {stderr}");
     running.signal(libc::SIGINT);
     assert_eq!(running.ends().code(), Some(0));
     let first = preset(&stand.state());
@@ -197,12 +197,12 @@ pub(crate) fn a_broken_state_is_set_aside() {
     let stand = Stand::new("broken");
     std::fs::create_dir(stand.state().parent().unwrap()).unwrap();
     std::fs::write(stand.state(), "{\"preset\": 1").unwrap();
-    let (mut running, said) = stand.start(&[]);
+    let (mut running, stderr) = stand.start(&[]);
     running.signal(libc::SIGINT);
     assert_eq!(running.ends().code(), Some(0));
-    let said = std::fs::read_to_string(said).unwrap();
+    let stderr = std::fs::read_to_string(stderr).unwrap();
     let aside = stand.state().with_file_name("standalone.not-understood-1.json");
-    assert!(said.contains("not a state of Sprung") && said.contains(aside.to_str().unwrap()), "{said}");
+    assert!(stderr.contains("not a state of Sprung") && stderr.contains(aside.to_str().unwrap()), "{stderr}");
     assert_eq!(std::fs::read_to_string(aside).unwrap(), "{\"preset\": 1");
     assert!(preset(&stand.state()).contains("Init"));
 }
@@ -211,10 +211,10 @@ pub(crate) fn what_is_missing_is_said() {
     let stand = Stand::new("missing");
     let refused = |command: &mut Command, word: &str| {
         let output = command.output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{said}");
-        let last = said.lines().last().unwrap_or_default();
-        assert!(last.starts_with("error: ") && last.contains(word), "{said}");
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{stderr}");
+        let last = stderr.lines().last().unwrap_or_default();
+        assert!(last.starts_with("error: ") && last.contains(word), "{stderr}");
     };
     let nowhere = format!("{}-nowhere", stand.server);
     refused(stand.command(&["--host", "jack"]).env("JACK_DEFAULT_SERVER", nowhere), "JACK");
@@ -226,6 +226,6 @@ pub(crate) fn what_is_missing_is_said() {
     drop(stand.start(&[]));
     let mut blind = stand.command(&["--host", "jack", "--midi-in", "none"]);
     let output = blind.env_remove("DISPLAY").stderr(File::create(scratch("blind")).unwrap()).status().unwrap();
-    let said = std::fs::read_to_string(scratch("blind")).unwrap();
-    assert!(output.code() == Some(1) && said.contains("the window cannot be shown"), "{said}");
+    let stderr = std::fs::read_to_string(scratch("blind")).unwrap();
+    assert!(output.code() == Some(1) && stderr.contains("the window cannot be shown"), "{stderr}");
 }

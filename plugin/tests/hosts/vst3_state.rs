@@ -42,8 +42,8 @@ pub(crate) fn states_of_all_versions_load() {
         assert!(plugin.load(&state), "{}", path.display());
         for info in PARAMS {
             // A knob may have been saved at a position other than the one that its value alone would give.
-            let kept = own_part_of(&state)["positions"][info.id].as_f64();
-            let expected = kept.unwrap_or_else(|| info.normalise(patch.get(info.param)));
+            let saved = own_part_of(&state)["positions"][info.id].as_f64();
+            let expected = saved.unwrap_or_else(|| info.normalise(patch.get(info.param)));
             let position = plugin.position(number(info.id));
             assert!((position - expected).abs() < 1e-6, "{}: {} is at {position}", path.display(), info.id);
         }

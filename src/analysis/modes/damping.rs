@@ -264,6 +264,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "takes half a minute"]
     fn the_end_of_what_modes_do_not_explain_is_no_damper() {
         let mode = (TAU * 300.0 / RATE, exp(-LN_60_DB / (0.3 * RATE)));
         let sound = driven(&[mode], (0.15 * RATE) as usize, RATE as usize);

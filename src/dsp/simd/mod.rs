@@ -3,7 +3,7 @@
 //! `vector` defines the operations that kernels may use; `sse2`, `x86`, `neon` and `wasm` implement them and contain the only
 //! unsafe code of the crate. `fused` emulates fused multiplication for CPUs without an instruction for it.
 //!
-//! **All levels give the same bits.** `tests/levels.rs` compares every factory preset, and random patches and events,
+//! **All levels give the same bits.** `tests/levels/` compares every factory preset, and random patches and events,
 //! with scalar code. `SPRUNG_SIMD=scalar|sse2|avx2|avx512|neon|simd128` and [`Level::force`] choose another level than
 //! the best one. A WebAssembly module is compiled either for simd128 or not, so it has that level or scalar code.
 //!

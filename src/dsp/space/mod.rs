@@ -30,8 +30,8 @@
 //! when noise is already near −160 dBFS. Wet levels are scaled so that white noise keeps its loudness for every body
 //! and decay.
 //!
-//! Tests: `tests/space/` measures T60 by octave within 5 %, and tests passivity, sleep, tails, blocks, clicks,
-//! loudness, aliases and allocation; `tests/space_levels.rs` compares the bits of all levels.
+//! Tests: `tests/engine/space/` measures T60 by octave within 5 %, and tests passivity, sleep, tails, blocks, clicks,
+//! loudness, aliases and allocation; `tests/levels/` compares the bits of all levels.
 
 mod bands;
 mod decay;

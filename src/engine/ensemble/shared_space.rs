@@ -5,7 +5,7 @@
 //! gm` has a plate; `--set space=…` switches it off, since each channel then has a space of its own. The list also sets
 //! the gain of the mix (`Mix::gain`) before the limiter: each sound is levelled to be heard alone, and sixteen of them
 //! add up. A synth alone, and so the plugin, has no shared space, since hosts have sends. Test:
-//! `tests/shared_space.rs`.
+//! `tests/engine/shared_space.rs`.
 
 use super::chunk::Chunk;
 use super::part::Part;

@@ -23,8 +23,8 @@
 //! The wheel, pressure, brightness, velocity and the key have effects beyond their plain meaning only through routes. A
 //! new patch has three (`Routes::INITIAL`). `routed` and `moving` in `cargo bench --bench synth` measure the cost: sixteen routes, three
 //! oscillators and two envelopes on each of 16 voices of 64 modes, all moving, play at 0.82 to 0.86 of the speed of the
-//! same voices without them (AVX2 and AVX-512). Tests: `tests/modulation.rs` has every source and every kind of
-//! destination; `tests/levels.rs`, `tests/blocks.rs` and `tests/storm/` use random routes.
+//! same voices without them (AVX2 and AVX-512). Tests: `tests/engine/modulation.rs` has every source and every kind of
+//! destination; `tests/levels/`, `tests/engine/blocks.rs` and `tests/engine/storm/` use random routes.
 
 mod bus;
 mod destination;

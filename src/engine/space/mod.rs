@@ -13,7 +13,7 @@
 //! in 20 ms; while nothing sounds, they apply at once. Level and pan of the voices come before the effects, so the
 //! drive depends on `gain`. Tails are computed from effect to effect: while voices sound, the magnitudes of what they
 //! still send add up to at most their peak times the frames that they have left. The computed tail is an upper bound,
-//! and can be some T60s too long. Tests: `tests/space/` for each effect, `tests/behind_voices.rs` for synths and
+//! and can be some T60s too long. Tests: `tests/engine/space/` for each effect, `tests/engine/behind_voices.rs` for synths and
 //! ensembles, with every parameter changed during sound and during silence.
 
 mod bodies;

@@ -8,7 +8,7 @@
 //! the sweep: `6 log₂(1 + (2^(t/6) − 1) E)` semitones, where `t` is the parameter and `E` the energy in units of a full
 //! strike (the same strike at full velocity, without routes). `E` is measured at every control tick; while a strike is
 //! under way, the energy that it will bring counts. Slow changes are followed exactly, sudden ones in about 3 ms. Since
-//! movements of pitch cannot add energy, tension is stable. `tests/in_motion.rs` measures the pitch within a cent of
+//! movements of pitch cannot add energy, tension is stable. `tests/engine/in_motion.rs` measures the pitch within a cent of
 //! the law.
 
 use super::line::Line;

@@ -4,7 +4,7 @@
 //! when a note starts, so nothing that they played before affects the new note, and it makes no difference which ones a
 //! note gets. A `Synth` has its own pool (256 voices, 256 cells); the parts of an `Ensemble` share one (512 and 512).
 //! Three quarters of a pool are for sounding notes, the rest for notes that fade out: 384 notes of 64 modes, or 48 of
-//! 512, in an ensemble. An ensemble takes less than 16 MB. Tests: `dsp::cells::tests`, `tests/pool.rs`,
+//! 512, in an ensemble. An ensemble takes less than 16 MB. Tests: `dsp::cells::tests`, `tests/engine/pool.rs`,
 //! `tests/memory.rs`.
 
 use super::footprint::Footprint;

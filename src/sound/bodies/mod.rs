@@ -21,7 +21,7 @@
 //! - **Count**: the lowest modes, however weak, so that moving a position changes levels and nothing else.
 //!
 //! In a preset, `[body]` replaces `modes`; the mode table keeps this text as its origin, so that a preset is saved with
-//! its body. Zeros and roots are found by bracketing, which cannot fail. `tests/body_reference.rs` compares with SciPy,
+//! its body. Zeros and roots are found by bracketing, which cannot fail. `tests/engine/body_reference.rs` compares with SciPy,
 //! which finds each by another method: ratios within 1e−9 (the kettledrum 1e−6, the free plate 1e−3), levels within 0.1
 //! dB. `tests` here tries random bodies over all ranges, and pins their bits.
 

@@ -13,7 +13,7 @@
 //! frequencies instead of Golub's real ones. `system` contains the equation, `start` the first guesses, `poles` the
 //! iteration. The shapes of a mode are the residues, by the formula of Sherman and Morrison (1950).
 //!
-//! Poles and residues agree within 1e−14 with a computation in 50 digits (*`tests/coupled_reference.rs`*), even if two poles
+//! Poles and residues agree within 1e−14 with a computation in 50 digits (*`tests/engine/coupled_reference.rs`*), even if two poles
 //! are very close. For this, every place in the complex plane is stored as its distance from the nearest free pole
 //! (Gu & Eisenstat, "A stable and efficient algorithm for the rank-one modification of the symmetric eigenproblem",
 //! SIAM J. Matrix Anal. Appl. 15, 1994).
@@ -23,7 +23,7 @@
 //! modes: about 1.5 ms for 64 + 64, 5 ms for 128 + 128 and 0.1 s for 512 + 512.
 //!
 //! Modes with exactly the same pole are rotated first, so that the joint moves only one of them. A body that drives
-//! another one without feedback (`series`) is also a set of modes, by partial fractions. `tests/coupled_reference.rs`
+//! another one without feedback (`series`) is also a set of modes, by partial fractions. `tests/engine/coupled_reference.rs`
 //! compares 200 random pairs with eigenproblems solved by SciPy; the tests here check the sum rules, the energy, the
 //! limits without a joint and with a rigid one, and frozen bits.
 

@@ -28,7 +28,7 @@
 //! (`tuned`). If the other body has a mode at nearly the same pitch, the two push each other away and there may be no
 //! such tuning; then the body is tuned as if the other one did not move.
 //!
-//! `tests/pair_reference.rs` renders a string on a plate, joined, in series and apart, for three keys, and compares
+//! `tests/engine/pair_reference.rs` renders a string on a plate, joined, in series and apart, for three keys, and compares
 //! pitch, T60, level and samples with an eigenproblem solved by SciPy.
 
 mod across;

@@ -5,7 +5,7 @@
 #[path = "../../../benches/struck/mod.rs"]
 mod struck;
 
-use crate::shell::{root, succeeds};
+use crate::shell::root;
 use sprung::dsp::CONTROL_FRAMES;
 use sprung::dsp::Level;
 use sprung::dsp::mode_bank::MAX_MODES;
@@ -18,9 +18,9 @@ use struck::{StruckBank, Work};
 /// The last accepted counts: instructions per mode and frame for each level and kind of work, and per silent block.
 const KEPT: &str = "benches/instructions.txt";
 
-/// The share by which a count may grow. After any change in the library, the compiler divides it into units in another way and
-/// inlines other functions, so counts of work that did not change move by up to 13 %.
-const ALLOWANCE: f64 = 0.15;
+/// The share by which a count may grow. The library is compiled as one unit here: where the compiler divides it into several, it
+/// does so in another way after any change, and counts of work that did not change move by up to 13 %.
+const ALLOWANCE: f64 = 0.05;
 
 const LEVELS: [Level; 3] = [Level::Scalar, Level::Sse2, Level::Avx2];
 
@@ -84,10 +84,6 @@ impl Subject {
 /// Counts, and compares with the kept counts, or with `accept` keeps the new ones. The last lines are those of a test
 /// harness, so that the suite reads them like any others.
 pub(crate) fn run(accept: bool) -> Result<(), String> {
-    if !succeeds("valgrind", &["--version"]) {
-        println!("test instructions ... ignored, there is no valgrind\ntest result: ok. 0 passed; 0 failed; 1 ignored");
-        return Ok(());
-    }
     let mut counts = String::new();
     for subject in Subject::all() {
         let name = subject.name();
@@ -161,8 +157,8 @@ mod tests {
         let kept = parse("avx2 ringing 1.0\nsilent synth 1000");
         assert_eq!(kept[1], ("silent synth".to_owned(), 1000.0));
         for (found, lines) in [
-            ("avx2 ringing 1.14\nsilent synth 400", 0),
-            ("avx2 ringing 1.16\nsilent synth 1151", 2),
+            ("avx2 ringing 1.04\nsilent synth 400", 0),
+            ("avx2 ringing 1.06\nsilent synth 1051", 2),
             ("avx2 driven 0.1", 1),
         ] {
             assert_eq!(grown(&kept, &parse(found)).len(), lines, "{found}");

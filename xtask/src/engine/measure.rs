@@ -13,7 +13,7 @@ const PAGE: &str = "assets/measures/results.md";
 pub(crate) fn run() -> Result<(), String> {
     let mut page = String::from(
         "# How the factory's presets measure\n\n\
-         Written by `cargo xtask measure`. `cargo test --release --test bank` holds every preset to these figures, but for those\n\
+         Written by `cargo xtask measure`. `cargo test --release --test analysis bank` holds every preset to these figures, but for those\n\
          tagged *synthesis*, which are no instruments and need no noise, motion or partials. A figure that is not as it is to be is\n\
          bold. Recordings are those of `recordings.toml`, beside this page.\n",
     );

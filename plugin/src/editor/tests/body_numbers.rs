@@ -2,7 +2,7 @@
 
 use super::pictures::{Stage, compare_page, finish, stage};
 use super::sounding::Band;
-use crate::editor::made::Made;
+use crate::editor::body::origin::Origin;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use egui::{Event, Key, Modifiers, PointerButton, Role, vec2};
@@ -12,9 +12,9 @@ use sprung::preset::Playable;
 use sprung::preset::library::Library;
 
 impl Stage {
-    fn made(&self) -> Made {
+    fn origin(&self) -> Origin {
         let Playable::Preset(preset) = self.params.state().playable else { panic!("a kit") };
-        Made::of(&preset.patch.modes)
+        Origin::of(&preset.patch.modes)
     }
 
     fn open_page(&mut self, name: &str) {
@@ -71,9 +71,9 @@ fn a_number_is_dragged_heard_and_undone_as_one_step() {
         modifiers: Modifiers::NONE,
     });
     band.passes(60);
-    let body = |made: Made| made.body().unwrap().clone();
+    let body = |origin: Origin| origin.body().unwrap().clone();
     let Playable::Preset(preset) = &before.playable else { unreachable!() };
-    let (old, new) = (body(Made::of(&preset.patch.modes)), body(band.stage.made()));
+    let (old, new) = (body(Origin::of(&preset.patch.modes)), body(band.stage.origin()));
     assert!(new.strike.x > old.strike.x + 0.05, "{} {}", old.strike.x, new.strike.x);
     assert_eq!(new.pickup, old.pickup);
     let strikes = band.heard.iter().filter(|touch| matches!(touch, Touch::Down { .. })).count();
@@ -88,19 +88,19 @@ fn a_second_body_is_joined_changed_and_taken_away() {
     let mut stage = stage("init", SIZE, 1.0, Theme::Dark);
     stage.open_page("Model");
     stage.pick("Model of the body", "free bar");
-    let alone = stage.made();
+    let alone = stage.origin();
     assert_eq!(alone.body().map(|body| body.model.id()), Some("free_bar"));
     stage.button("Second body");
     stage.pick("Model of the body", "plate");
-    assert_eq!(stage.made().pair().map(|pair| pair.second.model.id()), Some("plate"));
+    assert_eq!(stage.origin().pair().map(|pair| pair.second.model.id()), Some("plate"));
     stage.button("The body follows the keys");
-    assert!(!stage.made().pair().unwrap().second.follows_key);
+    assert!(!stage.origin().pair().unwrap().second.follows_key);
     stage.button("Joint of the bodies");
     stage.pick("Kind of the body", "spring");
-    assert!(matches!(stage.made().pair().unwrap().link, sprung::sound::pairs::Link::Spring { .. }));
+    assert!(matches!(stage.origin().pair().unwrap().link, sprung::sound::pairs::Link::Spring { .. }));
     stage.button("Second body");
     stage.pick("Model of the body", "none");
-    assert_eq!(stage.made(), alone);
+    assert_eq!(stage.origin(), alone);
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn the_first_five_minutes() {
     stage.harness.run_steps(3);
     stage.harness.key_press(Key::Escape);
     stage.harness.run_steps(3);
-    assert_eq!((stage.params.name().as_str(), stage.made()), ("Marimba", Made::Table));
+    assert_eq!((stage.params.name().as_str(), stage.origin()), ("Marimba", Origin::Table));
 
     stage.open_page("Model");
     stage.pick("Model of the body", "marimba");
@@ -162,7 +162,7 @@ fn the_first_five_minutes() {
     stage.button("Save under this name");
     stage.harness.key_press(Key::Escape);
     stage.harness.run_steps(2);
-    let made = stage.params.state();
+    let edited = stage.params.state();
 
     stage.button("Next sound");
     assert_ne!(stage.params.name(), "Marimba in a glass hall");
@@ -174,9 +174,11 @@ fn the_first_five_minutes() {
     let found = stage.params.state();
     assert_eq!(found.playable.name(), "Marimba in a glass hall");
     assert_eq!(found.values.get(Param::SpaceMix), 40.0);
-    assert_eq!(stage.made().body().map(|body| (body.model.id(), body.material.id)), Some(("marimba", "glass")));
+    assert_eq!(stage.origin().body().map(|body| (body.model.id(), body.material.id)), Some(("marimba", "glass")));
     let path = Library::at(stage.folder.path()).entries()[0].path.clone();
-    let Playable::Preset(saved) = crate::editor::files::read(path.to_str().unwrap()).unwrap() else { panic!("a kit") };
-    let Playable::Preset(made) = made.playable else { panic!("a kit") };
-    assert_eq!(saved.patch.modes, made.patch.modes);
+    let Playable::Preset(saved) = crate::editor::controls::files::read(path.to_str().unwrap()).unwrap() else {
+        panic!("a kit")
+    };
+    let Playable::Preset(edited) = edited.playable else { panic!("a kit") };
+    assert_eq!(saved.patch.modes, edited.patch.modes);
 }

@@ -2,8 +2,8 @@
 
 use super::fake_host::FakeHost;
 use super::pictures::{Stage, compare, finish, stage};
-use crate::editor::files::load;
-use crate::editor::history::History;
+use crate::editor::controls::files::load;
+use crate::editor::controls::history::History;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use crate::params::SprungParams;

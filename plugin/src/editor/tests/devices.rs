@@ -32,19 +32,19 @@ fn page(size: [u32; 2], theme: Theme) -> Stage {
     let mut stage = stage("Marimba", size, 1.0, theme);
     assert!(stage.harness.query_by_role_and_label(Role::Tab, "Devices").is_none(), "a host has its own");
     stage.host.is_alone.store(true, Relaxed);
-    stage.params.link().desk.show(devices());
+    stage.params.link().devices.show(devices());
     stage.harness.run_steps(3);
-    assert!(!stage.params.link().desk.was_watched(), "nothing is looked for while another page is shown");
+    assert!(!stage.params.link().devices.was_watched(), "nothing is looked for while another page is shown");
     stage.harness.get_by_role_and_label(Role::Tab, "Devices").click();
     stage.harness.run_steps(3);
-    assert!(stage.params.link().desk.was_watched());
+    assert!(stage.params.link().devices.was_watched());
     stage
 }
 
 impl Stage {
     /// Picks from the list of the original devices.
     fn pick_device(&mut self, field: &str, name: &str) -> Option<Chosen> {
-        self.params.link().desk.show(devices());
+        self.params.link().devices.show(devices());
         self.harness.run_steps(1);
         self.pick_another(field, name)
     }
@@ -54,7 +54,7 @@ impl Stage {
         self.harness.run_steps(3);
         self.harness.get_by_role_and_label(Role::Button, name).click();
         self.harness.run_steps(3);
-        self.params.link().desk.take_wish()
+        self.params.link().devices.take_request()
     }
 }
 
@@ -74,10 +74,10 @@ fn what_is_picked_is_asked_for() {
     stage.pick_device("Sample rate", "96000 Hz");
     let both = Chosen { rate: Some(96_000), midi_in: text("none"), ..before.clone() };
     assert_eq!(stage.pick_another("MIDI in", "no port"), Some(both), "a wish builds on the one before");
-    assert!(stage.host.said().is_empty(), "no parameter is concerned");
+    assert!(stage.host.calls().is_empty(), "no parameter is concerned");
     // A chosen device that is not available now is still shown.
     let gone = Chosen { host: text("alsa"), device: text("hw:9"), rate: Some(22_050), ..Chosen::default() };
-    stage.params.link().desk.show(Devices { chosen: gone, ..devices() });
+    stage.params.link().devices.show(Devices { chosen: gone, ..devices() });
     stage.harness.run_steps(3);
     let shown = |field| stage.harness.get_by_role_and_label(Role::ComboBox, field).accesskit_node().value();
     assert_eq!([shown("Output"), shown("Sample rate")], [text("alsa: hw:9"), text("22050 Hz")]);

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex};
 
 /// A message of the window about a parameter, by the parameter's name.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Said {
+pub(super) enum Call {
     Begin(String),
     Set(String, f32),
     End(String),
@@ -21,7 +21,7 @@ pub(super) enum Said {
 /// A host that carries out the window's requests.
 #[derive(Default)]
 pub(super) struct FakeHost {
-    said: Mutex<Vec<Said>>,
+    calls: Mutex<Vec<Call>>,
     /// Whether it plays the part of the standalone program.
     pub(super) is_alone: AtomicBool,
     /// Whether it has a menu for parameters.
@@ -34,12 +34,12 @@ impl FakeHost {
     }
 
     /// The messages since the last call.
-    pub(super) fn said(&self) -> Vec<Said> {
-        std::mem::take(&mut self.said.lock().unwrap())
+    pub(super) fn calls(&self) -> Vec<Call> {
+        std::mem::take(&mut self.calls.lock().unwrap())
     }
 
-    fn hear(&self, said: Said) {
-        self.said.lock().unwrap().push(said);
+    fn record(&self, calls: Call) {
+        self.calls.lock().unwrap().push(calls);
     }
 }
 
@@ -50,18 +50,18 @@ impl GuiContextInner for FakeHost {
 
     unsafe fn raw_begin_set_parameter(&self, param: ParamPtr) {
         // SAFETY: the parameters live as long as the window.
-        self.hear(Said::Begin(unsafe { param.name() }.to_owned()));
+        self.record(Call::Begin(unsafe { param.name() }.to_owned()));
     }
 
     unsafe fn raw_set_parameter_normalized(&self, param: ParamPtr, normalized: f32) {
         // SAFETY: as above; a host sets parameters in this way.
         unsafe { param._internal_set_normalized_value(normalized) };
-        self.hear(Said::Set(unsafe { param.name() }.to_owned(), normalized));
+        self.record(Call::Set(unsafe { param.name() }.to_owned(), normalized));
     }
 
     unsafe fn raw_end_set_parameter(&self, param: ParamPtr) {
         // SAFETY: as above.
-        self.hear(Said::End(unsafe { param.name() }.to_owned()));
+        self.record(Call::End(unsafe { param.name() }.to_owned()));
     }
 
     fn has_host_menu(&self) -> bool {
@@ -70,7 +70,7 @@ impl GuiContextInner for FakeHost {
 
     unsafe fn raw_show_host_menu(&self, param: ParamPtr, x: i32, y: i32) {
         // SAFETY: as above.
-        self.hear(Said::Menu(unsafe { param.name() }.to_owned(), [x, y]));
+        self.record(Call::Menu(unsafe { param.name() }.to_owned(), [x, y]));
     }
 
     fn get_state(&self) -> PluginState {

@@ -1,12 +1,11 @@
 //! Recordings dropped on the window are fitted to a sound.
 
 use super::dropped::Dropped;
-use super::fake_host::Said;
+use super::fake_host::Call;
 use super::pictures::{Stage, compare, finish, stage};
 use super::renderer::Renderer;
-use crate::editor::fitting::{Face, paint};
-use crate::editor::fonts;
-use crate::editor::theme::{SIZE, Theme};
+use crate::editor::drops::fitting::{Face, paint};
+use crate::editor::theme::{SIZE, Theme, install_fonts};
 use crate::state::State;
 use egui::{Role, vec2};
 use egui_kittest::Harness;
@@ -115,7 +114,7 @@ fn pictures_of_the_panel_are_as_accepted() {
         let mut is_new = true;
         let show = move |ui: &mut egui::Ui| {
             if std::mem::take(&mut is_new) {
-                fonts::install(ui.ctx());
+                install_fonts(ui.ctx());
                 theme.apply(ui.ctx());
             }
             let window = ui.ctx().content_rect();
@@ -158,8 +157,8 @@ fn a_recording_that_is_dropped_becomes_a_sound_of_its_pitch_and_modes_and_is_und
             assert!((rings / t60 - 1.0).abs() < 0.25, "{frequency} Hz: {rings} s in place of {t60} s");
         }
     }
-    let said = stage.host.said();
-    assert!(matches!(&said[..], [Said::Begin(_), .., Said::End(_)]), "the host is told: {said:?}");
+    let calls = stage.host.calls();
+    assert!(matches!(&calls[..], [Call::Begin(_), .., Call::End(_)]), "the host is told: {calls:?}");
     stage.button("Undo");
     assert!(stage.params.state() == before, "one step");
     stage.button("Redo");
@@ -180,7 +179,7 @@ fn a_fit_is_cancelled_and_a_second_one_refused_meanwhile() {
     stage.harness.event(egui::Event::PointerGone);
     stage.wait();
     stage.assert_says("cancelled: long.wav was not fitted");
-    assert!(stage.params.state() == before && stage.host.said().is_empty());
+    assert!(stage.params.state() == before && stage.host.calls().is_empty());
     // The panel is gone, and another recording can be dropped. The window is then closed during that fit.
     stage.drop_files(&[&path]);
     assert!(stage.is_fitting());
@@ -220,7 +219,7 @@ fn what_is_no_recording_of_a_strike_says_so_and_changes_nothing() {
         stage.wait();
         stage.assert_says(says);
     }
-    assert!(stage.params.state() == before && stage.host.said().is_empty());
+    assert!(stage.params.state() == before && stage.host.calls().is_empty());
     assert!(stage.harness.query_by_label("Cancel the fit").is_none());
 }
 

@@ -1,6 +1,6 @@
 //! The user's actions on knobs, and the gestures that the host receives.
 
-use super::fake_host::Said;
+use super::fake_host::Call;
 use super::pictures::{Stage, stage};
 use crate::editor::theme::{SIZE, Theme};
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Role, pos2, vec2};
@@ -56,9 +56,9 @@ impl Stage {
 }
 
 /// Whether the messages are one begin and one end, with only values between them.
-fn is_one_gesture(said: &[Said], name: &str) -> bool {
-    let [Said::Begin(first), sets @ .., Said::End(last)] = said else { return false };
-    let is_set = |said: &Said| matches!(said, Said::Set(set, _) if set == name);
+fn is_one_gesture(calls: &[Call], name: &str) -> bool {
+    let [Call::Begin(first), sets @ .., Call::End(last)] = calls else { return false };
+    let is_set = |calls: &Call| matches!(calls, Call::Set(set, _) if set == name);
     first == name && last == name && !sets.is_empty() && sets.iter().all(is_set)
 }
 
@@ -70,12 +70,12 @@ fn a_drag_is_one_gesture_and_one_step_to_undo() {
     stage.drag(knob, vec2(0.0, -22.0), Modifiers::NONE);
     let moved = stage.value(Param::MalletHardness) - before.values.get(Param::MalletHardness);
     assert!((5.0..15.0).contains(&moved), "a tenth of the travel: {moved}");
-    let said = stage.host.said();
-    assert!(is_one_gesture(&said, "Mallet hardness"), "{said:?}");
+    let calls = stage.host.calls();
+    assert!(is_one_gesture(&calls, "Mallet hardness"), "{calls:?}");
     stage.button("Undo");
     assert_eq!(stage.params.state(), before);
-    let said = stage.host.said();
-    assert!(is_one_gesture(&said, "Mallet hardness"), "{said:?}");
+    let calls = stage.host.calls();
+    assert!(is_one_gesture(&calls, "Mallet hardness"), "{calls:?}");
     stage.button("Redo");
     assert_eq!(stage.value(Param::MalletHardness) - before.values.get(Param::MalletHardness), moved);
 }
@@ -110,7 +110,7 @@ fn the_wheel_turns_and_a_double_click_resets() {
     stage.click(knob);
     stage.click(knob);
     assert_eq!(stage.value(Param::MalletSpeed), Param::MalletSpeed.info().default);
-    assert_eq!(stage.host.said().iter().filter(|said| matches!(said, Said::Begin(_))).count(), 2);
+    assert_eq!(stage.host.calls().iter().filter(|calls| matches!(calls, Call::Begin(_))).count(), 2);
 }
 
 #[test]
@@ -125,11 +125,11 @@ fn a_value_is_typed_in_its_unit_and_nonsense_is_not_taken() {
     };
     typed(&mut stage, "250 ms", Key::Enter);
     assert_eq!(stage.value(Param::NoiseTime), 0.25);
-    assert!(is_one_gesture(&stage.host.said(), "Noise time"));
+    assert!(is_one_gesture(&stage.host.calls(), "Noise time"));
     typed(&mut stage, "100 ms", Key::Escape);
     assert_eq!(stage.value(Param::NoiseTime), 0.25);
     typed(&mut stage, "loud", Key::Enter);
-    assert_eq!((stage.value(Param::NoiseTime), stage.host.said()), (0.25, vec![]));
+    assert_eq!((stage.value(Param::NoiseTime), stage.host.calls()), (0.25, vec![]));
     // The field stays open for another attempt.
     stage.harness.event(Event::Text("1".to_owned()));
     stage.harness.run_steps(1);
@@ -146,7 +146,7 @@ fn a_choice_opens_a_list() {
     stage.harness.get_by_role_and_label(Role::Button, other).click();
     stage.harness.run_steps(3);
     assert_eq!(stage.value(Param::MalletPulse), 1.0 - pulse);
-    assert!(is_one_gesture(&stage.host.said(), "Mallet pulse"));
+    assert!(is_one_gesture(&stage.host.calls(), "Mallet pulse"));
 }
 
 #[test]
@@ -171,8 +171,8 @@ fn only_what_changed_is_announced_when_a_sound_is_loaded() {
     let after = stage.params.state();
     assert_ne!(before.playable.name(), after.playable.name());
     let changed = before.positions.iter().zip(after.positions).filter(|(one, other)| **one != *other).count();
-    let said = stage.host.said();
-    assert_eq!((said.len(), changed > 0), (3 * changed, true), "begin, set and end for each");
+    let calls = stage.host.calls();
+    assert_eq!((calls.len(), changed > 0), (3 * changed, true), "begin, set and end for each");
     stage.button("Previous sound");
     assert_eq!(stage.params.state(), before);
 }
@@ -205,7 +205,7 @@ fn a_route_is_added_by_a_right_click_and_changed_on_its_page() {
     let (place, route) = added.iter().find(|(place, route)| before.1.get(*place) != Some(*route)).unwrap();
     assert_eq!((route.source, route.destination), (Source::Lfo1, Param::MalletSpeed));
     assert_eq!(stage.value(amount_param(place)), 25.0);
-    assert!(is_one_gesture(&stage.host.said(), amount_param(place).info().name));
+    assert!(is_one_gesture(&stage.host.calls(), amount_param(place).info().name));
     stage.harness.get_by_role_and_label(Role::Tab, "Routes").click();
     stage.harness.run_steps(3);
     stage.button(&format!("Route {}: lfo1 › Mallet speed", place + 1));
@@ -264,7 +264,7 @@ fn the_hosts_own_menu_opens_where_the_entry_is() {
     open(&mut stage);
     let entry = stage.harness.get_by_label("Host menu").rect();
     stage.button("Host menu");
-    let [Said::Menu(name, [x, y])] = &stage.host.said()[..] else { panic!("a menu and no gesture") };
+    let [Call::Menu(name, [x, y])] = &stage.host.calls()[..] else { panic!("a menu and no gesture") };
     assert_eq!(name, Param::MalletSpeed.info().name);
     let there = pos2(*x as f32, *y as f32) / stage.harness.ctx.pixels_per_point();
     assert!(entry.expand(2.0).contains(there), "{there} {entry}");

@@ -1,8 +1,8 @@
 //! Changes of modes by the user: they are saved exactly, and a sound that is loaded meanwhile is not changed.
 
-use super::fake_host::Said;
+use super::fake_host::Call;
 use super::sounding::Band;
-use crate::editor::mode_axes::Axes;
+use crate::editor::modes::axes::Axes;
 use crate::editor::theme::{SIZE, Theme};
 use crate::link::Touch;
 use crate::state::State;
@@ -179,9 +179,9 @@ fn a_window_that_is_closed_lets_go_of_every_key_and_knob() {
     let knob = band.stage.at("Mallet speed");
     band.press(knob, true);
     band.event(Event::PointerMoved(knob - vec2(0.0, 20.0)));
-    assert!(matches!(band.stage.host.said()[..], [Said::Begin(_), ..]));
+    assert!(matches!(band.stage.host.calls()[..], [Call::Begin(_), ..]));
     drop(band.stage.harness);
-    assert!(matches!(band.stage.host.said()[..], [Said::End(_)]));
+    assert!(matches!(band.stage.host.calls()[..], [Call::End(_)]));
 }
 
 #[test]

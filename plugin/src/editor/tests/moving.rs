@@ -1,10 +1,10 @@
 //! The moving pictures: the body is struck elsewhere, the mass is pulled and released.
 
-use super::fake_host::Said;
+use super::fake_host::Call;
 use super::pictures::{compare, finish};
 use super::sounding::Band;
-use crate::editor::body_form::Form;
-use crate::editor::made::Made;
+use crate::editor::body::form::Form;
+use crate::editor::body::origin::Origin;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::link::Touch;
 use egui::{Event, Pos2, vec2};
@@ -21,8 +21,8 @@ impl Band {
 
     /// Where the body is struck.
     fn struck(&self) -> Point {
-        let made = Made::of(&self.stage.params.loaded().kit.sounds()[0].patch().modes);
-        made.body().unwrap_or_else(|| panic!("{made:?}")).strike
+        let origin = Origin::of(&self.stage.params.loaded().kit.sounds()[0].patch().modes);
+        origin.body().unwrap_or_else(|| panic!("{origin:?}")).strike
     }
 
     /// Drags from one place to another in some steps.
@@ -70,9 +70,9 @@ fn a_body_is_struck_where_it_is_clicked_and_that_is_undone_by_name() {
         assert!(strikes >= 2, "{sound}: it is heard: {:?}", band.heard);
         band.passes(60);
         assert_eq!(band.stage.params.link().telemetry.keys(0), 0, "{sound}: no key is left down");
-        let said = band.stage.host.said();
-        let is_told = matches!(&said[..], [Said::Begin(name), Said::Set(..), Said::End(_)] if name == "Voices");
-        assert!(is_told, "the host is told once that there is something to save: {said:?}");
+        let calls = band.stage.host.calls();
+        let is_reported = matches!(&calls[..], [Call::Begin(name), Call::Set(..), Call::End(_)] if name == "Voices");
+        assert!(is_reported, "the host is told once that there is something to save: {calls:?}");
         band.stage.button("Undo");
         assert!(band.stage.params.state() == before, "{sound}: one step");
     }
@@ -89,10 +89,10 @@ fn the_place_of_a_tables_pluck_is_a_parameter_that_the_host_sees() {
     band.pull_to(place(0.5), place(0.75));
     let now = band.stage.params.state().values.get(Param::PluckPosition);
     assert!((now - 25.0).abs() < 1.5, "{now}");
-    let said = band.stage.host.said();
+    let calls = band.stage.host.calls();
     let is_one =
-        matches!(&said[..], [Said::Begin(name), .., Said::End(last)] if name == "Pluck position" && last == name);
-    assert!(is_one && said.iter().filter(|said| matches!(said, Said::Begin(_))).count() == 1, "{said:?}");
+        matches!(&calls[..], [Call::Begin(name), .., Call::End(last)] if name == "Pluck position" && last == name);
+    assert!(is_one && calls.iter().filter(|calls| matches!(calls, Call::Begin(_))).count() == 1, "{calls:?}");
     band.stage.button("Undo");
     assert!(band.stage.params.state() == before);
 }

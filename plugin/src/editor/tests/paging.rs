@@ -1,7 +1,7 @@
 //! The pages below the modes, the manual over them, and files dropped on the window.
 
 use super::dropped::{Dropped, asset};
-use super::fake_host::Said;
+use super::fake_host::Call;
 use super::pictures::{compare, compare_page, finish, stage};
 use super::sounding::Band;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
@@ -95,7 +95,7 @@ fn every_page_of_the_manual_can_be_shown() {
         stage.harness.get_by_role_and_label(Role::Tab, "?").click();
         stage.harness.run_steps(3);
         // A letter that no font has would panic here.
-        for (name, _) in crate::editor::manual_text::PAGES {
+        for (name, _) in crate::editor::manual::text::PAGES {
             stage.harness.get_by_label(&format!("Manual: {name}")).click();
             stage.harness.run_steps(2);
         }
@@ -112,7 +112,7 @@ fn scales_and_mappings_are_dropped_undone_and_complained_about() {
     // From C to D, in steps of the scale.
     let steps = |band: &Band| (semitones(band, 62) - semitones(band, 60)) * 19.0 / 12.0;
     assert!((steps(&band) - 2.0).abs() < 1e-3, "{}", steps(&band));
-    assert!(matches!(band.stage.host.said()[..], [Said::Begin(_), Said::Set(..), Said::End(_)]), "the host saves it");
+    assert!(matches!(band.stage.host.calls()[..], [Call::Begin(_), Call::Set(..), Call::End(_)]), "the host saves it");
     band.open("Tuning");
     band.stage.harness.get_by_label_contains("Key C4 316.9");
     band.drop_file(&asset("scales/19-equal-on-white-keys.kbm"));

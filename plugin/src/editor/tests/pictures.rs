@@ -4,7 +4,7 @@
 
 use super::fake_host::FakeHost;
 use super::renderer::Renderer;
-use crate::editor::layout::Layout;
+use crate::editor::theme::layout::Layout;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
 use crate::editor::window::Window;
 use crate::params::SprungParams;

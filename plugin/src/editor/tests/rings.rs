@@ -2,9 +2,9 @@
 
 use super::pictures::{compare, finish};
 use super::sounding::Band;
-use crate::editor::knob;
-use crate::editor::knob_face::on_ring;
 use crate::editor::theme::{LEAST_SIZE, SIZE, Theme};
+use crate::editor::widgets::knob;
+use crate::editor::widgets::knob::face::on_ring;
 use crate::state::{State, VIEW};
 use egui::{Color32, Event, Pos2, Rect};
 use egui_kittest::kittest::Queryable as _;

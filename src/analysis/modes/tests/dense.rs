@@ -13,9 +13,18 @@ fn head(count: usize, chance: &mut Chance) -> Vec<Known> {
 
 #[test]
 fn modes_denser_than_their_bandwidths_are_told_apart() {
+    dense_modes(1..=1);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn modes_denser_than_their_bandwidths_are_told_apart_in_other_heads() {
+    dense_modes(2..=3);
+}
+
+fn dense_modes(seeds: std::ops::RangeInclusive<u64>) {
     let count = 64;
-    let seeds = if cfg!(debug_assertions) { 1_u64 } else { 3 };
-    for seed in 1..=seeds {
+    for seed in seeds {
         let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
         let known = head(count, &mut chance);
         let (samples, ..) = sound(&known, 0.6, -300.0, &mut chance);

@@ -52,6 +52,7 @@ impl Target {
     /// A cargo command that builds for it. The error says what is missing and how to install it.
     pub(crate) fn cargo(self, arguments: &str, rustc: Option<&Path>) -> Result<Command, String> {
         let mut command = cargo(arguments);
+        command.envs([("CARGO_PROFILE_RELEASE_PANIC", "abort"), ("CARGO_PROFILE_RELEASE_STRIP", "true")]);
         let Some(triple) = self.triple() else { return Ok(command) };
         if !has_standard_library(triple, rustc) {
             return Err(format!(

@@ -1,0 +1,224 @@
+//! The numbers of bodies and of their joint on the page of the body: names, values with units, and help texts.
+
+use super::origin::Origin;
+use sprung::sound::bodies::{Body, FIELDS};
+use sprung::sound::pairs::LINK_FIELDS;
+
+/// One of two bodies, or the joint between them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Part {
+    #[default]
+    First,
+    Second,
+    Joint,
+}
+
+/// A number that can be changed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Number {
+    /// Its name in files.
+    pub(super) name: &'static str,
+    pub(super) unit: &'static str,
+    pub(super) range: [f64; 2],
+    pub(super) value: f64,
+}
+
+/// Help texts of the numbers, by their names in files.
+const HELP: [(&str, &str); 41] = [
+    ("frequency", "The frequency at which losses are computed; of a body that does not follow the keys, its pitch."),
+    (
+        "length",
+        "Length, of round bodies the diameter. Sets the pitch at which losses are computed, and a string’s stiffness.",
+    ),
+    ("thickness", "Thickness, of strings and tubes the diameter."),
+    ("tension", "Force that stretches it."),
+    ("material_density", "Mass of the material per volume."),
+    ("young", "Stiffness of the material."),
+    ("poisson", "How much thinner the material gets when it is stretched."),
+    ("loss_b0", "Loss of all modes alike: T60 is 6.9 divided by it."),
+    ("loss_b1", "Loss that rises with frequency: high modes ring shorter."),
+    ("loss_power", "How steeply that loss rises with frequency."),
+    ("damping", "Multiplies all losses: a cloth on it, or better suspension."),
+    ("strike", "Where it is struck. Modes with a node there stay silent."),
+    ("strike_y", "Where it is struck: around a round body, or along the other side of a plate."),
+    ("pickup", "Where it is heard. Modes with a node there stay silent."),
+    ("pickup_y", "Where it is heard: around a round body, or along the other side of a plate."),
+    ("joint", "Where it is joined to the other body."),
+    ("joint_y", "Where it is joined: around a round body, or along the other side of a plate."),
+    ("inharmonicity", "Stiffness that stretches the partials: a piano’s below 0.001, metal from 0.01."),
+    ("split", "Distance of the two modes of a pair, which beat."),
+    ("spread", "Random deviation of each mode: hand-made metal."),
+    ("tilt", "Level per octave above the pitch: darker below 0."),
+    ("pan", "Random place of each mode between left and right."),
+    ("strike_share", "Share of mallet and pluck in what moves it; noise has the rest."),
+    ("count", "Most modes. More are richer, and cost more."),
+    ("seed", "Which random numbers: another specimen of the same kind."),
+    ("aspect", "Length of one side over that of the other."),
+    ("truncation", "What is cut off at the apex, over what remains."),
+    ("slenderness", "Height over radius."),
+    ("head_radius", "Radius of the head."),
+    ("head_density", "Mass of the head per area."),
+    ("kettle_volume", "Air that is shut in below the head."),
+    ("low", "The lowest mode, as a multiple of the frequency."),
+    ("high", "The highest mode, as a multiple of the frequency."),
+    ("mode_density", "How the modes lie: 0 evenly, above it denser towards the high ones."),
+    ("stiffness", "The spring between the bodies, as the frequency at which the first would swing on it."),
+    ("mass", "Mass of the second body over that of the first."),
+    ("struck", "Share of a strike that falls on the second body."),
+    ("heard", "Share of the second body in what is heard."),
+    ("polarisation", "How much the first body also swings across the joint, where it decays slowly."),
+    ("lowest", "The lowest key with modes of its own."),
+    ("highest", "The highest key with modes of its own."),
+];
+
+impl Part {
+    pub(super) fn body(self, origin: &Origin) -> Option<&Body> {
+        match self {
+            Self::First => origin.body(),
+            Self::Second => origin.pair().map(|pair| &pair.second),
+            Self::Joint => None,
+        }
+    }
+
+    pub(super) fn body_mut(self, origin: &mut Origin) -> Option<&mut Body> {
+        match self {
+            Self::First => origin.body_mut(),
+            Self::Second => origin.pair_mut().map(|pair| &mut pair.second),
+            Self::Joint => None,
+        }
+    }
+
+    /// Its numbers, in the order of the tables.
+    pub(super) fn numbers(self, origin: &Origin) -> Vec<Number> {
+        let number = |name, unit, range, value: Option<f64>| value.map(|value| Number { name, unit, range, value });
+        match (self.body(origin), origin.pair()) {
+            (Some(body), _) => FIELDS
+                .iter()
+                // A single body has no joint.
+                .filter(|field| origin.pair().is_some() || !field.name.starts_with("joint"))
+                .filter_map(|field| number(field.name, field.unit, [field.min, field.max], (field.get)(body)))
+                .collect(),
+            (None, Some(pair)) => LINK_FIELDS
+                .iter()
+                .filter_map(|field| number(field.name, field.unit, [field.min, field.max], (field.get)(pair)))
+                .collect(),
+            (None, None) => Vec::new(),
+        }
+    }
+
+    /// Sets the number of this name. The lowest and the highest key of a joint push each other.
+    pub(super) fn set(self, origin: &mut Origin, name: &str, value: f64) {
+        if let Some(body) = self.body_mut(origin) {
+            if let Some(field) = FIELDS.iter().find(|field| field.name == name) {
+                (field.set)(body, field.clamp(value));
+            }
+        } else if let Some(pair) = origin.pair_mut()
+            && let Some(field) = LINK_FIELDS.iter().find(|field| field.name == name)
+        {
+            (field.set)(pair, value.clamp(field.min, field.max));
+            match name {
+                "lowest" => pair.keys[1] = pair.keys[1].max(pair.keys[0]),
+                "highest" => pair.keys[0] = pair.keys[0].min(pair.keys[1]),
+                _ => {}
+            }
+        }
+    }
+}
+
+impl Number {
+    /// Its name as shown to the user.
+    pub(super) fn title(&self) -> String {
+        let mut name = self.name.replace('_', " ");
+        name[..1].make_ascii_uppercase();
+        name
+    }
+
+    /// Its help text.
+    pub(super) fn help(&self) -> &'static str {
+        // The damping of a joint differs from that of a body.
+        if self.name == "damping" && self.range[0] == 0.0 {
+            return "Damping between the bodies, as a share of the critical one.";
+        }
+        HELP.iter().find(|(name, _)| *name == self.name).map_or("", |(_, help)| help)
+    }
+
+    pub(super) fn is_whole(&self) -> bool {
+        ["count", "seed", "lowest", "highest"].contains(&self.name)
+    }
+
+    /// The change for each pixel that the mouse is dragged.
+    pub(super) fn speed(&self) -> f64 {
+        let [min, max] = self.range;
+        if self.is_whole() {
+            0.25
+        } else if max - min <= 200.0 {
+            (max - min) / 200.0
+        } else {
+            // A range of several decades: changes by 1 % of the value.
+            (0.01 * self.value.abs()).max(1e-4)
+        }
+    }
+}
+
+/// A value in a unit, in few letters; [`sprung::units::number_in_unit`] reads it again.
+pub(super) fn written(value: f64, unit: &str) -> String {
+    let (value, unit) = match unit {
+        "m" if value < 0.01 => (value * 1000.0, "mm"),
+        "m" if value < 1.0 => (value * 100.0, "cm"),
+        "Hz" if value >= 10_000.0 => (value / 1000.0, "kHz"),
+        _ => (value, unit),
+    };
+    let size = value.abs();
+    let text = match size {
+        0.0 => "0".to_owned(),
+        1e5.. | ..1e-3 => format!("{value:.2e}"),
+        _ => {
+            let digits = [1000.0, 100.0, 10.0, 1.0, 0.1, 0.01].iter().filter(|decade| size < **decade).count();
+            let text = format!("{value:.digits$}");
+            if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+        }
+    };
+    if unit.is_empty() { text } else { format!("{text} {unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::sound::bodies::Model;
+    use sprung::units::number_in_unit;
+
+    #[test]
+    fn numbers_that_are_written_can_be_read() {
+        for field in FIELDS {
+            for share in [0.0, 1e-6, 1e-3, 0.1, 0.456_789, 1.0] {
+                let value = field.min + share * (field.max - field.min);
+                let text = written(value, field.unit);
+                let read = number_in_unit(field.unit, &text).unwrap_or_else(|| panic!("{}: {text}", field.name));
+                assert!((read - value).abs() <= 6e-3 * value.abs(), "{}: {value} as {text}", field.name);
+            }
+        }
+        assert_eq!(["m", "m", "Hz", ""].map(|unit| written(0.62, unit)), ["62 cm", "62 cm", "0.62 Hz", "0.62"]);
+        assert_eq!((written(2e11, "Pa"), written(64.0, "")), ("2.00e11 Pa".to_owned(), "64".to_owned()));
+    }
+
+    #[test]
+    fn every_number_is_explained_and_can_be_set() {
+        let names = || FIELDS.iter().map(|field| field.name).chain(LINK_FIELDS.iter().map(|field| field.name));
+        for name in names() {
+            assert!(HELP.iter().any(|(known, _)| *known == name), "{name}");
+        }
+        for (name, _) in HELP {
+            assert!(names().any(|known| known == name), "{name}");
+        }
+        for (_, model) in Model::ALL {
+            let mut origin = Origin::FromBody(Box::new(Body::new(model.clone())));
+            for number in Part::First.numbers(&origin) {
+                let [min, max] = number.range;
+                let value = ((min + max) / 2.0).floor().max(min);
+                Part::First.set(&mut origin, number.name, value);
+                let now = Part::First.numbers(&origin).into_iter().find(|now| now.name == number.name);
+                assert_eq!(now.map(|now| now.value), Some(value), "{}", number.name);
+            }
+        }
+    }
+}

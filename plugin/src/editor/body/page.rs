@@ -1,0 +1,270 @@
+//! The page of the body: its model, material and numbers, and those of a second body and of their joint.
+
+use super::edit::BodyEdit;
+use super::numbers::{Number, Part, written};
+use super::origin::{Origin, model_name};
+use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::keyboard::audition::Audition;
+use crate::editor::theme::{GAP, PADDING, SMALL, TEXT};
+use crate::editor::widgets::buttons::{Look, button};
+use crate::editor::widgets::choice::Field;
+use crate::editor::widgets::text::{line, paragraph};
+use crate::link::Link;
+use crate::loaded::Loaded;
+use egui::{Align2, DragValue, Id, Rect, Response, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, vec2};
+use sprung::preset::LINK_KINDS;
+use sprung::sound::bodies::{MATERIALS, Model};
+use sprung::units::number_in_unit;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Width of the part with model and material.
+const SIDE: f32 = 188.0;
+/// Height of a row in that part, and width of the names.
+const ROW: f32 = 25.0;
+const NAMES: f32 = 54.0;
+/// Size of a number with its name.
+const CELL: [f32; 2] = [88.0, 36.0];
+/// Largest width of a number's cell, where there is room.
+const WIDEST: f32 = 124.0;
+/// Shown in place of a model if there is none.
+const NONE: &str = "none";
+const TABLE: &str = "a table of modes";
+
+/// The page's state.
+#[derive(Default)]
+pub(crate) struct BodyPage {
+    part: Part,
+    /// The loaded sound, and the body from which its modes are made.
+    read: Option<(Arc<Loaded>, Origin)>,
+    edit: Option<BodyEdit>,
+    audition: Audition,
+}
+
+impl BodyPage {
+    /// Releases the key that is held.
+    pub(crate) fn release(&mut self, link: &Link) {
+        self.audition.release(link);
+    }
+
+    /// Ends what the user is doing with a number.
+    pub(crate) fn leave(&mut self, controls: &mut Controls) {
+        if let Some(edit) = self.edit.take() {
+            // The error was already shown during the drag.
+            let _ = edit.end(controls);
+        }
+    }
+
+    /// Shows the page. Returns a message.
+    pub(crate) fn show(&mut self, ui: &mut Ui, rect: Rect, shown: &Shown, controls: &mut Controls) -> Option<String> {
+        let palette = controls.palette;
+        palette.paint_panel(ui.painter(), rect);
+        let inner = rect.shrink(PADDING);
+        if shown.preset().is_none() {
+            let text = "The sounds of a kit have bodies of their own. Load one of them to change its body.";
+            paragraph(ui.painter(), inner, text, TEXT, palette.muted);
+            return None;
+        }
+        if self.edit.as_ref().is_some_and(|edit| !edit.is_of(shown.loaded())) {
+            self.edit = None;
+            controls.history.cancel();
+        }
+        let (now, link) = (ui.input(|input| input.time), controls.params.link());
+        self.audition.follow_time(now, link);
+        if let Some(rest) = self.audition.rest(now) {
+            ui.ctx().request_repaint_after(Duration::from_secs_f64(rest));
+        }
+        let origin = self.origin(shown);
+        if origin.pair().is_none() && self.part == Part::Joint || origin == Origin::Table {
+            self.part = Part::First;
+        }
+        let side = inner.with_max_x(inner.left() + SIDE);
+        let mut message = None;
+        if let Some((changed, what)) = self.side(ui, side, &origin, controls) {
+            self.leave(controls);
+            let mut edit = BodyEdit::begin(&origin, shown.loaded(), controls);
+            edit.change(changed, what);
+            message = edit.end(controls).err();
+            self.audition.strike(
+                shown.guide().home,
+                crate::editor::keyboard::audition::VELOCITY,
+                now,
+                controls.params.link(),
+            );
+        } else {
+            message = self.numbers(ui, inner.with_min_x(side.right() + GAP), &origin, shown, controls).or(message);
+        }
+        message
+    }
+
+    /// The body to show: while a number is dragged, the one that is being changed.
+    fn origin(&mut self, shown: &Shown) -> Origin {
+        if let Some(edit) = &self.edit {
+            return edit.origin().clone();
+        }
+        match &self.read {
+            Some((loaded, origin)) if Arc::ptr_eq(loaded, shown.loaded()) => origin.clone(),
+            _ => {
+                let origin = Origin::of(&shown.patch().modes);
+                self.read = Some((shown.loaded().clone(), origin.clone()));
+                origin
+            }
+        }
+    }
+
+    /// Shows which body is edited, its model and its material. Returns the changed body and the name of the undo step.
+    fn side(&mut self, ui: &Ui, rect: Rect, origin: &Origin, controls: &mut Controls) -> Option<(Origin, String)> {
+        let row =
+            |place: usize| Rect::from_min_size(rect.min + vec2(0.0, place as f32 * ROW), vec2(rect.width(), ROW - 4.0));
+        let palette = controls.palette;
+        let parts = [("First", Part::First), ("Second", Part::Second), ("Joint", Part::Joint)];
+        for (place, (name, part)) in parts.into_iter().enumerate() {
+            let width = (rect.width() - 8.0) / 3.0;
+            let at = Rect::from_min_size(row(0).min + vec2(place as f32 * (width + 4.0), 0.0), vec2(width, ROW - 4.0));
+            let is_there =
+                part == Part::First || origin.pair().is_some() || part == Part::Second && *origin != Origin::Table;
+            let look = match (is_there, part == self.part) {
+                (false, _) => Look::Disabled,
+                (true, true) => Look::On,
+                (true, false) => Look::Off,
+            };
+            if button(ui, at, name, &format!("{name} body").replace("Joint body", "Joint of the bodies"), look, palette)
+                .clicked()
+            {
+                self.part = part;
+            }
+        }
+        let field = |place: usize, title: &str, value: &str, names: &[String]| {
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            line(
+                ui.painter(),
+                row(place).with_max_x(rect.left() + NAMES),
+                Align2::LEFT_CENTER,
+                title,
+                SMALL,
+                palette.muted,
+            );
+            let name = format!("{title} of the body");
+            let field = Field { id: Id::unique(("body", title)), name: &name, value, is_default: true };
+            field.show(ui, row(place).with_min_x(rect.left() + NAMES), &names, palette).1
+        };
+        if let Some(pair) = origin.pair().filter(|_| self.part == Part::Joint) {
+            let names: Vec<String> = LINK_KINDS.iter().map(|(kind, _)| (*kind).to_owned()).collect();
+            let same = |link: &_| std::mem::discriminant(link) == std::mem::discriminant(&pair.link);
+            let now = LINK_KINDS.iter().find(|(_, link)| same(link)).map_or("", |(kind, _)| *kind);
+            let picked = field(1, "Kind", now, &names)?;
+            let (kind, link) = LINK_KINDS[picked];
+            return Some((origin.linked(link), format!("joint {kind}")));
+        }
+        let body = self.part.body(origin);
+        let is_first = self.part == Part::First;
+        let none = if is_first { TABLE } else { NONE };
+        let first = if is_first { None } else { Some(NONE.to_owned()) };
+        let models = first.into_iter().chain(Model::ALL.iter().map(|(id, _)| model_name(id)));
+        let names: Vec<String> = models.collect();
+        let now = body.map_or(none.to_owned(), |body| model_name(body.model.id()));
+        if let Some(picked) = field(1, "Model", &now, &names) {
+            let model = Model::ALL.iter().find(|(id, _)| model_name(id) == names[picked]).map(|(_, model)| model);
+            return Some((origin.with_model(!is_first, model), format!("model {}", names[picked])));
+        }
+        let body = body?;
+        let names: Vec<String> = MATERIALS.iter().map(|material| material.id.replace('_', " ")).collect();
+        if let Some(picked) = field(2, "Material", &body.material.id.replace('_', " "), &names) {
+            let mut changed = origin.clone();
+            self.part.body_mut(&mut changed)?.material = MATERIALS[picked];
+            return Some((changed, format!("material {}", names[picked])));
+        }
+        if origin.pair().is_some() {
+            let look = if body.follows_key { Look::On } else { Look::Off };
+            if button(ui, row(3), "Follows the keys", "The body follows the keys", look, palette).clicked() {
+                let mut changed = origin.clone();
+                let body = self.part.body_mut(&mut changed)?;
+                body.follows_key = !body.follows_key;
+                let what = if body.follows_key { "body follows the keys" } else { "body keeps its pitch" };
+                return Some((changed, what.to_owned()));
+            }
+        }
+        None
+    }
+
+    /// Shows the numbers. Returns a message.
+    fn numbers(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        origin: &Origin,
+        shown: &Shown,
+        controls: &mut Controls,
+    ) -> Option<String> {
+        let numbers = self.part.numbers(origin);
+        if numbers.is_empty() {
+            let text = if self.part == Part::Second {
+                "One body sounds. Choose a model, and a second one stands beside it; their joint says how they act on each other."
+            } else {
+                "This sound is a table of modes, typed in or fitted to a recording, and knows nothing of a body. Choose a model: its \
+                modes take the table’s place."
+            };
+            paragraph(ui.painter(), rect, text, SMALL, controls.palette.muted);
+            return None;
+        }
+        let rows = ((rect.height() / CELL[1]) as usize).max(1);
+        let mut is_held = false;
+        let mut inner = ui.new_child(UiBuilder::new().id_salt("body numbers").max_rect(rect));
+        ScrollArea::horizontal().auto_shrink(false).show(&mut inner, |ui| {
+            let columns = numbers.len().div_ceil(rows) as f32;
+            let cell = vec2((rect.width() / columns).clamp(CELL[0], WIDEST).floor(), CELL[1]);
+            let (area, _) = ui.allocate_exact_size(vec2(columns, rows as f32) * cell, Sense::hover());
+            for (place, number) in numbers.iter().enumerate() {
+                let corner = area.min + vec2((place / rows) as f32, (place % rows) as f32) * cell;
+                let (response, value) = show(ui, Rect::from_min_size(corner, cell), number, controls);
+                is_held |= response.dragged() || response.has_focus();
+                if response.changed() && value != number.value {
+                    let mut changed = self.edit.as_ref().map_or(origin, BodyEdit::origin).clone();
+                    self.part.set(&mut changed, number.name, value);
+                    let what = format!("{} {}", number.title(), written(value, number.unit));
+                    let edit = self.edit.get_or_insert_with(|| BodyEdit::begin(origin, shown.loaded(), controls));
+                    edit.change(changed, what);
+                }
+            }
+        });
+        let edit = self.edit.as_mut()?;
+        let now = ui.input(|input| input.time);
+        let message = edit.write(now, controls).err();
+        self.audition.repeat(shown.guide().home, now, controls.params.link());
+        if is_held {
+            ui.ctx().request_repaint();
+            return message;
+        }
+        message.or(self.edit.take().and_then(|edit| edit.end(controls).err()))
+    }
+}
+
+/// Shows a number with its name; it can be dragged or typed. Returns its new value.
+fn show(ui: &mut Ui, cell: Rect, number: &Number, controls: &mut Controls) -> (Response, f64) {
+    let palette = controls.palette;
+    let name = Rect::from_min_size(cell.min, vec2(cell.width() - 4.0, 13.0));
+    let field = Rect::from_min_size(cell.min + vec2(0.0, 14.0), vec2(cell.width() - 6.0, 18.0));
+    line(ui.painter(), name, Align2::LEFT_CENTER, &number.title(), SMALL, palette.muted);
+    let (unit, [min, max]) = (number.unit, number.range);
+    let mut value = number.value;
+    let widget = DragValue::new(&mut value)
+        .range(min..=max)
+        .speed(number.speed())
+        .update_while_editing(false)
+        .custom_formatter(move |value, _| written(value, unit))
+        .custom_parser(move |text| number_in_unit(unit, text));
+    let response = ui.put(field, widget);
+    if number.is_whole() {
+        value = value.round();
+    }
+    response.widget_info(|| {
+        let mut about = WidgetInfo::labeled(Role::SpinButton, true, number.title());
+        about.current_text_value = Some(written(value, unit));
+        about
+    });
+    if response.hovered() || response.has_focus() {
+        *controls.hint = Hint::new(format!("{} {}", number.title(), written(value, unit)), number.help());
+    }
+    (response, value)
+}

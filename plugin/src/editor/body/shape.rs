@@ -1,0 +1,136 @@
+//! The body that is drawn for a sound: its form, and each mode's shape on it.
+
+use super::form::Form;
+use super::origin::{Origin, model_name};
+use sprung::patch::ModeTable;
+use sprung::preset::Family;
+use sprung::sound::bodies::{Body, Model, Point};
+use sprung::units::semitones_from_ratio;
+
+/// The most modes that are drawn on a line, and on a surface: the grid of points is too coarse for finer shapes.
+const DRAWN: [usize; 2] = [64, 32];
+/// The largest distance, in semitones, between a mode of the sound and the mode of the body whose shape it is drawn
+/// with: for a table made from the body, and for one that was not made from a body.
+const NEAR: [f64; 2] = [0.6, 5.0];
+
+/// A body to draw.
+pub(super) struct BodyShape {
+    pub(super) origin: Origin,
+    pub(super) form: Form,
+    pub(super) points: Vec<Point>,
+    /// For each mode of the sound, its shape at the points; none if the mode belongs to a body that is not drawn.
+    shapes: Vec<Option<Vec<f32>>>,
+    /// Rotation speed of each mode in slow motion, as a multiple of the lowest mode's.
+    pub(super) speeds: Vec<f32>,
+    /// Description of the drawn body.
+    pub(super) caption: String,
+}
+
+/// The model that a table of modes is drawn as, and its name.
+fn model_of(family: Option<Family>) -> (&'static str, Model) {
+    let id = match family {
+        Some(Family::Kick | Family::Snare | Family::Tom | Family::HandDrum) => "membrane",
+        Some(Family::Hat | Family::Cymbal) => "free_disc",
+        Some(Family::Percussion) => "free_bar",
+        Some(Family::Mallet) => "marimba",
+        Some(Family::Bell) => "church_bell",
+        Some(Family::Wind) => "open_tube",
+        Some(Family::Effect) => "free_plate",
+        _ => "string",
+    };
+    (id, Model::find(id).cloned().unwrap_or(Model::String))
+}
+
+impl BodyShape {
+    /// The body of a sound of this family. This is slow: it computes the shapes of all modes.
+    pub(super) fn of(modes: &ModeTable, family: Option<Family>) -> Self {
+        let origin = Origin::of(modes).with_places();
+        let (body, near, caption) = match &origin {
+            Origin::FromBody(body) => ((**body).clone(), NEAR[0], model_name(body.model.id())),
+            Origin::FromPair(pair) => {
+                let caption = format!("{}, joined to a second body", model_name(pair.first.model.id()));
+                (pair.first.clone(), NEAR[0], caption)
+            }
+            Origin::Table => {
+                let (id, model) = model_of(family);
+                (Body::new(model), NEAR[1], format!("a table of modes, drawn as a {}", model_name(id)))
+            }
+        };
+        let form = Form::of(&body.model);
+        let most = DRAWN[usize::from(form != Form::Line)];
+        // A bed's modes depend on how many there are.
+        let count = if matches!(body.model, Model::Bed(_)) { body.modes } else { body.modes.min(DRAWN[0]) };
+        let points = form.points();
+        let found = Body { modes: count, ..body }.modes_at(&points);
+        let found: Vec<(f64, Vec<f32>)> = found
+            .into_iter()
+            .take(most)
+            .map(|(mode, shape)| {
+                let seen = points.iter().zip(shape).map(|(point, value)| value as f32 * form.weight(*point));
+                (semitones_from_ratio(mode.ratio), seen.collect())
+            })
+            .collect();
+        let shape = |(place, ratio): (usize, f32)| {
+            let pitch = semitones_from_ratio(f64::from(ratio));
+            let far = |place: &usize| (found[*place].0 - pitch).abs();
+            let best = (0..found.len()).min_by(|a, b| far(a).total_cmp(&far(b))).filter(|best| far(best) <= near);
+            // In a table with other ratios than the model's, the first mode gets the shape of the model's first mode,
+            // and so on.
+            let by_order = (origin == Origin::Table).then_some(place % found.len().max(1));
+            best.or(by_order).and_then(|best| found.get(best)).map(|(_, shape)| shape.clone())
+        };
+        let modes = &modes.as_slice()[..modes.as_slice().len().min(DRAWN[0])];
+        let lowest = modes.iter().map(|mode| mode.ratio).fold(f32::INFINITY, f32::min);
+        // High modes at their true speed would be a blur.
+        let speeds = modes.iter().map(|mode| (mode.ratio / lowest).sqrt().min(6.0)).collect();
+        let shapes = modes.iter().map(|mode| mode.ratio).enumerate().map(shape).collect();
+        Self { origin, form, points, shapes, speeds, caption }
+    }
+
+    /// The displacement of each point, for the amplitudes of the modes.
+    pub(super) fn displacements(&self, amplitudes: &[f32]) -> Vec<f32> {
+        let mut sum = vec![0.0; self.points.len()];
+        for (shape, amplitude) in self.shapes.iter().zip(amplitudes) {
+            if let Some(shape) = shape.as_ref().filter(|_| *amplitude != 0.0) {
+                sum.iter_mut().zip(shape).for_each(|(sum, value)| *sum += amplitude * value);
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::preset::{Preset, modes_of_body};
+
+    #[test]
+    fn a_string_moves_as_its_modes_do_and_its_ends_stay() {
+        let body = Body::new(Model::String);
+        let shape = BodyShape::of(&modes_of_body(&body), None);
+        let count = shape.points.len();
+        for mode in 0..6 {
+            let amplitudes: Vec<f32> = (0..6).map(|other| if other == mode { 1.0 } else { 0.0 }).collect();
+            let moved = shape.displacements(&amplitudes);
+            assert!(moved[0].abs() < 1e-6 && moved[count - 1].abs() < 1e-5, "{mode}: the ends stay");
+            let nodes = moved.windows(2).filter(|pair| pair[0] * pair[1] < -1e-9).count();
+            let exact = moved[1..count - 1].iter().filter(|value| value.abs() < 1e-5).count();
+            assert_eq!(nodes + exact, mode, "mode {} has that many nodes", mode + 1);
+        }
+    }
+
+    #[test]
+    fn every_factory_sound_has_a_body_that_moves() {
+        for preset in Preset::factory() {
+            let shape = BodyShape::of(&preset.patch.modes, preset.guide.family);
+            let loudest =
+                preset.patch.modes.as_slice().iter().take(64).map(|mode| mode.level.abs()).collect::<Vec<_>>();
+            let moved = shape.displacements(&loudest);
+            assert!(moved.iter().all(|value| value.is_finite()), "{}", preset.name);
+            assert!(moved.iter().any(|value| value.abs() > 1e-4), "{}: {}", preset.name, shape.caption);
+        }
+        let bell = Preset::find("Church Bell").unwrap();
+        let shape = BodyShape::of(&bell.patch.modes, None);
+        assert_eq!((shape.form, shape.caption.as_str()), (Form::Bell, "church bell, joined to a second body"));
+    }
+}

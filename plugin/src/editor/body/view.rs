@@ -1,0 +1,224 @@
+//! Shows the body's motion in slow motion, and where it is struck.
+
+use super::edit::rest;
+use super::face;
+use super::form::Form;
+use super::origin::Origin;
+use super::shape::BodyShape;
+use crate::editor::controls::gestures::touch;
+use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::keyboard::audition::Audition;
+use crate::editor::modes::table::replace;
+use crate::loaded::Loaded;
+use egui::{CursorIcon, Id, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
+use sprung::params::Param;
+use sprung::sound::bodies::Point;
+use std::f32::consts::TAU;
+use std::sync::Arc;
+
+/// Cycles per second of the lowest mode in slow motion.
+const TURNS: f32 = 0.8;
+/// How far from the body a click still touches it, in pixels.
+const REACH: f32 = 26.0;
+
+/// A drag of the strike's place in progress.
+struct Drag {
+    point: Point,
+    written: Option<Point>,
+    /// When the sound may be changed again.
+    next: f64,
+    /// The sound that was written last. If another sound is loaded, the drag is over.
+    loaded: Arc<Loaded>,
+}
+
+/// The picture's state.
+#[derive(Default)]
+pub(crate) struct BodyView {
+    shape: Option<(Arc<Loaded>, BodyShape)>,
+    /// Phase of each mode, in radians.
+    angles: Vec<f32>,
+    /// The greatest amplitude since the body was at rest.
+    greatest: f32,
+    drag: Option<Drag>,
+}
+
+impl BodyView {
+    /// Drops the drag, if there is one.
+    pub(crate) fn cancel(&mut self, controls: &mut Controls) {
+        if self.drag.take().is_some() {
+            controls.release();
+            controls.history.cancel();
+        }
+    }
+
+    /// Shows the body of a sound. Returns the caption.
+    pub(crate) fn show(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        shown: &Shown,
+        energies: &[f32],
+        audition: &mut Audition,
+        controls: &mut Controls,
+    ) -> String {
+        if self.drag.as_ref().is_some_and(|drag| !Arc::ptr_eq(&drag.loaded, shown.loaded())) {
+            self.cancel(controls);
+            audition.release(controls.params.link());
+        }
+        let mut shape = match self.shape.take() {
+            Some((loaded, shape)) if Arc::ptr_eq(&loaded, shown.loaded()) => shape,
+            _ => BodyShape::of(&shown.patch().modes, shown.guide().family),
+        };
+        let mut loaded = shown.loaded().clone();
+        if strike(&shape, shown, controls).is_some() {
+            self.touch(ui, rect, &mut shape, shown, audition, controls);
+            // While the strike is dragged, the shapes stay as they are.
+            if let Some(drag) = &self.drag {
+                loaded = drag.loaded.clone();
+            }
+        }
+        let amplitudes = self.advance(controls.seconds, &shape, energies);
+        let reach = shape.form.reach(rect);
+        let soft = |value: f32| reach * value / (1.0 + value * value).sqrt();
+        let moved: Vec<f32> = shape.displacements(&amplitudes).into_iter().map(soft).collect();
+        let place = self.drag.as_ref().map(|drag| drag.point).or(strike(&shape, shown, controls));
+        face::paint(ui.painter(), rect, &shape, &moved, place, controls.palette);
+        let caption = shape.caption.clone();
+        self.shape = Some((loaded, shape));
+        caption
+    }
+
+    /// Advances the phases by some seconds, and returns the amplitude of each mode as a share of the greatest.
+    fn advance(&mut self, seconds: f32, shape: &BodyShape, energies: &[f32]) -> Vec<f32> {
+        let total = energies.iter().sum::<f32>().sqrt();
+        if total <= 1e-6 {
+            self.greatest = 0.0;
+            self.angles.clear();
+            return vec![0.0; shape.speeds.len()];
+        }
+        self.greatest = self.greatest.max(total);
+        self.angles.resize(shape.speeds.len(), 0.0);
+        let turned = TAU * TURNS * seconds;
+        for (angle, speed) in self.angles.iter_mut().zip(&shape.speeds) {
+            *angle = (*angle + turned * speed) % TAU;
+        }
+        let share = |energy: &f32| energy.max(0.0).sqrt() / self.greatest;
+        // The sine starts at 0: a strike starts from rest.
+        self.angles.iter().zip(energies).map(|(angle, energy)| share(energy) * Vec2::angled(*angle).y).collect()
+    }
+
+    /// Follows the pointer, which moves the place of the strike.
+    fn touch(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        shape: &mut BodyShape,
+        shown: &Shown,
+        audition: &mut Audition,
+        controls: &mut Controls,
+    ) {
+        let response = ui.interact(rect, Id::unique("body"), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Struck body"));
+        let now = ui.input(|input| input.time);
+        let pointer = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
+        let found = pointer.or(response.hover_pos()).map(|pointer| shape.form.nearest(rect, pointer));
+        let point = found.map(|(point, _)| confined(point, shape));
+        if let Some(point) = point {
+            *controls.hint = Hint::new(describe(point, shape), "Drag to where it is struck.");
+        }
+        let is_pressed = pointer.is_some() && ui.input(|input| input.pointer.any_pressed());
+        if is_pressed && self.drag.is_none() && found.is_some_and(|(_, distance)| distance <= REACH) {
+            controls.history.begin(controls.params);
+            if let Some(point) = point {
+                let loaded = shown.loaded().clone();
+                self.drag = Some(Drag { point, written: None, next: now, loaded });
+            }
+        }
+        let Some(drag) = &mut self.drag else { return };
+        let is_over = pointer.is_none();
+        if let Some(point) = point.filter(|_| !is_over) {
+            drag.point = point;
+        }
+        let drag_point = drag.point;
+        if (is_over || now >= drag.next) && drag.written != Some(drag.point) {
+            let start = std::time::Instant::now();
+            write(drag.point, &mut shape.origin, controls);
+            drag.next = now + rest(start);
+            drag.written = Some(drag.point);
+            drag.loaded = controls.params.loaded();
+        }
+        if is_over {
+            self.drag = None;
+            audition.release(controls.params.link());
+            if shape.origin == Origin::Table {
+                controls.release();
+            } else {
+                controls.history.end(describe(drag_point, shape), controls.params);
+                touch(controls.params, controls.host);
+            }
+            controls.history.cancel();
+            return;
+        }
+        audition.repeat(shown.guide().home, now, controls.params.link());
+        ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+        ui.ctx().request_repaint();
+    }
+}
+
+/// The exciter that has a place, for a table of modes: the pluck if it is on, or else the bow if it is on.
+fn exciter(controls: &Controls) -> Option<Param> {
+    let levels = [(Param::PluckLevel, Param::PluckPosition), (Param::BowLevel, Param::BowPosition)];
+    levels.into_iter().find(|(level, _)| controls.value(level.info()) > level.info().min).map(|(_, place)| place)
+}
+
+/// Where the sound is struck; none if the place is unknown or cannot be changed.
+fn strike(shape: &BodyShape, shown: &Shown, controls: &Controls) -> Option<Point> {
+    shown.preset()?;
+    match shape.origin.body() {
+        Some(body) => Some(body.strike),
+        None if shape.form == Form::Line => {
+            Some(Point { x: f64::from(controls.value(exciter(controls)?.info())) / 100.0, y: 0.0 })
+        }
+        None => None,
+    }
+}
+
+/// The place that can be struck nearest to a point.
+fn confined(point: Point, shape: &BodyShape) -> Point {
+    let rounded = |share: f64| (share * 1000.0).round() / 1000.0;
+    let point = Point { x: rounded(point.x), y: rounded(point.y) };
+    match (shape.origin.body(), shape.form) {
+        // On a string, the place is counted from the nearer end.
+        (None, _) => Point { x: point.x.min(1.0 - point.x).clamp(0.01, 0.5), y: 0.0 },
+        (Some(body), Form::Line) => Point { y: body.strike.y, ..point },
+        (Some(body), Form::Bell) => Point { x: body.strike.x, ..point },
+        (Some(_), _) => point,
+    }
+}
+
+fn describe(point: Point, shape: &BodyShape) -> String {
+    let [x, y] = [point.x, point.y].map(|share| share * 100.0);
+    match shape.form {
+        Form::Line => format!("struck at {x:.1} %"),
+        Form::Bell => format!("struck at {:.0}° round it", 3.6 * y),
+        Form::Round | Form::Bowl => format!("struck at {x:.0} %, {:.0}° round it", 3.6 * y),
+        Form::Plate { .. } => format!("struck at {x:.0} %, {y:.0} %"),
+    }
+}
+
+/// Changes the place of the strike in the sound.
+fn write(point: Point, origin: &mut Origin, controls: &mut Controls) {
+    if let Some(body) = origin.body_mut() {
+        body.strike = point;
+    }
+    if *origin == Origin::Table {
+        if let Some(param) = exciter(controls) {
+            controls.turn(param.info(), param.info().normalise(100.0 * point.x as f32));
+        }
+        return;
+    }
+    if let Ok(Some(modes)) = origin.modes() {
+        replace(modes, controls);
+    }
+}

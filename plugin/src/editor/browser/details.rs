@@ -1,0 +1,183 @@
+//! The browser's details of a sound, and the field to save a sound under a name.
+
+use super::sounds::Sounds;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::theme::{SMALL, TEXT, TITLE_HEIGHT, font};
+use crate::editor::widgets::buttons::{Look, button};
+use crate::editor::widgets::text::{line, name_field, paragraph, take_over};
+use egui::{Align2, Id, Key, Rect, TextEdit, Ui, pos2, vec2};
+use sprung::preset::catalogue::Listed;
+use sprung::preset::library::Library;
+use sprung::preset::{Playable, Preset};
+use sprung::units::note_name;
+
+/// What became of a request of the user's.
+pub(super) struct Outcome {
+    pub(super) message: String,
+    /// Whether the list of sounds has changed.
+    pub(super) is_stale: bool,
+    /// Whether that was all the user had wanted here.
+    pub(super) is_done: bool,
+}
+
+impl Outcome {
+    fn new(message: impl ToString, is_stale: bool) -> Self {
+        Self { message: message.to_string(), is_stale, is_done: false }
+    }
+}
+
+/// The state of the text field.
+#[derive(Default)]
+pub(super) struct Details {
+    /// The name to save under.
+    pub(super) name: String,
+    /// A name whose file is replaced if the user saves again.
+    confirm: Option<String>,
+    /// Whether the field takes the focus when it is shown next.
+    takes_name: bool,
+}
+
+impl Details {
+    /// Resets the field to the name of the loaded sound.
+    pub(super) fn open(&mut self, name: &str) {
+        *self = Self { name: name.to_owned(), ..Self::default() };
+    }
+
+    /// Gives the field the focus when it is shown next.
+    pub(super) fn take_name(&mut self) {
+        self.takes_name = true;
+    }
+
+    /// Shows the details of a sound and the buttons for it.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        shown: Option<&Listed>,
+        sounds: &Sounds,
+        controls: &mut Controls,
+    ) -> Option<Outcome> {
+        let palette = controls.palette;
+        let mut top = rect.top();
+        if let Some(sound) = shown {
+            let title = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), TITLE_HEIGHT + 2.0));
+            line(ui.painter(), title, Align2::LEFT_CENTER, sound.name(), TEXT + 3.0, palette.text);
+            top = title.bottom() + 4.0;
+            let keys = match &sound.playable {
+                Playable::Preset(Preset { guide, .. }) => {
+                    format!(
+                        "{} to {}, best at {}",
+                        note_name(guide.lowest),
+                        note_name(guide.highest),
+                        note_name(guide.home)
+                    )
+                }
+                Playable::Kit(kit) => format!("kit of {} pads", kit.pads.len()),
+            };
+            let lines = [
+                sound.playable.tags().join("  "),
+                format!("by {}", sound.playable.author()),
+                keys,
+                String::new(),
+                sound.playable.comment().to_owned(),
+            ];
+            let bottom = rect.bottom() - 62.0;
+            for text in lines {
+                let place = Rect::from_min_max(pos2(rect.left(), top), pos2(rect.right(), bottom.max(top)));
+                top += paragraph(ui.painter(), place, &text, SMALL + 0.5, palette.muted).max(6.0) + 2.0;
+            }
+        }
+        let field =
+            Rect::from_min_max(pos2(rect.left(), rect.bottom() - 54.0), pos2(rect.right(), rect.bottom() - 30.0));
+        let id = Id::unique("save name");
+        let edit = TextEdit::singleline(&mut self.name).id(id).hint_text("a name");
+        let response = ui.put(field, edit.font(font(TEXT)).margin(vec2(6.0, 4.0)));
+        name_field(&response, "Name to save under", &self.name);
+        if std::mem::take(&mut self.takes_name) {
+            take_over(ui, id, &self.name);
+        }
+        let enters = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let wide = (rect.width() - 8.0) / 3.0;
+        let save = Rect::from_min_size(pos2(rect.left(), rect.bottom() - 24.0), vec2(wide, 24.0));
+        let rename = save.translate(vec2(wide + 4.0, 0.0));
+        let bin = rename.translate(vec2(wide + 4.0, 0.0));
+        let own = shown.filter(|sound| sound.path.is_some());
+        let text = if self.confirm.is_some() { "Replace" } else { "Save" };
+        let response = button(ui, save, text, "Save under this name", Look::Main, palette);
+        if response.hovered() {
+            let folder = sounds.library.as_ref().map(|library| library.presets_folder().display().to_string());
+            *controls.hint = Hint::new("Save", folder.unwrap_or_default());
+        }
+        if enters || response.clicked() {
+            let outcome = self.save(sounds, controls);
+            // Enter is pressed again, or the name is corrected.
+            self.takes_name = enters && !outcome.is_stale;
+            return Some(Outcome { is_done: enters && outcome.is_stale, ..outcome });
+        }
+        let look = if own.is_some() { Look::Plain } else { Look::Disabled };
+        if button(ui, rename, "Rename", "Give your sound this name", look, palette).clicked()
+            && let (Some(own), Some(library)) = (own, &sounds.library)
+        {
+            return Some(self.rename(own, library, controls));
+        }
+        if button(ui, bin, "Bin", "Move your sound to the bin", look, palette).clicked()
+            && let (Some(path), Some(library)) = (own.and_then(|own| own.path.as_ref()), &sounds.library)
+        {
+            return Some(match library.discard(path) {
+                Ok(place) => Outcome::new(format!("moved to {}", place.display()), true),
+                Err(error) => Outcome::new(error, false),
+            });
+        }
+        None
+    }
+
+    /// Renames a file of the user's. If the sound is a favourite, it stays one under the new name.
+    fn rename(&mut self, own: &Listed, library: &Library, controls: &Controls) -> Outcome {
+        let name = self.name.trim().to_owned();
+        let Some(path) = &own.path else { return Outcome::new("", false) };
+        match library.rename(path, &name) {
+            Ok(path) => {
+                let names = match library.favourites() {
+                    Ok(names) => names,
+                    Err(error) => return Outcome::new(format!("renamed, but its star may be lost: {error}"), true),
+                };
+                if names.contains(own.name()) {
+                    // In this order, since the new name may be the old one.
+                    let moved =
+                        library.set_favourite(own.name(), false).and_then(|()| library.set_favourite(&name, true));
+                    if let Err(error) = moved {
+                        return Outcome::new(error, true);
+                    }
+                }
+                if controls.params.name() == own.name() {
+                    controls.params.rename(name);
+                }
+                Outcome::new(format!("renamed {}", path.display()), true)
+            }
+            Err(error) => Outcome::new(error, false),
+        }
+    }
+
+    fn save(&mut self, sounds: &Sounds, controls: &mut Controls) -> Outcome {
+        let name = self.name.trim().to_owned();
+        let replace = self.confirm.take().is_some_and(|confirmed| confirmed == name);
+        let Some(library) = &sounds.library else {
+            return Outcome::new("the system does not say where your data is kept", false);
+        };
+        let Playable::Preset(preset) = controls.params.state().playable else {
+            return Outcome::new("a kit is kept in the project with its presets: only single presets are saved", false);
+        };
+        match library.save(&Preset { name: name.clone(), ..preset }, replace) {
+            Ok(path) => {
+                controls.params.rename(name);
+                controls.history.saved();
+                Outcome::new(format!("saved {}", path.display()), true)
+            }
+            Err(sprung::Error::Exists { path }) => {
+                self.confirm = Some(name);
+                Outcome::new(format!("{path} exists; Enter again, or Replace, writes over it"), false)
+            }
+            Err(error) => Outcome::new(error, false),
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! The browser: finds sounds, plays them, keeps favourites, and saves sounds under a name.
+
+mod details;
+mod list;
+mod sounds;
+
+use crate::editor::controls::Controls;
+use crate::editor::controls::files::read;
+use crate::editor::keyboard::audition::Audition;
+use crate::editor::theme::{GAP, PADDING, Palette, TEXT, font};
+use crate::editor::widgets::buttons::{Look, button};
+use crate::editor::widgets::text::{name_field, take_over};
+use crate::link::Link;
+use details::{Details, Outcome};
+use egui::{Id, Key, Rect, ScrollArea, Sense, Stroke, TextEdit, Ui, UiBuilder, pos2, vec2};
+use list::{List, ROW, row};
+use sounds::{Category, Sounds};
+use sprung::preset::catalogue::Listed;
+use sprung::preset::library::Library;
+use sprung::preset::{Guide, Playable};
+use std::sync::Arc;
+
+/// Width of the list of categories, and of the details of a sound.
+const SIDE: [f32; 2] = [112.0, 250.0];
+
+/// What the browser is opened for.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Aim {
+    Find,
+    Save,
+}
+
+/// The browser's state.
+pub(super) struct Browser {
+    /// Read when the browser is first opened.
+    sounds: Option<Sounds>,
+    library: Option<Library>,
+    category: Category,
+    words: String,
+    details: Details,
+    /// The key that plays the sound being tried.
+    audition: Audition,
+    /// Whether the search takes the focus when it is shown next.
+    searches: bool,
+}
+
+impl Browser {
+    /// A browser of a library; `None` if the system names no folder for user data.
+    pub(super) fn new(library: Option<Library>) -> Self {
+        Self {
+            sounds: None,
+            library,
+            category: Category::All,
+            words: String::new(),
+            details: Details::default(),
+            audition: Audition::default(),
+            searches: false,
+        }
+    }
+
+    /// The user's sounds.
+    pub(super) fn library(&self) -> Option<&Library> {
+        self.library.as_ref()
+    }
+
+    /// Reads the sounds again when they are shown next.
+    pub(super) fn forget(&mut self) {
+        self.sounds = None;
+    }
+
+    /// Prepares for being shown, with the name of the loaded sound: for finding another one, or for saving this one.
+    pub(super) fn open(&mut self, name: &str, aim: Aim) {
+        self.details.open(name);
+        match aim {
+            Aim::Find => self.searches = true,
+            Aim::Save => self.details.take_name(),
+        }
+        self.sounds = None;
+    }
+
+    /// Shows the browser. Returns a message, and whether the user is done here.
+    pub(super) fn show(&mut self, ui: &mut Ui, rect: Rect, controls: &mut Controls) -> Option<(String, bool)> {
+        let palette = controls.palette;
+        let mut sounds = self.sounds.take().unwrap_or_else(|| Sounds::read(self.library.clone()));
+        palette.paint_panel(ui.painter(), rect);
+        let inner = rect.shrink(PADDING);
+        let details_width = if rect.width() < 900.0 { 190.0 } else { SIDE[1] };
+        let categories = Rect::from_min_max(inner.min, pos2(inner.left() + SIDE[0], inner.bottom()));
+        let details = Rect::from_min_max(pos2(inner.right() - details_width, inner.top()), inner.max);
+        let list = Rect::from_min_max(
+            pos2(categories.right() + 2.0 * GAP, inner.top()),
+            pos2(details.left() - 2.0 * GAP, inner.bottom()),
+        );
+        for x in [categories.right() + GAP, details.left() - GAP] {
+            ui.painter().vline(ui.painter().round_to_pixel_center(x), inner.y_range(), Stroke::new(1.0, palette.line));
+        }
+        self.categories(ui, categories, palette);
+        let mut message = None;
+        let present = controls.params.name();
+        let (search, rows) = list.split_top_bottom_at_y(list.top() + 28.0);
+        let command = self.search(ui, search, palette);
+        let found = sounds.find(self.category, &self.words);
+        let chosen = match command {
+            Command::Nothing => None,
+            // While another field has the focus, the arrow keys belong to that field.
+            Command::Step(_) if !has_arrows(ui, found.len()) => None,
+            Command::Step(places) => {
+                let place = found.iter().position(|sound| sound.name() == present);
+                let next = place.map_or(0, |place| place as isize + places);
+                usize::try_from(next).ok().filter(|next| *next < found.len())
+            }
+            Command::File => {
+                message = Some(self.load_file(controls));
+                None
+            }
+        };
+        let list = List { found: &found, present: &present, chosen };
+        let clicked = list.show(ui, rows, &sounds, palette);
+        if let Some(sound) = clicked.star.and_then(|place| found.get(place)) {
+            message = sounds.set_favourite(sound.name(), !sounds.is_favourite(sound)).or(message);
+        }
+        if let Some(sound) = chosen.or(clicked.sound).and_then(|place| found.get(place)) {
+            self.try_out(ui, sound, controls);
+        }
+        let shown = found.iter().find(|sound| sound.name() == controls.params.name());
+        let outcome = self.details.show(ui, details, shown.map(Arc::as_ref), &sounds, controls);
+        let is_stale = outcome.as_ref().is_some_and(|outcome| outcome.is_stale);
+        let broken =
+            sounds.broken.first().map(|first| format!("{} of your files cannot be read: {first}", sounds.broken.len()));
+        self.sounds = (!is_stale).then_some(sounds);
+        match outcome {
+            Some(Outcome { message, is_done, .. }) => Some((message, is_done)),
+            None => message.or(broken).map(|message| (message, false)),
+        }
+    }
+
+    /// Releases the key of the tried sound when its time is over.
+    pub(super) fn follow_time(&mut self, now: f64, controls: &Controls) {
+        self.audition.follow_time(now, controls.params.link());
+    }
+
+    /// Releases the key of the tried sound at once.
+    pub(super) fn release(&mut self, link: &Link) {
+        self.audition.release(link);
+    }
+
+    fn categories(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) {
+        let mut inner = ui.new_child(UiBuilder::new().id_salt("categories").max_rect(rect));
+        ScrollArea::vertical().id_salt("categories").auto_shrink(false).show(&mut inner, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            for category in Category::all() {
+                let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW - 2.0), Sense::hover());
+                let name = category.name();
+                let look = if category == self.category { Look::On } else { Look::Off };
+                if button(ui, row, &name, &format!("Show {name}"), look, palette).clicked() && self.category != category
+                {
+                    // All of the category is shown: words of another search would hide most of it.
+                    (self.category, self.words) = (category, String::new());
+                }
+                if matches!(category, Category::Kits) {
+                    ui.add_space(6.0);
+                }
+            }
+        });
+    }
+
+    fn search(&mut self, ui: &mut Ui, rect: Rect, palette: &Palette) -> Command {
+        let field = search_field();
+        let rect = rect.with_max_y(rect.top() + 22.0);
+        let clear = rect.with_min_x(rect.right() - rect.height());
+        let rest = if self.words.is_empty() { rect } else { rect.with_max_x(clear.left() - 4.0) };
+        let edit = TextEdit::singleline(&mut self.words).id(field).hint_text("Search, or a file’s whole path");
+        let response = ui.put(rest, edit.font(font(TEXT)).margin(vec2(6.0, 3.0)));
+        name_field(&response, "Search", &self.words);
+        if rest != rect && button(ui, clear, "×", "Clear the search", Look::Plain, palette).clicked() {
+            self.words.clear();
+            self.searches = true;
+        }
+        if std::mem::take(&mut self.searches) {
+            take_over(ui, field, &self.words);
+        }
+        let pressed = |key| ui.input(|input| input.key_pressed(key));
+        if response.lost_focus() && pressed(Key::Enter) && self.words.ends_with(".toml") {
+            return Command::File;
+        }
+        match (pressed(Key::ArrowDown), pressed(Key::ArrowUp)) {
+            (true, false) => Command::Step(1),
+            (false, true) => Command::Step(-1),
+            _ => Command::Nothing,
+        }
+    }
+
+    /// Loads a sound and plays it on the key that suits it best.
+    fn try_out(&mut self, ui: &Ui, sound: &Listed, controls: &mut Controls) {
+        controls.history.load(sound.playable.clone(), controls.params, controls.host);
+        self.details.open(sound.name());
+        let key = match &sound.playable {
+            Playable::Preset(preset) => preset.guide.home,
+            Playable::Kit(kit) => kit.pads.first().map_or(Guide::default().home, |(key, _)| *key),
+        };
+        self.audition.strike(key, 0.75, ui.input(|input| input.time), controls.params.link());
+    }
+
+    fn load_file(&mut self, controls: &mut Controls) -> String {
+        match read(self.words.trim()) {
+            Ok(playable) => {
+                self.details.open(playable.name());
+                controls.history.load(playable, controls.params, controls.host);
+                format!("loaded {}", self.words.trim())
+            }
+            Err(message) => message,
+        }
+    }
+}
+
+fn search_field() -> Id {
+    Id::unique("search")
+}
+
+/// Whether the arrow keys belong to the list with so many rows: true if the list or the search has the focus, or
+/// nothing has.
+fn has_arrows(ui: &Ui, rows: usize) -> bool {
+    let focused = ui.memory(|memory| memory.focused());
+    focused.is_none_or(|focused| focused == search_field() || (0..rows).any(|place| focused == row(place)))
+}
+
+/// A request made with the search field's keys.
+enum Command {
+    Nothing,
+    /// Load the sound at this distance in the list.
+    Step(isize),
+    /// Load the file whose path was typed.
+    File,
+}

@@ -1,0 +1,153 @@
+//! Undo and redo: the states before and after each action of the user's, by name.
+
+use super::files;
+use super::gestures::{Gestures, load};
+use crate::params::SprungParams;
+use crate::state::State;
+use nice_plug_core::context::gui::GuiContext;
+use sprung::params::{PARAM_COUNT, Values};
+use sprung::preset::Playable;
+
+/// How many steps can be undone.
+const STEPS: usize = 100;
+
+/// A state, with the name of the action before or after it.
+struct Step {
+    name: String,
+    state: State,
+    /// Whether the action replaced the sound by the other one of the two versions.
+    swaps: bool,
+    /// See [`History::is_changed`].
+    is_changed: bool,
+}
+
+/// The steps that can be undone and redone.
+#[derive(Default)]
+pub(crate) struct History {
+    /// The states before each step, the last one at the end.
+    undo: Vec<Step>,
+    /// The states after each step that was undone, the next one at the end.
+    redo: Vec<Step>,
+    /// The state before the action in progress.
+    open: Option<State>,
+    is_changed: bool,
+}
+
+impl History {
+    /// Keeps the state before an action of the user's begins. It becomes a step only at [`History::end`].
+    pub(crate) fn begin(&mut self, params: &SprungParams) {
+        if self.open.is_none() {
+            self.open = Some(params.state());
+        }
+    }
+
+    /// Drops the action in progress: it becomes no step.
+    pub(crate) fn cancel(&mut self) {
+        self.open = None;
+    }
+
+    /// Ends the action in progress: it becomes a step if it has changed anything.
+    pub(crate) fn end(&mut self, name: impl Into<String>, params: &SprungParams) {
+        self.end_step(name.into(), false, true, params);
+    }
+
+    /// Loads a sound as one step.
+    pub(crate) fn load(&mut self, playable: Playable, params: &SprungParams, host: &GuiContext) {
+        self.begin(params);
+        let name = playable.name().to_owned();
+        files::load(playable, params, host);
+        self.end_step(name, false, false, params);
+        self.is_changed = false;
+    }
+
+    /// Like [`History::end`], after the sound was replaced by the other one of the two versions, which may be changed.
+    pub(crate) fn end_swap(&mut self, name: &str, is_changed: bool, params: &SprungParams) {
+        self.end_step(name.to_owned(), true, is_changed, params);
+    }
+
+    /// The sound was saved as it is.
+    pub(crate) fn saved(&mut self) {
+        self.undo.iter_mut().chain(&mut self.redo).for_each(|step| step.is_changed = true);
+        self.is_changed = false;
+    }
+
+    /// Whether the user has changed the sound in this window since it was loaded or saved.
+    pub(crate) fn is_changed(&self) -> bool {
+        self.is_changed
+    }
+
+    fn end_step(&mut self, name: String, swaps: bool, is_changed: bool, params: &SprungParams) {
+        let Some(state) = self.open.take() else { return };
+        if same_sound(&state, &params.state()) {
+            return;
+        }
+        self.undo.push(Step { name, state, swaps, is_changed: std::mem::replace(&mut self.is_changed, is_changed) });
+        self.redo.clear();
+        if self.undo.len() > STEPS {
+            self.undo.remove(0);
+        }
+    }
+
+    /// The name of the step that would be undone.
+    pub(crate) fn undo_name(&self) -> Option<&str> {
+        self.undo.last().map(|step| step.name.as_str())
+    }
+
+    /// The name of the step that would be redone.
+    pub(crate) fn redo_name(&self) -> Option<&str> {
+        self.redo.last().map(|step| step.name.as_str())
+    }
+
+    /// Undoes the last step. Returns whether the two versions change places by this.
+    pub(crate) fn undo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
+        go([&mut self.undo, &mut self.redo], &mut self.is_changed, params, host)
+    }
+
+    /// Redoes the step that was undone last. Returns whether the two versions change places by this.
+    pub(crate) fn redo(&mut self, params: &SprungParams, host: &GuiContext) -> bool {
+        go([&mut self.redo, &mut self.undo], &mut self.is_changed, params, host)
+    }
+}
+
+fn go([from, to]: [&mut Vec<Step>; 2], is_changed: &mut bool, params: &SprungParams, host: &GuiContext) -> bool {
+    let Some(Step { name, state, swaps, is_changed: then }) = from.pop() else { return false };
+    to.push(Step { name, state: params.state(), swaps, is_changed: std::mem::replace(is_changed, then) });
+    restore(state, params, host);
+    swaps
+}
+
+/// Restores a state, except the size and colours of the window, and tells the host which knobs have moved.
+pub(crate) fn restore(mut state: State, params: &SprungParams, host: &GuiContext) {
+    let now = params.state();
+    state.view = now.view;
+    if same_but_for_knobs(&state, &now) {
+        // Sounding notes follow a moved knob; they would not follow if the sound were loaded again.
+        let mut gestures = Gestures::default();
+        for index in 0..PARAM_COUNT {
+            if state.positions[index].to_bits() != now.positions[index].to_bits() {
+                gestures.set(params, host, index, state.positions[index]);
+            }
+        }
+        // A loaded value may lie between the positions of a knob, so that setting the position does not restore it.
+        if params.state().values == state.values {
+            return;
+        }
+    }
+    load(state, params, host);
+}
+
+/// Whether two states have the same sound and the same name.
+fn same_sound(one: &State, other: &State) -> bool {
+    one.positions == other.positions && one.values == other.values && same_but_for_knobs(one, other)
+}
+
+fn same_but_for_knobs(one: &State, other: &State) -> bool {
+    let neutral = |playable: &Playable| {
+        let mut playable = playable.clone();
+        if let Playable::Preset(preset) = &mut playable {
+            preset.patch.values = Values::default();
+        }
+        playable
+    };
+    one.seed == other.seed && neutral(&one.playable) == neutral(&other.playable)
+}

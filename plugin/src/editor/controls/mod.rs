@@ -1,0 +1,122 @@
+//! What all widgets share during a pass: parameters, host, colours, and the user's actions in progress.
+
+pub(super) mod files;
+pub(super) mod gestures;
+pub(super) mod history;
+pub(super) mod shown;
+
+use crate::editor::theme::Palette;
+use crate::params::SprungParams;
+use gestures::Gestures;
+use history::History;
+use nice_plug_core::context::gui::GuiContext;
+use sprung::engine::SoundingNote;
+use sprung::params::{PARAMS, ParamInfo};
+use std::time::Duration;
+
+/// Time between two repaints while something moves.
+pub(super) const FRAME: Duration = Duration::from_millis(16);
+
+/// Text that is being typed instead of a parameter's value.
+pub(super) struct Typing {
+    pub(super) index: usize,
+    pub(super) text: String,
+    /// Whether the field has taken the focus.
+    pub(super) is_open: bool,
+    /// Why the text is not a valid value.
+    pub(super) complaint: Option<String>,
+}
+
+/// A parameter that waits to be assigned to a controller.
+pub(super) struct Learning {
+    pub(super) info: &'static ParamInfo,
+    /// The number of controller movements at the last check.
+    pub(super) seen: u64,
+    /// Whether the user has been asked to move a controller.
+    pub(super) is_prompted: bool,
+}
+
+/// The user's actions on parameters in progress.
+#[derive(Default)]
+pub(super) struct Interaction {
+    pub(super) gestures: Gestures,
+    /// Position of the dragged knob, more precise than the knob's own.
+    pub(super) dragged: f64,
+    pub(super) typing: Option<Typing>,
+    /// The parameter that waits to be assigned to a controller.
+    pub(super) learning: Option<Learning>,
+}
+
+/// The text of the status line about the thing under the pointer.
+pub(super) struct Hint {
+    pub(super) title: String,
+    pub(super) help: String,
+}
+
+impl Hint {
+    pub(super) fn new(title: impl Into<String>, help: impl Into<String>) -> Option<Self> {
+        Some(Self { title: title.into(), help: help.into() })
+    }
+}
+
+/// The context of every widget, during one pass.
+pub(super) struct Controls<'a> {
+    pub(super) params: &'a SprungParams,
+    pub(super) host: &'a GuiContext,
+    pub(super) palette: &'static Palette,
+    pub(super) interaction: &'a mut Interaction,
+    pub(super) history: &'a mut History,
+    pub(super) hint: &'a mut Option<Hint>,
+    /// Seconds since the last pass, as they really passed: egui's own number is a guess unless a pass was asked for at once.
+    pub(super) seconds: f32,
+    /// The notes that sound, the newest first.
+    pub(super) notes: &'a [SoundingNote],
+}
+
+impl Controls<'_> {
+    /// The position of a parameter's knob.
+    pub(super) fn position(&self, info: &ParamInfo) -> f32 {
+        self.params.knobs()[info.param as usize].position()
+    }
+
+    /// The value of a parameter.
+    pub(super) fn value(&self, info: &ParamInfo) -> f32 {
+        self.params.loaded().value(info.param as usize, self.position(info))
+    }
+
+    /// The value of a parameter as text.
+    pub(super) fn text(&self, info: &ParamInfo) -> String {
+        info.format(self.value(info))
+    }
+
+    /// The modulated values of a parameter in the sounding notes, the newest note's first. Notes that do not modulate
+    /// it are skipped.
+    pub(super) fn modulated(&self, info: &ParamInfo) -> impl Iterator<Item = f32> {
+        let of = |note: &SoundingNote| note.moved.iter().flatten().find(|(param, _)| *param == info.param).copied();
+        self.notes.iter().filter_map(of).map(|(_, value)| value)
+    }
+
+    /// Moves a knob; [`Controls::release`] ends the gesture.
+    pub(super) fn turn(&mut self, info: &ParamInfo, position: f64) {
+        let index = info.param as usize;
+        if self.interaction.gestures.moving() != Some(index) {
+            self.release();
+            self.history.begin(self.params);
+        }
+        self.interaction.gestures.turn(self.params, self.host, index, position as f32);
+    }
+
+    /// Ends a knob's gesture, if there is one.
+    pub(super) fn release(&mut self) {
+        let Some(index) = self.interaction.gestures.moving() else { return };
+        self.interaction.gestures.end(self.params, self.host);
+        let info = &PARAMS[index];
+        self.history.end(format!("{} {}", info.name, self.text(info)), self.params);
+    }
+
+    /// Gives a parameter a value, as one gesture.
+    pub(super) fn set(&mut self, info: &ParamInfo, value: f32) {
+        self.turn(info, info.normalise(value));
+        self.release();
+    }
+}

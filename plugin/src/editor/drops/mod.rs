@@ -1,0 +1,69 @@
+//! Files dropped on the window: presets are imported, scales and mappings tune the sound, recordings are fitted.
+
+pub(super) mod fitting;
+mod recordings;
+
+use crate::editor::controls::Controls;
+use crate::editor::controls::files;
+use crate::editor::pages::tuning;
+use egui::Ui;
+use sprung::preset::Playable;
+use sprung::preset::library::Library;
+use std::path::{Path, PathBuf};
+
+/// The files that were dropped since the last pass.
+pub(super) fn dropped(ui: &Ui) -> Vec<PathBuf> {
+    ui.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect())
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+/// Whether the file's extension is that of a recording.
+pub(super) fn is_recording(path: &Path) -> bool {
+    ["aif", "aifc", "aiff", "flac", "mp3", "oga", "ogg", "wav", "wave"].contains(&ending(path).as_str())
+}
+
+/// Handles a dropped file that is not a recording. Returns a message.
+pub(super) fn take(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
+    match ending(path).as_str() {
+        "scl" | "kbm" => tuning::take(path, controls),
+        "toml" => sound(path, library, controls),
+        _ => format!(
+            "{}: expected a recording (.wav, .flac …), a preset (.toml), a scale (.scl) or a keyboard mapping (.kbm)",
+            path.display()
+        ),
+    }
+}
+
+/// Whether a file is already in the user's folder.
+fn is_own(path: &Path, library: &Library) -> bool {
+    // Both may be reached by symbolic links.
+    let folder = path.parent().and_then(|folder| folder.canonicalize().ok());
+    folder.is_some() && folder == library.presets_folder().canonicalize().ok()
+}
+
+/// Loads a preset or kit. A preset from elsewhere is copied to the user's folder, if there is one.
+fn sound(path: &Path, library: Option<&Library>, controls: &mut Controls) -> String {
+    let playable = match files::read(&path.display().to_string()) {
+        Ok(read) => read,
+        Err(message) => return message,
+    };
+    let (playable, message) = match (playable, library) {
+        (Playable::Preset(_), Some(library)) if !is_own(path, library) => match library.import(path) {
+            Ok((preset, place)) => {
+                let message = format!("imported as “{}”, {}", preset.name, place.display());
+                (Playable::Preset(preset), message)
+            }
+            Err(error) => return error.to_string(),
+        },
+        (Playable::Kit(kit), _) => {
+            let message = format!("loaded {}; a kit’s file stays where it is", path.display());
+            (Playable::Kit(kit), message)
+        }
+        (preset, _) => (preset, format!("loaded {}", path.display())),
+    };
+    controls.history.load(playable, controls.params, controls.host);
+    message
+}

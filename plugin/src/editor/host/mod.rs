@@ -1,0 +1,8 @@
+//! The window at its host: its size in the host's pixels, the keyboard focus, and screen readers.
+
+#[cfg(target_os = "linux")]
+pub(super) mod accessibility;
+pub(crate) mod extent;
+pub(super) mod focus;
+#[cfg(target_os = "linux")]
+mod x11;

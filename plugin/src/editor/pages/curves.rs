@@ -1,0 +1,120 @@
+//! Small pictures of the combined effect of a section's parameters.
+
+use super::outlines;
+use crate::editor::controls::Controls;
+use egui::{Painter, Pos2, Rect, Stroke, Vec2, pos2};
+use sprung::params::{Choice as _, MalletPulse, NoiseDecay, Shape};
+use sprung::params::{PARAMS, Param, ParamInfo};
+use sprung::units::ratio_from_semitones;
+
+/// Share of an envelope's picture for the sustain, which has no duration.
+const SUSTAIN: f64 = 0.2;
+/// Number of points of each curved stage.
+const POINTS: usize = 16;
+
+/// Draws the picture of a section, if it has one.
+pub(super) fn paint(painter: &Painter, rect: Rect, section: &[ParamInfo], controls: &Controls) {
+    let palette = controls.palette;
+    let value = |param: Param| controls.value(param.info());
+    let first = section[0].param;
+    // A row of the section, counted from its first.
+    let row = |place: usize| &PARAMS[first as usize + place];
+    let floor = painter.round_to_pixel_center(rect.bottom());
+    let middle = painter.round_to_pixel_center(rect.center().y);
+    let above = |points: Vec<Vec2>| -> Vec<Pos2> {
+        points
+            .into_iter()
+            .map(|point| pos2(rect.left() + rect.width() * point.x, floor - rect.height() * point.y))
+            .collect()
+    };
+    let around = |points: Vec<Vec2>| -> Vec<Pos2> {
+        let half = 0.46 * rect.height();
+        points.into_iter().map(|point| pos2(rect.left() + rect.width() * point.x, middle - half * point.y)).collect()
+    };
+    let is_off = |level: Param| value(level) <= level.info().min;
+    let (points, ground, is_quiet) = match first {
+        Param::Envelope1Delay | Param::Envelope2Delay => {
+            (envelope(rect, &|place| f64::from(controls.value(row(place)))), floor, false)
+        }
+        Param::MalletLevel => {
+            let is_impulse = MalletPulse::from_value(value(Param::MalletPulse)) == MalletPulse::Impulse;
+            let hardness = f64::from(value(Param::MalletHardness)) / 100.0;
+            let points = outlines::mallet(hardness, value(Param::MalletMass).into(), is_impulse);
+            (above(points), floor, is_off(Param::MalletLevel))
+        }
+        Param::NoiseLevel => {
+            let times =
+                [Param::NoiseAttack, Param::NoiseTime, Param::NoiseSpacing].map(|param| f64::from(value(param)));
+            let is_exponential = NoiseDecay::from_value(value(Param::NoiseDecay)) == NoiseDecay::Exponential;
+            let points = outlines::noise(times, is_exponential, value(Param::NoiseHits).max(1.0) as u32);
+            (above(points), floor, is_off(Param::NoiseLevel))
+        }
+        Param::Tune => {
+            let (semitones, curve) = (value(Param::Sweep), value(Param::SweepCurve) / 100.0);
+            (around(outlines::sweep(semitones.into(), curve.into())), middle, semitones == 0.0)
+        }
+        Param::Lfo1Rate | Param::Lfo2Rate | Param::Lfo3Rate => {
+            let (shape, start) = (Shape::from_value(controls.value(row(2))), controls.value(row(3)) / 100.0);
+            (around(outlines::oscillator(shape, start)), middle, false)
+        }
+        _ => return,
+    };
+    painter.hline(rect.x_range(), ground, Stroke::new(1.0, palette.line));
+    // A section that is off is drawn in grey.
+    let colour = if is_quiet { palette.muted.gamma_multiply(0.6) } else { palette.accent };
+    painter.add(egui::Shape::line(points, Stroke::new(1.5, colour)));
+}
+
+/// An envelope from the values of its rows: delay, attack, hold, decay, sustain, release, curve. The width of a stage
+/// is proportional to the square root of its time, so that short stages stay visible beside long ones.
+fn envelope(rect: Rect, value: &dyn Fn(usize) -> f64) -> Vec<Pos2> {
+    let [delay, attack, hold, decay, release] = [0, 1, 2, 3, 5].map(|row| value(row).max(0.0).sqrt());
+    let (sustain, bend) = (value(4) / 100.0, ratio_from_semitones(12.0 * -0.04 * value(6)));
+    let total = (delay + attack + hold + decay + release).max(1e-6) / (1.0 - SUSTAIN);
+    let stages = [
+        (delay, 0.0, 0.0),
+        (attack, 0.0, 1.0),
+        (hold, 1.0, 1.0),
+        (decay, 1.0, sustain),
+        (SUSTAIN * total, sustain, sustain),
+        (release, sustain, 0.0),
+    ];
+    let place = |time: f64, level: f64| {
+        pos2(rect.left() + rect.width() * (time / total) as f32, rect.bottom() - rect.height() * level as f32)
+    };
+    let (mut points, mut start) = (vec![place(0.0, 0.0)], 0.0);
+    for (length, from, to) in stages {
+        for point in 1..=POINTS {
+            let share = point as f64 / POINTS as f64;
+            // The engine's curve.
+            let bent = share / (share + bend * (1.0 - share));
+            points.push(place(start + length * share, from + (to - from) * bent));
+        }
+        start += length;
+    }
+    // A line segment between two equal points has no direction.
+    points.dedup_by(|next, point| (*next - *point).length() < 0.05);
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::vec2;
+
+    #[test]
+    fn an_envelope_rises_falls_and_ends_at_the_right() {
+        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(100.0, 50.0));
+        let rows = [0.1, 0.2, 0.0, 0.5, 40.0, 1.0, 30.0];
+        let points = envelope(rect, &|row| rows[row]);
+        assert!(
+            points.windows(2).all(|pair| pair[0].x <= pair[1].x)
+                && points.iter().all(|point| rect.expand(0.01).contains(*point))
+        );
+        assert!(points.iter().any(|point| point.y < 0.01), "it reaches its top");
+        assert!(points.windows(2).all(|pair| pair[0] != pair[1]), "no point twice");
+        let last = points[points.len() - 1];
+        assert!((last - rect.right_bottom()).length() < 0.1, "{last:?}");
+        assert!(points.iter().any(|point| (point.y - 30.0).abs() < 0.01), "the sustain");
+    }
+}

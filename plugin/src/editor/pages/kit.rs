@@ -1,0 +1,46 @@
+//! The page of a kit: the sound and the choke group of each key.
+
+use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::keyboard::grid::{Cell, KeyGrid};
+use crate::editor::theme::PADDING;
+use egui::{Rect, Ui};
+use sprung::params::Param;
+use sprung::sound::Pad;
+use sprung::units::note_name;
+
+/// Shows the keys of a sound or kit; `down` has one bit for each held key.
+pub(super) fn show(ui: &mut Ui, rect: Rect, grid: &mut KeyGrid, shown: &Shown, down: u128, controls: &mut Controls) {
+    controls.palette.paint_panel(ui.painter(), rect);
+    let kit = &shown.loaded().kit;
+    let group = controls.value(Param::Choke.info());
+    let choke = |pad: &Pad| kit.choke(pad, group);
+    let marked = grid.hovered().and_then(|key| kit.pad(key)).map(choke).filter(|group| *group > 0);
+    let guide = shown.guide();
+    let cell = |key: u8| {
+        let Some(pad) = kit.pad(key) else { return Cell::default() };
+        let is_kit = shown.preset().is_none();
+        let group = choke(pad);
+        Cell {
+            text: if is_kit { shown.pad_name(pad) } else { String::new() },
+            is_on: is_kit || (guide.lowest..=guide.highest).contains(&key),
+            group,
+            is_marked: marked == Some(group),
+        }
+    };
+    grid.show(ui, rect.shrink(PADDING), "Pad", down, &cell, controls);
+    let Some(key) = grid.hovered() else { return };
+    let help = match kit.pad(key) {
+        None => "silent".to_owned(),
+        Some(pad) => {
+            let pitch = pad.pitch.map_or(String::new(), |pitch| format!("   at {}", note_name(pitch.round() as u8)));
+            let gain = if pad.gain_db == 0.0 { String::new() } else { format!("   {:+.1} dB", pad.gain_db) };
+            let group = match choke(pad) {
+                0 => String::new(),
+                group => format!("   choke group {group}: the outlined keys silence each other"),
+            };
+            format!("{}{pitch}{gain}{group}", shown.pad_name(pad))
+        }
+    };
+    *controls.hint = Hint::new(note_name(key), help);
+}

@@ -1,0 +1,158 @@
+//! The page of the tuning: its scale, and the frequency of each key.
+
+use crate::editor::controls::files;
+use crate::editor::controls::gestures::load;
+use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::keyboard::grid::{Cell, KeyGrid};
+use crate::editor::theme::{GAP, PADDING, SMALL, TEXT, font};
+use crate::editor::widgets::buttons::{Look, button};
+use crate::editor::widgets::text::{line, name_field, paragraph};
+use egui::{Align2, Id, Key, Rect, TextEdit, Ui, pos2, vec2};
+use sprung::params::Param;
+use sprung::preset::OwnTuning;
+use sprung::sound::Tuning;
+use sprung::units::{frequency_from_key, note_name, semitones_from_ratio};
+use std::io::Read as _;
+use std::path::Path;
+
+/// Width of the description of the scale.
+const SIDE: f32 = 188.0;
+/// Largest file that is read, in bytes.
+const LARGEST: u64 = 1 << 20;
+/// Twelve equal steps, for a mapping without a scale of its own.
+const EQUAL: &str = "Twelve equal steps\n12\n100.\n200.\n300.\n400.\n500.\n600.\n700.\n800.\n900.\n1000.\n1100.\n2/1\n";
+
+/// The page's state.
+#[derive(Default)]
+pub(super) struct TuningPage {
+    path: String,
+    pub(super) grid: KeyGrid,
+}
+
+impl TuningPage {
+    /// Shows the page; `down` has one bit for each held key. Returns a message.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        shown: &Shown,
+        down: u128,
+        controls: &mut Controls,
+    ) -> Option<String> {
+        let palette = controls.palette;
+        palette.paint_panel(ui.painter(), rect);
+        let inner = rect.shrink(PADDING);
+        let side = inner.with_max_x(inner.left() + SIDE);
+        let own = shown.tuning();
+        let (name, steps) = own.map_or(("Equal temperament".to_owned(), "12 steps".to_owned()), about);
+        line(ui.painter(), side.with_max_y(side.top() + 18.0), Align2::LEFT_CENTER, &name, TEXT, palette.text);
+        let mapped = if own.is_some_and(|own| own.keymap().is_some()) { ", mapped" } else { "" };
+        let second = side.with_min_y(side.top() + 18.0).with_max_y(side.top() + 34.0);
+        line(ui.painter(), second, Align2::LEFT_CENTER, &format!("{steps}{mapped}"), SMALL, palette.muted);
+        let mut message = None;
+        let bottom = Rect::from_min_max(pos2(side.left(), side.bottom() - 22.0), side.max);
+        let field = bottom.with_max_x(bottom.right() - 54.0);
+        let edit = TextEdit::singleline(&mut self.path).id(Id::unique("scale path")).hint_text("a .scl or .kbm file");
+        let response = ui.put(field, edit.font(font(SMALL)).margin(vec2(4.0, 4.0)));
+        name_field(&response, "Path of a scale or mapping", &self.path);
+        if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) {
+            message = Some(take(Path::new(self.path.trim()), controls));
+        }
+        let look = if own.is_some() { Look::Plain } else { Look::Disabled };
+        let equal = bottom.with_min_x(field.right() + 4.0);
+        if button(ui, equal, "Equal", "Tune to equal temperament", look, palette).clicked() {
+            set(None, "equal temperament", controls);
+            message = Some("tuned to equal temperament".to_owned());
+        }
+        let help = Rect::from_min_max(second.left_bottom() + vec2(0.0, 6.0), pos2(side.right(), field.top() - 4.0));
+        if help.height() > 40.0 {
+            let text = "Drop a Scala scale (.scl) or a keyboard mapping (.kbm) anywhere on the window, or type its whole path. The scale becomes a part of the sound.";
+            paragraph(ui.painter(), help, text, SMALL, palette.muted);
+        }
+        let a4 = f64::from(controls.value(Param::Tuning.info()));
+        let tuning = own.map_or(Tuning::EQUAL, |own| *own.tuning());
+        let hertz = |key: u8| tuning.pitch(key).map(|pitch| frequency_from_key(pitch.semitones(a4), a4));
+        let cell = |key: u8| match hertz(key) {
+            Some(hertz) => Cell { text: written(hertz), is_on: true, ..Cell::default() },
+            None => Cell::default(),
+        };
+        let keys = inner.with_min_x(side.right() + GAP);
+        self.grid.show(ui, keys, "Key", down, &cell, controls);
+        if let Some(key) = self.grid.hovered() {
+            let help = hertz(key).map_or("not mapped: silent".to_owned(), |hertz| {
+                let cents = 100.0 * semitones_from_ratio(hertz / frequency_from_key(f64::from(key), a4));
+                format!("{hertz:.3} Hz   {cents:+.1} ct from equal temperament")
+            });
+            *controls.hint = Hint::new(note_name(key), help);
+        }
+        message
+    }
+}
+
+/// A frequency with about four digits.
+fn written(hertz: f64) -> String {
+    match hertz {
+        ..100.0 => format!("{hertz:.2}"),
+        100.0..1000.0 => format!("{hertz:.1}"),
+        _ => format!("{hertz:.0}"),
+    }
+}
+
+/// The name of a scale, and its number of steps.
+fn about(own: &OwnTuning) -> (String, String) {
+    let mut lines = own.scale().lines().filter(|line| !line.starts_with('!')).map(str::trim);
+    let name = lines.next().filter(|name| !name.is_empty()).unwrap_or("A scale without a name");
+    (name.to_owned(), format!("{} steps", lines.next().unwrap_or_default()))
+}
+
+/// Tunes the sound by a scale or mapping file. Returns a message.
+pub(crate) fn take(path: &Path, controls: &mut Controls) -> String {
+    let read = || -> sprung::Result<String> {
+        let mut text = String::new();
+        let name = path.display().to_string();
+        let failed = |source| sprung::Error::io(name.as_str(), source);
+        files::open(path, &name, "a scale or mapping")?.take(LARGEST + 1).read_to_string(&mut text).map_err(failed)?;
+        if text.len() as u64 > LARGEST {
+            let message = format!("it is too large: expected a scale or mapping of at most {LARGEST} bytes");
+            return Err(sprung::Error::format(name.as_str(), message));
+        }
+        Ok(text)
+    };
+    let failed = |error: String| format!("{}: {error}", path.display());
+    let is_map = match path.extension().and_then(|ending| ending.to_str()) {
+        Some(ending) if ending.eq_ignore_ascii_case("scl") => false,
+        Some(ending) if ending.eq_ignore_ascii_case("kbm") => true,
+        _ => return failed("expected the whole path of a .scl or .kbm file".to_owned()),
+    };
+    let text = match read() {
+        Ok(text) => text,
+        Err(error) => return error.to_string(),
+    };
+    let state = controls.params.state();
+    let mut playable = state.playable;
+    let before = playable.presets_mut().into_iter().find_map(|preset| preset.tuning.clone());
+    let own = if is_map {
+        let scale = before.as_ref().map_or(EQUAL, OwnTuning::scale).to_owned();
+        OwnTuning::from_scala(scale, Some(text))
+    } else {
+        OwnTuning::from_scala(text, before.and_then(|before| before.keymap().map(str::to_owned)))
+    };
+    match own {
+        Ok(own) => {
+            let name = about(&own).0;
+            set(Some(own), &format!("tuning {name}"), controls);
+            format!("tuned to {name}")
+        }
+        Err(error) => failed(error.to_string()),
+    }
+}
+
+/// Sets the tuning of every preset, as one undo step.
+fn set(own: Option<OwnTuning>, name: &str, controls: &mut Controls) {
+    controls.history.begin(controls.params);
+    let mut state = controls.params.state();
+    state.playable.presets_mut().into_iter().for_each(|preset| preset.tuning.clone_from(&own));
+    load(state, controls.params, controls.host);
+    controls.history.end(name, controls.params);
+}

@@ -1,0 +1,68 @@
+//! MIDI learn: the controller that the user moves next modulates a parameter, by a route.
+
+use crate::editor::controls::{Controls, Learning};
+use crate::editor::routes::{change, source_name};
+use egui::{Key, Ui};
+use sprung::params::ParamInfo;
+use sprung::patch::routes::{MAX_ROUTES, Route, Source};
+use sprung::preset::Playable;
+use std::time::Duration;
+
+/// Time between two checks for a movement.
+const PAUSE: Duration = Duration::from_millis(50);
+/// If less than this share of the travel is left above a knob's position, a new route moves it downwards.
+const LEAST: f32 = 0.05;
+
+/// Waits for the next movement of a controller.
+pub(crate) fn begin(info: &'static ParamInfo, controls: &mut Controls) {
+    let (seen, _) = controls.params.link().telemetry.moved();
+    controls.interaction.learning = Some(Learning { info, seen, is_prompted: false });
+}
+
+/// Checks whether a controller was moved, and makes a route from it. Returns a message.
+pub(crate) fn follow(ui: &Ui, controls: &mut Controls) -> Option<String> {
+    let learning = controls.interaction.learning.as_mut()?;
+    let info = learning.info;
+    if ui.input(|input| input.key_pressed(Key::Escape)) {
+        controls.interaction.learning = None;
+        return Some("nothing was learnt".to_owned());
+    }
+    ui.ctx().request_repaint_after(PAUSE);
+    let (count, moved) = controls.params.link().telemetry.moved();
+    if count == std::mem::replace(&mut learning.seen, count) {
+        let is_prompted = std::mem::replace(&mut learning.is_prompted, true);
+        return (!is_prompted).then(|| {
+            let sources = "wheel, pitch wheel, pressure, breath, expression or controller 74";
+            format!("{}: move what is to modulate it ({sources}); Escape gives up", info.name)
+        });
+    }
+    let moved = moved?;
+    let Some(source) = moved.source() else {
+        return Some(format!(
+            "{moved} is no source of routes: expected controller 1 (wheel), 2 (breath), 11 (expression), 74 (timbre), the \
+             pitch wheel or pressure"
+        ));
+    };
+    controls.interaction.learning = None;
+    Some(learn(source, info, controls))
+}
+
+/// Adds a route from a source. Its amount moves the knob to the end of its travel. Returns a message.
+fn learn(source: Source, info: &'static ParamInfo, controls: &mut Controls) -> String {
+    let Playable::Preset(preset) = controls.params.state().playable else {
+        return "a kit’s sounds have routes of their own".to_owned();
+    };
+    let routes = &preset.patch.routes;
+    let name = source_name(source, &preset.guide);
+    if let Some((place, _)) = routes.iter().find(|(_, route)| route.source == source && route.destination == info.param)
+    {
+        return format!("{name} modulates {} already: route {}", info.name, place + 1);
+    }
+    let Some(place) = (0..MAX_ROUTES).find(|place| routes.get(*place).is_none()) else {
+        return "all sixteen routes are taken".to_owned();
+    };
+    let position = controls.position(info);
+    let travel = if 1.0 - position >= LEAST { 1.0 - position } else { -position };
+    change(place, Some(Route::linear(source, info.param)), Some((100.0 * travel).round()), controls);
+    format!("{name} modulates {}: route {}", info.name, place + 1)
+}

@@ -1,0 +1,171 @@
+//! Routes: their names, and the menus that make, change and remove them.
+
+pub(super) mod learn;
+
+use crate::editor::controls::Controls;
+use crate::editor::controls::gestures::load;
+use crate::loaded::positions_of;
+use crate::state::State;
+use egui::{Id, Popup, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo};
+use sprung::params::{PARAMS, Param, ParamInfo};
+use sprung::patch::Patch;
+use sprung::patch::routes::{MAX_ROUTES, Response, Route, Routes, Source, amount_param};
+use sprung::preset::{Guide, Playable};
+
+/// The amount of a new route, in per cent.
+const AMOUNT: f32 = 25.0;
+
+/// The name of a source as shown to the user; for a macro, the preset's name for it.
+pub(super) fn source_name(source: Source, guide: &Guide) -> String {
+    guide.macro_name(source.id()).map_or_else(|| source.id().replace('_', " "), str::to_owned)
+}
+
+/// The name of a route, such as `wheel › Vibrato`; for an empty place, its number.
+pub(super) fn name(place: usize, routes: &Routes, guide: &Guide) -> String {
+    let Some(Route { source, destination, scale, .. }) = routes.get(place) else {
+        return format!("{}: free", place + 1);
+    };
+    let scale = scale.map_or(String::new(), |scale| format!(" × {}", source_name(scale, guide)));
+    format!("{}{scale} › {}", source_name(source, guide), destination.info().name)
+}
+
+/// The modulation of a parameter, as a knob shows it.
+#[derive(Default)]
+pub(super) struct Ring {
+    /// The parts of its travel that routes can move it to: by each amount, to both sides if the source has both.
+    pub(super) ranges: Vec<[f32; 2]>,
+    /// The modulated position in each sounding note, the newest note first.
+    pub(super) marks: Vec<f32>,
+}
+
+impl Ring {
+    pub(super) fn of(info: &ParamInfo, routes: &Routes, controls: &Controls) -> Self {
+        let position = controls.position(info);
+        let range = |(place, route): (usize, Route)| {
+            let amount = controls.value(amount_param(place).info()) / 100.0;
+            let goes_back = route.source.is_bipolar() || route.scale.is_some_and(Source::is_bipolar);
+            let from = if goes_back { position - amount } else { position };
+            [from, position + amount].map(|end| end.clamp(0.0, 1.0))
+        };
+        let these = routes.iter().filter(|(_, route)| route.destination == info.param);
+        let ranges = these.map(range).filter(|[from, to]| from != to).collect();
+        let marks = controls.modulated(info).map(|value| info.normalise(value) as f32).collect();
+        Self { ranges, marks }
+    }
+}
+
+/// Shows the name of a route as a button that opens its menu.
+pub(super) fn show(ui: &Ui, rect: Rect, place: usize, routes: &Routes, guide: &Guide, controls: &mut Controls) {
+    let response = ui.interact(rect, Id::unique(("route", place)), Sense::click());
+    let label = format!("Route {}: {}", place + 1, name(place, routes, guide));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    Popup::menu(&response).show(|ui| {
+        ui.set_min_width(140.0);
+        let route = routes.get(place);
+        let base = route.unwrap_or(Route::linear(Source::Velocity, Param::MalletHardness));
+        let mut wanted = None;
+        ui.menu_button("Source", |ui| {
+            wanted = wanted.or(sources(ui, guide).map(|source| Some(Route { source, ..base })));
+        });
+        ui.menu_button("Destination", |ui| {
+            wanted = wanted.or(destinations(ui).map(|destination| Some(Route { destination, ..base })));
+        });
+        if route.is_some() {
+            ui.menu_button("Multiplied by", |ui| {
+                if ui.button("nothing").clicked() {
+                    wanted = Some(Some(Route { scale: None, ..base }));
+                }
+                wanted = wanted.or(sources(ui, guide).map(|scale| Some(Route { scale: Some(scale), ..base })));
+            });
+            ui.menu_button("Response", |ui| {
+                for response in Response::ALL {
+                    if ui.selectable_label(base.response == *response, response.id()).clicked() {
+                        wanted = Some(Some(Route { response: *response, ..base }));
+                    }
+                }
+            });
+            if ui.button("Remove").clicked() {
+                wanted = Some(None);
+            }
+        }
+        if let Some(route) = wanted {
+            change(place, route, None, controls);
+            ui.close();
+        }
+    });
+}
+
+/// The part of a knob's menu that adds a route to its parameter from a chosen source.
+pub(super) fn menu(ui: &mut Ui, info: &ParamInfo, controls: &mut Controls) {
+    if !info.is_modulatable() {
+        return;
+    }
+    ui.menu_button("Modulate by", |ui| {
+        let Playable::Preset(preset) = controls.params.state().playable else {
+            ui.label("a kit’s sounds have routes of their own");
+            return;
+        };
+        let Some(place) = (0..MAX_ROUTES).find(|place| preset.patch.routes.get(*place).is_none()) else {
+            ui.label("all sixteen routes are taken");
+            return;
+        };
+        if let Some(source) = sources(ui, &preset.guide) {
+            change(place, Some(Route::linear(source, info.param)), Some(AMOUNT), controls);
+            ui.close();
+        }
+    });
+}
+
+fn sources(ui: &mut Ui, guide: &Guide) -> Option<Source> {
+    let mut chosen = None;
+    ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
+        for source in Source::ALL {
+            if ui.button(source_name(*source, guide)).clicked() {
+                chosen = Some(*source);
+            }
+        }
+    });
+    chosen
+}
+
+fn destinations(ui: &mut Ui) -> Option<Param> {
+    let mut chosen = None;
+    for section in PARAMS.chunk_by(|a, b| a.section == b.section) {
+        if !section.iter().any(ParamInfo::is_modulatable) {
+            continue;
+        }
+        ui.menu_button(section[0].section, |ui| {
+            for info in section.iter().filter(|info| info.is_modulatable()) {
+                if ui.button(info.name).clicked() {
+                    chosen = Some(info.param);
+                }
+            }
+        });
+    }
+    chosen
+}
+
+/// Sets or removes a route, and optionally sets its amount. A new route never takes what a former one has left in its place.
+pub(super) fn change(place: usize, route: Option<Route>, amount: Option<f32>, controls: &mut Controls) {
+    let state = controls.params.state();
+    let Playable::Preset(mut preset) = state.playable else { return };
+    controls.history.begin(controls.params);
+    let patch: &mut Patch = &mut preset.patch;
+    let param = amount_param(place);
+    let amount = match (patch.routes.get(place), route) {
+        (_, None) => Some(param.info().default),
+        (None, Some(_)) => amount.or(Some(AMOUNT)),
+        (Some(_), Some(_)) => amount,
+    };
+    patch.routes.set(place, route);
+    let mut positions = state.positions;
+    if let Some(amount) = amount {
+        patch.set(param, amount);
+        positions[param as usize] = positions_of(&patch.values)[param as usize];
+    }
+    let values = patch.values;
+    let name = route.map_or("remove a route".to_owned(), |route| format!("route to {}", route.destination.info().name));
+    let state = State { playable: Playable::Preset(preset), values, positions, ..state };
+    load(state, controls.params, controls.host);
+    controls.history.end(name, controls.params);
+}

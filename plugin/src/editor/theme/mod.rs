@@ -1,0 +1,259 @@
+//! The window's colours, sizes and fonts, in one table.
+
+pub(super) mod layout;
+#[cfg(test)]
+mod tests;
+
+use egui::style::Selection;
+use egui::{
+    Color32, Context, CornerRadius, FontDefinitions, FontFamily, FontId, Painter, Rect, Stroke, StrokeKind, TextStyle,
+    Visuals,
+};
+
+const fn grey(level: u8) -> Color32 {
+    Color32::from_gray(level)
+}
+
+const fn rgb(red: u8, green: u8, blue: u8) -> Color32 {
+    Color32::from_rgb(red, green, blue)
+}
+
+/// The colours of a window. [`Palette::pairs`] lists the combinations of text and ground.
+pub(super) struct Palette {
+    /// Behind the panels.
+    pub(super) ground: Color32,
+    /// A section or a view.
+    pub(super) panel: Color32,
+    /// Buttons, fields, the face of a knob.
+    pub(super) raised: Color32,
+    /// Grids and outlines.
+    pub(super) line: Color32,
+    /// Outline of panels and buttons where the fill colour alone does not set them apart.
+    pub(super) outline: Color32,
+    /// Names and other text of the first rank.
+    pub(super) text: Color32,
+    /// Values, titles, and other text of the second rank.
+    pub(super) muted: Color32,
+    /// The user's settings and present sound: arcs, energies, held keys.
+    pub(super) accent: Color32,
+    /// The accent colour for text.
+    pub(super) accent_text: Color32,
+    /// Text on `accent`.
+    pub(super) on_accent: Color32,
+    /// Modulation.
+    pub(super) modulation: Color32,
+    /// Levels up to full scale.
+    pub(super) level: Color32,
+    /// Error messages, and levels above full scale.
+    pub(super) warning: Color32,
+    pub(super) white_key: Color32,
+    pub(super) black_key: Color32,
+    /// Text on a white key.
+    pub(super) key_text: Color32,
+}
+
+impl Palette {
+    const DARK: Self = Self {
+        ground: rgb(20, 20, 26),
+        panel: rgb(30, 30, 38),
+        raised: rgb(44, 44, 55),
+        line: rgb(56, 56, 68),
+        outline: Color32::TRANSPARENT,
+        text: rgb(232, 231, 226),
+        muted: rgb(160, 159, 170),
+        accent: rgb(229, 178, 69),
+        accent_text: rgb(236, 190, 92),
+        on_accent: rgb(24, 20, 8),
+        modulation: rgb(102, 178, 245),
+        level: rgb(86, 186, 122),
+        warning: rgb(255, 146, 96),
+        white_key: rgb(224, 223, 218),
+        black_key: rgb(24, 24, 30),
+        key_text: rgb(84, 84, 94),
+    };
+
+    const LIGHT: Self = Self {
+        ground: rgb(226, 224, 218),
+        panel: rgb(246, 245, 241),
+        raised: rgb(228, 226, 220),
+        line: rgb(204, 201, 193),
+        outline: Color32::TRANSPARENT,
+        text: rgb(28, 28, 34),
+        muted: rgb(84, 83, 92),
+        accent: rgb(190, 118, 0),
+        accent_text: rgb(118, 72, 0),
+        on_accent: rgb(20, 12, 0),
+        modulation: rgb(26, 108, 190),
+        level: rgb(46, 140, 82),
+        warning: rgb(166, 44, 8),
+        white_key: rgb(253, 252, 250),
+        black_key: rgb(52, 52, 60),
+        key_text: rgb(96, 95, 104),
+    };
+
+    const CONTRAST: Self = Self {
+        ground: grey(0),
+        panel: grey(0),
+        raised: grey(38),
+        line: grey(120),
+        outline: grey(120),
+        text: grey(255),
+        muted: grey(225),
+        accent: rgb(255, 208, 0),
+        accent_text: rgb(255, 208, 0),
+        on_accent: grey(0),
+        modulation: rgb(92, 214, 255),
+        level: rgb(90, 255, 140),
+        warning: rgb(255, 156, 120),
+        white_key: grey(255),
+        black_key: grey(0),
+        key_text: grey(40),
+    };
+
+    /// Paints the ground of a panel.
+    pub(super) fn paint_panel(&self, painter: &Painter, rect: Rect) {
+        painter.rect(rect, RADIUS, self.panel, Stroke::new(1.0, self.outline), StrokeKind::Inside);
+    }
+
+    /// All combinations of text colour and ground in use.
+    #[cfg(test)]
+    fn pairs(&self) -> Vec<(Color32, Color32)> {
+        let grounds = [self.ground, self.panel, self.raised];
+        let texts = [self.text, self.muted, self.accent_text];
+        let mut pairs: Vec<_> = texts.iter().flat_map(|text| grounds.map(|ground| (*text, ground))).collect();
+        pairs.extend([
+            (self.on_accent, self.accent),
+            (self.warning, self.ground),
+            (self.key_text, self.white_key),
+            (self.modulation, self.panel),
+        ]);
+        pairs
+    }
+}
+
+/// A set of colours for the window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Theme {
+    #[default]
+    Dark,
+    Light,
+    HighContrast,
+}
+
+impl Theme {
+    pub(crate) const ALL: [Self; 3] = [Self::Dark, Self::Light, Self::HighContrast];
+
+    /// The name in a saved state.
+    pub(crate) fn id(self) -> &'static str {
+        match self {
+            Self::Dark => "dark",
+            Self::Light => "light",
+            Self::HighContrast => "high-contrast",
+        }
+    }
+
+    /// The name as shown to the user.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Dark => "Dark",
+            Self::Light => "Light",
+            Self::HighContrast => "High contrast",
+        }
+    }
+
+    pub(super) fn palette(self) -> &'static Palette {
+        match self {
+            Self::Dark => &Palette::DARK,
+            Self::Light => &Palette::LIGHT,
+            Self::HighContrast => &Palette::CONTRAST,
+        }
+    }
+
+    /// Sets the colours and texts of egui's own widgets: menus, text fields, scroll bars, tooltips.
+    pub(super) fn apply(self, context: &Context) {
+        let palette = self.palette();
+        let mut visuals = if self == Self::Light { Visuals::light() } else { Visuals::dark() };
+        // The ground is there already: the renderer clears with it, which costs less than to paint it.
+        visuals.panel_fill = Color32::TRANSPARENT;
+        visuals.window_fill = palette.panel;
+        visuals.window_stroke = Stroke::new(1.0, palette.line);
+        visuals.extreme_bg_color = palette.raised;
+        visuals.text_edit_bg_color = Some(palette.raised);
+        visuals.selection = Selection { bg_fill: palette.accent, stroke: Stroke::new(1.0, palette.on_accent) };
+        visuals.weak_text_color = Some(palette.muted);
+        visuals.window_corner_radius = CornerRadius::same(RADIUS);
+        visuals.menu_corner_radius = CornerRadius::same(RADIUS);
+        let states = &mut visuals.widgets;
+        for state in [
+            &mut states.noninteractive,
+            &mut states.inactive,
+            &mut states.hovered,
+            &mut states.active,
+            &mut states.open,
+        ] {
+            state.fg_stroke = Stroke::new(1.0, palette.text);
+            state.bg_stroke = Stroke::new(1.0, palette.line);
+            state.bg_fill = palette.raised;
+            state.weak_bg_fill = palette.raised;
+            state.corner_radius = CornerRadius::same(3);
+            state.expansion = 0.0;
+        }
+        for state in [&mut visuals.widgets.hovered, &mut visuals.widgets.active] {
+            state.bg_stroke = Stroke::new(1.0, palette.muted);
+        }
+        context.set_theme(if self == Self::Light { egui::Theme::Light } else { egui::Theme::Dark });
+        context.all_styles_mut(|style| {
+            style.visuals = visuals.clone();
+            for text in [TextStyle::Body, TextStyle::Button, TextStyle::Small] {
+                style.text_styles.insert(text, font(TEXT));
+            }
+            style.interaction.selectable_labels = false;
+            style.interaction.tooltip_delay = 0.6;
+        });
+    }
+}
+
+/// Size of a new window at 100 %.
+pub(crate) const SIZE: [u32; 2] = [1100, 700];
+/// Smallest width and height, at 100 %, at which the window can be used.
+pub(super) const LEAST_SIZE: [u32; 2] = [640, 400];
+/// Smallest and largest scale in per cent.
+pub(crate) const ZOOM_RANGE: [u32; 2] = [75, 300];
+/// Scales that the window offers, in per cent.
+pub(super) const ZOOMS: [u32; 7] = [75, 100, 125, 150, 175, 200, 300];
+
+/// Space between panels, and around them.
+pub(super) const GAP: f32 = 8.0;
+/// Space inside a panel.
+pub(super) const PADDING: f32 = 8.0;
+/// Radius of the corners of panels.
+pub(super) const RADIUS: u8 = 5;
+pub(super) const HEADER_HEIGHT: f32 = 30.0;
+pub(super) const TITLE_HEIGHT: f32 = 20.0;
+pub(super) const TABS_HEIGHT: f32 = 24.0;
+pub(super) const STATUS_HEIGHT: f32 = 18.0;
+/// Diameter of a knob.
+pub(super) const KNOB: f32 = 34.0;
+/// Height of a knob with its name and value.
+pub(super) const CELL_HEIGHT: f32 = 66.0;
+/// Smallest and largest width of a knob's cell.
+pub(super) const CELL_WIDTH: [f32; 2] = [48.0, 74.0];
+
+/// Sizes of text.
+pub(super) const TEXT: f32 = 12.5;
+pub(super) const SMALL: f32 = 11.0;
+pub(super) const BRAND: f32 = 19.0;
+
+/// Adds the code font as a fallback for characters that the text font does not have: arrows, Greek, Cyrillic.
+pub(super) fn install_fonts(context: &Context) {
+    let mut fonts = FontDefinitions::default();
+    if let Some(names) = fonts.families.get_mut(&FontFamily::Proportional) {
+        names.push("Hack".to_owned());
+    }
+    context.set_fonts(fonts);
+}
+
+/// The font for text of this size.
+pub(super) fn font(size: f32) -> FontId {
+    FontId::new(size, FontFamily::Proportional)
+}

@@ -1,0 +1,74 @@
+//! Draws the face of a knob: an arc from the default to the position, a pointer, and rings for modulation.
+
+use crate::editor::routes::Ring;
+use crate::editor::theme::Palette;
+use crate::editor::widgets::disc;
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2};
+use std::f32::consts::PI;
+
+/// Contents of a face. Positions are 0 to 1.
+pub(super) struct Face<'a> {
+    pub(super) position: f32,
+    /// Start of the arc: the position of the default.
+    pub(super) origin: f32,
+    /// Offset of the position by the host's modulation.
+    pub(super) offset: f32,
+    /// The modulation by the sound's routes, and the modulated values in the sounding notes.
+    pub(super) ring: &'a Ring,
+    pub(super) is_hovered: bool,
+    pub(super) is_focused: bool,
+}
+
+/// The direction of a position: from lower left over the top to lower right.
+fn direction(position: f32) -> Vec2 {
+    Vec2::angled(PI * (0.75 + 1.5 * position.clamp(0.0, 1.0)))
+}
+
+fn arc(painter: &Painter, centre: Pos2, radius: f32, [from, to]: [f32; 2], stroke: Stroke) {
+    // As few lines as look round: a knob's arc is never more than a tenth of a pixel off. Each costs six triangles.
+    let steps = 2 + ((to - from).abs() * 22.0) as usize;
+    let point = |step: usize| centre + radius * direction(from + (to - from) * step as f32 / steps as f32);
+    painter.add(Shape::line((0..=steps).map(point).collect(), stroke));
+}
+
+/// The centre of a mark on the ring around the face in `rect`.
+pub(crate) fn on_ring(rect: Rect, position: f32) -> Pos2 {
+    rect.center() + (rect.width() / 2.0 + 1.0) * direction(position)
+}
+
+/// Paints the marks of the sounding notes: that of the newest note is the largest and on top.
+fn paint_marks(painter: &Painter, rect: Rect, marks: &[f32], palette: &Palette) {
+    for (place, mark) in marks.iter().enumerate().rev() {
+        let (radius, edge) = if place == 0 { (3.2, 1.2) } else { (2.0, 0.8) };
+        let centre = on_ring(rect, *mark);
+        disc(painter, centre, radius, palette.modulation, Stroke::new(edge, palette.panel));
+    }
+}
+
+pub(super) fn paint(painter: &Painter, rect: Rect, palette: &Palette, face: &Face) {
+    let (centre, radius) = (rect.center(), rect.width() / 2.0);
+    let track = if face.is_hovered { palette.muted.gamma_multiply(0.55) } else { palette.line };
+    arc(painter, centre, radius - 2.0, [0.0, 1.0], Stroke::new(3.0, track));
+    if (face.position - face.origin).abs() > 1e-4 {
+        arc(painter, centre, radius - 2.0, [face.origin, face.position], Stroke::new(3.0, palette.accent));
+    }
+    for range in &face.ring.ranges {
+        arc(painter, centre, radius + 1.0, *range, Stroke::new(1.5, palette.modulation));
+    }
+    painter.circle_filled(centre, radius - 6.5, palette.raised);
+    if face.is_focused {
+        painter.circle_stroke(centre, radius - 5.5, Stroke::new(1.5, palette.accent));
+    }
+    let hand = |position: f32, from: f32, stroke: Stroke| {
+        let along = direction(position);
+        painter.line_segment([centre + from * along, centre + (radius - 7.5) * along], stroke);
+    };
+    if face.offset.abs() > 1e-4 {
+        let modulated = (face.position + face.offset).clamp(0.0, 1.0);
+        arc(painter, centre, radius + 1.0, [face.position, modulated], Stroke::new(1.5, palette.modulation));
+        painter.circle_filled(on_ring(rect, modulated), 2.2, palette.modulation);
+    }
+    let colour: Color32 = palette.text;
+    hand(face.position, radius * 0.22, Stroke::new(2.0, colour));
+    paint_marks(painter, rect, &face.ring.marks, palette);
+}

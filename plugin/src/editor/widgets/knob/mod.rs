@@ -1,0 +1,226 @@
+//! A knob with its name and value: dragged, turned by the wheel or by keys, reset, or typed into.
+
+pub(crate) mod face;
+pub(super) mod menu;
+
+use super::text::line;
+use super::typing::{type_value, typed};
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::routes::Ring;
+use crate::editor::theme::{KNOB, Palette, SMALL};
+use egui::accesskit::{Action, ActionData};
+use egui::{Align2, CursorIcon, Event, EventFilter, Id, Key, Painter, Rect, Response, Sense, Stroke, Ui};
+use egui::{WidgetInfo, pos2, vec2};
+use face::Face;
+use sprung::params::{ParamInfo, Unit};
+
+/// Mouse movement for the whole travel of a knob, in pixels.
+const TRAVEL: f32 = 220.0;
+/// Share of the travel for one step of the wheel or of an arrow key.
+const STEP: f64 = 0.01;
+/// Factor for all movements while Shift is held.
+const FINE: f64 = 0.1;
+
+/// Where the parts of a knob are in its cell.
+struct Parts {
+    face: Rect,
+    name: Rect,
+    value: Rect,
+}
+
+impl Parts {
+    fn of(cell: Rect) -> Self {
+        let line = |top: f32| Rect::from_min_size(pos2(cell.left(), cell.top() + top), vec2(cell.width(), 13.0));
+        let centre = pos2(cell.center().x, cell.top() + KNOB / 2.0 + 1.0);
+        Self { face: Rect::from_center_size(centre, vec2(KNOB, KNOB)), name: line(KNOB), value: line(KNOB + 13.0) }
+    }
+}
+
+/// Where the name is in a cell.
+pub(crate) fn name_rect(cell: Rect) -> Rect {
+    Parts::of(cell).name
+}
+
+/// Where the face is in the part of a cell that is turned.
+#[cfg(test)]
+pub(crate) fn face_in(turned: Rect) -> Rect {
+    Parts::of(turned).face
+}
+
+/// The widget's id. A parameter has one widget in a window.
+pub(super) fn id(info: &ParamInfo) -> Id {
+    Id::unique(("knob", info.id))
+}
+
+/// Shows a parameter's knob in a cell, under the title `name`; `ring` shows its modulation.
+pub(crate) fn show(
+    ui: &mut Ui,
+    cell: Rect,
+    info: &'static ParamInfo,
+    name: &str,
+    ring: &Ring,
+    controls: &mut Controls,
+) {
+    let parts = Parts::of(cell);
+    let mut response = ui.interact(cell.with_max_y(parts.value.top()), id(info), Sense::click_and_drag());
+    let value_response =
+        ui.interact(parts.value, id(info).with("value"), Sense::click()).on_hover_cursor(CursorIcon::Text);
+    value_response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, format!("Type {}", info.name)));
+    drag(ui, &mut response, info, controls);
+    wheel(ui, &response, info, controls);
+    keys(ui, &response, info, controls);
+    let asks = response.has_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    if asks || value_response.clicked() {
+        type_value(info, controls);
+    }
+    if response.double_clicked() {
+        controls.set(info, info.default);
+    }
+    response.context_menu(|ui| menu::show(ui, info, controls));
+
+    let text = controls.text(info);
+    response.widget_info(|| {
+        let mut about = WidgetInfo::slider(true, f64::from(controls.value(info)), info.name);
+        about.current_text_value = Some(text.clone());
+        about
+    });
+    let is_hovered = response.hovered() || response.dragged() || value_response.hovered();
+    if is_hovered {
+        let newest = controls.modulated(info).next();
+        let now = newest.map_or(String::new(), |value| format!(" › {}", info.format(value)));
+        *controls.hint = Hint::new(format!("{} {text}{now}", info.name), info.help);
+    }
+    let palette = controls.palette;
+    let face = Face {
+        position: controls.position(info),
+        origin: info.normalise(info.default) as f32,
+        offset: controls.params.knobs()[info.param as usize].offset(),
+        ring,
+        is_hovered,
+        is_focused: response.has_focus(),
+    };
+    face::paint(ui.painter(), parts.face, palette, &face);
+    let colour = if is_hovered { palette.text } else { palette.muted };
+    line(ui.painter(), parts.name, Align2::CENTER_CENTER, name, SMALL, palette.text);
+    if !typed(ui, parts.value, id(info).with("field"), info, controls) {
+        line(ui.painter(), parts.value, Align2::CENTER_CENTER, &text, SMALL, colour);
+    }
+}
+
+/// Shows an empty cell for a knob, under the title `name`.
+pub(crate) fn show_none(painter: &Painter, cell: Rect, name: &str, palette: &Palette) {
+    let parts = Parts::of(cell);
+    painter.circle_stroke(parts.face.center(), KNOB / 2.0 - 3.0, Stroke::new(1.0, palette.line));
+    line(painter, parts.name, Align2::CENTER_CENTER, name, SMALL, palette.muted);
+}
+
+fn drag(ui: &Ui, response: &mut Response, info: &'static ParamInfo, controls: &mut Controls) {
+    let index = info.param as usize;
+    if response.drag_started() {
+        controls.interaction.dragged = f64::from(controls.position(info));
+    }
+    if response.dragged() {
+        let moved = response.drag_delta();
+        let fine = if ui.input(|input| input.modifiers.shift) { FINE } else { 1.0 };
+        let dragged = controls.interaction.dragged + f64::from((moved.x - moved.y) / TRAVEL) * fine;
+        controls.interaction.dragged = dragged.clamp(0.0, 1.0);
+        let position = rounded(info, controls.interaction.dragged);
+        if moved != egui::Vec2::ZERO && position as f32 != controls.position(info) {
+            controls.turn(info, position);
+        }
+        ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
+    }
+    if response.drag_stopped() && controls.interaction.gestures.moving() == Some(index) {
+        controls.release();
+    }
+}
+
+/// The nearest position that the parameter can take.
+fn rounded(info: &ParamInfo, position: f64) -> f64 {
+    if info.unit == Unit::Count { info.normalise(info.denormalise(position)) } else { position }
+}
+
+/// Moves a knob by a number of steps, as one gesture.
+fn step(info: &'static ParamInfo, steps: f64, controls: &mut Controls) {
+    let position = f64::from(controls.position(info));
+    let wanted = match info.unit {
+        Unit::Count | Unit::Choice => {
+            let whole = if steps > 0.0 { steps.ceil() } else { steps.floor() };
+            info.normalise(info.clamp(controls.value(info) + whole as f32))
+        }
+        _ => (position + STEP * steps).clamp(0.0, 1.0),
+    };
+    if wanted as f32 != position as f32 {
+        controls.turn(info, wanted);
+        controls.release();
+    }
+}
+
+/// Turns by the wheel while the pointer is over the knob.
+pub(super) fn wheel(ui: &Ui, response: &Response, info: &'static ParamInfo, controls: &mut Controls) {
+    if !response.hovered() {
+        return;
+    }
+    let (steps, fine) = ui.input(|input| {
+        let turned = |event: &Event| match event {
+            Event::MouseWheel { unit: egui::MouseWheelUnit::Point, delta, .. } => f64::from(delta.y + delta.x) / 20.0,
+            Event::MouseWheel { delta, .. } => f64::from(delta.y + delta.x),
+            _ => 0.0,
+        };
+        (input.events.iter().map(turned).sum::<f64>(), input.modifiers.shift)
+    });
+    if steps != 0.0 {
+        step(info, if fine { steps * FINE } else { steps }, controls);
+    }
+}
+
+/// Handles the arrow keys, the keys that reset, and the actions of a screen reader, which is told the value.
+pub(super) fn keys(ui: &Ui, response: &Response, info: &'static ParamInfo, controls: &mut Controls) {
+    ui.ctx().accesskit_node_builder(response.id, |node| {
+        let value = controls.value(info);
+        node.set_description(controls.text(info));
+        node.set_numeric_value(value.into());
+        node.set_min_numeric_value(info.min.into());
+        node.set_max_numeric_value(info.max.into());
+        node.add_action(Action::SetValue);
+        if value < info.max {
+            node.add_action(Action::Increment);
+        }
+        if value > info.min {
+            node.add_action(Action::Decrement);
+        }
+    });
+    let mut steps = ui.input(|input| {
+        let asked = |action| input.num_accesskit_action_requests(response.id, action) as f64;
+        asked(Action::Increment) - asked(Action::Decrement)
+    });
+    let mut wanted = None;
+    ui.input(|input| {
+        for request in input.accesskit_action_requests(response.id, Action::SetValue) {
+            if let Some(ActionData::NumericValue(value)) = request.data {
+                wanted = Some(value as f32);
+            }
+        }
+    });
+    if response.has_focus() {
+        let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+        let (by, resets) = ui.input(|input| {
+            let pressed = |key| input.num_presses(key) as f64;
+            let fine = if input.modifiers.shift { FINE } else { 1.0 };
+            let by = pressed(Key::ArrowUp) - pressed(Key::ArrowDown)
+                + 10.0 * (pressed(Key::PageUp) - pressed(Key::PageDown));
+            (by * fine, input.key_pressed(Key::Delete) || input.key_pressed(Key::Backspace))
+        });
+        steps += by;
+        if resets {
+            wanted = Some(info.default);
+        }
+    }
+    if steps != 0.0 {
+        step(info, steps, controls);
+    }
+    if let Some(value) = wanted {
+        controls.set(info, info.clamp(value));
+    }
+}

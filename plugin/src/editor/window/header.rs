@@ -1,0 +1,172 @@
+//! The top of the window: the sound's name, the buttons for it, and its level.
+
+use super::meter;
+use super::variation::{self, VariationRequest};
+use crate::editor::controls::{Controls, Hint};
+use crate::editor::theme::{BRAND, GAP, Palette, SMALL, TEXT, Theme, ZOOMS};
+use crate::editor::widgets::buttons::{Look, button};
+use crate::editor::widgets::text::line;
+use crate::state::View;
+use egui::{Align2, Id, Popup, PopupCloseBehavior, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use std::collections::BTreeSet;
+
+/// A request of the user's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Request {
+    /// Load the preset at this distance in the list.
+    Step(isize),
+    Browse,
+    Save,
+    Undo,
+    Redo,
+    /// Switch to the other one of the two versions of the sound.
+    Swap,
+    /// Replace the other version by a copy of this one.
+    Copy,
+    Zoom(u32),
+    Theme(Theme),
+    Variation(VariationRequest),
+}
+
+/// The contents of the header.
+pub(super) struct Header<'a> {
+    pub(super) name: &'a str,
+    pub(super) words: &'a str,
+    pub(super) is_changed: bool,
+    pub(super) is_browsing: bool,
+    /// Whether the second version is shown.
+    pub(super) is_b: bool,
+    pub(super) view: View,
+    /// Sections that variations leave as they are.
+    pub(super) locked: &'a BTreeSet<&'static str>,
+    /// Levels of left and right, as shares of the meter's length.
+    pub(super) levels: [f32; 2],
+}
+
+pub(super) fn show(ui: &mut Ui, rect: Rect, header: &Header, controls: &mut Controls) -> Option<Request> {
+    let palette = controls.palette;
+    let mut request = None;
+    let is_narrow = rect.width() < 900.0;
+    let mut left = rect.left() + 2.0;
+    let mut next = |width: f32| {
+        let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
+        left = place.right() + 4.0;
+        place
+    };
+    let brand = next(if is_narrow { 68.0 } else { 92.0 });
+    line(ui.painter(), brand, Align2::LEFT_CENTER, "Sprung", BRAND, palette.accent_text);
+    let sound = next(if is_narrow { 200.0 } else { 372.0 });
+    request = request.or(name_field(ui, sound, header, is_narrow, controls));
+    let undo = controls.history.undo_name().map(|name| format!("Undo {name}"));
+    let redo = controls.history.redo_name().map(|name| format!("Redo {name}"));
+    let enabled = |name: &Option<String>| if name.is_some() { Look::Plain } else { Look::Disabled };
+    let on = |is_on: bool| if is_on { Look::On } else { Look::Off };
+    let width = |wide: f32| if is_narrow { wide - 8.0 } else { wide };
+    let buttons = [
+        (
+            "Browse",
+            "Browse",
+            width(58.0),
+            on(header.is_browsing),
+            Request::Browse,
+            "Find another sound, by family, words and favourites.",
+        ),
+        ("Save", "Save", width(44.0), Look::Plain, Request::Save, "Save this sound under a name."),
+        ("Undo", "Undo", width(46.0), enabled(&undo), Request::Undo, "Take the last change back."),
+        ("Redo", "Redo", width(46.0), enabled(&redo), Request::Redo, "Make the change again that was taken back."),
+        (
+            if header.is_b { "B" } else { "A" },
+            "A or B",
+            26.0,
+            on(header.is_b),
+            Request::Swap,
+            "Two versions of the sound to compare: go to the other one.",
+        ),
+        (
+            "Copy",
+            "Copy to the other version",
+            width(46.0),
+            Look::Plain,
+            Request::Copy,
+            "Make the other version a copy of this one.",
+        ),
+    ];
+    for (text, name, width, look, wanted, help) in buttons {
+        let response = button(ui, next(width), text, name, look, palette);
+        if response.hovered() {
+            let title = match wanted {
+                Request::Undo => undo.clone(),
+                Request::Redo => redo.clone(),
+                _ => None,
+            };
+            *controls.hint = Hint::new(title.unwrap_or_else(|| name.to_owned()), help);
+        }
+        if response.clicked() && look != Look::Disabled {
+            request = Some(wanted);
+        }
+    }
+    // A host that refuses a larger window leaves little room at a large zoom: the way back stays within reach.
+    let view = next(52.0);
+    let view = view.translate(vec2((rect.right() - view.right()).min(0.0), 0.0));
+    request = request.or(view_menu(ui, view, header.view, palette));
+    let meter = Rect::from_min_max(pos2(left + GAP, rect.top()), rect.max);
+    if meter.width() >= 40.0 {
+        meter::paint(ui.painter(), meter.with_min_x(meter.left().max(meter.right() - 150.0)), header.levels, palette);
+    }
+    request
+}
+
+/// The name of the sound between arrows to the previous and the next one.
+fn name_field(ui: &Ui, rect: Rect, header: &Header, is_narrow: bool, controls: &mut Controls) -> Option<Request> {
+    let palette = controls.palette;
+    palette.paint_panel(ui.painter(), rect);
+    let arrow = vec2(24.0, rect.height());
+    let previous = Rect::from_min_size(rect.min, arrow);
+    let following = Rect::from_min_size(rect.right_top() - vec2(arrow.x, 0.0), arrow);
+    let inside =
+        Rect::from_min_max(pos2(previous.right() + 4.0, rect.top()), pos2(following.left() - 4.0, rect.bottom()));
+    let response = ui.interact(inside, Id::unique("sound"), Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Sound: {}", header.name)));
+    let mut request = response.clicked().then_some(Request::Browse);
+    let menu = Popup::context_menu(&response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    menu.show(|ui| request = request.or(variation::menu(ui, header.locked).map(Request::Variation)));
+    if button(ui, previous, "‹", "Previous sound", Look::Plain, palette).clicked() {
+        request = Some(Request::Step(-1));
+    }
+    if button(ui, following, "›", "Next sound", Look::Plain, palette).clicked() {
+        request = Some(Request::Step(1));
+    }
+    if response.hovered() {
+        *controls.hint = Hint::new(header.name, format!("{}   right click: randomise, mutate, locks", header.words));
+    }
+    let name = format!("{}{}", header.name, if header.is_changed { " *" } else { "" });
+    let name = line(ui.painter(), inside, Align2::LEFT_CENTER, &name, TEXT + 1.5, palette.text);
+    if !is_narrow {
+        let rest = Rect::from_min_max(pos2(name.right() + 12.0, inside.top()), inside.max);
+        line(ui.painter(), rest, Align2::RIGHT_CENTER, header.words, SMALL, palette.muted);
+    }
+    request
+}
+
+/// The menu of scales and themes.
+fn view_menu(ui: &Ui, rect: Rect, view: View, palette: &Palette) -> Option<Request> {
+    let response = button(ui, rect, &format!("{} %", view.zoom), "View", Look::Plain, palette);
+    let mut request = None;
+    Popup::menu(&response).show(|ui| {
+        ui.set_min_width(120.0);
+        for zoom in ZOOMS {
+            if ui.selectable_label(zoom == view.zoom, format!("{zoom} %")).clicked() {
+                request = Some(Request::Zoom(zoom));
+                ui.close();
+            }
+        }
+        ui.separator();
+        for theme in Theme::ALL {
+            if ui.selectable_label(theme == view.theme, theme.name()).clicked() {
+                request = Some(Request::Theme(theme));
+                ui.close();
+            }
+        }
+    });
+    request
+}

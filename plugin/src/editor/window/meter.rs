@@ -1,0 +1,60 @@
+//! The level of the sound, as a bar for each channel.
+
+use crate::editor::theme::Palette;
+use egui::{Painter, Rect, pos2, vec2};
+use sprung::units::db_from_gain;
+
+/// Decibels below full scale that the bars show.
+const RANGE: f32 = 60.0;
+/// How fast the bars fall, as a share of their length per second.
+const FALL: f32 = 0.7;
+
+/// Levels that rise at once and fall slowly, as shares of the bar. Above 1, the sound is above full scale.
+#[derive(Default)]
+pub(super) struct Meter([f32; 2]);
+
+impl Meter {
+    /// The levels after some seconds in which the sound had these peaks.
+    pub(super) fn levels(&mut self, peaks: [f32; 2], seconds: f32) -> [f32; 2] {
+        for (level, peak) in self.0.iter_mut().zip(peaks) {
+            let db = db_from_gain(f64::from(peak)) as f32;
+            *level = (*level - FALL * seconds).max((db / RANGE + 1.0).clamp(0.0, 1.2));
+        }
+        self.0
+    }
+
+    pub(super) fn is_moving(&self) -> bool {
+        self.0.iter().any(|level| *level > 0.0)
+    }
+}
+
+pub(super) fn paint(painter: &Painter, rect: Rect, levels: [f32; 2], palette: &Palette) {
+    for (level, offset) in levels.into_iter().zip([-4.5, 4.5]) {
+        let centre = pos2(rect.center().x, rect.center().y + offset);
+        let bar = Rect::from_center_size(centre, vec2(rect.width(), 6.0));
+        painter.rect_filled(bar, 3.0, palette.raised);
+        let colour = if level > 1.0 { palette.warning } else { palette.level };
+        painter.rect_filled(bar.with_max_x(bar.left() + bar.width() * level.clamp(0.0, 1.0)), 3.0, colour);
+        if level > 1.0 {
+            // A shape as well as a colour, for users who cannot tell the two colours apart.
+            painter.rect_filled(bar.with_min_x(bar.right() - 8.0), 0.0, palette.text);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_rise_at_once_and_fall_slowly() {
+        let mut meter = Meter::default();
+        assert!(!meter.is_moving());
+        let [left, right] = meter.levels([1.0, 0.0], 0.02);
+        assert_eq!((left, right), (1.0, 0.0));
+        let [left, _] = meter.levels([0.0; 2], 0.1);
+        assert!((left - 0.93).abs() < 1e-6 && meter.is_moving());
+        assert!(meter.levels([1.5; 2], 0.1)[0] > 1.0, "above full scale");
+        assert!(!meter.levels([f32::NAN; 2], 0.1)[1].is_nan());
+    }
+}

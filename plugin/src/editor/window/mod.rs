@@ -1,0 +1,262 @@
+//! An open window: what it shows in each pass.
+
+mod header;
+mod host;
+mod meter;
+mod requests;
+mod status;
+mod variation;
+
+use crate::editor::browser::Browser;
+use crate::editor::controls::history::History;
+use crate::editor::controls::shown::Shown;
+use crate::editor::controls::{Controls, FRAME, Interaction};
+use crate::editor::displays::Displays;
+use crate::editor::drops;
+use crate::editor::drops::fitting::Fitting;
+use crate::editor::host::extent;
+use crate::editor::host::focus::Focus;
+use crate::editor::keyboard::computer::ComputerKeyboard;
+use crate::editor::keyboard::piano::Piano;
+use crate::editor::manual::Manual;
+use crate::editor::modes::ModesView;
+use crate::editor::pages::{self, Pages};
+use crate::editor::routes::learn;
+use crate::editor::theme::layout::Layout;
+use crate::editor::theme::{Theme, install_fonts};
+use crate::params::SprungParams;
+use crate::state::State;
+use egui::{Key, Ui};
+use header::{Header, Request};
+use meter::Meter;
+use nice_plug_core::context::PluginApi;
+use nice_plug_core::context::gui::GuiContext;
+use sprung::preset::library::Library;
+use status::{Load, StatusLine};
+use std::collections::BTreeSet;
+use std::hash::{BuildHasher as _, RandomState};
+use std::sync::Arc;
+
+/// Longest time in seconds by which moving pictures go on in one pass: after a pause they go on where they were.
+const LONGEST: f32 = 0.25;
+
+/// The view that is shown in place of modes and parameters.
+#[derive(Clone, Copy, PartialEq)]
+enum Over {
+    Browser,
+    Manual,
+}
+
+/// An open window.
+pub(super) struct Window {
+    params: Arc<SprungParams>,
+    host: Option<GuiContext>,
+    interaction: Interaction,
+    history: History,
+    shown: Shown,
+    browser: Browser,
+    modes: ModesView,
+    displays: Displays,
+    piano: Piano,
+    computer_keyboard: ComputerKeyboard,
+    meter: Meter,
+    load: Load,
+    /// Sections that variations leave as they are, and the seed of the next one.
+    locked: BTreeSet<&'static str>,
+    seed: u64,
+    focus: Focus,
+    pages: Pages,
+    manual: Manual,
+    fitting: Fitting,
+    over: Option<Over>,
+    /// The other one of the two versions of the sound, and whether it is changed ([`History::is_changed`]).
+    other: Option<(State, bool)>,
+    is_b: bool,
+    /// The context of a real window, and the zoom that it has, or will have with the first pass.
+    context: Option<egui::Context>,
+    zoom: f32,
+    /// The time of the last pass.
+    now: f64,
+    /// How many states the host had loaded when the window last looked.
+    loads: u64,
+    /// The theme that was last applied to egui's own widgets.
+    applied: Option<Theme>,
+    message: String,
+    line: StatusLine,
+}
+
+impl Window {
+    /// A window that stores the user's sounds in a library; `None` if the system names no folder for user data.
+    pub(super) fn new(params: Arc<SprungParams>, library: Option<Library>) -> Self {
+        let shown = Shown::new(&params);
+        let (zoom, loads) = (extent::factor(params.view()), params.loads());
+        Self {
+            params,
+            host: None,
+            interaction: Interaction::default(),
+            history: History::default(),
+            shown,
+            browser: Browser::new(library),
+            modes: ModesView::default(),
+            displays: Displays::default(),
+            piano: Piano::default(),
+            computer_keyboard: ComputerKeyboard::default(),
+            meter: Meter::default(),
+            load: Load::default(),
+            locked: BTreeSet::new(),
+            // A different seed in each window.
+            seed: RandomState::new().hash_one(0_u8),
+            focus: Focus::default(),
+            pages: Pages::default(),
+            manual: Manual::default(),
+            fitting: Fitting::default(),
+            over: None,
+            other: None,
+            is_b: false,
+            context: None,
+            zoom,
+            now: 0.0,
+            loads,
+            applied: None,
+            message: String::new(),
+            line: StatusLine::default(),
+        }
+    }
+
+    /// Prepares the window for being shown by a host.
+    pub(super) fn open(&mut self, host: GuiContext) {
+        self.host = Some(host);
+        self.applied = None;
+    }
+
+    /// Shows the window, over the theme's ground, and carries out the user's requests.
+    pub(super) fn contents(&mut self, ui: &mut Ui, host: &GuiContext) {
+        let params = self.params.clone();
+        let view = params.view();
+        if self.applied.is_none() {
+            install_fonts(ui.ctx());
+        }
+        if self.applied != Some(view.theme) {
+            self.applied = Some(view.theme);
+            view.theme.apply(ui.ctx());
+        }
+        let palette = view.theme.palette();
+        self.shown.refresh(&params);
+        self.follow_loads();
+        let window = ui.ctx().content_rect();
+        let layout = Layout::of(window);
+        let telemetry = &params.link().telemetry;
+        let (snapshot, is_silent) = (telemetry.snapshot(), telemetry.is_silent());
+        let energies: Vec<f32> = snapshot.masses.iter().map(|mass| if is_silent { 0.0 } else { mass.energy }).collect();
+        let now = ui.input(|input| input.time);
+        let seconds = ((now - std::mem::replace(&mut self.now, now)) as f32).clamp(0.0, LONGEST);
+        let levels = self.meter.levels(telemetry.take_peaks(), seconds);
+        if !is_silent || self.meter.is_moving() {
+            ui.ctx().request_repaint_after(FRAME);
+        }
+        let notes: Vec<_> = snapshot.notes.into_iter().flatten().filter(|_| !is_silent).collect();
+        let mut hint = None;
+        let name = params.name();
+        let mut controls = Controls {
+            params: &params,
+            host,
+            palette,
+            interaction: &mut self.interaction,
+            history: &mut self.history,
+            hint: &mut hint,
+            seconds,
+            notes: &notes,
+        };
+        let header = Header {
+            name: &name,
+            words: &self.shown.words(),
+            is_changed: controls.history.is_changed(),
+            is_browsing: self.over == Some(Over::Browser),
+            is_b: self.is_b,
+            view,
+            locked: &self.locked,
+            levels,
+        };
+        let request = header::show(ui, layout.header, &header, &mut controls);
+        let down = (0..16).fold(0, |down, channel| down | telemetry.keys(channel));
+        let voices = if is_silent { 0 } else { snapshot.voices };
+        if self.over.is_some() {
+            self.modes.cancel(&mut controls);
+            self.displays.cancel(&mut controls);
+            self.pages.leave(&mut controls);
+        }
+        match self.over {
+            Some(Over::Browser) => {
+                if let Some((message, is_done)) = self.browser.show(ui, layout.page(), &mut controls) {
+                    self.message = message;
+                    self.over = self.over.filter(|_| !is_done);
+                }
+            }
+            Some(Over::Manual) => {
+                if self.manual.show(ui, layout.page(), palette) {
+                    self.over = None;
+                }
+            }
+            None => {
+                self.modes.show(ui, layout.modes, &self.shown, &energies, &mut controls);
+                self.displays.show(ui, layout.displays, &self.shown, (&energies, self.modes.selected()), &mut controls);
+                match self.pages.show(ui, &layout, &self.shown, (down, voices), &mut controls) {
+                    Some(pages::Request::Manual) => {
+                        self.manual.open(self.pages.topic());
+                        self.over = Some(Over::Manual);
+                    }
+                    Some(pages::Request::Say(message)) => self.message = message,
+                    None => {}
+                }
+            }
+        }
+        if ui.input(|input| input.key_pressed(Key::Escape)) {
+            self.over = None;
+        }
+        let (recordings, files): (Vec<_>, Vec<_>) =
+            drops::dropped(ui).into_iter().partition(|path| drops::is_recording(path));
+        for path in files {
+            self.message = drops::take(&path, self.browser.library(), &mut controls);
+            self.browser.forget();
+        }
+        if !recordings.is_empty() {
+            self.message = self.fitting.begin(recordings);
+        }
+        if let Some(message) = self.fitting.show(ui, layout.modes, &mut controls) {
+            self.message = message;
+        }
+        self.browser.follow_time(now, &controls);
+        self.piano.show(ui, layout.piano, down, self.shown.guide(), &mut controls);
+        // In a plugin, the computer's keyboard belongs to the host.
+        let is_alone = host.plugin_api() == PluginApi::Standalone;
+        let is_typing = ui.ctx().egui_wants_keyboard_input();
+        let searches = is_alone && !is_typing && ui.input(|input| input.key_pressed(Key::Slash));
+        let played = is_alone.then(|| self.computer_keyboard.follow(ui, params.link())).flatten();
+        let learnt = learn::follow(ui, &mut controls);
+        if let Some(messages) = learnt.or_else(|| params.link().take_messages()).or(played) {
+            self.message = messages;
+        }
+        let complaint = controls.interaction.typing.as_ref().and_then(|typing| typing.complaint.clone());
+        let complaints = || status::summary(&params.complaints()).unwrap_or_default();
+        let message = if self.message.is_empty() { complaints() } else { self.message.clone() };
+        let message = complaint.unwrap_or(message);
+        let sample_rate = params.link().sample_rate();
+        let load = self.load.share(now, telemetry, sample_rate);
+        let engine = status::engine(voices, load, sample_rate);
+        self.line.show(ui, layout.status, hint.as_ref(), &message, &engine, palette);
+        let search = (searches && self.over != Some(Over::Browser)).then_some(Request::Browse);
+        if let Some(request) = request.or(search) {
+            self.carry_out(request, ui, host);
+        }
+    }
+
+    /// Begins anew after the host has loaded a state: steps and versions of the sound before it would bring that sound
+    /// back into a project that the host believes to be another.
+    fn follow_loads(&mut self) {
+        let loads = self.params.loads();
+        if std::mem::replace(&mut self.loads, loads) != loads {
+            (self.history, self.other, self.is_b) = (History::default(), None, false);
+            self.message.clear();
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! The user's requests, carried out.
+
+use super::header::Request;
+use super::variation::{Variation, VariationRequest};
+use super::{Over, Window};
+use crate::editor::browser::Aim;
+use crate::editor::controls::files::load;
+use crate::editor::controls::history::{History, restore};
+use crate::editor::host::extent;
+use crate::params::SprungParams;
+use egui::Ui;
+use nice_plug_core::context::gui::GuiContext;
+use sprung::preset::{Playable, Preset};
+
+impl Window {
+    /// Loads the factory sound at this distance in the list.
+    fn step(&mut self, places: isize, host: &GuiContext) {
+        let (all, name) = (Preset::factory(), self.params.name());
+        let place = all.iter().position(|preset| preset.name == name).unwrap_or(0) as isize + places;
+        let preset = all[place.rem_euclid(all.len() as isize) as usize].clone();
+        self.history.load(Playable::Preset(preset), &self.params, host);
+    }
+
+    /// Replaces the sound by a random variation.
+    fn vary(&mut self, variation: Variation, host: &GuiContext) {
+        let Playable::Preset(preset) = self.params.state().playable else {
+            self.message = "a kit’s sounds cannot be varied together: load one of them".to_owned();
+            return;
+        };
+        self.seed = self.seed.wrapping_add(1);
+        match variation.of(&preset, self.seed, &self.locked) {
+            Some(varied) => {
+                self.message.clear();
+                self.history.begin(&self.params);
+                load(Playable::Preset(varied), &self.params, host);
+                self.history.end(variation.name(), &self.params);
+            }
+            None => self.message = "every variation that was tried is silent: unlock more sections".to_owned(),
+        }
+    }
+
+    /// Undoes or redoes a step, which may exchange the two versions.
+    fn go_back(&mut self, go: impl FnOnce(&mut History, &SprungParams, &GuiContext) -> bool, host: &GuiContext) {
+        let now = (self.params.state(), self.history.is_changed());
+        if go(&mut self.history, &self.params, host) {
+            self.other = Some(now);
+            self.is_b = !self.is_b;
+        }
+    }
+
+    pub(super) fn carry_out(&mut self, request: Request, ui: &Ui, host: &GuiContext) {
+        match request {
+            Request::Browse | Request::Save => {
+                let closes = self.over == Some(Over::Browser) && request == Request::Browse;
+                self.over = (!closes).then_some(Over::Browser);
+                self.message.clear();
+                self.browser.open(&self.params.name(), if request == Request::Save { Aim::Save } else { Aim::Find });
+            }
+            Request::Undo => self.go_back(History::undo, host),
+            Request::Redo => self.go_back(History::redo, host),
+            Request::Zoom(zoom) => {
+                self.params.set_view(|view| view.zoom = zoom);
+                ui.ctx().set_zoom_factor(extent::factor(self.params.view()));
+            }
+            Request::Theme(theme) => self.params.set_view(|view| view.theme = theme),
+            Request::Step(places) => self.step(places, host),
+            Request::Swap => {
+                self.history.begin(&self.params);
+                let now = (self.params.state(), self.history.is_changed());
+                let mut is_changed = now.1;
+                if let Some((other, other_is_changed)) = self.other.replace(now) {
+                    restore(other, &self.params, host);
+                    is_changed = other_is_changed;
+                }
+                self.is_b = !self.is_b;
+                let name = if self.is_b { "version B" } else { "version A" };
+                self.history.end_swap(name, is_changed, &self.params);
+            }
+            Request::Variation(VariationRequest::Lock(section)) => {
+                if !self.locked.remove(section) {
+                    self.locked.insert(section);
+                }
+            }
+            Request::Variation(VariationRequest::Vary(variation)) => self.vary(variation, host),
+            Request::Copy => self.other = Some((self.params.state(), self.history.is_changed())),
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! The status line: the thing under the pointer, the last message, and the state of the engine.
+
+use crate::editor::controls::Hint;
+use crate::editor::theme::{Palette, SMALL};
+use crate::editor::widgets::text::{line, width};
+use egui::{Align2, Id, Rect, Role, Sense, Ui, WidgetInfo, pos2};
+use sprung::engine::Telemetry;
+use sprung::text::counted;
+
+/// How often the load is computed, in seconds.
+const INTERVAL: f64 = 0.5;
+
+/// The load of the audio thread over the last half second.
+#[derive(Default)]
+pub(super) struct Load {
+    /// Time of the last computation, with the frames played and the seconds spent until then.
+    last: Option<(f64, u64, f64)>,
+    share: Option<f64>,
+}
+
+impl Load {
+    /// The share of the time during which the audio thread is busy; none if it plays nothing, or has not been observed
+    /// long enough.
+    pub(super) fn share(&mut self, now: f64, telemetry: &Telemetry, sample_rate: u32) -> Option<f64> {
+        if let Some((time, _, _)) = self.last
+            && (time..time + INTERVAL).contains(&now)
+        {
+            return self.share;
+        }
+        let load = telemetry.load();
+        let busy = load.mean_share * load.frames as f64;
+        self.share = self.last.and_then(|(_, frames, before)| {
+            let played = load.frames.checked_sub(frames).filter(|played| *played > 0 && sample_rate > 0)?;
+            Some(((busy - before) / played as f64).max(0.0))
+        });
+        self.last = Some((now, load.frames, busy));
+        self.share
+    }
+}
+
+/// The state of the engine as text.
+pub(super) fn engine(voices: u32, load: Option<f64>, sample_rate: u32) -> String {
+    match sample_rate {
+        0 => "not playing".to_owned(),
+        rate => {
+            let load = load.map_or(String::new(), |load| format!("   {:.1} % CPU", load * 100.0));
+            format!("{}{load}   {} kHz", counted(voices as usize, "voice"), f64::from(rate) / 1000.0)
+        }
+    }
+}
+
+/// A message if the last state that was loaded was not understood completely: the first complaint, and the number of
+/// the others.
+pub(super) fn summary(complaints: &[String]) -> Option<String> {
+    let [first, rest @ ..] = complaints else { return None };
+    let rest = if rest.is_empty() { String::new() } else { format!(" (and {} more)", rest.len()) };
+    Some(format!("Not all of the project’s state was understood: {first}{rest}"))
+}
+
+/// The line. A message stays until the next one; a hint hides it while the pointer is over the widget, but only once the
+/// pointer has moved: what a click or a key has led to must be seen where the pointer rests.
+#[derive(Default)]
+pub(super) struct StatusLine {
+    message: String,
+    is_unread: bool,
+}
+
+impl StatusLine {
+    pub(super) fn show(
+        &mut self,
+        ui: &Ui,
+        rect: Rect,
+        hint: Option<&Hint>,
+        message: &str,
+        right: &str,
+        palette: &Palette,
+    ) {
+        let has_moved = ui.input(|input| input.pointer.delta() != egui::Vec2::ZERO || input.pointer.any_pressed());
+        self.is_unread &= !has_moved;
+        if self.message != message {
+            message.clone_into(&mut self.message);
+            self.is_unread = !message.is_empty();
+        }
+        paint(ui, rect, hint.filter(|_| !self.is_unread), message, right, palette);
+    }
+}
+
+fn paint(ui: &Ui, rect: Rect, hint: Option<&Hint>, message: &str, right: &str, palette: &Palette) {
+    let painter = ui.painter();
+    let right_width = width(painter, right, SMALL);
+    line(painter, rect, Align2::RIGHT_CENTER, right, SMALL, palette.muted);
+    let left = rect.with_max_x(rect.right() - right_width - 16.0);
+    if !message.is_empty() {
+        // Screen readers read a message even if a hint hides it.
+        let response = ui.interact(left, Id::unique("message"), Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, message));
+        if hint.is_none() && width(painter, message, SMALL) > left.width() {
+            response.on_hover_text(message);
+        }
+    }
+    match hint {
+        Some(Hint { title, help }) => {
+            let title = line(painter, left, Align2::LEFT_CENTER, title, SMALL, palette.text);
+            let rest = Rect::from_min_max(pos2(title.right() + 10.0, left.top()), left.max);
+            line(painter, rest, Align2::LEFT_CENTER, help, SMALL, palette.muted);
+        }
+        None => {
+            line(painter, left, Align2::LEFT_CENTER, message, SMALL, palette.warning);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sprung::engine::TelemetryWriter;
+    use std::sync::Arc;
+    use std::time::Duration;
+
+    #[test]
+    fn the_load_is_that_of_the_last_half_second() {
+        let telemetry = Arc::new(Telemetry::default());
+        let writer = TelemetryWriter::new(telemetry.clone(), 48_000.0);
+        let mut load = Load::default();
+        assert_eq!(load.share(0.0, &telemetry, 48_000), None);
+        writer.note_block(480, Duration::from_millis(5));
+        assert_eq!(load.share(0.4, &telemetry, 48_000), None, "not yet");
+        let share = load.share(0.5, &telemetry, 48_000).unwrap();
+        assert!((share - 0.5).abs() < 1e-6, "{share}");
+        writer.note_block(480, Duration::from_millis(1));
+        assert_eq!(load.share(0.9, &telemetry, 48_000), Some(share));
+        assert!((load.share(1.0, &telemetry, 48_000).unwrap() - 0.1).abs() < 1e-6);
+        assert_eq!(load.share(2.0, &telemetry, 48_000), None, "nothing was played");
+    }
+
+    #[test]
+    fn complaints_are_summed_up_in_a_line() {
+        let lines = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!(summary(&[]), None);
+        assert_eq!(summary(&lines[..1]).as_deref(), Some("Not all of the project’s state was understood: a"));
+        assert!(summary(&lines).unwrap().ends_with(": a (and 2 more)"));
+    }
+}

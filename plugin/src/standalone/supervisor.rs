@@ -1,0 +1,168 @@
+//! Follows devices and ports, and saves the state, while the window is open.
+
+use super::chosen::{choice, plain};
+use super::messages::{print, report};
+use super::player::WindowPlayer;
+use super::store::Store;
+use crate::devices::{Chosen, Devices, Output};
+use crate::params::SprungParams;
+use sprung::realtime::{LiveSender, MidiIn, Session, device, midi_ports};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+/// Time between two checks of devices, ports and requests.
+const POLL: Duration = Duration::from_millis(50);
+
+/// Time between two checks for changes to save.
+const SAVE: Duration = Duration::from_secs(5);
+
+/// Time between two searches for devices, while the window shows them.
+const SEARCH: Duration = Duration::from_secs(3);
+
+/// How long a window may take to close after it was asked to. A window that is not visible may never close.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Follows devices and ports, and saves the state, while the window is open. Runs on its own thread.
+pub(super) struct Supervisor {
+    pub(super) params: Arc<SprungParams>,
+    pub(super) store: Store,
+    pub(super) session: Session<WindowPlayer>,
+    pub(super) closing: LiveSender,
+    /// Whether the window is closed.
+    pub(super) is_closed: Arc<AtomicBool>,
+    pub(super) chosen: Chosen,
+}
+
+impl Supervisor {
+    /// Runs until the window is closed. `midi` sends the events of MIDI ports to the audio thread.
+    pub(super) fn run(mut self, midi: LiveSender) -> Result<(), String> {
+        device::silence_library();
+        let mut midi = Some(self.listen(midi));
+        let mut asked: Option<Instant> = None;
+        let mut save_at = Instant::now() + SAVE;
+        let mut search_at = Instant::now();
+        // A problem with the file is reported once.
+        let mut reported = None;
+        while !self.is_closed.load(Relaxed) {
+            report(&self.params, self.session.poll());
+            report(&self.params, midi.iter_mut().flat_map(MidiIn::poll).collect::<Vec<_>>());
+            let params = self.params.clone();
+            let devices = &params.link().devices;
+            if let Some(request) = devices.take_request() {
+                self.change(request, &mut midi);
+                search_at = Instant::now();
+            }
+            if Instant::now() >= search_at && devices.was_watched() {
+                devices.show(self.devices());
+                params.link().repaint.request_repaint();
+                search_at = Instant::now() + SEARCH;
+            }
+            if Instant::now() > save_at {
+                save_at = Instant::now() + SAVE;
+                let problem = self.store.save_if_changed(&self.params).err();
+                if problem != reported {
+                    report(&self.params, problem.clone());
+                    reported = problem;
+                }
+            }
+            if self.params.link().is_closing() && asked.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
+                break;
+            }
+            std::thread::sleep(POLL);
+        }
+        drop(midi);
+        // The state is written before the fade: if the user starts the program again at once, the file is complete and
+        // unlocked.
+        let ended = self.store.save(&self.params);
+        drop(self.store);
+        if !self.session.finish(&mut self.closing) {
+            print("warning: the sound device does not answer; left it behind");
+        }
+        if !self.is_closed.load(Relaxed) {
+            // The window's thread still waits for its window, which does not close.
+            if let Err(error) = &ended {
+                print(&format!("error: {error}"));
+            }
+            std::process::exit(ended.is_err().into());
+        }
+        ended
+    }
+
+    /// Listens to the chosen MIDI ports.
+    fn listen(&self, sender: LiveSender) -> MidiIn {
+        MidiIn::new(self.chosen.midi_in.as_deref().unwrap_or("all"), self.session.is_jack(), sender)
+    }
+
+    /// Plays on the requested device. If that fails, everything stays as it was.
+    fn change(&mut self, mut request: Chosen, midi: &mut Option<MidiIn>) {
+        let was_jack = self.session.is_jack();
+        if choice(&request) != choice(&self.chosen) {
+            let changed = self.session.change(choice(&request), WindowPlayer::set_sample_rate);
+            let message = match &changed {
+                Ok(()) => format!("playing on {}", self.session.description()),
+                Err(error) if self.session.is_playing() => {
+                    format!("{}; still on {}", plain(error), self.session.description())
+                }
+                Err(error) => format!("{}; waiting for {}", plain(error), self.session.description()),
+            };
+            report(&self.params, Some(message));
+            if changed.is_err() {
+                return;
+            }
+        }
+        let is_other_system = was_jack != self.session.is_jack();
+        // The ports have other names on the other system.
+        if is_other_system && request.midi_in.as_deref() != Some("none") {
+            request.midi_in = None;
+        }
+        let is_other_port = request.midi_in != self.chosen.midi_in || is_other_system;
+        self.chosen = request;
+        if is_other_port {
+            *midi = midi.take().and_then(MidiIn::into_sender).map(|sender| self.listen(sender));
+            let is_lost = midi.is_none().then(|| "MIDI does not answer: start the program again to hear it".to_owned());
+            report(&self.params, is_lost);
+        }
+        report(&self.params, self.store.save_devices(&self.chosen).err());
+    }
+
+    /// The present devices and ports.
+    fn devices(&self) -> Devices {
+        let output = |device::Output { host, id, description }| Output { host, id, description };
+        // A JACK server connects its ports itself.
+        let ports = if self.session.is_jack() { vec![] } else { midi_ports::names() };
+        let playing = if self.session.is_playing() { self.session.description() } else { "" };
+        Devices {
+            outputs: device::outputs().into_iter().map(output).collect(),
+            rates: self.session.rates().to_vec(),
+            ports: ports.iter().map(|name| lasting(name).to_owned()).collect(),
+            chosen: self.chosen.clone(),
+            playing: playing.to_owned(),
+        }
+    }
+}
+
+/// A port's name without the numbers that ALSA appends: they change when the port is plugged in again.
+fn lasting(name: &str) -> &str {
+    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let are_numbers =
+        |last: &str| last.split_once(':').is_some_and(|(client, port)| is_number(client) && is_number(port));
+    name.rsplit_once(' ').filter(|(_, last)| are_numbers(last)).map_or(name, |(stable, _)| stable)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ports_keep_their_names_when_they_are_plugged_in_again() {
+        for (name, stable) in [
+            ("Keystation 49:Keystation 49 MIDI 1 24:0", "Keystation 49:Keystation 49 MIDI 1"),
+            ("Midi Through", "Midi Through"),
+            ("Synth 1:2a", "Synth 1:2a"),
+            ("", ""),
+        ] {
+            assert_eq!(lasting(name), stable);
+        }
+    }
+}

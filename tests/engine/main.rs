@@ -1,0 +1,35 @@
+//! The engine through its public interface: events in, samples out, and nothing allocated between them.
+
+mod accuracy;
+mod allocation;
+mod any_event;
+mod behind_voices;
+mod blocks;
+mod bodies;
+mod body_reference;
+mod body_rendered;
+mod clicks;
+mod coupled_reference;
+mod events;
+mod exciters;
+mod host_events;
+mod in_blocks;
+mod in_motion;
+mod kits;
+mod limiter;
+mod modulation;
+mod motion;
+mod mpe;
+mod nudges;
+mod pair_reference;
+mod pool;
+mod seed_listing;
+mod shared_space;
+mod space;
+mod storm;
+mod tuning;
+mod unison;
+
+/// Forbids allocation wherever a test asks for it.
+#[global_allocator]
+static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;
